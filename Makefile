@@ -8,6 +8,10 @@ PEERS_OUT ?= reports/latest-peers
 INSTALLED := .venv/.installed
 PARALLEL := -n auto --dist loadfile --no-loadscope-reorder
 
+# Python keeps what it compiles, also where the environment says otherwise: the tests start hundreds of processes, and each
+# would compile all libraries anew, which takes longer than most of what they do.
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: report test api environments lint wheel publish readme peers lock clean
 
 report: $(INSTALLED)

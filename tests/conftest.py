@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""What holds for every test: no store of the user, and one thread of BLAS and one core for each process.
+"""What holds for every test: no store of the user, one thread of BLAS and one core for each process, and what
+Python has compiled is kept.
 
 No test reads or fills the store of the user: without SAMFEM_STORE there is none, and tests of the store name
 their own. `make test` shares the tests among processes, so that each has one thread unless the user asks for
-another number.
+another number. Processes that tests start would each compile all libraries anew where the environment forbids
+Python to keep what it has compiled.
 """
 
 import os
@@ -13,6 +15,7 @@ import pytest
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 os.environ["SAMFEM_STORE"] = ""
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 for name in THREADS:  # BLAS reads them when numpy is loaded, here and in the processes that are started
     os.environ.setdefault(name, "1")
 

@@ -152,11 +152,19 @@ def test_the_page_of_the_module_is_made_from_its_docstrings(tmp_path):
     assert page.replace("'", '"').strip() == shown.replace("'", '"').strip(), "make api"
 
 
-@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
-def test_an_example_draws_the_picture_that_the_guide_shows(tmp_path, example):
-    found = ended(str(example), folder=tmp_path)
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory) -> Path:
+    """The folder in which all examples have run, one after the other in a process that loads them only."""
+    folder = tmp_path_factory.mktemp("examples")
+    program = "import runpy, sys\nfor path in sys.argv[1:]:\n    runpy.run_path(path, run_name='__main__')"
+    found = ended("-c", program, *map(str, EXAMPLES), folder=folder)
     assert found.returncode == 0, found.stderr
-    new, shown = (imread(folder / f"{example.stem}.png") for folder in (tmp_path, example.parent))
+    return folder
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
+def test_an_example_draws_the_picture_that_the_guide_shows(drawn, example):
+    new, shown = (imread(folder / f"{example.stem}.png") for folder in (drawn, example.parent))
     assert new.shape == shown.shape
     # fonts are drawn a little differently from one version to another: few pixels differ
     assert np.mean(np.abs(new - shown).max(axis=2) > 0.1) < 0.02 < np.mean(new[..., :3].min(axis=2) < 0.5)

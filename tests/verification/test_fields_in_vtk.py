@@ -6,6 +6,8 @@ VTK takes six components for XX, YY, ZZ, XY, YZ, XZ, whatever their names are: i
 right in that order only. Nothing is rendered, so no OpenGL is needed.
 """
 
+from functools import cache
+
 import numpy as np
 import pytest
 import pyvista
@@ -58,14 +60,25 @@ TURNED = {"yz": -1.0, "xz": -1.0}
 """Components of a tensor that change their sign where z points the other way."""
 
 
-@pytest.fixture(scope="module", params=CASES)
-def written(request, tmp_path_factory):
+@pytest.fixture(scope="module")
+def solved(tmp_path_factory):
+    """Model -> (the result, its run read back), solved when it is first asked for."""
+
+    @cache
+    def of_model(model: str):
+        folder = tmp_path_factory.mktemp("run")
+        result = models.solve(CASES[model], model)
+        assert result.converged
+        write_run(result, CASES[model], folder, {})
+        return result, read_run(folder)
+
+    return of_model
+
+
+@pytest.fixture(params=CASES)
+def written(request, solved):
     """(the result, its run read back) of each model."""
-    folder = tmp_path_factory.mktemp("run")
-    result = models.solve(CASES[request.param], request.param)
-    assert result.converged
-    write_run(result, CASES[request.param], folder, {})
-    return result, read_run(folder)
+    return solved(request.param)
 
 
 def fields_of(written, state: str = "peak") -> pyvista.UnstructuredGrid:

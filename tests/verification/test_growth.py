@@ -52,10 +52,15 @@ def test_a_power_needs_three_points_in_its_range():
             fit_power(x, y, first)
 
 
-def test_a_process_measures_its_own_memory_and_one_thread():
+@pytest.fixture(scope="module")
+def idle() -> int:
+    """Memory of a process that has solved nothing."""
+    return idle_bytes(SAM)
+
+
+def test_a_process_measures_its_own_memory_and_one_thread(idle):
     """Also after this process had much more memory than it has."""
     before = {name: os.environ.get(name) for name in THREADS}
-    idle = idle_bytes(SAM)
     large = np.ones(40_000_000)
     assert large.nbytes > 2 * idle
     del large
@@ -63,12 +68,6 @@ def test_a_process_measures_its_own_memory_and_one_thread():
         idle_bytes(SAM) < 1.3 * idle
     )  # of its own; more than twice as much if it began with that of this process
     assert alone(os.getenv, THREADS[0]) == "1" and {name: os.environ.get(name) for name in THREADS} == before
-
-
-@pytest.fixture(scope="module")
-def idle() -> int:
-    """Memory of a process that has solved nothing."""
-    return idle_bytes(SAM)
 
 
 @pytest.mark.parametrize(

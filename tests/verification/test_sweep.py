@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 from concurrent.futures import Future
+from contextlib import nullcontext
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from unittest.mock import patch
@@ -51,6 +52,19 @@ def folder(folder) -> Path:
 def no_figure(monkeypatch) -> None:
     """For tests of something else: drawing takes longer than the scenes."""
     monkeypatch.setattr(sweep, "_draw", lambda _state: None)
+
+
+@pytest.fixture(scope="module")
+def pool():
+    """A worker for all sweeps of which none dies: to start one takes longer than the scenes."""
+    with Processes(1) as workers:
+        yield workers
+
+
+@pytest.fixture
+def same_worker(monkeypatch, pool) -> None:
+    """For tests of something else than the workers."""
+    monkeypatch.setattr(sweep, "_executor", lambda _scheduler, _count: nullcontext(pool))
 
 
 @pytest.fixture(scope="module")
@@ -96,6 +110,7 @@ def test_the_table_is_the_same_with_one_worker_and_with_two(folder, calm, capsys
     assert "two/sweep.csv" in capsys.readouterr().out
 
 
+@pytest.mark.usefixtures("same_worker")
 def test_scenes_that_are_refused_are_rows(folder, no_figure, capsys):
     (folder / "study.toml").write_text(STUDY + '"body.poisson" = { list = [0.3, 0.7] }\n')
     record = sweep_of("out", "--no-runs", code=1)
@@ -141,6 +156,7 @@ def test_a_folder_with_a_single_run_is_not_overwritten(folder, samfem):
     assert read_run(Path("run")).converged
 
 
+@pytest.mark.usefixtures("same_worker")
 def test_the_second_time_nothing_is_solved_and_the_table_is_the_same(folder, no_figure, monkeypatch):
     monkeypatch.setenv(FOLDER, str(folder / "store"))
     sweep_of("out")
@@ -166,7 +182,8 @@ seed = 2
 """
 
 
-def test_a_design_ends_with_the_indices_of_what_moves_a_contact(folder, monkeypatch):
+@pytest.mark.usefixtures("same_worker")
+def test_a_design_ends_with_the_indices_of_what_moves_a_contact(folder, no_figure, monkeypatch):
     """An elastic sphere: the pressure and its effects are those of Hertz; a key that changes nothing has
     none, and equal scenes are solved once.
     """
@@ -192,6 +209,7 @@ def test_a_design_ends_with_the_indices_of_what_moves_a_contact(folder, monkeypa
     assert Path("out/sensitivity.png").stat().st_size > 1000
 
 
+@pytest.mark.usefixtures("same_worker")
 def test_what_did_not_converge_is_not_solved_again(folder, no_figure, monkeypatch):
     monkeypatch.setenv(FOLDER, str(folder / "store"))
     (folder / "coarse.toml").write_text(scene_text(add=COARSE + 'extent = ["4 um", "4 um"]\n'))
@@ -203,6 +221,7 @@ def test_what_did_not_converge_is_not_solved_again(folder, no_figure, monkeypatc
     assert Path("out/sweep.csv").read_bytes() == rows
 
 
+@pytest.mark.usefixtures("same_worker")
 def test_runs_of_an_older_study_are_removed(folder, no_figure):
     sweep_of("out")
     (folder / "study.toml").write_text(STUDY.replace("0.1 N", "0.3 N").replace("count = 4", "count = 2"))
@@ -250,6 +269,7 @@ def test_a_scene_that_kills_every_worker_is_a_row(folder, no_figure, monkeypatch
     assert f"scene 2: failed: {WORKER_DIED}" in capsys.readouterr().err
 
 
+@pytest.mark.usefixtures("same_worker")
 def test_a_scene_whose_solver_raises_is_a_row(folder, no_figure, monkeypatch):
     monkeypatch.setattr(sweep, "solve_scene", functions.solve_but_raise)
     sweep_of("out", "--no-runs", code=1)
