@@ -3,12 +3,14 @@
 
 import json
 from concurrent.futures import Executor, Future
+from dataclasses import replace
 
 import pytest
 from fake_case import FakeCase
 from stored import COARSE
 from test_report import sketch
 
+from sam.scene import Status
 from verification.app import publishing
 from verification.runs import models
 from verification.suite import earlier, freshness, outcomes, verify
@@ -214,6 +216,30 @@ def test_scenes_of_a_long_case_are_solved_ahead_and_the_case_says_their_time(
     assert counted == 3 * [models.SAM]  # "first" has one of the scenes, and the second leads to another
     results = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
     assert results["cases"][0]["seconds"] > 0.0 and not results["cases"][0]["failure"]
+
+
+class Lost(Shared):
+    """None of its runs converges, which it expects."""
+
+    def then(self, scene, result):
+        return None
+
+    def solve(self, context):
+        return [context.solve(models.SAM, scene, "lost", demand=False) for scene in self.scenes[:2]]
+
+    def measure(self, found):
+        return {"one": Measured(sum(not one.converged for one in found), 2)}
+
+
+def test_runs_without_a_converged_result_are_solved_once_too(
+    tmp_path, published, monkeypatch, counted, coarse_results
+):
+    lost = replace(coarse_results[models.SAM], status=Status.NOT_CONVERGED, message="no")
+    monkeypatch.setitem(coarse_results, models.SAM, lost)
+    monkeypatch.setattr(publishing, "all_cases", lambda: {"lost": Lost("lost", "lost", "Is it lost?")})
+    monkeypatch.setattr(verify, "load_gates", lambda: load_gates(GATE.format("lost")))
+    run(tmp_path)
+    assert counted == 2 * [models.SAM]  # ahead, and not again by the case
 
 
 class Undrawn(Case):

@@ -8,10 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from verification.figures.style import BLACK, GREY, GUIDE, VERMILION, Columns, Drawing, sheet
+from verification.figures.style import BLACK, GUIDE, VERMILION, Columns, Drawing, sheet
 
 PALE = "#9fc8e3"  # of bars on which bounds are drawn
-SAID, DARK = 0.05, 0.6  # shares whose number is written, and written in white
 
 
 def probabilities(rows: Sequence[tuple[str, int, int, tuple[float, float]]]) -> Drawing:
@@ -61,27 +60,4 @@ def best_pair(
             scale("log" if yes else "linear")
         figure.legend(loc="outside upper left")
     table.add(*places, counts)
-    return Drawing(figure, table)
-
-
-def explained(names: Sequence[str], inputs: Sequence[str], shares: np.ndarray) -> Drawing:
-    """A map of signed shares (names, inputs) of the variance, with their numbers in percent."""
-    table = Columns("measure of", "input", "share")
-    with sheet(7.2, 2.2 + 0.24 * len(names)) as (figure, axis):
-        axis.grid(visible=False)
-        shown = np.ma.masked_equal(shares, 0.0)
-        bar = axis.pcolormesh(shown[::-1], cmap="RdBu_r", vmin=-1.0, vmax=1.0, edgecolors=GREY, linewidth=0.4)
-        for (row, column), share in np.ndenumerate(shares):
-            if abs(share) >= SAID:
-                place, colour = (
-                    (column + 0.5, len(names) - row - 0.5),
-                    "white" if abs(share) > DARK else BLACK,
-                )
-                axis.text(
-                    *place, f"{100 * abs(share):.0f}", ha="center", va="center", fontsize=7.0, color=colour
-                )
-            table.add(names[row], inputs[column], share)
-        axis.set_yticks(np.arange(len(names)) + 0.5, names[::-1])
-        axis.set_xticks(np.arange(len(inputs)) + 0.5, inputs, rotation=90)
-        figure.colorbar(bar, ax=axis, label="share of the variance, signed", location="top", shrink=0.5)
     return Drawing(figure, table)

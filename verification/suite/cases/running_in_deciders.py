@@ -23,7 +23,7 @@ from verification.surrogate import Surrogate, surrogate
 
 SEED = 26  # of the design and of what is resampled
 CHANCE = 1e-3  # of each of 17 × 16 changes of probability: less than one of them is named by chance
-PREDICTS = 0.5  # Q² of a fit that is believed: of a hundred results without any cause none has it
+PREDICTS = 0.5  # Q² of a fit that is believed: of 200 results without any cause at most two have it
 PART = 0.1  # of the variance: an input with less of it is not named
 RESPONSES = {
     "volume": lambda history: np.log10(1.0 + 1e18 * history.volume[-1]),

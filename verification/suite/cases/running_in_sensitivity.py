@@ -15,7 +15,7 @@ import numpy as np
 
 from sam.scene import Scene
 from verification.cost.estimates import estimate
-from verification.figures.running_in_sensitivity import best_pair, explained, probabilities
+from verification.figures.running_in_sensitivity import best_pair, probabilities
 from verification.sensitivity import UNIFORM, design
 from verification.suite.cases.case import SAM, Context, Measured, Plot, SmallTable
 from verification.suite.cases.running_in import DeeperWhereItYields, solved
@@ -131,20 +131,6 @@ class RunningInSensitivity(DeeperWhereItYields):
             "All other inputs differ from point to point too. Statements whose probability is changed beyond "
             f"chance: {', '.join(f'{decided[one.name]} by {one.words}' for _, one in (first, second))}.",
         )
-        believable = [(name, fit) for name, fit in zip(names, found.fits, strict=True) if believed(fit)]
-        if believable:
-            yield Plot(
-                explained(
-                    [name for name, _ in believable],
-                    [one.words for one in INPUTS],
-                    np.array([fit.shares * np.where(fit.slopes < 0.0, -1.0, 1.0) for _, fit in believable]),
-                ),
-                "explained",
-                "What moves the measure of each statement",
-                "A map of shares of the variance, a row for each statement and a column for each input.",
-                "Of the measures that a fit predicts; a share is negative where the measure falls with the "
-                "input. White: no term of the fit.",
-            )
 
 
 def in_tables(one: RunningInRun) -> RunningInRun:

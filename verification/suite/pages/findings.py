@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatch
+from statistics import median
 from typing import Protocol
 
 from verification.suite.judging import LIMITS
@@ -75,7 +76,7 @@ class Largest:
     rows: tuple[tuple[str, str], ...] = ()
 
     def find(self, evidence: Evidence) -> Iterator[Finding]:
-        """The largest of all, and how many there are."""
+        """The largest of all, how many there are, and within what half of them lie."""
         found = [
             (gate["error"], each, gate["quantity"], gate)
             for each, gate in evidence.gates(self.gates)
@@ -91,7 +92,8 @@ class Largest:
         error, worst, quantity, by = max(found, key=lambda each: each[0])
         gates = [gate for *_, gate in found if gate]
         red = tuple(gate["id"] for gate in gates if gate["status"] in RED)
-        words = f"{self.words}, {len(found)} comparisons" if len(found) > 1 else self.words
+        typical = f", {len(found)} comparisons, half of them within {percent(median(e for e, *_ in found))}"
+        words = f"{self.words}{typical if len(found) > 1 else ''}"
         cases, allowed = _once(each for _, each, *_ in found), _allowed(by, True) if by else UNGATED
         yield Finding(words, percent(error), cases, worst, quantity, red, bool(gates), allowed)
 
@@ -131,6 +133,30 @@ class Held:
         if found:
             text = f"{len(found) - len(red)} of {len(found)} gates"
             yield Finding(self.words, text, _once(each for each, _ in found), red=red)
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A number of a table, which has no gate. case: its name; caption: its begin; row: cells that tell the
+    row; column: of the number; shown: how, with {} for it.
+    """
+
+    words: str
+    case: str
+    caption: str
+    row: tuple[str, ...]
+    column: str
+    shown: str = "{}"
+
+    def find(self, evidence: Evidence) -> Iterator[Finding]:
+        """The cell as it stands, where there is one."""
+        ran = evidence.stored.ran.get(self.case)
+        for table in ran.case["tables"] if ran else ():
+            if table["caption"].startswith(self.caption) and self.column in table["columns"]:
+                at = table["columns"].index(self.column)
+                for cells in (cells for cells in table["rows"] if set(self.row) <= set(cells)):
+                    text = self.shown.format(cells[at])
+                    yield Finding(self.words, text, (ran,), ran, gated=False, allowed=UNGATED)
 
 
 @dataclass(frozen=True)

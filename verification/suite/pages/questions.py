@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from verification.suite.pages.findings import Held, Largest, PaperStatements, Part, TimeTo, Value
+from verification.suite.pages.findings import Cell, Held, Largest, PaperStatements, Part, TimeTo, Value
 from verification.suite.pages.headline import QUESTION
 
 
@@ -280,6 +280,38 @@ QUESTIONS = (
             ),
             Value("the same of Tamaas, elasto-plastic step, 16 × 32 × 32 cells", "peers.step-16", "{} times"),
             Value("the same of Tamaas, elasto-plastic step, 32 × 64 × 64 cells", "peers.step-32", "{} times"),
+            Cell(
+                "the same of aspher (C++), elastic sphere: below 1 it is the faster one",
+                "peers",
+                "Hertz: time",
+                ("aspher",),
+                "over SAM's",
+                "{} times",
+            ),
+            Cell(
+                "the same of aspher, rough elastic patch of 1024² cells",
+                "peers",
+                "Rough: each",
+                ("1024²", "aspher"),
+                "over SAM's",
+                "{} times",
+            ),
+            Cell(
+                "largest plastic strain of that step, limit of Tamaas, whose box is periodic",
+                "peers",
+                "Step: references",
+                ("Tamaas",),
+                "largest strain [σ_y/E]",
+                "{} σ_y/E",
+            ),
+            Cell(
+                "the same on a half-space, as SAM has it, by axisymmetric FEM",
+                "peers",
+                "Step: references",
+                ("SAM",),
+                "largest strain [σ_y/E]",
+                "{} σ_y/E",
+            ),
         ),
     ),
     Question(
