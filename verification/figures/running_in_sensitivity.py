@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from verification.figures.style import BLACK, GUIDE, VERMILION, Columns, Drawing, sheet
+from verification.figures.style import BLACK, GUIDE, VERMILION, Columns, Drawing, log_ticks, sheet
 
 PALE = "#9fc8e3"  # of bars on which bounds are drawn
 
@@ -56,8 +56,12 @@ def best_pair(
             *printed, "x", color=VERMILION, markersize=9, markeredgewidth=2, clip_on=False, label="as printed"
         )
         axis.set(xlabel=labels[0], ylabel=labels[1], axisbelow=True)
-        for scale, yes in zip((axis.set_xscale, axis.set_yscale), logarithmic, strict=True):
-            scale("log" if yes else "linear")
+        for of, scale, yes in zip(
+            (axis.xaxis, axis.yaxis), (axis.set_xscale, axis.set_yscale), logarithmic, strict=True
+        ):
+            if yes:
+                scale("log")
+                log_ticks(of)
         figure.legend(loc="outside upper left")
     table.add(*places, counts)
     return Drawing(figure, table)

@@ -140,7 +140,10 @@ def _of_inputs(judged: Judged) -> Iterator[str]:
     first = Counter(each.deciders[0].partition(":")[0] for each in chances.values() if each.deciders)
     if first:
         named = ", ".join(f"{name} ({count})" for name, count in first.most_common(3))
-        yield f"What decides most statements first: {named}."
+        yield (
+            f"An input decides {sum(first.values())} of them beyond chance: {named}; of the others none does "
+            "by itself."
+        )
     else:
         yield "No input decides any of them beyond chance."
     if judged.fitted:
