@@ -110,7 +110,7 @@ def test_the_answer_counts_what_the_tables_hold(readings, studies):
     assert text.startswith("In part. As printed, 15 of its 17 statements")
     assert "(a soft layer) 16 and 16" in text and "40 points, 5 materials" in text
     assert "deviation of the layer, factor (" in text and f"1 holds ({NEVER}) under nothing" in text
-    assert "In the same study cycles 21 to 25 add more than 0.1 %" in text
+    assert "In the study over the physics cycles 21 to 25 add more than 0.1 %" in text
     assert "Fitted" in found.fitted["caption"] and "hardness" in found.fitted_note
     assert [each["png"][8:-4] for each in found.pictures] == [
         "running-in-sensitivity-probabilities",

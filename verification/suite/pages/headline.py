@@ -167,7 +167,7 @@ def _of_last_cycle(judged: Judged) -> Iterator[str]:
     """Whether the last cycle wears."""
     still = judged.note(PHYSICS, "Cycles ")
     if still:
-        yield f"In the same study c{still[1:]}"
+        yield f"In the study over the physics c{still[1:]}"
     table = judged.table(READINGS, "as printed: strain anew in")
     if table:
         column = table["columns"].index("as printed: strain anew in")
