@@ -7,6 +7,7 @@ import re
 from fnmatch import fnmatch
 from importlib import resources
 from pathlib import Path
+from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -22,7 +23,7 @@ from verification.suite.judging import families
 from verification.suite.pages import write_report
 from verification.suite.pages.answers import KINDS, RESULT, answers_of, far, kind_of, sentence
 from verification.suite.pages.costs import CASE, costs_of
-from verification.suite.pages.findings import Evidence, Held, Largest, TimeTo, Value
+from verification.suite.pages.findings import Cell, Evidence, Held, Largest, TimeTo, Value
 from verification.suite.pages.groups import GROUPS, group_of
 from verification.suite.pages.literature import works
 from verification.suite.pages.mathml import formula, with_scripts
@@ -400,3 +401,14 @@ def test_the_picture_of_all_pairs_can_be_read(evidence):
 
 def _row(pair):
     return pair.page, pair.against, pair.predicted, pair.reference, pair.case.name, pair.quantity
+
+
+def test_a_cell_of_a_table_answers_and_has_no_gate():
+    table = {"caption": "Rough: each", "columns": ["grid", "program", "ratio"]}
+    table["rows"] = [["512²", "aspher", "2"], ["1024²", "SAM", "1"], ["1024²", "aspher", "3"]]
+    ran = {"peers": SimpleNamespace(case={"tables": [table]}, name="peers")}
+    evidence = Evidence(SimpleNamespace(ran=ran), ())
+    (found,) = Cell("aspher", "peers", "Rough", ("1024²", "aspher"), "ratio", "{} times").find(evidence)
+    assert found.value == "3 times" and not found.gated and found.allowed == "no gate"
+    assert not list(Cell("aspher", "peers", "Rough", ("256²", "aspher"), "ratio").find(evidence))
+    assert not list(Cell("aspher", "other", "Rough", ("1024²",), "ratio").find(evidence))

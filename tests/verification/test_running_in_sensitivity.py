@@ -15,6 +15,7 @@ from verification.suite.cases import running_in_sensitivity as study
 from verification.suite.cases.running_in_deciders import Studied, deciders, two_most
 from verification.suite.cases.running_in_inputs import INPUTS, scene_at, wilson
 from verification.suite.cases.running_in_statements import BULK, DUCTILE, LAST, NAMES, STATEMENTS, A
+from verification.surrogate import Surrogate
 
 CASE = study.CASES[0]
 OF_THE_LAYER = {"depth", "deviation", "hardening", "layer-limit"}
@@ -78,6 +79,18 @@ def test_chance_names_no_input():
     named = [each.acts for row in held for each in deciders(shares, row)]
     assert len(named) == 25 * len(INPUTS) and sum(named) <= 2
     assert sum(not low <= 0.0 <= high for row in held for low, high in _bounds(shares, row)) >= 20
+
+
+def test_a_change_within_chance_acts_only_where_a_believed_fit_names_the_input():
+    """Of 16 points in each half it holds at 11 and at 5: beyond the bounds of 90 %, not of 99.9 %."""
+    shares = np.full((32, len(INPUTS)), 0.4)
+    shares[:16, 3] = 0.6
+    held = np.r_[np.ones(11), np.zeros(5), np.ones(5), np.zeros(11)]
+    moves = 0.6 * np.eye(len(INPUTS))[3]
+    for predicted, parts, acts in ((0.6, moves, True), (0.4, moves, False), (0.6, 0.0 * moves, False)):
+        (found,) = deciders(shares, held, Surrogate(predicted, parts, np.sign(parts)))
+        assert found.input is INPUTS[3] and found.acts == acts and found.bounds[0] > 0.0
+    assert not deciders(shares, held)[0].acts
 
 
 def _bounds(shares, row):

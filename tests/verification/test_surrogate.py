@@ -28,7 +28,7 @@ def test_shares_of_a_linear_function_are_those_of_its_slopes():
     assert found.slopes[:2].tolist() == [1.0, -1.0]
 
 
-def test_a_function_that_bends_has_a_share_and_no_slope():
+def test_a_function_that_bends_has_its_share():
     found = surrogate(SHARES, (SHARES[:, 3] - 0.5) ** 2)
     assert found.predicted > 0.8 and found.shares.argmax() == 3 and found.shares[3] > 0.7
 
@@ -50,8 +50,8 @@ def test_points_that_say_nothing_are_left_out():
 
 
 def test_what_has_no_cause_is_not_predicted():
-    """Of 200 results without any cause at most one in a hundred is believed, and the fit of all points at
-    once, which follows chance, would believe many.
+    """At most two of 200 results without any cause are believed, and most are predicted worse than by the
+    mean.
     """
     rng = np.random.default_rng(4)
     found = [surrogate(SHARES, rng.normal(size=POINTS)) for _ in range(200)]

@@ -18,9 +18,7 @@ from verification.suite.cases.case import Figure
 
 PACKED = 4_000  # bytes of a table: packing those beyond saves 1.4 of the 1.9 MB of all, below it nothing
 LARGE = 60_000  # bytes of a picture: those beyond, 26 of 181, are more than half of the bytes of all
-COLOURS = (
-    128  # of a palette: an eighth of their bytes less than with 256, no channel off by more than 27 of 255
-)
+COLOURS = 128  # of a palette: an eighth less than with 256, no channel off by more than 27 of 255
 
 
 def lighter(figure: Figure, folder: Path) -> Figure:
