@@ -2,7 +2,7 @@
 """A polynomial fitted to a result over the points of a design: how well it predicts points that it has not
 seen, and which inputs make the variance that it predicts.
 
-The basis are Legendre polynomials of single inputs, orthonormal over their ranges, so that sums of squared
+The terms are Legendre polynomials of single inputs, orthonormal over their ranges, so that sums of squared
 coefficients are shares of the variance: Sudret, Reliab. Eng. Syst. Saf. 93 (2008) 964. Terms are chosen one
 after the other by the error at points left out: Blatman & Sudret, J. Comput. Phys. 230 (2011) 2345. The
 result is taken by its ranks, which may be infinite and follow any scale: Iman & Conover, Technometrics 21
@@ -34,8 +34,8 @@ class Surrogate:
 
 
 def surrogate(shares: np.ndarray, values: np.ndarray) -> Surrogate | None:
-    """Of a result (points,) at shares (points, inputs) in [0, 1]; points where it is NaN are left out. None
-    where it never changes or there are fewer points than for two terms.
+    """The polynomial of a result (points,) at shares (points, inputs) in [0, 1]; points where the result is NaN
+    are left out. None where it never changes or there are fewer points than for two terms.
     """
     there = ~np.isnan(values)
     ranks = rankdata(values[there])
@@ -64,7 +64,7 @@ def _basis(shares: np.ndarray) -> np.ndarray:
 
 
 def _value(basis: np.ndarray, aims: np.ndarray, at: np.ndarray) -> float:
-    """Of the polynomial fitted to some points at another one, whose basis is (terms,)."""
+    """The value of the polynomial fitted to some points at another one, whose basis is (terms,)."""
     terms, coefficients = _fitted(basis, aims)
     return float(aims.mean() + at[terms] @ coefficients - basis[:, terms].mean(axis=0) @ coefficients)
 

@@ -40,7 +40,7 @@ from verification.surrogate import Surrogate
 SURFACES = 100  # seeds of surfaces count from here, and are no others'
 EFFORTS = {
     "quick": (4, Effort((BULK, A), (), cycles=2, steps=2, cells=24)),
-    "full": (32, Effort(tuple(NAMES), (), cycles=LAST, steps=3, cells=64)),
+    "full": (64, Effort(tuple(NAMES), (), cycles=LAST, steps=3, cells=64)),
 }
 """Points, and what is run at each: the whole patch, since on a quarter of it most surfaces do not wear at
 all."""
