@@ -104,13 +104,17 @@ def test_physics_without_a_run_are_said_to_say_nothing(readings, studies):
     assert row[6] == "20 of 24, says nothing under 4"
 
 
+def said(headline):
+    return " ".join([headline.answer, *(text for _, text in headline.depends)])
+
+
 def test_the_answer_counts_what_the_tables_hold(readings, studies):
     found = headline_of(read_stored(stored(readings, *studies)))
-    text = " ".join(found.answer)
+    text = said(found)
     assert text.startswith("In part. As printed, 15 of its 17 statements")
     assert "(a soft layer) 16 and 16" in text and "40 points, 5 materials" in text
     assert "deviation of the layer, factor (" in text and f"1 holds ({NEVER}) under nothing" in text
-    assert "In the study over the physics cycles 21 to 25 add more than 0.1 %" in text
+    assert "In the study over hardening and loading cycles 21 to 25 add more than 0.1 %" in text
     assert "Fitted" in found.fitted["caption"] and "hardness" in found.fitted_note
     assert [each["png"][8:-4] for each in found.pictures] == [
         "running-in-sensitivity-probabilities",
@@ -121,12 +125,12 @@ def test_the_answer_counts_what_the_tables_hold(readings, studies):
 
 def test_a_study_that_did_not_run_is_said_not_to_have_run(readings, studies):
     found = headline_of(read_stored(stored(readings)))
-    text = " ".join(found.answer)
+    text = said(found)
     assert all(f"(case {name}) did not run." in text for name in (INPUTS, PHYSICS))
     assert {row[4] for row in found.rows} == {row[6] for row in found.rows} == {NOT_RUN}
     assert found.fitted == {} and found.pictures == [] and headline_of(read_stored(stored())) is None
     short = record(INPUTS, [])
-    assert "was made without" in " ".join(headline_of(read_stored(stored(readings, short))).answer)
+    assert "was made without" in said(headline_of(read_stored(stored(readings, short))))
     (_, of_physics) = studies
     found = headline_of(read_stored(stored(of_physics)))
     assert {row[2] for row in found.rows} == {NOT_RUN} and len(found.rows) == len(STATEMENTS)
@@ -140,7 +144,7 @@ def test_the_index_and_the_page_begin_with_it(readings, studies, tmp_path):
     found = headline_of(read_stored(results))
     assert faults_of(page) == faults_of(index) == []
     for each in (page, index):
-        assert " ".join(found.answer)[:80] in each.text and NEVER in each.text
+        assert found.answer[:80] in each.text and NEVER in each.text
     assert page.text.index(found.question) < page.text.index("Uses most of its tolerance")
     (*_, most, under) = PaperStatements().find(Evidence(read_stored(results), []))
     assert most.value == under.value == "15 of 17"

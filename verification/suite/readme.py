@@ -65,7 +65,7 @@ def _written(results: Mapping) -> str:
     headline = headline_of(stored)
     if headline:
         link = f"[Does the model of running-in predict what its authors say?](reports/{headline.page})"
-        items.append(" ".join((link, *headline.answer[:2])))
+        items.append(f"{link} {headline.answer}")
     return "\n".join(
         textwrap.fill(f"- {each}", WIDTH, subsequent_indent="  ", break_on_hyphens=False) for each in items
     )

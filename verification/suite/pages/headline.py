@@ -29,7 +29,11 @@ MEANING = (
 """Of the columns and the words of the table."""
 PICTURES = ((INPUTS, "probabilities"), (INPUTS, "two-inputs"), (PHYSICS, "volume"))
 """Case and name of the figures of the headline."""
-STUDIES = {INPUTS: "The study over the inputs", PHYSICS: "The study over physics"}
+STUDIES = {
+    READINGS: "The comparison of both readings",
+    INPUTS: "The study over the inputs",
+    PHYSICS: "The study over hardening and loading",
+}
 MANY = 2  # of what is equal that is named
 COLUMNS = (
     "Fig.",
@@ -45,11 +49,13 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class Headline:
-    """What the page of running-in begins with. answer: sentences; rows: of the table of statements; pictures:
-    figures as in results.json; fitted: a table, empty without, and fitted_note what it would mean.
+    """What the page of running-in begins with. answer: by the readings of the paper; depends: on what that
+    depends, and what each of it does; rows: of the table of statements; pictures: figures as in results.json;
+    fitted: a table, empty without, and fitted_note what it would mean.
     """
 
-    answer: Sequence[str]
+    answer: str
+    depends: Sequence[tuple[str, str]]
     rows: Sequence[Sequence[str]]
     pictures: Sequence[Mapping]
     fitted: Mapping
@@ -75,7 +81,8 @@ def headline_of(stored: Stored) -> Headline | None:
     if not judged.statements:
         return None
     return Headline(
-        list(filter(None, sentences(judged))),
+        " ".join(_of_readings(judged) if judged.verdicts else _missing(judged, READINGS)),
+        [(on, text) for on, said in depends(judged).items() if (text := " ".join(filter(None, said)))],
         [_row(judged, words) for words in judged.statements],
         list(_pictures(judged)),
         judged.fitted,
@@ -83,20 +90,16 @@ def headline_of(stored: Stored) -> Headline | None:
     )
 
 
-def sentences(judged: Judged) -> Iterator[str]:
-    """The answer in one paragraph."""
-    if judged.verdicts:
-        yield from _of_readings(judged)
-    yield from _of_inputs(judged) if judged.chances else _missing(judged, INPUTS)
-    yield from _of_physics(judged) if judged.physics else _missing(judged, PHYSICS)
-    if judged.verdicts and judged.chances and judged.physics:
-        never = [words for words in judged.statements if _remedy(judged, words) == NOTHING]
-        yield (
-            f"Of those that fail as printed {_listed(never)} under nothing that was studied."
-            if never
-            else "Each statement that fails as printed holds under something that was studied."
-        )
-    yield from _of_last_cycle(judged)
+def depends(judged: Judged) -> dict[str, Iterator[str]]:
+    """What the answer may depend on -> sentences of what each does."""
+    return {
+        "Inputs that the paper leaves open": (
+            _of_inputs(judged) if judged.chances else _missing(judged, INPUTS)
+        ),
+        "Hardening and loading": _of_physics(judged) if judged.physics else _missing(judged, PHYSICS),
+        "Statements that fail as printed": _of_failed(judged),
+        "Wear in the last cycles": _of_last_cycles(judged),
+    }
 
 
 def _missing(judged: Judged, case: str) -> Iterator[str]:
@@ -129,13 +132,13 @@ def _of_inputs(judged: Judged) -> Iterator[str]:
     chances = judged.chances
     known = {words: each.percent for words, each in chances.items() if each.percent is not None}
     if not known:
-        yield "Over the inputs that the paper leaves open no statement says anything."
+        yield "No statement says anything at any point."
         return
     least, most = (pick(known, key=lambda words: known[words]) for pick in (min, max))
     yield (
-        f"Over the inputs that the paper leaves open ({judged.setup(INPUTS, 'Runs').partition(':')[0]}), "
-        f"{judged.likely} of {len(chances)} are more likely to hold than not: from {known[least]:.0f} % "
-        f"({least}) to {known[most]:.0f} % ({most})."
+        f"{judged.likely} of {len(chances)} statements are more likely to hold than not "
+        f"({judged.setup(INPUTS, 'Runs').partition(':')[0]}): from {known[least]:.0f} % ({least}) to "
+        f"{known[most]:.0f} % ({most})."
     )
     first = Counter(each.deciders[0].partition(":")[0] for each in chances.values() if each.deciders)
     if first:
@@ -156,18 +159,28 @@ def _of_physics(judged: Judged) -> Iterator[str]:
     named = " or ".join(each.words for each in best[:MANY])
     more = f" and {len(best) - MANY} more" if len(best) > MANY else ""
     yield (
-        f"In the study over the physics, on one surface under each of {len(judged.physics)} ways to harden "
-        f"and to load it, at most {most} hold together, with {named}{more}; under the way of the paper "
-        f"{judged.plain}."
+        f"On one surface under each of {len(judged.physics)} ways to harden and to load it, at most {most} "
+        f"hold together, with {named}{more}; under the way of the paper {judged.plain}."
     )
     yield judged.note(PHYSICS, "One surface")
 
 
-def _of_last_cycle(judged: Judged) -> Iterator[str]:
-    """Whether the last cycle wears."""
+def _of_failed(judged: Judged) -> Iterator[str]:
+    """Whether what fails as printed holds under anything."""
+    if judged.verdicts and judged.chances and judged.physics:
+        never = [words for words in judged.statements if _remedy(judged, words) == NOTHING]
+        yield (
+            f"{_listed(never)} under nothing that was studied."
+            if never
+            else "Each holds under something that was studied."
+        )
+
+
+def _of_last_cycles(judged: Judged) -> Iterator[str]:
+    """Whether the last cycles wear."""
     still = judged.note(PHYSICS, "Cycles ")
     if still:
-        yield f"In the study over the physics c{still[1:]}"
+        yield f"In the study over hardening and loading c{still[1:]}"
     table = judged.table(READINGS, "as printed: strain anew in")
     if table:
         column = table["columns"].index("as printed: strain anew in")
