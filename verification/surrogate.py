@@ -34,8 +34,8 @@ class Surrogate:
 
 
 def surrogate(shares: np.ndarray, values: np.ndarray) -> Surrogate | None:
-    """The polynomial of a result (points,) at shares (points, inputs) in [0, 1]; points where the result is NaN
-    are left out. None where it never changes or there are fewer points than for two terms.
+    """The polynomial of a result (points,) at shares (points, inputs) in [0, 1]; points where it is NaN are
+    left out. None where it never changes or there are fewer points than for two terms.
     """
     there = ~np.isnan(values)
     ranks = rankdata(values[there])

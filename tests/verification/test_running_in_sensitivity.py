@@ -12,7 +12,7 @@ from sam.scene import resolved
 from verification.figures.check import findings
 from verification.sensitivity import UNIFORM, design
 from verification.suite.cases import running_in_sensitivity as study
-from verification.suite.cases.running_in_deciders import Studied, deciders, two_most
+from verification.suite.cases.running_in_deciders import Studied, deciders, least_change, two_most
 from verification.suite.cases.running_in_inputs import INPUTS, scene_at, wilson
 from verification.suite.cases.running_in_statements import BULK, DUCTILE, LAST, NAMES, STATEMENTS, A
 from verification.surrogate import Surrogate
@@ -95,6 +95,19 @@ def test_a_change_within_chance_acts_only_where_a_believed_fit_names_the_input()
 
 def _bounds(shares, row):
     return [each.bounds for each in deciders(shares, row)]
+
+
+@pytest.mark.parametrize("points", [32, 64, 128])
+def test_what_a_study_resolves_is_what_acts_in_it(points):
+    half = points // 2
+    halves = np.repeat([0.0, 1.0], half)
+
+    def acts(change):
+        held = [np.arange(half) < round(half * (0.5 + sign * change / 2)) for sign in (-1, 1)]
+        return deciders(np.column_stack([halves] * len(INPUTS)), np.concatenate(held).astype(float))[0].acts
+
+    least, step = least_change(points), 2 / half
+    assert not acts(least - step) and acts(least + step)
 
 
 def test_a_lost_run_says_nothing_and_turns_the_gate_red(found):

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.stats import norm
 
 from sam.scene import Scene
 from verification.sensitivity import UNIFORM, indices
@@ -164,6 +165,11 @@ def change_between(high: np.ndarray, low: np.ndarray, level: float) -> tuple[flo
     (p, p_low, p_high), (q, q_low, q_high) = ends
     bounds = p - q - np.hypot(p - p_low, q_high - q), p - q + np.hypot(p_high - p, q - q_low)
     return float(bounds[0]), float(bounds[1])
+
+
+def least_change(points: int) -> float:
+    """Of a probability of a half, between the halves of an input's range, that is beyond CHANCE."""
+    return float(norm.isf(CHANCE / 2.0) * np.sqrt(2.0 * 0.25 / (points / 2.0)))
 
 
 def two_most(found: Studied) -> list[tuple[int, Input]]:

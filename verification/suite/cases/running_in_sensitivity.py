@@ -28,6 +28,7 @@ from verification.suite.cases.running_in_deciders import (
     Studied,
     believed,
     decided_by,
+    least_change,
     two_most,
 )
 from verification.suite.cases.running_in_fitted import PRINTED, fitted_note, fitted_table
@@ -84,6 +85,10 @@ class RunningInSensitivity(DeeperWhereItYields):
             (
                 "Sampling error of a probability",
                 f"±{50 * np.diff(wilson(points // 2, points))[0]:.0f} % at a half (90 %)",
+            ),
+            (
+                "Resolved",
+                f"changes of {100 * least_change(points):.0f} % and more between the halves of a range",
             ),
         ]
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatch
@@ -137,26 +138,30 @@ class Held:
 
 @dataclass(frozen=True)
 class Cell:
-    """A number of a table, which has no gate. case: its name; caption: its begin; row: cells that tell the
-    row; column: of the number; shown: how, with {} for it.
+    """Numbers of a row of a table. case: its name; caption: its begin; row: cells that tell the row; columns:
+    of the numbers; shown: how, with {} for each; gate: that holds the first of them, if one does.
     """
 
     words: str
     case: str
     caption: str
     row: tuple[str, ...]
-    column: str
+    columns: tuple[str, ...]
     shown: str = "{}"
+    gate: str = ""
 
     def find(self, evidence: Evidence) -> Iterator[Finding]:
-        """The cell as it stands, where there is one."""
+        """The cells as they stand, where there are such."""
         ran = evidence.stored.ran.get(self.case)
+        gates = [gate for _, gate in evidence.gates((self.gate,))]
+        red = tuple(gate["id"] for gate in gates if gate["status"] in RED)
+        allowed = _allowed(gates[0], False) if gates else UNGATED
         for table in ran.case["tables"] if ran else ():
-            if table["caption"].startswith(self.caption) and self.column in table["columns"]:
-                at = table["columns"].index(self.column)
+            if table["caption"].startswith(self.caption) and set(self.columns) <= set(table["columns"]):
+                at = [table["columns"].index(column) for column in self.columns]
                 for cells in (cells for cells in table["rows"] if set(self.row) <= set(cells)):
-                    text = self.shown.format(cells[at])
-                    yield Finding(self.words, text, (ran,), ran, gated=False, allowed=UNGATED)
+                    text = self.shown.format(*(_spaced(cells[k]) for k in at))
+                    yield Finding(self.words, text, (ran,), ran, "", red, bool(gates), allowed)
 
 
 @dataclass(frozen=True)
@@ -166,7 +171,7 @@ class TimeTo:
     def find(self, evidence: Evidence) -> Iterator[Finding]:
         """The range over the contacts where both reach it, and where only one does."""
         costs = costs_of(evidence.stored)
-        both = sorted(each.ratio for each in costs if each.known)
+        both = sorted((each for each in costs if each.known), key=lambda each: each.ratio)
         bounds = sum(each.known and BOUND in f"{each.sam}{each.fem}" for each in costs)
         if both:
             words = (
@@ -174,7 +179,7 @@ class TimeTo:
                 f"{len(costs)} contacts{f' ({bounds} of them as bounds)' * bool(bounds)}; of the others the "
                 "ratio is not known"
             )
-            text = f"{number(both[0], 2)} to {number(both[-1], 2)} times"
+            text = f"{both[0].shown} to {both[-1].shown} times"
             yield Finding(words, text, (evidence.stored.ran[CASE],), gated=False)
 
 
@@ -192,8 +197,13 @@ class PaperStatements:
                     words = f"{SAID.get(reading, reading)}, {rule} of the surfaces"
                     yield Finding(words, count, (table.case,), gated=False)
         for count, words, name in (
-            (judged.chances and judged.likely, "are more likely than not over the inputs left open", INPUTS),
-            (judged.fitted and judged.most_at_a_point, "hold together at most at one point of them", INPUTS),
+            (
+                judged.chances and judged.likely,
+                "hold at more than half of the points of the study over the inputs that the paper leaves "
+                f"open, {judged.sure} of them also by the lower bound",
+                INPUTS,
+            ),
+            (judged.fitted and judged.most_at_a_point, "hold together at most at one point of it", INPUTS),
             (
                 max(judged.physics.values(), default=0),
                 f"hold on one surface under the best of {len(judged.physics)} ways to harden and to load it "
@@ -210,6 +220,11 @@ def percent(value: float) -> str:
     if abs(value) < 1e-8:
         return "rounding" if value else "0\N{NO-BREAK SPACE}%"
     return f"{float(f'{100 * value:.2g}'):g}\N{NO-BREAK SPACE}%".replace("-", "\N{MINUS SIGN}")
+
+
+def _spaced(cell: str) -> str:
+    """A cell as the other numbers are written: a sign of its own for minus, and a space before per cent."""
+    return re.sub(r"(?<=\d) ?%", "\N{NO-BREAK SPACE}%", cell.replace("-", "\N{MINUS SIGN}"))
 
 
 def _allowed(gate: Mapping, of_percent: bool) -> str:

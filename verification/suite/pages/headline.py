@@ -11,20 +11,24 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from verification.suite.pages.judged import INPUTS, NOT_RUN, PHYSICS, READINGS, Chance, Judged, Verdict
+from verification.suite.pages.judged import FINER, INPUTS, NOT_RUN, PHYSICS, READINGS, Chance, Judged, Verdict
 from verification.suite.pages.stored import Stored
 
 QUESTION = "Does this model of running-in predict what its authors say, and on what does that depend?"
 PAGE = "running-in"
 MEANING = (
-    "As printed: with the inputs that the paper prints. Second reading: with those that the case running-in "
-    "names so. Both: the verdict by the median of the surfaces, and on how many of them the statement holds; "
-    "`none on 2`: on two of them it says nothing. Holds under physics: of the ways to harden and to load. "
-    "Probability: the share of the points of the study over inputs, with its bounds. Decided by: how much "
-    "more often the statement holds in the upper half of the range of an input. Of equal changes that make "
-    "a statement hold the smallest are named. Bulk: steel without a layer, removed above a plastic strain of "
-    "0.2 %; curve A, curve B, hardening only: with a nano-crystalline layer as after polishing, mild wear "
-    "or harder towards the surface, removed above 2 % (5 % where it is said)."
+    "Behind a statement: the measure that decides it, and what is asked of it; V: worn volume, μ: "
+    "coefficient of friction, Sa: roughness, in brackets the cycle. As printed: with the inputs that the "
+    "paper prints, and ours where it prints none: surface, size of the layers' deviation, smoothing. "
+    "Second reading: a layer that hardens weakly, and a rough counter-surface that is new in each cycle. "
+    "Both: the verdict by the median of the surfaces, and on how many of them the statement holds; `none "
+    "on 2`: on two of them it says nothing. Share of points: of the study over inputs, each on another "
+    "surface, with bounds of 90 %. Decided by: how much more often the statement holds in the upper half "
+    "of the range of an input; not resolved: no input changes that by more than chance does with so many "
+    "points. Holds under: of the ways to harden and to load. Of equal changes that make a statement hold "
+    "the smallest are named. Bulk: steel without a layer, removed above a plastic strain of 0.2 %; curve "
+    "A, curve B, hardening only: with a nano-crystalline layer as after polishing, mild wear or harder "
+    "towards the surface, removed above 2 % (5 % where it is said)."
 )
 """Of the columns and the words of the table."""
 PICTURES = ((INPUTS, "probabilities"), (INPUTS, "two-inputs"), (PHYSICS, "volume"))
@@ -40,9 +44,9 @@ COLUMNS = (
     "statement of the paper",
     "as printed",
     "second reading",
-    "probability (90 %)",
+    "share of points (90 %)",
     "decided by",
-    "holds under physics",
+    "holds under",
     "what makes it hold",
 )
 
@@ -98,6 +102,7 @@ def depends(judged: Judged) -> dict[str, Iterator[str]]:
         ),
         "Hardening and loading": _of_physics(judged) if judged.physics else _missing(judged, PHYSICS),
         "Statements that fail as printed": _of_failed(judged),
+        "Size of the cells": iter((judged.note(FINER, "Verdicts"), judged.note(FINER, "One surface"))),
         "Wear in the last cycles": _of_last_cycles(judged),
     }
 
@@ -136,19 +141,22 @@ def _of_inputs(judged: Judged) -> Iterator[str]:
         return
     least, most = (pick(known, key=lambda words: known[words]) for pick in (min, max))
     yield (
-        f"{judged.likely} of {len(chances)} statements are more likely to hold than not "
-        f"({judged.setup(INPUTS, 'Runs').partition(':')[0]}): from {known[least]:.0f} % ({least}) to "
-        f"{known[most]:.0f} % ({most})."
+        f"{judged.likely} of {len(chances)} statements hold at more than half of the points, {judged.sure} "
+        f"of them also by the lower bound ({judged.setup(INPUTS, 'Runs').partition(':')[0]}): from "
+        f"{known[least]:.0f} % ({least}) to {known[most]:.0f} % ({most})."
     )
-    first = Counter(each.deciders[0].partition(":")[0] for each in chances.values() if each.deciders)
-    if first:
+    deciding = [each.deciders[0].partition(":")[0] for each in chances.values() if each.deciders]
+    if deciding:
+        first = Counter(deciding)
         named = ", ".join(f"{name} ({count})" for name, count in first.most_common(3))
         yield (
-            f"An input decides {sum(first.values())} of them beyond chance: {named}; of the others none does "
-            "by itself."
+            f"{len(deciding)} of them depend{'s' * (len(deciding) == 1)} on an input beyond chance, first on "
+            f"{named}."
         )
     else:
-        yield "No input decides any of them beyond chance."
+        yield "None depends on an input beyond chance."
+    if seen := judged.setup(INPUTS, "Resolved"):
+        yield f"Of the others the study does not tell: it resolves {seen}."
     if judged.fitted:
         yield f"At one point of the inputs at most {judged.most_at_a_point} hold together (fitted)."
 
@@ -200,12 +208,14 @@ def _row(judged: Judged, words: str) -> tuple[str, ...]:
     verdicts = judged.verdicts.get(words, [])
     readings = [each.text for each in verdicts] + [NOT_RUN] * (2 - len(verdicts))
     chance = judged.chances.get(words, Chance())
-    decided = "; ".join(chance.deciders) or (NOT_RUN if chance.text == NOT_RUN else "no input beyond chance")
+    decided = "; ".join(chance.deciders) or (NOT_RUN if chance.text == NOT_RUN else "not resolved")
     physics = f"{len(judged.under[words])} of {len(judged.physics)}" if judged.physics else NOT_RUN
     if silent := judged.silent.get(words):
         physics += f", says nothing under {silent}"
     made = "" if verdicts and verdicts[0].held else _remedy(judged, words)
-    return judged.statements[words], words, *readings, chance.text, decided, physics, made
+    asked = judged.asked.get(words)
+    text = f"{words} ({asked})" if asked else words
+    return judged.statements[words], text, *readings, chance.text, decided, physics, made
 
 
 def _remedy(judged: Judged, words: str) -> str:

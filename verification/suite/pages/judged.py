@@ -14,6 +14,7 @@ from verification.suite.pages.statements import STATEMENT
 from verification.suite.pages.stored import ShownCase, Stored
 
 READINGS, INPUTS, PHYSICS = "running-in", "running-in-sensitivity", "running-in-physics"
+FINER = "running-in-cells"
 NOT_RUN = "did not run"
 HARDENING = {"I": "isotropic hardening", "H": "half kinematic hardening", "K": "kinematic hardening"}
 """By the letters of the table of physics, the first as printed."""
@@ -25,7 +26,7 @@ COUNTER = {
 }
 """By the columns of the table of physics."""
 HELD, MEDIAN = "held", "by the median"
-_SHARE = re.compile(r"([0-9]+) % \(")
+_SHARE = re.compile(r"([0-9]+) % \(([0-9]+) to ")
 
 
 @dataclass(frozen=True)
@@ -46,12 +47,14 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Chance:
-    """Of a statement over the open inputs. text: for the reader; percent: None where it says nothing; points:
-    at which it holds, `12 of 64`; deciders: what changes it by most, with bounds.
+    """Of a statement over the open inputs. text: for the reader; percent, least: at how many of a hundred
+    points it holds, and the lower bound, None where it says nothing; points: at which it holds, `12 of 64`;
+    deciders: what changes it by most, with bounds.
     """
 
     text: str = NOT_RUN
     percent: float | None = None
+    least: float | None = None
     points: str = "0"
     deciders: Sequence[str] = ()
 
@@ -120,6 +123,13 @@ class Judged:
         return self.table(PHYSICS, "statement")
 
     @cached_property
+    def asked(self) -> dict[str, str]:
+        """Words of a statement -> its measure, and what is asked of it; empty where it was not judged."""
+        columns = self._readings.get("columns", ())
+        at = [columns.index(name) for name in ("measure", "asked") if name in columns]
+        return {row[1]: " ".join(row[k] for k in at) for row in self._readings.get("rows", ())}
+
+    @cached_property
     def verdicts(self) -> dict[str, list[Verdict]]:
         """Words of a statement -> its verdict in each reading."""
         if not self._readings:
@@ -134,8 +144,13 @@ class Judged:
 
     @property
     def likely(self) -> int:
-        """Statements that are more likely to hold than not."""
+        """Statements that hold at more than half of the points."""
         return sum((each.percent or 0.0) > 50.0 for each in self.chances.values())
+
+    @property
+    def sure(self) -> int:
+        """The same by the lower bound."""
+        return sum((each.least or 0.0) > 50.0 for each in self.chances.values())
 
     @property
     def fitted(self) -> Mapping:
@@ -195,7 +210,8 @@ def _verdict(cells: Sequence[str]) -> Verdict:
 def _chance(row: Sequence[str]) -> Chance:
     _, _, points, share, *deciders = row
     found = _SHARE.match(share)
-    return Chance(share, float(found[1]) if found else None, points, [each for each in deciders if each])
+    percent, least = (float(found[1]), float(found[2])) if found else (None, None)
+    return Chance(share, percent, least, points, [each for each in deciders if each])
 
 
 def _changes(letter: str, column: str, first: str) -> tuple[str, ...]:

@@ -43,6 +43,18 @@ BEYOND = (
 )
 """(cases, begin of the quantity, why) of numbers without a gate that differ by much between both models."""
 
+# (case, begin of the caption) of the tables that answers look into
+PASSES = "moving-passes-spatial", "Largest strain that a pass adds [1e-3], kinematic"
+FASTER, TIMES = (
+    ("work-precision", "How many times the time of SAM"),
+    ("times", "with the reference off by its uncertainty"),
+)
+STRAIN_OFF = "model-limits-plastic", "a/R at which"
+STEP = "peers", "Step: references"
+LOOP, PAPER_LOOP = ("paper-loop", "perfect: what each loop leaves"), "paper, stop on stress"
+SLID = "figure-8-4", "Pressure and the largest strain"
+FILM = "rough-film", "What the film changes"
+
 QUESTIONS = (
     Question(
         "Do both models give the same pressure?",
@@ -82,8 +94,8 @@ QUESTIONS = (
             Largest("plastic strain at depths of 0.3 a and more", ("figure-8-*-axis", "figure-8-*-column")),
             Largest("largest plastic strain anywhere", rows=(("figure-8-*", "largest plastic strain"),)),
             Largest(
-                "given pressure and traction: plastic strain at depths of 0.3 a and more, without cells and "
-                "load steps",
+                "given pressure and traction: plastic strain at depths of 0.3 a and more, extrapolated to "
+                "infinitely many cells and load steps",
                 ("sliding-given.*-limit-*",),
             ),
         ),
@@ -96,25 +108,48 @@ QUESTIONS = (
         (
             Largest("groove and largest plastic strain, both models refined", ("moving-spatial.*-refined",)),
             Largest(
-                "four passes: what a pass dissipates, over the first pass",
-                ("moving-passes-spatial.*-energy",),
+                "four passes: energy that a pass dissipates, difference over the first pass",
+                ("moving-passes-spatial.swift-energy", "moving-passes-spatial.prager-energy"),
+            ),
+            Largest(
+                "four passes over Swift steel: largest strain that a pass adds, where it adds any",
+                ("moving-passes-spatial.swift-own-strain",),
             ),
             Held("on the verdict of both models after four passes", ("moving-passes-spatial.*-verdict",)),
+            Cell(
+                "kinematic steel: largest strain that the first and the fourth pass add, SAM",
+                *PASSES,
+                ("SAM", "12"),
+                ("pass 1", "pass 4"),
+                "{} ‰, {} ‰",
+            ),
+            Cell(
+                "the same, FEM",
+                *PASSES,
+                ("finite elements", "6"),
+                ("pass 1", "pass 4"),
+                "{} ‰, {} ‰",
+            ),
         ),
+        "In later passes over kinematic steel single elements of FEM flow on, the less the smaller they are.",
     ),
     Question(
         "Do both models agree on repeated loading, shakedown and ratchetting?",
         "cyclic",
         (
             Largest(
-                "in place, 12 cycles: plastic strain at depths of 0.2 a and more, without cells and steps",
+                "in place, 12 cycles: plastic strain at depths of 0.2 a and more, extrapolated to infinitely "
+                "many cells and steps",
                 ("repeated-loading-kept.*-limit",),
             ),
             Largest(
                 "sliding, 4 cycles: plastic strain on the axis, each component",
                 ("repeated-sliding.*-peeq", "repeated-sliding.*-[xz][xz]"),
             ),
-            Held("on the class of each cell and of the body", ("repeated-*.*-class*", "repeated-*.*-cells")),
+            Held(
+                "on the class (elastic, shakedown, alternating, ratchetting) of each cell and of the body",
+                ("repeated-*.*-class*", "repeated-*.*-cells"),
+            ),
             Held("on shakedown limits, from 3 % below to 3 % above", ("shakedown-limits*.*",)),
         ),
     ),
@@ -144,13 +179,16 @@ QUESTIONS = (
             Largest("load of a contact spot", ("rough-*.load-*",)),
             Largest("largest pressure", rows=(("rough-c*", "largest pressure"),)),
             Largest("contact area", ("rough-*.area",)),
+            Largest("pressure, cell by cell (L2)", ("rough-*.pressure",)),
+            Largest("displacement after unloading (L2)", ("rough-*.residual",)),
             Largest(
                 "plastic strain below the spots, at depths of 0.3 spot radii and more (L2)",
                 ("rough-*.strain-*",),
             ),
             Largest("largest plastic strain anywhere", rows=(("rough-c*", "largest plastic strain"),)),
         ),
-        "The largest plastic strain anywhere lies near the surface under friction, and has no gate.",
+        "They agree in load and area, less in fields on single cells. The largest plastic strain anywhere "
+        "lies near the surface under friction, and has no gate.",
     ),
     Question(
         "Do both models agree over several cycles?",
@@ -158,11 +196,21 @@ QUESTIONS = (
         (
             Largest("sliding, 3 cycles: largest plastic strain of a cycle", rows=(("cyclic-*", "cycle "),)),
             Largest("the same: residual displacement along x", ("cyclic-sliding.*-moved",)),
+            Value(
+                "the same under alternating traction: strain that later cycles add, over the first, SAM",
+                "cyclic-sliding.alternating-sam-adds",
+                percent=True,
+            ),
+            Value("the same, FEM", "cyclic-sliding.alternating-fem-adds", percent=True),
             Largest("rough body that wears, 3 cycles: worn volume", ("running-in-fem.own-volume",)),
             Largest(
-                "the same: pressure of the third cycle, over squares (L2)", ("running-in-fem.own-squares",)
+                "the same: pressure of the third cycle, averaged over squares of 0.75 µm (L2)",
+                ("running-in-fem.own-squares",),
             ),
-            Largest("the same on single cells, some on rims of scars", ("running-in-fem.own-pressure",)),
+            Largest(
+                "the same, cell by cell: rims of scars, steps of nanometres, decide it",
+                ("running-in-fem.own-pressure",),
+            ),
             Held("on running-in over 25 cycles, by SAM alone", ("running-in.*",)),
         ),
         "Finite elements ran beside SAM for 12 cycles at most, in place (see repeated loading); beyond that, "
@@ -173,11 +221,21 @@ QUESTIONS = (
         "cost",
         (
             TimeTo(),
-            Value(
+            Cell(
                 "time of three-dimensional FEM over that of SAM, full slip, at the smallest error of both "
-                "that the reference decides",
+                "that the reference decides; in brackets with the reference off by its uncertainty",
+                *FASTER,
+                ("Rigid sphere on Swift steel in full slip, μ = 0.2, p₀/σ_y0 = 4, 5 load steps", "FEM, 3D"),
+                TIMES,
+                "{} ({}) times",
                 "work-precision.friction-0-2-faster",
-                "{} times",
+            ),
+            Cell(
+                "the same of axisymmetric FEM, sphere at rest, p₀/σ_y0 = 6.2: below 1 FEM is the faster one",
+                *FASTER,
+                ("Rigid sphere on Swift steel, p₀/σ_y0 = 6.2, 5 load steps", "FEM, axisymmetric"),
+                TIMES,
+                "{} ({}) times",
             ),
             Held("on ratios of such times and on their references", ("work-precision.*",)),
         ),
@@ -203,9 +261,19 @@ QUESTIONS = (
         (
             Value("elastic: mean pressure 5 % off", "model-limits.pressure-limit", "from a/R = {}"),
             Value("elastic: contact radius 5 % off", "model-limits.radius-limit", "from a/R = {}"),
-            Value(
-                "Swift steel: largest plastic strain 5 % off",
+            Cell(
+                "Swift steel: largest plastic strain 5 % off; in brackets by two standard errors of a fit",
+                *STRAIN_OFF,
+                ("Swift steel",),
+                ("largest plastic strain",),
+                "from a/R = {}",
                 "model-limits-plastic.strain-limit",
+            ),
+            Cell(
+                "perfectly plastic: largest plastic strain 5 % off",
+                *STRAIN_OFF,
+                ("perfectly plastic, yield strain 1/300",),
+                ("largest plastic strain",),
                 "from a/R = {}",
             ),
             Value(
@@ -236,22 +304,19 @@ QUESTIONS = (
                 ("indentation.sam-*-kogut",),
             ),
             Largest(
-                "Etsion et al. (2005), fit to finite elements: unloading from w* = 5 to 20",
+                "Etsion et al. (2005), fit to finite elements: unloading from 5 to 20 times the approach at "
+                "first yield",
                 ("unloading-fit.*",),
             ),
             Largest("Ghaednia et al. (2019), fit to finite elements: linear hardening", ("hardening-fit.*",)),
             Largest("first yield below a sliding contact, closed form", ("first-yield.*",)),
             Largest(
-                "Tabor, hardness of a perfectly plastic body (FEM, finite strain)",
+                "hardness of 3 yield stresses of a perfectly plastic body, by our FEM of finite strain",
                 ("model-limits-plastic.hardness",),
             ),
             Largest(
                 "Hamilton (1983), closed form: largest stress of a sphere at rest",
                 ("sliding-sphere.interior-maximum",),
-            ),
-            Largest(
-                "Bosman & Schipper (2011), their SAM: largest pressure of 6.5 GPa on the rough pin",
-                ("rough-film.p-max",),
             ),
             Held("on shakedown limits of travelling loads (Ponter 1985; Johnson)", ("travelling-load.*",)),
         ),
@@ -281,11 +346,11 @@ QUESTIONS = (
             Value("the same of Tamaas, elasto-plastic step, 16 × 32 × 32 cells", "peers.step-16", "{} times"),
             Value("the same of Tamaas, elasto-plastic step, 32 × 64 × 64 cells", "peers.step-32", "{} times"),
             Cell(
-                "the same of aspher (C++), elastic sphere: below 1 it is the faster one",
+                "the same of aspher (C++), elastic sphere: below 1 aspher is the faster one",
                 "peers",
                 "Hertz: time",
                 ("aspher",),
-                "over SAM's",
+                ("over SAM's",),
                 "{} times",
             ),
             Cell(
@@ -293,26 +358,25 @@ QUESTIONS = (
                 "peers",
                 "Rough: each",
                 ("1024²", "aspher"),
-                "over SAM's",
+                ("over SAM's",),
                 "{} times",
             ),
             Cell(
-                "largest plastic strain of that step, limit of Tamaas, whose box is periodic",
-                "peers",
-                "Step: references",
+                "largest plastic strain to which Tamaas converges in that step, in a periodic box",
+                *STEP,
                 ("Tamaas",),
-                "largest strain [σ_y/E]",
+                ("largest strain [σ_y/E]",),
                 "{} σ_y/E",
             ),
             Cell(
-                "the same on a half-space, as SAM has it, by axisymmetric FEM",
-                "peers",
-                "Step: references",
+                "the same on a half-space, by axisymmetric FEM: SAM's limit",
+                *STEP,
                 ("SAM",),
-                "largest strain [σ_y/E]",
+                ("largest strain [σ_y/E]",),
                 "{} σ_y/E",
             ),
         ),
+        "Times of the step are each to its own limit: the box of Tamaas is periodic, the body of SAM is not.",
     ),
     Question(
         QUESTION,
@@ -320,6 +384,41 @@ QUESTIONS = (
         (PaperStatements(),),
         "The table below has each statement. Of Bosman & Schipper (2011): what their text says of their five "
         "runs.",
+    ),
+    Question(
+        "What does the method of the paper do as it is printed?",
+        "plastic",
+        (
+            Cell(
+                "too much largest plastic strain by their plastic loop, perfect plasticity, in one load step",
+                *LOOP,
+                (PAPER_LOOP, "1"),
+                ("off, same steps",),
+            ),
+            Cell("the same in 20 load steps", *LOOP, (PAPER_LOOP, "20"), ("off, same steps",)),
+            Cell(
+                "pressure off FEM, averaged over 0.2 a, where friction does not act on the pressure, μ = 0.4",
+                *SLID,
+                ("0.4", "SAM, decoupled"),
+                ("over hats of 0.2 a",),
+            ),
+            Cell("the same where it does", *SLID, ("0.4", "SAM"), ("over hats of 0.2 a",)),
+            Cell(
+                "change of the largest pressure by the film on a smooth patch against steel: less than 5 %, "
+                "as they say",
+                *FILM,
+                ("smooth, steel", "512 × 512"),
+                ("change",),
+            ),
+            Cell(
+                "the same on a rough patch against a rigid plane: not less than 5 %",
+                *FILM,
+                ("rough, rigid", "256 × 256"),
+                ("change",),
+            ),
+        ),
+        "Their loop stops on stress before the flow rule holds. As printed (Eqs. 12 and 13) the film grows "
+        "thicker under pressure; here it thins.",
     ),
     Question(
         "Do the results satisfy the equations?",
@@ -345,11 +444,11 @@ QUESTIONS = (
         "robustness",
         (
             Value(
-                "share of the changed numbers of the numerical core that a test notices",
+                "of the numbers of the numerical core, changed one at a time, are noticed by a test",
                 "mutation.killed",
                 percent=True,
             ),
-            Value("changes that no test notices and nothing explains", "mutation.unexplained"),
+            Value("of the others have no written reason why no test can notice", "mutation.unexplained"),
         ),
     ),
     Question(

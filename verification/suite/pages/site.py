@@ -48,14 +48,17 @@ WORDS = {
         "title": "Verification of samfem",
         "lead": "Each contact is described once. The semi-analytical method (SAM) and, where they can "
         "represent it, finite elements (FEM) solve it without sharing any physics code, and are held against "
-        "closed forms and against each other. Nothing here is compared with a measurement. A gate is a "
-        "number with a tolerance and its reason.",
+        "closed forms and against each other. Nothing here is compared with a measurement. A case is a "
+        "contact or a study; a gate is a number of it with a tolerance and its reason. The paper: Bosman & "
+        "Schipper (2011), whose method SAM follows.",
         "symbols": "Percentages are relative differences, the largest of all comparisons. L2: root of the "
         "sum of squared differences over that of the squared reference. a: contact radius, a₀: that of "
         "Hertz; R: radius of the sphere; p₀: largest pressure of Hertz; σ_y0: initial yield stress; μ: "
-        "coefficient of friction; E₁, E₂: Young's moduli of film and body; h: thickness of the film. "
+        "coefficient of friction; E₁, E₂: Young's moduli of film and body; h: thickness of the film; Swift: "
+        "σ_y = B (C + 10⁶ ε_p)ⁿ. "
         "Sliding: every point of the contact slips while the contact stays where it is; moving: the contact "
-        "travels along the surface. In brackets: what the gate of a number allows.",
+        "travels along the surface. In brackets: what the gate of a number allows. Passed: every gate behind "
+        "an answer holds; stale: the code has changed since.",
         "case": "Case",
         "gate": "gate",
     },
