@@ -435,7 +435,10 @@ QUESTIONS = (
         "What does extreme or wrong input do?",
         "robustness",
         (
-            Held("on extreme input, each row with its expected answer", ("stability.*",)),
+            Held(
+                "on extreme input: right, or the error that was expected, which says what to change",
+                ("stability.*",),
+            ),
             Held("on wrong input and killed runs", ("bad-input.*", "faults.*")),
         ),
     ),
