@@ -405,6 +405,12 @@ def _row(pair):
     return pair.page, pair.against, pair.predicted, pair.reference, pair.case.name, pair.quantity
 
 
+def test_every_row_of_a_table_that_answers_is_there(evidence):
+    cells = [part for each in QUESTIONS for part in each.parts if isinstance(part, Cell)]
+    ran = [part for part in cells if part.case in evidence.stored.ran]
+    assert ran and [part for part in ran if len(list(part.find(evidence))) != 1] == []
+
+
 def test_cells_of_a_table_answer_and_have_a_gate_only_where_it_is_named():
     table = {"caption": "Rough: each", "columns": ["grid", "program", "ratio", "off"]}
     table["rows"] = [["512²", "aspher", "2", "4"], ["1024²", "SAM", "1", "5"], ["1024²", "aspher", "3", "6"]]
