@@ -168,6 +168,8 @@ def sentence(stored: Stored, pairs: Sequence[Pair]) -> str:
     """What stands above the picture."""
     ran, red = len(stored.gates), len(stored.red)
     text = f"{ran - red} of {ran} gates hold, {red or 'none'} failed{_kinds(stored)}"
+    if count := len(stored.waiting):
+        text += f", {count} case{'s' * (count > 1)} did not run"
     if not pairs:
         return f"{text}."
     inside = [sum(abs(pair.error) <= band for pair in pairs) for band in BANDS]
