@@ -21,6 +21,7 @@ from verification.suite.cases import all_cases
 from verification.suite.gates import load_gates
 from verification.suite.judging import families
 from verification.suite.pages import write_report
+from verification.suite.pages.agreement import BEYOND
 from verification.suite.pages.answers import KINDS, RESULT, answers_of, far, kind_of, sentence
 from verification.suite.pages.costs import CASE, costs_of
 from verification.suite.pages.findings import Cell, Evidence, Held, Largest, TimeTo, Value
@@ -28,7 +29,7 @@ from verification.suite.pages.groups import GROUPS, group_of
 from verification.suite.pages.literature import works
 from verification.suite.pages.mathml import formula, with_scripts
 from verification.suite.pages.pairs import Pair, pairs_of, tabled
-from verification.suite.pages.questions import BEYOND, QUESTIONS
+from verification.suite.pages.questions import QUESTIONS
 from verification.suite.pages.statements import statements_of
 from verification.suite.pages.stored import read_stored
 from verification.suite.pages.views import brief

@@ -11,9 +11,11 @@ from fnmatch import fnmatch
 
 from verification.runs.store import short
 from verification.suite.judging import GateStatus
+from verification.suite.pages.agreement import BEYOND
 from verification.suite.pages.findings import Evidence, Finding
 from verification.suite.pages.pairs import Pair, number_in
-from verification.suite.pages.questions import BEYOND, QUESTIONS, Question
+from verification.suite.pages.question import Question
+from verification.suite.pages.questions import QUESTIONS
 from verification.suite.pages.stored import ShownCase, Stored
 from verification.text.readable import with_time
 

@@ -148,9 +148,10 @@ class Judged:
         return sum((each.percent or 0.0) > 50.0 for each in self.chances.values())
 
     @property
-    def sure(self) -> int:
-        """The same by the lower bound."""
-        return sum((each.least or 0.0) > 50.0 for each in self.chances.values())
+    def sure(self) -> str:
+        """How many of them do by the lower bound, for the reader."""
+        count = sum((each.least or 0.0) > 50.0 for each in self.chances.values())
+        return "all" if count == self.likely else str(count)
 
     @property
     def fitted(self) -> Mapping:
