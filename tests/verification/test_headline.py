@@ -126,6 +126,16 @@ def test_the_answer_counts_what_the_tables_hold(readings, studies):
     ]
 
 
+def test_the_pressures_that_remove_metal_are_said(readings, studies):
+    columns = ["case", "removed from, μ high", "film fails from", "p_max, first cycle", "so"]
+    rows = [["bulk", "5.29", "3.42", "7.14", ""], ["hard", "9.87", "3.42", "10.2", ""]]
+    table = {"caption": "What decides, as printed: pressures", "columns": columns, "rows": rows}
+    decided = {**readings, "tables": [*readings["tables"], table]}
+    text = said(headline_of(read_stored(stored(decided, *studies))))
+    assert "above 5.29 (bulk), 9.87 (hard) GPa; films fail from 3.42 GPa" in text
+    assert "reaches 10.2 GPa (median)" in text
+
+
 def test_a_study_that_did_not_run_is_said_not_to_have_run(readings, studies):
     found = headline_of(read_stored(stored(readings)))
     text = said(found)

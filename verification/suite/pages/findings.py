@@ -22,7 +22,9 @@ from verification.text.console import number
 NORMALISED = " over the larger of "
 """Such an error is no share of the quantity, but of what the refinement leaves."""
 UNGATED = "no gate"
-SAID = {"renewed": "in the second reading"}
+SAID = {
+    "renewed": "in the second reading (a weakly hardening layer, a counter-surface renewed in each cycle)"
+}
 """Readings of the paper that its table names in short."""
 
 
@@ -203,7 +205,11 @@ class PaperStatements:
                 f"open, {judged.sure} of them also by the lower bound",
                 INPUTS,
             ),
-            (judged.fitted and judged.most_at_a_point, "hold together at most at one point of it", INPUTS),
+            (
+                judged.fitted and judged.most_at_a_point,
+                "are the most that hold together at one point of it",
+                INPUTS,
+            ),
             (
                 max(judged.physics.values(), default=0),
                 f"hold on one surface under the best of {len(judged.physics)} ways to harden and to load it "

@@ -25,10 +25,11 @@ MEANING = (
     "on 2`: on two of them it says nothing. Share of points: of the study over inputs, each on another "
     "surface, with bounds of 90 %. Decided by: how much more often the statement holds in the upper half "
     "of the range of an input; not resolved: no input changes that by more than chance does with so many "
-    "points. Holds under: of the ways to harden and to load. Of equal changes that make a statement hold "
-    "the smallest are named. Bulk: steel without a layer, removed above a plastic strain of 0.2 %; curve "
-    "A, curve B, hardening only: with a nano-crystalline layer as after polishing, mild wear or harder "
-    "towards the surface, removed above 2 % (5 % where it is said)."
+    "points, nor does a fit that predicts points it has not seen name one. Holds under: of the ways to "
+    "harden and to load. Of equal changes that make a statement hold the smallest are named. Bulk: steel "
+    "without a layer, removed above a plastic strain of 0.2 %; curve A, curve B, hardening only: with a "
+    "nano-crystalline layer as after polishing, mild wear or harder towards the surface, removed above 2 "
+    "% (5 % where it is said)."
 )
 """Of the columns and the words of the table."""
 PICTURES = ((INPUTS, "probabilities"), (INPUTS, "two-inputs"), (PHYSICS, "volume"))
@@ -150,15 +151,15 @@ def _of_inputs(judged: Judged) -> Iterator[str]:
         first = Counter(deciding)
         named = ", ".join(f"{name} ({count})" for name, count in first.most_common(3))
         yield (
-            f"{len(deciding)} of them depend{'s' * (len(deciding) == 1)} on an input beyond chance, first on "
-            f"{named}."
+            f"{len(deciding)} of all {len(chances)} depend{'s' * (len(deciding) == 1)} on an input beyond "
+            f"chance, first on {named}."
         )
     else:
         yield "None depends on an input beyond chance."
     if seen := judged.setup(INPUTS, "Resolved"):
         yield f"Of the others the study does not tell: it resolves {seen}."
     if judged.fitted:
-        yield f"At one point of the inputs at most {judged.most_at_a_point} hold together (fitted)."
+        yield f"At no point do more than {judged.most_at_a_point} hold together (fitted)."
 
 
 def _of_physics(judged: Judged) -> Iterator[str]:
@@ -174,7 +175,19 @@ def _of_physics(judged: Judged) -> Iterator[str]:
 
 
 def _of_failed(judged: Judged) -> Iterator[str]:
-    """Whether what fails as printed holds under anything."""
+    """From which pressures on the model removes metal, and whether what fails as printed holds under
+    anything.
+    """
+    table = judged.table(READINGS, "so", "What decides, as printed")
+    rows = [dict(zip(table["columns"], row, strict=True)) for row in table.get("rows", ())]
+    if rows:
+        removed = ", ".join(f"{row['removed from, μ high']} ({row['case']})" for row in rows)
+        films, reached = ([row[name] for row in rows] for name in ("film fails from", "p_max, first cycle"))
+        yield (
+            f"Under a failed film metal is removed where the pressure is above {removed} GPa; films fail "
+            f"from {min(films, key=float)} GPa, and the first cycle reaches {max(reached, key=float)} GPa "
+            "(median)."
+        )
     if judged.verdicts and judged.chances and judged.physics:
         never = [words for words in judged.statements if _remedy(judged, words) == NOTHING]
         yield (
@@ -194,7 +207,8 @@ def _of_last_cycles(judged: Judged) -> Iterator[str]:
         column = table["columns"].index("as printed: strain anew in")
         busy, of = (sum(int(row[column].split()[k]) for row in table["rows"]) for k in (0, 2))
         yield (
-            f"As printed cells strain anew in the last cycle in {busy} of {of} runs."
+            f"As printed cells strain anew in the last cycle in {busy} of {of} runs: under the same plane a "
+            "cycle without new strain is followed by cycles like it."
             if busy
             else "As printed wear has ended because no cell strains anew in the last cycle in any of "
             f"{of} runs: a cycle that neither strains nor wears the body is followed by cycles like it."
