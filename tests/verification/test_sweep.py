@@ -3,7 +3,9 @@
 cluster.
 """
 
+import asyncio
 import csv
+import importlib
 import json
 import os
 import signal
@@ -414,6 +416,36 @@ def dask_distributed() -> ModuleType:
     if not Path("/proc/self").exists():
         pytest.skip("distributed reads /proc, which this machine has not")
     return pytest.importorskip("distributed")
+
+
+def cascaded(status, result) -> BaseException:
+    """What the executor of distributed makes of a task with this result, and this status when it is asked
+    for after it.
+    """
+    dask_distributed()
+    cascade = importlib.import_module("distributed.cfexecutor")._cascade_future
+
+    async def asked(raiseit):
+        return result
+
+    async def answer():
+        found = Future()
+        await cascade(SimpleNamespace(status=status, _result=asked), found)
+        return found.exception()
+
+    return asyncio.run(answer())
+
+
+def test_a_task_whose_worker_dies_just_after_its_result_is_no_failure():
+    def raised(error):
+        try:
+            raise error
+        except TypeError as found:
+            return TypeError, found, found.__traceback__
+
+    workers = SimpleNamespace(_killed=executors.BrokenProcessPool)
+    assert executors.Cluster.died(workers, cascaded("lost", Failure("any value")))
+    assert not executors.Cluster.died(workers, cascaded("error", raised(TypeError("of the task"))))
 
 
 @pytest.fixture(scope="module")

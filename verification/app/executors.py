@@ -244,7 +244,7 @@ class Cluster:
         return 2 * sum(workers.values()) or 1
 
     def died(self, error: BaseException) -> bool:
-        return isinstance(error, self._killed)
+        return isinstance(error, self._killed) or _died_with_its_result(error)
 
     def __enter__(self) -> Cluster:
         return self
@@ -252,3 +252,16 @@ class Cluster:
     def __exit__(self, kind, *_) -> None:
         self.executor.shutdown(wait=kind is None)
         self._client.close()
+
+
+def _died_with_its_result(error: BaseException) -> bool:
+    """Whether the worker of a task died just after its result was here: the executor of distributed asks for
+    the result and then for the status, which is no longer `finished`, and takes the result apart as an error.
+    """
+    trace = error.__traceback__
+    return (
+        isinstance(error, TypeError)
+        and trace is not None
+        and trace.tb_next is None
+        and trace.tb_frame.f_code.co_name == "_cascade_future"
+    )
