@@ -425,7 +425,7 @@ def cascaded(status, result) -> BaseException:
     dask_distributed()
     cascade = importlib.import_module("distributed.cfexecutor")._cascade_future
 
-    async def asked(raiseit):
+    async def asked(**_):
         return result
 
     async def answer():
