@@ -3,9 +3,7 @@
 cluster.
 """
 
-import asyncio
 import csv
-import importlib
 import json
 import os
 import signal
@@ -15,13 +13,14 @@ import time
 from concurrent.futures import Future
 from contextlib import nullcontext
 from pathlib import Path
-from types import ModuleType, SimpleNamespace
+from types import SimpleNamespace
 from unittest.mock import patch
 
 import numpy as np
 import pytest
 import worker_functions as functions
 from builders import scene_text
+from optional_packages import dask_distributed
 
 from verification.app import executors, sweep
 from verification.app.cli import main
@@ -409,43 +408,6 @@ def test_plain_progress_says_how_long_it_will_take(capsys, monkeypatch):
 
 
 # Dask
-
-
-def dask_distributed() -> ModuleType:
-    """The package; skips where it cannot be loaded."""
-    if not Path("/proc/self").exists():
-        pytest.skip("distributed reads /proc, which this machine has not")
-    return pytest.importorskip("distributed")
-
-
-def cascaded(status, result) -> BaseException:
-    """What the executor of distributed makes of a task with this result, and this status when it is asked
-    for after it.
-    """
-    dask_distributed()
-    cascade = importlib.import_module("distributed.cfexecutor")._cascade_future
-
-    async def asked(**_):
-        return result
-
-    async def answer():
-        found = Future()
-        await cascade(SimpleNamespace(status=status, _result=asked), found)
-        return found.exception()
-
-    return asyncio.run(answer())
-
-
-def test_a_task_whose_worker_dies_just_after_its_result_is_no_failure():
-    def raised(error):
-        try:
-            raise error
-        except TypeError as found:
-            return TypeError, found, found.__traceback__
-
-    workers = SimpleNamespace(_killed=executors.BrokenProcessPool)
-    assert executors.Cluster.died(workers, cascaded("lost", Failure("any value")))
-    assert not executors.Cluster.died(workers, cascaded("error", raised(TypeError("of the task"))))
 
 
 @pytest.fixture(scope="module")
