@@ -155,6 +155,13 @@ def test_a_scene_that_hardly_yields_has_a_box():
         assert all(box.nx >= 1 and box.ny >= 1 and box.layers >= 1 for box in boxes)
 
 
+@pytest.mark.parametrize("model", [SAM, FEM])
+def test_a_yielding_body_without_a_load_has_an_estimate(model):
+    none = scene(body={"plasticity": SWIFT}, loading={"force": 0.0})
+    assert estimates.load_ratio(none, np.zeros(1))[0] == 0.0
+    assert np.isfinite(estimates.estimate(none, model).time_s)
+
+
 def test_factors_are_found_from_counts():
     counts = [{"a": a, "b": b} for a, b in np.random.default_rng(1).uniform(1e6, 1e8, (8, 2))]
     measured = [5 * each["a"] + 2 * each["b"] for each in counts]

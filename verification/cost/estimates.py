@@ -291,7 +291,8 @@ def _peak_pressure(scene: Scene, a: float, b: float) -> float:
         return _largest_mises(scene) / MISES
     from sam import expected_force
 
-    return 1.5 * expected_force(scene) / (np.pi * a * b)
+    area = np.pi * a * b
+    return 1.5 * expected_force(scene) / area if area else 0.0
 
 
 def _largest_mises(scene: Scene) -> float:

@@ -13,8 +13,9 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -210,15 +211,26 @@ def kill_solves(count: int, base: Path, progress) -> tuple[list[KillTrial], floa
         raise RuntimeError(f"the undisturbed solve ended in {ended.code}: {ended.text[-300:]}")
     expected, rng = tables(base / "undisturbed"), random.Random(SEED)
     moments, trials = delays(count, ended.seconds, rng), []
+
+    def trial(k: int) -> KillTrial:
+        with removed(folder := base / f"solve-{k}"):
+            return killed_solve(words, folder, expected, moments[k], base=base)
+
     with ThreadPoolExecutor(AT_ONCE) as pool:
-        tasks = [
-            pool.submit(killed_solve, words, base / f"solve-{k}", expected, moments[k], base=base)
-            for k in range(count)
-        ]
-        for done, task in enumerate(tasks, start=1):
-            trials.append(task.result())
+        for done, found in enumerate(pool.map(trial, range(count)), start=1):
+            trials.append(found)
             progress("kills of a solve", done, count)
     return trials, ended.seconds
+
+
+@contextmanager
+def removed(*folders: Path) -> Iterator[None]:
+    """Remove folders after the block: a sweep leaves a gigabyte, its runs and its store."""
+    try:
+        yield
+    finally:
+        for folder in folders:
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 def kill_sweeps(count: int, base: Path, progress) -> list[KillTrial]:
@@ -229,8 +241,9 @@ def kill_sweeps(count: int, base: Path, progress) -> list[KillTrial]:
         raise RuntimeError(f"the undisturbed sweep ended in {ended.code}: {ended.text[-300:]}")
     table, rng, trials = (base / "sweep" / "sweep.csv").read_bytes(), random.Random(SEED + 1), []
     for k, delay in enumerate(delays(count, ended.seconds, rng)):
-        whom = ("worker", "parent")[k % 2]
-        trials.append(killed_sweep(words, base / f"sweep-{k}", table, delay, whom=whom, rng=rng, base=base))
+        whom, folder = ("worker", "parent")[k % 2], base / f"sweep-{k}"
+        with removed(folder, base / f"{folder.name}-store"):
+            trials.append(killed_sweep(words, folder, table, delay, whom=whom, rng=rng, base=base))
         progress("kills of a sweep", k + 1, count)
     return trials
 
