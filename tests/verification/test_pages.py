@@ -419,7 +419,11 @@ def test_every_row_of_a_table_that_answers_is_there(evidence):
 
 def test_cells_of_a_table_answer_and_have_a_gate_only_where_it_is_named():
     table = {"caption": "Rough: each", "columns": ["grid", "program", "ratio", "off"]}
-    table["rows"] = [["512²", "aspher", "2", "4"], ["1024²", "SAM", "1", "5"], ["1024²", "aspher", "3", "6"]]
+    table["rows"] = [
+        ["512²", "aspher", "2", "-8.07%"],
+        ["1024²", "SAM", "1", "5"],
+        ["1024²", "aspher", "3", "6"],
+    ]
     gate = {"id": "peers.rough", "metric": "at_least", "tolerance": 2.0, "status": "failed"}
     ran = {"peers": SimpleNamespace(case={"tables": [table]}, name="peers", gates=[gate])}
     evidence = Evidence(SimpleNamespace(ran=ran), ())
@@ -431,4 +435,6 @@ def test_cells_of_a_table_answer_and_have_a_gate_only_where_it_is_named():
     assert one.value == "3 times" and not one.gated and one.allowed == "no gate"
     (two,) = found("peers", "1024²", ("ratio", "off"), shown="{} ({})", gate="peers.rough")
     assert two.value == "3 (6)" and two.gated and two.allowed == "≥ 2" and two.red == ("peers.rough",)
+    (three,) = found("peers", "512²", ("off",))
+    assert three.value == "\N{MINUS SIGN}8.07\N{NO-BREAK SPACE}%"
     assert not found("peers", "256²") and not found("other", "1024²")
