@@ -15,7 +15,7 @@ PALE = "#9fc8e3"  # of bars on which bounds are drawn
 
 def probabilities(rows: Sequence[tuple[str, int, int, tuple[float, float]]]) -> Drawing:
     """A bar with its bounds for each statement. rows: words, points at which it holds, points at which it
-    says anything, bounds of the probability.
+    says anything, bounds of the share.
     """
     table = Columns("statement", "holds", "of", "low", "high")
     names, held, of, bounds = (list(each) for each in zip(*rows[::-1], strict=True))
@@ -29,9 +29,8 @@ def probabilities(rows: Sequence[tuple[str, int, int, tuple[float, float]]]) -> 
         for k, words in enumerate(f"{yes} of {all_}" for yes, all_ in zip(held, of, strict=True)):
             axis.text(1.02, k, words, va="center", fontsize=8.0, transform=axis.get_yaxis_transform())
         axis.axvline(0.5, color=BLACK, linewidth=0.6, gid=GUIDE)
-        axis.set(
-            xlabel="probability that the statement holds", xlim=(0.0, 1.0), ylim=(-0.7, len(names) - 0.3)
-        )
+        axis.set(xlabel="share of points at which the statement holds")
+        axis.set(xlim=(0.0, 1.0), ylim=(-0.7, len(names) - 0.3))
         axis.set_axisbelow(True)
     table.add(names, held, of, low, high)
     return Drawing(figure, table)

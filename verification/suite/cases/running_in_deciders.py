@@ -168,7 +168,7 @@ def change_between(high: np.ndarray, low: np.ndarray, level: float) -> tuple[flo
 
 
 def least_change(points: int) -> float:
-    """Of a probability of a half, between the halves of an input's range, that is beyond CHANCE."""
+    """Smallest change of a probability near a half that is beyond CHANCE, between the halves of a range."""
     return float(norm.isf(CHANCE / 2.0) * np.sqrt(2.0 * 0.25 / (points / 2.0)))
 
 

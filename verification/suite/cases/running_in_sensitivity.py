@@ -83,7 +83,7 @@ class RunningInSensitivity(DeeperWhereItYields):
             ("Processor time", f"{took / 60:.0f} min, predicted {found.predicted_s / 60:.0f} min"),
             ("Without a converged result", f"{found.lost} runs"),
             (
-                "Sampling error of a probability",
+                "Sampling error of a share of points",
                 f"±{50 * np.diff(wilson(points // 2, points))[0]:.0f} % at a half (90 %)",
             ),
             (
@@ -193,7 +193,7 @@ def statements_table(found: Studied) -> SmallTable:
         "Probability that a statement holds, and what changes it by most between the halves of its range, "
         f"with bounds of 90 %: beyond what chance does once in {1 / CHANCE:.0f}, or, where the fit below "
         "names the input, beyond those bounds",
-        ("Fig.", "statement of the paper", "holds", "probability (90 %)", "decided first by", "then by"),
+        ("Fig.", "statement of the paper", "holds", "share of points (90 %)", "decided first by", "then by"),
         rows,
     )
 
