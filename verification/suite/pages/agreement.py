@@ -100,7 +100,7 @@ AGREEMENT = (
                 "{} ‰, {} ‰",
             ),
             Cell(
-                "the same, FEM: in the fourth pass they disagree",
+                "the same, FEM",
                 *PASSES,
                 ("finite elements", "6"),
                 ("pass 1", "pass 4"),
