@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Functions have at most 60 lines and modules 450; ruff holds the other limits, of parameters, columns and
+"""Functions have at most 100 lines and modules 800; ruff holds the other limits, of parameters, columns and
 branches.
 """
 
@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-FUNCTION, MODULE = 60, 450
+FUNCTION, MODULE = 100, 800
 FILES = [
     path for name in ("sam", "fem_reference", "verification", "tests") for path in (ROOT / name).rglob("*.py")
 ]
