@@ -26,7 +26,7 @@ from verification.app import comparing
 from verification.app.cli import CLAIMS
 from verification.compare.rows import Comparison
 from verification.cost import estimates, plan as plan_module
-from verification.cost.plan import check_memory
+from verification.cost.plan import check_needs
 from verification.runs import checkpoints, models
 from verification.runs.store import identity
 from verification.runs.study import read_study
@@ -218,7 +218,7 @@ def test_sizes_of_a_plan_have_units_that_a_person_reads(scene_file, samfem):
 def test_memory_that_is_not_there_is_told_in_gb_and_tb(monkeypatch, needed, text):
     monkeypatch.setattr(estimates, "estimate", lambda *_: estimates.Estimate(round(needed), 1.0))
     with pytest.raises(models.ModelError, match=f"{text} of memory needed, 1.5 MB available: lower"):
-        check_memory(SMOOTH, models.SAM, available=1.5e6)
+        check_needs(SMOOTH, models.SAM, available=1.5e6)
 
 
 @pytest.mark.parametrize(

@@ -21,6 +21,7 @@ from verification.text.readable import with_prefix, with_time
 from verification.uncertainty import NoFamilyError, family
 
 UNCERTAINTY = "uncertainty"
+LONGEST = 86400.0  # predicted processor seconds that a command begins unasked
 NOTE = "memory and time are estimates from the numbers of cells, not measurements"
 
 
@@ -72,20 +73,29 @@ def _uncertainty(scene: Scene, model: str) -> tuple[Stage, float]:
     return Stage(UNCERTAINTY, True, words, {"solves": len(found.all) - 1}), seconds
 
 
-def check_memory(scene: Scene, model: str, available: float | None = None) -> None:
-    """Raise ModelError if `model` would need more memory than there is: `available` bytes, by default this
-    machine's.
+def check_needs(scene: Scene, model: str, available: float | None = None, *, anyway: bool = False) -> None:
+    """Raise ModelError if `model` would need more memory than there is, `available` bytes, by default this
+    machine's; or, unless `anyway`, more time than LONGEST.
     """
     available = memory_bytes() if available is None else available
     try:
         models.check(scene, model)
     except models.ModelError:
         return
-    memory = estimates.estimate(scene, model).memory_bytes
-    if available and memory > available:
-        needed, there = (with_prefix(number, "B") for number in (memory, available))
+    needs = estimates.estimate(scene, model)
+    if available and needs.memory_bytes > available:
+        needed, there = (with_prefix(number, "B") for number in (needs.memory_bytes, available))
         raise models.ModelError(
             f"model {model}: about {needed} of memory needed, {there} available: {_smaller(scene, model)}"
+        )
+
+    if anyway:
+        return
+    seconds = needs.time_s + (_uncertainty(scene, model)[1] if scene.solver.uncertainty else 0.0)
+    if seconds > LONGEST:
+        raise models.ModelError(
+            f"model {model}: about {with_time(seconds)} of processor time predicted, more than "
+            f"{with_time(LONGEST)}: {_smaller(scene, model)}, or say --anyway"
         )
 
 
