@@ -95,8 +95,16 @@ def check_needs(scene: Scene, model: str, available: float | None = None, *, any
     if seconds > LONGEST:
         raise models.ModelError(
             f"model {model}: about {with_time(seconds)} of processor time predicted, more than "
-            f"{with_time(LONGEST)}: {_smaller(scene, model)}, or say --anyway"
+            f"{with_time(LONGEST)}: {_smaller(scene, model)}{_fewer(scene)}, or say --anyway"
         )
+
+
+def _fewer(scene: Scene) -> str:
+    """Load steps and cycles that can be fewer, with the numbers that they have."""
+    given = {"steps": scene.loading.steps, "cycles": scene.loading.cycles}
+    return ", " * any(count > 1 for count in given.values()) + " or ".join(
+        f"loading.{key} = {count}" for key, count in given.items() if count > 1
+    )
 
 
 def _smaller(scene: Scene, model: str) -> str:
