@@ -7,14 +7,14 @@ from collections.abc import Iterator, Mapping
 from math import ceil, inf, isclose
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from sam.scene.grid import Grid
 from sam.scene.inputs import refused
 from sam.scene.section import Conflict, Section, stated
 from sam.scene.surface.height_map import HeightMap
 from sam.scene.surface.map_files import HeightField
-from sam.scene.units import CELLS, Anisotropy, Coordinate, Hurst, Length, Seed, Share, metres_in
+from sam.scene.units import CELLS, LENGTH, Anisotropy, Coordinate, Hurst, Length, Seed, Share, metres_in
 
 _SELF_AFFINE = ("cutoff_long", "cutoff_short", "hurst", "seed")
 KINDS = {
@@ -52,6 +52,13 @@ def _unit(value: object) -> object:
     return value
 
 
+_SIDE = LENGTH.__get_pydantic_json_schema__(None, None)
+_SIDES = {"anyOf": [_SIDE, {"type": "array", "items": _SIDE, "minItems": 1, "maxItems": 2}]}
+_NAME = {"type": "string", "examples": ["um"], "description": "a unit of length"}
+Covered = Annotated[tuple[Length, ...], BeforeValidator(_one_or_two), WithJsonSchema(_SIDES)]
+UnitName = Annotated[str, BeforeValidator(_unit), WithJsonSchema(_NAME)]
+
+
 class Surface(Section):
     """The heights of the body's surface, which is a plane without this table. Lengths in m, heights positive
     out of the body.
@@ -74,8 +81,8 @@ class Surface(Section):
     words: ClassVar[str] = "surface"
     common: ClassVar[tuple[str, ...]] = ("kind",)  # keys that every kind may have
     kind: Literal["file", "hard-turned", "self-affine", "sinusoid"]
-    extent: Annotated[tuple[Length, ...], BeforeValidator(_one_or_two)] | None = Field(None, exclude=True)
-    unit: Annotated[str, BeforeValidator(_unit)] | None = Field(None, exclude=True)
+    extent: Covered | None = Field(None, exclude=True)
+    unit: UnitName | None = Field(None, exclude=True)
     path: HeightField | None = None  # below extent and unit: they are known when it is read
     missing: Literal["refuse", "harmonic"] | None = None
     form: Literal["none", "tilt", "sphere", "quadratic"] | None = None
