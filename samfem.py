@@ -311,7 +311,7 @@ def sweep(study: str | Path, out: str | Path | None = None, workers: int | None 
     """
     read_study(Path(study))
     folder = Path(out or f"{Path(study).stem}-sweep")
-    words = [str(study), "--out", str(folder), *(["--workers", str(workers)] if workers else [])]
+    words = [str(study), "--anyway", "--out", str(folder), *(["--workers", str(workers)] if workers else [])]
     # a process of its own, as its workers would run the script of the user again
     ended = subprocess.run(
         [sys.executable, "-m", "verification.app.cli", "sweep", *words], capture_output=True

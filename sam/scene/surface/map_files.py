@@ -86,6 +86,8 @@ class MapField:
         """The map in the file that a scene file names; in Python see `from_python`. An error "allowed" for
         others.
         """
+        if self.kind is HeightMap and not {"extent", "unit"} <= set(info.data):
+            raise refused("read only once extent and unit are right")
         told = Told(info.data.get("extent"), info.data.get("unit"))
         if not in_file(info):
             if told != NOTHING:
