@@ -235,6 +235,7 @@ def test_what_a_file_does_not_say_is_asked_for_and_never_guessed(tmp_path, name,
             UNIT,
         ),
         ("h.txt", b"MAP 12 8\n\n" + text(MATRIX, False, sep=" ").replace("0.", "zero", 1).encode(), SIDES),
+        ("h.csv", b"Height map\n" + text(MATRIX, False).encode(), SIDES),
         ("h.npz", npz({"z": Z.T}), SIDES),
     ],
 )

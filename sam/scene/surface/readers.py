@@ -145,10 +145,13 @@ def _matrix(names: Sequence[str], rows: Array, told: Told) -> HeightMap:
 
 def _is_axis(lines: Array) -> bool:
     """Whether the first of two lines of a matrix holds coordinates: even steps, as the second one has not."""
-    steps = np.diff(lines)
-    mean = np.abs(steps.mean(axis=1, keepdims=True))
-    even = (np.abs(np.abs(steps) - mean) <= EVEN * mean).all(axis=1) & (mean[:, 0] > 0)
-    return steps.shape[1] >= FEWEST_STEPS and len(lines) == 2 and bool(even[0]) and not bool(even[1])
+    if len(lines) < 2 or lines.shape[1] <= FEWEST_STEPS:
+        return False
+    with np.errstate(invalid="ignore"):  # of heights that are missing or infinite
+        steps = np.diff(lines)
+        mean = np.abs(steps.mean(axis=1, keepdims=True))
+        even = (np.abs(np.abs(steps) - mean) <= EVEN * mean).all(axis=1) & (mean[:, 0] > 0)
+    return bool(even[0]) and not bool(even[1])
 
 
 def _gridded(x: Array, y: Array, height: Array, kind: type[HeightMap]) -> HeightMap:

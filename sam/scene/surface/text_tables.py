@@ -20,6 +20,7 @@ _MARK = r"(?:[-*?]++|n/?a|null|none|bad|missing|invalid)"  # of a missing number
 _NUMBER = r"[+-]?(?:[0-9]++(?:[.,][0-9]*+)?+|[.,][0-9]++)(?:[eE][+-]?[0-9]++)?+"
 _SPACED = re.compile(rf"\s*+{_NUMBER}(?:[ \t]++{_NUMBER})++\s*+")
 _CELL = re.compile(rf"(?:nan|{_MARK}|{_NUMBER})?", re.IGNORECASE)
+_ABOVE = re.compile(r"(?:[^\S\n]*+(?:[#%][^\n]*+)?+\n)*+")  # empty lines and comments
 _CONTROL = re.compile(r"[\x00-\x08\x0e-\x1f]")
 _MOST_ABOVE = 1000  # lines in which the first numbers are looked for
 _LONGEST = 160  # characters of another library's words
@@ -61,14 +62,15 @@ def parsed(content: bytes, name: str = "") -> tuple[list[str], Array]:
         rows = _numbers(rest.replace(",", ".") if separator != "," else rest, separator)
     except ValueError as error:
         words = f"not CSV: {printable(str(error))[:_LONGEST].rstrip('.')}"
-        raise InputError(words + (_conversion(text, encoding, name) if name else "")) from None
+        raise InputError(words + _conversion(text, encoding, name)) from None
     if not rows.size:
         raise InputError("no rows")
     surplus = rows.shape[1] - len(names)
     if separator and rows.shape[1] > 1 and (not names or surplus == 1) and np.isnan(rows[:, -1]).all():
         rows, surplus = rows[:, :-1], surplus - 1  # every line ends with a separator
     if surplus and not in_comment:
-        raise InputError(f"{rows.shape[1]} columns below {len(names)} names in {spelling(first.strip())}")
+        words = f"{rows.shape[1]} columns below {len(names)} names in {spelling(first.strip())}"
+        raise InputError(words + _conversion(text, encoding, name))
     return ([] if surplus else names), rows
 
 
@@ -80,8 +82,10 @@ def _separator(line: str) -> str | None:
 
 def _conversion(text: str, encoding: str, name: str) -> str:
     """The line of Python that writes the numbers alone, of a text with other lines above them or other
-    words between them.
+    words between them; empty without a name of the file.
     """
+    if not name:
+        return ""
     lines = text.rstrip().split("\n", _MOST_ABOVE)[:_MOST_ABOVE]
     separator = _separator(lines[-1])
     rows = [_cells(line, separator) for line in lines]
@@ -115,11 +119,11 @@ def _decoded(content: bytes) -> tuple[str, str]:
 
 def _split(text: str) -> tuple[str, str, str]:
     """The last comment before the first line, that line, and the rest."""
-    comment, line = "", ""
-    while text and (not line.strip() or line.lstrip().startswith(("#", "%"))):
-        comment = line.lstrip(" #%") if line.strip() else comment
-        line, _, text = text.partition("\n")
-    return comment, line, text
+    above = _ABOVE.match(text)
+    assert above is not None  # it may be empty
+    comment = above[0].rstrip().rpartition("\n")[2]
+    line, _, rest = text[above.end() :].partition("\n")
+    return comment.lstrip(" #%"), line, rest
 
 
 def _cells(line: str, separator: str | None) -> list[str]:
