@@ -154,6 +154,7 @@ WAYS = {
     "rows along y": ("h.csv", text(ROWS.sort_values(["y_um", "x_um"])), ""),
     "matrix": ("h.csv", text(MATRIX, False), SIDES),
     "matrix of savetxt": ("h.txt", text(MATRIX, False, sep=" "), SIDES),
+    "matrix below words": ("h.csv", text(MATRIX, [f"{k}.1.2026" for k in range(12)]), SIDES),
     "matrix with coordinates": ("h.csv", MATRIX[::-1].to_csv(index_label="y"), SIDES),
     "matrix below coordinates": ("h.csv", text(MATRIX, sep=";", decimal=","), SIDES),
     "npy": ("h.npy", as_npy(Z.T), SIDES),

@@ -39,7 +39,7 @@ SAME = 1e-6
 FEWEST_STEPS = 4  # that are even by chance in one row of a million
 _LONGEST = 160  # characters of another library's words
 _COLUMN = re.compile(r"(?:(x|y)|z|h|height)(?:[\W_]*([^\W\d_]+)[\W_]*)?", re.IGNORECASE)  # and its unit
-_NUMBER = re.compile(r"[+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?")
+_NUMBER = re.compile(r"[+-]?[0-9]+(?:\.[0-9]*)?(?:[eE][+-]?[0-9]+)?")
 _HEADER = 1000  # bytes of an npy header beyond which it is none of a plain array
 
 
