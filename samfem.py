@@ -38,13 +38,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from pandas import DataFrame
 
-for _name in ("sam", "fem_reference", "verification"):
-    _file = getattr(import_module(_name), "__file__", None)
-    if _file is None or Path(_file).resolve().parents[1] != Path(__file__).resolve().parent:
-        raise ImportError(
-            f"samfem needs its own package {_name}, and Python finds another one, {_file or 'a folder'}: "
-            f"uninstall the distribution that it belongs to, or install samfem in an environment of its own"
-        )
+_others = import_module("verification")
+_file = getattr(_others, "__file__", None)
+if _file is None or Path(_file).resolve().parents[1] != Path(__file__).resolve().parent:
+    raise ImportError(
+        f"samfem needs its own package verification, and Python finds another one, {_file or 'a folder'}: "
+        f"uninstall the distribution that it belongs to, or install samfem in an environment of its own"
+    )
+if _words := _others.foreign_package():
+    raise ImportError(_words)
 
 from sam.scene import HeightMap, Result, Scene, SceneError, load_scene  # noqa: E402 - only once they are ours
 from verification import figures  # noqa: E402
@@ -309,7 +311,7 @@ def sweep(study: str | Path, out: str | Path | None = None, workers: int | None 
     """
     read_study(Path(study))
     folder = Path(out or f"{Path(study).stem}-sweep")
-    words = [str(study), "--out", str(folder), *(["--workers", str(workers)] if workers else [])]
+    words = [str(study), "--anyway", "--out", str(folder), *(["--workers", str(workers)] if workers else [])]
     # a process of its own, as its workers would run the script of the user again
     ended = subprocess.run(
         [sys.executable, "-m", "verification.app.cli", "sweep", *words], capture_output=True

@@ -45,7 +45,7 @@ def die_once_while_sending(marker: str) -> str:
     return "received"
 
 
-def solve_but_die_once(scene, model, code):
+def solve_but_die_once(scene, model, code, *how):
     """The worker of the special scene is killed, the first time; the marker is beside the `title` of the
     scene.
     """
@@ -55,24 +55,24 @@ def solve_but_die_once(scene, model, code):
     if scene.loading.force == SPECIAL and not marker.exists():
         marker.touch()
         die()
-    return solve_scene(scene, model, code)
+    return solve_scene(scene, model, code, *how)
 
 
-def solve_but_die(scene, model, code):
+def solve_but_die(scene, model, code, *how):
     from verification.app.sweep import solve_scene
 
-    return die() if scene.loading.force == SPECIAL else solve_scene(scene, model, code)
+    return die() if scene.loading.force == SPECIAL else solve_scene(scene, model, code, *how)
 
 
-def solve_but_raise(scene, model, code):
+def solve_but_raise(scene, model, code, *how):
     """The solver of the special scene raises."""
     from verification.app.sweep import solve_scene
     from verification.runs import models
 
     if scene.loading.force != SPECIAL:
-        return solve_scene(scene, model, code)
+        return solve_scene(scene, model, code, *how)
     original, models.solve = models.solve, lambda *_: fail(0.0)
     try:
-        return solve_scene(scene, model, code)
+        return solve_scene(scene, model, code, *how)
     finally:
         models.solve = original

@@ -275,7 +275,10 @@ class _Iteration:
             beta = max(0.0, (product - float(np.vdot(state.residual, z))) / state.product)  # Polak-Ribiere
             d = beta * state.direction - z  # paper Eq. 10, third line, preconditioned
         u_d = self._apply_change(d)
-        alpha = -float(np.vdot(r, d)) / float(np.vdot(self.count * d, u_d))
+        work = float(np.vdot(self.count * d, u_d))
+        if work == 0.0:  # of a load so small that its square is none
+            return False
+        alpha = -float(np.vdot(r, d)) / work
         # paper Eq. 10, first and second line: u carries the residual
         state.p, state.u = state.p + alpha * d, state.u + alpha * u_d
         state.direction, state.residual, state.product, state.since = d, r, product, state.since + 1

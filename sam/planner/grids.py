@@ -70,7 +70,7 @@ def misfit_demand_of(scene: Scene, sphere: MisfitSphere) -> MisfitDemand:
 
 def contact_scale(scene: Scene, pair: ElasticPair, coating: Coating) -> float:
     """Estimated contact radius over that of the bare body; 1 where the radius is given (punch, given
-    pressure).
+    pressure) and without force.
 
     An ellipse is scaled like the circle under a sphere with the geometric mean of its radii, and what has no
     radii of curvature like the sphere of the same contact with the bare body.
@@ -78,8 +78,10 @@ def contact_scale(scene: Scene, pair: ElasticPair, coating: Coating) -> float:
     other = scene.counterbody
     if other is None or SHAPES[other.shape].given:
         return 1.0
-    coated = parts.coated_pair(coating, pair)
     force, radii = expected_force(scene), other.radii
+    if force == 0.0:
+        return 1.0
+    coated = parts.coated_pair(coating, pair)
     if radii is None:
         a, b = hertz_semi_axes(scene)
         radius = 4 / 3 * pair.contact_modulus * sqrt(a * b) ** 3 / force  # Johnson 1985, Eq. 4.22

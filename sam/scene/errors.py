@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 _LONGEST = 60  # characters of a value in a message
-_MOST_SHOWN = 100  # more is no scene file
+MOST_SHOWN = 100  # more is no scene file
 
 
 @dataclass(frozen=True)
@@ -58,9 +58,9 @@ class SceneError(ValueError):
     def __str__(self) -> str:
         if len(self.problems) == 1:
             return f"{self.source}: {self.problems[0]}"
-        shown = list(map(str, self.problems[:_MOST_SHOWN]))
-        if len(self.problems) > _MOST_SHOWN:
-            shown.append(f"and {len(self.problems) - _MOST_SHOWN} more")
+        shown = list(map(str, self.problems[:MOST_SHOWN]))
+        if len(self.problems) > MOST_SHOWN:
+            shown.append(f"and {len(self.problems) - MOST_SHOWN} more")
         return "\n  ".join([f"{self.source}: {len(self.problems)} errors", *shown])
 
 

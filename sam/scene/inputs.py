@@ -166,8 +166,19 @@ class TwoColumns:
         faults = [f"{places[k]}: {text}" for k, text in sorted(self._faults(rows))]
         if faults:
             rest = f"; and {len(faults) - _MOST_FAULTS} more" if len(faults) > _MOST_FAULTS else ""
-            raise refused("; ".join(faults[:_MOST_FAULTS]) + rest)
+            noisy = in_file(info) and all(self.falling and self.falling in fault for fault in faults)
+            advice = self._rising(str(value)) if noisy else ""
+            raise refused("; ".join(faults[:_MOST_FAULTS]) + rest + advice)
         return tuple((float(first), float(second)) for first, second in rows)
+
+    def _rising(self, name: str) -> str:
+        """The line of Python that takes the noise of a measurement off a curve that falls nowhere else."""
+        column = self.columns[1]
+        return (
+            f". This Python writes rising.csv, the nearest curve that does not fall: import pandas as pd, "
+            f"scipy.optimize as so; c = pd.read_csv({name!r}); c[{column!r}] = "
+            f'so.isotonic_regression(c[{column!r}]).x; c.to_csv("rising.csv", index=False)'
+        )
 
     def _from_python(self, value: object) -> tuple[list[str], list[Any]]:
         value = value.tolist() if hasattr(value, "tolist") else value  # a numpy array

@@ -87,9 +87,11 @@ def _conflicts_of_rough(given: Mapping[str, Any]) -> Iterator[Conflict]:
         yield "solver.uncertainty", f"false with [counterbody.surface] and loading.path: {words}"
 
 
-def too_many_steps(path: Path, radius: float) -> Iterator[Conflict]:
-    """More steps than a path may have, where it gives their size; radius: of the contact in m."""
-    if path.step_per_radius is not None and path.step_per_radius * path.length > COUNT.high * radius > 0:
+def excesses_of_steps(path: Path, radius: float) -> Iterator[Conflict]:
+    """Steps of which a path has none or too many, as it gives their size; radius: of the contact in m."""
+    if radius == 0:
+        yield "loading.force", "above 0 with loading.path: nothing else says how long its steps may be"
+    elif path.step_per_radius is not None and path.step_per_radius * path.length > COUNT.high * radius:
         most = f"{COUNT.high * radius / path.length:.4g}"
         yield "loading.path.step_per_radius", f"at most {most}: this path may have {COUNT.high:g} steps"
 
@@ -99,9 +101,6 @@ def excesses_of_path(
 ) -> Iterator[Conflict]:
     """Good values of a path that do not go together. coefficient: the largest one of friction."""
     path, radius = stated(loading.path), contact_radius(body, other, loading)
-    if radius == 0:
-        yield "loading.force", "above 0 with loading.path: nothing else says how long its steps may be"
-        return
     step, least = path.length / path.count(radius), ceil(path.length / radius - ROUNDING)
     if step > radius * (1 + ROUNDING):
         yield (

@@ -28,7 +28,7 @@ from sam.scene.passes import (
     contact_radius,
     excesses_of_grid,
     excesses_of_path,
-    too_many_steps,
+    excesses_of_steps,
 )
 from sam.scene.path import Strokes
 from sam.scene.places import Places
@@ -156,7 +156,15 @@ class Scene(Section):
         depths = self.grid.depths if self.grid else None
         if self.body.plasticity and depths and (depths[0] != 0 or len(depths) < 2):
             yield "grid.depths", "with plasticity the faces of the layers: two or more, the first 0"
-        yield from _bad_patch(self)
+        steps = []
+        if self.loading.path is not None:
+            radius = contact_radius(self.body, self.counterbody, self.loading)
+            steps = list(excesses_of_steps(self.loading.path, radius))
+            yield from steps
+        if not steps:  # else the path has no places
+            yield from _bad_patch(self)
+            if self.moves:
+                yield from _bad_path(self)
         if self.friction is not None and self.friction.path is not None:
             yield from _other_cells(self.friction.path, self)
         if self.solver.extrapolate:
@@ -166,11 +174,6 @@ class Scene(Section):
         if self.solver.accuracy is not None:
             yield from _without_accuracy(self)
         yield from _beyond_shear_strength(self)
-        if self.loading.path is not None:
-            radius = contact_radius(self.body, self.counterbody, self.loading)
-            yield from too_many_steps(self.loading.path, radius)
-        if self.moves:
-            yield from _bad_path(self)
 
 
 Section.places = Places(Scene)
@@ -324,6 +327,8 @@ def _without_accuracy(scene: Scene) -> Iterator[Conflict]:
         yield "solver.accuracy", "only for smooth bodies: the cells of a rough one are those of its surface"
     elif scene.loading.path is not None:
         yield "solver.accuracy", "not together with loading.path: no error over its steps was measured"
+    if scene.loading.force == 0:
+        yield "solver.accuracy", "only with loading.force above 0: without contact there is no error"
     if scene.wear is not None or (scene.friction is not None and scene.friction.film):
         yield "solver.accuracy", "not together with [wear] or a film: what is lost or breaks has a threshold"
 

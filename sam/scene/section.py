@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, ClassVar, Protocol, Self, TypeVar, get_args
+from typing import Any, ClassVar, Protocol, Self, TypeVar, get_args, get_origin
 
 from pydantic import (
     BaseModel,
@@ -19,6 +19,7 @@ from pydantic import (
 )
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
+from sam.scene.errors import MOST_SHOWN
 from sam.scene.units import Number, in_file
 
 NOT_YET = "not available in this version of samfem: remove it"
@@ -98,7 +99,10 @@ class Section(BaseModel):
         try:
             section = handler(raw)
         except ValidationError as error:
-            lines = [_line(item["loc"], _input(item), cls._allowed(item, info)) for item in error.errors()]
+            lines = [
+                _line(item["loc"], _input(item), cls._allowed(item, info, hints=k < MOST_SHOWN))
+                for k, item in enumerate(error.errors())
+            ]
         if isinstance(raw, Mapping):
             found = list(cls.conflicts(given)) or ([] if section is None else list(section.excesses()))
             lines += [_line(tuple(key.split(".")), value_at(given, key), allowed) for key, allowed in found]
@@ -107,15 +111,15 @@ class Section(BaseModel):
         return section
 
     @classmethod
-    def _allowed(cls, item: Mapping[str, Any], info: ValidationInfo) -> str:
-        """What is allowed where pydantic reports `item`."""
+    def _allowed(cls, item: Mapping[str, Any], info: ValidationInfo, hints: bool) -> str:
+        """What is allowed where pydantic reports `item`; hints: with keys that look like an unknown one."""
         kind, context, loc = item["type"], item.get("ctx", {}), item["loc"]
         name = str(loc[0]) if loc else ""
         refused = cls.later.get(name, ())
         if refused is None or (isinstance(item["input"], str) and item["input"] in refused):
             return NOT_YET
         if kind == "extra_forbidden":
-            return cls._unknown(name, isinstance(item["input"], Mapping))
+            return cls._unknown(name, isinstance(item["input"], Mapping)) if hints else "unknown key"
         if kind == "missing":
             return f"required: {cls._field_in_words(name, in_file(info))}"
         if kind == "literal_error":
@@ -129,12 +133,10 @@ class Section(BaseModel):
         """
         known = [field.alias or key for key, field in cls.model_fields.items()]
 
-        def alike(cutoff: float) -> Sequence[str]:
-            return difflib.get_close_matches(name, known, n=MOST_ALIKE, cutoff=cutoff)
-
-        near = alike(ALIKE)
+        near: Sequence[str] = difflib.get_close_matches(name, known, n=MOST_ALIKE, cutoff=ALIKE)
         if cls.of_scene and cls.places is not None:
-            near = cls.places.of(name, is_table) or alike(CLOSE) or cls.places.nearest(name) or near
+            close = difflib.get_close_matches(name, near, n=MOST_ALIKE, cutoff=CLOSE)
+            near = cls.places.of(name, is_table) or close or cls.places.nearest(name) or near
         hint = f"did you mean {' or '.join(near)}? " if near else ""
         return f"unknown key, {hint}allowed here: {', '.join(known)}"
 
@@ -143,8 +145,16 @@ class Section(BaseModel):
         field = cls.model_fields[name]
         if isinstance(field.annotation, type) and issubclass(field.annotation, Section):
             return f"a table [{name}]"
-        numbers = [entry.allowed(file) for entry in field.metadata if isinstance(entry, Number)]
+        if get_origin(field.annotation) is tuple:
+            entries = get_args(field.annotation)
+            each = cls._numbers_in_words(get_args(entries[0]), file)
+            return f"a list of {len(entries)}, each {each[0]}"
+        numbers = cls._numbers_in_words(field.metadata, file)
         return numbers[0] if numbers else " or ".join(f'"{value}"' for value in get_args(field.annotation))
+
+    @staticmethod
+    def _numbers_in_words(metadata: Sequence[Any], file: bool) -> list[str]:
+        return [entry.allowed(file) for entry in metadata if isinstance(entry, Number)]
 
 
 class _Missing:
@@ -155,10 +165,19 @@ MISSING_INPUT = _Missing()
 
 
 def value_at(given: object, key: str) -> object:
-    """The value at a dotted key of nested mappings and sections; MISSING_INPUT if there is none."""
-    for part in key.split("."):
-        given = given.get(part) if isinstance(given, Mapping) else getattr(given, part, None)
-    return MISSING_INPUT if given is None else given
+    """The value at a dotted key of nested mappings and sections, also where a key of one of these has dots;
+    MISSING_INPUT if there is none.
+    """
+    if isinstance(given, Mapping):
+        whole = next((name for name in given if f"{key}.".startswith(f"{name}.")), None)
+        part, value = whole or key, given.get(whole)
+    else:
+        part = key.partition(".")[0]
+        value = getattr(given, part, None)
+    rest = key[len(part) + 1 :]
+    if value is None:
+        return MISSING_INPUT
+    return value_at(value, rest) if rest else value
 
 
 def _input(item: Mapping[str, Any]) -> object:

@@ -177,6 +177,14 @@ def number_and_unit(value: object) -> tuple[str, str] | None:
     return (match[1], match[2]) if match else None
 
 
+def metres_in(unit: object) -> float | None:
+    """How many m are in a unit of length, as pint spells it; None for what is none, and for a pixel, which
+    pint takes for one of a screen.
+    """
+    factor = in_unit(f"1 {unit}", "m") if isinstance(unit, str) and "px" not in unit else None
+    return None if factor is None else float(factor)
+
+
 @cache
 def _registry() -> Any:
     return _pint().UnitRegistry(non_int_type=Decimal, cache_folder=None)

@@ -263,6 +263,25 @@ def test_all_errors_of_a_plastic_scene_and_its_files_are_reported_at_once(folder
     assert "line 2" in in_curve and "line 4: peeq = 0 after 0.1" in in_curve and "softening" in in_curve
 
 
+def test_the_python_in_the_refusal_of_a_noisy_curve_writes_the_nearest_one_that_rises(folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    n = 25
+    strain = np.linspace(0.0, 0.1, n)
+    y = 1e9 * (1 + 2 * strain) + 20e6 * np.random.default_rng(1).standard_normal(n)
+    write(folder, curve("".join(f"{x!r},{s!r}\n" for x, s in zip(strain.tolist(), y.tolist(), strict=True))))
+    with pytest.raises(SceneError, match=r"is not available; and \d+ more. This Python writes") as refusal:
+        load_scene("bad.toml")
+    exec(str(refusal.value).partition("does not fall: ")[2])
+    (folder / "bad.toml").write_text((folder / "bad.toml").read_text().replace("curve.csv", "rising.csv"))
+    found = load_scene("bad.toml").body.plasticity.file
+    nearest = [  # Barlow et al. 1972: of squares, the nearest curve that does not fall
+        max(min(y[a : b + 1].mean() for b in range(k, n)) for a in range(k + 1)) for k in range(n)
+    ]
+    assert [x for x, _ in found] == list(strain) and [s for _, s in found] == pytest.approx(
+        nearest, rel=1e-12
+    )
+
+
 @pytest.mark.parametrize("law", LAWS)
 def test_a_good_scene_reads_back_from_its_resolved_form_without_its_files(folder, law):
     add = '[grid]\ndepths = ["0 um", "1 um"]\n[solver]\nmethod = "paper"\n'

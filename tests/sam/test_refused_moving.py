@@ -60,3 +60,21 @@ def test_of_the_counter_surface(key, value):
     lines = [line for line in SURFACE.splitlines() if not line.startswith(f"{key} =")]
     text = "\n".join([*lines, f"{key} = {value}"])
     assert f"counterbody.surface.{key}" in told(scene_text(add=f"{PATH}{text}\n{GRID}"))
+
+
+@pytest.mark.parametrize(
+    "old, new, words",
+    [
+        (
+            "start = ",
+            "begin = ",
+            "path.start is missing: required: a list of 2, each a coordinate as a string",
+        ),
+        ('force = "0.65 N"', 'force = "0 N"', 'loading.force = "0 N": above 0 with loading.path'),
+        ('force = "0.65 N"', 'force = "1e-25 N"', "loading.path.step_per_radius = 3: at most"),
+    ],
+)
+@pytest.mark.parametrize("surface", ["", SURFACE + GRID])
+def test_a_path_without_places(surface, old, new, words):
+    text = scene_text(add=f"{PATH.replace('steps = 4', 'step_per_radius = 3')}{surface}")
+    assert old in text and words in told(text.replace(old, new))

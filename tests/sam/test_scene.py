@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Scenes: units, ranges, contradictions, every error of a file at once; malformed files in the command."""
 
+import difflib
 import subprocess
 import sys
 from fractions import Fraction
@@ -385,6 +386,19 @@ def test_python_takes_si_floats_or_strings_with_units():
         Body(young=1.0, poisson=0.3, yung=2.0)
     with pytest.raises(ValidationError, match="frozen"):
         scene.body.young = 1.0
+
+
+def test_many_unknown_keys_are_compared_with_the_known_ones_up_to_those_that_are_shown(monkeypatch):
+    compared = []
+    near = difflib.get_close_matches
+    monkeypatch.setattr(
+        difflib, "get_close_matches", lambda name, *a, **k: compared.append(name) or near(name, *a, **k)
+    )
+    keys = "".join(f"yuong_{k} = 1\n" for k in range(300))
+    with pytest.raises(SceneError) as caught:
+        parse_scene(scene_text(("[body]\n", f"[body]\n{keys}")).encode(), "bad.toml")
+    assert str(caught.value).count("did you mean young?") == 100 == len(set(compared))
+    assert str(caught.value).endswith("and 200 more") and len(caught.value.problems) == 300
 
 
 def test_resolved_is_complete_and_reads_back():

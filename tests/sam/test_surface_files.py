@@ -7,6 +7,7 @@ import tracemalloc
 import zipfile
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import sam
@@ -21,9 +22,12 @@ from verification.runs.store import identity
 # --- height maps and their files ----------------------------------------------------------------------------
 
 
-def rough(folder, name: str = "heights.npz", content: bytes | None = None, more: str = "") -> Scene:
+def rough(
+    folder, name: str = "heights.npz", content: bytes | None = None, more: str = "", keys: str = ""
+) -> Scene:
+    """The scene with this file; keys: further ones of [surface]; more: at the end of the scene."""
     (folder / name).write_bytes(good_heights() if content is None else content)
-    (folder / "s.toml").write_text(ROUGH.replace("heights.npz", name) + more)
+    (folder / "s.toml").write_text(ROUGH.replace('"heights.npz"\n', f'"{name}"\n{keys}') + more)
     return load_scene(folder / "s.toml")
 
 
@@ -79,7 +83,12 @@ def test_where_the_origin_of_a_file_lies_does_not_matter():
         (
             "x_m,y_m,height_m",
             "x,y,z",
-            r'its first line is "x,y,z": columns x_m, y_m and height_m on a regular grid',
+            "nothing says the unit of its numbers: give the key unit",
+        ),
+        (
+            "x_m,y_m,height_m",
+            "x_m,y_m,p_Pa",
+            r'its first line is "x_m,y_m,p_Pa": columns x_m, y_m and height_m on a regular grid',
         ),
         ("x_m,y_m,height_m\n", "x_m,y_m,height_m\n\n1,2\n", "not CSV: "),
         (
@@ -102,6 +111,147 @@ def test_a_table_that_is_no_map_is_refused_with_what_was_found(tmp_path, old, ne
     assert table().decode().count(old) == 1
     with pytest.raises(SceneError, match=message):
         rough(tmp_path, "h.csv", table().decode().replace(old, new).encode())
+
+
+# --- as laboratories export them ----------------------------------------------------------------------------
+
+X, Y = np.arange(12) * 2.0, np.arange(8) * 2.0
+Z = np.round(0.3 * np.cos(0.4 * X[:, None] + 0.3) * np.cos(0.5 * Y + 0.2), 4)  # um
+ROWS = pd.DataFrame({"x_um": np.repeat(X, 8), "y_um": np.tile(Y, 12), "z_um": Z.ravel()})
+NAMES = ["X [µm]", "Y [µm]", "Z [µm]"]
+MATRIX = pd.DataFrame(Z.T, index=Y, columns=X)
+UNIT, SIDES = 'unit = "um"\n', 'extent = ["24 um", "16 um"]\nunit = "um"\n'
+HOLES = 'missing = "harmonic"\n'
+
+
+def text(frame: pd.DataFrame = ROWS, names: list[str] | bool = True, **how) -> str:
+    return frame.to_csv(index=False, header=names, **how)
+
+
+def with_hole(mark: str) -> str:
+    return text(ROWS.assign(z_um=ROWS.z_um.where(ROWS.index != 13)), na_rep=mark)
+
+
+def as_npy(values: np.ndarray) -> bytes:
+    stream = io.BytesIO()
+    np.save(stream, values)
+    return stream.getvalue()
+
+
+WAYS = {
+    "names with units": ("h.csv", text(), ""),
+    "pandas with its index": ("h.csv", ROWS.to_csv(), ""),
+    "heights in another unit": (
+        "h.csv",
+        text(ROWS.assign(z_um=ROWS.z_um * 1e3), ["x (um)", "y (um)", "z/nm"]),
+        "",
+    ),
+    "names without units": ("h.csv", text(names=list("xyz")), UNIT),
+    "no names, spaces": ("h.xyz", text(names=False, sep=" "), UNIT),
+    "semicolons, decimal commas": ("h.txt", text(names=NAMES, sep=";", decimal=","), ""),
+    "tabs": ("h.dat", text(sep="\t"), ""),
+    "spaces, decimal commas": ("h.txt", text(names=False, sep=" ", decimal=","), UNIT),
+    "rows along y": ("h.csv", text(ROWS.sort_values(["y_um", "x_um"])), ""),
+    "matrix": ("h.csv", text(MATRIX, False), SIDES),
+    "matrix of savetxt": ("h.txt", text(MATRIX, False, sep=" "), SIDES),
+    "matrix below words": ("h.csv", text(MATRIX, [f"{k}.1.2026" for k in range(12)]), SIDES),
+    "matrix with coordinates": ("h.csv", MATRIX[::-1].to_csv(index_label="y"), SIDES),
+    "matrix below coordinates": ("h.csv", text(MATRIX, sep=";", decimal=","), SIDES),
+    "npy": ("h.npy", as_npy(Z.T), SIDES),
+    "npy of rows": ("h.npy", as_npy(ROWS.to_numpy()), UNIT),
+    "empty cell": ("h.csv", with_hole(""), HOLES),
+    "NaN": ("h.csv", with_hole("NaN"), HOLES),
+    "---": ("h.csv", with_hole("---"), HOLES),
+    "***": ("h.csv", with_hole("***"), HOLES),
+    "separator at the end": ("h.csv", text(sep=";").replace("\n", ";\n"), ""),
+    "separator at the end of rows": ("h.csv", text().replace("\n", ",\n").replace("um,\n", "um\n", 1), ""),
+    "matrix with tabs at the end": ("h.txt", text(MATRIX, False, sep="\t").replace("\n", "\t\n"), SIDES),
+    "comments": ("h.txt", "# by hand\n# x_um y_um z_um\n" + text(names=False, sep=" ") + "# end\n", ""),
+    "Windows": ("h.csv", ("\ufeff" + text(names=NAMES, sep=";").replace("\n", "\r\n")).encode(), ""),
+    "UTF-16": ("h.csv", text(names=NAMES, sep="\t").encode("utf-16"), ""),
+    "Latin-1": ("h.csv", text(names=NAMES, sep=";").encode("latin-1"), ""),
+}
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_heights_are_read_as_laboratories_export_them(tmp_path, way):
+    name, content, keys = WAYS[way]
+    scene = rough(tmp_path, name, content.encode() if isinstance(content, str) else content, keys=keys)
+    found = scene.surface.path
+    assert found.cells == (12, 8) and found.extent == pytest.approx((24e-6, 16e-6), rel=1e-12)
+    known = ~np.isnan(found.values)
+    assert (~known).sum() == (keys == HOLES) and known[1, 5] == (keys != HOLES)
+    assert found.values[known] == pytest.approx(1e-6 * Z[known], rel=1e-14)
+    plain = HeightMap(found.values, found.extent)
+    again = scene.model_copy(update={"surface": scene.surface.model_copy(update={"path": plain})})
+    assert again == scene and resolved(again) == resolved(scene)  # nothing tells how the file spelled it
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "keys", "message"),
+    [
+        (
+            "h.csv",
+            text(MATRIX, False),
+            "",
+            "12 columns without names.* give the keys extent and unit, such as",
+        ),
+        ("h.csv", text(MATRIX, False), SIDES.removesuffix(UNIT), "nothing says the unit"),
+        (
+            "h.csv",
+            text(MATRIX, False),
+            'extent = "24 um"\n' + UNIT,
+            "12 x 8 heights: extent needs both sides",
+        ),
+        ("h.csv", text(), UNIT, "name their unit: leave out unit"),
+        ("h.csv", text(), SIDES, "its columns are x, y and heights: leave out extent"),
+        ("h.csv", text(names=["x_px", "y_px", "z_um"]), "", '"px" is no unit of length'),
+        (
+            "h.csv",
+            text(names=list("xyz")),
+            'unit = "s"\n',
+            'surface.unit = "s": a unit of length, such as "um"',
+        ),
+        ("h.npz", None, UNIT, "npz, which has its lengths in m: leave out extent and unit"),
+        (
+            "h.csv",
+            text(MATRIX * 1e3, False),
+            SIDES,
+            "heights from -0.0002861 m .* on a map of 2.4e-05 m x 1.6e-05 m",
+        ),
+        ("h.csv", with_hole("-9999"), "", "heights from -0.009999 m .* the mark of a missing height"),
+    ],
+)
+def test_what_a_file_does_not_say_is_asked_for_and_never_guessed(tmp_path, name, content, keys, message):
+    with pytest.raises(SceneError, match=message):
+        rough(tmp_path, name, content and content.encode(), keys=keys)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "keys"),
+    [
+        (
+            "h.csv",
+            b"Date;1.2.2026\nRows;96\nX;Y;Z\n" + text(names=False, sep=";", decimal=",").encode(),
+            UNIT,
+        ),
+        ("h.txt", b"MAP 12 8\n\n" + text(MATRIX, False, sep=" ").replace("0.", "zero", 1).encode(), SIDES),
+        ("h.csv", b"Height map\n" + text(MATRIX, False).encode(), SIDES),
+        ("h.npz", npz({"z": Z.T}), SIDES),
+    ],
+)
+def test_the_python_in_a_refusal_writes_a_file_that_is_read(tmp_path, monkeypatch, name, content, keys):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SceneError, match=r"This Python writes") as refusal:
+        rough(tmp_path, name, content, keys=keys)
+    words, python = str(refusal.value).split("import ", 1)
+    exec(f"import {python}")
+    made = "heights.npy" if "heights.npy" in words else "heights.csv"
+    found = rough(tmp_path, made, (tmp_path / made).read_bytes(), keys=keys + HOLES).surface.path
+    assert found.missing == ("zero" in content.decode("latin-1"))
+    assert np.nanmax(np.abs(found.values - 1e-6 * Z)) < 1e-20 and found.extent == pytest.approx(
+        (24e-6, 16e-6)
+    )
 
 
 def arrays() -> dict[str, np.ndarray]:

@@ -19,7 +19,7 @@ from hypothesis import HealthCheck, given, settings, strategies as st
 from sam.scene import SceneError, parse_scene, read_scene
 from sam.scene.inputs import open_file
 from sam.scene.load import parse_toml, scene_of
-from verification.cost.plan import check_memory, plan, plan_lines
+from verification.cost.plan import check_needs, plan, plan_lines
 from verification.robustness.bad_files import mutated, with_pickle
 from verification.robustness.fuzz import ARCHIVE, KINDS, MORE_KINDS, RUN, bad_input, good_scenes, lay
 from verification.robustness.hostile import MARKUP, SMALL
@@ -184,11 +184,11 @@ def test_more_memory_than_there_is_is_refused_by_name():
     with pytest.raises(
         models.ModelError, match=r"TB of memory needed, 8 GB available: lower grid.cells = \[4097, 4097\]"
     ):
-        check_memory(scene, models.SAM, 8e9)
+        check_needs(scene, models.SAM, 8e9)
     with pytest.raises(models.ModelError, match=r"lower fem.cells_per_radius = 4 or fem.box = 10"):
-        check_memory(scene, models.FEM, 1e6)
-    check_memory(scene, models.FEM, 8e9)
-    check_memory(parse_scene(SMALL.encode(), "s"), models.SAM)
+        check_needs(scene, models.FEM, 1e6)
+    check_needs(scene, models.FEM, 8e9)
+    check_needs(parse_scene(SMALL.encode(), "s"), models.SAM)
 
 
 def test_control_characters_of_a_title_do_not_reach_the_terminal():

@@ -14,7 +14,9 @@ from builders import parsed, scene_text
 from matplotlib.image import imread
 from pandas.testing import assert_frame_equal
 
+import sam
 import samfem
+from verification.app import cli
 from verification.app.cli import main
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -140,6 +142,15 @@ def test_another_distribution_of_the_same_name_is_named(tmp_path, name):
     found = ended("-c", "import samfem", folder=tmp_path, first=str(tmp_path))
     assert found.returncode == 1
     assert f"needs its own package {name}" in found.stderr and f"{tmp_path}" in found.stderr
+
+
+def test_a_distribution_that_wrote_over_ours_is_named_by_the_command_too(monkeypatch, capsys):
+    monkeypatch.setattr(cli, "_run", lambda _: sam.no_such_name)
+    assert cli.main(["schema"]) == 1 and "internal error" in capsys.readouterr().err
+    monkeypatch.delattr(sam, "__all__")  # as `pip install sam` leaves it
+    assert cli.main(["schema"]) == 1
+    words = capsys.readouterr().err
+    assert "needs its own package sam" in words and sam.__file__ in words and words.count("\n") == 1
 
 
 def test_the_page_of_the_module_is_made_from_its_docstrings(tmp_path):

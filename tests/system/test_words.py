@@ -13,7 +13,7 @@ from typing import get_args
 
 import numpy as np
 import pytest
-from builders import CHEMICAL_FILM, parsed, scene_text
+from builders import CHEMICAL_FILM, HARDENING, parsed, scene_text
 
 import sam
 from fem_reference.common.messages import advice_of, message_of
@@ -26,7 +26,7 @@ from verification.app import comparing
 from verification.app.cli import CLAIMS
 from verification.compare.rows import Comparison
 from verification.cost import estimates, plan as plan_module
-from verification.cost.plan import check_memory
+from verification.cost.plan import check_needs
 from verification.runs import checkpoints, models
 from verification.runs.store import identity
 from verification.runs.study import read_study
@@ -218,7 +218,29 @@ def test_sizes_of_a_plan_have_units_that_a_person_reads(scene_file, samfem):
 def test_memory_that_is_not_there_is_told_in_gb_and_tb(monkeypatch, needed, text):
     monkeypatch.setattr(estimates, "estimate", lambda *_: estimates.Estimate(round(needed), 1.0))
     with pytest.raises(models.ModelError, match=f"{text} of memory needed, 1.5 MB available: lower"):
-        check_memory(SMOOTH, models.SAM, available=1.5e6)
+        check_needs(SMOOTH, models.SAM, available=1.5e6)
+
+
+@pytest.mark.parametrize("command", [["solve", "--model", "fem-axisymmetric"], ["compare", "--no-store"]])
+def test_what_is_predicted_to_take_more_than_a_day_is_begun_only_when_asked(
+    scene_file, samfem, monkeypatch, folder, command
+):
+    """A sphere that yields in 1000 steps on 64 elements in the radius, four times: 61 h, 1 GB."""
+    name = scene_file(
+        ("force = ", "steps = 1000\nunload = true\ncycles = 4\nforce = "),
+        add=f"[body.plasticity]\n{HARDENING['perfect']}[fem]\ncells_per_radius = 64\n",
+    )
+    before = sorted(folder.iterdir())
+    words = samfem(*command, name, code=2).err
+    assert "fem-axisymmetric: about 61 h of processor time predicted, more than 24 h: lower fem." in words
+    assert words.endswith(", loading.steps = 1000 or loading.cycles = 4, or say --anyway\n")
+    assert sorted(folder.iterdir()) == before
+
+    def begun(*_, **__):
+        raise KeyboardInterrupt("begun")
+
+    monkeypatch.setattr(models, "solve", begun)
+    assert "begun" in samfem(*command, name, "--anyway", code=130).err
 
 
 @pytest.mark.parametrize(

@@ -205,6 +205,12 @@ def test_what_was_not_measured_is_refused(change, more, words):
         first_choice(asked(0.01, ELASTIC | change, **more), SAM)
 
 
+@pytest.mark.parametrize("tables", [ELASTIC, YIELDING])
+def test_there_is_no_error_without_load(tables):
+    with pytest.raises(ValidationError, match=r"loading.force above 0: without contact there is no error"):
+        Scene(**tables | {"loading": {"force": 0.0}, "solver": {"accuracy": 0.01}})
+
+
 def test_the_plan_announces_it():
     content = plan(asked(0.02))["models"][0]
     (stage,) = (each for each in content["stages"] if each["stage"] == "accuracy")

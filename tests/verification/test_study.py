@@ -239,6 +239,7 @@ def test_all_errors_of_a_study_come_at_once(folder):
         ('"a" = { list = [1, 2] }', 'mode = "morris"', "samples is missing: required by this mode"),
         ('"a" = { list = [1, 2] }', 'mode = "sobol"', "seed is missing: required by random draws"),
         ('"a" = { range = [1, 2], count = 3 }', MORRIS, "vary.a.count = 3: the mode chooses the values"),
+        ('"a.b" = { range = [1, 2], count = 3 }', MORRIS, "vary.a.b.count = 3: the mode chooses the values"),
         ('"a" = { random = [1, 2] }', MORRIS, "vary.a.random = [1, 2]: the mode chooses the values"),
         ('"a" = { range = [1, 2], block = true }', MORRIS, "vary.a.block = true: with a list of values"),
         ('"a" = { list = [1, 2], block = true }', MORRIS, "a key that is no block"),

@@ -16,6 +16,7 @@ from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
 
+from verification import foreign_package
 from verification.runs.models import MODELS, SAM
 from verification.text.console import print_anything, unknown
 
@@ -76,6 +77,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Exception as error:  # a defect of the program, not of the input
         if os.environ.get(DEBUG):
             raise
+        if words := foreign_package():
+            return _fail(words, NOT_MET)
         what = f"{type(error).__name__}: {error}"
         return _fail(f"internal error, please report it: {what} ({DEBUG}=1 shows where)", NOT_MET)
 
@@ -154,6 +157,8 @@ def _add_scene_commands(commands) -> None:
     solve.add_argument("--resume", action="store_true", help=again)
     bars = "also solve on coarser grids and with other load steps, and give each quantity its uncertainty"
     solve.add_argument("--uncertainty", action="store_true", help=bars)
+    for parser in (solve, compare):
+        _add_anyway(parser)
     plan.add_argument("--json", dest="as_json", action="store_true", help="as JSON")
 
 
@@ -268,6 +273,11 @@ def _add_no_store(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--no-store", dest="use_store", action="store_false", help=text)
 
 
+def _add_anyway(parser: argparse.ArgumentParser) -> None:
+    text = "also begin what is predicted to take more than a day of processor time"
+    parser.add_argument("--anyway", action="store_true", help=text)
+
+
 def _days(text: str) -> float:
     days = float(text)
     if not 0 <= days < float("inf"):
@@ -291,6 +301,7 @@ def _add_sweep_command(commands) -> None:
     sweep.add_argument("--no-runs", dest="runs", action="store_false", help=runs)
     store = "solve every scene, and keep none in the store"
     sweep.add_argument("--no-store", dest="use_store", action="store_false", help=store)
+    _add_anyway(sweep)
 
 
 def _add_view_command(commands) -> None:

@@ -228,13 +228,15 @@ def asked(
     tolerances: Mapping[str, object] | None = None,
     claim: str | None = None,
     source: str = "scene",
+    anyway: bool = True,
 ) -> Question:
     """The comparison of a scene, once it is known that it can be made.
 
     model: None takes the cheapest that can represent the scene; data: files of the user, see
     `verification.compare.own_data`; tolerances: name of a row -> number, or text such as "2 %", in place of
     those of the scene; claim: judged too, like that of [compare] in the scene; source: names the scene in
-    errors. Raises SceneError, ModelError, or SeveralError with all that is wrong.
+    errors; anyway: however long that takes. Raises SceneError, ModelError, or SeveralError with all that is
+    wrong.
     """
     refusals, own, given = Refusals(), [], Tolerances()
     with refusals.kept():
@@ -245,7 +247,7 @@ def asked(
         given = tolerances_of(scene, tolerances or {}, source)
     with refusals.kept():
         model = model or models.cheapest_reference(scene)
-        check(scene, models.SAM, model)
+        check(scene, models.SAM, model, anyway=anyway)
     for path in data:
         with refusals.kept():
             own.append(read_data(path, scene))

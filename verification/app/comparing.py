@@ -53,6 +53,7 @@ class Options:
     data: Sequence[Path] = ()
     report: Path | None = None
     junit: Path | None = None
+    anyway: bool = False
 
 
 @dataclass(frozen=True)
@@ -112,7 +113,7 @@ def _jobs(paths: Sequence[Path], given: Options) -> list[Job]:
 
 def _job(path: Path, folder: Path, given: Options) -> Job:
     scene, inputs = read_scene(path)
-    how = {"model": given.model, "claim": given.claim, "data": given.data}
+    how = {"model": given.model, "claim": given.claim, "data": given.data, "anyway": given.anyway}
     refusals = Refusals()
     with refusals.kept():
         question = asked(scene, tolerances=dict(given.tolerances), source=str(path), **how)

@@ -21,7 +21,7 @@ from verification.app.shown import (
 )
 from verification.cost.accuracy import missed, solve as solve_family
 from verification.cost.choice import chosen_scene, first_choice
-from verification.cost.plan import check_memory
+from verification.cost.plan import check_needs
 from verification.figures import solve_figures
 from verification.figures.space import CannotDrawError, draw_run
 from verification.runs import checkpoints, models
@@ -41,17 +41,19 @@ def solve(
     figures: bool,
     resume: bool = False,
     uncertainty: bool = False,
+    anyway: bool = False,
 ) -> int:
     """Solve a scene into a folder; 0 if converged, else 1 with status and advice on stderr.
 
     resume: go on from the checkpoint in the folder, and do nothing where the result is there already;
-    uncertainty: of all quantities, as [solver] of the scene may ask for it too.
+    uncertainty: of all quantities, as [solver] of the scene may ask for it too; anyway: however long that
+    takes, as what is resumed does.
     """
     scene, inputs = read_scene(path)
     if uncertainty:
         scene = with_uncertainty(scene, str(path))
     folder = out or Path(f"{path.stem}-{model}")
-    check(scene, model)
+    check(scene, model, anyway=anyway or resume)
     check_target(folder)
     with locked(folder):
         return _solve(scene, model, folder, inputs, figures=figures, resume=resume)
@@ -204,12 +206,15 @@ def write_solved(
     write_run(result, scene, folder, collect(inputs, scene.seeds) | source.provenance)
 
 
-def check(scene: Scene, *names: str) -> None:
-    """Raise ModelError unless each model can represent the scene, and within the memory of the machine."""
+def check(scene: Scene, *names: str, anyway: bool = False) -> None:
+    """Raise ModelError unless each model can represent the scene within the memory of the machine, and,
+    unless `anyway`, in the time that a command begins unasked.
+    """
     for model in names:
         models.check(scene, model)
         accurate = scene.solver.accuracy is not None
-        check_memory(chosen_scene(scene, model, first_choice(scene, model)) if accurate else scene, model)
+        chosen = chosen_scene(scene, model, first_choice(scene, model)) if accurate else scene
+        check_needs(chosen, model, anyway=anyway)
 
 
 def unconverged(results: Sequence[Result | Run]) -> int:

@@ -22,7 +22,7 @@ import numpy as np
 
 from sam.scene import QUANTITIES, Problem, Result, Scene, SceneError, resolved, spelling
 from verification.app.executors import Cluster, Failure, Processes, Workers, run
-from verification.cost.plan import check_memory
+from verification.cost.plan import check_needs
 from verification.figures import sensitivity_figure, sweep_figure
 from verification.runs import models
 from verification.runs.code_version import code_version
@@ -138,11 +138,13 @@ def sweep(
     workers: int | None = None,
     runs: bool = True,
     use_store: bool = True,
+    anyway: bool = False,
 ) -> int:
     """Solve the scenes of a study into a folder; 0 if all converged, else 1 with the first reasons on stderr.
 
     scheduler: address of a Dask cluster, instead of so many `workers` on this machine (None: one a core);
-    runs: write a folder for each result; use_store: take what the store holds, and keep there what is solved.
+    runs: write a folder for each result; use_store: take what the store holds, and keep there what is solved;
+    anyway: also scenes that take longer than a command begins unasked.
     Raises SceneError or FolderError before anything is made, KeyboardInterrupt that says what is kept.
     """
     began = time.monotonic()
@@ -156,7 +158,7 @@ def sweep(
         folder.mkdir(parents=True, exist_ok=True)
         _clear(state)
         try:
-            _fill(state, executor)
+            _fill(state, executor, anyway)
         except KeyboardInterrupt:
             state.write(always=True)
             kept = f"{len(state.rows)} of {len(content.points)} scenes are finished"
@@ -238,7 +240,7 @@ def _is_run_of(place: Path, point: StudyPoint | None, state: Sweep) -> bool:
     )
 
 
-def _fill(state: Sweep, workers: Workers) -> None:
+def _fill(state: Sweep, workers: Workers, anyway: bool) -> None:
     """A row for each point: refused, from the store, or solved."""
     points, model = state.content.points, state.content.study.model
     with Progress(remaining=True) as progress:
@@ -249,7 +251,7 @@ def _fill(state: Sweep, workers: Workers) -> None:
         for index, point in missing.items():
             equal.setdefault(json_text(identity(point.scene, model)), []).append(index)
         same = {indices[0]: indices for indices in equal.values()}
-        tasks = {index: (points[index].scene, model, code_version(model)) for index in same}
+        tasks = {index: (points[index].scene, model, code_version(model), anyway) for index in same}
         progress("sweep", 0, len(tasks))
         for done, (index, outcome, repeats) in enumerate(run(workers, solve_scene, tasks), start=1):
             state.repeats = repeats
@@ -299,7 +301,7 @@ def _take(state: Sweep, point: StudyPoint, outcome: SolvedPoint | Failure) -> No
     state.add(point, outcome.result, Reuse(False), outcome.origin)
 
 
-def solve_scene(scene: Scene, model: str, code: str) -> SolvedPoint | Failure:
+def solve_scene(scene: Scene, model: str, code: str, anyway: bool = False) -> SolvedPoint | Failure:
     """In a worker: the result of a scene. A Failure if it raises, or if the worker runs another version of
     the code.
     """
@@ -308,7 +310,7 @@ def solve_scene(scene: Scene, model: str, code: str) -> SolvedPoint | Failure:
             return Failure(
                 "the worker runs another version of samfem, numpy or scipy: install the same one there"
             )
-        check_memory(scene, model)
+        check_needs(scene, model, anyway=anyway)
         return SolvedPoint(models.solve(scene, model), _origin())
     except models.ModelError as error:
         return Failure(str(error))

@@ -21,6 +21,7 @@ from verification.text.readable import with_prefix, with_time
 from verification.uncertainty import NoFamilyError, family
 
 UNCERTAINTY = "uncertainty"
+LONGEST = 86400.0  # predicted processor seconds that a command begins unasked
 NOTE = "memory and time are estimates from the numbers of cells, not measurements"
 
 
@@ -72,21 +73,38 @@ def _uncertainty(scene: Scene, model: str) -> tuple[Stage, float]:
     return Stage(UNCERTAINTY, True, words, {"solves": len(found.all) - 1}), seconds
 
 
-def check_memory(scene: Scene, model: str, available: float | None = None) -> None:
-    """Raise ModelError if `model` would need more memory than there is: `available` bytes, by default this
-    machine's.
+def check_needs(scene: Scene, model: str, available: float | None = None, *, anyway: bool = False) -> None:
+    """Raise ModelError if `model` would need more memory than there is, `available` bytes, by default this
+    machine's; or, unless `anyway`, more time than LONGEST.
     """
     available = memory_bytes() if available is None else available
     try:
         models.check(scene, model)
     except models.ModelError:
         return
-    memory = estimates.estimate(scene, model).memory_bytes
-    if available and memory > available:
-        needed, there = (with_prefix(number, "B") for number in (memory, available))
+    needs = estimates.estimate(scene, model)
+    if available and needs.memory_bytes > available:
+        needed, there = (with_prefix(number, "B") for number in (needs.memory_bytes, available))
         raise models.ModelError(
             f"model {model}: about {needed} of memory needed, {there} available: {_smaller(scene, model)}"
         )
+
+    if anyway:
+        return
+    seconds = needs.time_s + (_uncertainty(scene, model)[1] if scene.solver.uncertainty else 0.0)
+    if seconds > LONGEST:
+        raise models.ModelError(
+            f"model {model}: about {with_time(seconds)} of processor time predicted, more than "
+            f"{with_time(LONGEST)}: {_smaller(scene, model)}{_fewer(scene)}, or say --anyway"
+        )
+
+
+def _fewer(scene: Scene) -> str:
+    """Load steps and cycles that can be fewer, with the numbers that they have."""
+    given = {"steps": scene.loading.steps, "cycles": scene.loading.cycles}
+    return ", " * any(count > 1 for count in given.values()) + " or ".join(
+        f"loading.{key} = {count}" for key, count in given.items() if count > 1
+    )
 
 
 def _smaller(scene: Scene, model: str) -> str:

@@ -5,20 +5,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from math import ceil, inf, isclose
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import BeforeValidator
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from sam.scene.grid import Grid
 from sam.scene.inputs import refused
 from sam.scene.section import Conflict, Section, stated
 from sam.scene.surface.height_map import HeightMap
 from sam.scene.surface.map_files import HeightField
-from sam.scene.units import CELLS, Anisotropy, Coordinate, Hurst, Length, Seed, Share
+from sam.scene.units import CELLS, LENGTH, Anisotropy, Coordinate, Hurst, Length, Seed, Share, metres_in
 
 _SELF_AFFINE = ("cutoff_long", "cutoff_short", "hurst", "seed")
 KINDS = {
-    "file": (("path",), ("missing", "form", "crop", "resample")),
+    "file": (("path",), ("extent", "unit", "missing", "form", "crop", "resample")),
     "hard-turned": (("ra", "feed", "nose_radius", "feed_share", *_SELF_AFFINE), ("anisotropy",)),
     "self-affine": (_SELF_AFFINE, ("ra", "sq", "anisotropy")),
     "sinusoid": (("amplitude",), ("wavelength_x", "wavelength_y")),
@@ -38,12 +38,36 @@ def _two_or_four(value: object) -> tuple[Any, ...]:
     return tuple(value)
 
 
+def _one_or_two(value: object) -> tuple[Any, ...]:
+    """One length, or two of them in a TOML array (or tuple, or list), as a tuple."""
+    found = tuple(value) if isinstance(value, list | tuple) else (value,)
+    if len(found) not in (1, 2):
+        raise refused("[lx, ly], the sides of the map, or one length for a square one")
+    return found
+
+
+def _unit(value: object) -> object:
+    if metres_in(value) is None:
+        raise refused('a unit of length, such as "um"')
+    return value
+
+
+_SIDE = LENGTH.__get_pydantic_json_schema__(None, None)
+_SIDES = {"anyOf": [_SIDE, {"type": "array", "items": _SIDE, "minItems": 1, "maxItems": 2}]}
+_NAME = {"type": "string", "examples": ["um"], "description": "a unit of length"}
+Covered = Annotated[tuple[Length, ...], BeforeValidator(_one_or_two), WithJsonSchema(_SIDES)]
+UnitName = Annotated[str, BeforeValidator(_unit), WithJsonSchema(_NAME)]
+
+
 class Surface(Section):
     """The heights of the body's surface, which is a plane without this table. Lengths in m, heights positive
     out of the body.
 
-    kind "file": path, the name of a CSV or npz file or of an instrument's in the folder of the scene, in
-    Python a HeightMap. What is done to it, in this order, see sam.scene.surface.measured: form ("none" if not
+    kind "file": path, the name of a text, npz or npy file or of an instrument's in the folder of the scene,
+    in Python a HeightMap. extent and unit say what the file does not: what a matrix of heights covers, its
+    outer cells as a whole, and the unit of its numbers; they are part of the map when it is read, and None
+    then.
+    What is done to it, in this order, see sam.scene.surface.measured: form ("none" if not
     given): "tilt", "sphere" or "quadratic" is taken off; missing ("refuse" if not given): "harmonic" fills
     missing points; crop: [lx, ly], or [x, y, lx, ly], the part of that size with its middle at (x, y) from
     the middle of the map, rounded to whole cells; resample: "fourier" lets grid.cells be any, which else are
@@ -57,7 +81,9 @@ class Surface(Section):
     words: ClassVar[str] = "surface"
     common: ClassVar[tuple[str, ...]] = ("kind",)  # keys that every kind may have
     kind: Literal["file", "hard-turned", "self-affine", "sinusoid"]
-    path: HeightField | None = None
+    extent: Covered | None = Field(None, exclude=True)
+    unit: UnitName | None = Field(None, exclude=True)
+    path: HeightField | None = None  # below extent and unit: they are known when it is read
     missing: Literal["refuse", "harmonic"] | None = None
     form: Literal["none", "tilt", "sphere", "quadratic"] | None = None
     crop: Annotated[tuple[Coordinate, ...], BeforeValidator(_two_or_four)] | None = None
@@ -75,6 +101,12 @@ class Surface(Section):
     amplitude: Length | None = None
     wavelength_x: Length | None = None
     wavelength_y: Length | None = None
+
+    @model_validator(mode="after")
+    def _as_read(self) -> Self:
+        """The same map is the same surface, however its file spells it."""
+        self.__dict__.update(extent=None, unit=None)
+        return self
 
     @property
     def random(self) -> bool:
