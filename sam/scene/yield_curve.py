@@ -20,6 +20,24 @@ from sam.arrays import Array, Mask
 from sam.scene.back_stress import BackStress
 
 
+SOFTEST = 1e5  # E over yield stress at most: some 1e4 of annealed lead and indium; a mistaken MPa makes it 1e6 more
+OFFSET = 2e-3  # plastic strain of the yield stress that handbooks give, R_p0.2
+
+
+def off_unit(least: float, usual: float, young: float, key: str) -> str:
+    """What a yield stress may be beside Young's modulus, where it can only be in another unit; else empty.
+
+    least: yield stress without plastic strain; usual: that at OFFSET, which a law that rises from nearly 0 has;
+    young: all in Pa; key: of Young's modulus.
+    """
+    allowed = f"a yield stress from {young / SOFTEST:.4g} Pa to {young:.4g} Pa, {key}/{SOFTEST:.0e} to {key}"
+    if usual < young / SOFTEST:
+        return f"{allowed}: it is {usual:.4g} Pa: are values in MPa taken as Pa?"
+    if least > young:
+        return f"{allowed}: it is {least:.4g} Pa: are MPa taken as GPa, or is {key} too small?"
+    return ""
+
+
 class YieldCurve(Protocol):
     """Isotropic hardening law."""
 
