@@ -130,9 +130,9 @@ def too_few_cells(pressure: Array) -> str:
         return ""
     counts = ", ".join(map(str, sorted(cells[few], reverse=True)))
     return (
-        f"too few cells in {few.sum()} of {judged.sum()} spots that carry {100 * LEAST_SHARE:g} % of the load or the "
-        f"largest pressure ({counts} cells; together {100 * share[few].sum():.2g} % of the load): with fewer than "
-        f"{FEWEST_IN_SPOT} the largest pressure of a spot is off by some percent"
+        f"too few cells in {few.sum()} of {judged.sum()} spots with {100 * LEAST_SHARE:g} % of the load or "
+        f"more, or with the largest pressure ({counts} cells; together {100 * share[few].sum():.3g} % of the "
+        f"load): with fewer than {FEWEST_IN_SPOT} the largest pressure of a spot is off by some percent"
     )
 
 

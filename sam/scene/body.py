@@ -234,8 +234,8 @@ class Body(Section):
             yield "poisson", "less than 0.5 with plasticity"
 
     def excesses(self) -> Iterator[Conflict]:
-        """A yield stress in another unit than Young's modulus, by the law of the body or of a layer, or by the
-        factors over depth.
+        """A yield stress in another unit than Young's modulus, by the law of the body or of a layer, or by
+        the factors over depth.
         """
         if self.plasticity is None:
             return

@@ -19,18 +19,19 @@ from numpy.typing import NDArray
 from sam.arrays import Array, Mask
 from sam.scene.back_stress import BackStress
 
-
-SOFTEST = 1e5  # E over yield stress at most: some 1e4 of annealed lead and indium; a mistaken MPa makes it 1e6 more
+# E over yield stress at most. Annealed lead and indium, the softest of metals in use, have some 1e3 to 1e4; a
+# value in MPa that is taken as Pa adds a factor of 1e6 to the 10 to 1e4 of all materials.
+SOFTEST = 1e5
 OFFSET = 2e-3  # plastic strain of the yield stress that handbooks give, R_p0.2
 
 
 def off_unit(least: float, usual: float, young: float, key: str) -> str:
     """What a yield stress may be beside Young's modulus, where it can only be in another unit; else empty.
 
-    least: yield stress without plastic strain; usual: that at OFFSET, which a law that rises from nearly 0 has;
-    young: all in Pa; key: of Young's modulus.
+    least: yield stress without plastic strain; usual: that at OFFSET, which a law that rises from nearly 0
+    has; young: all in Pa; key: of Young's modulus.
     """
-    allowed = f"a yield stress from {young / SOFTEST:.4g} Pa to {young:.4g} Pa, {key}/{SOFTEST:.0e} to {key}"
+    allowed = f"a yield stress from {young / SOFTEST:.4g} Pa to {young:.4g} Pa, {key}/{SOFTEST:g} to {key}"
     if usual < young / SOFTEST:
         return f"{allowed}: it is {usual:.4g} Pa: are values in MPa taken as Pa?"
     if least > young:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Results to an accuracy that a scene asks for.
 
-The search begins with the coarsest grids and the fewest load steps that have an uncertainty, and refines what
-is missing: the parts of the uncertainty by cells and by load steps say how many of each the least time would
-take. Load steps are tried on the coarsest cells, where they cost little. Grids that are solved are the coarser
+The search begins with the fewest cells and load steps that have an uncertainty, and refines what is missing:
+the parts of the uncertainty by cells and by load steps say how many of each would reach it in the least time.
+Load steps are tried on the coarsest cells, where they cost little. Grids that were solved are the coarser
 companions of the next. Nothing is solved that needs more memory than the machine has, or more than LONGEST
 together with what was solved before.
 """
@@ -49,8 +49,10 @@ NEAREST = 1.3  # ratio of cell sizes of which two grids say something, rounded t
 # From a grid to the next: one that is hardly finer says no more than scatter does; errors are covered as
 # often at a ratio of 2 as at 1.5.
 LEAST, MOST = 1.15, 2.0
+STEEPEST = 1.5  # times its formal order: to which that seen on three grids counts, as coarse cells scatter
 MORE_STEPS = 2  # times as many, where the steps of one solve were halved and those of another were not
 MOST_TIMES = 8  # as many load steps from one round to the next: what 4, 3 and 2 steps say is rough
+WORTH = 1.25  # of the time: to be saved by other load steps, which have to be tried on coarse cells first
 CELLS_POWER, FREE_STEPS = (
     4.0,
     20.0,
@@ -97,8 +99,8 @@ class Solution:
 class Attempt:
     """What some grids say of the finest of them.
 
-    quantity: the one that is known worst; relative: its uncertainty, None where there is none; why: what keeps
-    the next grid from being solved.
+    quantity: the one that is known worst; relative: its uncertainty, None where there is none; why: what
+    keeps the next grid from being solved.
     """
 
     choice: Choice
@@ -115,9 +117,9 @@ class Attempt:
 
 @dataclass
 class Search:
-    """The solves for the accuracy of a scene. ladder: cells in the contact radius of its grids, coarsest first;
-    kept: scene as text -> result; grids: choice -> its solution; foreseen: processor seconds predicted for
-    all; steps, boxes: solutions that differ in load steps, and in the finite-element box.
+    """The solves for the accuracy of a scene. ladder: cells in the contact radius of its grids, coarsest
+    first; kept: scene as text -> result; grids: choice -> its solution; foreseen: processor seconds predicted
+    for all; steps, boxes: solutions that differ in load steps, and in the finite-element box.
     """
 
     scene: Scene
@@ -177,8 +179,8 @@ class Search:
         return replace(best.result, discretisation=named, cost=cost_of(first, others))
 
     def on_coarse_cells(self, count: int) -> int:
-        """Solve with load steps, and in boxes, on the coarsest cells; their number, which is more than `count`
-        where with fewer the steps of some solves were halved.
+        """Solve with load steps, and in boxes, on the coarsest cells; the number of steps, which is more than
+        `count` where with fewer the steps of some solves were halved.
         """
         for _ in range(ROUNDS if count else 0):
             choice = Choice(self.ladder[0], count)
@@ -242,7 +244,11 @@ class Search:
         while counts[-1] and counts[-1] < MOST_STEPS:
             counts.append(min(ceil(LEAST * counts[-1]), MOST_STEPS))
         finer = {each: self.finer(attempt, count, each) for each in counts}
-        best = min(finer, key=lambda each: finer[each] ** CELLS_POWER * (each + FREE_STEPS))
+
+        def time(each: int) -> float:
+            return finer[each] ** CELLS_POWER * (each + FREE_STEPS) * (1.0 if each == count else WORTH)
+
+        best = min(finer, key=time)
         if finer[best] == inf:
             raise BeyondError(f"more cells do not help: {self.beside(attempt)}")
         times = min(max(finer[best], LEAST), MOST)
@@ -251,8 +257,8 @@ class Search:
         return Choice(choice.cells * times, min(best, MOST_TIMES * count))
 
     def finer(self, attempt: Attempt, count: int, wanted: int) -> float:
-        """By how much the cells have to be smaller with a wanted number of load steps, 1 if not at all;
-        infinite where they cannot help.
+        """By how much the cells have to be smaller with a wanted number of load steps, by the order seen; 1
+        if not at all, infinite where they cannot help.
         """
         found = 1.0
         for name in quantities_of(self.scene):
@@ -262,7 +268,8 @@ class Search:
                 - self.part_of_steps(name) * count / max(wanted, 1)
                 - entry["u_box"] / value
             )
-            times = (entry["u_cells"] / value / left) ** (1 / ORDERS[name]) if left > 0.0 else inf
+            order = min(max(entry["order_seen"] or 0.0, ORDERS[name]), STEEPEST * ORDERS[name])
+            times = (entry["u_cells"] / value / left) ** (1 / order) if left > 0.0 else inf
             found = max(found, times)
         return found
 
@@ -279,8 +286,8 @@ class Search:
     def member(
         self, choice: Choice, room: Room | None = None, depths: Sequence[float] | None = None
     ) -> Member:
-        """The scene on some cells, with some load steps. room: of a grid that was enlarged; depths: if not all,
-        of a coarser companion.
+        """The scene on some cells, with some load steps. room: of a grid that was enlarged; depths: if not
+        all, of a coarser companion.
         """
         scene = alone(chosen_scene(self.scene, self.model, choice))
         if self.model != models.SAM:

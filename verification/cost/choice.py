@@ -21,8 +21,7 @@ ADVISED = {ELASTIC: "p_max_Pa", COATED: "p_max_Pa"} | dict.fromkeys((YIELDING, D
 # in the median (case uncertainty-study), and its parts by cells and load steps add up.
 CELLS_SHARE, STEPS_SHARE = 1 / 4.5, 1 / 9
 FEWEST_CELLS = 4.2  # in the contact radius of the coarsest of three grids: below four it has no uncertainty
-# From each of the first three grids to the next: the fewest cells with which the change between two grids is not
-# all scatter; meshes have so few elements that less is lost by rounding to whole ones.
+# From each of the first three grids to the next, so that rounding to whole cells leaves 1.3; elements: more.
 RATIOS = {models.SAM: 1.4, models.FEM: RATIO, models.FEM_3D: RATIO}
 FEWEST_STEPS = 6  # 4, 3 and 2 steps may agree by chance: linear hardening, 0.29 of the error
 MOST_STEPS = 1000
