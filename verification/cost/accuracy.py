@@ -221,10 +221,13 @@ class Search:
 
     def with_companions(self, choice: Choice) -> list[Solution]:
         """A grid and the next two coarser ones, none of them hardly coarser than the one before. Those of an
-        elastic body are solved at the depths of its largest stresses alone, and in one step.
+        elastic body are solved in one step, at the depths of its largest stresses alone, or at a single one
+        where the accuracy of no stress is asked for; they have none then.
         """
         picked = [self.solution(choice)]
         depths = depths_of_maxima(alone(self.scene), picked[0].result)
+        if depths is not None and not any(map(of_stress, quantities_of(self.scene))):
+            depths = depths[:1]
         for cells in reversed(self.ladder):
             coarser = Choice(cells, choice.steps)
             if len(picked) < 3 and self.member(coarser).size >= NEAREST * picked[-1].member.size:
@@ -307,6 +310,9 @@ class Search:
             room = found.result.discretisation.get("grid_enlarged")
             if room is not None:
                 found = replace(found, member=self.member(choice, Room(**room), depths))
+            if depths is not None and len(depths) == 1:
+                left = {k: None if of_stress(k) else v for k, v in found.result.quantities.items()}
+                found = replace(found, result=replace(found.result, quantities=left))
             self.grids[choice] = found
         return self.grids[choice]
 
@@ -320,6 +326,11 @@ class Search:
                 self.kept[key] = self.solver(member.scene, member.label)
             found.append(Solution(choice, member, self.kept[key]))
         return found
+
+
+def of_stress(name: str) -> bool:
+    """Whether a quantity is a largest stress, which is looked for over depth."""
+    return name.startswith("mises")
 
 
 def affordable(choice: Choice, scene: Scene, model: str, before: float) -> float:
