@@ -245,7 +245,7 @@ class Body(Section):
                 continue
             least, usual = (float(law.curve().stress(peeq)) for peeq in (0.0, OFFSET))
             if words := off_unit(least, usual, self.young, "young"):
-                column = f"{', '.join(YIELD_TABLE.columns)}: " if law.file is not None else ""
+                column = f"column {YIELD_TABLE.columns[1]}: " if law.file is not None else ""
                 yield f"{table}.{LAWS[law.law].needed[0]}", f"{column}{words}"
             elif words := off_unit(max(factors) * least, min(factors) * usual, self.young, "young"):
                 yield "plasticity.profile", f"factors from {min(factors):g} to {max(factors):g} for {words}"

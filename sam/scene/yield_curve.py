@@ -33,7 +33,8 @@ def off_unit(least: float, usual: float, young: float, key: str) -> str:
     """
     allowed = f"a yield stress from {young / SOFTEST:.4g} Pa to {young:.4g} Pa, {key}/{SOFTEST:g} to {key}"
     if usual < young / SOFTEST:
-        return f"{allowed}: it is {usual:.4g} Pa: are values in MPa taken as Pa?"
+        where = f" at a plastic strain of {OFFSET:g}" if usual != least else ""
+        return f"{allowed}: it is {usual:.4g} Pa{where}: are values in MPa taken as Pa?"
     if least > young:
         return f"{allowed}: it is {least:.4g} Pa: are MPa taken as GPa, or is {key} too small?"
     return ""

@@ -85,7 +85,7 @@ def test_what_is_missing_is_refined_and_nothing_else(of_cells, of_steps, cells, 
     assert entry["u_steps"] / entry["values"][0] == pytest.approx(2 * of_steps / entry["steps"][0], rel=0.1)
     several = [label for label in labels if "load steps" in label]
     assert all(label.endswith("on 17 cells") for label in several)  # the coarsest
-    assert len(several) == (6 if steps else 3)
+    assert (len(several) > 3) == steps
 
 
 def test_the_uncertainty_of_a_refined_grid_is_that_of_its_own_solves():
@@ -237,7 +237,7 @@ def test_the_case_counts_what_is_missed_without_a_word():
     (words,) = CASES[0].notes([good, said])
     assert words.startswith("Scenes that stay elastic: processor time is 12 times")
     assert "6 times as much as that one" in words and "2 times as much as the finest" in words
-    good = replace(good, seconds=9.0)
+    good = replace(good, seconds=2.5)
     values = {name: Measured(value) for name, value in CASES[0].measure([good]).items()}
     assert red("accuracy", values, whole=True) == set()
     (table,) = CASES[0].tables([good, said, refused])

@@ -51,7 +51,7 @@ NEAREST = 1.3  # ratio of cell sizes of which two grids say something, rounded t
 LEAST, MOST = 1.15, 2.0
 STEEPEST = 1.5  # times its formal order: to which that seen on three grids counts, as coarse cells scatter
 MORE_STEPS = 2  # times as many, where the steps of one solve were halved and those of another were not
-MOST_TIMES = 8  # as many load steps from one round to the next: what 4, 3 and 2 steps say is rough
+MOST_TIMES = 3  # as many load steps from one round to the next: what 4, 3 and 2 steps say is rough
 WORTH = 1.25  # of the time: to be saved by other load steps, which have to be tried on coarse cells first
 CELLS_POWER, FREE_STEPS = (
     4.0,
