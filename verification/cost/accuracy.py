@@ -52,6 +52,7 @@ LEAST, MOST = 1.15, 2.0
 STEEPEST = 1.5  # times its formal order: to which that seen on three grids counts, as coarse cells scatter
 MORE_STEPS = 2  # times as many, where the steps of one solve were halved and those of another were not
 MOST_TIMES = 3  # as many load steps from one round to the next: what 4, 3 and 2 steps say is rough
+BEFORE_CELLS = 1 / 2  # of the accuracy: what load steps may leave before the part by cells is known
 WORTH = 1.25  # of the time: to be saved by other load steps, which have to be tried on coarse cells first
 CELLS_POWER, FREE_STEPS = (
     4.0,
@@ -144,7 +145,8 @@ class Search:
         self.ladder = [first.cells / ratio**k for k in (2, 1, 0)]
         try:
             while not attempts or (attempts[-1].known > self.asked and not attempts[-1].why):
-                choice = replace(choice, steps=self.on_coarse_cells(choice.steps))
+                most = inf if attempts else BEFORE_CELLS * AIMED * self.asked
+                choice = replace(choice, steps=self.on_coarse_cells(choice.steps, most))
                 if attempts:
                     choice, tried = self.wanted(attempts[-1], choice.steps), choice.steps
                     if choice.steps > tried:
@@ -178,18 +180,18 @@ class Search:
         named = {**best.result.discretisation, "accuracy": found}
         return replace(best.result, discretisation=named, cost=cost_of(first, others))
 
-    def on_coarse_cells(self, count: int) -> int:
+    def on_coarse_cells(self, count: int, most: float) -> int:
         """Solve with load steps, and in boxes, on the coarsest cells; the number of steps, which is more than
-        `count` where with fewer the steps of some solves were halved.
+        `count` where with fewer the steps of some solves were halved, or leave more than `most`.
         """
         for _ in range(ROUNDS if count else 0):
             choice = Choice(self.ladder[0], count)
             self.steps = self.solutions(choice, members_of_steps(self.member(choice)))
-            if count == MOST_STEPS or all(
-                self.part_of_steps(each) < inf for each in quantities_of(self.scene)
-            ):
+            part = max(map(self.part_of_steps, quantities_of(self.scene)))
+            if count == MOST_STEPS or (part < inf and part <= most):
                 break
-            count = min(MORE_STEPS * count, MOST_STEPS)
+            times = MORE_STEPS if part == inf else min(part / most, MOST_TIMES)
+            count = min(ceil(count * times), MOST_STEPS)
         if self.model != models.SAM and not self.boxes:
             choice = Choice(self.ladder[0], count)
             self.boxes = self.solutions(choice, members_of_box(self.member(choice)))

@@ -47,7 +47,8 @@ def quantities_of(scene: Scene) -> tuple[str, ...]:
 
 
 def first_choice(scene: Scene, model: str) -> Choice:
-    """With what the first three grids of a scene end.
+    """With what the first three grids of a scene end: what the table of advice has, or for a scene with a
+    history the fewest cells and steps, as a grid that is finer than it has to be costs more there.
 
     Raises ModelError as `expected`, and for quantities without an uncertainty.
     """
@@ -55,9 +56,7 @@ def first_choice(scene: Scene, model: str) -> Choice:
     for name in quantities_of(scene):
         if reason := why_not(name, scene):
             raise models.ModelError(f'solver.accuracy_of = ["{name}"]: {reason}: remove it')
-    ratio = RATIOS[model]
-    cells = min(advised.cells, FEWEST_CELLS * ratio**3)
-    return Choice(max(cells, FEWEST_CELLS * ratio**2), min(advised.steps, FEWEST_STEPS))
+    return Choice(FEWEST_CELLS * RATIOS[model] ** 2, FEWEST_STEPS) if has_history(scene) else advised
 
 
 def expected(scene: Scene, model: str) -> Choice:
