@@ -48,7 +48,8 @@ def test_the_cells_and_steps_come_from_the_table():
     assert in_radius(scene) == pytest.approx(fine.cells, rel=0.15)
     assert chosen_scene(asked(0.05), FEM, first_choice(asked(0.05), FEM)).fem.cells_per_radius == 10
     assert first_choice(asked(0.05, ELASTIC), SAM).steps == 0
-    assert first_choice(asked(1e-3), SAM) == Choice(pytest.approx(4.2 * 1.4**3), 6)  # at most once as fine
+    assert first_choice(asked(1e-3), SAM) == Choice(4.2 * 1.4**2, 6)  # of what yields the fewest
+    assert first_choice(asked(1e-3, ELASTIC), SAM) == expected(asked(1e-3, ELASTIC), SAM)
 
 
 def made(scene: Scene, of_cells: float, of_steps: float) -> Result:
@@ -77,7 +78,7 @@ def test_what_is_missing_is_refined_and_nothing_else(of_cells, of_steps, cells, 
     result, labels = searched(asked(0.05), lambda scene: made(scene, of_cells, of_steps))
     found, entry = result.discretisation["accuracy"], result.uncertainty["peeq_max"]
     assert (
-        found["reached"] and 0.5 * 0.05 * (cells or steps) < found["relative"] <= 0.05 and not missed(result)
+        found["reached"] and 0.3 * 0.05 * (cells or steps) < found["relative"] <= 0.05 and not missed(result)
     )
     assert found["relative"] == entry["relative"] and result.cost["solve_s"] == found["solves"]
     assert len(labels) == found["solves"] and len(found["attempts"]) == 1 + (cells or steps)
@@ -172,7 +173,7 @@ def test_load_steps_that_are_cut_differently_are_made_more():
 
     result, _ = searched(asked(0.05), solver)
     assert result.discretisation["accuracy"]["reached"]
-    assert result.uncertainty["peeq_max"]["steps"] == [12, 8, 5]
+    assert result.uncertainty["peeq_max"]["steps"] == [9, 6, 4]
 
 
 @pytest.mark.parametrize(
@@ -207,7 +208,7 @@ def test_the_plan_announces_it():
     content = plan(asked(0.02))["models"][0]
     (stage,) = (each for each in content["stages"] if each["stage"] == "accuracy")
     assert (
-        "2 % of peeq_max: begins with 11.5 cells" in stage["reason"] and "advice expects" in stage["reason"]
+        "2 % of peeq_max: begins with 8.23 cells" in stage["reason"] and "advice expects" in stage["reason"]
     )
 
 

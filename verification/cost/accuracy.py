@@ -24,6 +24,7 @@ from verification.runs.provenance import memory_bytes
 from verification.text.readable import with_prefix, with_time
 from verification.uncertainty import (
     ORDERS,
+    RATIO,
     STEP_FACTOR,
     STEP_ORDER,
     Family,
@@ -46,11 +47,10 @@ LONGEST = 900.0  # processor seconds that are foreseen for all solves of a scene
 ROUNDS = 8  # of grids, and of numbers of load steps for one of them
 AIMED = 0.8  # of the accuracy: at which a refinement aims, as the uncertainty does not fall smoothly
 NEAREST = 1.3  # ratio of cell sizes of which two grids say something, rounded to whole cells
-# From a grid to the next: one that is hardly finer says no more than scatter does; errors are covered as
-# often at a ratio of 2 as at 1.5.
-LEAST, MOST = 1.15, 2.0
+# From a grid to the next: one that is hardly finer says no more than scatter does, and scatter on coarse cells
+# asks for more than is needed.
+LEAST, MOST = 1.15, 1.5
 STEEPEST = 1.5  # times its formal order: to which that seen on three grids counts, as coarse cells scatter
-MORE_STEPS = 2  # times as many, where the steps of one solve were halved and those of another were not
 MOST_TIMES = 3  # as many load steps from one round to the next: what 4, 3 and 2 steps say is rough
 BEFORE_CELLS = 1 / 2  # of the accuracy: what load steps may leave before the part by cells is known
 WORTH = 1.25  # of the time: to be saved by other load steps, which have to be tried on coarse cells first
@@ -186,16 +186,26 @@ class Search:
         """
         for _ in range(ROUNDS if count else 0):
             choice = Choice(self.ladder[0], count)
-            self.steps = self.solutions(choice, members_of_steps(self.member(choice)))
+            tried = self.solutions(choice, members_of_steps(self.member(choice)))
+            self.steps = [*tried, *(each for each in self.steps if self.tells_more(each, tried))]
             part = max(map(self.part_of_steps, quantities_of(self.scene)))
             if count == MOST_STEPS or (part < inf and part <= most):
                 break
-            times = MORE_STEPS if part == inf else min(part / most, MOST_TIMES)
-            count = min(ceil(count * times), MOST_STEPS)
+            count = min(ceil(count * min(max(part / most, RATIO), MOST_TIMES)), MOST_STEPS)
         if self.model != models.SAM and not self.boxes:
             choice = Choice(self.ladder[0], count)
             self.boxes = self.solutions(choice, members_of_box(self.member(choice)))
         return count
+
+    def tells_more(self, earlier: Solution, tried: Sequence[Solution]) -> bool:
+        """Whether a solution with fewer load steps says something beside others: three may agree by chance."""
+        cuts = tried[0].result.cost.get("step_cuts")
+        return (
+            earlier.result.converged
+            and earlier.result.cost.get("step_cuts") == cuts
+            and earlier.member.size >= NEAREST * tried[0].member.size
+            and earlier.member.number not in [each.member.number for each in tried]
+        )
 
     def part_of_steps(self, name: str) -> float:
         """The relative uncertainty of a quantity by the load steps, infinite where there is none."""
