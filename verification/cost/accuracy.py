@@ -47,8 +47,8 @@ LONGEST = 900.0  # processor seconds that are foreseen for all solves of a scene
 ROUNDS = 8  # of grids, and of numbers of load steps for one of them
 AIMED = 0.8  # of the accuracy: at which a refinement aims, as the uncertainty does not fall smoothly
 NEAREST = 1.3  # ratio of cell sizes of which two grids say something, rounded to whole cells
-# From a grid to the next: one that is hardly finer says no more than scatter does, and scatter on coarse cells
-# asks for more than is needed.
+# From a grid to the next: one that is hardly finer says no more than scatter does, by which coarse cells
+# ask for more than is needed.
 LEAST, MOST = 1.15, 1.5
 STEEPEST = 1.5  # times its formal order: to which that seen on three grids counts, as coarse cells scatter
 MOST_TIMES = 3  # as many load steps from one round to the next: what 4, 3 and 2 steps say is rough
@@ -191,14 +191,15 @@ class Search:
             part = max(map(self.part_of_steps, quantities_of(self.scene)))
             if count == MOST_STEPS or (part < inf and part <= most):
                 break
-            count = min(ceil(count * min(max(part / most, RATIO), MOST_TIMES)), MOST_STEPS)
+            times = RATIO if part == inf else min(max(part / most, RATIO), MOST_TIMES)
+            count = min(ceil(count * times), MOST_STEPS)
         if self.model != models.SAM and not self.boxes:
             choice = Choice(self.ladder[0], count)
             self.boxes = self.solutions(choice, members_of_box(self.member(choice)))
         return count
 
     def tells_more(self, earlier: Solution, tried: Sequence[Solution]) -> bool:
-        """Whether a solution with fewer load steps says something beside others: three may agree by chance."""
+        """Whether a solution with fewer load steps counts beside three others, which may agree by chance."""
         cuts = tried[0].result.cost.get("step_cuts")
         return (
             earlier.result.converged
