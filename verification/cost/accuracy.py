@@ -54,10 +54,8 @@ STEEPEST = 1.5  # times its formal order: to which that seen on three grids coun
 MOST_TIMES = 3  # as many load steps from one round to the next: what 4, 3 and 2 steps say is rough
 BEFORE_CELLS = 1 / 2  # of the accuracy: what load steps may leave before the part by cells is known
 WORTH = 1.25  # of the time: to be saved by other load steps, which have to be tried on coarse cells first
-CELLS_POWER, FREE_STEPS = (
-    4.0,
-    20.0,
-)  # of a solve: its time grows as cells^4 (steps + 20), for yielding spheres
+# Of a solve: its time grows as cells^4 (steps + 20), in yielding spheres.
+CELLS_POWER, FREE_STEPS = 4.0, 20.0
 
 
 class BeyondError(models.ModelError):
