@@ -24,6 +24,7 @@ from sam.scene.remedies import either
 from sam.scene.result import COUNTER_HEIGHT, SURFACE
 from sam.scene.surface import Roughness, roughness_as_read
 
+LEAST_SHARE = 0.05  # of the load: a spot that carries as much has to be resolved
 WELL_RESOLVED = 4.0  # cells in the shortest wavelength; below it maxima depend on where the cells lie
 
 
@@ -92,16 +93,8 @@ class RoughRecord:
                     f"{min(cells):.3g} cells in the shortest wavelength of the {surface.words}: with "
                     f"fewer than {WELL_RESOLVED:g} the largest pressure depends on where the cells lie{finer}"
                 )
-        if touching.any():
-            spots, _ = ndimage.label(touching)
-            top = np.unravel_index(contact.pressure.argmax(), touching.shape)
-            count = int(np.count_nonzero(spots == spots[top]))
-            if count < FEWEST_IN_SPOT:
-                number = np.count_nonzero(touching)
-                out.append(
-                    f"{count} cells in contact where the pressure is largest, {number} in all: "
-                    f"with fewer than {FEWEST_IN_SPOT} p_max_Pa is off by some percent{finer}"
-                )
+        if coarse := too_few_cells(contact.pressure):
+            out.append(f"{coarse}{finer}")
         if touching[[0, -1], :].any() or touching[:, [0, -1]].any():
             words = "the contact touches the edge of the grid, where the half-space is cut"
             out.append(f"{words}{self._at_edge(grid)}")
@@ -117,6 +110,30 @@ class RoughRecord:
             f": the outer {bx} x {by} cells do not count for p_max_Pa and mises_max_Pa; "
             'grid.border = "relief" lets the heights fall off'
         )
+
+
+def too_few_cells(pressure: Array) -> str:
+    """What a user should know about the spots of a contact; empty if those that matter are resolved.
+
+    pressure: of the cells, (nx, ny) in Pa. A spot is what hangs together over sides of its cells: two that
+    touch at a corner have a saddle between them, and as one they would pass for resolved.
+    """
+    spots, _ = ndimage.label(pressure > 0)
+    if not spots.any():
+        return ""
+    cells = np.bincount(spots.ravel())[1:]
+    share = np.bincount(spots.ravel(), pressure.ravel())[1:] / pressure.sum()
+    judged = share >= LEAST_SHARE
+    judged[spots[np.unravel_index(pressure.argmax(), pressure.shape)] - 1] = True
+    few = judged & (cells < FEWEST_IN_SPOT)
+    if not few.any():
+        return ""
+    counts = ", ".join(map(str, sorted(cells[few], reverse=True)))
+    return (
+        f"too few cells in {few.sum()} of {judged.sum()} spots with {100 * LEAST_SHARE:g} % of the load or "
+        f"more, or with the largest pressure ({counts} cells; together {100 * share[few].sum():.3g} % of the "
+        f"load): with fewer than {FEWEST_IN_SPOT} the largest pressure of a spot is off by some percent"
+    )
 
 
 def _then(remedy: str) -> str:

@@ -23,7 +23,16 @@ from sam.scene.units import (
     Positive,
     Pressure,
 )
-from sam.scene.yield_curve import DepthProfile, Linear, Strength, Swift, Tabulated, YieldCurve
+from sam.scene.yield_curve import (
+    OFFSET,
+    DepthProfile,
+    Linear,
+    Strength,
+    Swift,
+    Tabulated,
+    YieldCurve,
+    off_unit,
+)
 
 YIELD_TABLE = TwoColumns(("peeq", "yield_stress_Pa"), (STRAIN, PRESSURE), from_zero=True, falling="softening")
 PROFILE = TwoColumns(("depth_m", "factor"), (DEPTH, FACTOR))
@@ -199,6 +208,12 @@ class Coating(Section):
         if "yield_stress" in given and given.get("poisson") == 0.5:
             yield "poisson", "less than 0.5 with yield_stress"
 
+    def excesses(self) -> Iterator[Conflict]:
+        """A yield stress in another unit than Young's modulus."""
+        limit = self.yield_stress
+        if limit is not None and (words := off_unit(limit, limit, self.young, "young")):
+            yield "yield_stress", words
+
 
 class Body(Section):
     """The half-space z >= 0, isotropic; elastic without plasticity. young in Pa. A coating takes the place of
@@ -217,3 +232,21 @@ class Body(Section):
             yield "plasticity.layer", "not together with [body.coating]"
         if "plasticity" in given and given.get("poisson") == 0.5:
             yield "poisson", "less than 0.5 with plasticity"
+
+    def excesses(self) -> Iterator[Conflict]:
+        """A yield stress in another unit than Young's modulus, by the law of the body or of a layer, or by
+        the factors over depth.
+        """
+        if self.plasticity is None:
+            return
+        factors = self.plasticity.depth_profile().factor
+        for table, law in (("plasticity", self.plasticity), ("plasticity.layer", self.plasticity.layer)):
+            if law is None:
+                continue
+            least, usual = (float(law.curve().stress(peeq)) for peeq in (0.0, OFFSET))
+            if words := off_unit(least, usual, self.young, "young"):
+                column = f"column {YIELD_TABLE.columns[1]}: " if law.file is not None else ""
+                yield f"{table}.{LAWS[law.law].needed[0]}", f"{column}{words}"
+            elif words := off_unit(max(factors) * least, min(factors) * usual, self.young, "young"):
+                yield "plasticity.profile", f"factors from {min(factors):g} to {max(factors):g} for {words}"
+                return

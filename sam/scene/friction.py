@@ -13,6 +13,7 @@ from typing import Any, Literal
 from sam.scene.section import Conflict, Section, stated
 from sam.scene.surface.map_files import FrictionField
 from sam.scene.units import Coefficient, Growth, Length, Poisson, Pressure, Speed, StrainLimit, Temperature
+from sam.scene.yield_curve import off_unit
 
 GROWTH_ROWS = ((323.15, 2.451e-9), (373.15, 3.644e-9), (423.15, 4.620e-9), (473.15, 4.916e-9))
 """(bath temperature in K, K_0 in m/s^0.5) of Bosman & Schipper (2011), Table 3, after their [33]."""
@@ -100,9 +101,15 @@ class Friction(Section):
                 yield "film_poisson", "less than 0.5"
 
     def excesses(self) -> Iterator[Conflict]:
-        """A high coefficient below the low one, or a contact that is wider than the track."""
+        """A high coefficient below the low one, a contact that is wider than the track, or a yield stress in
+        another unit than Young's modulus.
+        """
         if self.film and stated(self.high) < (low := stated(self.low)):
             yield "high", f"at least low, {low:g}"
+        if self.film_yield is not None:
+            words = off_unit(self.film_yield, self.film_yield, stated(self.film_young), "film_young")
+            if words:
+                yield "film_yield", words
         if self.contact_width is not None and self.contact_width >= (track := stated(self.track)):
             yield "contact_width", f"less than track, {track:g} m"
 

@@ -19,6 +19,26 @@ from numpy.typing import NDArray
 from sam.arrays import Array, Mask
 from sam.scene.back_stress import BackStress
 
+# E over yield stress at most. Annealed lead and indium, the softest of metals in use, have some 1e3 to 1e4; a
+# value in MPa that is taken as Pa adds a factor of 1e6 to the 10 to 1e4 of all materials.
+SOFTEST = 1e5
+OFFSET = 2e-3  # plastic strain of the yield stress that handbooks give, R_p0.2
+
+
+def off_unit(least: float, usual: float, young: float, key: str) -> str:
+    """What a yield stress may be beside Young's modulus, where it can only be in another unit; else empty.
+
+    least: yield stress without plastic strain; usual: that at OFFSET, which a law that rises from nearly 0
+    has; young: all in Pa; key: of Young's modulus.
+    """
+    allowed = f"a yield stress from {young / SOFTEST:.4g} Pa to {young:.4g} Pa, {key}/{SOFTEST:g} to {key}"
+    if usual < young / SOFTEST:
+        where = f" at a plastic strain of {OFFSET:g}" if usual != least else ""
+        return f"{allowed}: it is {usual:.4g} Pa{where}: are values in MPa taken as Pa?"
+    if least > young:
+        return f"{allowed}: it is {least:.4g} Pa: are MPa taken as GPa, or is {key} too small?"
+    return ""
+
 
 class YieldCurve(Protocol):
     """Isotropic hardening law."""

@@ -50,6 +50,46 @@ LAYERS = [
     (THICK, SOFT | {"profile": ((0.0, 1.0),)}, f"{AT}.profile", "1.0", "unknown key"),
     (THICK, SOFT | {"aplha": 1e3}, f"{AT}.aplha", "1000.0", "did you mean"),
 ]
+STEEL = {"young": 210e9, "poisson": 0.3}
+MPA = {"law": "table", "file": ((0.0, 355.0), (0.01, 450.0))}  # in MPa, under a column in Pa
+PERFECT = {"law": "perfect", "yield_stress": 355e6}
+FILM = {"thickness": 1e-6, "young": 300e9, "poisson": 0.25}
+FILMED = {"law": "chemical-film", "low": 0.1, "high": 0.4, "film_thickness": 1e-7, "film_young": 70e9}
+FILMED |= {"film_poisson": 0.3, "strain_limit": 0.1}
+# the body, and friction: key that is named, what is said of it; or nothing, where it is taken
+MATERIALS = [
+    (
+        {"plasticity": MPA},
+        None,
+        "body.plasticity.file",
+        "column yield_stress_Pa: .* it is 374 Pa at a plastic strain of 0.002: are values in MPa",
+    ),
+    ({"plasticity": SWIFT | {"B": 945.0}}, None, "body.plasticity.B", "from 2.1e.06 Pa to 2.1e.11 Pa"),
+    (
+        {"plasticity": PERFECT | {"yield_stress": 355e9}},
+        None,
+        "body.plasticity.yield_stress",
+        "MPa taken as GPa",
+    ),
+    (
+        {"plasticity": PERFECT | {"profile": ((0.0, 1.0), (1e-5, 1e-3))}},
+        None,
+        "body.plasticity.profile",
+        "factors from 0.001",
+    ),
+    (
+        {"plasticity": THICK | {"layer": PERFECT | {"yield_stress": 1.0}}},
+        None,
+        f"{AT}.yield_stress",
+        "it is 1 Pa",
+    ),
+    ({"coating": FILM | {"yield_stress": 4e3}}, None, "body.coating.yield_stress", "from 3e.06 Pa"),
+    ({}, FILMED | {"film_yield": 700.0}, "friction.film_yield", "film_young/100000"),
+    ({"young": 210e3, "plasticity": PERFECT}, None, "body.plasticity.yield_stress", "young too small"),
+    ({"young": 11e9, "plasticity": PERFECT | {"yield_stress": 1e6}}, None, "", ""),  # annealed indium
+    ({"young": 1141e9, "plasticity": PERFECT | {"yield_stress": 80e9}}, None, "", ""),  # diamond
+    ({"plasticity": SWIFT | {"C": 1e-15, "n": 0.5}}, None, "", ""),  # rises from nearly 0
+]
 WAVE = {"kind": '"sinusoid"', "amplitude": '"0.1 um"', "wavelength_x": '"10 um"', "wavelength_y": '"8 um"'}
 DISC = {"kind": '"self-affine"', "sq": '"20 nm"', "cutoff_long": '"16 um"', "cutoff_short": '"8 um"'}
 DISC |= {"hurst": "0.8", "seed": "5", "renew": "true"}
@@ -112,6 +152,18 @@ def table(keys: dict) -> str:
 
 
 FILES = [(table(keys), *told) for keys, *told in SURFACES] + PLACES
+
+
+@pytest.mark.parametrize("body, friction, key, words", MATERIALS)
+def test_a_yield_stress_in_another_unit_than_youngs_modulus_is_refused(body, friction, key, words):
+    tables = {"body": STEEL | body, "counterbody": SPHERE, "loading": {"force": 1.0}}
+    tables |= {"friction": friction} if friction else {}
+    if not key:
+        assert Scene(**tables)
+        return
+    with pytest.raises(ValidationError, match=words) as error:
+        Scene(**tables)
+    assert [".".join(item["loc"]) for item in error.value.errors()] == [key]
 
 
 @pytest.mark.parametrize(("body", "layer", "key", "value", "allowed"), LAYERS)

@@ -8,6 +8,7 @@ import pytest
 from builders import scene as small_scene
 
 import sam
+from sam.results.rough import too_few_cells
 from sam.scene import (
     Body,
     Coating,
@@ -355,10 +356,40 @@ def test_relief_keeps_the_contact_off_the_border():
 
 def test_small_spots_and_short_waves_are_warned_of():
     """At 24 cells the shortest wave of 12 um has 4.5, at 16 it has 3."""
-    small, short = "cells in contact where the pressure is largest", "3 cells in the shortest wavelength"
+    small, short = "too few cells in 2 of 2 spots", "3 cells in the shortest wavelength"
     assert small in sam.solve(patch(24)).warnings[0] and short in sam.solve(patch(16)).warnings[0]
     assert sam.solve(patch(64, force=1e-4)).status is Status.UNDER_RESOLVED
     assert sam.solve(patch(128)).warnings == ()
+
+
+def spots_of(*counts: int, load: float = 1.0) -> np.ndarray:
+    """Pressures of spots in rows of their own, the first with the load per cell given, the others with 1."""
+    pressure = np.zeros((2 * len(counts) + 1, 40))
+    for k, count in enumerate(counts):
+        pressure[2 * k + 1, 1 : count + 1] = 1.0 if k else load
+    return pressure
+
+
+@pytest.mark.parametrize(
+    "pressure, words",
+    [
+        (
+            spots_of(32, 23, 18, 15, 8, 2, 1, load=1.01),
+            ("4 of 5 spots", "23, 18, 15, 8 cells; together 64.4 %"),
+        ),
+        (spots_of(32, 28, 1, load=1.01), ()),
+        (spots_of(1, 30, 30, load=1.1), ("1 of 3 spots", "(1 cells; together 1.8 %")),  # the largest pressure
+        (
+            np.kron(np.eye(2), np.ones((4, 6))),
+            ("2 of 2 spots", "24, 24 cells; together 100 %"),
+        ),  # at a corner
+        (np.zeros((4, 4)), ()),
+    ],
+)
+def test_every_spot_that_carries_a_twentieth_of_the_load_is_judged(pressure, words):
+    """28 cells are needed: pi 3^2."""
+    found = too_few_cells(pressure)
+    assert bool(found) == bool(words) and all(each in found for each in words)
 
 
 def test_surface_table_and_fields_hold_the_heights(tmp_path):

@@ -174,7 +174,7 @@ def test_layers_thinner_than_any_use_are_refused_before_they_are_made():
 
 
 def test_a_plastic_contact_larger_than_the_box_is_refused_by_the_fem_model():
-    scene = plastic("", 'law = "perfect"\nyield_stress = "1 kPa"')
+    scene = plastic("", 'law = "perfect"\nyield_stress = "3 MPa"')
     with pytest.raises(models.ModelError, match=r"fem.box = 10.0: more than .* Hertz radii"):
         models.check(scene, models.FEM)
 

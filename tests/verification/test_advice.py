@@ -95,6 +95,13 @@ def test_other_scenes():
     assert kind_of(with_loading(scene("plastic-perfect"), force=1e-300)) == ELASTIC
 
 
+def test_a_press_says_nothing_of_a_path():
+    """No row of the committed table, and where to look instead."""
+    found = advice_of(scene("moving-sphere"), (SAM, FEM_3D))
+    assert not found["rows"] and not found["table"]["rows"]
+    assert "case moving-steps" in found["words"] and "solver.uncertainty" in found["words"]
+
+
 def test_a_given_pressure_is_no_result_but_the_strain_below_it_is():
     given = {"force": None, "prescribed": "hertz", "radius": 5e-6}
     elastic = with_loading(scene("hertz-sphere"), p0=3e9, **given).model_copy(update={"counterbody": None})

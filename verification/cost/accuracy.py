@@ -1,24 +1,24 @@
 # SPDX-License-Identifier: MIT
 """Results to an accuracy that a scene asks for.
 
-The uncertainty is driven down from above. Load steps are chosen first, on coarse cells, where they cost
-little. The cells follow: the grids so far say by their uncertainty how fine the next has to be, and are its
-coarser companions, so that each refinement is one more solve. Nothing is solved that needs more memory than
-the machine has, or more than LONGEST together with what was solved before.
+The search begins with the fewest cells and load steps that have an uncertainty, and refines what is missing:
+the parts of the uncertainty by cells and by load steps say how many of each would reach it in the least time.
+Load steps are tried on the coarsest cells, where they cost little. Grids that were solved are the coarser
+companions of the next. Nothing is solved that needs more memory than the machine has, or more than LONGEST
+together with what was solved before.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from math import ceil, inf, sqrt
-from typing import Any
 
 import sam
 from sam.grid import Room
 from sam.scene import Result, Scene
 from verification.cost import estimates
-from verification.cost.choice import MOST_STEPS, Choice, chosen_scene, first_choice, quantities_of
+from verification.cost.choice import MOST_STEPS, RATIOS, Choice, chosen_scene, first_choice, quantities_of
 from verification.runs import models
 from verification.runs.provenance import memory_bytes
 from verification.text.readable import with_prefix, with_time
@@ -35,6 +35,8 @@ from verification.uncertainty import (
     assessed,
     bound,
     cost_of,
+    depths_of_maxima,
+    in_one_step,
     members_of_box,
     members_of_steps,
     solve as solve_uncertain,
@@ -42,18 +44,18 @@ from verification.uncertainty import (
 )
 
 LONGEST = 900.0  # processor seconds that are foreseen for all solves of a scene together
-FINER = 6  # grids beyond the first three at most
-ROUNDS = 4  # of numbers of load steps
+ROUNDS = 8  # of grids, and of numbers of load steps for one of them
 AIMED = 0.8  # of the accuracy: at which a refinement aims, as the uncertainty does not fall smoothly
-OF_STEPS = 1 / 4  # of that the part of load steps; 3 times as many take 1.2 times the time (yielding spheres)
-NEAREST = (
-    1.3  # ratio of cell sizes of which two grids say something; the rule has 1.5, rounded to whole cells
-)
-# From a grid to the next: one that is hardly finer says no more than scatter does; errors are covered as
-# often at a ratio of 2 as at 1.5.
-LEAST, MOST = 1.15, 2.0
-MORE_STEPS = 2.0  # times as many, where the steps of one solve were halved and those of another were not
-MOST_TIMES = 8.0  # as many load steps from one round to the next: what 4, 3 and 2 steps say is rough
+NEAREST = 1.3  # ratio of cell sizes of which two grids say something, rounded to whole cells
+# From a grid to the next: one that is hardly finer says no more than scatter does, by which coarse cells
+# ask for more than is needed.
+LEAST, MOST = 1.15, 1.5
+STEEPEST = 1.5  # times its formal order: to which that seen on three grids counts, as coarse cells scatter
+MOST_TIMES = 3  # as many load steps from one round to the next: what 4, 3 and 2 steps say is rough
+BEFORE_CELLS = 1 / 2  # of the accuracy: what load steps may leave before the part by cells is known
+WORTH = 1.25  # of the time: to be saved by other load steps, which have to be tried on coarse cells first
+# Of a solve: its time grows as cells^4 (steps + 20), in yielding spheres.
+CELLS_POWER, FREE_STEPS = 4.0, 20.0
 
 
 class BeyondError(models.ModelError):
@@ -96,15 +98,14 @@ class Solution:
 class Attempt:
     """What some grids say of the finest of them.
 
-    quantity: the one that is known worst; relative: its uncertainty, None where there is none; wanted: the
-    next grid; why: what keeps it from being solved.
+    quantity: the one that is known worst; relative: its uncertainty, None where there is none; why: what
+    keeps the next grid from being solved.
     """
 
     choice: Choice
     result: Result
     quantity: str
     relative: float | None
-    wanted: Choice
     why: str = ""
 
     @property
@@ -115,14 +116,17 @@ class Attempt:
 
 @dataclass
 class Search:
-    """The solves for the accuracy of a scene. kept: scene as text -> result; foreseen: processor seconds
-    predicted for them; steps, boxes: solutions that differ in load steps, and in the finite-element box.
+    """The solves for the accuracy of a scene. ladder: cells in the contact radius of its grids, coarsest
+    first; kept: scene as text -> result; grids: choice -> its solution; foreseen: processor seconds predicted
+    for all; steps, boxes: solutions that differ in load steps, and in the finite-element box.
     """
 
     scene: Scene
     model: str
     solver: Solve
+    ladder: list[float] = field(default_factory=list)
     kept: dict[str, Result] = field(default_factory=dict)
+    grids: dict[Choice, Solution] = field(default_factory=dict)
     foreseen: float = 0.0
     steps: Sequence[Solution] = ()
     boxes: Sequence[Solution] = ()
@@ -134,22 +138,26 @@ class Search:
 
     def result(self, first: Choice) -> Result:
         """The finest result, or if none was good enough the best known, with what came of the accuracy."""
+        attempts: list[Attempt] = []
+        choice, ratio = first, RATIOS[self.model]
+        self.ladder = [first.cells / ratio**k for k in (2, 1, 0)]
         try:
-            count = self.number_of_steps(first) if first.steps else 0
-            coarse = Choice(first.cells / RATIO, count)
-            if self.model != models.SAM:
-                self.boxes = self.solutions(coarse, members_of_box(self.member(coarse)))
-            grids = [self.solution(Choice(first.cells / RATIO**k, count)) for k in (2, 1, 0)]
+            while not attempts or (attempts[-1].known > self.asked and not attempts[-1].why):
+                most = inf if attempts else BEFORE_CELLS * AIMED * self.asked
+                choice = replace(choice, steps=self.on_coarse_cells(choice.steps, most))
+                if attempts:
+                    choice, tried = self.wanted(attempts[-1], choice.steps), choice.steps
+                    if choice.steps > tried:
+                        continue
+                if choice.cells > self.ladder[-1]:
+                    self.ladder.append(choice.cells)
+                attempts.append(self.attempt(choice))
+                if len(attempts) == ROUNDS:
+                    attempts[-1].why = f"{ROUNDS} rounds of grids were not enough"
         except BeyondError as reason:
-            raise models.ModelError(f"solver.accuracy = {self.asked:g}: {reason}") from None
-        attempts = [self.attempt(grids)]
-        while attempts[-1].known > self.asked and not attempts[-1].why:
-            try:
-                grids.append(self.solution(attempts[-1].wanted))
-            except BeyondError as reason:
-                attempts[-1].why = f"{attempts[-1].wanted} would be next: {reason}"
-            else:
-                attempts.append(self.attempt(grids))
+            if not attempts:
+                raise models.ModelError(f"solver.accuracy = {self.asked:g}: {reason}") from None
+            attempts[-1].why = str(reason)
         return self.concluded(attempts)
 
     def concluded(self, attempts: Sequence[Attempt]) -> Result:
@@ -170,20 +178,38 @@ class Search:
         named = {**best.result.discretisation, "accuracy": found}
         return replace(best.result, discretisation=named, cost=cost_of(first, others))
 
-    def number_of_steps(self, first: Choice) -> int:
-        """The load steps, by their part of the uncertainty on coarse cells."""
-        choice, aim = Choice(first.cells / RATIO, first.steps), AIMED * OF_STEPS * self.asked
-        for left in reversed(range(ROUNDS)):
-            self.steps = self.solutions(choice, members_of_steps(self.member(choice)))
-            part = max(self.part_of_steps(name) for name in quantities_of(self.scene))
-            if part <= aim or choice.steps == MOST_STEPS or not left:
+    def on_coarse_cells(self, count: int, most: float) -> int:
+        """Solve with load steps, and in boxes, on the coarsest cells; the number of steps, which is more than
+        `count` where with fewer the steps of some solves were halved, or leave more than `most`.
+        """
+        for _ in range(ROUNDS if count else 0):
+            choice = Choice(self.ladder[0], count)
+            tried = self.solutions(choice, members_of_steps(self.member(choice)))
+            self.steps = [*tried, *(each for each in self.steps if self.tells_more(each, tried))]
+            part = max(map(self.part_of_steps, quantities_of(self.scene)))
+            if count == MOST_STEPS or (part < inf and part <= most):
                 break
-            times = MORE_STEPS if part == inf else min(part / aim, MOST_TIMES)
-            choice = replace(choice, steps=min(ceil(choice.steps * times), MOST_STEPS))
-        return choice.steps
+            times = RATIO if part == inf else min(max(part / most, RATIO), MOST_TIMES)
+            count = min(ceil(count * times), MOST_STEPS)
+        if self.model != models.SAM and not self.boxes:
+            choice = Choice(self.ladder[0], count)
+            self.boxes = self.solutions(choice, members_of_box(self.member(choice)))
+        return count
+
+    def tells_more(self, earlier: Solution, tried: Sequence[Solution]) -> bool:
+        """Whether a solution with fewer load steps counts beside three others, which may agree by chance."""
+        cuts = tried[0].result.cost.get("step_cuts")
+        return (
+            earlier.result.converged
+            and earlier.result.cost.get("step_cuts") == cuts
+            and earlier.member.size >= NEAREST * tried[0].member.size
+            and earlier.member.number not in [each.member.number for each in tried]
+        )
 
     def part_of_steps(self, name: str) -> float:
         """The relative uncertainty of a quantity by the load steps, infinite where there is none."""
+        if not self.steps:
+            return 0.0
         results = [each.result for each in self.steps]
         values = [result.quantities[name] for result in results]
         cuts = {result.cost.get("step_cuts") or 0 for result in results}
@@ -192,86 +218,142 @@ class Search:
         sizes = [each.member.size for each in self.steps]
         return bound(values, sizes, STEP_ORDER, STEP_FACTOR) / abs(values[0])
 
-    def attempt(self, grids: Sequence[Solution]) -> Attempt:
-        """What the grids so far say of the finest of them, and which is the next."""
-        finest, sets = grids[-1], (companions(grids), self.steps, self.boxes)
+    def attempt(self, choice: Choice) -> Attempt:
+        """What a grid and its companions say of it."""
+        sets = (self.with_companions(choice), self.steps, self.boxes)
         family = Family(*(tuple(each.member for each in some) for some in sets))
         result = assessed(self.scene, Solved(family, *([each.result for each in some] for some in sets)))
         known = {name: (result.uncertainty or {}).get(name, {}) for name in quantities_of(self.scene)}
         worst = max(known, key=lambda name: inf if (u := known[name].get("relative")) is None else u)
         relative, why = known[worst].get("relative"), ""
-        times = max(self.finer(name, each, result) for name, each in known.items())
-        if relative is None and not under_resolved(self.scene, finest.result, family):
+        if relative is None and not under_resolved(self.scene, sets[0][0].result, family):
             why = known[worst].get("flag", str(result.status))
-        elif times == inf:
-            why = f"more cells do not help: {self.beside(known[worst])}"
-        elif len(grids) > FINER + 2:
-            why = f"{FINER} finer grids were not enough"
-        wanted = Choice(finest.choice.cells * min(max(times, LEAST), MOST), finest.choice.steps)
-        if not why and self.member(wanted).size >= finest.member.size:
-            why = "there is no finer grid"
-        return Attempt(finest.choice, result, worst, relative, wanted, why)
+        return Attempt(choice, result, worst, relative, why)
 
-    def finer(self, name: str, entry: Mapping[str, Any], result: Result) -> float:
-        """By how much the cells have to be smaller for a quantity; infinite where they cannot help."""
-        value = abs(result.quantities.get(name) or 0.0)
-        if entry.get("relative") is None:
-            return RATIO
-        left = AIMED * self.asked * value - entry["u_steps"] - entry["u_box"]
-        return (entry["u_cells"] / left) ** (1 / ORDERS[name]) if left > 0.0 else inf
+    def with_companions(self, choice: Choice) -> list[Solution]:
+        """A grid and the next two coarser ones, none of them hardly coarser than the one before. Those of an
+        elastic body are solved in one step, at the depths of its largest stresses alone, or at a single one
+        where the accuracy of no stress is asked for; they have none then.
+        """
+        picked = [self.solution(choice)]
+        depths = depths_of_maxima(alone(self.scene), picked[0].result)
+        if depths is not None and not any(map(of_stress, quantities_of(self.scene))):
+            depths = depths[:1]
+        for cells in reversed(self.ladder):
+            coarser = Choice(cells, choice.steps)
+            if len(picked) < 3 and self.member(coarser).size >= NEAREST * picked[-1].member.size:
+                picked.append(self.solution(coarser, depths))
+        return picked
 
-    def beside(self, entry: Mapping[str, Any]) -> str:
-        """What is left of an uncertainty by load steps and box, for the reader."""
-        steps, box = entry["u_steps"], entry["u_box"]
+    def wanted(self, attempt: Attempt, count: int) -> Choice:
+        """The cells and load steps that are foreseen to reach the accuracy in the least time, by the parts of
+        the uncertainty: those by cells and box of the last attempt, that by load steps of `count`.
+
+        Raises BeyondError where none does.
+        """
+        choice = attempt.choice
+        if attempt.relative is None:
+            return Choice(choice.cells * RATIOS[self.model], count)
+        counts = [count]
+        while counts[-1] and counts[-1] < MOST_STEPS:
+            counts.append(min(ceil(LEAST * counts[-1]), MOST_STEPS))
+        finer = {each: self.finer(attempt, count, each) for each in counts}
+
+        def time(each: int) -> float:
+            return finer[each] ** CELLS_POWER * (each + FREE_STEPS) * (1.0 if each == count else WORTH)
+
+        best = min(finer, key=time)
+        if finer[best] == inf:
+            raise BeyondError(f"more cells do not help: {self.beside(attempt)}")
+        times = min(max(finer[best], LEAST), MOST)
+        if finer[best] <= 1.0 and best > choice.steps:
+            times = 1.0
+        return Choice(choice.cells * times, min(best, MOST_TIMES * count))
+
+    def finer(self, attempt: Attempt, count: int, wanted: int) -> float:
+        """By how much the cells have to be smaller with a wanted number of load steps, by the order seen; 1
+        if not at all, infinite where they cannot help.
+        """
+        found = 1.0
+        for name in quantities_of(self.scene):
+            entry, value = attempt.result.uncertainty[name], abs(attempt.result.quantities[name])
+            left = (
+                AIMED * self.asked
+                - self.part_of_steps(name) * count / max(wanted, 1)
+                - entry["u_box"] / value
+            )
+            order = min(max(entry["order_seen"] or 0.0, ORDERS[name]), STEEPEST * ORDERS[name])
+            times = (entry["u_cells"] / value / left) ** (1 / order) if left > 0.0 else inf
+            found = max(found, times)
+        return found
+
+    def beside(self, attempt: Attempt) -> str:
+        """What is left of the worst uncertainty by load steps and box, for the reader."""
+        entry = attempt.result.uncertainty[attempt.quantity]
         of_steps = f"{self.steps[0].choice.steps} load steps leave too much" if self.steps else ""
-        return of_steps if steps >= box else f"fem.box = {self.scene.fem.box:g} leaves too much"
+        return (
+            of_steps
+            if entry["u_steps"] >= entry["u_box"]
+            else f"fem.box = {self.scene.fem.box:g} leaves too much"
+        )
 
-    def member(self, choice: Choice, room: Room | None = None) -> Member:
-        """The scene on some cells, with some load steps; room: of a grid that was enlarged."""
+    def member(
+        self, choice: Choice, room: Room | None = None, depths: Sequence[float] | None = None
+    ) -> Member:
+        """The scene on some cells, with some load steps. room: of a grid that was enlarged; depths: if not
+        all, of a coarser companion.
+        """
         scene = alone(chosen_scene(self.scene, self.model, choice))
         if self.model != models.SAM:
             count = scene.fem.cells_per_radius
             return Member(scene, f"{count} elements in the radius", count, 1 / count)
+        if depths is not None:
+            grid = scene.grid.model_copy(update={"depths": tuple(depths)})
+            scene = in_one_step(scene.model_copy(update={"grid": grid}))
         grid = sam.plan(scene).on(room or Room()).grid
         return Member(scene, f"{grid.nx} cells", grid.nx, sqrt(grid.hx * grid.hy))
 
-    def solution(self, choice: Choice) -> Solution:
-        """The scene on some cells, solved."""
-        member = self.member(choice)
-        (found,) = self.solutions(choice, [member])
-        room = found.result.discretisation.get("grid_enlarged")
-        return found if room is None else replace(found, member=self.member(choice, Room(**room)))
+    def solution(self, choice: Choice, depths: Sequence[float] | None = None) -> Solution:
+        """The scene on some cells, solved once; depths: as those of `member`."""
+        if choice not in self.grids:
+            member = self.member(choice, depths=depths)
+            (found,) = self.solutions(choice, [member])
+            room = found.result.discretisation.get("grid_enlarged")
+            if room is not None:
+                found = replace(found, member=self.member(choice, Room(**room), depths))
+            if depths is not None and len(depths) == 1:
+                left = {k: None if of_stress(k) else v for k, v in found.result.quantities.items()}
+                found = replace(found, result=replace(found.result, quantities=left))
+            self.grids[choice] = found
+        return self.grids[choice]
 
     def solutions(self, choice: Choice, members: Sequence[Member]) -> list[Solution]:
-        """Some scenes, each solved once."""
+        """Some scenes, each solved once. Raises BeyondError, which names the choice."""
         found = []
         for member in members:
             key = member.scene.model_dump_json()
             if key not in self.kept:
-                self.foreseen += affordable(member.scene, self.model, self.foreseen)
+                self.foreseen += affordable(choice, member.scene, self.model, self.foreseen)
                 self.kept[key] = self.solver(member.scene, member.label)
             found.append(Solution(choice, member, self.kept[key]))
         return found
 
 
-def affordable(scene: Scene, model: str, before: float) -> float:
+def of_stress(name: str) -> bool:
+    """Whether a quantity is a largest stress, which is looked for over depth."""
+    return name.startswith("mises")
+
+
+def affordable(choice: Choice, scene: Scene, model: str, before: float) -> float:
     """Processor seconds that are predicted for a scene, after those before it. Raises BeyondError."""
     needs, there = estimates.estimate(scene, model), memory_bytes()
     if there and needs.memory_bytes > there:
         needed, machine = (with_prefix(number, "B") for number in (needs.memory_bytes, there))
-        raise BeyondError(f"about {needed} of memory needed, {machine} available")
+        raise BeyondError(f"{choice} would be next: about {needed} of memory needed, {machine} available")
     if before + needs.time_s > LONGEST:
         own, all_of_it = with_time(needs.time_s), with_time(LONGEST)
         raise BeyondError(
-            f"about {own} of processor time after {with_time(before)}, {all_of_it} allowed for all solves"
+            f"{choice} would be next: about {own} of processor time after {with_time(before)}, {all_of_it} "
+            "allowed for all solves"
         )
     return needs.time_s
-
-
-def companions(grids: Sequence[Solution]) -> list[Solution]:
-    """The finest of some grids and the next two, none of them hardly coarser than the one before."""
-    picked = [grids[-1]]
-    for each in reversed(grids[:-1]):
-        if len(picked) < 3 and each.member.size >= NEAREST * picked[-1].member.size:
-            picked.append(each)
-    return picked

@@ -13,14 +13,16 @@ from sam.scene import Grid, Scene
 from verification.cost.advice import kind_of, table
 from verification.cost.advice_rows import COATED, DEEP, ELASTIC, LOAD_STEPS, NEVER, SLIDING, YIELDING
 from verification.runs import models
-from verification.uncertainty import alone, coarser, has_history, why_not
+from verification.uncertainty import RATIO, alone, coarser, has_history, why_not
 
 ADVISED = {ELASTIC: "p_max_Pa", COATED: "p_max_Pa"} | dict.fromkeys((YIELDING, DEEP, SLIDING), "peeq_max")
 """Kind of scene -> the quantity that its table of advice is about."""
 # Of the accuracy: the errors that the table of advice is asked for. The uncertainty is 3 to 4 times an error
 # in the median (case uncertainty-study), and its parts by cells and load steps add up.
 CELLS_SHARE, STEPS_SHARE = 1 / 4.5, 1 / 9
-FEWEST_CELLS = 10  # in the contact radius: the coarsest of three grids then has more than four
+FEWEST_CELLS = 4.2  # in the contact radius of the coarsest of three grids: below four it has no uncertainty
+# From each of the first three grids to the next, so that rounding to whole cells leaves 1.3; elements: more.
+RATIOS = {models.SAM: 1.4, models.FEM: RATIO, models.FEM_3D: RATIO}
 FEWEST_STEPS = 6  # 4, 3 and 2 steps may agree by chance: linear hardening, 0.29 of the error
 MOST_STEPS = 1000
 MOST_CELLS = 4097
@@ -45,15 +47,16 @@ def quantities_of(scene: Scene) -> tuple[str, ...]:
 
 
 def first_choice(scene: Scene, model: str) -> Choice:
-    """With what the first three grids of a scene end.
+    """With what the first three grids of a scene end: what the table of advice has, or for a scene with a
+    history the fewest cells and steps, as a grid that is finer than it has to be costs more there.
 
     Raises ModelError as `expected`, and for quantities without an uncertainty.
     """
-    expected(scene, model)
+    advised = expected(scene, model)
     for name in quantities_of(scene):
         if reason := why_not(name, scene):
             raise models.ModelError(f'solver.accuracy_of = ["{name}"]: {reason}: remove it')
-    return Choice(FEWEST_CELLS, FEWEST_STEPS if has_history(scene) else 0)
+    return Choice(FEWEST_CELLS * RATIOS[model] ** 2, FEWEST_STEPS) if has_history(scene) else advised
 
 
 def expected(scene: Scene, model: str) -> Choice:
@@ -74,7 +77,10 @@ def expected(scene: Scene, model: str) -> Choice:
     steps = 0
     if has_history(scene):
         steps = ceil(_resolution(kind, LOAD_STEPS, accuracy * STEPS_SHARE, 1.0) or scene.loading.steps)
-    return Choice(max(cells, FEWEST_CELLS), min(max(steps, FEWEST_STEPS), MOST_STEPS) if steps else 0)
+    return Choice(
+        max(cells, FEWEST_CELLS * RATIOS[model] ** 2),
+        min(max(steps, FEWEST_STEPS), MOST_STEPS) if steps else 0,
+    )
 
 
 def chosen_scene(scene: Scene, model: str, choice: Choice) -> Scene:

@@ -166,7 +166,7 @@ def depths_of_maxima(scene: Scene, fine: Result) -> tuple[float, ...] | None:
 
 
 def _cell_members(scene: Scene, model: str, room: Room, depths: Sequence[float] | None) -> list[Member]:
-    other = scene if has_history(scene) else _in_one_step(scene)
+    other = scene if has_history(scene) else in_one_step(scene)
     if scene.patch_surface is None and model != models.SAM:
         count = scene.fem.cells_per_radius
         ratio = _ratio_of_meshes(count) if model == models.FEM else RATIO
@@ -181,7 +181,7 @@ def _ratio_of_meshes(count: int) -> float:
     return min(max(sqrt(count / LEFT), RATIO), WIDEST)
 
 
-def _in_one_step(scene: Scene) -> Scene:
+def in_one_step(scene: Scene) -> Scene:
     """The same load of an elastic body at once; a way is gone as it is."""
     if scene.strokes.count:
         return scene
