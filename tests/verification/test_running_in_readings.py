@@ -98,7 +98,7 @@ def test_where_the_plastic_zone_reaches_the_last_layer_there_are_more(solved):
     assert printed.scene.grid.depths[:-2] == scenes["bulk-seed-7"].grid.depths
     assert renewed.scene.grid.depths[-1] == 36.2e-6 and len(scenes) == 102
     assert [len(found.deepened), list(found.lost)] == [2, ["bulk, surface 7, renewed"]]
-    assert any("bulk, surface 7, as printed, to 19.4 µm" in note for note in CASE.notes(found))
+    assert any("bulk, surface 7, printed inputs, to 19.4 µm" in note for note in CASE.notes(found))
 
 
 @pytest.mark.parametrize(
@@ -119,7 +119,7 @@ def test_runs_that_are_lost_are_named_counted_and_left_out(solved):
     assert rows["curve A: friction falls"][5::4] == ["10 of 10", "9 of 10, none on 1"]
     assert rows["bulk: worn in the first six cycles"][9:] == ["0 of 10, none on 10", *["not decided"] * 2]
     cost = {row[0]: row[1] for row in others[-1].rows}
-    assert (cost["bulk, as printed"], cost["bulk, renewed"], cost["curve A, renewed"]) == (
+    assert (cost["bulk, printed inputs"], cost["bulk, renewed"], cost["curve A, renewed"]) == (
         "10 of 10",
         "0 of 10",
         "9 of 10",

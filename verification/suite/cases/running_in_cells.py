@@ -96,7 +96,8 @@ class RunningInCells(DeeperWhereItYields):
         return [
             (
                 "Runs",
-                f"with the printed inputs, {EFFORT.cells} × {EFFORT.cells} µm, {LAST} cycles, {EFFORT.steps} load steps",
+                f"with the printed inputs, {EFFORT.cells} × {EFFORT.cells} µm, {LAST} cycles, "
+                f"{EFFORT.steps} load steps",
             ),
             ("Surfaces", ", ".join(map(str, EFFORT.seeds))),
             ("Cells in the window of smoothing", windows),

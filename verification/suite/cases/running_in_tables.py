@@ -199,8 +199,8 @@ def at_rest_from(new_strain: np.ndarray) -> float:
 
 
 REST_NOTE = (
-    "As printed, a cycle that neither strains nor wears the body is followed by cycles like it (gate "
-    "repeats); from which cycle on that is so is a finding, as nothing in the model bounds it."
+    "With the printed inputs, a cycle that neither strains nor wears the body is followed by cycles like it "
+    "(gate repeats); from which cycle on that is so is a finding, as nothing in the model bounds it."
 )
 
 
@@ -330,6 +330,19 @@ def _a_cycle(result: Result, name: str) -> float:
 
 def _mean(values: Sequence[float]) -> float:
     return float(np.mean(values)) if len(values) else float("nan")
+
+
+def lost_height_note(scars: Mapping[str, Scar]) -> str:
+    """How much of the relief is worn away where most is. scars: by name of the run, at least one."""
+    most = max(scars, key=lambda name: scars[name].lost)
+    scar = scars[most]
+    more = [sum(one.lost > share for one in scars.values()) for share in (0.5, 1.0)]
+    return (
+        f"Worn depth over relief (highest less lowest place before any wear): above a half in {more[0]} of "
+        f"{len(scars)} runs, above one in {more[1]}; the most is {scar.lost:.2f}, "
+        f"{1e6 * np.nanmax(scar.worn):.3g} of {1e6 * np.ptp(scar.height):.3g} µm ({most}). How far the flat "
+        "surface of the model is off below such scars is not known."
+    )
 
 
 def lost_note(lost: Mapping[str, Result]) -> str:
