@@ -10,11 +10,12 @@ from made_results import Made, context
 from test_running_in_cases import made
 
 from sam.scene import Status
+from verification.compare.running_in_measures import Scar
 from verification.figures.running_in_readings import side_by_side
 from verification.suite.cases import running_in
 from verification.suite.cases.running_in_scenes import Effort, Reading
 from verification.suite.cases.running_in_statements import BULK, DUCTILE, NAMES, A, B
-from verification.suite.cases.running_in_tables import at_rest_from
+from verification.suite.cases.running_in_tables import at_rest_from, lost_height_note
 
 CASE = running_in.CASES[0]
 TEN = tuple(range(1, 11))
@@ -99,6 +100,17 @@ def test_where_the_plastic_zone_reaches_the_last_layer_there_are_more(solved):
     assert renewed.scene.grid.depths[-1] == 36.2e-6 and len(scenes) == 102
     assert [len(found.deepened), list(found.lost)] == [2, ["bulk, surface 7, renewed"]]
     assert any("bulk, surface 7, printed inputs, to 19.4 µm" in note for note in CASE.notes(found))
+
+
+def test_the_deepest_scar_is_set_against_the_relief():
+    flat = np.zeros((2, 2))
+    height = np.array([[1e-6, 0.0], [-1.5e-6, 0.5e-6]])
+    scars = {
+        name: Scar(np.arange(2.0), np.arange(2.0), height, flat, depth * np.eye(2), flat)
+        for name, depth in (("shallow", 1e-6), ("half", 1.5e-6), ("deep", 2.75e-6))
+    }
+    text = lost_height_note(scars)
+    assert "a half in 2 of 3 runs, above one in 1; the most is 1.10, 2.75 of 2.5 µm (deep)" in text
 
 
 @pytest.mark.parametrize(
