@@ -340,8 +340,9 @@ def lost_height_note(scars: Mapping[str, Scar]) -> str:
     return (
         f"Worn depth over relief (highest less lowest place before any wear): above a half in {more[0]} of "
         f"{len(scars)} runs, above one in {more[1]}; the most is {scar.lost:.2f}, "
-        f"{1e6 * np.nanmax(scar.worn):.3g} of {1e6 * np.ptp(scar.height):.3g} µm ({most}). How far the flat "
-        "surface of the model is off below such scars is not known."
+        f"{1e6 * np.nanmax(scar.worn):.3g} of {1e6 * np.ptp(scar.height):.3g} µm ({most})."
+        + " How far the flat surface of the model is off below such scars is not known."
+        * (more[0] > 0)
     )
 
 
