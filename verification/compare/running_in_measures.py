@@ -101,11 +101,6 @@ class Scar:
         return self.cell_area * float(np.nansum(self.worn))
 
     @property
-    def lost(self) -> float:
-        """Largest worn depth over the relief before any wear: the highest less the lowest place."""
-        return float(np.nanmax(self.worn) / np.ptp(self.height))
-
-    @property
     def force(self) -> float:
         """Sum of the pressure in N."""
         return self.cell_area * float(np.nansum(self.p))

@@ -334,15 +334,16 @@ def _mean(values: Sequence[float]) -> float:
 
 def lost_height_note(scars: Mapping[str, Scar]) -> str:
     """How much of the relief is worn away where most is. scars: by name of the run, at least one."""
-    most = max(scars, key=lambda name: scars[name].lost)
-    scar = scars[most]
-    more = [sum(one.lost > share for one in scars.values()) for share in (0.5, 1.0)]
+    depths = {name: float(np.nanmax(scar.worn)) for name, scar in scars.items()}
+    lost = {name: depth / float(np.ptp(scars[name].height)) for name, depth in depths.items()}
+    most = max(lost, key=lambda name: lost[name])
+    half, whole = (sum(share > limit for share in lost.values()) for limit in (0.5, 1.0))
     return (
-        f"Worn depth over relief (highest less lowest place before any wear): above a half in {more[0]} of "
-        f"{len(scars)} runs, above one in {more[1]}; the most is {scar.lost:.2f}, "
-        f"{1e6 * np.nanmax(scar.worn):.3g} of {1e6 * np.ptp(scar.height):.3g} µm ({most})."
+        f"Worn depth over relief (highest less lowest place before any wear): above a half in {half} of "
+        f"{len(lost)} runs, above one in {whole}; the most is {lost[most]:.2f}, {1e6 * depths[most]:.3g} of "
+        f"{1e6 * np.ptp(scars[most].height):.3g} µm ({most})."
         + " How far the flat surface of the model is off below such scars is not known."
-        * (more[0] > 0)
+        * (half > 0)
     )
 
 
