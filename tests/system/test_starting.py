@@ -11,6 +11,7 @@ from builders import scene_text
 from sam.scene import Scene, load_scene
 from sam.scene.load import parse_toml
 from verification.app.cli import STARTS, main
+from verification.app.compared import asked
 from verification.app.starting import KINDS, SCENES, json_schema
 from verification.runs import models
 
@@ -38,12 +39,19 @@ def test_the_command_line_knows_every_kind():
 @pytest.mark.parametrize("kind", STARTS)
 def test_a_new_scene_is_commented_and_can_be_solved(here, capsys, schema, kind):
     assert main(["new", kind]) == 0
-    assert f"samfem solve {kind}.toml" in capsys.readouterr().out
+    advised = [line.split()[1:3] for line in capsys.readouterr().out.splitlines() if "  samfem " in line]
     text = (here / f"{kind}.toml").read_text()
     assert text.count("#") >= 3
     assert not list(schema.iter_errors(parse_toml(text.encode(), kind)))
     scene = load_scene(here / f"{kind}.toml")
-    models.check(scene, models.SAM)
+    for command, path in advised:
+        assert path == f"{kind}.toml" and main(["plan", path]) == 0
+        asked(scene) if command == "compare" else models.check(scene, models.SAM)
+    if ["compare", f"{kind}.toml"] not in advised:
+        with pytest.raises(models.ModelError):
+            asked(scene)
+    # users change the force or approach first, and the plastic zone would leave an extent of the file
+    assert scene.patch_surface or scene.grid is None or scene.grid.extent is None
     if kind not in SLOW:
         assert models.solve(scene, models.SAM).converged
 

@@ -188,7 +188,7 @@ def test_failed_gates_are_told_apart_by_what_they_are_about(results):
     assert "none failed; of" in sentence(read_stored(held), pairs_of(read_stored(held)))
     one = copy.deepcopy(held)
     one["cases"][0]["status"] = "not run"
-    assert "none failed, 1 case did not run; of" in sentence(read_stored(one), pairs_of(read_stored(one)))
+    assert sentence(read_stored(one), pairs_of(read_stored(one))).endswith(" 1 further case: 1 did not run.")
     for gate, words in (
         ("peers.step-16", "1 failed (none about a result; 1 about a cost)"),
         ("peers.same-solution", "1 failed (1 about a result)"),

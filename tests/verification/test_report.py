@@ -139,6 +139,7 @@ def test_named_case_runs_at_any_level(tmp_path):
     assert [case["name"] for case in results(tmp_path / "out")["cases"] if case["status"] != "not run"] == [
         "slow"
     ]
+    assert {case["unmet"] for case in results(tmp_path / "out")["cases"]} == {"", "not asked for"}
 
 
 def test_unknown_case_is_exit_code_2_and_nothing_is_created(tmp_path, capsys):
@@ -281,9 +282,10 @@ def test_a_machine_that_cannot_draw_in_space_says_so_on_the_page(tmp_path, seen)
 
 def test_page_says_what_held_and_why(tmp_path):
     run(tmp_path / "out")
-    assert "2 of 4 gates hold, 2 failed" in page_of(tmp_path / "out", "index.html").text
+    index = page_of(tmp_path / "out", "index.html").text
+    assert "2 of 4 gates hold, 2 failed" in index and "1 further case: 1 of the full level." in index
     text = page_of(tmp_path / "out").text
-    assert "2 of 3 cases failed." in text and "Did not run" in text
+    assert "2 of 3 cases failed." in text and "Not in this report" in text
     assert [text.index(f"{each} case") for each in ("Bad", "Good", "Slow")] == sorted(
         text.index(f"{each} case") for each in ("Bad", "Good", "Slow")
     )

@@ -290,9 +290,9 @@ class TestTables:
         judged = [judge(statement, [as_the_paper_says()] * 5) for statement in STATEMENTS]
         own = {"given": (LIMITS[B][0], found[B, 1])}
         tables = (
-            cases_table("as printed", found),
-            statements_table({"as printed": judged, "renewed": judged}),
-            regimes_table("as printed", LIMITS, found, {B: [(4, 1), (2, 0)]}),
+            cases_table("printed inputs", found),
+            statements_table({"printed inputs": judged, "renewed": judged}),
+            regimes_table("printed inputs", LIMITS, found, {B: [(4, 1), (2, 0)]}),
             varied_table(own),
             new_strain_table({name: {B: [made().result.tables["cycles"]] * 2} for name in ("one", "two")}),
             cost_table({"two runs": [made().result] * 2}),
@@ -318,7 +318,7 @@ class TestTables:
         scar, own = made().scar, LIMITS[B][0]
         assert held_of(scar, replace(own, first=0.9 * scar.p.max()), (0.1, 0.4)) == (4, 4)
         assert held_of(scar, replace(own, first=1.1 * scar.p.max()), (0.1, 0.4)) == (4, 0)
-        rows = regimes_table("as printed", LIMITS, {}, {B: [(4, 1), (2, 0)]}).rows
+        rows = regimes_table("printed inputs", LIMITS, {}, {B: [(4, 1), (2, 0)]}).rows
         assert [row[8] for row in rows] == ["0 of 0", "0 of 0", "1 of 6", "0 of 0", "0 of 0"]
 
     def test_fates_follow_from_the_pressures(self):

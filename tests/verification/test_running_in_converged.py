@@ -143,8 +143,9 @@ def test_tables_and_the_figure_show_every_surface():
     assert [row[0] for row in tables[0].rows] == [str(seed) for seed in SEEDS] and tables[0].rows[1][
         -1
     ] == "–"
-    held, missed = CASE.notes(found)
-    assert "3 of the 5 surfaces" in held and "1 (18%; 1 % more load changes it by +0%), 3 (18%" in missed
+    held, missed, few = CASE.notes(found)
+    assert "3 of 6 surfaces" in held and few.endswith("surface 2 (1 µm³).")
+    assert "1 (18%; 1 % more load changes it by +0%), 3 (18%" in missed
     (plot,) = CASE.figures(found)
     assert list(findings(plot.drawing.figure)) == []
     assert len(plot.drawing.data["surface"]) == len(SEEDS) * len(CELLS)

@@ -50,7 +50,7 @@ def test_the_nearest_of_the_best_points_comes_first(printed):
     assert found.best == [2, 0]
     assert found.away[[0, 1, 2]] == pytest.approx([0.4, 0.0, 0.04])
     table = fitted.fitted_table(found)
-    assert table.columns == ("input", "as printed", "point 2: 9 hold", "point 0: 9 hold")
+    assert table.columns == ("input", "printed inputs", "point 2: 9 hold", "point 0: 9 hold")
     assert all(len(row) == len(table.columns) for row in table.rows)
     assert {name: value for name, value, *_ in table.rows}["B of Swift's law [MPa]"] == "1.78e+03"
 

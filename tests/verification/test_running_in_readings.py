@@ -10,11 +10,12 @@ from made_results import Made, context
 from test_running_in_cases import made
 
 from sam.scene import Status
+from verification.compare.running_in_measures import Scar
 from verification.figures.running_in_readings import side_by_side
 from verification.suite.cases import running_in
 from verification.suite.cases.running_in_scenes import Effort, Reading
 from verification.suite.cases.running_in_statements import BULK, DUCTILE, NAMES, A, B
-from verification.suite.cases.running_in_tables import at_rest_from
+from verification.suite.cases.running_in_tables import at_rest_from, lost_height_note
 
 CASE = running_in.CASES[0]
 TEN = tuple(range(1, 11))
@@ -98,7 +99,18 @@ def test_where_the_plastic_zone_reaches_the_last_layer_there_are_more(solved):
     assert printed.scene.grid.depths[:-2] == scenes["bulk-seed-7"].grid.depths
     assert renewed.scene.grid.depths[-1] == 36.2e-6 and len(scenes) == 102
     assert [len(found.deepened), list(found.lost)] == [2, ["bulk, surface 7, renewed"]]
-    assert any("bulk, surface 7, as printed, to 19.4 µm" in note for note in CASE.notes(found))
+    assert any("bulk, surface 7, printed inputs, to 19.4 µm" in note for note in CASE.notes(found))
+
+
+def test_the_deepest_scar_is_set_against_the_relief():
+    flat = np.zeros((2, 2))
+    height = np.array([[1e-6, 0.0], [-1.5e-6, 0.5e-6]])
+    scars = {
+        name: Scar(np.arange(2.0), np.arange(2.0), height, flat, depth * np.eye(2), flat)
+        for name, depth in (("shallow", 1e-6), ("half", 1.5e-6), ("deep", 2.75e-6))
+    }
+    text = lost_height_note(scars)
+    assert "a half in 2 of 3 runs, above one in 1; the most is 1.10, 2.75 of 2.5 µm (deep)" in text
 
 
 @pytest.mark.parametrize(
@@ -119,7 +131,7 @@ def test_runs_that_are_lost_are_named_counted_and_left_out(solved):
     assert rows["curve A: friction falls"][5::4] == ["10 of 10", "9 of 10, none on 1"]
     assert rows["bulk: worn in the first six cycles"][9:] == ["0 of 10, none on 10", *["not decided"] * 2]
     cost = {row[0]: row[1] for row in others[-1].rows}
-    assert (cost["bulk, as printed"], cost["bulk, renewed"], cost["curve A, renewed"]) == (
+    assert (cost["bulk, printed inputs"], cost["bulk, renewed"], cost["curve A, renewed"]) == (
         "10 of 10",
         "0 of 10",
         "9 of 10",

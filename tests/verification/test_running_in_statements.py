@@ -115,8 +115,10 @@ class TestStatements:
     def test_notes_name_what_fails_and_what_is_close(self):
         changed = as_the_paper_says()
         changed[A] = replace(changed[A], volume=0 * changed[A].volume)
-        text = findings_note("as printed", [judge(each, [changed] * 10) for each in STATEMENTS])
-        assert text.startswith("As printed: of 17 statements 15 held, 2 failed, 0 not decided by the median")
+        text = findings_note("printed inputs", [judge(each, [changed] * 10) for each in STATEMENTS])
+        assert text.startswith(
+            "Printed inputs: of 17 statements 15 held, 2 failed, 0 not decided by the median"
+        )
         failed = text[text.index("Failed") :]
         assert "curve A: wears linearly" in failed and "hardening and bulk below A and B" in failed
         assert "Decided by less" not in text

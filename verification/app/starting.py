@@ -13,7 +13,8 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from sam.scene import parse_toml, read_scene
+from sam.scene import load_scene, parse_toml, read_scene
+from verification.runs import models
 from verification.runs.files import FolderError, write_atomically
 from verification.text.console import print_table
 
@@ -41,12 +42,14 @@ def new(kind: str, out: Path | None) -> int:
     target = out or Path(f"{kind}.toml")
     _copy(_STARTS.joinpath(f"{kind}.toml"), target)
     print(f"{target}: {KINDS[kind]}")
-    for command, what in (
-        ("plan", "what it will compute"),
-        ("solve", "solves it"),
-        ("compare", "SAM and FEM"),
-    ):
-        print(f"  samfem {command} {target}".ljust(40) + what)
+    advice = {"plan": "what it will compute", "solve": "solves it"}
+    try:
+        models.cheapest_reference(load_scene(target))
+        advice["compare"] = "SAM and FEM"
+    except models.ModelError:
+        print("  by SAM alone: samfem plan says why no finite-element model can represent it")
+    for command, what in advice.items():
+        print(f"  samfem {command} {target}".ljust(40), what)
     return 0
 
 

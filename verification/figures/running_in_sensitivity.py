@@ -45,14 +45,20 @@ def best_pair(
     printed: Sequence[float],
 ) -> Drawing:
     """A mark for each point over two inputs, coloured by the number of statements that hold there. printed:
-    the two inputs as printed.
+    the two printed inputs.
     """
     table = Columns(*labels, "statements that hold")
     with sheet(5.6, 4.2) as (figure, axis):
         marks = axis.scatter(*places, c=counts, cmap="viridis", s=36, edgecolors=BLACK, linewidths=0.4)
         figure.colorbar(marks, ax=axis, label="statements that hold", ticks=MaxNLocator(integer=True))
         axis.plot(
-            *printed, "x", color=VERMILION, markersize=9, markeredgewidth=2, clip_on=False, label="as printed"
+            *printed,
+            "x",
+            color=VERMILION,
+            markersize=9,
+            markeredgewidth=2,
+            clip_on=False,
+            label="printed inputs",
         )
         axis.set(xlabel=labels[0], ylabel=labels[1], axisbelow=True)
         for of, scale, yes in zip(

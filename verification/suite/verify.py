@@ -30,6 +30,7 @@ from verification.suite.freshness import older
 from verification.suite.judging import GateStatus, Verdict, evaluate, load_gates
 from verification.suite.listing import unknown_cases
 from verification.suite.pages import INDEX, remove_pages, write_report
+from verification.suite.pages.stored import ASKED, ELSEWHERE, NAMED
 from verification.suite.records import gates_csv, junit_xml, origin, results_json, text_rows, unreadable
 from verification.text.console import print_table
 
@@ -99,12 +100,16 @@ def finish(
 ) -> int:
     """Judge the cases that ran, write the report into `out` and say what is red.
 
-    known: all cases by name; unmet: name -> why a case could not run here; stays: of an earlier report.
+    known: all cases by name; unmet: name -> why a case could not run here; stays: of an earlier report. Of
+    the other cases that did not run results.json says under `unmet` where they belong.
     Returns 0 when every gate of every case that ran held, else 1.
     """
     results = _judged(ran, known, level=level, stays=stays) | {"command": command}
     for record in results["cases"]:
         record["unmet"] = unmet.get(record["name"], "")
+        if record["status"] == GateStatus.NOT_RUN and not record["unmet"]:
+            levels = known[record["name"]].levels
+            record["unmet"] = ELSEWHERE[ASKED if level in levels else next(iter(levels), NAMED)]
     _write(results, out, older(results) if stays.cases else {})
     rows, failing = text_rows(results["gates"])
     print_table(("case", "gate", "error", "tolerance", "status"), rows, failing)

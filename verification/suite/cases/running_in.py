@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Running-in: the five cases of Bosman & Schipper (2011), Figs. 13-17, on ten surfaces, against what the
-paper says of them; as printed, and beside it a second reading of what the paper leaves open.
+paper says of them; with the printed inputs, and beside it a second reading of what the paper leaves open.
 
 Gates are for what must be so: sums that agree, cycles that are complete, friction between its two
 coefficients. What the paper says of its own surface is judged in a table, beside the pressures at which a
@@ -40,6 +40,7 @@ from verification.suite.cases.running_in_tables import (
     cost_table,
     deepened_note,
     findings_note,
+    lost_height_note,
     lost_note,
     new_strain_table,
     of_case,
@@ -67,8 +68,8 @@ class DeeperWhereItYields(Case):
 
 
 class RunningIn(DeeperWhereItYields):
-    """Every case on every surface in both readings; then what is varied as printed; gates over all of them,
-    statements over those that converged.
+    """Every case on every surface in both readings; then what is varied of the printed inputs; gates over all
+    of them, statements over those that converged.
     """
 
     def ahead(self, context: Context) -> Iterator[Scene]:
@@ -106,6 +107,8 @@ class RunningIn(DeeperWhereItYields):
         if found.runs[0].judged:
             yield FINDINGS_NOTE
             yield REST_NOTE
+        if scars := {name: one.scar for name, one in found.named.items() if one.result.converged}:
+            yield lost_height_note(scars)
         if found.deepened:
             yield deepened_note(found.deepened)
         if found.lost:
@@ -181,7 +184,7 @@ def setup_renewed(scene: Scene) -> list[tuple[str, str]]:
     waves = f"waves of {low:g} to {high:g} µm"
     return [
         ("Second reading", f"{Reading.RENEWED}; for curve B: running-in-renewed.toml"),
-        ("Layer", f"down to 1 µm σ_y with {LAYER_ALPHA:g} ε in place of 10⁶ ε, bulk as printed"),
+        ("Layer", f"down to 1 µm σ_y with {LAYER_ALPHA:g} ε in place of 10⁶ ε, bulk with the printed 10⁶"),
         ("Counter-surface", f"{1e9 * surface.sq:g} nm rms, {waves}, another one in each cycle"),
         ("Grid", f"{_layers(scene)}, to {1e6 * scene.grid.depths[-1]:g} µm"),
     ]
@@ -270,7 +273,7 @@ def regimes_plot(runs: Runs, reached: Mapping[str, tuple[float, float]]) -> Plot
 
 
 def led(reading: Reading, name: str) -> str:
-    """A name of a file, led by that of the reading unless it is as printed."""
+    """A name of a file, led by that of the reading unless it is that of the printed inputs."""
     return name if reading is Reading.PRINTED else f"{reading.short}-{name}"
 
 

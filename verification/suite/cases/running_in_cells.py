@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What the paper says of its five materials, as printed, on cells of 1 um and on those that give the worn
-volume within a tenth (wear-converged): which verdicts the cells decide.
+"""What the paper says of its five materials, with the printed inputs, on cells of 1 um and on those that give
+the worn volume of most surfaces within a tenth (wear-converged): which verdicts the cells decide.
 """
 
 from __future__ import annotations
@@ -96,7 +96,8 @@ class RunningInCells(DeeperWhereItYields):
         return [
             (
                 "Runs",
-                f"as printed, {EFFORT.cells} × {EFFORT.cells} µm, {LAST} cycles, {EFFORT.steps} load steps",
+                f"with the printed inputs, {EFFORT.cells} × {EFFORT.cells} µm, {LAST} cycles, "
+                f"{EFFORT.steps} load steps",
             ),
             ("Surfaces", ", ".join(map(str, EFFORT.seeds))),
             ("Cells in the window of smoothing", windows),
@@ -154,8 +155,8 @@ CASES = (
     RunningInCells(
         "running-in-cells",
         "What the paper says, on finer cells",
-        "Which verdicts about the paper's statements change on cells that give the worn volume within a "
-        "tenth?",
+        "Which verdicts about the paper's statements change on cells that give the worn volume of most "
+        "surfaces within a tenth?",
         levels=("full",),
     ),
 )

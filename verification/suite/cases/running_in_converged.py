@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Worn volume on finer cells, layers and load steps, each alone, with the surface shifted against the cells;
-the cells that give it within a tenth, and what they cost.
+on how many surfaces the recommended cells give it within a tenth, and what they cost.
 
 The scar is smoothed over a length: the window has as many cells as that takes. Sizes of cells are those of
 which an odd number makes up the length, so that it is the same on all grids to the bit.
@@ -159,6 +159,11 @@ class Found:
         """Surfaces that wear enough to be judged."""
         return [seed for seed in SEEDS if self.mean(seed, FINEST) > ENOUGH]
 
+    @cached_property
+    def good(self) -> list[int]:
+        """Surfaces that wear enough and whose volume is within a tenth on the recommended cells."""
+        return [seed for seed in self.worn if self.off(seed, DEFAULT) <= TENTH]
+
     def off(self, seed: int, cells: int) -> float:
         """Of the shift that is furthest off the finest cells, over the volume on those."""
         finest = self.mean(seed, FINEST)
@@ -206,13 +211,13 @@ class WearConverged(Case):
     def measure(self, found: Found) -> dict[str, Measured]:
         finest = np.median([found.mean(seed, FINEST) for seed in SEEDS])
         judged = {
-            "cells": [found.off(seed, DEFAULT) for seed in found.worn],
             "heights": [found.heights_off(seed, DEFAULT) for seed in found.worn],
             "layers": [found.left(seed, LAYERS) for seed in found.worn],
             "steps": [found.left(seed, LOADS) for seed in found.worn],
         }
         return {
             "worn": Measured(len(found.worn)),
+            "cells": Measured(len(found.good), unit=f"of {len(SEEDS)} surfaces"),
             **{name: Measured(kth(values, ASKED)) for name, values in judged.items()},
             "volume": Measured(found.error / finest),
         }
@@ -241,19 +246,21 @@ class WearConverged(Case):
         yield cost_table(found)
 
     def notes(self, found: Found) -> Iterator[str]:
-        good = [seed for seed in found.worn if found.off(seed, DEFAULT) <= TENTH]
         yield (
             f"{per_wave(DEFAULT):g} cells in the shortest wave and a smoothing of constant length give the "
-            f"volume within {TENTH:.0%} at every shift on {len(good)} of the {len(found.worn)} surfaces that "
-            f"wear more than {CUBIC * ENOUGH:g} µm³."
+            f"volume within {TENTH:.0%} at every shift on {len(found.good)} of {len(SEEDS)} surfaces; "
+            f"{len(found.worn)} wear more than {CUBIC * ENOUGH:g} µm³."
         )
-        if bad := [seed for seed in found.worn if seed not in good]:
+        if bad := [seed for seed in found.worn if seed not in found.good]:
             words = ", ".join(
                 f"{seed} ({found.off(seed, DEFAULT):.0%}; 1 % more load changes it by "
                 f"{found.change(seed, MORE_LOAD):+.0%})"
                 for seed in bad
             )
             yield f"Not on surface {words}."
+        if little := [seed for seed in SEEDS if seed not in found.worn]:
+            words = ", ".join(f"{seed} ({CUBIC * found.mean(seed, FINEST):.3g} µm³)" for seed in little)
+            yield f"Not judged, as hardly anything wears: surface {words}."
 
     def figures(self, found: Found) -> Iterator[Plot]:
         volumes = {
@@ -375,7 +382,7 @@ def cost_table(found: Found) -> SmallTable:
 CASES = (
     WearConverged(
         "wear-converged",
-        "Worn volume that is converged",
+        "Worn volume on finer cells, and on how many surfaces it converges",
         "How fine must cells, layers and load steps be for the worn volume, wherever the cells lie, and what "
         "does that cost?",
         (

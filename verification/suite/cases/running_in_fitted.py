@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The points of a study of running-in at which most statements hold together: how far they are from the
-inputs as printed, what they would mean for the body, and whether that is plausible.
+printed inputs, what they would mean for the body, and whether that is plausible.
 
 They are chosen by their result, so that they are fitted, and each has a surface of its own.
 """
@@ -42,7 +42,7 @@ STEEL = (6.8e9, 8.2e9)  # Pa: 697 to 832 HV, 60 to 65 HRC by ASTM E140, of AISI 
 DISCS = (5e-9, 60e-9)  # m rms: polished to ground, as in running-in-physics
 POINTS = 3  # that are shown
 MATERIALS = (BULK, A, B)
-DISTANCE = "distance from the inputs as printed, in shares of the ranges (rms)"
+DISTANCE = "distance from the printed inputs, in shares of the ranges (rms)"
 
 
 @dataclass(frozen=True)
@@ -58,13 +58,13 @@ class Points:
 
     @property
     def away(self) -> np.ndarray:
-        """(points,) from the inputs as printed: root mean square of the shares of the ranges."""
+        """(points,) from the printed inputs: root mean square of the shares of the ranges."""
         found: np.ndarray = np.sqrt(np.mean((self.shares - printed_shares()) ** 2, axis=1))
         return found
 
     @property
     def best(self) -> list[int]:
-        """The points at which most hold, the nearest to the inputs as printed first."""
+        """The points at which most hold, the nearest to the printed inputs first."""
         most = np.flatnonzero(self.counts == self.counts.max())
         return [int(point) for point in most[np.argsort(self.away[most], kind="stable")]][:POINTS]
 
@@ -79,7 +79,7 @@ def share_of(one: Input, value: float) -> float:
 
 
 def printed_shares() -> np.ndarray:
-    """Of all inputs as printed, (inputs,)."""
+    """Of all printed inputs, (inputs,)."""
     return np.array([share_of(one, PRINTED[one.name]) for one in INPUTS])
 
 
@@ -90,7 +90,7 @@ def hardness(scene: Scene) -> tuple[float, float]:
 
 
 def fitted_table(points: Points) -> SmallTable:
-    """The points at which most statements hold, beside the inputs as printed."""
+    """The points at which most statements hold, beside the printed inputs."""
     best, away, printed = points.best, points.away, printed_shares()
     rows = [
         (one.words, one.shown(float(printed[n])), *(one.shown(float(points.shares[k, n])) for k in best))
@@ -102,9 +102,9 @@ def fitted_table(points: Points) -> SmallTable:
         ranges = (_range(each) for each in (hardness(points.printed[case]), *of_points))
         rows.append((f"hardness of the surface, {NAMES[case]} [GPa]", *ranges))
     return SmallTable(
-        "Fitted: inputs of the points at which most statements hold together, the nearest to those as "
-        f"printed first. Hardness: {TABOR[0]:g} to {TABOR[1]:g} σ_y at a strain of {STRAIN:.0%} (Tabor)",
-        ("input", "as printed", *(f"point {k}: {points.counts[k]} hold" for k in best)),
+        "Fitted: inputs of the points at which most statements hold together, the nearest to the "
+        f"printed ones first. Hardness: {TABOR[0]:g} to {TABOR[1]:g} σ_y at a strain of {STRAIN:.0%} (Tabor)",
+        ("input", "printed inputs", *(f"point {k}: {points.counts[k]} hold" for k in best)),
         rows,
     )
 
@@ -120,7 +120,7 @@ def fitted_note(points: Points) -> str:
     return (
         f"Fitted: at point {point}, {points.counts[point]} of {len(STATEMENTS)} statements hold together, "
         f"chosen of {len(points.shares)} points by this result, on one surface of its own; it is "
-        f"{points.away[point]:.2f} of the ranges away from the inputs as printed (two random points are "
+        f"{points.away[point]:.2f} of the ranges away from the printed inputs (two random points are "
         f"{1 / np.sqrt(6):.2f} apart). It would mean a surface hardness, by Tabor, of {'; '.join(said)}; "
         f"AISI 52100 hardened to 60 to 65 HRC has {_range(STEEL)} GPa. The counter-surface has "
         f"{1e9 * sq:.0f} nm rms, {judged} ({1e9 * DISCS[0]:.0f} to {1e9 * DISCS[1]:.0f} nm)."
@@ -136,7 +136,7 @@ def _beside(case: str, scene: Scene, printed: Scene) -> str:
         judged = f"{own[1] / STEEL[0]:.2f} times the softest"
     else:
         judged = "plausible"
-    return f"{NAMES[case]} {_range(own)} GPa, {judged} (as printed {_range(before)})"
+    return f"{NAMES[case]} {_range(own)} GPa, {judged} (printed inputs {_range(before)})"
 
 
 def _range(ends: tuple[float, float]) -> str:

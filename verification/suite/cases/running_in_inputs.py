@@ -26,7 +26,7 @@ from verification.suite.cases.running_in_scenes import (
 
 LAYER_LIMIT = 0.02  # of the layers of the printed scenes; curve B with 5 % keeps its 2.5 times as much
 SMOOTH = 0.5e-9  # m: below it the counter-surface is a plane
-NOMINAL = 1e-6  # m: thickness of the layer as printed
+NOMINAL = 1e-6  # m: printed thickness of the layer
 
 
 @dataclass(frozen=True)

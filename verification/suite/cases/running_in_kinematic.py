@@ -132,7 +132,7 @@ class RunningInKinematic(Case):
             ("Hardening", "assumed: one curve of first loading, isotropic, by back-stresses, and by halves"),
             ("Back-stresses", f"C = {', '.join(f'{c / 1e9:g}' for c in MODULI)} GPa"),
             ("Their recovery", ", ".join(f"{g:g}" for g in RECOVERY)),
-            ("Patch", f"{EFFORT.cells} × {EFFORT.cells} cells of 1 µm, one surface, as printed"),
+            ("Patch", f"{EFFORT.cells} × {EFFORT.cells} cells of 1 µm, one surface, printed inputs"),
             ("Cycles", f"{EFFORT.cycles} of {EFFORT.steps} steps up and down"),
         ]
 

@@ -2,8 +2,9 @@
 """The same body under other physics: how it hardens, what presses on it from cycle to cycle, and whether
 friction changes its sign; which statements of the paper hold in which of them.
 
-Everything else is as printed: materials, film, limits of strain and load. The patch has a quarter of the area
-of the printed scenes, so that all combinations take minutes; one surface, so that nothing is said of others.
+Everything else has the printed inputs: materials, film, limits of strain and load. The patch has a quarter of
+the area of the printed scenes, so that all combinations take minutes; one surface, so that nothing is said of
+others.
 """
 
 from __future__ import annotations

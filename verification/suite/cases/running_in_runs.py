@@ -154,7 +154,7 @@ class Readings:
 
     @property
     def on_one_surface(self) -> dict[str, tuple[Limits, History]]:
-        """The runs as printed on the surface of the scenes, and what is varied there; those that
+        """The runs with the printed inputs on the surface of the scenes, and what is varied there; those that
         converged.
         """
         printed = self.runs[0]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The scenes of the running-in cases: the five of verification/scenes/running-in-*.toml as printed, their
-second reading, and what is varied in them.
+"""The scenes of the running-in cases: the five of verification/scenes/running-in-*.toml with the printed
+inputs, their second reading, and what is varied in them.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ ROUGHNESS = {"sq": 10e-9, "cutoff_long": 32e-6, "cutoff_short": 12e-6, "hurst": 
 
 
 class Reading(StrEnum):
-    """How the paper is read, in words. PRINTED: with its numbers; RENEWED: with what it leaves open chosen
-    otherwise, see `renewed`.
+    """How the paper is read, in words. PRINTED: with its numbers, by our plastic loop; RENEWED: with what it
+    leaves open chosen otherwise, see `renewed`.
     """
 
-    PRINTED = "as printed"
+    PRINTED = "with the printed inputs"
     RENEWED = "weakly hardening layer, renewed counter-surface"
 
     @property
     def short(self) -> str:
         """For columns of tables and names of files."""
-        return "as printed" if self is Reading.PRINTED else "renewed"
+        return "printed inputs" if self is Reading.PRINTED else "renewed"
 
 
 @dataclass(frozen=True)

@@ -144,7 +144,7 @@ def in_tables(one: RunningInRun) -> RunningInRun:
 
 
 def bases_of(context: Context) -> dict[str, Scene]:
-    """The scene of each material as printed, on the grid and with the steps of the level."""
+    """The scene of each material with the printed inputs, on the grid and with the steps of the level."""
     effort = EFFORTS[context.level][1]
     return {case: reduced(context.scene(f"running-in-{case}"), effort) for case in effort.cases}
 

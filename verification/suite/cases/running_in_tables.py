@@ -199,8 +199,8 @@ def at_rest_from(new_strain: np.ndarray) -> float:
 
 
 REST_NOTE = (
-    "As printed, a cycle that neither strains nor wears the body is followed by cycles like it (gate "
-    "repeats); from which cycle on that is so is a finding, as nothing in the model bounds it."
+    "With the printed inputs, a cycle that neither strains nor wears the body is followed by cycles like it "
+    "(gate repeats); from which cycle on that is so is a finding, as nothing in the model bounds it."
 )
 
 
@@ -330,6 +330,21 @@ def _a_cycle(result: Result, name: str) -> float:
 
 def _mean(values: Sequence[float]) -> float:
     return float(np.mean(values)) if len(values) else float("nan")
+
+
+def lost_height_note(scars: Mapping[str, Scar]) -> str:
+    """How much of the relief is worn away where most is. scars: by name of the run, at least one."""
+    depths = {name: float(np.nanmax(scar.worn)) for name, scar in scars.items()}
+    lost = {name: depth / float(np.ptp(scars[name].height)) for name, depth in depths.items()}
+    most = max(lost, key=lambda name: lost[name])
+    half, whole = (sum(share > limit for share in lost.values()) for limit in (0.5, 1.0))
+    return (
+        f"Worn depth over relief (highest less lowest place before any wear): above a half in {half} of "
+        f"{len(lost)} runs, above one in {whole}; the most is {lost[most]:.2f}, {1e6 * depths[most]:.3g} of "
+        f"{1e6 * np.ptp(scars[most].height):.3g} µm ({most})."
+        + " How far the flat surface of the model is off below such scars is not known."
+        * (half > 0)
+    )
 
 
 def lost_note(lost: Mapping[str, Result]) -> str:

@@ -170,15 +170,14 @@ def sentence(stored: Stored, pairs: Sequence[Pair]) -> str:
     """What stands above the picture."""
     ran, red = len(stored.gates), len(stored.red)
     text = f"{ran - red} of {ran} gates hold, {red or 'none'} failed{_kinds(stored)}"
-    if count := len(stored.waiting):
-        text += f", {count} case{'s' * (count > 1)} did not run"
+    end = f" {stored.further}." if stored.further else ""
     if not pairs:
-        return f"{text}."
+        return f"{text}.{end}"
     inside = [sum(abs(pair.error) <= band for pair in pairs) for band in BANDS]
     worst = max(pairs, key=lambda pair: abs(pair.error))
     return (
         f"{text}; of {len(pairs)} single values of SAM beside a reference {inside[0]} lie within "
         f"{100 * BANDS[0]:g} %, {inside[1]} within {100 * BANDS[1]:g} %, and the farthest is "
         f"{100 * abs(worst.error):.0f} % off ({worst.quantity.split(' [')[0]}, {worst.case.case['title']}"
-        f"{'' if worst.gate else '; it has no gate'})."
+        f"{'' if worst.gate else '; it has no gate'}).{end}"
     )

@@ -23,7 +23,9 @@ NORMALISED = " over the larger of "
 """Such an error is no share of the quantity, but of what the refinement leaves."""
 UNGATED = "no gate"
 SAID = {
-    "renewed": "in the second reading (a weakly hardening layer, a counter-surface renewed in each cycle)"
+    "as printed": "with the printed inputs",
+    "printed inputs": "with the printed inputs",
+    "renewed": "in the second reading (a weakly hardening layer, a counter-surface renewed in each cycle)",
 }
 """Readings of the paper that its table names in short."""
 
@@ -207,7 +209,7 @@ class PaperStatements:
             ),
             (
                 judged.fitted and judged.most_at_a_point,
-                "are the most that hold together at one point of it",
+                "hold together at the best of its points, which is no bound",
                 INPUTS,
             ),
             (

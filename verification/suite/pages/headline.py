@@ -12,14 +12,17 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from verification.suite.pages.judged import FINER, INPUTS, NOT_RUN, PHYSICS, READINGS, Chance, Judged, Verdict
+from verification.suite.pages.statements import FOLLOWS
 from verification.suite.pages.stored import Stored
 
 QUESTION = "Does this model of running-in predict what its authors say, and on what does that depend?"
 PAGE = "running-in"
 MEANING = (
     "Behind a statement: the measure that decides it, and what is asked of it; V: worn volume, μ: "
-    "coefficient of friction, Sa: roughness, in brackets the cycle. As printed: with the inputs that the "
-    "paper prints, and ours where it prints none: surface, size of the layers' deviation, smoothing. "
+    "coefficient of friction, Sa: roughness, in brackets the cycle. Friction falls, or lies below another, "
+    "where it does by 0.001, a third of a per cent of 0.3; what lies below another as a ratio, by 0.1 %. "
+    "Printed inputs: those that the paper prints, and ours where it prints none: surface, size of the "
+    "layers' deviation, smoothing; the plastic loop is not the printed one, which is refused with wear. "
     "Second reading: a layer that hardens weakly, and a rough counter-surface that is new in each cycle. "
     "Both: the verdict by the median of the surfaces, and on how many of them the statement holds; `none "
     "on 2`: on two of them it says nothing. Share of points: of the study over inputs, each on another "
@@ -39,11 +42,15 @@ STUDIES = {
     INPUTS: "The study over the inputs",
     PHYSICS: "The study over hardening and loading",
 }
+UNTESTED = (
+    "That curve C is very close to curve B, so that the paper's Fig. 15 stands for both: curve C runs on one "
+    "surface (case running-in, other assumptions), and no statement asks for it."
+)
 MANY = 2  # of what is equal that is named
 COLUMNS = (
     "Fig.",
     "statement of the paper",
-    "as printed",
+    "printed inputs",
     "second reading",
     "share of points (90 %)",
     "decided by",
@@ -102,7 +109,8 @@ def depends(judged: Judged) -> dict[str, Iterator[str]]:
             _of_inputs(judged) if judged.chances else _missing(judged, INPUTS)
         ),
         "Hardening and loading": _of_physics(judged) if judged.physics else _missing(judged, PHYSICS),
-        "Statements that fail as printed": _of_failed(judged),
+        "Statements that fail with the printed inputs": _of_failed(judged),
+        "Not judged": iter((UNTESTED,)),
         "Size of the cells": iter((judged.note(FINER, "Verdicts"), judged.note(FINER, "One surface"))),
         "Wear in the last cycles": _of_last_cycles(judged),
     }
@@ -119,11 +127,23 @@ def _of_readings(judged: Judged) -> Iterator[str]:
     (held, agreed), *others = [_counted(each) for each in readings]
     yield "Yes." if held == count else "In part." if held else "No."
     yield (
-        f"As printed, {held} of its {count} statements on five materials hold by the median of the surfaces, "
-        f"{agreed} on at least 80 % of them"
+        f"With the printed inputs, {held} of its {count} statements on five materials hold by the median of "
+        f"the surfaces, {agreed} on at least 80 % of them"
         + "".join(f"; in a second reading ({_second(judged)}) {more} and {of}" for more, of in others)
         + "."
     )
+    own = {words: each for words, each in judged.verdicts.items() if words not in FOLLOWS}
+    held, *others = (sum(each.held for each in of) for of in zip(*own.values(), strict=True))
+    yield (
+        f"{count - len(own)} of the {count} follow from others: of the {len(own)} independent ones {held} "
+        "hold" + "".join(f", in the second reading {more}" for more in others) + "."
+    )
+    if coarse := [words for words in judged.refuted if words in own and own[words][0].held]:
+        yield (
+            f"With the printed inputs {len(coarse)} of these {held} ({'; '.join(coarse)}) failed on finer "
+            "cells where those were tried, on one surface; not counting such, "
+            f"{held - len(coarse)} of {len(own)} hold."
+        )
 
 
 def _second(judged: Judged) -> str:
@@ -140,10 +160,13 @@ def _of_inputs(judged: Judged) -> Iterator[str]:
     if not known:
         yield "No statement says anything at any point."
         return
+    own = chances.keys() - FOLLOWS.keys()
+    likely = sum(known.get(words, 0.0) > 50.0 for words in own)
     least, most = (pick(known, key=lambda words: known[words]) for pick in (min, max))
     yield (
-        f"{judged.likely} of {len(chances)} statements hold at more than half of the points, {judged.sure} "
-        f"of them also by the lower bound ({judged.setup(INPUTS, 'Runs').partition(':')[0]}): from "
+        f"{judged.likely} of {len(chances)} statements ({likely} of the {len(own)} independent ones) hold at "
+        f"more than half of the points, {judged.sure} of them also by the lower bound "
+        f"({judged.setup(INPUTS, 'Runs').partition(':')[0]}): from "
         f"{known[least]:.0f} % ({least}) to {known[most]:.0f} % ({most})."
     )
     deciding = [each.deciders[0].partition(":")[0] for each in chances.values() if each.deciders]
@@ -159,7 +182,10 @@ def _of_inputs(judged: Judged) -> Iterator[str]:
     if seen := judged.setup(INPUTS, "Resolved"):
         yield f"Of the others the study does not tell: it resolves {seen}."
     if judged.fitted:
-        yield f"At no point do more than {judged.most_at_a_point} hold together (fitted)."
+        yield (
+            f"At the best of the points {judged.most_at_a_point} hold together (fitted), which is no bound: "
+            "nothing between the points was tried."
+        )
 
 
 def _of_physics(judged: Judged) -> Iterator[str]:
@@ -168,17 +194,17 @@ def _of_physics(judged: Judged) -> Iterator[str]:
     named = " or ".join(each.words for each in best[:MANY])
     more = f" and {len(best) - MANY} more" if len(best) > MANY else ""
     yield (
-        f"On one surface under each of {len(judged.physics)} ways to harden and to load it, at most {most} "
-        f"hold together, with {named}{more}; under the way of the paper {judged.plain}."
+        f"On one surface under each of {len(judged.physics)} ways to harden and to load it, {most} "
+        f"hold together at best, with {named}{more}; under the way of the paper {judged.plain}."
     )
     yield judged.note(PHYSICS, "One surface")
 
 
 def _of_failed(judged: Judged) -> Iterator[str]:
-    """From which pressures on the model removes metal, and whether what fails as printed holds under
-    anything.
+    """From which pressures on the model removes metal, and whether what fails with the printed inputs
+    holds under anything.
     """
-    table = judged.table(READINGS, "so", "What decides, as printed")
+    table = judged.table(READINGS, "so", "What decides")  # that of the printed inputs is the first
     rows = [dict(zip(table["columns"], row, strict=True)) for row in table.get("rows", ())]
     if rows:
         removed = ", ".join(f"{row['removed from, μ high']} ({row['case']})" for row in rows)
@@ -202,16 +228,16 @@ def _of_last_cycles(judged: Judged) -> Iterator[str]:
     still = judged.note(PHYSICS, "Cycles ")
     if still:
         yield f"In the study over hardening and loading c{still[1:]}"
-    table = judged.table(READINGS, "as printed: strain anew in")
+    table = judged.table(READINGS, "at rest from cycle")
     if table:
-        column = table["columns"].index("as printed: strain anew in")
+        column = 1  # of the printed inputs: on how many surfaces cells strain anew
         busy, of = (sum(int(row[column].split()[k]) for row in table["rows"]) for k in (0, 2))
         yield (
-            f"As printed cells strain anew in the last cycle in {busy} of {of} runs: under the same plane a "
-            "cycle without new strain is followed by cycles like it."
+            f"With the printed inputs cells strain anew in the last cycle in {busy} of {of} runs: under the "
+            "same plane a cycle without new strain is followed by cycles like it."
             if busy
-            else "As printed wear has ended because no cell strains anew in the last cycle in any of "
-            f"{of} runs: a cycle that neither strains nor wears the body is followed by cycles like it."
+            else "With the printed inputs wear has ended because no cell strains anew in the last cycle in "
+            f"any of {of} runs: a cycle that neither strains nor wears is followed by cycles like it."
         )
 
 
@@ -229,11 +255,12 @@ def _row(judged: Judged, words: str) -> tuple[str, ...]:
     made = "" if verdicts and verdicts[0].held else _remedy(judged, words)
     asked = judged.asked.get(words)
     text = f"{words} ({asked})" if asked else words
+    text += f"; follows from: {FOLLOWS[words]}" if words in FOLLOWS else ""
     return judged.statements[words], text, *readings, chance.text, decided, physics, made
 
 
 def _remedy(judged: Judged, words: str) -> str:
-    """What makes a statement hold that fails as printed, empty where it holds."""
+    """What makes a statement hold that fails with the printed inputs, empty where it holds."""
     printed, *others = judged.verdicts.get(words, [Verdict()])
     if printed.held:
         return ""

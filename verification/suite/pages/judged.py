@@ -17,7 +17,7 @@ READINGS, INPUTS, PHYSICS = "running-in", "running-in-sensitivity", "running-in-
 FINER = "running-in-cells"
 NOT_RUN = "did not run"
 HARDENING = {"I": "isotropic hardening", "H": "half kinematic hardening", "K": "kinematic hardening"}
-"""By the letters of the table of physics, the first as printed."""
+"""By the letters of the table of physics, the first with the printed inputs."""
 COUNTER = {
     "the same plane in place": "a plane",
     "in place, rough, new in each cycle": "a rough counter-surface, new in each cycle",
@@ -132,10 +132,13 @@ class Judged:
     @cached_property
     def verdicts(self) -> dict[str, list[Verdict]]:
         """Words of a statement -> its verdict in each reading."""
-        if not self._readings:
-            return {}
-        starts = [k for k, name in enumerate(self._readings["columns"]) if name == MEDIAN]
-        return {row[1]: [_verdict(row[k - 1 : k + 2]) for k in starts] for row in self._readings["rows"]}
+        return _verdicts(self._readings)
+
+    @cached_property
+    def refuted(self) -> list[str]:
+        """Statements that hold on the coarsest cells of the study of them, and on its finest do not."""
+        found = _verdicts(self.table(FINER, MEDIAN))
+        return [words for words, (first, *_, last) in found.items() if first.held and not last.held]
 
     @cached_property
     def chances(self) -> dict[str, Chance]:
@@ -156,7 +159,7 @@ class Judged:
     @property
     def fitted(self) -> Mapping:
         """The table of the points at which most statements hold; empty without."""
-        return self.table(INPUTS, "as printed", "Fitted")
+        return self.table(INPUTS, "input", "Fitted")
 
     @property
     def most_at_a_point(self) -> str:
@@ -200,6 +203,11 @@ class Judged:
         for column, cell in zip(columns[2:], row[2:], strict=True):
             for letter in cell.partition("(")[0].strip().replace("none", ""):
                 yield Physics(_changes(letter, column, columns[2]))
+
+
+def _verdicts(table: Mapping) -> dict[str, list[Verdict]]:
+    starts = [k for k, name in enumerate(table.get("columns", ())) if name == MEDIAN]
+    return {row[1]: [_verdict(row[k - 1 : k + 2]) for k in starts] for row in table.get("rows", ())}
 
 
 def _verdict(cells: Sequence[str]) -> Verdict:

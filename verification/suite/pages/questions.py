@@ -48,7 +48,7 @@ QUESTIONS = (
             ),
             Held("on ratios of such times and on their references", ("work-precision.*",)),
         ),
-        "The table below has each contact. A sphere at rest is a problem of two dimensions for finite "
+        "A sphere at rest is a problem of two dimensions for finite "
         "elements, which are axisymmetric there; for SAM every contact has three.",
     ),
     Question(
@@ -191,8 +191,7 @@ QUESTIONS = (
         QUESTION,
         "running-in",
         (PaperStatements(),),
-        "The table below has each statement. Of Bosman & Schipper (2011): what their text says of their five "
-        "runs.",
+        "Of Bosman & Schipper (2011): what their text says of their five runs.",
     ),
     Question(
         "What does the method of the paper do as it is printed?",

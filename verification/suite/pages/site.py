@@ -199,6 +199,7 @@ def _index(template: str, evidence: Evidence, answers: list[Answer]) -> str:
         headline=headline_of(stored),
         counted=groups,
         waiting=stored.waiting,
+        further=stored.further,
         origins=origins(stored.ran.values()),
     )
 

@@ -10,6 +10,14 @@ from dataclasses import dataclass
 from verification.suite.pages.stored import ShownCase, Stored
 
 STATEMENT = "statement of the paper"
+FOLLOWS = {
+    "bulk: hardly any wear later": "bulk: worn in the first six cycles",
+    "curve A: friction below that of bulk": "friction: A and hardening below bulk",
+}
+"""Statements that say no more than another one does -> that one. The first follows by what is asked of both:
+where nine tenths wear in 6 cycles, 15 of the other 19 wear at less than a twentieth of that rate. The second
+follows in words only: a difference of 0.001 is asked of it, and of that one a ratio of 0.999.
+"""
 VERDICTS = ("held", "failed", "not decided")
 
 
@@ -40,10 +48,12 @@ def _counts(table: Mapping) -> list[tuple[str, str]]:
         reading = name.partition(":")[0] if ":" in name else reading
         if rows and all(row[k].startswith(VERDICTS) for row in rows):
             words = f"{reading}, {name}" if reading else name
-            counts.append((words, _count([row[k] for row in rows])))
+            own = [row[k] for row in rows if FOLLOWS.keys().isdisjoint(row)]
+            more = f"; of the {len(own)} independent ones {_count(own)}" if len(own) < len(rows) else ""
+            counts.append((words, f"{_count([row[k] for row in rows])}, of {len(rows)}{more}"))
     return counts
 
 
 def _count(cells: Sequence[str]) -> str:
     found = Counter(verdict for cell in cells for verdict in VERDICTS if cell.startswith(verdict))
-    return f"{', '.join(f'{found[verdict]} {verdict}' for verdict in VERDICTS)}, of {len(cells)}"
+    return ", ".join(f"{found[verdict]} {verdict}" for verdict in VERDICTS)

@@ -3,12 +3,21 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 from verification.suite.judging import LIMITS, GateStatus
 
+ASKED, NAMED = "asked", "named"
+ELSEWHERE = {
+    "quick": "of the quick level",
+    "full": "of the full level",
+    NAMED: "run only when named",
+    ASKED: "not asked for",
+}
+"""Why a case did not run that nothing kept from it."""
 RED = (GateStatus.FAILED, GateStatus.UNCHECKED)
 
 
@@ -60,6 +69,14 @@ class Stored:
     def gates(self) -> list[Mapping]:
         """Of all cases that ran."""
         return [gate for each in self.ran.values() for gate in each.gates]
+
+    @property
+    def further(self) -> str:
+        """How many cases are not in the report, and why; empty where all are."""
+        known = (*ELSEWHERE.values(), "")
+        whys = Counter(why if why in known else "could not run here" for *_, why in self.waiting)
+        said = ", ".join(f"{count} {why or 'did not run'}" for why, count in whys.most_common())
+        return f"{len(self.waiting)} further case{'s' * (len(self.waiting) > 1)}: {said}" if said else ""
 
     @property
     def red(self) -> list[tuple[ShownCase, Mapping]]:
