@@ -11,6 +11,8 @@ from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from verification.runs.model_range import refusal as range_refusal, with_range
+
 if TYPE_CHECKING:
     from sam.scene import Checkpoint, Keep, Progress, Result, Scene
 
@@ -23,9 +25,13 @@ class ModelError(ValueError):
 
 
 def check(scene: Scene, model: str) -> None:
-    """Raise ModelError, which names the key, unless `model` can represent the scene."""
+    """Raise ModelError, which names the key, unless `model` can represent the scene, and the contact is within
+    the range of all models or the scene asks for it.
+    """
     if reason := _refusal(scene, model):
         raise ModelError(f"model {model}: {reason}")
+    if reason := range_refusal(scene):
+        raise ModelError(reason)
 
 
 def cheapest_reference(scene: Scene) -> str:
@@ -65,7 +71,8 @@ def solve(
     *,
     start: Checkpoint | None = None,
 ) -> Result:
-    """The result of `model`, its cost completed by cpu_s and peak_memory_bytes (of this process so far).
+    """The result of `model`, with by how much small strains of a flat half-space are off; its cost completed
+    by cpu_s and peak_memory_bytes (of this process so far).
 
     checkpoint, start: see the solvers; the times of a solve in parts add up, and its memory is that of the
     largest part. Raises ModelError for a scene that the model cannot represent.
@@ -83,7 +90,7 @@ def solve(
     result = _package(model).solve(
         scene, progress=progress, checkpoint=keep if checkpoint else None, start=start
     )
-    return replace(result, cost={**result.cost, **measured()})
+    return with_range(scene, replace(result, cost={**result.cost, **measured()}))
 
 
 def _package(model: str) -> ModuleType:

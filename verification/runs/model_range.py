@@ -1,0 +1,400 @@
+# SPDX-License-Identifier: MIT
+"""By how much the model of every scene, small strains of a flat half-space, is off, and where it ends.
+
+Of a sphere the errors are those that the cases model-limits measured against finite strain and true geometry
+at equal force, over its own a/R, in data/model_range.csv: chosen by hardening, linear in between, also
+between two Poisson's ratios. Any other contact is likened to a sphere: an
+ellipsoid to the one of its larger a_i/R_i, the edge of a punch to the one of the same slope, a rough body to
+the one of the same rms slope in contact, and what yields otherwise to the one of the same plastic strain. The
+last three are rules of thumb.
+
+Before a solve a/R is the larger of Hertz and a fully plastic contact, F = H pi a^2, H three times the yield
+stress at the strain 0.2 a/R (Tabor 1951; Johnson, Contact Mechanics (1985), section 6.3).
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from importlib import resources
+from math import acos, pi, sqrt
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+
+from sam.scene import COUNTER_HEIGHT, PEAK, CounterBody, Plasticity, Result, Scene, Status
+from sam.scene.surface import heights, roughness
+from verification.reference.elliptic import EllipticContact
+from verification.reference.hertz import effective_modulus
+from verification.reference.rounded_punch import RoundedPunch
+
+KEPT = "model_range.csv"
+LARGEST, STEEPEST = 0.5, 0.58
+"""a/R, and slope at the edge of a rounded punch, beyond which nothing is solved unless the scene asks for
+it."""
+LARGER = "the larger a_i/R_i"
+OUTSIDE = "outside_of_model"
+"""Last column of every table, and a field of every mesh, of a contact that is: its a/R."""
+SAID = 0.01
+"""Error from which on a quantity is named."""
+WORDS = {
+    "mean_pressure": "mean pressure",
+    "contact_radius": "contact radius",
+    "approach": "approach",
+    "peeq_max": "largest plastic strain",
+}
+COLUMNS = ("law", "poisson", "a_over_R", *WORDS, *(f"u_{name}" for name in WORDS))
+ELASTIC, SWIFT, PERFECT = "elastic", "Swift steel", "perfectly plastic"
+FIRST_YIELD = 1.6  # p0 over the yield stress below a sphere, nu = 0.3: Johnson (1985), section 6.1
+HARDENS = 1.05  # flow stress at a plastic strain of 5 % over that at none
+STRAIN_OF_SPHERE = 0.4
+"""Largest plastic strain over a/R below a sphere: 0.34 to 0.49 at a/R = 0.15 to 0.3 (Swift steel of the
+case)."""
+RMS_OF_SLOPE = sqrt(0.5)  # rms over the contact area of the slope of a sphere, over that at its edge
+
+
+@dataclass(frozen=True)
+class Like:
+    """The sphere that a contact is likened to: its a/R, and by what."""
+
+    ratio: float
+    by: str = ""
+
+    @property
+    def words(self) -> str:
+        return f"a/R = {self.ratio:.2g}" if not self.by else f"{self.by}, as of a sphere at {self.ratio:.2g} R"
+
+
+@cache
+def measured() -> dict[tuple[str, float], dict[str, np.ndarray]]:
+    """Law and Poisson's ratio of a measurement -> the columns of its rows in the table, a/R ascending."""
+    text = resources.files("verification").joinpath("data", KEPT).read_text(encoding="utf-8")
+    found: dict[tuple[str, float], list[dict[str, str]]] = {}
+    for row in csv.DictReader(text.splitlines()):
+        found.setdefault((row["law"], float(row["poisson"])), []).append(row)
+    return {
+        key: {name: np.array([float(row[name]) for row in rows if row[name]]) for name in COLUMNS[2:]}
+        for key, rows in found.items()
+    }
+
+
+def errors(law: str, poisson: float, ratio: float) -> dict[str, tuple[float, float]]:
+    """Quantity -> relative error of the flat half-space of small strains, and its uncertainty, on a sphere.
+
+    ratio: a/R; beyond what was measured, of it and of Poisson's ratio, the nearest counts.
+    """
+    own = {nu: columns for (name, nu), columns in sorted(measured().items(), key=_poisson) if name == law}
+
+    def at(name: str) -> float:
+        x = {nu: np.concatenate([[0.0], each["a_over_R"]]) for nu, each in own.items()}
+        values = [np.interp(ratio, x[nu], np.concatenate([[0.0], each[name]])) for nu, each in own.items()]
+        return float(np.interp(poisson, list(own), values))
+
+    quantities = [name for name in WORDS if all(each[name].size for each in own.values())]
+    return {name: (at(name), at(f"u_{name}")) for name in quantities}
+
+
+def refusal(scene: Scene) -> str:
+    """Why a scene is not solved: key, value and what is allowed; empty where the model holds or is asked
+    for.
+    """
+    if scene.solver.beyond_model or (key := _load_key(scene)) is None:
+        return ""
+    load = getattr(scene.loading, key)
+    if not _beyond(scene, ratio := _ratio(scene, load)):
+        return ""
+    most = float(brentq(lambda share: _ratio(scene, share * load) - LARGEST, 0.0, 1.0)) * load
+    unit = {"force": "N", "approach": "m", "p0": "Pa"}[key]
+    return (
+        f"loading.{key} = {load:.6g} {unit}, allowed: at most about {most:.3g} {unit}: {_RATIOS[_shape(scene)]} "
+        f"is estimated as {ratio:.3g}, and small strains of a flat half-space end at {LARGEST:g}; lower it, or "
+        "give [solver] beyond_model = true"
+    )
+
+
+def with_range(scene: Scene, result: Result) -> Result:
+    """The result with what is said about the range of its model; of a contact beyond it, that the scene does
+    not ask for, with the status outside-of-model.
+    """
+    found = model_range(scene, result)
+    if found is None:
+        return result
+    said = {"model_range": found, "warnings": (*result.warnings, *lines(found))}
+    if found["outside"] and result.converged and not scene.solver.beyond_model:
+        said["status"] = Status.OUTSIDE_OF_MODEL
+        said["message"] = f"a/R = {found['a_over_R']:.3g}: {Status.OUTSIDE_OF_MODEL.advice}"
+    return replace(result, **said)
+
+
+def model_range(scene: Scene, result: Result | None = None) -> dict[str, Any] | None:
+    """By how much the model is off, of the estimated contact or of the one that was solved; None where
+    nothing is known, as below the flat end of a punch on an elastic body.
+
+    a_over_R: of the sphere that the contact is likened to; like: by what, empty for a sphere; law, poisson,
+    measured_to: of the measurement; quantities: name -> error, uncertainty; outside: whether the model ends
+    before; lost_height: the largest worn depth over the height of the relief, where there is wear.
+    """
+    values = {} if result is None else result.last_fitting or result.quantities
+    likes = list(_likes(scene, result, values))
+    if not likes:
+        return None
+    like = max(likes, key=lambda each: each.ratio)
+    own = likes[0] if likes[0].by == _by_shape(scene) else None
+    law = _law(scene, like.ratio, values.get("peeq_max") if result is not None else None)
+    spheres = {nu: each["a_over_R"] for (name, nu), each in measured().items() if name == law}
+    given = _given(scene)
+    found = errors(law, scene.body.poisson, like.ratio)
+    out = {
+        "a_over_R": like.ratio,
+        "like": like.by,
+        "law": law,
+        "poisson": list(spheres),
+        "measured_to": float(min(x[-1] for x in spheres.values())),
+        "quantities": {
+            name: {"error": error, "uncertainty": around}
+            for name, (error, around) in found.items()
+            if name not in given
+        },
+        "outside": own is not None and _beyond(scene, own.ratio),
+    }
+    lost = None if result is None else _lost_height(scene, result)
+    return out if lost is None else {**out, "lost_height": lost}
+
+
+def lines(found: Mapping[str, Any]) -> list[str]:
+    """What is said about it: that it is outside of the model, and which quantities are off by more than SAID."""
+    off = [
+        f"{WORDS[name]} {100 * each['error']:+.2g} %"
+        for name, each in found["quantities"].items()
+        if abs(each["error"]) > SAID
+    ]
+    lost = found.get("lost_height", 0.0)
+    if lost > SAID:
+        off.append(f"lost height {100 * lost:.2g} % of the relief")
+    like = Like(found["a_over_R"], found["like"])
+    parts = [like.words, f"measured on spheres, {found['law']}"]
+    if like.ratio > found["measured_to"]:
+        parts.append(f"only up to {found['measured_to']:.2g}: more is to be expected")
+    if like.by and like.by != LARGER:
+        parts.append("a rule of thumb")
+    words = f"the flat half-space of small strains: {', '.join(off)} ({'; '.join(parts)})"
+    return [*([outside_in_words(like.ratio)] if found["outside"] else []), *([words] if off else [])]
+
+
+def outside_of_model(result: Any) -> float | None:
+    """a/R of a result or a run whose contact lies beyond the model; None of all others."""
+    found = getattr(result, "model_range", None)
+    return found["a_over_R"] if found is not None and found["outside"] else None
+
+
+def outside_in_words(ratio: float) -> str:
+    """The foot note of a figure."""
+    return f"outside of the model: a/R = {ratio:.3g}, small strains of a flat half-space end at {LARGEST:g}"
+
+
+_RATIOS = {
+    "": "a/R of the sphere that makes this pressure",
+    "sphere": "a/R, contact radius over counterbody.radius,",
+    "ellipsoid": "the larger a_i/R_i of the semi-axes of contact and the radii of the ellipsoid",
+    "rounded-punch": "the contact beside the flat end over the radius of the edge",
+}
+"""Shape of the counter-body -> what is limited."""
+
+
+def _by_shape(scene: Scene) -> str:
+    """By what the shape of a counter-body is likened to a sphere."""
+    return {"ellipsoid": LARGER, "rounded-punch": "slope at the edge of contact"}.get(_shape(scene), "")
+
+
+def _shape(scene: Scene) -> str:
+    return "" if scene.counterbody is None else scene.counterbody.shape
+
+
+def _beyond(scene: Scene, ratio: float) -> bool:
+    """Whether a contact is larger than the model is good for."""
+    if _shape(scene) == "rounded-punch":
+        return ratio >= 1.0 or ratio / sqrt(1.0 - ratio**2) > STEEPEST
+    return ratio > LARGEST
+
+
+def _given(scene: Scene) -> tuple[str, ...]:
+    """Quantities that a scene gives, and those that it does not have."""
+    if scene.counterbody is None:
+        return "mean_pressure", "contact_radius", "approach"
+    return ("approach",) if scene.loading.approach is not None else ()
+
+
+def _load_key(scene: Scene) -> str | None:
+    """The key of [loading] that decides how large the contact is; None where nothing is curved."""
+    if scene.loading.hertz:
+        return "p0"
+    if _shape(scene) not in ("sphere", "ellipsoid", "rounded-punch"):
+        return None
+    return "force" if scene.loading.approach is None else "approach"
+
+
+def _likes(scene: Scene, result: Result | None, values: Mapping[str, float | None]) -> Iterator[Like]:
+    """The spheres that a scene can be likened to, the one of its counter-body first."""
+    if (key := _load_key(scene)) is not None:
+        radius = values.get("contact_radius_m")
+        smooth = scene.patch_surface is None and not scene.loading.hertz
+        load = getattr(scene.loading, key)
+        ratio = _ratio_of(scene, radius) if smooth and radius is not None else _ratio(scene, load)
+        yield Like(ratio, _by_shape(scene))
+    if scene.patch_surface is not None:
+        slope = _slope(scene) if result is None else _slope_in_contact(result)
+        if slope:
+            edge = slope / RMS_OF_SLOPE
+            yield Like(edge / sqrt(1.0 + edge**2), f"rms slope {slope:.2g}")
+    strain = values.get("peeq_max")
+    if strain and (scene.patch_surface is not None or _load_key(scene) is None):
+        yield Like(strain / STRAIN_OF_SPHERE, f"plastic strain {100 * strain:.2g} %")
+
+
+def _ratio(scene: Scene, load: float) -> float:
+    """The estimated a/R of a contact: the larger a_i/R_i of an ellipsoid, (a - b)/R of a punch with the flat
+    end b and the radius R of its edge, and under a given pressure that of the sphere which makes it.
+    """
+    plasticity, loading, other = scene.body.plasticity, scene.loading, scene.counterbody
+    modulus = effective_modulus(scene.body.young, scene.body.poisson, *_constants(other))
+    if load == 0.0:
+        return 0.0
+    if other is None:
+        return pi * load / (2.0 * modulus)
+    if other.radii is None:
+        return _ratio_of_edge(scene, load, modulus)
+    mean, unit = sqrt(other.radii[0] * other.radii[1]), EllipticContact(1.0, *other.radii, modulus)
+    force = load if loading.approach is None else (load / unit.approach) ** 1.5
+    radius = sqrt(unit.semi_axes[0] * unit.semi_axes[1]) * force ** (1.0 / 3.0)
+    ratio = _ratio_of(scene, radius, elastic=True)
+    if plasticity is None:
+        return ratio
+    if loading.approach is not None:  # the material beside neither sinks in nor piles up
+        radius = sqrt(2.0 * mean * load)
+        if _hardness(plasticity, radius, radius / mean) * pi * radius**2 >= force:
+            return ratio
+    else:
+        radius = _fully_plastic(plasticity, force, lambda a: a / mean)
+    return max(ratio, _ratio_of(scene, radius))
+
+
+def _ratio_of_edge(scene: Scene, load: float, modulus: float) -> float:
+    """The same of a punch with a rounded edge."""
+    other, plasticity = scene.counterbody, scene.body.plasticity
+    flat, edge = other.flat_radius, other.radius
+    if scene.loading.approach is None:
+        a = RoundedPunch(load, flat, edge, modulus).contact_radius
+        if plasticity is not None:
+            a = max(a, _fully_plastic(plasticity, load, lambda a: max(a - flat, 0.0) / edge))
+        return (a - flat) / edge
+    steepest = sqrt(2.0 * load / edge)  # the profile as deep as the approach: all of it in contact
+    if plasticity is not None:
+        return steepest
+
+    def excess(ratio: float) -> float:
+        a = flat + ratio * edge
+        return a / edge * (sqrt((a - flat) * (a + flat)) - flat * acos(flat / a)) - load
+
+    return float(brentq(excess, 0.0, steepest * (1.0 + 1e-9)))
+
+
+def _ratio_of(scene: Scene, radius: float, *, elastic: bool = False) -> float:
+    """a/R of a contact with the area of a circle of that radius in m."""
+    other = scene.counterbody
+    if other.radii is None:
+        return max(radius - other.flat_radius, 0.0) / other.radius
+    rx, ry = other.radii
+    if elastic or scene.body.plasticity is None:
+        a, b = EllipticContact(1.0, rx, ry, 1.0).semi_axes
+    else:  # the part of the ellipsoid below a plane
+        a, b = sqrt(rx), sqrt(ry)
+    return radius / sqrt(a * b) * max(a / rx, b / ry)
+
+
+def _constants(other: CounterBody | None) -> tuple[float | None, float | None]:
+    return (None, None) if other is None else (other.young, other.poisson)
+
+
+def _flow(plasticity: Plasticity, z: float, strain: float) -> float:
+    """Stress in tension in Pa at depth z and a plastic strain, with the back-stresses."""
+    strength = plasticity.strength()
+    stress = float(strength.stress(z, strain))
+    for modulus, recovery in zip(*(strength.back_at(z) or ((), ())), strict=True):
+        stress += float(modulus) * (-np.expm1(-recovery * strain) / recovery if recovery else strain)
+    return stress
+
+
+def _hardness(plasticity: Plasticity, radius: float, ratio: float) -> float:
+    """Mean pressure in Pa of a fully plastic contact, by the material half a radius below it."""
+    return 3.0 * _flow(plasticity, 0.5 * radius, 0.2 * ratio)
+
+
+def _fully_plastic(plasticity: Plasticity, force: float, ratio_of: Callable[[float], float]) -> float:
+    """Contact radius in m at which a fully plastic contact bears a force."""
+    most = sqrt(force / (3.0 * pi * plasticity.strength().least(0.0)))
+    return float(
+        brentq(lambda a: _hardness(plasticity, a, ratio_of(a)) * pi * a**2 - force, 0.0, most * (1.0 + 1e-9))
+    )
+
+
+def _law(scene: Scene, ratio: float, strain: float | None) -> str:
+    """The measurement that is the nearest. strain: of a result; by the estimated pressure without it."""
+    plasticity = scene.body.plasticity
+    if plasticity is None:
+        return ELASTIC
+    least = plasticity.strength().least(0.0)
+    modulus = scene.body.young / (1.0 - scene.body.poisson**2)
+    if strain == 0.0 or (strain is None and 2.0 / pi * modulus * ratio < FIRST_YIELD * least):
+        return ELASTIC
+    deep = np.inf
+    return SWIFT if _flow(plasticity, deep, 0.05) > HARDENS * _flow(plasticity, deep, 0.0) else PERFECT
+
+
+def _slope(scene: Scene) -> float:
+    """rms slope of the patch, of both surfaces together, before a solve; of a counter-body that moves that of
+    the body alone. 0 where only the digest of a file is at hand.
+    """
+    (nx, ny), extent = scene.patch
+    hx, hy = extent[0] / nx, extent[1] / ny
+    x, y = ((np.arange(n) - (n - 1) / 2) * h for n, h in ((nx, hx), (ny, hy)))
+    total = 0.0
+    for surface in (scene.surface, None if scene.moves else scene.counter_surface):
+        if surface is not None and not (surface.kind == "file" and surface.measured.values is None):
+            total += roughness(heights(surface, x, y, extent), hx, hy).sdq ** 2
+    return sqrt(total)
+
+
+def _slope_in_contact(result: Result) -> float:
+    """rms slope of the surfaces where they touch at the peak, before they deform; 0 where none does."""
+    rough = _surface(result, PEAK)
+    if rough is None:
+        return 0.0
+    x, y = (np.unique(rough[name]) for name in ("x_m", "y_m"))
+    together = rough["height_m"] - rough["worn_m"] + rough.get(COUNTER_HEIGHT, 0.0)
+    slopes = np.gradient(together.reshape(x.size, y.size), x, y)
+    touching = rough["p_Pa"].reshape(x.size, y.size) > 0.0
+    square = sum(slope**2 for slope in slopes)[touching]
+    return float(np.sqrt(np.nanmean(square))) if square.size else 0.0
+
+
+def _lost_height(scene: Scene, result: Result) -> float | None:
+    """The largest worn depth over the height of the relief; None without wear or relief."""
+    if scene.wear is None or "surface" not in result.tables:
+        return None
+    relief = float(np.ptp(np.asarray(result.tables["surface"]["height_m"], dtype=float)))
+    worn = float(np.max(np.asarray(result.tables["surface"]["worn_m"], dtype=float)))
+    return worn / relief if relief > 0.0 else None
+
+
+def _surface(result: Result, state: str) -> dict[str, np.ndarray] | None:
+    """The columns of the table surface at a state, its first where it has no such; None without the table."""
+    found = result.tables.get("surface")
+    if found is None:
+        return None
+    states = np.asarray(found["state"])
+    use = states == (state if state in states else states[0])
+    names = ("x_m", "y_m", "height_m", "p_Pa", "worn_m", COUNTER_HEIGHT)
+    return {name: np.asarray(found[name], dtype=float)[use] for name in names if name in found}
