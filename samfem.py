@@ -98,6 +98,8 @@ class Run(files.Run):
         Name with SI unit, as "p_max_Pa" -> float, or None where it does not apply.
     tables
         Name ("history", "axis", "line", "plane", "surface", ...) -> DataFrame, columns with SI unit.
+    model_range
+        By how much small strains of a flat half-space are off, see `docs/guide/results.md`; or None.
     cost
         Times in s, memory in bytes and counters.
     summary
@@ -121,14 +123,16 @@ class Run(files.Run):
         values = self.last_fitting or self.quantities
         shown = [in_working_unit(name, value, digits=3) for name in SHOWN if (value := values.get(name))]
         words = ", ".join(f"{name} {value}" for name, value in shown)
-        return f"<samfem.Run {self.model}, {self.status}: {words or 'no load'}>"
+        off = "".join(f"; {line}" for line in self.range_lines)
+        return f"<samfem.Run {self.model}, {self.status}: {words or 'no load'}{off}>"
 
     def _repr_html_(self) -> str:
         values = self.last_fitting or self.quantities
         rows = [in_working_unit(name, value) for name, value in values.items() if value is not None]
         left_out = [(entry["stage"], entry["reason"]) for entry in self.summary["left_out"]]
         tables = [(name, f"{len(table)} rows: {', '.join(table)}") for name, table in self.tables.items()]
-        head = f"{self.summary['title'] or 'scene'} ({self.model}): {self.status}. {self.message}"
+        off = " ".join(self.range_lines)
+        head = f"{self.summary['title'] or 'scene'} ({self.model}): {self.status}. {self.message} {off}"
         parts = (("Quantities", rows), ("Left out", left_out), ("Tables", tables))
         return f"<p><b>{html.escape(head)}</b></p>" + "".join(
             f"<details{' open' * (of is rows)}><summary>{what}</summary>{_table(of)}</details>"
@@ -176,10 +180,11 @@ class Comparison:
             raise AssertionError(f"{self.line}\n{self.failed.to_string(index=False)}")
 
     def __repr__(self) -> str:
-        return f"<samfem.Comparison {self.line}>"
+        return f"<samfem.Comparison {'; '.join([self.line, *self.sam.range_lines])}>"
 
     def _repr_html_(self) -> str:
-        return f"<p><b>{html.escape(self.line)}</b></p>{self.frame.to_html(index=False)}"
+        line = "; ".join([self.line, *self.sam.range_lines])
+        return f"<p><b>{html.escape(line)}</b></p>{self.frame.to_html(index=False)}"
 
 
 @dataclass(frozen=True, repr=False)

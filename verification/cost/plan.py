@@ -15,6 +15,7 @@ from verification.cost.advice import advice_of
 from verification.cost.choice import chosen_scene, expected, first_choice, quantities_of
 from verification.cost.stages import stages_of
 from verification.runs import models
+from verification.runs.model_range import model_range, range_lines
 from verification.runs.provenance import memory_bytes
 from verification.text.console import table_lines
 from verification.text.readable import with_prefix, with_time
@@ -26,11 +27,12 @@ NOTE = "memory and time are estimates from the numbers of cells, not measurement
 
 def plan(scene: Scene) -> dict:
     """The plan of every model as a mapping that JSON can hold: stages, estimate, or why the model cannot be
-    used; advice.
+    used; advice; by how much small strains of a flat half-space are off.
     """
     entries = [_model(scene, name) for name in models.MODELS]
     advice = advice_of(scene, [entry["model"] for entry in entries if entry["available"]])
-    return {"title": scene.title, "note": NOTE, "models": entries, "advice": advice}
+    of_model = model_range(scene)
+    return {"title": scene.title, "note": NOTE, "models": entries, "advice": advice, "model_range": of_model}
 
 
 def _model(scene: Scene, model: str) -> dict:
@@ -116,9 +118,12 @@ def plan_lines(content: dict) -> list[str]:
 
 
 def advice_lines(content: dict) -> list[str]:
-    """What stands above the table of the advice: the title of the scene, and what the table is about."""
-    title = printable(content["title"])
-    return [*([title, ""] if title else []), f"advice: {content['advice']['words']}"]
+    """What stands above the table of the advice: the title of the scene, by how much its model is off, and
+    what the table is about.
+    """
+    title, of_model = printable(content["title"]), content["model_range"]
+    off = [] if of_model is None else range_lines(of_model)
+    return [*([title, ""] if title else []), *off, f"advice: {content['advice']['words']}"]
 
 
 def model_lines(content: dict) -> list[str]:

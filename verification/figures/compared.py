@@ -12,7 +12,19 @@ from pathlib import Path
 import numpy as np
 
 from verification.compare.rows import Solution
-from verification.figures.style import BLACK, FEM, GREEN, ORANGE, PURPLE, SAM, Columns, Drawing, marked, save, sheet
+from verification.figures.style import (
+    BLACK,
+    FEM,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    SAM,
+    Columns,
+    Drawing,
+    marked,
+    save,
+    sheet,
+)
 from verification.runs.files import FIGURES
 from verification.runs.sampling import peak
 

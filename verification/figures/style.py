@@ -102,7 +102,9 @@ def marked(drawings: Mapping[str, Drawing], *results: Any) -> dict[str, Drawing]
         for each in drawings.values():
             each.figure.supxlabel(outside_in_words(outside), fontsize=8.0, color=VERMILION)
     return {
-        name: Drawing(each.figure, {**each.data, OUTSIDE: [outside] * len(next(iter(each.data.values()), ()))})
+        name: Drawing(
+            each.figure, {**each.data, OUTSIDE: [outside] * len(next(iter(each.data.values()), ()))}
+        )
         for name, each in drawings.items()
     }
 

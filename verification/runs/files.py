@@ -35,7 +35,7 @@ from sam.scene import (
     resolved,
 )
 from verification.runs.meshes import is_mesh, mesh_files
-from verification.runs.model_range import OUTSIDE, outside_of_model
+from verification.runs.model_range import OUTSIDE, outside_of_model, range_lines
 from verification.runs.provenance import collect
 from verification.runs.tables import columns_text, frame_of, read_table
 
@@ -81,6 +81,11 @@ class Run:
     @property
     def model_range(self) -> Mapping[str, Any] | None:
         return self.summary.get("model_range")
+
+    @property
+    def range_lines(self) -> list[str]:
+        """What is said about it, see `verification.runs.model_range`."""
+        return [] if self.model_range is None else range_lines(self.model_range)
 
     @property
     def model(self) -> str:

@@ -50,9 +50,8 @@ COLUMNS = ("law", "poisson", "a_over_R", *WORDS, *(f"u_{name}" for name in WORDS
 ELASTIC, SWIFT, PERFECT = "elastic", "Swift steel", "perfectly plastic"
 FIRST_YIELD = 1.6  # p0 over the yield stress below a sphere, nu = 0.3: Johnson (1985), section 6.1
 HARDENS = 1.05  # flow stress at a plastic strain of 5 % over that at none
-STRAIN_OF_SPHERE = 0.4
-"""Largest plastic strain over a/R below a sphere: 0.34 to 0.49 at a/R = 0.15 to 0.3 (Swift steel of the
-case)."""
+STRAIN_OF_SPHERE = {SWIFT: 0.4, PERFECT: 0.9}
+"""Largest plastic strain over a/R below a sphere at a/R = 0.2, by small strains: model-limits-plastic."""
 RMS_OF_SLOPE = sqrt(0.5)  # rms over the contact area of the slope of a sphere, over that at its edge
 
 
@@ -65,7 +64,9 @@ class Like:
 
     @property
     def words(self) -> str:
-        return f"a/R = {self.ratio:.2g}" if not self.by else f"{self.by}, as of a sphere at {self.ratio:.2g} R"
+        return (
+            f"a/R = {self.ratio:.2g}" if not self.by else f"{self.by}, as of a sphere at {self.ratio:.2g} R"
+        )
 
 
 @cache
@@ -86,7 +87,7 @@ def errors(law: str, poisson: float, ratio: float) -> dict[str, tuple[float, flo
 
     ratio: a/R; beyond what was measured, of it and of Poisson's ratio, the nearest counts.
     """
-    own = {nu: columns for (name, nu), columns in sorted(measured().items(), key=_poisson) if name == law}
+    own = {nu: columns for (name, nu), columns in sorted(measured().items()) if name == law}
 
     def at(name: str) -> float:
         x = {nu: np.concatenate([[0.0], each["a_over_R"]]) for nu, each in own.items()}
@@ -107,10 +108,10 @@ def refusal(scene: Scene) -> str:
     if not _beyond(scene, ratio := _ratio(scene, load)):
         return ""
     most = float(brentq(lambda share: _ratio(scene, share * load) - LARGEST, 0.0, 1.0)) * load
-    unit = {"force": "N", "approach": "m", "p0": "Pa"}[key]
+    unit, what = {"force": "N", "approach": "m", "p0": "Pa"}[key], _RATIOS[_shape(scene)]
     return (
-        f"loading.{key} = {load:.6g} {unit}, allowed: at most about {most:.3g} {unit}: {_RATIOS[_shape(scene)]} "
-        f"is estimated as {ratio:.3g}, and small strains of a flat half-space end at {LARGEST:g}; lower it, or "
+        f"loading.{key} = {load:.6g} {unit}, allowed: at most about {most:.3g} {unit}: {what} is "
+        f"estimated as {ratio:.3g}, and small strains of a flat half-space end at {LARGEST:g}; lower it, or "
         "give [solver] beyond_model = true"
     )
 
@@ -122,7 +123,7 @@ def with_range(scene: Scene, result: Result) -> Result:
     found = model_range(scene, result)
     if found is None:
         return result
-    said = {"model_range": found, "warnings": (*result.warnings, *lines(found))}
+    said = {"model_range": found, "warnings": (*result.warnings, *range_lines(found))}
     if found["outside"] and result.converged and not scene.solver.beyond_model:
         said["status"] = Status.OUTSIDE_OF_MODEL
         said["message"] = f"a/R = {found['a_over_R']:.3g}: {Status.OUTSIDE_OF_MODEL.advice}"
@@ -164,10 +165,12 @@ def model_range(scene: Scene, result: Result | None = None) -> dict[str, Any] | 
     return out if lost is None else {**out, "lost_height": lost}
 
 
-def lines(found: Mapping[str, Any]) -> list[str]:
-    """What is said about it: that it is outside of the model, and which quantities are off by more than SAID."""
+def range_lines(found: Mapping[str, Any]) -> list[str]:
+    """What is said about it: that it is outside of the model, and the quantities that are off by more than
+    SAID.
+    """
     off = [
-        f"{WORDS[name]} {100 * each['error']:+.2g} %"
+        f"{WORDS[name]} {_percent(**each)}"
         for name, each in found["quantities"].items()
         if abs(each["error"]) > SAID
     ]
@@ -182,6 +185,12 @@ def lines(found: Mapping[str, Any]) -> list[str]:
         parts.append("a rule of thumb")
     words = f"the flat half-space of small strains: {', '.join(off)} ({'; '.join(parts)})"
     return [*([outside_in_words(like.ratio)] if found["outside"] else []), *([words] if off else [])]
+
+
+def _percent(error: float, uncertainty: float) -> str:
+    """An error, with its uncertainty where that is more than half of it."""
+    around = f" (+-{100 * uncertainty:.1g})" if uncertainty > abs(error) / 2.0 else ""
+    return f"{100 * error:+.2g}{around} %"
 
 
 def outside_of_model(result: Any) -> float | None:
@@ -249,9 +258,10 @@ def _likes(scene: Scene, result: Result | None, values: Mapping[str, float | Non
         if slope:
             edge = slope / RMS_OF_SLOPE
             yield Like(edge / sqrt(1.0 + edge**2), f"rms slope {slope:.2g}")
-    strain = values.get("peeq_max")
-    if strain and (scene.patch_surface is not None or _load_key(scene) is None):
-        yield Like(strain / STRAIN_OF_SPHERE, f"plastic strain {100 * strain:.2g} %")
+    strain, plasticity = values.get("peeq_max"), scene.body.plasticity
+    if strain and plasticity is not None and (scene.patch_surface is not None or _load_key(scene) is None):
+        like = strain / STRAIN_OF_SPHERE[_hardening(plasticity)]
+        yield Like(like, f"plastic strain {100 * strain:.2g} %")
 
 
 def _ratio(scene: Scene, load: float) -> float:
@@ -349,6 +359,11 @@ def _law(scene: Scene, ratio: float, strain: float | None) -> str:
     modulus = scene.body.young / (1.0 - scene.body.poisson**2)
     if strain == 0.0 or (strain is None and 2.0 / pi * modulus * ratio < FIRST_YIELD * least):
         return ELASTIC
+    return _hardening(plasticity)
+
+
+def _hardening(plasticity: Plasticity) -> str:
+    """Which of the bodies that yield is the nearest."""
     deep = np.inf
     return SWIFT if _flow(plasticity, deep, 0.05) > HARDENS * _flow(plasticity, deep, 0.0) else PERFECT
 

@@ -25,8 +25,8 @@ class ModelError(ValueError):
 
 
 def check(scene: Scene, model: str) -> None:
-    """Raise ModelError, which names the key, unless `model` can represent the scene, and the contact is within
-    the range of all models or the scene asks for it.
+    """Raise ModelError, which names the key, unless `model` can represent the scene and its contact is within
+    the range of every model, or asked for beyond it.
     """
     if reason := _refusal(scene, model):
         raise ModelError(f"model {model}: {reason}")

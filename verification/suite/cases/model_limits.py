@@ -16,10 +16,10 @@ import numpy as np
 from fem_reference.finite_strain import Curve, build, curve_of, load_to
 from sam.scene import Scene
 from verification.figures.limits import limits as drawn
-from verification.suite.cases.case import Case, Context, Measured, Plot, SmallTable
-from verification.suite.cases.hertz import contact_of
 from verification.runs.model_range import COLUMNS, KEPT, WORDS, errors
 from verification.runs.tables import columns_text
+from verification.suite.cases.case import Case, Context, Measured, Plot, SmallTable
+from verification.suite.cases.hertz import contact_of
 from verification.suite.cases.model_limits_curves import (
     COLUMN_OF,
     ELASTIC,
@@ -178,7 +178,7 @@ class ModelLimitsPlastic(ModelLimits):
 
 
 class ModelLimitsStated(Case):
-    """What is said of a scene, against materials and a mesh that the table of what is said was not made of."""
+    """What is said of a scene, against materials and meshes that the table behind it was not made of."""
 
     def solve(self, context: Context) -> dict[str, dict[str, Difference]]:
         return {body.name: errors_of_flat(body, curves(context, body, body.elements)) for body in FRESH}
@@ -195,7 +195,10 @@ class ModelLimitsStated(Case):
             ("Sphere", f"R = {RADIUS * 1e6:g} µm, rigid"),
             ("Materials", "; ".join(body.name for body in FRESH)),
             ("Stated", "by samfem plan and solve, from the table of the cases model-limits"),
-            ("Factor", "between stated and measured, once the stated uncertainty is taken off their distance"),
+            (
+                "Factor",
+                "between stated and measured, once the stated uncertainty is taken off their distance",
+            ),
         ]
 
     def tables(self, found: dict[str, dict[str, Difference]]) -> list[SmallTable]:
@@ -375,12 +378,12 @@ def main() -> None:
     found = {}
     for body in (*ELASTIC, *PLASTIC, *OTHERS):
         print(body.name, flush=True)
-        found[body] = range_rows(body, {kind: loaded(body, body.elements, kind) for kind in MODELS})
+        found[body.name] = range_rows(body, {kind: loaded(body, body.elements, kind) for kind in MODELS})
     parts = []
     for body in (*ELASTIC, *PLASTIC):
         same = next(each for each in PLASTIC + ELASTIC if law_of(each) == law_of(body))
-        others = [found[each] for each in OTHERS if law_of(each) == law_of(body)]
-        parts.append(with_spread(found[body], found[same], others))
+        others = [found[each.name] for each in OTHERS if law_of(each) == law_of(body)]
+        parts.append(with_spread(found[body.name], found[same.name], others))
     table = {name: np.concatenate([part[name] for part in parts]) for name in COLUMNS}
     rounded = {name: each.round(5) if each.dtype.kind == "f" else each for name, each in table.items()}
     target = Path(__file__).parents[2] / "data" / KEPT

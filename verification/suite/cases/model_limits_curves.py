@@ -31,7 +31,9 @@ QUANTITIES = {
 }
 COLUMN_OF = dict(zip(QUANTITIES, WORDS, strict=True))
 """Names of the quantities in the table of `verification.runs.model_range`."""
-STEP = 0.025  # of a/R in that table: linear in between, the fits are off by less than 0.002 by their curvature
+STEP = (
+    0.025  # of a/R in that table: linear in between, the fits are off by less than 0.002 by their curvature
+)
 POWERS = np.arange(1, 4)
 Table = dict[str, np.ndarray]
 RESOLVED = 6  # elements in the contact radius from which a load step counts
@@ -87,7 +89,7 @@ OTHERS = (
 )
 """Materials by which an error differs that is taken from those above: a part of its uncertainty."""
 FRESH = (
-    Body("elastic, ν = 0.4", 0.4, 0.35, 10, 12),
+    Body("elastic, ν = 0.4", 0.4, 0.32, 20, 16),
     Body("1.3 of the Swift steel", 0.3, 0.35, 10, 40, SWIFT | {"B": 1.3 * SWIFT["B"]}, 14e9),
 )
 """Materials and a mesh that the table of `verification.runs.model_range` was not made of."""
@@ -183,7 +185,10 @@ def with_spread(rows: Table, same: Table, others: Sequence[Table]) -> Table:
     widened = dict(rows)
     for name in WORDS if others else ():
         apart = [
-            abs(np.interp(rows["a_over_R"], each["a_over_R"], each[name]) - np.interp(rows["a_over_R"], same["a_over_R"], same[name]))
+            abs(
+                np.interp(rows["a_over_R"], each["a_over_R"], each[name])
+                - np.interp(rows["a_over_R"], same["a_over_R"], same[name])
+            )
             for each in others
         ]
         widened[f"u_{name}"] = rows[f"u_{name}"] + np.max(apart, axis=0)
