@@ -13,8 +13,9 @@ Examples
 ...     loading={"force": 0.65},
 ... )
 >>> run = samfem.solve(scene)
->>> run
-<samfem.Run sam, converged: p_max 8.47 GPa, contact_radius 6.05 um, approach 0.349 um>
+>>> run  # doctest: +NORMALIZE_WHITESPACE
+<samfem.Run sam, converged: p_max 8.47 GPa, contact_radius 6.05 um, approach 0.349 um;
+ model: mean pressure -1.7 %>
 >>> round(run.quantities["p_max_Pa"] / 1e9, 2)
 8.47
 >>> run.tables["history"][["force_N", "p_max_Pa"]].shape
@@ -54,6 +55,7 @@ from verification.compare.own_data import OwnData  # noqa: E402
 from verification.cost.accuracy import solve as solve_family  # noqa: E402
 from verification.runs import files, models  # noqa: E402
 from verification.runs.files import FolderError  # noqa: E402
+from verification.runs.model_range import off_in_words  # noqa: E402
 from verification.runs.models import MODELS, SAM, ModelError  # noqa: E402
 from verification.runs.store import default_store  # noqa: E402
 from verification.runs.study import read_study  # noqa: E402
@@ -123,8 +125,7 @@ class Run(files.Run):
         values = self.last_fitting or self.quantities
         shown = [in_working_unit(name, value, digits=3) for name in SHOWN if (value := values.get(name))]
         words = ", ".join(f"{name} {value}" for name, value in shown)
-        off = "".join(f"; {line}" for line in self.range_lines)
-        return f"<samfem.Run {self.model}, {self.status}: {words or 'no load'}{off}>"
+        return f"<samfem.Run {self.model}, {self.status}: {words or 'no load'}{_off(self)}>"
 
     def _repr_html_(self) -> str:
         values = self.last_fitting or self.quantities
@@ -180,7 +181,7 @@ class Comparison:
             raise AssertionError(f"{self.line}\n{self.failed.to_string(index=False)}")
 
     def __repr__(self) -> str:
-        return f"<samfem.Comparison {'; '.join([self.line, *self.sam.range_lines])}>"
+        return f"<samfem.Comparison {self.line}{_off(self.sam)}>"
 
     def _repr_html_(self) -> str:
         line = "; ".join([self.line, *self.sam.range_lines])
@@ -352,6 +353,14 @@ def _drawings(result: Run | Comparison | Sweep) -> Mapping[str, Any]:
         solutions: dict[str, Any] = {"SAM": result.sam, "FEM": result.fem, **result.data}
         return figures.drawings_of_comparison(solutions)
     return {"sweep": figures.drawing_of_sweep(result.frame, result.record["study"])}
+
+
+def _off(run: Run) -> str:
+    """By how much the model is off, short; empty where no quantity is off by 1 %."""
+    found = run.model_range or {"quantities": {}, "outside": False}
+    parts = ["outside" * found["outside"], off_in_words(found)]
+    words = ", ".join(filter(None, parts))
+    return f"; model: {words}" if words else ""
 
 
 def _scene(scene: Scene | str | Path) -> Scene:

@@ -19,17 +19,13 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
-from math import acos, pi, sqrt
+from math import asin, cos, pi, sin, sqrt
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 
-from sam.scene import COUNTER_HEIGHT, PEAK, CounterBody, Plasticity, Result, Scene, Status
+from sam.scene import COUNTER_HEIGHT, PEAK, Plasticity, Result, Scene, Status
 from sam.scene.surface import heights, roughness
-from verification.reference.elliptic import EllipticContact
-from verification.reference.hertz import effective_modulus
-from verification.reference.rounded_punch import RoundedPunch
 
 KEPT = "model_range.csv"
 LARGEST, STEEPEST = 0.5, 0.58
@@ -107,7 +103,7 @@ def refusal(scene: Scene) -> str:
     load = getattr(scene.loading, key)
     if not _beyond(scene, ratio := _ratio(scene, load)):
         return ""
-    most = float(brentq(lambda share: _ratio(scene, share * load) - LARGEST, 0.0, 1.0)) * load
+    most = _root(lambda share: _ratio(scene, share * load) - LARGEST, 1.0) * load
     unit, what = {"force": "N", "approach": "m", "p0": "Pa"}[key], _RATIOS[_shape(scene)]
     return (
         f"loading.{key} = {load:.6g} {unit}, allowed: at most about {most:.3g} {unit}: {what} is "
@@ -165,10 +161,8 @@ def model_range(scene: Scene, result: Result | None = None) -> dict[str, Any] | 
     return out if lost is None else {**out, "lost_height": lost}
 
 
-def range_lines(found: Mapping[str, Any]) -> list[str]:
-    """What is said about it: that it is outside of the model, and the quantities that are off by more than
-    SAID.
-    """
+def off_in_words(found: Mapping[str, Any]) -> str:
+    """The quantities that are off by more than SAID, and by how much."""
     off = [
         f"{WORDS[name]} {_percent(**each)}"
         for name, each in found["quantities"].items()
@@ -177,13 +171,18 @@ def range_lines(found: Mapping[str, Any]) -> list[str]:
     lost = found.get("lost_height", 0.0)
     if lost > SAID:
         off.append(f"lost height {100 * lost:.2g} % of the relief")
-    like = Like(found["a_over_R"], found["like"])
+    return ", ".join(off)
+
+
+def range_lines(found: Mapping[str, Any]) -> list[str]:
+    """What is said about it: that it is outside of the model, and what is off, in one line each."""
+    off, like = off_in_words(found), Like(found["a_over_R"], found["like"])
     parts = [like.words, f"measured on spheres, {found['law']}"]
     if like.ratio > found["measured_to"]:
         parts.append(f"only up to {found['measured_to']:.2g}: more is to be expected")
     if like.by and like.by != LARGER:
         parts.append("a rule of thumb")
-    words = f"the flat half-space of small strains: {', '.join(off)} ({'; '.join(parts)})"
+    words = f"the flat half-space of small strains: {off} ({'; '.join(parts)})"
     return [*([outside_in_words(like.ratio)] if found["outside"] else []), *([words] if off else [])]
 
 
@@ -269,16 +268,16 @@ def _ratio(scene: Scene, load: float) -> float:
     end b and the radius R of its edge, and under a given pressure that of the sphere which makes it.
     """
     plasticity, loading, other = scene.body.plasticity, scene.loading, scene.counterbody
-    modulus = effective_modulus(scene.body.young, scene.body.poisson, *_constants(other))
+    modulus = _modulus(scene)
     if load == 0.0:
         return 0.0
     if other is None:
         return pi * load / (2.0 * modulus)
     if other.radii is None:
-        return _ratio_of_edge(scene, load, modulus)
-    mean, unit = sqrt(other.radii[0] * other.radii[1]), EllipticContact(1.0, *other.radii, modulus)
-    force = load if loading.approach is None else (load / unit.approach) ** 1.5
-    radius = sqrt(unit.semi_axes[0] * unit.semi_axes[1]) * force ** (1.0 / 3.0)
+        return _ratio_of_edge(scene, load)
+    mean, (a, b, approach) = sqrt(other.radii[0] * other.radii[1]), _hertz(*other.radii)
+    force = load if loading.approach is None else modulus * (load / approach) ** 1.5
+    radius = sqrt(a * b) * (force / modulus) ** (1.0 / 3.0)
     ratio = _ratio_of(scene, radius, elastic=True)
     if plasticity is None:
         return ratio
@@ -291,24 +290,29 @@ def _ratio(scene: Scene, load: float) -> float:
     return max(ratio, _ratio_of(scene, radius))
 
 
-def _ratio_of_edge(scene: Scene, load: float, modulus: float) -> float:
-    """The same of a punch with a rounded edge."""
-    other, plasticity = scene.counterbody, scene.body.plasticity
-    flat, edge = other.flat_radius, other.radius
-    if scene.loading.approach is None:
-        a = RoundedPunch(load, flat, edge, modulus).contact_radius
-        if plasticity is not None:
-            a = max(a, _fully_plastic(plasticity, load, lambda a: max(a - flat, 0.0) / edge))
-        return (a - flat) / edge
-    steepest = sqrt(2.0 * load / edge)  # the profile as deep as the approach: all of it in contact
-    if plasticity is not None:
-        return steepest
+def _ratio_of_edge(scene: Scene, load: float) -> float:
+    """The same of a punch with a rounded edge: the integrals of Sneddon, Int. J. Eng. Sci. 3 (1965) 47, with
+    cos t = b/a.
+    """
+    other, plasticity, modulus = scene.counterbody, scene.body.plasticity, _modulus(scene)
+    flat, edge, by_force = other.flat_radius, other.radius, scene.loading.approach is None
 
     def excess(ratio: float) -> float:
         a = flat + ratio * edge
-        return a / edge * (sqrt((a - flat) * (a + flat)) - flat * acos(flat / a)) - load
+        t = 2.0 * asin(sqrt(ratio * edge / (2.0 * a)))
+        if by_force:
+            bracket = sin(t) * (3.0 + sin(t) ** 2) - 3.0 * t * cos(t)
+            return modulus * a**3 / (3.0 * edge) * bracket - load
+        return a**2 / edge * (sin(t) - t * cos(t)) - load
 
-    return float(brentq(excess, 0.0, steepest * (1.0 + 1e-9)))
+    if by_force:
+        ratio = _root(excess, (0.75 * load / (modulus * edge**2)) ** (1.0 / 3.0))
+        if plasticity is not None:
+            a = _fully_plastic(plasticity, load, lambda a: max(a - flat, 0.0) / edge)
+            ratio = max(ratio, (a - flat) / edge)
+        return ratio
+    steepest = sqrt(2.0 * load / edge)  # the profile as deep as the approach: all of it in contact
+    return _root(excess, steepest) if plasticity is None else steepest
 
 
 def _ratio_of(scene: Scene, radius: float, *, elastic: bool = False) -> float:
@@ -318,14 +322,44 @@ def _ratio_of(scene: Scene, radius: float, *, elastic: bool = False) -> float:
         return max(radius - other.flat_radius, 0.0) / other.radius
     rx, ry = other.radii
     if elastic or scene.body.plasticity is None:
-        a, b = EllipticContact(1.0, rx, ry, 1.0).semi_axes
+        a, b, _ = _hertz(rx, ry)
     else:  # the part of the ellipsoid below a plane
         a, b = sqrt(rx), sqrt(ry)
     return radius / sqrt(a * b) * max(a / rx, b / ry)
 
 
-def _constants(other: CounterBody | None) -> tuple[float | None, float | None]:
-    return (None, None) if other is None else (other.young, other.poisson)
+def _modulus(scene: Scene) -> float:
+    """E* in Pa of the body without its coating and of the counter-body."""
+    body, other = scene.body, scene.counterbody
+    compliance = (1.0 - body.poisson**2) / body.young
+    if other is not None and other.elastic:
+        compliance += (1.0 - other.poisson**2) / other.young
+    return 1.0 / compliance
+
+
+def _hertz(rx: float, ry: float) -> tuple[float, float, float]:
+    """Semi-axes a along x, b along y and approach in m of an ellipsoid by Hertz under F/E* = 1 m^2.
+
+    With w = 1/sqrt(cos^2 + k^2 sin^2), k = b/a, and means over a quarter of a circle: Rx/Ry = <cos^2 w>/(k^2
+    <sin^2 w>), a^3 = 3/2 Rx <sin^2 w> F/E*, approach = 3/4 <w> F/(E* a): Johnson (1985), section 4.2.
+    """
+    if ry > rx:
+        b, a, approach = _hertz(ry, rx)
+        return a, b, approach
+    sin2 = np.sin((np.arange(4000) + 0.5) * pi / 8000.0) ** 2
+
+    def means(k: float) -> np.ndarray:
+        w = 1.0 / np.sqrt(1.0 - sin2 + k**2 * sin2)
+        return np.array([(sin2 * w).mean(), ((1.0 - sin2) * w).mean() / k**2, w.mean()])
+
+    def excess(ratio: float) -> float:
+        along, across, _ = means(1.0 - ratio)
+        return float(across / along) - rx / ry
+
+    k = 1.0 - _root(excess, 1.0 - ry / rx) if rx > ry else 1.0
+    along, _, every = means(k)
+    a = float(1.5 * rx * along) ** (1.0 / 3.0)
+    return a, k * a, 0.75 * float(every) / a
 
 
 def _flow(plasticity: Plasticity, z: float, strain: float) -> float:
@@ -345,9 +379,16 @@ def _hardness(plasticity: Plasticity, radius: float, ratio: float) -> float:
 def _fully_plastic(plasticity: Plasticity, force: float, ratio_of: Callable[[float], float]) -> float:
     """Contact radius in m at which a fully plastic contact bears a force."""
     most = sqrt(force / (3.0 * pi * plasticity.strength().least(0.0)))
-    return float(
-        brentq(lambda a: _hardness(plasticity, a, ratio_of(a)) * pi * a**2 - force, 0.0, most * (1.0 + 1e-9))
-    )
+    return _root(lambda a: _hardness(plasticity, a, ratio_of(a)) * pi * a**2 - force, most)
+
+
+def _root(excess: Callable[[float], float], most: float) -> float:
+    """Where a function that rises from below 0 at 0 is 0, by halving; `most` if it is not before that."""
+    low, high = 0.0, most
+    for _ in range(60):
+        middle = (low + high) / 2.0
+        low, high = (low, middle) if excess(middle) > 0.0 else (middle, high)
+    return (low + high) / 2.0
 
 
 def _law(scene: Scene, ratio: float, strain: float | None) -> str:

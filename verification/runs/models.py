@@ -11,8 +11,6 @@ from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from verification.runs.model_range import refusal as range_refusal, with_range
-
 if TYPE_CHECKING:
     from sam.scene import Checkpoint, Keep, Progress, Result, Scene
 
@@ -30,7 +28,9 @@ def check(scene: Scene, model: str) -> None:
     """
     if reason := _refusal(scene, model):
         raise ModelError(f"model {model}: {reason}")
-    if reason := range_refusal(scene):
+    from verification.runs.model_range import refusal  # noqa: PLC0415 - loads numpy
+
+    if reason := refusal(scene):
         raise ModelError(reason)
 
 
@@ -90,6 +90,8 @@ def solve(
     result = _package(model).solve(
         scene, progress=progress, checkpoint=keep if checkpoint else None, start=start
     )
+    from verification.runs.model_range import with_range  # noqa: PLC0415 - loads numpy
+
     return with_range(scene, replace(result, cost={**result.cost, **measured()}))
 
 
