@@ -118,17 +118,16 @@ def plan_lines(content: dict) -> list[str]:
 
 
 def advice_lines(content: dict) -> list[str]:
-    """What stands above the table of the advice: the title of the scene, by how much its model is off, and
-    what the table is about.
-    """
-    title, of_model = printable(content["title"]), content["model_range"]
-    off = [] if of_model is None else range_lines(of_model)
-    return [*([title, ""] if title else []), *off, f"advice: {content['advice']['words']}"]
+    """What stands above the table of the advice: the title of the scene, and what the table is about."""
+    title = printable(content["title"])
+    return [*([title, ""] if title else []), f"advice: {content['advice']['words']}"]
 
 
 def model_lines(content: dict) -> list[str]:
-    """What each model computes and leaves out, with its estimate."""
-    lines = []
+    """By how much all models are off; what each computes and leaves out, with its estimate."""
+    of_model = content["model_range"]
+    off = [] if of_model is None else range_lines(of_model)
+    lines = ["", *off] if off else []
     for entry in content["models"]:
         if not entry["available"]:
             lines += ["", f"{entry['model']}: cannot be used: {entry['reason']}"]

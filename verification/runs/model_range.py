@@ -337,6 +337,7 @@ def _modulus(scene: Scene) -> float:
     return 1.0 / compliance
 
 
+@cache
 def _hertz(rx: float, ry: float) -> tuple[float, float, float]:
     """Semi-axes a along x, b along y and approach in m of an ellipsoid by Hertz under F/E* = 1 m^2.
 
@@ -429,6 +430,8 @@ def _slope_in_contact(result: Result) -> float:
     if rough is None:
         return 0.0
     x, y = (np.unique(rough[name]) for name in ("x_m", "y_m"))
+    if x.size * y.size != rough["x_m"].size:  # no grid
+        return 0.0
     together = rough["height_m"] - rough["worn_m"] + rough.get(COUNTER_HEIGHT, 0.0)
     slopes = np.gradient(together.reshape(x.size, y.size), x, y)
     touching = rough["p_Pa"].reshape(x.size, y.size) > 0.0
