@@ -124,10 +124,8 @@ def advice_lines(content: dict) -> list[str]:
 
 
 def model_lines(content: dict) -> list[str]:
-    """By how much all models are off; what each computes and leaves out, with its estimate."""
-    of_model = content["model_range"]
-    off = [] if of_model is None else range_lines(of_model)
-    lines = ["", *off] if off else []
+    """What each model computes and leaves out, with its estimate; by how much all of them are off."""
+    of_model, lines = content["model_range"], []
     for entry in content["models"]:
         if not entry["available"]:
             lines += ["", f"{entry['model']}: cannot be used: {entry['reason']}"]
@@ -139,7 +137,8 @@ def model_lines(content: dict) -> list[str]:
             size = ", ".join(_sized(name, value) for name, value in stage["size"].items())
             mark = "computed" if stage["runs"] else "left out"
             lines.append(f"  {mark}  {stage['stage']}: {stage['reason']}" + (f" ({size})" if size else ""))
-    return [*lines, "", content["note"]]
+    off = [] if of_model is None else range_lines(of_model)
+    return [*lines, "", *off, content["note"]]
 
 
 def _sized(name: str, value: Any) -> str:
