@@ -3,10 +3,9 @@
 
 Of a sphere the errors are those that the cases model-limits measured against finite strain and true geometry
 at equal force, over its own a/R, in data/model_range.csv: chosen by hardening, linear in between, also
-between two Poisson's ratios. Any other contact is likened to a sphere: an
-ellipsoid to the one of its larger a_i/R_i, the edge of a punch to the one of the same slope, a rough body to
-the one of the same rms slope in contact, and what yields otherwise to the one of the same plastic strain. The
-last three are rules of thumb.
+between two Poisson's ratios. Any other contact is likened to a sphere: an ellipsoid to the one of its larger
+a_i/R_i, the edge of a punch to the one of the same slope, a rough body to the one of the same rms slope in
+contact, and what yields otherwise to the one of the same plastic strain. The last three are rules of thumb.
 
 Before a solve a/R is the larger of Hertz and a fully plastic contact, F = H pi a^2, H three times the yield
 stress at the strain 0.2 a/R (Tabor 1951; Johnson, Contact Mechanics (1985), section 6.3).
@@ -61,7 +60,9 @@ class Like:
     @property
     def words(self) -> str:
         return (
-            f"a/R = {self.ratio:.2g}" if not self.by else f"{self.by}, as of a sphere at {self.ratio:.2g} R"
+            f"a/R = {self.ratio:.2g}"
+            if not self.by
+            else f"{self.by}, as of a sphere at a/R = {self.ratio:.2g}"
         )
 
 
