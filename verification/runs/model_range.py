@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from importlib import resources
 from math import asin, cos, pi, sin, sqrt
@@ -48,22 +48,6 @@ HARDENS = 1.05  # flow stress at a plastic strain of 5 % over that at none
 STRAIN_OF_SPHERE = {SWIFT: 0.4, PERFECT: 0.9}
 """Largest plastic strain over a/R below a sphere at a/R = 0.2, by small strains: model-limits-plastic."""
 RMS_OF_SLOPE = sqrt(0.5)  # rms over the contact area of the slope of a sphere, over that at its edge
-
-
-@dataclass(frozen=True)
-class Like:
-    """The sphere that a contact is likened to: its a/R, and by what."""
-
-    ratio: float
-    by: str = ""
-
-    @property
-    def words(self) -> str:
-        return (
-            f"a/R = {self.ratio:.2g}"
-            if not self.by
-            else f"{self.by}, as of a sphere at a/R = {self.ratio:.2g}"
-        )
 
 
 @cache
@@ -139,15 +123,13 @@ def model_range(scene: Scene, result: Result | None = None) -> dict[str, Any] | 
     likes = list(_likes(scene, result, values))
     if not likes:
         return None
-    like = max(likes, key=lambda each: each.ratio)
-    own = likes[0] if likes[0].by == _by_shape(scene) else None
-    law = _law(scene, like.ratio, values.get("peeq_max") if result is not None else None)
+    ratio, by = max(likes)
+    law = _law(scene, ratio, values.get("peeq_max"))
     spheres = {nu: each["a_over_R"] for (name, nu), each in measured().items() if name == law}
-    given = _given(scene)
-    found = errors(law, scene.body.poisson, like.ratio)
+    given, found = _given(scene), errors(law, scene.body.poisson, ratio)
     out = {
-        "a_over_R": like.ratio,
-        "like": like.by,
+        "a_over_R": ratio,
+        "like": by,
         "law": law,
         "poisson": list(spheres),
         "measured_to": float(min(x[-1] for x in spheres.values())),
@@ -156,7 +138,7 @@ def model_range(scene: Scene, result: Result | None = None) -> dict[str, Any] | 
             for name, (error, around) in found.items()
             if name not in given
         },
-        "outside": own is not None and _beyond(scene, own.ratio),
+        "outside": _load_key(scene) is not None and _beyond(scene, likes[0][0]),
     }
     lost = None if result is None else _lost_height(scene, result)
     return out if lost is None else {**out, "lost_height": lost}
@@ -177,14 +159,15 @@ def off_in_words(found: Mapping[str, Any]) -> str:
 
 def range_lines(found: Mapping[str, Any]) -> list[str]:
     """What is said about it: that it is outside of the model, and what is off, in one line each."""
-    off, like = off_in_words(found), Like(found["a_over_R"], found["like"])
-    parts = [like.words, f"measured on spheres, {found['law']}"]
-    if like.ratio > found["measured_to"]:
+    off, ratio, by = off_in_words(found), found["a_over_R"], found["like"]
+    like = f"{by}, as of a sphere at " if by else ""
+    parts = [f"{like}a/R = {ratio:.2g}", f"measured on spheres, {found['law']}"]
+    if ratio > found["measured_to"]:
         parts.append(f"only up to {found['measured_to']:.2g}: more is to be expected")
-    if like.by and like.by != LARGER:
+    if by not in ("", LARGER):
         parts.append("a rule of thumb")
     words = f"the flat half-space of small strains: {off} ({'; '.join(parts)})"
-    return [*([outside_in_words(like.ratio)] if found["outside"] else []), *([words] if off else [])]
+    return [*([outside_in_words(ratio)] if found["outside"] else []), *([words] if off else [])]
 
 
 def _percent(error: float, uncertainty: float) -> str:
@@ -211,11 +194,6 @@ _RATIOS = {
     "rounded-punch": "the contact beside the flat end over the radius of the edge",
 }
 """Shape of the counter-body -> what is limited."""
-
-
-def _by_shape(scene: Scene) -> str:
-    """By what the shape of a counter-body is likened to a sphere."""
-    return {"ellipsoid": LARGER, "rounded-punch": "slope at the edge of contact"}.get(_shape(scene), "")
 
 
 def _shape(scene: Scene) -> str:
@@ -245,23 +223,25 @@ def _load_key(scene: Scene) -> str | None:
     return "force" if scene.loading.approach is None else "approach"
 
 
-def _likes(scene: Scene, result: Result | None, values: Mapping[str, float | None]) -> Iterator[Like]:
-    """The spheres that a scene can be likened to, the one of its counter-body first."""
+def _likes(
+    scene: Scene, result: Result | None, values: Mapping[str, float | None]
+) -> Iterator[tuple[float, str]]:
+    """a/R of the spheres that a scene can be likened to, and by what; the one of its counter-body first."""
     if (key := _load_key(scene)) is not None:
         radius = values.get("contact_radius_m")
         smooth = scene.patch_surface is None and not scene.loading.hertz
         load = getattr(scene.loading, key)
         ratio = _ratio_of(scene, radius) if smooth and radius is not None else _ratio(scene, load)
-        yield Like(ratio, _by_shape(scene))
+        yield ratio, {"ellipsoid": LARGER, "rounded-punch": "slope at the edge"}.get(_shape(scene), "")
     if scene.patch_surface is not None:
         slope = _slope(scene) if result is None else _slope_in_contact(result)
         if slope:
             edge = slope / RMS_OF_SLOPE
-            yield Like(edge / sqrt(1.0 + edge**2), f"rms slope {slope:.2g}")
+            yield edge / sqrt(1.0 + edge**2), f"rms slope {slope:.2g}"
     strain, plasticity = values.get("peeq_max"), scene.body.plasticity
     if strain and plasticity is not None and (scene.patch_surface is not None or _load_key(scene) is None):
         like = strain / STRAIN_OF_SPHERE[_hardening(plasticity)]
-        yield Like(like, f"plastic strain {100 * strain:.2g} %")
+        yield like, f"plastic strain {100 * strain:.2g} %"
 
 
 def _ratio(scene: Scene, load: float) -> float:
@@ -427,9 +407,13 @@ def _slope(scene: Scene) -> float:
 
 def _slope_in_contact(result: Result) -> float:
     """rms slope of the surfaces where they touch at the peak, before they deform; 0 where none does."""
-    rough = _surface(result, PEAK)
-    if rough is None:
+    found = result.tables.get("surface")
+    if found is None:
         return 0.0
+    states = np.asarray(found["state"])
+    first = states == (PEAK if PEAK in states else states[0])
+    columns = ("x_m", "y_m", "height_m", "p_Pa", "worn_m", COUNTER_HEIGHT)
+    rough = {name: np.asarray(found[name], dtype=float)[first] for name in columns if name in found}
     x, y = (np.unique(rough[name]) for name in ("x_m", "y_m"))
     if x.size * y.size != rough["x_m"].size:  # no grid
         return 0.0
@@ -447,14 +431,3 @@ def _lost_height(scene: Scene, result: Result) -> float | None:
     relief = float(np.ptp(np.asarray(result.tables["surface"]["height_m"], dtype=float)))
     worn = float(np.max(np.asarray(result.tables["surface"]["worn_m"], dtype=float)))
     return worn / relief if relief > 0.0 else None
-
-
-def _surface(result: Result, state: str) -> dict[str, np.ndarray] | None:
-    """The columns of the table surface at a state, its first where it has no such; None without the table."""
-    found = result.tables.get("surface")
-    if found is None:
-        return None
-    states = np.asarray(found["state"])
-    use = states == (state if state in states else states[0])
-    names = ("x_m", "y_m", "height_m", "p_Pa", "worn_m", COUNTER_HEIGHT)
-    return {name: np.asarray(found[name], dtype=float)[use] for name in names if name in found}
