@@ -13,8 +13,9 @@ Examples
 ...     loading={"force": 0.65},
 ... )
 >>> run = samfem.solve(scene)
->>> run
-<samfem.Run sam, converged: p_max 8.47 GPa, contact_radius 6.05 um, approach 0.349 um>
+>>> run  # doctest: +NORMALIZE_WHITESPACE
+<samfem.Run sam, converged: p_max 8.47 GPa, contact_radius 6.05 um, approach 0.349 um;
+ model: mean pressure -1.7 %>
 >>> round(run.quantities["p_max_Pa"] / 1e9, 2)
 8.47
 >>> run.tables["history"][["force_N", "p_max_Pa"]].shape
@@ -56,6 +57,7 @@ from verification.compare.own_data import OwnData  # noqa: E402
 from verification.cost.accuracy import solve as solve_family  # noqa: E402
 from verification.runs import files, models  # noqa: E402
 from verification.runs.files import FolderError  # noqa: E402
+from verification.runs.model_range import off_in_words  # noqa: E402
 from verification.runs.models import MODELS, SAM, ModelError  # noqa: E402
 from verification.runs.store import default_store  # noqa: E402
 from verification.runs.study import read_study  # noqa: E402
@@ -100,6 +102,8 @@ class Run(files.Run):
         Name with SI unit, as "p_max_Pa" -> float, or None where it does not apply.
     tables
         Name ("history", "axis", "line", "plane", "surface", ...) -> DataFrame, columns with SI unit.
+    model_range
+        By how much small strains of a flat half-space are off, see `docs/guide/accuracy.md`; or None.
     cost
         Times in s, memory in bytes and counters.
     summary
@@ -123,14 +127,15 @@ class Run(files.Run):
         values = self.last_fitting or self.quantities
         shown = [in_working_unit(name, value, digits=3) for name in SHOWN if (value := values.get(name))]
         words = ", ".join(f"{name} {value}" for name, value in shown)
-        return f"<samfem.Run {self.model}, {self.status}: {words or 'no load'}>"
+        return f"<samfem.Run {self.model}, {self.status}: {words or 'no load'}{_off(self)}>"
 
     def _repr_html_(self) -> str:
         values = self.last_fitting or self.quantities
         rows = [in_working_unit(name, value) for name, value in values.items() if value is not None]
         left_out = [(entry["stage"], entry["reason"]) for entry in self.summary["left_out"]]
         tables = [(name, f"{len(table)} rows: {', '.join(table)}") for name, table in self.tables.items()]
-        head = f"{self.summary['title'] or 'scene'} ({self.model}): {self.status}. {self.message}"
+        off = " ".join(self.range_lines)
+        head = f"{self.summary['title'] or 'scene'} ({self.model}): {self.status}. {self.message} {off}"
         parts = (("Quantities", rows), ("Left out", left_out), ("Tables", tables))
         return f"<p><b>{html.escape(head)}</b></p>" + "".join(
             f"<details{' open' * (of is rows)}><summary>{what}</summary>{_table(of)}</details>"
@@ -178,10 +183,11 @@ class Comparison:
             raise AssertionError(f"{self.line}\n{self.failed.to_string(index=False)}")
 
     def __repr__(self) -> str:
-        return f"<samfem.Comparison {self.line}>"
+        return f"<samfem.Comparison {self.line}{_off(self.sam)}>"
 
     def _repr_html_(self) -> str:
-        return f"<p><b>{html.escape(self.line)}</b></p>{self.frame.to_html(index=False)}"
+        line = "; ".join([self.line, *self.sam.range_lines])
+        return f"<p><b>{html.escape(line)}</b></p>{self.frame.to_html(index=False)}"
 
 
 @dataclass(frozen=True, repr=False)
@@ -349,6 +355,14 @@ def _drawings(result: Run | Comparison | Sweep) -> Mapping[str, Any]:
         solutions: dict[str, Any] = {"SAM": result.sam, "FEM": result.fem, **result.data}
         return figures.drawings_of_comparison(solutions)
     return {"sweep": figures.drawing_of_sweep(result.frame, result.record["study"])}
+
+
+def _off(run: Run) -> str:
+    """By how much the model is off, short; empty where no quantity is off by 1 %."""
+    found = run.model_range or {"quantities": {}, "outside": False}
+    parts = ["outside" * found["outside"], off_in_words(found)]
+    words = ", ".join(filter(None, parts))
+    return f"; model: {words}" if words else ""
 
 
 def _scene(scene: Scene | str | Path) -> Scene:

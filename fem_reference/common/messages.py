@@ -41,8 +41,6 @@ def message_of(scene: Scene, status: Status) -> str:
     """What to change for a status, in words; empty for a converged solve."""
     rough = scene.patch_surface is not None
     match status:
-        case Status.CONVERGED:
-            return ""
         case Status.NOT_CONVERGED if rough:
             full = f"{less_load(scene)} if all of it touches"
             return f"the contact iteration did not settle: {either(finer_cells(scene), full)}"
@@ -61,7 +59,7 @@ def message_of(scene: Scene, status: Status) -> str:
         case Status.STEP_CUT_LIMIT:
             what = either(more_steps(scene), less_load(scene))
             return f"a load step did not converge, halved {MOST_CUTS} times: {what}"
-    raise ValueError(f"no message for {status}")
+    return status.advice  # of a status that no solve here ends in
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from sam.scene.compare import Share
 from sam.scene.inputs import list_of
@@ -29,7 +29,8 @@ class Solver(Section):
     back-stresses that is always said. uncertainty: the scene is solved on coarser grids and with other
     numbers of load steps too, for a numerical uncertainty of each quantity; the models know nothing of it.
     accuracy: relative; cells and load steps are chosen so that the uncertainty of the quantities accuracy_of
-    (by default the one that advice is given for) is no larger.
+    (by default the one that advice is given for) is no larger. beyond_model: solve a contact too large for
+    small strains of a flat half-space too; the models know nothing of it.
     """
 
     method: Literal["backward-euler", "paper"] = "backward-euler"
@@ -40,6 +41,8 @@ class Solver(Section):
     uncertainty: bool = False
     accuracy: Annotated[float, ACCURACY] | None = None
     accuracy_of: Annotated[tuple[QuantityName, ...], list_of(1, len(QUANTITIES))] | None = None
+    beyond_model: bool = False
+    unwritten: ClassVar[tuple[str, ...]] = ("beyond_model",)
 
     @classmethod
     def implied(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -28,6 +28,7 @@ class Status(StrEnum):
     UNDER_RESOLVED = "under-resolved"
     PLASTIC_ZONE_AT_GRID_EDGE = "plastic-zone-at-grid-edge"
     STEP_CUT_LIMIT = "step-cut-limit"
+    OUTSIDE_OF_MODEL = "outside-of-model"
 
     @property
     def advice(self) -> str:
@@ -46,6 +47,8 @@ _ADVICE = {
     "the largest of grid.depths (or fem.box), or lower loading.force",
     Status.STEP_CUT_LIMIT: "a load step did not converge however often it was halved: raise loading.steps or "
     "solver.tolerance",
+    Status.OUTSIDE_OF_MODEL: "the contact is too large for small strains of a flat half-space: lower "
+    "loading.force (or loading.approach), or give [solver] beyond_model = true",
 }
 
 QUANTITIES = (
@@ -312,7 +315,8 @@ class Result:
     fields: of the first state of the tables; bodies: state -> finite-element mesh with its fields; grids:
     state, or "cycle-1" for what the first cycle left -> part of the body ("surface", "plane", "body") ->
     fields on its grid; verdict: on repeated loading, see `sam.scene.verdict`, None where nothing is judged;
-    uncertainty: of the quantities, None where it is not asked for; no solver says it;
+    uncertainty: of the quantities, None where it is not asked for; model_range: by how much the model is off,
+    None where nothing is known; no solver says either of them;
     discretisation: what was chosen (grid or mesh, in SI); certificate: residuals measured on the returned
     fields (dimensionless, meaning in the solver); message: empty when converged, else what to change.
     """
@@ -333,6 +337,7 @@ class Result:
     grids: Mapping[str, Mapping[str, GridFields]] = field(default_factory=dict)
     verdict: Mapping[str, Any] | None = None
     uncertainty: Mapping[str, Any] | None = None
+    model_range: Mapping[str, Any] | None = None
 
     @property
     def converged(self) -> bool:

@@ -350,7 +350,8 @@ def _other_cells(found: FrictionMap, scene: Scene) -> Iterator[Conflict]:
 
 
 def resolved(scene: Scene) -> dict[str, Any]:
-    """The scene with every default, numbers in SI, as a mapping that JSON can hold.
+    """The scene with every default, numbers in SI, as a mapping that JSON can hold; of keys that a section
+    leaves unwritten at their default only what differs from it.
 
     >>> ball = {"shape": "sphere", "radius": 0.01}
     >>> scene = Scene(body={"young": 2e11, "poisson": 0.3}, counterbody=ball, loading={"force": 1.0})

@@ -13,8 +13,10 @@ from pydantic import (
     BaseModel,
     ConfigDict,
     ModelWrapValidatorHandler,
+    SerializerFunctionWrapHandler,
     ValidationError,
     ValidationInfo,
+    model_serializer,
     model_validator,
 )
 from pydantic_core import InitErrorDetails, PydanticCustomError
@@ -63,6 +65,9 @@ class Section(BaseModel):
         refuses, or None for all of them.
     of_scene
         Whether its keys are those of a scene, so that one may belong into another table.
+    unwritten
+        Optional keys that are not written at their default, so that a scene has the identity, the digests and
+        the files that it had before there was such a key: every key that is added from now on.
     places
         Where each key of a scene is; the scene itself says so (`sam.scene.schema`).
     """
@@ -70,6 +75,7 @@ class Section(BaseModel):
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
     later: ClassVar[Mapping[str, tuple[str, ...] | None]] = {}
     of_scene: ClassVar[bool] = True
+    unwritten: ClassVar[tuple[str, ...]] = ()
     places: ClassVar[KnownPlaces | None] = None
 
     @classmethod
@@ -85,6 +91,15 @@ class Section(BaseModel):
     def excesses(self) -> Iterator[Conflict]:
         """Keys whose good values do not go together. Called only when every value is good."""
         return iter(())
+
+    @model_serializer(mode="wrap")
+    def _written(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """The keys as they are written, see `unwritten`."""
+        content: dict[str, Any] = handler(self)
+        for key in self.unwritten:
+            if getattr(self, key) == type(self).model_fields[key].default:
+                content.pop(key, None)
+        return content
 
     @model_validator(mode="wrap")
     @classmethod

@@ -279,6 +279,10 @@ class TestLimit:
             ("model-limits-plastic.approach-limit", 0.42, 0.38),
             ("model-limits-plastic.strain-limit", 0.14, 0.06),
             ("model-limits-plastic.perfect-limit", 0.22, 0.15),
+            ("model-limits.table", 1e-4, 0.01),
+            ("model-limits-plastic.table", 1e-4, 0.01),
+            ("model-limits-stated.elastic", 1.1, 2.5),
+            ("model-limits-stated.yields", 1.0, np.inf),
             *((f"model-limits.{name}-mesh", 1e-3, 0.02) for name in ("pressure", "radius", "approach")),
             *((f"model-limits-plastic.{name}-mesh", 1e-3, -0.05) for name in model_limits.QUANTITIES),
         ],
@@ -295,6 +299,19 @@ class TestLimit:
         radius = np.linspace(0.05, 0.3, 11)
         curve = study.Curve(radius, radius, radius, np.full(11, pressure), radius)
         assert red({"model-limits-plastic.hardness": model_limits.hardness(curve, body)}) == red_gates
+
+
+@pytest.mark.parametrize(
+    ("stated", "uncertainty", "measured", "times"),
+    [
+        (-0.06, 0.0, -0.03, 2.0),
+        (-0.06, 0.01, -0.1, 1 / 0.7),
+        (0.01, 0.02, -0.01, 1.0),
+        (0.01, 0, -0.01, np.inf),
+    ],
+)
+def test_a_stated_error_is_moved_by_its_uncertainty(stated, uncertainty, measured, times):
+    assert model_limits.factor(stated, uncertainty, measured) == pytest.approx(times)
 
 
 def test_differences_are_at_equal_force_and_of_resolved_contacts():

@@ -18,6 +18,7 @@ from verification.compare.tolerances import Tolerances, tolerances_of
 from verification.compare.verdicts import FilmVerdict, change_rows, claim_rows, verdict
 from verification.cost.accuracy import solve as solve_family
 from verification.runs import models
+from verification.runs.model_range import range_lines
 from verification.runs.store import Reuse, Store, solve_or_reuse
 from verification.text.readable import with_time
 
@@ -113,6 +114,11 @@ class Compared:
             if None not in own:
                 found.append(Uncertain(row.quantity, abs(row.sam - row.fem), *own))
         return tuple(found)
+
+    @property
+    def range_lines(self) -> tuple[str, ...]:
+        """By how much the model of both is off, as SAM found it; nothing where no quantity is off by 1 %."""
+        return () if self.sam.model_range is None else tuple(range_lines(self.sam.model_range))
 
     @property
     def failed(self) -> tuple[Comparison, ...]:

@@ -171,6 +171,7 @@ def _write(job: Job, found: Compared, *, draw: bool) -> None:
         "line": found.line,
         "rows": len(found.rows),
         "failed": len(found.failed),
+        "model_range": found.range_lines,
     }
     content["data"] = {
         data.name: {"rows": len(rows), "failed": sum(not row.passed for row in rows)}

@@ -129,7 +129,7 @@ def _case(name: str, found: Compared) -> dict:
         "runs": [],
         "figures": [_figure(name, kind, title, words) for kind, (title, words) in FIGURE_TITLES.items()],
         "tables": [*([_uncertainties(found)] if found.uncertain else []), _costs(found)],
-        "notes": [found.line, *([found.film.words] if found.film else [])],
+        "notes": [found.line, *([found.film.words] if found.film else []), *found.range_lines],
     }
 
 

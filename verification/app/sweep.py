@@ -82,7 +82,8 @@ class Sweep:
 
     @property
     def columns(self) -> tuple[str, ...]:
-        return ("index", *self.content.study.vary, "model", "status", "reason", *QUANTITIES, *COUNTERS)
+        vary = self.content.study.vary
+        return ("index", *vary, "model", "status", "reason", *QUANTITIES, *COUNTERS, "warnings")
 
     @property
     def ordered(self) -> list[tuple]:
@@ -96,7 +97,7 @@ class Sweep:
             result.cost.get(name) for name in COUNTERS
         ]
         reason = "" if result.converged else result.message or result.status.advice
-        self._row(point, result.status.value, reason, numbers)
+        self._row(point, result.status.value, reason, [*numbers, "; ".join(result.warnings)])
         place = self.place(point.index)
         if self.runs and not (source.reused and (place / SUMMARY).exists()):
             code = {"code_version": code_version(result.model)}
@@ -109,16 +110,17 @@ class Sweep:
     def add_without(self, point: StudyPoint, status: str, reason: str) -> None:
         """A point without a result."""
         self.counts[status] += 1
-        self._row(point, status, " ".join(reason.split()), [None] * (len(QUANTITIES) + len(COUNTERS)))
+        empty = [*[None] * (len(QUANTITIES) + len(COUNTERS)), ""]
+        self._row(point, status, " ".join(reason.split()), empty)
 
-    def _row(self, point: StudyPoint, status: str, reason: str, numbers: Sequence) -> None:
+    def _row(self, point: StudyPoint, status: str, reason: str, last: Sequence) -> None:
         self.rows[point.index] = (
             point.index,
             *point.shown,
             self.content.study.model,
             status,
             reason,
-            *numbers,
+            *last,
         )
 
     def write(self, always: bool = False) -> None:

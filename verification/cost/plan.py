@@ -15,6 +15,7 @@ from verification.cost.advice import advice_of
 from verification.cost.choice import chosen_scene, expected, first_choice, quantities_of
 from verification.cost.stages import stages_of
 from verification.runs import models
+from verification.runs.model_range import model_range, range_lines
 from verification.runs.provenance import memory_bytes
 from verification.text.console import table_lines
 from verification.text.readable import with_prefix, with_time
@@ -27,11 +28,12 @@ NOTE = "memory and time are estimates from the numbers of cells, not measurement
 
 def plan(scene: Scene) -> dict:
     """The plan of every model as a mapping that JSON can hold: stages, estimate, or why the model cannot be
-    used; advice.
+    used; advice; by how much small strains of a flat half-space are off.
     """
     entries = [_model(scene, name) for name in models.MODELS]
     advice = advice_of(scene, [entry["model"] for entry in entries if entry["available"]])
-    return {"title": scene.title, "note": NOTE, "models": entries, "advice": advice}
+    of_model = model_range(scene)
+    return {"title": scene.title, "note": NOTE, "models": entries, "advice": advice, "model_range": of_model}
 
 
 def _model(scene: Scene, model: str) -> dict:
@@ -140,8 +142,8 @@ def advice_lines(content: dict) -> list[str]:
 
 
 def model_lines(content: dict) -> list[str]:
-    """What each model computes and leaves out, with its estimate."""
-    lines = []
+    """What each model computes and leaves out, with its estimate; by how much all of them are off."""
+    of_model, lines = content["model_range"], []
     for entry in content["models"]:
         if not entry["available"]:
             lines += ["", f"{entry['model']}: cannot be used: {entry['reason']}"]
@@ -153,7 +155,8 @@ def model_lines(content: dict) -> list[str]:
             size = ", ".join(_sized(name, value) for name, value in stage["size"].items())
             mark = "computed" if stage["runs"] else "left out"
             lines.append(f"  {mark}  {stage['stage']}: {stage['reason']}" + (f" ({size})" if size else ""))
-    return [*lines, "", content["note"]]
+    off = [] if of_model is None else range_lines(of_model)
+    return [*lines, "", *off, content["note"]]
 
 
 def _sized(name: str, value: Any) -> str:

@@ -12,7 +12,19 @@ from pathlib import Path
 import numpy as np
 
 from verification.compare.rows import Solution
-from verification.figures.style import BLACK, FEM, GREEN, ORANGE, PURPLE, SAM, Columns, Drawing, save, sheet
+from verification.figures.style import (
+    BLACK,
+    FEM,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    SAM,
+    Columns,
+    Drawing,
+    marked,
+    save,
+    sheet,
+)
 from verification.runs.files import FIGURES
 from verification.runs.sampling import peak
 
@@ -52,7 +64,8 @@ def draw_comparison(folder: Path, solutions: Mapping[str, Solution], prefix: str
 
 def drawings_of(solutions: Mapping[str, Solution]) -> dict[str, Drawing]:
     """The figures of results of one scene by name."""
-    return {table: curves(solutions, table) for table in PANELS} | {"history": history(solutions)}
+    drawings = {table: curves(solutions, table) for table in PANELS} | {"history": history(solutions)}
+    return marked(drawings, *solutions.values())
 
 
 def curves(runs: Mapping[str, Solution], table: str) -> Drawing:

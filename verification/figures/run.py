@@ -29,7 +29,7 @@ from verification.figures.places import (
 )
 from verification.figures.run_maps import contact_map, plane_map, worn
 from verification.figures.running_in import six_panels
-from verification.figures.style import FEM, SAM, Drawing, save, sheet
+from verification.figures.style import FEM, SAM, Drawing, marked, save, sheet
 from verification.runs.files import FIGURES, Run, of_last_load, read_run
 from verification.runs.sampling import peak
 
@@ -56,6 +56,10 @@ def draw_run(folder: Path, *, pdf: bool = False) -> list[Path]:
 
 def drawings_of(run: Run) -> dict[str, Drawing]:
     """The figures of a run by name."""
+    return marked(_drawings_of(run), run)
+
+
+def _drawings_of(run: Run) -> dict[str, Drawing]:
     if not run.quantities["force_N"]:
         return {"history": history(run), "line": line(run, None, Section(0.0, 0.0, (), "plane"))}
     surface = surface_map(run)

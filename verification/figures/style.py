@@ -25,6 +25,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 from PIL import Image
 
 from verification.runs.files import write_atomically
+from verification.runs.model_range import OUTSIDE, outside_in_words, outside_of_model
 from verification.runs.tables import csv_text
 
 # Okabe & Ito (2008), distinguishable with every common colour vision deficiency.
@@ -90,6 +91,22 @@ class Columns(dict[str, list]):
         count = next((len(each) for each in values if np.ndim(each)), 1)
         for column, each in zip(self.values(), values, strict=True):
             column.extend(each if np.ndim(each) else [each] * count)
+
+
+def marked(drawings: Mapping[str, Drawing], *results: Any) -> dict[str, Drawing]:
+    """The drawings of results, each with a foot note and a column where one lies outside of its model."""
+    outside = max((a for each in results if (a := outside_of_model(each)) is not None), default=None)
+    if outside is None:
+        return dict(drawings)
+    with style():
+        for each in drawings.values():
+            each.figure.supxlabel(outside_in_words(outside), fontsize=8.0, color=VERMILION)
+    return {
+        name: Drawing(
+            each.figure, {**each.data, OUTSIDE: [outside] * len(next(iter(each.data.values()), ()))}
+        )
+        for name, each in drawings.items()
+    }
 
 
 def zero_line(axis: Axes) -> None:

@@ -21,10 +21,15 @@ from verification.runs.models import FEM, FEM_3D, SAM
 ROOT = Path(__file__).resolve().parents[2]
 SUFFIXES = (".py", ".json", ".toml", ".csv")
 CACHE = "__pycache__"
+_OF_RESULTS = (
+    "verification/runs/models.py",
+    "verification/runs/model_range.py",
+    "verification/data/model_range.csv",
+)
 PLACES = {
-    SAM: ("sam", "verification/runs/models.py"),
-    FEM: ("fem_reference", "sam/scene", "verification/runs/models.py"),
-    FEM_3D: ("fem_reference", "sam/scene", "verification/runs/models.py"),
+    SAM: ("sam", *_OF_RESULTS),
+    FEM: ("fem_reference", "sam/scene", *_OF_RESULTS),
+    FEM_3D: ("fem_reference", "sam/scene", *_OF_RESULTS),
 }
 """Files and folders, below the root, that decide the result of a model."""
 PACKAGES = {

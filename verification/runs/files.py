@@ -35,6 +35,7 @@ from sam.scene import (
     resolved,
 )
 from verification.runs.meshes import is_mesh, mesh_files
+from verification.runs.model_range import OUTSIDE, outside_of_model, range_lines
 from verification.runs.provenance import collect
 from verification.runs.tables import columns_text, frame_of, read_table
 
@@ -78,6 +79,15 @@ class Run:
         return self.summary.get("uncertainty")
 
     @property
+    def model_range(self) -> Mapping[str, Any] | None:
+        return self.summary.get("model_range")
+
+    @property
+    def range_lines(self) -> list[str]:
+        """What is said about it, see `verification.runs.model_range`."""
+        return [] if self.model_range is None else range_lines(self.model_range)
+
+    @property
     def model(self) -> str:
         return self.summary["model"]
 
@@ -117,13 +127,14 @@ def write_run(result: Result, scene: Scene, folder: str | Path, provenance: Mapp
     check_target(folder)
     if provenance is None:
         provenance = collect()
-    tables = {name: _table_text(name, table) for name, table in result.tables.items()}
+    outside = outside_of_model(result)
+    tables = {name: _table_text(name, table, outside) for name, table in result.tables.items()}
     summary = json_text(_summary(result, scene, provenance))
     folder.mkdir(parents=True, exist_ok=True)
     clear_run(folder)
     for name, text in tables.items():
         write_atomically(folder / f"{name}.csv", text.encode())
-    for name, content in mesh_files(result, scene.loading.cycles).items():
+    for name, content in mesh_files(result, scene.loading.cycles, outside).items():
         write_atomically(folder / name, content)
     write_atomically(folder / SUMMARY, summary.encode())
     (folder / CHECKPOINT).unlink(missing_ok=True)  # only now: until here the solve could be continued from it
@@ -284,12 +295,17 @@ def plain(value: Any) -> Any:
     return value if isinstance(value, int) else str(value)
 
 
-def _table_text(name: str, table: Table) -> str:
-    """A table in the column order of COLUMNS. Raises ValueError for other columns or unequal lengths."""
+def _table_text(name: str, table: Table, outside: float | None) -> str:
+    """A table in the column order of COLUMNS, with the a/R of a contact outside of the model as the last one.
+    Raises ValueError for other columns or unequal lengths.
+    """
     columns = COLUMNS[name] + tuple(extra for extra in EXTRA_COLUMNS.get(name, ()) if extra in table)
     if set(table) != set(columns):
         raise ValueError(f"table {name} has the columns {sorted(table)}, not {sorted(columns)}")
-    return columns_text({column: table[column] for column in columns})
+    shown = {column: table[column] for column in columns}
+    if outside is not None:
+        shown[OUTSIDE] = [outside] * len(table[columns[0]])
+    return columns_text(shown)
 
 
 def _read_table(path: Path) -> DataFrame:
@@ -320,6 +336,7 @@ def _summary(result: Result, scene: Scene, provenance: Mapping) -> dict:
         "warnings": result.warnings,
         **({} if result.verdict is None else {"verdict": result.verdict}),
         **({} if result.uncertainty is None else {"uncertainty": result.uncertainty}),
+        **({} if result.model_range is None else {"model_range": result.model_range}),
         "left_out": [{"stage": entry.stage, "reason": entry.reason} for entry in result.left_out],
         "cost": {name: result.cost.get(name) for name in (*COST, *(set(result.cost) - set(COST)))},
         "provenance": provenance,

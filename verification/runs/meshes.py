@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from sam.scene import UNLOADED, FieldMesh, GridFields, Result
+from verification.runs.model_range import OUTSIDE
 
 FIELDS, SURFACE, PARTS, STEPS = "fields.vtu", "surface.vtr", ("surface", "body"), "run.pvd"
 """Stresses and strains of every model; further parts, each NAME.vtr; the list of all, over time."""
@@ -40,8 +41,11 @@ def is_mesh(name: str) -> bool:
     return name in mesh_names() or re.fullmatch(rf"surface-{CYCLE}\d+\.vtr", name) is not None
 
 
-def mesh_files(result: Result, cycles: int) -> dict[str, bytes]:
-    """Name of a file -> its content: the parts of each state, and their list over cycles, from 0."""
+def mesh_files(result: Result, cycles: int, outside: float | None = None) -> dict[str, bytes]:
+    """Name of a file -> its content: the parts of each state, and their list over cycles, from 0.
+
+    outside: a/R of a contact outside of the model, which each mesh says.
+    """
     files: dict[str, bytes] = {}
     entries = []
     for state in dict.fromkeys((*result.grids, *result.bodies)):
@@ -54,7 +58,7 @@ def mesh_files(result: Result, cycles: int) -> dict[str, bytes]:
         time = float(state.removeprefix(CYCLE)) if state.startswith(CYCLE) else cycles - 0.5 * (not ended)
         for part, fields in parts.items():
             name, number = _named(part, state if ended else ""), ("fields", *PARTS).index(part)
-            files[name] = mesh_file(fields)
+            files[name] = mesh_file(fields, outside)
             entries.append(f'  <DataSet timestep="{time!r}" part="{number}" name="{part}" file="{name}"/>')
     if entries:
         lines = ['<VTKFile type="Collection" version="0.1">', " <Collection>", *entries, " </Collection>"]
@@ -62,13 +66,16 @@ def mesh_files(result: Result, cycles: int) -> dict[str, bytes]:
     return files
 
 
-def mesh_file(fields: FieldMesh | GridFields) -> bytes:
-    """The content of one file."""
+def mesh_file(fields: FieldMesh | GridFields, outside: float | None = None) -> bytes:
+    """The content of one file; outside: see `mesh_files`."""
     from vtkmodules import vtkIOXML
 
+    mesh = _rectilinear(fields) if isinstance(fields, GridFields) else _unstructured(fields)
+    if outside is not None:
+        mesh.GetFieldData().AddArray(_array(OUTSIDE, np.array([outside])))
     grid = isinstance(fields, GridFields)
     writer = (vtkIOXML.vtkXMLRectilinearGridWriter if grid else vtkIOXML.vtkXMLUnstructuredGridWriter)()
-    writer.SetInputData(_rectilinear(fields) if isinstance(fields, GridFields) else _unstructured(fields))
+    writer.SetInputData(mesh)
     writer.WriteToOutputStringOn()
     writer.Write()
     return writer.GetOutputString().encode()

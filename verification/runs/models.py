@@ -23,9 +23,15 @@ class ModelError(ValueError):
 
 
 def check(scene: Scene, model: str) -> None:
-    """Raise ModelError, which names the key, unless `model` can represent the scene."""
+    """Raise ModelError, which names the key, unless `model` can represent the scene and its contact is within
+    the range of every model, or asked for beyond it.
+    """
     if reason := _refusal(scene, model):
         raise ModelError(f"model {model}: {reason}")
+    from verification.runs.model_range import refusal  # noqa: PLC0415 - loads numpy
+
+    if reason := refusal(scene):
+        raise ModelError(reason)
 
 
 def cheapest_reference(scene: Scene) -> str:
@@ -65,7 +71,8 @@ def solve(
     *,
     start: Checkpoint | None = None,
 ) -> Result:
-    """The result of `model`, its cost completed by cpu_s and peak_memory_bytes (of this process so far).
+    """The result of `model`, with by how much small strains of a flat half-space are off; its cost completed
+    by cpu_s and peak_memory_bytes (of this process so far).
 
     checkpoint, start: see the solvers; the times of a solve in parts add up, and its memory is that of the
     largest part. Raises ModelError for a scene that the model cannot represent.
@@ -83,7 +90,9 @@ def solve(
     result = _package(model).solve(
         scene, progress=progress, checkpoint=keep if checkpoint else None, start=start
     )
-    return replace(result, cost={**result.cost, **measured()})
+    from verification.runs.model_range import with_range  # noqa: PLC0415 - loads numpy
+
+    return with_range(scene, replace(result, cost={**result.cost, **measured()}))
 
 
 def _package(model: str) -> ModuleType:

@@ -6,12 +6,14 @@ that a run has, or one of them as NAME.html.
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 
 from verification.figures.space.meshes import Found
 from verification.figures.space.pictures import PICTURES
 from verification.figures.space.view import drawn, page, png
 from verification.runs.files import of_last_load, read_run
+from verification.runs.model_range import outside_in_words, outside_of_model
 
 
 def main() -> None:
@@ -28,6 +30,9 @@ def main() -> None:
         picture = PICTURES[name](found)
         if picture is None:
             continue
+        if (outside := outside_of_model(found.run)) is not None:
+            note = "; ".join(filter(None, (picture.note, outside_in_words(outside))))
+            picture = replace(picture, note=note)
         if options.page:
             (options.into / f"{name}.html").write_text(page(picture), encoding="utf-8")
         else:

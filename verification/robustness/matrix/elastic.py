@@ -19,7 +19,7 @@ from verification.robustness.matrix.checks import (
     same_as,
 )
 from verification.robustness.matrix.row import Absent, Expectation, Refused, Right, Row
-from verification.robustness.matrix.scenes import CELLS, HERTZ, POISSON, RADIUS, YOUNG, scene_with
+from verification.robustness.matrix.scenes import BEYOND, CELLS, HERTZ, POISSON, RADIUS, YOUNG, scene_with
 from verification.runs.models import FEM, FEM_3D, SAM
 
 ORDINARY = "elastic contact is well posed"
@@ -92,7 +92,8 @@ def forces() -> Iterator[Row]:
     """Extremes of the force."""
     for force in (1e-15, 1e-9, 1e3, 1e6):
         yield row(
-            f"force-{force:g}", "force", f"{force:g} N; p0 goes with the cube root", {"loading.force": force},
+            f"force-{force:g}", "force", f"{force:g} N; p0 goes with the cube root",
+            {"loading.force": force} | (BEYOND if force > 1.0 else {}),
             expected=both(Right("no length but the radius: the same contact, scaled", [hertz(), balanced])),
             quick=force in (1e-15, 1e6),
         )  # fmt: skip
@@ -122,7 +123,8 @@ def shapes() -> Iterator[Row]:
     for ratio in (354.0, 1e-4, 1e4):
         yield row(
             f"radii-{ratio:g}", "aspect", f"ellipsoid, Ry/Rx = {ratio:g}; cells as slender as the contact",
-            ELLIPSOID | {"counterbody.radius_x": RADIUS, "counterbody.radius_y": ratio * RADIUS},
+            ELLIPSOID | {"counterbody.radius_x": RADIUS, "counterbody.radius_y": ratio * RADIUS}
+            | (BEYOND if ratio < 1.0 else {}),
             expected=both(Right(ORDINARY, [ellipse(), balanced]), NO_ELLIPSE), quick=ratio == 354.0,
         )  # fmt: skip
     slender = Refused("a line contact on every grid that is allowed", ["radius_y", "radius_x/radius_y"])
@@ -150,6 +152,7 @@ def shapes() -> Iterator[Row]:
         changes = {"counterbody.young": ratio * YOUNG, "counterbody.poisson": POISSON}
         name, two = "softer" if ratio < 1 else "stiffer", Right("E* of both", [hertz()])
         what = f"counter-body {max(ratio, 1 / ratio):g} times {name}"
+        changes |= BEYOND if ratio < 1 else {}
         yield row(f"counter-{ratio:g}", "counter-body", what, changes, expected=both(two, two, RIGID))
 
 

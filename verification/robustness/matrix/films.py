@@ -15,7 +15,7 @@ from verification.reference.layered_axisymmetric import CoatedHalfSpace
 from verification.robustness.matrix.checks import as_other_model, balanced, nothing_touches, relative, same_as
 from verification.robustness.matrix.elastic import both
 from verification.robustness.matrix.row import Deviation, Expectation, Refused, Right, Row, Trial
-from verification.robustness.matrix.scenes import FORCE, HERTZ, POISSON, RADIUS, YOUNG, scene_with
+from verification.robustness.matrix.scenes import BEYOND, FORCE, HERTZ, POISSON, RADIUS, YOUNG, scene_with
 from verification.runs.models import FEM, SAM
 
 RATIOS = (1e-6, 1e-2, 1e2, 1e6)
@@ -160,7 +160,8 @@ def _row(
 ) -> Row:
     coating = {"thickness": thickness * HERTZ, "young": ratio * YOUNG, "poisson": POISSON}
     cells = {"grid.cells": (129, 129)} if ratio == 1e2 and thickness >= 1.0 else {}
-    make = partial(scene_with, {"body.coating": coating} | cells | (changes or {}))
+    wide = BEYOND if ratio == 1e-6 and thickness >= 1.0 else {}  # pressed nearly through
+    make = partial(scene_with, {"body.coating": coating} | cells | wide | (changes or {}))
     name = name or f"film-{ratio:g}-{thickness:g}a"
     return Row(
         name, "film", what or f"film of {ratio:g} E, {thickness:g} contact radii thick", make, expected, quick

@@ -13,6 +13,9 @@ from sam.scene import Scene
 RADIUS, FORCE, YOUNG, POISSON = 1e-4, 0.17, 210e9, 0.3
 HERTZ = (0.75 * FORCE * RADIUS * (1 - POISSON**2) / YOUNG) ** (1 / 3)  # contact radius in m
 CELLS, MESH = 33, 8  # over four contact radii; in the contact radius
+BEYOND = {"solver.beyond_model": True}
+"""Of a contact wider than half the radius of the sphere: small strains of a flat half-space, for the numbers
+alone."""
 BASE = {
     "title": "Stability",
     "body": {"young": YOUNG, "poisson": POISSON},

@@ -1,24 +1,32 @@
 # SPDX-License-Identifier: MIT
 """Where small strain and the flat surface stop being good: against finite strain with the sphere's true
 geometry.
+
+`python -m verification.suite.cases.model_limits` writes data/model_range.csv, what samfem says of a scene.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from fem_reference.finite_strain import Curve, build, curve_of, load_to
 from sam.scene import Scene
 from verification.figures.limits import limits as drawn
+from verification.runs.model_range import COLUMNS, KEPT, WORDS, errors
+from verification.runs.tables import columns_text
 from verification.suite.cases.case import Case, Context, Measured, Plot, SmallTable
 from verification.suite.cases.hertz import contact_of
 from verification.suite.cases.model_limits_curves import (
+    COLUMN_OF,
     ELASTIC,
+    FRESH,
     LIMIT,
     MODELS,
+    OTHERS,
     PLASTIC,
     QUANTITIES,
     RADIUS,
@@ -27,7 +35,11 @@ from verification.suite.cases.model_limits_curves import (
     Body,
     Difference,
     differences,
+    errors_of_flat,
+    law_of,
     loaded,
+    range_rows,
+    with_spread,
 )
 
 COARSER = 10  # elements in the largest contact radius, for the influence of the mesh
@@ -103,7 +115,7 @@ class ModelLimits(Case):
         return ComparedCurves(bodies, found, fits, differences(curves(context, bodies[0], COARSER), COARSER))
 
     def measure(self, compared: ComparedCurves) -> dict[str, Measured | float]:
-        return small_load() | limits_of(compared)
+        return small_load() | limits_of(compared) | {"table": off_table(compared)}
 
     def setup(self, compared: ComparedCurves) -> list[tuple[str, str]]:
         return [
@@ -159,9 +171,75 @@ class ModelLimitsPlastic(ModelLimits):
     def measure(self, compared: ComparedCurves) -> dict[str, Measured | float]:
         perfect = PLASTIC[1]
         return limits_of(compared) | {
+            "table": off_table(compared),
             "hardness": hardness(compared.found[perfect.name]["finite"], perfect),
             "perfect-limit": compared.fits[perfect.name]["pressure"].good_to(),
         }
+
+
+class ModelLimitsStated(Case):
+    """What is said of a scene, against materials and meshes that the table behind it was not made of."""
+
+    def solve(self, context: Context) -> dict[str, dict[str, Difference]]:
+        return {body.name: errors_of_flat(body, curves(context, body, body.elements)) for body in FRESH}
+
+    def measure(self, found: dict[str, dict[str, Difference]]) -> dict[str, Measured | float]:
+        ids = ("elastic", "yields")
+        return {
+            name: max(row[-1] for row in stated_rows(body, found[body.name]))
+            for name, body in zip(ids, FRESH, strict=True)
+        }
+
+    def setup(self, found: dict[str, dict[str, Difference]]) -> list[tuple[str, str]]:
+        return [
+            ("Sphere", f"R = {RADIUS * 1e6:g} µm, rigid"),
+            ("Materials", "; ".join(body.name for body in FRESH)),
+            ("Stated", "by samfem plan and solve, from the table of the cases model-limits"),
+            (
+                "Factor",
+                "between stated and measured, once the stated uncertainty is taken off their distance",
+            ),
+        ]
+
+    def tables(self, found: dict[str, dict[str, Difference]]) -> list[SmallTable]:
+        rows = [
+            [body.name, f"{x:g}", WORDS[name], *(f"{100 * value:+.1f} %" for value in values), f"{times:.2f}"]
+            for body in FRESH
+            for x, name, *values, times in stated_rows(body, found[body.name])
+        ]
+        columns = ["material", "a/R", "quantity", "stated", "uncertainty", "measured", "factor"]
+        return [SmallTable("Error of small strains of a flat half-space at equal force", columns, rows)]
+
+
+def stated_rows(body: Body, fits: Mapping[str, Difference]) -> list[tuple]:
+    """a/R, quantity, stated error with its uncertainty, measured error, and the factor between them."""
+    rows = []
+    for x in (0.1, 0.2, 0.3):
+        stated = errors(law_of(body), body.poisson, x)
+        for name, fit in fits.items():
+            (error, around), measured = stated[COLUMN_OF[name]], float(fit(x))
+            rows.append((x, COLUMN_OF[name], error, around, measured, factor(error, around, measured)))
+    return rows
+
+
+def factor(stated: float, uncertainty: float, measured: float) -> float:
+    """By which two errors differ, once the stated one is moved by its uncertainty towards the other; infinite
+    where they have other signs.
+    """
+    nearest = stated + np.clip(measured - stated, -uncertainty, uncertainty)
+    ratio = nearest / measured
+    return float(max(ratio, 1.0 / ratio)) if ratio > 0.0 else np.inf
+
+
+def off_table(compared: ComparedCurves) -> float:
+    """Largest difference of the errors in data/model_range.csv from those that are found here."""
+    apart = []
+    for body in compared.bodies:
+        rows = range_rows(body, compared.found[body.name])
+        for k, x in enumerate(rows["a_over_R"]):
+            kept = errors(law_of(body), body.poisson, float(x))
+            apart += [abs(kept[name][0] - rows[name][k]) for name in kept]
+    return float(max(apart))
 
 
 def limits_of(compared: ComparedCurves) -> dict[str, float]:
@@ -285,4 +363,33 @@ CASES = (
         (*EQUATIONS[:2], PLASTIC_PLATEAU),
         levels=("full",),
     ),
+    ModelLimitsStated(
+        "model-limits-stated",
+        "Limits of small strain: what is said of a scene",
+        "Is the error that samfem states for a sphere right to a factor of two and its uncertainty?",
+        EQUATIONS[:2],
+        levels=("full",),
+    ),
 )
+
+
+def main() -> None:
+    """Measure data/model_range.csv anew."""
+    found = {}
+    for body in (*ELASTIC, *PLASTIC, *OTHERS):
+        print(body.name, flush=True)
+        found[body.name] = range_rows(body, {kind: loaded(body, body.elements, kind) for kind in MODELS})
+    parts = []
+    for body in (*ELASTIC, *PLASTIC):
+        same = next(each for each in PLASTIC + ELASTIC if law_of(each) == law_of(body))
+        others = [found[each.name] for each in OTHERS if law_of(each) == law_of(body)]
+        parts.append(with_spread(found[body.name], found[same.name], others))
+    table = {name: np.concatenate([part[name] for part in parts]) for name in COLUMNS}
+    rounded = {name: each.round(5) if each.dtype.kind == "f" else each for name, each in table.items()}
+    target = Path(__file__).parents[2] / "data" / KEPT
+    target.write_text(columns_text(rounded), encoding="utf-8")
+    print(f"{target}: {len(table['law'])} rows")
+
+
+if __name__ == "__main__":
+    main()

@@ -5,7 +5,7 @@ apart.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +13,13 @@ import numpy as np
 from fem_reference import plastic_radius
 from fem_reference.finite_strain import Curve, build, curve_of, load_to
 from sam.scene import Scene
+from verification.runs.model_range import (
+    COLUMNS,
+    ELASTIC as ELASTIC_LAW,
+    PERFECT as PERFECT_LAW,
+    SWIFT as SWIFT_LAW,
+    WORDS,
+)
 
 LIMIT = 0.05
 """Relative difference from which on the models of the scenes are called no good."""
@@ -22,7 +29,13 @@ QUANTITIES = {
     "approach": "approach",
     "strain": "largest plastic strain",
 }
+COLUMN_OF = dict(zip(QUANTITIES, WORDS, strict=True))
+"""Names of the quantities in the table of `verification.runs.model_range`."""
+STEP = (
+    0.025  # of a/R in that table: linear in between, the fits are off by less than 0.002 by their curvature
+)
 POWERS = np.arange(1, 4)
+Table = dict[str, np.ndarray]
 RESOLVED = 6  # elements in the contact radius from which a load step counts
 YOUNG, RADIUS = 210e9, 105e-6
 SWIFT = {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121}
@@ -61,12 +74,25 @@ class Body:
         return scene.model_copy(update={"fem": scene.fem.model_copy(update={"cells_per_radius": cells})})
 
 
-ELASTIC = (Body("elastic, ν = 0.3", 0.3, 0.4, 16, 20), Body("elastic, ν = 0.49", 0.49, 0.4, 16, 20))
+ELASTIC = tuple(Body(f"elastic, ν = {nu:g}", nu, 0.4, 16, 20) for nu in (0.3, 0.49, 0.0))
 PERFECT = {"law": "perfect", "yield_stress": YOUNG / 300}
 PLASTIC = (
     Body("Swift steel", 0.3, 0.4, 16, 60, SWIFT, 11.2e9),
     Body("perfectly plastic, yield strain 1/300", 0.3, 0.3, 16, 80, PERFECT, 2.8 * PERFECT["yield_stress"]),
+    Body("Swift steel, ν = 0.49", 0.49, 0.4, 16, 60, SWIFT, 11.2e9),
 )
+WEAKER = PERFECT | {"yield_stress": YOUNG / 600}
+OTHERS = (
+    Body("0.6 of the Swift steel", 0.3, 0.35, 10, 40, SWIFT | {"B": 0.6 * SWIFT["B"]}, 6.5e9),
+    Body("Swift, n = 0.06", 0.3, 0.35, 10, 40, SWIFT | {"B": 1.3e9, "n": 0.06}, 7.5e9),
+    Body("perfectly plastic, yield strain 1/600", 0.3, 0.25, 10, 50, WEAKER, 2.85 * WEAKER["yield_stress"]),
+)
+"""Materials by which an error differs that is taken from those above: a part of its uncertainty."""
+FRESH = (
+    Body("elastic, ν = 0.4", 0.4, 0.32, 20, 16),
+    Body("1.3 of the Swift steel", 0.3, 0.35, 10, 40, SWIFT | {"B": 1.3 * SWIFT["B"]}, 14e9),
+)
+"""Materials and a mesh that the table of `verification.runs.model_range` was not made of."""
 
 
 @dataclass(frozen=True)
@@ -128,3 +154,42 @@ def differences(found: Mapping[str, Curve], elements: int) -> dict[str, Differen
     use = x >= RESOLVED / elements * x.max()
     both = {name: (getattr(flat, name)[use], getattr(true, name)[use]) for name in QUANTITIES}
     return {name: Difference.of(x[use], t / f - 1.0) for name, (f, t) in both.items() if (f > 0.0).all()}
+
+
+def range_rows(body: Body, found: Mapping[str, Curve]) -> Table:
+    """Rows of the table of `verification.runs.model_range`, by column: errors of the flat model over its own
+    a/R, by the fits, with two of their standard errors.
+    """
+    fits = errors_of_flat(body, found)
+    x = STEP * np.arange(1, int(fits["radius"].x.max() / STEP + 0.01) + 1)
+    columns: Table = dict.fromkeys(COLUMNS, np.full(x.size, np.nan))
+    columns |= {"law": np.full(x.size, law_of(body)), "poisson": np.full(x.size, body.poisson), "a_over_R": x}
+    for name, fit in fits.items():
+        columns |= {COLUMN_OF[name]: fit(x), f"u_{COLUMN_OF[name]}": fit.error(x)}
+    return columns
+
+
+def errors_of_flat(body: Body, found: Mapping[str, Curve]) -> dict[str, Difference]:
+    """Quantity -> error of the flat model at equal force, over its own a/R."""
+    return differences({"flat": found["finite"], "finite": found["flat"]}, body.elements)
+
+
+def law_of(body: Body) -> str:
+    """Of a body in the table."""
+    law = (body.plasticity or {}).get("law")
+    return {None: ELASTIC_LAW, "swift": SWIFT_LAW, "perfect": PERFECT_LAW}[law]
+
+
+def with_spread(rows: Table, same: Table, others: Sequence[Table]) -> Table:
+    """The rows, whose uncertainty has in it by how much `others` differ from `same`, all of one law."""
+    widened = dict(rows)
+    for name in WORDS if others else ():
+        apart = [
+            abs(
+                np.interp(rows["a_over_R"], each["a_over_R"], each[name])
+                - np.interp(rows["a_over_R"], same["a_over_R"], same[name])
+            )
+            for each in others
+        ]
+        widened[f"u_{name}"] = rows[f"u_{name}"] + np.max(apart, axis=0)
+    return widened

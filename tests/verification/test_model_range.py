@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: MIT
+"""Where the model ends: what is said, refused and stopped, and what says so of a scene that goes on."""
+
+import json
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+from builders import MODULUS, RADIUS, SPHERE, STEEL, SWIFT, scene_text
+
+import sam
+from sam.scene import Result, Scene, Status
+from verification.app.compared import compared
+from verification.app.comparison_page import Scenes, write_report
+from verification.runs import models
+from verification.runs.files import read_run, read_summary
+from verification.runs.meshes import mesh_names
+from verification.runs.model_range import OUTSIDE, errors, model_range, range_lines, with_range
+from verification.runs.models import ModelError
+
+ELASTIC, YIELDING = {}, {"plasticity": SWIFT}
+ELLIPSOID = {"shape": "ellipsoid", "radius_x": RADIUS, "radius_y": 3 * RADIUS}
+PUNCH = {"shape": "rounded-punch", "flat_radius": RADIUS, "radius": RADIUS / 2}
+SMALL = {"cells": (33, 33)}
+
+
+def scene(body=ELASTIC, other=SPHERE, poisson=0.3, **tables):
+    tables = {"loading": {"force": 1.0}, "grid": SMALL} | tables
+    return Scene(body=STEEL | {"poisson": poisson} | body, counterbody=other, **tables)
+
+
+def force_at(ratio, body, poisson):
+    """By Hertz or fully plastic, whichever has the larger contact, on a sphere."""
+    hertz = 4 / 3 * 210e9 / (1 - poisson**2) * ratio**3 * RADIUS**2
+    if body is ELASTIC:
+        return hertz
+    stress = 945e6 * (20 + 1e6 * 0.2 * ratio) ** 0.121
+    return min(hertz, 3 * stress * pi * (ratio * RADIUS) ** 2)
+
+
+@pytest.mark.parametrize("ratio", [0.02, 0.1, 0.3, 0.49, 0.51, 1.0, 2.5])
+@pytest.mark.parametrize("poisson", [0.3, 0.49])
+@pytest.mark.parametrize("body", [ELASTIC, YIELDING], ids=["elastic", "Swift"])
+def test_a_sphere_is_said_or_refused_by_its_contact_radius(body, poisson, ratio):
+    found = scene(body, poisson=poisson, loading={"force": force_at(ratio, body, poisson)})
+    stated = model_range(found)
+    assert stated["a_over_R"] == pytest.approx(ratio, rel=1e-6)
+    named = {name for name, each in stated["quantities"].items() if abs(each["error"]) > 0.01}
+    said = " ".join(range_lines(stated))
+    assert all((name.split("_")[0] in said) == (name in named) for name in ("contact_radius", "approach"))
+    assert (body is ELASTIC and poisson == 0.3 and ratio == 0.1) <= ("mean pressure -2.9 %" in said)
+    if ratio < 0.5:
+        return models.check(found, models.SAM)
+    with pytest.raises(
+        ModelError, match=r"loading.force = .* N, allowed: at most .*beyond_model = true"
+    ) as no:
+        models.check(found, models.FEM)
+    most = float(str(no.value).partition("at most about ")[2].split()[0])
+    assert most == pytest.approx(force_at(0.5, body, poisson), rel=6e-3)  # three digits are said
+    models.check(scene(body, loading={"force": most}, solver={"beyond_model": True}), models.SAM)
+
+
+def slope_of_punch(found):
+    return (sam.hertz_semi_axes(found)[0] - PUNCH["flat_radius"]) / PUNCH["radius"]
+
+
+@pytest.mark.parametrize(
+    ("other", "ratio_of"),
+    [
+        (ELLIPSOID, lambda found: max(np.divide(sam.hertz_semi_axes(found), (RADIUS, 3 * RADIUS)))),
+        (PUNCH, slope_of_punch),
+    ],
+    ids=["ellipsoid", "rounded-punch"],
+)
+def test_other_shapes_count_by_their_larger_ratio_and_by_their_slope(other, ratio_of):
+    """The contact by the estimate of SAM, which is another one."""
+    with pytest.raises(ModelError, match=r"loading\.force") as no:
+        models.check(scene(other=other, loading={"force": 1e5}, grid=None), models.SAM)
+    most = float(str(no.value).partition("at most about ")[2].split()[0])
+    assert ratio_of(scene(other=other, loading={"force": most})) == pytest.approx(0.5, abs=3e-3)
+    models.check(scene(other=other, loading={"force": 0.99 * most}, grid=None), models.SAM)
+    assert range_lines(model_range(scene(other=other, loading={"force": 0.2 * most})))
+
+
+@pytest.mark.parametrize(
+    ("body", "tables", "key", "most"),
+    [
+        (ELASTIC, {"loading": {"approach": 1e-4}}, "approach", RADIUS / 4),
+        (YIELDING, {"loading": {"approach": 1e-4}}, "approach", RADIUS / 8),
+        (ELASTIC, {"loading": {"prescribed": "hertz", "p0": 1e11, "radius": 1e-6}}, "p0", MODULUS / pi),
+        (ELASTIC, {"loading": {"approach": 1e-4}, "other": PUNCH}, "approach", None),
+    ],
+)
+def test_an_approach_and_a_given_pressure_count_by_the_sphere_that_makes_them(body, tables, key, most):
+    other = None if key == "p0" else SPHERE
+    with pytest.raises(ModelError, match=rf"loading\.{key} = ") as no:
+        models.check(scene(body, **{"other": other} | tables), models.SAM)
+    if most is None:  # of a rounded edge, Sneddon 1965
+        b, edge = PUNCH["flat_radius"], PUNCH["radius"]
+        a = b + edge / 2
+        most = a / edge * (sqrt(a**2 - b**2) - b * np.arccos(b / a))
+    assert float(str(no.value).partition("at most about ")[2].split()[0]) == pytest.approx(most, rel=6e-3)
+
+
+def test_nothing_is_known_of_a_flat_punch_and_its_size_is_not_limited():
+    found = scene(other={"shape": "punch", "radius": 1e-6}, loading={"force": 1e3})
+    models.check(found, models.SAM)
+    assert model_range(found) is None
+
+
+def rough(heights, pressure, worn=0.0):
+    """A result on a patch of 3 by 4 cells of 1 by 2 m."""
+    x, y = (each.ravel() for each in np.meshgrid([0.0, 1.0, 2.0], [0.0, 2.0, 4.0, 6.0], indexing="ij"))
+    columns = {"x_m": x, "y_m": y, "height_m": heights(x, y), "p_Pa": pressure(x), "worn_m": worn + 0 * x}
+    return {"state": ["peak"] * x.size} | columns
+
+
+@pytest.mark.parametrize(("worn", "lost"), [(0.0, []), (0.03, ["lost height 5 % of the relief"])])
+def test_a_rough_body_counts_by_its_slope_in_contact_and_its_strain(worn, lost):
+    """A slope of 0.3 everywhere but where nothing touches: a sphere at whose edge it is sqrt(2) larger."""
+    surface = {"kind": "sinusoid", "amplitude": 1e-8, "wavelength_x": 1e-5}
+    wear = {"wear": {"strain_limit": 0.02}, "loading": {"force": 1.0, "unload": True}}
+    grid = {"cells": (16, 16), "extent": (2e-5, 2e-5)}
+    found = scene(YIELDING, {"shape": "flat"}, grid=grid, surface=surface, **(wear if worn else {}))
+    table = rough(lambda x, y: 0.3 * x + (y > 4.0) * 0.0, lambda x: x < 2.0, worn)
+    assert np.ptp(table["height_m"]) == pytest.approx(0.6)
+
+    def solved(peeq):
+        values = {"peeq_max": peeq, "contact_radius_m": 1e-6}
+        return with_range(found, Result("sam", Status.CONVERGED, values, {"surface": table}))
+
+    edge = 0.3 * sqrt(2)
+    by_slope, by_strain = solved(0.02), solved(0.2)
+    assert by_slope.model_range["a_over_R"] == pytest.approx(edge / sqrt(1 + edge**2), rel=1e-6)
+    assert by_strain.model_range["a_over_R"] == pytest.approx(0.2 / 0.4)
+    assert "rms slope 0.3" in by_slope.warnings[-1] and "plastic strain 20 %" in by_strain.warnings[-1]
+    assert "rule of thumb" in by_slope.warnings[-1] and by_strain.status is Status.CONVERGED
+    assert all((words in by_slope.warnings[-1]) == bool(lost) for words in lost or ["lost height"])
+
+
+def test_an_error_is_interpolated_and_beyond_what_was_measured_the_nearest():
+    low, middle, high = (errors("elastic", nu, 0.2)["approach"][0] for nu in (0.3, 0.395, 0.49))
+    assert middle == pytest.approx((low + high) / 2) and errors("elastic", 0.5, 0.2)["approach"][0] == high
+    assert errors("elastic", 0.3, 2.0) == errors("elastic", 0.3, 0.4)
+    assert errors("elastic", 0.3, 0.0125)["approach"][0] == pytest.approx(
+        errors("elastic", 0.3, 0.025)["approach"][0] / 2
+    )
+
+
+SOFT = '[body.coating]\nthickness = "20 um"\nyoung = "2 GPa"\npoisson = 0.3\n[grid]\ncells = [33, 33]\n'
+
+
+@pytest.mark.parametrize(("more", "code", "status"), [("", 1, "outside-of-model"), ("x", 0, "converged")])
+def test_what_only_the_solution_shows_ends_in_a_status_or_goes_on_marked(folder, samfem, more, code, status):
+    """A soft coating, which the estimate leaves out."""
+    text = scene_text().replace("0.65 N", "12 N") + SOFT
+    (folder / "soft.toml").write_text(text + ("[solver]\nbeyond_model = true\n" if more else ""))
+    said = samfem("solve", "soft.toml", code=code)
+    summary = read_summary(folder / "soft-sam")
+    assert summary["status"] == status and summary["model_range"]["outside"] is True
+    assert summary["model_range"]["a_over_R"] == pytest.approx(
+        summary["quantities"]["contact_radius_m"] / RADIUS
+    )
+    assert "outside of the model: a/R = 0.5" in said.err and ("beyond_model = true" in said.err) == bool(code)
+
+
+def test_every_file_and_figure_says_that_a_contact_is_outside_of_the_model(folder, samfem):
+    beyond = scene_text().replace("0.65 N", "5 kN") + "[grid]\ncells = [33, 33]\n"
+    (folder / "far.toml").write_text(beyond)
+    assert "loading.force = 5000 N, allowed" in samfem("solve", "far.toml", code=2).err
+    assert not (folder / "far-sam").exists()
+    assert "outside of the model: a/R = 1.14" in samfem("plan", "far.toml").out
+    (folder / "far.toml").write_text(beyond + "[solver]\nbeyond_model = true\n")
+    samfem("solve", "far.toml", "--figures")
+    run, place = read_run(folder / "far-sam"), folder / "far-sam"
+    assert all(set(table[OUTSIDE].round(2)) == {1.14} for table in run.tables.values())
+    assert len(run.tables) >= 4 and run.model_range["outside"]
+    meshes = [name for name in mesh_names() if (place / name).is_file() and not name.endswith(".pvd")]
+    assert len(meshes) >= 2 and all(OUTSIDE.encode() in (place / name).read_bytes() for name in meshes)
+    tables = list((place / "figures").glob("*.csv"))
+    assert tables and all(OUTSIDE in table.read_text().splitlines()[0] for table in tables)
+
+
+def test_compare_says_it_on_its_page_and_in_python(folder):
+    found = compared(scene(fem={"cells_per_radius": 8}, loading={"force": 5.0}))
+    assert len(found.range_lines) == 1 and "mean pressure -3.2 %" in found.range_lines[0]
+    page = write_report(Scenes({"five": found}, {}), folder / "page").read_text()
+    assert "the flat half-space of small strains: mean pressure" in page
+    assert (
+        found.range_lines[0]
+        in json.loads((folder / "page" / "results.json").read_text())["cases"][0]["notes"]
+    )
