@@ -30,12 +30,12 @@ def largest_mises(z: Array, peak: Snapshot, kinks: Kinks = EVEN) -> tuple[float,
     """Depth and value of the largest von Mises stress, refined by a parabola over depth unless its cell has
     yielded.
 
-    A cell that has is on the yield surface, which a parabola through it and its neighbours would pass.
-    kinks: as of `refined_peak`.
+    A cell that has is on the yield surface, which a parabola through it and its neighbours would pass; so
+    the value is the same whichever way the body is turned. kinks: as of `refined_peak`.
     """
-    mises = peak.mises_at_depths
+    mises = peak.mises
     k, column = np.unravel_index(mises.argmax(), mises.shape)
-    if peak.mises is None and peak.peeq[k, column].any():
+    if peak.flowed is not None and peak.flowed[k, column]:
         return float(z[k]), float(mises[k, column])
     return refined_peak(z, mises[:, column], kinks)
 

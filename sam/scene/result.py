@@ -152,6 +152,8 @@ FRICTION_SIGN = "friction_sign"
 """Of the table cycles, where the traction points along -x in some cycle: 1 or -1."""
 DISSIPATED = "dissipated_J"
 """Of the table cycles, where there are back-stresses or repeated loading is judged."""
+ROOFED = "roofed_volume_m3"
+"""Of the table cycles of a scene with [wear]: beyond the strain limit, and kept by sound material above."""
 TRACK = (
     "x_m",
     "uz_m",
@@ -218,7 +220,7 @@ EXTRA_COLUMNS = {
     "surface": (COUNTER_HEIGHT,),
     "passes": OF_PASSES,
     "track": (TRACK_WORN,),
-    "cycles": (*VERDICT_COLUMNS, DISSIPATED, FRICTION_SIGN),
+    "cycles": (*VERDICT_COLUMNS, DISSIPATED, FRICTION_SIGN, ROOFED),
 }
 """Last columns of a table that only some scenes have."""
 
