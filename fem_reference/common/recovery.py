@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Values between the points of a mesh: polynomials over depth."""
+"""Values between the points of a mesh: polynomials over depth; a mean over some of them."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fem_reference.common.arrays import Array
+from sam.scene.result import MOST_STRAINED, STRAINED
 
 Peak = tuple[float, float | None]
 """A largest value and its depth in m, None if all are zero."""
@@ -25,6 +26,24 @@ def continued(z: Sequence[Array] | Array, values: Sequence[Array] | Array, depth
         others = [other for j, other in enumerate(z) if j != i]
         total = total + value * np.prod([(depth - other) / (own - other) for other in others], axis=0)
     return total
+
+
+def most_strained(peeq: Array, weights: Array) -> float | None:
+    """Mean plastic strain of the share MOST_STRAINED of the plastic volume that is strained most; None if
+    there is none.
+
+    peeq, weights: (n,), of the Gauss points and their volumes in any unit. The point that is partly in the
+    share counts with that part.
+    """
+    inside = peeq > STRAINED * peeq.max()
+    if not inside.any():
+        return None
+    order = np.argsort(peeq[inside])[::-1]
+    strain, volume = peeq[inside][order], weights[inside][order]
+    ends = np.append(0.0, np.cumsum(volume))
+    strained = np.append(0.0, np.cumsum(volume * strain))
+    share = MOST_STRAINED * float(ends[-1])
+    return float(np.interp(share, ends, strained)) / share
 
 
 def parabola_peak(x: Array, y: Array) -> tuple[float, float]:

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""The largest von Mises stress between the depths at which it is known."""
+"""The largest von Mises stress between the depths at which it is known, and the largest plastic strains."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from sam.arrays import Array, Mask
-from sam.results.snapshots import Snapshot
+from sam.results.snapshots import Box, Snapshot
+from sam.scene.result import MOST_STRAINED, STRAINED
 from sam.scene.yield_curve import Kinks
 
 EVEN = Kinks()
@@ -38,6 +39,21 @@ def largest_mises(z: Array, peak: Snapshot, kinks: Kinks = EVEN) -> tuple[float,
     if peak.flowed is not None and peak.flowed[k, column]:
         return float(z[k]), float(mises[k, column])
     return refined_peak(z, mises[:, column], kinks)
+
+
+def most_strained(box: Box) -> float | None:
+    """Mean accumulated plastic strain of the part of the plastic volume that is strained most, see
+    `sam.scene.result.MOST_STRAINED`; None without any.
+    """
+    peeq = box.peeq.ravel()
+    if not peeq.any():
+        return None
+    volume = np.multiply.outer(np.diff(box.z), np.multiply.outer(np.diff(box.x), np.diff(box.y))).ravel()
+    order = np.flatnonzero(peeq > STRAINED * peeq.max())
+    order = order[np.argsort(-peeq[order])]
+    so_far = np.cumsum(volume[order])
+    part = np.clip(MOST_STRAINED * so_far[-1] - (so_far - volume[order]), 0.0, volume[order])
+    return float(part @ peeq[order] / part.sum())
 
 
 def largest_in(depths: Array, mises: Array, part: Mask) -> tuple[float, float] | None:

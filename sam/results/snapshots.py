@@ -116,9 +116,10 @@ class Snapshot:
     contact: on the full grid; residual_displacement: of the surface, (nx, ny) in m; stress: (6, nz, nx,
     rows) in Pa, strain: plastic, (6, nz, nx, rows), peeq: (nz, nx, rows), all in the rows of cells that touch
     y = 0; mises: von Mises stress of (nz, n) points in Pa, among which the largest is; flowed: which of them
-    have plastic strain, None: none; top: depth in m and value of the largest peeq anywhere, between the cells, None where nothing yields;
-    sliding: None without friction; coated: None without coating; worn: depth in m, (nx, ny), None: nothing
-    can wear; cut: None: not at the peak, or the contact is in y = 0; box: None: the body is elastic; stretch,
+    have plastic strain, None: none; top: depth in m and value of the largest peeq anywhere, between the
+    cells, None where nothing yields; sliding: None without friction; coated: None without coating; worn:
+    depth in m, (nx, ny), None: nothing can wear; cut: None: not at the peak, or the contact is in y = 0; box:
+    None: the body is elastic; stretch,
     place: of the counter-body that is opposite, see `sam.schedule.Load`; repeated: fields of repeated
     loading, name -> (nz, nx, rows) or (6, nz, nx, rows).
     """

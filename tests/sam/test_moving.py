@@ -137,7 +137,9 @@ def test_a_turned_scene_has_the_same_largest_stresses(cells, plasticity, rolls):
             solver={"tolerance": 1e-7},
         )
         found.append(sam.solve(scene).quantities)
-    assert [found[1][name] for name in LARGEST] == pytest.approx([found[0][name] for name in LARGEST], rel=1e-6)
+    assert [found[1][name] for name in LARGEST] == pytest.approx(
+        [found[0][name] for name in LARGEST], rel=1e-6
+    )
 
 
 class TestGroove:

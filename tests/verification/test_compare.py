@@ -35,6 +35,7 @@ QUANTITIES = {
     "peeq_max_depth_m": 0.5,
     "residual_uz_center_m": 0.1,
     "residual_mises_max_Pa": 0.2,
+    "peeq_top_1pct": 0.019,
 }
 STATES = ("peak", "unloaded")
 
