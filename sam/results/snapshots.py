@@ -119,9 +119,8 @@ class Snapshot:
     have plastic strain, None: none; top: depth in m and value of the largest peeq anywhere, between the
     cells, None where nothing yields; sliding: None without friction; coated: None without coating; worn:
     depth in m, (nx, ny), None: nothing can wear; cut: None: not at the peak, or the contact is in y = 0; box:
-    None: the body is elastic; stretch,
-    place: of the counter-body that is opposite, see `sam.schedule.Load`; repeated: fields of repeated
-    loading, name -> (nz, nx, rows) or (6, nz, nx, rows).
+    None: the body is elastic; stretch, place: of the counter-body that is opposite, see `sam.schedule.Load`;
+    repeated: fields of repeated loading, name -> (nz, nx, rows) or (6, nz, nx, rows).
     """
 
     state: str
