@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Values between the points of a mesh: polynomials over depth; a mean over some of them."""
+"""Values between the points of a mesh: polynomials over depth; a percentile of their values."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fem_reference.common.arrays import Array
-from sam.scene.result import MOST_STRAINED, STRAINED
+from sam.scene.result import EXCEEDING, STRAINED
 
 Peak = tuple[float, float | None]
 """A largest value and its depth in m, None if all are zero."""
@@ -28,22 +28,19 @@ def continued(z: Sequence[Array] | Array, values: Sequence[Array] | Array, depth
     return total
 
 
-def most_strained(peeq: Array, weights: Array) -> float | None:
-    """Mean plastic strain of the share MOST_STRAINED of the plastic volume that is strained most; None if
-    there is none.
+def exceeded_strain(peeq: Array, weights: Array) -> float | None:
+    """The plastic strain that a share EXCEEDING of the plastic volume exceeds; None if there is none.
 
-    peeq, weights: (n,), of the Gauss points and their volumes in any unit. The point that is partly in the
-    share counts with that part.
+    peeq, weights: (n,), of the Gauss points and their volumes in any unit; linear between the points.
     """
     inside = peeq > STRAINED * peeq.max()
     if not inside.any():
         return None
-    order = np.argsort(peeq[inside])[::-1]
+    order = np.argsort(peeq[inside])
     strain, volume = peeq[inside][order], weights[inside][order]
-    ends = np.append(0.0, np.cumsum(volume))
-    strained = np.append(0.0, np.cumsum(volume * strain))
-    share = MOST_STRAINED * float(ends[-1])
-    return float(np.interp(share, ends, strained)) / share
+    below = np.cumsum(volume)
+    middles = (below - 0.5 * volume) / below[-1]
+    return float(np.interp(1.0 - EXCEEDING, middles, strain))
 
 
 def parabola_peak(x: Array, y: Array) -> tuple[float, float]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The largest von Mises stress between the depths at which it is known, and the largest plastic strains."""
+"""The largest von Mises stress between the depths at which it is known, and a large plastic strain."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import numpy as np
 
 from sam.arrays import Array, Mask
 from sam.results.snapshots import Box, Snapshot
-from sam.scene.result import MOST_STRAINED, STRAINED
+from sam.scene.result import EXCEEDING, STRAINED
 from sam.scene.yield_curve import Kinks
 
 EVEN = Kinks()
@@ -41,19 +41,17 @@ def largest_mises(z: Array, peak: Snapshot, kinks: Kinks = EVEN) -> tuple[float,
     return refined_peak(z, mises[:, column], kinks)
 
 
-def most_strained(box: Box) -> float | None:
-    """Mean accumulated plastic strain of the part of the plastic volume that is strained most, see
-    `sam.scene.result.MOST_STRAINED`; None without any.
+def exceeded_strain(box: Box) -> float | None:
+    """The accumulated plastic strain that a share EXCEEDING of the plastic volume exceeds, see
+    `sam.scene.result`; None without any. A cell counts with half of its volume at its own strain.
     """
     peeq = box.peeq.ravel()
     if not peeq.any():
         return None
     volume = np.multiply.outer(np.diff(box.z), np.multiply.outer(np.diff(box.x), np.diff(box.y))).ravel()
-    order = np.flatnonzero(peeq > STRAINED * peeq.max())
-    order = order[np.argsort(-peeq[order])]
-    so_far = np.cumsum(volume[order])
-    part = np.clip(MOST_STRAINED * so_far[-1] - (so_far - volume[order]), 0.0, volume[order])
-    return float(part @ peeq[order] / part.sum())
+    order = np.argsort(-peeq)[: np.count_nonzero(peeq > STRAINED * peeq.max())]
+    above = np.cumsum(volume[order])
+    return float(np.interp(EXCEEDING * above[-1], above - volume[order] / 2, peeq[order]))
 
 
 def largest_in(depths: Array, mises: Array, part: Mask) -> tuple[float, float] | None:

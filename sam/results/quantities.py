@@ -9,7 +9,7 @@ from sam.arrays import Array
 from sam.grid.cells import CellGrid
 from sam.half_space import equivalent_radius
 from sam.results.history import contact_area, largest_pressure
-from sam.results.peaks import EVEN, largest_in, largest_mises, most_strained
+from sam.results.peaks import EVEN, exceeded_strain, largest_in, largest_mises
 from sam.results.snapshots import Coated, Snapshot
 from sam.scene.result import QUANTITIES
 from sam.scene.yield_curve import Kinks
@@ -49,7 +49,7 @@ def quantities(
         "friction_coefficient": peak.friction,
         "pressure_centroid_x_m": _centroid(grid.x, contact.pressure.sum(axis=1)),
         "wear_volume_m3": wear_volume,
-        "peeq_top_1pct": None if peak.box is None else most_strained(peak.box),
+        "peeq_p95": None if peak.box is None else exceeded_strain(peak.box),
     }
     if peak.sliding is not None:
         values["tangential_displacement_center_m"] = float(peak.sliding.ux[grid.axis_columns].mean())

@@ -73,14 +73,14 @@ QUANTITIES = (
     "residual_ux_center_m",
     "plastic_shear_center_m",
     "wear_volume_m3",
-    "peeq_top_1pct",
+    "peeq_p95",
 )
 """Names of the scalar results, unit in the name; a quantity that does not apply to a scene is None."""
 STRAINED = 0.01
 """Of peeq_max: the plastic volume is where the accumulated plastic strain is above this."""
-MOST_STRAINED = 0.01
-"""Of the plastic volume: peeq_top_1pct is the mean accumulated plastic strain of the share that is strained
-most. Unlike peeq_max it does not live in one row of cells or elements.
+EXCEEDING = 0.05
+"""Of the plastic volume: peeq_p95 is the accumulated plastic strain that this share exceeds. Unlike peeq_max
+it does not live in one row of cells or elements.
 """
 PATH_QUANTITIES = (
     "groove_depth_m",

@@ -35,7 +35,7 @@ QUANTITIES = {
     "peeq_max_depth_m": 0.5,
     "residual_uz_center_m": 0.1,
     "residual_mises_max_Pa": 0.2,
-    "peeq_top_1pct": 0.019,
+    "peeq_p95": 0.019,
 }
 STATES = ("peak", "unloaded")
 
