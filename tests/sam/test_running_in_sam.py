@@ -106,7 +106,7 @@ def test_without_a_limit_nothing_wears_and_the_strain_settles():
 
 
 def test_what_a_sound_layer_keeps_is_counted():
-    """A layer that is never removed: all cells beyond the limit below it stay, and the last cycle's are those of
+    """A layer that is never removed: all cells beyond the limit below it stay; those of the last cycle are in
     the unloaded body.
     """
     wear = {"strain_limit": 0.002, "strain_limit_layer": float("inf"), "interpolate": False}
