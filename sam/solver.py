@@ -27,7 +27,7 @@ from sam.planner.refusals import check
 from sam.planner.stages import left_out_of_unyielding
 from sam.results.advice import advice
 from sam.results.extrapolation import with_extrapolation
-from sam.results.history import CycleEnd, PassEnd, Row, cycles_table, dissipated_in, history_table
+from sam.results.history import CycleEnd, PassEnd, Row, cycles_table, history_table, of_ends
 from sam.results.loops import LoopRow, loops_table
 from sam.results.mesh import cycle_grids, field_mesh, state_grids
 from sam.results.peaks import EVEN
@@ -37,7 +37,7 @@ from sam.results.tables import state_tables
 from sam.scene import Result, Scene, Status
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.residuals import Attempt, residual_table
-from sam.scene.result import DISSIPATED, FRICTION_SIGN, Progress, of_load
+from sam.scene.result import DISSIPATED, FRICTION_SIGN, ROOFED, Progress, of_load
 from sam.scene.verdict import UNSTRAINED, Verdict, summary, verdict_columns
 
 if TYPE_CHECKING:
@@ -335,9 +335,11 @@ def _tables(planned: Plan, found: _Outcome) -> dict[str, Any]:
         if planned.slip.slides and any(target.load.sign < 0 for target in steps.targets):
             tables["cycles"][FRICTION_SIGN] = [int(steps.sign_of(cycle)) for cycle in cycles]
         if planned.dissipates:
-            tables["cycles"][DISSIPATED] = dissipated_in(cycles, found.ends)
+            tables["cycles"][DISSIPATED] = of_ends(cycles, found.ends, "dissipated")
         if planned.judging is not None:
             tables["cycles"] |= verdict_columns(cycles, _verdicts(planned, found), planned.judging.period)
+        if planned.wear is not None:
+            tables["cycles"][ROOFED] = of_ends(cycles, found.ends, "roofed")
     return tables
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Values between the points of a mesh: polynomials over depth."""
+"""Values between the points of a mesh: polynomials over depth; a percentile of their values."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fem_reference.common.arrays import Array
+from sam.scene.result import EXCEEDING, STRAINED
 
 Peak = tuple[float, float | None]
 """A largest value and its depth in m, None if all are zero."""
@@ -25,6 +26,21 @@ def continued(z: Sequence[Array] | Array, values: Sequence[Array] | Array, depth
         others = [other for j, other in enumerate(z) if j != i]
         total = total + value * np.prod([(depth - other) / (own - other) for other in others], axis=0)
     return total
+
+
+def exceeded_strain(peeq: Array, weights: Array) -> float | None:
+    """The plastic strain that a share EXCEEDING of the plastic volume exceeds; None if there is none.
+
+    peeq, weights: (n,), of the Gauss points and their volumes in any unit; linear between the points.
+    """
+    inside = peeq > STRAINED * peeq.max()
+    if not inside.any():
+        return None
+    order = np.argsort(peeq[inside])
+    strain, volume = peeq[inside][order], weights[inside][order]
+    below = np.cumsum(volume)
+    middles = (below - 0.5 * volume) / below[-1]
+    return float(np.interp(1.0 - EXCEEDING, middles, strain))
 
 
 def parabola_peak(x: Array, y: Array) -> tuple[float, float]:

@@ -23,7 +23,7 @@ from fem_reference.common.loading import Step, run
 from fem_reference.common.model import ContactModel
 from fem_reference.common.periods import element_fields, verdict_summary
 from fem_reference.common.plan import Plan
-from fem_reference.common.recovery import Peak
+from fem_reference.common.recovery import Peak, exceeded_strain
 from fem_reference.common.tables import peak_steps, step_tables
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.result import (
@@ -254,6 +254,7 @@ def quantities_of(
         "peeq_max_depth_m": peeq_depth,
         "friction_coefficient": model.friction(peak),
         "wear_volume_m3": 0.0,
+        "peeq_p95": _exceeded_strain(model, peak),
         **method.contact_quantities(model, peak),
     }
     if UNLOADED in states:
@@ -261,6 +262,14 @@ def quantities_of(
         values["residual_mises_max_Pa"] = method.largest_mises(after)[0]
         values |= method.residual_quantities(model, states[UNLOADED], after)
     return {name: values.get(name) for name in QUANTITIES}
+
+
+def _exceeded_strain(model: ContactModel, state: Equilibrium) -> float | None:
+    """See `sam.scene.result.EXCEEDING`; None of a body that has not yielded."""
+    if state.history is None:
+        return None
+    peeq = state.history.peeq * model.scales.strain
+    return exceeded_strain(peeq.ravel(), model.body.weights.ravel())
 
 
 def certificate(model: ContactModel, state: Equilibrium) -> dict[str, float]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sam.arrays import Array
+from sam.arrays import Array, Mask
 from sam.contact.normal import Contact, Found, Units, around, measured, no_contact
 from sam.contact.stress import von_mises
 from sam.elastic.sliding import sliding_of
@@ -179,7 +179,7 @@ def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot
     The record has the fields outside of the box, see `with_outside`.
     """
     outside, material, rows = known_outside(now), now.state.material, model.grid.axis_rows
-    looked, extent = model.elastic.looked, now.extent
+    extent = now.extent
     contact, mu = contact_on_grid(model, now, trial), model.coefficient(now.tribofilm)
     loaded = model.elastic.state(trial.load, contact, mu)
     stress = plane_stress(loaded)
@@ -193,6 +193,7 @@ def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot
         sliding = sliding.strained(_moved(model, now, 1, rows), strain, np.diff(model.grid.layer_faces))
     back = model.material(extent).back_stress(now.state.points)
     kept = {} if back is None else {BACK_STRESS: back.mean(axis=1)}
+    mises, flowed = _largest(model, now, trial, contact, plane=stress)
     return Snapshot(
         name,
         contact,
@@ -200,8 +201,9 @@ def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot
         stress,
         strain,
         peeq,
+        mises,
+        flowed,
         sliding,
-        mises=_largest(model, stress, trial, contact) if looked.anywhere or looked.beside else None,
         top=_top(model, now),
         worn=None if now.wear is None else now.wear.depth,
         cut=_cut(model, now, trial, contact),
@@ -278,12 +280,20 @@ def _top(model: Model, now: Progressed) -> tuple[float, float] | None:
     return largest(at_centres(peeq, model.faces(now.extent), interval), depths, interval)
 
 
-def _largest(model: Model, plane: Array, trial: Trial, contact: Contact) -> Array:
-    """The largest von Mises stress anywhere at each depth in Pa, (nz, 1); below the box in y = 0 only."""
+def _largest(
+    model: Model, now: Progressed, trial: Trial, contact: Contact, *, plane: Array
+) -> tuple[Array, Mask]:
+    """The largest von Mises stress at each depth in Pa, and whether its cell has plastic strain, both (nz,
+    1): of all cells of the box, below it of those in y = 0.
+    """
     window, layers = counted(contact, model.grid).slices, trial.stress.shape[1]
-    mises: Array = von_mises(plane).max(axis=(-2, -1))
-    mises[:layers] = von_mises(trial.stress)[(..., *window)].max(axis=(-2, -1))
-    return mises[:, None]
+    mises = von_mises(plane).max(axis=(-2, -1))
+    flowed = np.zeros(mises.shape, dtype=bool)
+    inside = von_mises(trial.stress)[(..., *window)].reshape(layers, -1)
+    at = np.arange(layers), inside.argmax(axis=1)
+    mises[:layers] = inside[at]
+    flowed[:layers] = now.state.material.peeq[(..., *window)].reshape(layers, -1)[at] > 0
+    return mises[:, None], flowed[:, None]
 
 
 def strained_in_cycle(now: Progressed) -> CycleStrain:
@@ -316,5 +326,7 @@ def cycle_end(model: Model, now: Progressed, cycle: int, strained: CycleStrain) 
     if model.wear is None or now.wear is None:
         return end
     margin = model.wear.margin(now.state.material.peeq, model.faces(now.extent))
-    worn_now = now.wear.volumes[-1] if len(now.wear.volumes) == cycle else 0.0
-    return replace(end, moved=moved, worn=worn, margin=margin, wear_of_cycle=worn_now)
+    worn_now, roofed = 0.0, 0.0
+    if len(now.wear.volumes) == cycle:
+        worn_now, roofed = now.wear.volumes[-1], now.wear.roofed_volumes[-1]
+    return replace(end, moved=moved, worn=worn, margin=margin, wear_of_cycle=worn_now, roofed=roofed)

@@ -29,6 +29,7 @@ SECOND_ORDER = (
     "mises_max_substrate_Pa",
     "mises_max_bare_Pa",
     "mises_max_film_Pa",
+    "peeq_p95",
 )
 """Quantities whose error is of second order; those not named are left as the finer grid gives them."""
 

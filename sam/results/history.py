@@ -209,7 +209,8 @@ class CycleEnd:
     smooth.
 
     strained, dissipated: in this cycle, the energy in J where it is asked for; wear_of_cycle: in m^3; margin:
-    of the cell that is left nearest to its limit, 1 less strain over limit, None: nothing can wear.
+    of the cell that is left nearest to its limit, 1 less strain over limit, None: nothing can wear; roofed:
+    volume in m^3 beyond its limit that stays, as sound material lies above it.
 
     applications: of the residual-stress operator in all cycles so far; moved: by plastic strain into the
     body, worn: depth in all cycles so far, both (nx, ny) in m, None: nothing can wear, or of another grid.
@@ -224,6 +225,7 @@ class CycleEnd:
     strained: CycleStrain = CycleStrain()
     wear_of_cycle: float = 0.0
     margin: float | None = None
+    roofed: float = 0.0
     dissipated: float = 0.0
 
 
@@ -264,11 +266,9 @@ def cycles_table(
     return table
 
 
-def dissipated_in(cycles: Sequence[int], ends: Sequence[CycleEnd]) -> list[float | None]:
-    """The energy in J that each cycle dissipated; zero of an elastic body, None of a cycle that did not
-    end.
-    """
-    found = {end.cycle: end.dissipated for end in ends}
+def of_ends(cycles: Sequence[int], ends: Sequence[CycleEnd], name: str) -> list[float | None]:
+    """A number of CycleEnd for each cycle; zero of an elastic body, None of a cycle that did not end."""
+    found = {end.cycle: getattr(end, name) for end in ends}
     return [found.get(cycle) if found else 0.0 for cycle in cycles]
 
 

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""The largest von Mises stress between the depths at which it is known."""
+"""The largest von Mises stress between the depths at which it is known, and a large plastic strain."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from sam.arrays import Array, Mask
-from sam.results.snapshots import Snapshot
+from sam.results.snapshots import Box, Snapshot
+from sam.scene.result import EXCEEDING, STRAINED
 from sam.scene.yield_curve import Kinks
 
 EVEN = Kinks()
@@ -30,14 +31,27 @@ def largest_mises(z: Array, peak: Snapshot, kinks: Kinks = EVEN) -> tuple[float,
     """Depth and value of the largest von Mises stress, refined by a parabola over depth unless its cell has
     yielded.
 
-    A cell that has is on the yield surface, which a parabola through it and its neighbours would pass.
-    kinks: as of `refined_peak`.
+    A cell that has is on the yield surface, which a parabola through it and its neighbours would pass; so
+    the value is the same whichever way the body is turned. kinks: as of `refined_peak`.
     """
-    mises = peak.mises_at_depths
+    mises = peak.mises
     k, column = np.unravel_index(mises.argmax(), mises.shape)
-    if peak.mises is None and peak.peeq[k, column].any():
+    if peak.flowed is not None and peak.flowed[k, column]:
         return float(z[k]), float(mises[k, column])
     return refined_peak(z, mises[:, column], kinks)
+
+
+def exceeded_strain(box: Box) -> float | None:
+    """The accumulated plastic strain that a share EXCEEDING of the plastic volume exceeds, see
+    `sam.scene.result`; None without any. A cell counts with half of its volume at its own strain.
+    """
+    peeq = box.peeq.ravel()
+    if not peeq.any():
+        return None
+    volume = np.multiply.outer(np.diff(box.z), np.multiply.outer(np.diff(box.x), np.diff(box.y))).ravel()
+    order = np.argsort(-peeq)[: np.count_nonzero(peeq > STRAINED * peeq.max())]
+    above = np.cumsum(volume[order])
+    return float(np.interp(EXCEEDING * above[-1], above - volume[order] / 2, peeq[order]))
 
 
 def largest_in(depths: Array, mises: Array, part: Mask) -> tuple[float, float] | None:

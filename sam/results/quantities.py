@@ -6,11 +6,10 @@ from __future__ import annotations
 import numpy as np
 
 from sam.arrays import Array
-from sam.contact.stress import von_mises
 from sam.grid.cells import CellGrid
 from sam.half_space import equivalent_radius
 from sam.results.history import contact_area, largest_pressure
-from sam.results.peaks import EVEN, largest_in, largest_mises
+from sam.results.peaks import EVEN, exceeded_strain, largest_in, largest_mises
 from sam.results.snapshots import Coated, Snapshot
 from sam.scene.result import QUANTITIES
 from sam.scene.yield_curve import Kinks
@@ -50,11 +49,12 @@ def quantities(
         "friction_coefficient": peak.friction,
         "pressure_centroid_x_m": _centroid(grid.x, contact.pressure.sum(axis=1)),
         "wear_volume_m3": wear_volume,
+        "peeq_p95": None if peak.box is None else exceeded_strain(peak.box),
     }
     if peak.sliding is not None:
         values["tangential_displacement_center_m"] = float(peak.sliding.ux[grid.axis_columns].mean())
     if peak.coated is not None:
-        values |= coated_quantities(grid.depths, peak.mises_at_depths, p_max, peak.coated)
+        values |= coated_quantities(grid.depths, peak.mises, p_max, peak.coated)
     if unloaded is not None:
         values |= _unloaded_quantities(grid, unloaded)
     return {name: values.get(name) for name in QUANTITIES}
@@ -65,7 +65,7 @@ def _unloaded_quantities(grid: CellGrid, unloaded: Snapshot) -> Quantities:
     rows, sliding = grid.axis_rows.slices[1], unloaded.sliding
     values: Quantities = {
         "residual_uz_center_m": float(unloaded.residual_displacement[grid.axis_columns, rows].mean()),
-        "residual_mises_max_Pa": float(von_mises(unloaded.in_plane).max()),
+        "residual_mises_max_Pa": float(unloaded.mises.max()),
     }
     if sliding is not None:
         values["residual_ux_center_m"] = float(sliding.residual_ux[grid.axis_columns].mean())

@@ -8,9 +8,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from sam.arrays import Array
+from sam.arrays import Array, Mask
 from sam.contact.normal import Contact
-from sam.contact.stress import von_mises
 from sam.grid.cells import CellGrid, Window
 
 SHEAR = 4  # index of the component 13 in the order 11 22 33 23 13 12
@@ -116,12 +115,12 @@ class Snapshot:
 
     contact: on the full grid; residual_displacement: of the surface, (nx, ny) in m; stress: (6, nz, nx,
     rows) in Pa, strain: plastic, (6, nz, nx, rows), peeq: (nz, nx, rows), all in the rows of cells that touch
-    y = 0; mises: von Mises stress of (nz, n) points in Pa, among which the largest is, None: in the plane y =
-    0; top: depth in m and value of the largest peeq anywhere, between the cells, None where nothing yields;
-    sliding: None without friction; coated: None without coating; worn: depth in m, (nx, ny), None: nothing
-    can wear; cut: None: not at the peak, or the contact is in y = 0; box: None: the body is elastic; stretch,
-    place: of the counter-body that is opposite, see `sam.schedule.Load`; repeated: fields of repeated
-    loading, name -> (nz, nx, rows) or (6, nz, nx, rows).
+    y = 0; mises: von Mises stress of (nz, n) points in Pa, among which the largest is; flowed: which of them
+    have plastic strain, None: none; top: depth in m and value of the largest peeq anywhere, between the
+    cells, None where nothing yields; sliding: None without friction; coated: None without coating; worn:
+    depth in m, (nx, ny), None: nothing can wear; cut: None: not at the peak, or the contact is in y = 0; box:
+    None: the body is elastic; stretch, place: of the counter-body that is opposite, see `sam.schedule.Load`;
+    repeated: fields of repeated loading, name -> (nz, nx, rows) or (6, nz, nx, rows).
     """
 
     state: str
@@ -130,9 +129,10 @@ class Snapshot:
     stress: Array
     strain: Array
     peeq: Array
+    mises: Array
+    flowed: Mask | None = None
     sliding: Sliding | None = None
     coated: Coated | None = None
-    mises: Array | None = None
     top: tuple[float, float] | None = None
     worn: Array | None = None
     cut: Cut | None = None
@@ -156,7 +156,9 @@ class Snapshot:
         """A state without plastic strain."""
         zero = np.zeros_like(stress)
         unmoved = np.zeros(contact.gap.shape)
-        return cls(state, contact, unmoved, stress, zero, zero[0], sliding, coated, mises, cut=cut)
+        return cls(
+            state, contact, unmoved, stress, zero, zero[0], mises, sliding=sliding, coated=coated, cut=cut
+        )
 
     @property
     def friction(self) -> float:
@@ -174,11 +176,6 @@ class Snapshot:
         out = np.full(p.shape, np.nan)
         np.divide(np.abs(self.sliding.traction), p, out=out, where=p > 0)
         return out
-
-    @property
-    def mises_at_depths(self) -> Array:
-        """The von Mises stress among which the largest is, (nz, n) in Pa."""
-        return von_mises(self.in_plane) if self.mises is None else self.mises
 
     @property
     def in_plane(self) -> Array:

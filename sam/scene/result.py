@@ -76,8 +76,15 @@ QUANTITIES = (
     "residual_ux_center_m",
     "plastic_shear_center_m",
     "wear_volume_m3",
+    "peeq_p95",
 )
 """Names of the scalar results, unit in the name; a quantity that does not apply to a scene is None."""
+STRAINED = 0.01
+"""Of peeq_max: the plastic volume is where the accumulated plastic strain is above this."""
+EXCEEDING = 0.05
+"""Of the plastic volume: peeq_p95 is the accumulated plastic strain that this share exceeds. Unlike peeq_max
+it does not live in one row of cells or elements.
+"""
 PATH_QUANTITIES = (
     "groove_depth_m",
     "groove_deepest_m",
@@ -155,6 +162,8 @@ FRICTION_SIGN = "friction_sign"
 """Of the table cycles, where the traction points along -x in some cycle: 1 or -1."""
 DISSIPATED = "dissipated_J"
 """Of the table cycles, where there are back-stresses or repeated loading is judged."""
+ROOFED = "roofed_volume_m3"
+"""Of the table cycles of a scene with [wear]: beyond the strain limit, and kept by sound material above."""
 TRACK = (
     "x_m",
     "uz_m",
@@ -221,7 +230,7 @@ EXTRA_COLUMNS = {
     "surface": (COUNTER_HEIGHT,),
     "passes": OF_PASSES,
     "track": (TRACK_WORN,),
-    "cycles": (*VERDICT_COLUMNS, DISSIPATED, FRICTION_SIGN),
+    "cycles": (*VERDICT_COLUMNS, DISSIPATED, FRICTION_SIGN, ROOFED),
 }
 """Last columns of a table that only some scenes have."""
 

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import sam
-from sam.scene import HeightMap, Scene, SceneError, Surface, load_scene, resolved
+from sam.grid.rough import RoughPatch
+from sam.scene import Grid, HeightMap, Scene, SceneError, Surface, load_scene, resolved
 from sam.scene.surface import heights, mean_deviation, patch_of, processed, roughness, roughness_as_read
 from sam.scene.surface.filling import harmonic
 from sam.scene.surface.map_files import read_named
@@ -168,6 +169,11 @@ def test_a_crop_is_the_part_of_that_size_about_its_middle(crop, first, cells):
     found, extent = patch_of(cut, None)
     assert found == cells and extent == pytest.approx((cells[0] * 2e-6, cells[1] * 1e-6), rel=1e-12)
     assert mean_deviation(cut, extent) == pytest.approx(np.abs(part - part.mean()).mean(), rel=1e-12)
+    relief, own = Grid(border="relief"), surface(part)
+    cropped, alone = (RoughPatch.of(each, None, relief).heights() for each in (cut, own))
+    assert (
+        np.array_equal(cropped, alone) and alone[0, 0] < part[0, 0]
+    )  # the border of the patch, not of the map
 
 
 @pytest.mark.parametrize(

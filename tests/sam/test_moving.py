@@ -108,6 +108,40 @@ def halved(scene: Scene, kept: Checkpoint):
     return sam.solve(scene, start=Checkpoint.of("sam", cut, done=kept.done, total=kept.total, cost=kept.cost))
 
 
+LARGEST = ("mises_max_Pa", "mises_max_depth_m", "residual_mises_max_Pa", "peeq_max", "p_max_Pa")
+
+
+@pytest.mark.parametrize("rolls", [False, True])
+@pytest.mark.parametrize("plasticity", [None, SWIFT])
+@pytest.mark.parametrize("cells", [(24, 30), (25, 31)])
+def test_a_turned_scene_has_the_same_largest_stresses(cells, plasticity, rolls):
+    """An ellipsoid on its longer axis, and the same with x and y exchanged. Sums are taken in another order,
+    and iterations end at 1e-4 and 1e-8 of the pressure: these leave 2e-8. Searched in one plane, the stress
+    was .1 % off, and what is left of it more.
+    """
+    path = {"start": (-A, 0.0), "end": (A / 2, 0.0), "steps": 3} if rolls else None
+    found = []
+    for turn in (slice(None), slice(None, None, -1)):
+        loading = {"force": FORCE, "steps": 2, "unload": True}
+        if path is not None:
+            loading["path"] = path | {end: path[end][turn] for end in ("start", "end")}
+        grid = {"cells": cells[turn], "extent": tuple(n * A / 5 for n in cells[turn])}
+        if plasticity:
+            grid["depths"] = tuple(A / 5 * np.append(np.arange(8), [9, 11, 15]))
+        radii = dict(zip(("radius_x", "radius_y"), (RADIUS, 1.5 * RADIUS)[turn], strict=True))
+        scene = Scene(
+            body={"young": YOUNG, "poisson": POISSON, "plasticity": plasticity},
+            counterbody={"shape": "ellipsoid", **radii},
+            loading=loading,
+            grid=grid,
+            solver={"tolerance": 1e-7},
+        )
+        found.append(sam.solve(scene).quantities)
+    assert [found[1][name] for name in LARGEST] == pytest.approx(
+        [found[0][name] for name in LARGEST], rel=1e-6
+    )
+
+
 class TestGroove:
     def test_has_its_measures(self, passes):
         _, found, _ = passes

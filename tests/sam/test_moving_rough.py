@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Rough bodies below a counter-body that moves, and a rough counter-body that moves over them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from builders import RUN_IN_STEEL, STEEL
@@ -85,6 +87,10 @@ class TestStrip:
         )
         np.testing.assert_array_equal(strip.at(0, (0.0, 0.0)), values[14:38, 1:25])
         np.testing.assert_array_equal(strip.at(0, (12 * CELL, 0.0)), values[2:26, 1:25])
+        used = CounterSurface(kind="file", path=HeightMap(values[2:38, 1:25], (36 * CELL, 24 * CELL)))
+        falling = replace(strip, relief=True)
+        alone = replace(falling, surface=used)  # the border falls by the heights that come over the patch
+        np.testing.assert_array_equal(falling.at(0, (0.0, 0.0)), alone.at(0, (0.0, 0.0)))
 
 
 WAVE = {"kind": "sinusoid", "amplitude": 20e-9, "wavelength_x": 2 * SIDE, "wavelength_y": 2 * SIDE}

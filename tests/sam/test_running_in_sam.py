@@ -94,6 +94,7 @@ def test_without_a_limit_nothing_wears_and_the_strain_settles():
     margins = high.tables["cycles"].pop("margin_to_limit")
     assert margins == [pytest.approx(1 - peeq / 999) for peeq in high.tables["cycles"]["peeq_max"]]
     assert none.tables["cycles"].pop("margin_to_limit") == [None] * 4
+    assert high.tables["cycles"].pop("roofed_volume_m3") == [0.0] * 4
     assert high.tables["cycles"] == none.tables["cycles"]
     assert not any(entry.stage == "worn geometry" for entry in high.left_out)
     peeq = np.array(inf.tables["cycles"]["peeq_max"])
@@ -102,6 +103,23 @@ def test_without_a_limit_nothing_wears_and_the_strain_settles():
     assert any(entry.stage == "worn geometry" for entry in inf.left_out)
     stages = list(plan(running_in(counterbody=STEEL, wear=float("inf")))["models"][0]["stages"])
     assert [entry["runs"] for entry in stages if entry["stage"] == "worn geometry"] == [False]
+
+
+def test_what_a_sound_layer_keeps_is_counted():
+    """A layer that is never removed: all cells beyond the limit below it stay; those of the last cycle are in
+    the unloaded body.
+    """
+    wear = {"strain_limit": 0.002, "strain_limit_layer": float("inf"), "interpolate": False}
+    steel = SWIFT | {"layer_thickness": 0.2e-6, "layer": SWIFT}
+    found = sam.solve(running_in(counterbody=STEEL, plasticity=steel, wear=wear | {"smoothing_window": 0}))
+    body = found.grids["unloaded"]["body"]
+    beyond = np.asarray(body.cell_data["peeq"])[..., 2:] > 0.002
+    kept = (np.diff(body.x)[0] * np.diff(body.y)[0] * np.diff(body.z)[2:] * beyond).sum()
+    cycles = found.tables["cycles"]
+    assert found.converged and cycles["wear_volume_m3"] == [0.0, 0.0]
+    assert (
+        0 < cycles["roofed_volume_m3"][0] <= cycles["roofed_volume_m3"][1] == pytest.approx(kept, rel=1e-12)
+    )
 
 
 def test_elastic_steps_apply_no_residual_stress_operator():

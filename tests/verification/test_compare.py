@@ -10,6 +10,9 @@ import numpy as np
 import pytest
 from builders import scene_text
 
+from fem_reference.common import recovery
+from sam.results import peaks
+from sam.results.snapshots import Box
 from sam.scene import parse_scene
 from verification.compare.comparison import compare_scene
 from verification.compare.rows import Pair
@@ -35,6 +38,7 @@ QUANTITIES = {
     "peeq_max_depth_m": 0.5,
     "residual_uz_center_m": 0.1,
     "residual_mises_max_Pa": 0.2,
+    "peeq_p95": 0.019,
 }
 STATES = ("peak", "unloaded")
 
@@ -118,6 +122,22 @@ def changed(result: Made, name: str, column: str, change, state: str = "peak") -
     rows = np.array(result.tables[name]["state"]) == state
     values[rows] = change(values[rows])
     return replace(result, tables={**result.tables, name: {**result.tables[name], column: values}})
+
+
+@pytest.mark.parametrize("size", [1.0, 1e-6])
+def test_both_models_find_the_strain_that_a_twentieth_of_the_plastic_volume_exceeds(size):
+    """Linear over depth, of layers of different heights: 0.01 of the strain ends the plastic volume at 0.99
+    of the depth, to half of the lowest layer, of 0.01.
+    """
+    z = size * np.append(np.linspace(0.0, 0.5, 101), np.linspace(0.51, 1.0, 50))
+    middles, heights = (z[1:] + z[:-1]) / 2, np.diff(z)
+    strain = 0.02 * (1 - middles / size)
+    none = np.zeros((6, 150, 1, 1))
+    box = Box(np.array([0, size]), np.array([0, size]), z, none, none, strain[:, None, None])
+    found = peaks.exceeded_strain(box), recovery.exceeded_strain(strain, heights)
+    assert found == pytest.approx((0.02 * (1 - 0.05 * 0.99),) * 2, rel=5e-4)
+    empty = replace(box, peeq=np.zeros((150, 1, 1)))
+    assert peaks.exceeded_strain(empty) is recovery.exceeded_strain(0 * strain, heights) is None
 
 
 def test_equal_fields_agree_on_different_points():

@@ -56,9 +56,13 @@ STRAIN = "cells, layers and elements in the plastic zone, and the load steps tha
 EDGE_FLOW = "the edge of the contact, where plastic flow raises the pressure within a few cells"
 YIELDING = "bounded by the yield stress of the strain there, and steep at the edge of the contact"
 RESIDUAL = "what is left of two larger fields that nearly cancel"
+OF_ORDER = (
+    "whole cells in a small part of the plastic volume: 1.2 % with 16 cells in the radius, 2.2 % with 8"
+)
 PLASTIC_SCALARS = (
     ("peeq_max", "relative", 1e-2, STRAIN),
     ("peeq_max_depth_m", "radii", 3e-2, "a share of a layer; the maximum is flat"),
+    ("peeq_p95", "relative", 3e-2, OF_ORDER),
 )
 RESIDUAL_SCALARS = (("residual_uz_center_m", "relative", 2e-2, f"the sum of the plastic strains; {STRAIN}"),)
 FOR_PLASTICITY = {
@@ -142,7 +146,7 @@ def compare_results(
     skipped = (*(UNBOUNDED_UNDER_A_PUNCH if punch else ()), *(NOT_UNIQUE_IN_PLASTIC_FLOW if plastic else ()))
     skipped += OF_THE_SURFACE * slides + IN_THE_FILM * (film > 0)
     if not any(solved.quantities.get("peeq_max") for solved in (sam, fem)):
-        skipped += ("peeq_max_depth_m",)  # of nothing
+        skipped += ("peeq_max_depth_m", "peeq_p95")  # of nothing
     spatial = _two_sided(fem)
     if spatial or not math.isfinite(_radius(fem)):
         skipped += (MEANS,)  # its line is compared over the whole contact; data need not say where that ends

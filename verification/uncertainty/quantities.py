@@ -30,6 +30,7 @@ ORDERS = {
     "wear_volume_m3": 1.0,
     "groove_depth_m": 2.0,
     "groove_deepest_m": 2.0,
+    "peeq_p95": 2.0,
 }
 """Quantity -> order in the cells; that in the load steps is 1, of backward Euler, for all."""
 STEP_ORDER = 1.0

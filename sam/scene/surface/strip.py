@@ -46,7 +46,8 @@ class Strip:
     slip
         Share of its way by which it slides.
     relief
-        Whether the heights fall off at the border of the patch; the fall does not move.
+        Whether the heights fall off at the border of the patch; the fall is that of the strip, and does not
+        move.
     """
 
     surface: CounterSurface
@@ -90,11 +91,13 @@ class Strip:
         place
             (x, y) of the counter-body in m.
         """
-        found = self.sliding(number, place)
+        found, stretch = self.sliding(number, place), self.surface.stretch(number)
         if not self.relief:
             return found
-        deviation = mean_deviation(self.surface.stretch(number), self.sides)
-        return found - fall(self.cells, deviation)
+        if stretch.kind == "file":  # may be larger than the strip
+            strip = _heights(stretch, self.whole, self.sides)
+            return found - fall(self.cells, float(np.abs(strip - strip.mean()).mean()))
+        return found - fall(self.cells, mean_deviation(stretch, self.sides))
 
     def sliding(self, number: int, place: Place) -> Array:
         """The same without the fall at the border, which does not move."""
