@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from sam.arrays import Array
 from sam.contact.normal import Contact
@@ -18,8 +19,10 @@ from sam.scene.surface import Roughness
 from sam.schedule import Target
 from sam.slip import Coefficient
 
-PERIMETER_SHARE = (np.pi - 1 + np.log(2)) / 24  # Yastrebov, Anciaux & Molinari 2017, Eq. 12
-
+OUTERMOST, HALFWAY = 0.785, 1.866
+"""Of `contact_area`. Fitted to the areas of 42 Hertz contacts of 4 to 28 cells in the radius, the apex anywhere
+in a cell; where a fit is free to, it finds a range of one cell, as it must be, and exponents of one.
+"""
 
 OF_CYCLE = ("new_strain_max", "yielding_cells", "wear_of_cycle_m3")  # zero of a body that stays elastic
 
@@ -152,20 +155,39 @@ def largest_pressure(contact: Contact, grid: CellGrid) -> float:
 
 
 def contact_area(contact: Contact, grid: CellGrid) -> float:
-    """Area in m^2 of the cells with p > 0, less the part of the outermost cells that is not in contact.
+    """Area in m^2 within an outline between the cells with p > 0 and the others.
 
-    A contact that ends by itself covers on average less than the whole of its outermost cells; each face
-    between a cell in contact and one out of contact (not one beside the counter-body) takes off
-    PERIMETER_SHARE of a cell.
+    At a depth d inside of the edge of a contact the pressure is in proportion to sqrt(d), and as far outside
+    the gap to d^(3/2) p h/E* (Johnson 1985, Sec. 4.2). Of two neighbouring cells, one in contact, q = gap E*/(p h)
+    therefore tells where between their centres the edge is: q grows from 0 to infinity while the edge moves
+    inwards by a cell. h is the harmonic mean of the sides. Straight lines join these places in each square of
+    four centres (marching squares); the arc adds an eighth of a cell for each corner that it turns outwards.
+    At the end of the counter-body and of the grid the outline is halfway, which gives the area of the cells.
     """
     if contact.area is not None:
         return contact.area
-    touching, possible = contact.pressure > 0, np.isfinite(contact.gap)
-    faces = 0
-    for axis in (0, 1):
-        t, q = np.moveaxis(touching, axis, 0), np.moveaxis(possible, axis, 0)
-        faces += int(np.count_nonzero((t[1:] != t[:-1]) & q[1:] & q[:-1]))
-    return float((np.count_nonzero(touching) - PERIMETER_SHARE * faces) * grid.hx * grid.hy)
+    hx, hy = grid.hx, grid.hy
+    own = 2 / np.pi * (hx * np.arcsinh(hy / hx) + hy * np.arcsinh(hx / hy))  # compliance times E*, Love 1929
+    unit = HALFWAY * 2 / (1 / hx + 1 / hy) * contact.compliance / own
+    p, gap = np.pad(contact.pressure, 1), np.pad(contact.gap, 1, constant_values=np.inf)
+    along_x, along_y = _shares(p, gap, unit), _shares(p.T, gap.T, unit).T
+    two_x, two_y = along_x[:, :-1] + along_x[:, 1:], along_y[:-1] + along_y[1:]
+    touching = sliding_window_view(p > 0, (2, 2)).sum(axis=(2, 3))
+    squares = np.where(touching <= 2, two_x * two_y / 2, 1 - (2 - two_x) * (2 - two_y) / 2)
+    corners = np.count_nonzero(touching == 1) - np.count_nonzero(touching == 3)
+    return float((squares.sum() + corners / 8) * hx * hy)
+
+
+def _shares(p: Array, gap: Array, unit: float) -> Array:
+    """Of the line to each next cell along the first axis, the share in contact; unit: of gap over p."""
+    first, second = p[:-1] > 0, p[1:] > 0
+    inside, outside = np.where(first, p[:-1], p[1:]), np.where(first, gap[1:], gap[:-1]).clip(0.0)
+    share = (first & second).astype(float)
+    edge, ended = first != second, np.isinf(outside)
+    share[edge & ended] = 0.5
+    edge &= ~ended
+    share[edge] = OUTERMOST - outside[edge] / (outside[edge] + unit * inside[edge])
+    return share
 
 
 def history_table(rows: Sequence[Row]) -> dict[str, list[Any]]:
