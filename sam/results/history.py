@@ -20,8 +20,8 @@ from sam.schedule import Target
 from sam.slip import Coefficient
 
 OUTERMOST, HALFWAY = 0.785, 1.866
-"""Of `contact_area`. Fitted to the areas of 42 Hertz contacts of 4 to 28 cells in the radius, the apex anywhere
-in a cell; where a fit is free to, it finds a range of one cell, as it must be, and exponents of one.
+"""Of `contact_area`. Fitted to the areas of 42 contacts of Hertz of 4 to 28 cells in the radius, the apex
+anywhere in a cell; with a range and an exponent of its own the fit finds one cell, as it must be, and 1.07.
 """
 
 OF_CYCLE = ("new_strain_max", "yielding_cells", "wear_of_cycle_m3")  # zero of a body that stays elastic
@@ -157,12 +157,12 @@ def largest_pressure(contact: Contact, grid: CellGrid) -> float:
 def contact_area(contact: Contact, grid: CellGrid) -> float:
     """Area in m^2 within an outline between the cells with p > 0 and the others.
 
-    At a depth d inside of the edge of a contact the pressure is in proportion to sqrt(d), and as far outside
-    the gap to d^(3/2) p h/E* (Johnson 1985, Sec. 4.2). Of two neighbouring cells, one in contact, q = gap E*/(p h)
-    therefore tells where between their centres the edge is: q grows from 0 to infinity while the edge moves
-    inwards by a cell. h is the harmonic mean of the sides. Straight lines join these places in each square of
-    four centres (marching squares); the arc adds an eighth of a cell for each corner that it turns outwards.
-    At the end of the counter-body and of the grid the outline is halfway, which gives the area of the cells.
+    At a distance d from the edge of a contact the pressure inside is in proportion to sqrt(d), and the gap
+    outside to d^(3/2) (Johnson 1985, Sec. 4.2). Of two neighbouring cells, one in contact, q = gap E*/(p h)
+    therefore tells where between their centres the edge is: q grows from 0 to infinity while it moves
+    inwards by a cell. h is the harmonic mean of the sides. Straight lines join these places in each square
+    of four centres (marching squares); arcs add an eighth of a cell for each corner that turns outwards. At
+    the end of the counter-body and of the grid the outline is halfway, which gives the area of the cells.
     """
     if contact.area is not None:
         return contact.area
