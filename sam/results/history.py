@@ -160,17 +160,22 @@ def contact_area(contact: Contact, grid: CellGrid) -> float:
     At a distance d from the edge of a contact the pressure inside is in proportion to sqrt(d), and the gap
     outside to d^(3/2) (Johnson 1985, Sec. 4.2). Of two neighbouring cells, one in contact, q = gap E*/(p h)
     therefore tells where between their centres the edge is: q grows from 0 to infinity while it moves
-    inwards by a cell. h is the harmonic mean of the sides. Straight lines join these places in each square
-    of four centres (marching squares); arcs add an eighth of a cell for each corner that turns outwards. At
-    the end of the counter-body and of the grid the outline is halfway, which gives the area of the cells.
+    inwards by a cell. h is the distance of lines of centres that follow the edge: in cells that are not
+    square it is found in a second pass. Straight lines join these places in each square of four centres
+    (marching squares); arcs add an eighth of a cell for each corner that turns outwards. At the end of the
+    counter-body and of the grid the outline is halfway, which gives the area of the cells.
     """
     if contact.area is not None:
         return contact.area
     hx, hy = grid.hx, grid.hy
     own = 2 / np.pi * (hx * np.arcsinh(hy / hx) + hy * np.arcsinh(hx / hy))  # compliance times E*, Love 1929
-    unit = HALFWAY * 2 / (1 / hx + 1 / hy) * contact.compliance / own
     p, gap = np.pad(contact.pressure, 1), np.pad(contact.gap, 1, constant_values=np.inf)
-    along_x, along_y = _shares(p, gap, unit), _shares(p.T, gap.T, unit).T
+    unit, mean = HALFWAY * contact.compliance / own, np.array(2 / (1 / hx + 1 / hy))
+    along_x, along_y = _shares(p, gap, unit * mean), _shares(p.T, gap.T, unit * mean).T
+    if hx != hy:
+        normal = np.diff(along_y, axis=0), np.diff(along_x, axis=1)
+        h_x, h_y = (_distances(normal, axis, (hx, hy)) for axis in (1, 0))
+        along_x, along_y = _shares(p, gap, unit * h_x), _shares(p.T, gap.T, unit * h_y.T).T
     two_x, two_y = along_x[:, :-1] + along_x[:, 1:], along_y[:-1] + along_y[1:]
     touching = sliding_window_view(p > 0, (2, 2)).sum(axis=(2, 3))
     squares = np.where(touching <= 2, two_x * two_y / 2, 1 - (2 - two_x) * (2 - two_y) / 2)
@@ -178,7 +183,7 @@ def contact_area(contact: Contact, grid: CellGrid) -> float:
     return float((squares.sum() + corners / 8) * hx * hy)
 
 
-def _shares(p: Array, gap: Array, unit: float) -> Array:
+def _shares(p: Array, gap: Array, unit: Array) -> Array:
     """Of the line to each next cell along the first axis, the share in contact; unit: of gap over p."""
     first, second = p[:-1] > 0, p[1:] > 0
     inside, outside = np.where(first, p[:-1], p[1:]), np.where(first, gap[1:], gap[:-1]).clip(0.0)
@@ -186,8 +191,20 @@ def _shares(p: Array, gap: Array, unit: float) -> Array:
     edge, ended = first != second, np.isinf(outside)
     share[edge & ended] = 0.5
     edge &= ~ended
-    share[edge] = OUTERMOST - outside[edge] / (outside[edge] + unit * inside[edge])
+    scale = np.broadcast_to(unit, share.shape)[edge] * inside[edge]
+    share[edge] = OUTERMOST - outside[edge] / (outside[edge] + scale)
     return share
+
+
+def _distances(normal: tuple[Array, Array], axis: int, cell: tuple[float, float]) -> Array:
+    """In m, of lines of centres that follow the outline, at each line to a next cell. normal: of the outline
+    in squares of four centres, in cells, of any length; axis: along which two squares share such a line.
+    """
+    width = [(1, 1) if each == axis else (0, 0) for each in (0, 1)]
+    u, v = (sliding_window_view(np.pad(part, width), 2, axis).sum(axis=-1) for part in normal)
+    reach, found = np.hypot(u / cell[0], v / cell[1]), np.full(u.shape, min(cell))
+    np.divide(np.hypot(u, v), reach, out=found, where=reach > 0)
+    return found
 
 
 def history_table(rows: Sequence[Row]) -> dict[str, list[Any]]:
