@@ -10,8 +10,8 @@ from sam.scene import Scene
 ORDERS = {
     "force_N": 2.0,
     "approach_m": 2.0,
-    "contact_area_m2": 1.0,
-    "contact_radius_m": 1.0,
+    "contact_area_m2": 2.0,
+    "contact_radius_m": 2.0,
     "p_max_Pa": 2.0,
     "p_center_Pa": 2.0,
     "mises_max_Pa": 2.0,
@@ -32,6 +32,11 @@ ORDERS = {
     "groove_deepest_m": 2.0,
 }
 """Quantity -> order in the cells; that in the load steps is 1, of backward Euler, for all."""
+EDGES = {"contact_area_m2": 0.3, "contact_radius_m": 0.15}
+"""Quantity -> EDGE of the rule, where it is larger. Errors of the area of Hertz's contact over the square of
+the cells in the radius, 4 to 33, the apex at the centre of a cell or between four: 0.1 root mean square. Of
+293 triplets the rule covers 99.7 % with it (U/error 6.2 in the median), 98 % with that of the others.
+"""
 STEP_ORDER = 1.0
 BOX_ORDERS = dict.fromkeys(("residual_uz_center_m", "residual_ux_center_m", "plastic_shear_center_m"), 1.0)
 """The same in the size of the finite-element box; 2 of all others. From 5 to 34 radii the approach and the

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Contact problems that differ, drawn from a seed, with known answers: whether an uncertainty covers the error.
+"""Problems that differ, drawn from a seed, with known answers: whether an uncertainty covers the error.
 
-Dimensionless numbers make a problem: two elastic spheres are one, whatever their loads. So an elastic sphere is
-drawn once, and of the others shape, film, law, friction and load over yield stress differ.
+Dimensionless numbers make a problem: two elastic spheres are one, whatever their loads. So an elastic sphere
+is drawn once, and of the others shape, film, law, friction and load over yield stress differ.
 """
 
 from __future__ import annotations
@@ -27,12 +27,17 @@ from verification.suite.cases.plastic import at_ratio
 from verification.uncertainty import asked_of, bound, order_seen, solve
 
 SEED = 42
-KNOWN = 3.0  # times better than the uncertainty is a reference that counts
-MESHES, BOX = (16, 24), 20.0  # elements in the radius of a reference by finite elements; 20 radii: 0.005 % off
+KNOWN = 3.0  # times better than uncertainty or error is a reference that counts
+MESHES, BOX = (
+    (16, 24),
+    20.0,
+)  # elements in the radius of a reference by finite elements; 20 radii: 0.005 % off
 FINER = 1.75  # times as many cells, of a reference by SAM
 MORE_STEPS = (2, 4)  # times as many load steps, of a reference
 FRICTION = 0.2
 OF_PLASTIC = ("peeq_max", "approach_m", "p_max_Pa", "residual_uz_center_m", "contact_area_m2")
+OF_SLIDING = (*OF_PLASTIC, "p_center_Pa", "mises_max_Pa", "tangential_displacement_center_m")
+OF_SLIDING += ("residual_ux_center_m", "plastic_shear_center_m")
 OF_FEW = ("Hertz, sphere", "ellipsoid", "film", "misfit sphere", "yielding sphere")  # at the quick level
 Truth = Mapping[str, tuple[float, float]]
 """Quantity -> its value, and the uncertainty of that."""
@@ -50,7 +55,7 @@ class Subject:
 
 @dataclass(frozen=True)
 class Row:
-    """A quantity of a problem. entry: what the program says of it; truth, doubt: the reference and its own."""
+    """A quantity of a problem. entry: what the program says of it; truth: the reference, doubt: of that."""
 
     subject: str
     quantity: str
@@ -65,8 +70,8 @@ class Row:
 
     @property
     def known(self) -> bool:
-        """Whether the reference is good enough to say anything."""
-        return self.doubt <= of_program(self) / KNOWN
+        """Whether the reference is good enough to say anything: that it is covered, or that it is not."""
+        return self.doubt <= max(of_program(self), self.error) / KNOWN
 
 
 def of_program(row: Row) -> float:
@@ -111,9 +116,9 @@ def solved(context: Context, scene: Scene, model: str) -> Result:
     return result
 
 
-def finer(context: Context, scene: Scene, model: str, names: Sequence[str] = ()) -> Truth:
-    """From finer cells or elements and more load steps, extrapolated in these; doubt: what the last refinement
-    of each changed. names: of the quantities, all if none is given.
+def finer(context: Context, scene: Scene, model: str, names: Sequence[str]) -> Truth:
+    """From finer cells or elements, and more load steps, extrapolated in both by their formal orders. doubt:
+    the extrapolation, of load steps a half; names: of the quantities.
     """
     few, many = (with_loading(scene, steps=scene.loading.steps * times) for times in MORE_STEPS)
 
@@ -127,11 +132,11 @@ def finer(context: Context, scene: Scene, model: str, names: Sequence[str] = ())
 
     few_coarse, many_coarse, best = of(few, 0), of(many, 0), of(many, 1)
     truth = {}
-    for name in names or best:
+    for name in names:
         values = [each.get(name) for each in (few_coarse, many_coarse, best)]
         if None not in values:
-            steps = values[1] - values[0]
-            truth[name] = values[2] + steps, abs(values[2] - values[1]) + abs(steps) / 2
+            steps, cells = values[1] - values[0], (values[2] - values[1]) / (1.5**2 - 1)
+            truth[name] = values[2] + steps + cells, abs(cells) + abs(steps) / 2
     return truth
 
 
@@ -204,7 +209,7 @@ def _elastic(draw: Draw) -> dict[str, float]:
 
 
 def _pressed(draw: Draw, other: Mapping[str, Any], **body: Any) -> Scene:
-    """An elastic body below a rigid one of about a millimetre; the force makes the contact a few % as wide."""
+    """An elastic body below a rigid one, of a force that makes a contact of some per cent of its radius."""
     body = _elastic(draw) | body
     loading = {"force": draw.uniform(1e-5, 1e-4) * body["young"] * 1e-6}
     return Scene(body=body, counterbody=other, loading=loading)
@@ -241,7 +246,10 @@ def _law(draw: Draw, young: float, kind: str) -> dict[str, Any]:
         n = draw.uniform(0.05, 0.2)
         return {"law": kind, "B": stress / 20**n, "C": 20.0, "n": n}
     if kind == "table":
-        at, rise = np.array([0.0, 0.005, 0.02, 0.1]), np.array([1.0, *(1 + draw.uniform(0.05, 0.3, 3).cumsum())])
+        at, rise = (
+            np.array([0.0, 0.005, 0.02, 0.1]),
+            np.array([1.0, *(1 + draw.uniform(0.05, 0.3, 3).cumsum())]),
+        )
         return {"law": kind, "file": tuple(zip(at.tolist(), (stress * rise).tolist(), strict=True))}
     own = {"modulus": young * draw.uniform(0.01, 0.1)} if kind == "linear" else {}
     return {"law": kind, "yield_stress": stress} | own
@@ -251,18 +259,22 @@ LAWS = ("swift", "linear", "perfect", "table")
 
 
 def _yielding(draw: Draw, rank: int, *, friction: float = 0.0, slender: float = 1.0) -> Scene:
-    """A sphere, or an ellipsoid, beyond yield; every second one on an elastic counter-body."""
+    """A sphere, or an ellipsoid, beyond yield; one in seven on an elastic counter-body."""
     elastic, kind = _elastic(draw), LAWS[rank % len(LAWS)]
-    other = {"shape": "sphere", "radius": 1e-3} | (_elastic(draw) if rank % 2 else {})
+    other = {"shape": "sphere", "radius": 1e-3} | (_elastic(draw) if rank % 7 == 1 else {})
     body = elastic | {"plasticity": _law(draw, elastic["young"], kind)}
-    loading = {"force": 1.0, "steps": int(draw.integers(4, 11)), "unload": True}
+    loading = {"force": 1.0, "steps": int(draw.integers(4, 7)), "unload": True}
     scene = Scene(body=body, counterbody=other, loading=loading, solver={"tolerance": 1e-5})
     scene = at_ratio(scene, draw.uniform(2.5, 4.0 if kind == "perfect" else 5.5))
     if slender > 1.0:
         shape = {"shape": "ellipsoid", "radius_x": 1e-3 / slender, "radius_y": 1e-3 * slender}
         content = scene.model_dump(exclude_none=True) | {"counterbody": shape}
         return Scene(**content)
-    return Scene(**scene.model_dump(exclude_none=True) | {"friction": {"coefficient": friction}}) if friction else scene
+    return (
+        Scene(**scene.model_dump(exclude_none=True) | {"friction": {"coefficient": friction}})
+        if friction
+        else scene
+    )
 
 
 def _given(draw: Draw, rank: int) -> Scene:
@@ -283,7 +295,10 @@ def _misfit(draw: Draw, rank: int) -> Scene:
 
 def subjects(*, study: bool) -> list[Subject]:
     """The forty problems, or one of some kinds."""
-    of_elements, of_cells = partial(finer, model=FEM, names=OF_PLASTIC), partial(finer, model=SAM)
+    of_elements, of_cells = (
+        partial(finer, model=FEM, names=OF_PLASTIC),
+        partial(finer, model=SAM, names=OF_SLIDING),
+    )
     kinds: Sequence[tuple[str, int, Callable[[Draw, int], Scene], Callable[[Context, Scene], Truth]]] = (
         ("Hertz, sphere", 1, lambda draw, _: _sphere(draw), of_hertz),
         ("ellipsoid", 4, lambda draw, _: _ellipsoid(draw), of_ellipse),
@@ -292,16 +307,16 @@ def subjects(*, study: bool) -> list[Subject]:
         ("film", 6, lambda draw, _: _film(draw), of_film),
         ("misfit sphere", 3, _misfit, of_misfit),
         ("given pressure", 3, _given, of_elements),
-        ("yielding sphere", 12, _yielding, of_elements),
+        ("yielding sphere", 14, _yielding, of_elements),
         (
             "yielding, sliding",
-            3,
+            2,
             lambda draw, rank: _yielding(draw, rank, friction=draw.uniform(0.05, 0.2)),
             of_cells,
         ),
         (
             "yielding, ellipsoid",
-            3,
+            2,
             lambda draw, rank: _yielding(draw, rank, slender=draw.uniform(1.2, 1.6)),
             of_cells,
         ),
@@ -311,7 +326,7 @@ def subjects(*, study: bool) -> list[Subject]:
         for rank in range(count):
             draw = np.random.default_rng((SEED, place, rank))
             scene = make(draw, rank)
-            fewest, most = (40, 56) if scene.body.plasticity else (40, 100)
+            fewest, most = (40, 50) if scene.body.plasticity else (40, 100)
             cells = int(draw.integers(fewest, most))
             scene = with_grid(scene, cells=(cells, cells))
             if study or (rank == 0 and kind in OF_FEW):
