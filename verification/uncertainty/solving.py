@@ -27,6 +27,7 @@ from verification.uncertainty.quantities import (
     EDGES,
     OF_ELEMENTS,
     ORDERS,
+    OUTLINE_FACTOR,
     STEP_ORDER,
     is_given,
     why_not,
@@ -160,7 +161,9 @@ def entry(name: str, solved: Solved, tolerance: float) -> dict[str, Any]:
     cells is at least what the edge of the contact leaves.
     """
     value = solved.cells[0].quantities[name]
-    of_cells, values = _bound(name, solved.family.cells, solved.cells, ORDERS[name])
+    outline = name in EDGES and solved.edge < inf and solved.cells[0].model == models.SAM
+    factor = OUTLINE_FACTOR if outline else FACTOR
+    of_cells, values = _bound(name, solved.family.cells, solved.cells, ORDERS[name], factor=factor)
     of_steps, on_steps = _bound(name, solved.family.steps, solved.steps, STEP_ORDER, factor=STEP_FACTOR)
     of_box, in_boxes = _bound(name, solved.family.box, solved.box, BOX_ORDERS.get(name, 2.0))
     if of_cells is None:

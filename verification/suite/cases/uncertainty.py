@@ -29,6 +29,7 @@ AREA = "contact_area_m2"
 EQUATIONS = (
     ("uncertainty", "U = 3 max_i |f_1 − f_i| / ((h_i/h_1)^p − 1)", "formal order p; factor 3: Roache (1998)"),
     ("at least", "U ≥ 0.1 |f_1| (h_1/a)², p = 2", "cells of SAM in a contact of radius a: measured"),
+    ("contact area", "factor 2 in place of 3, and U ≥ 0.3 |f_1| (h_1/a)²", "measured on contacts of Hertz"),
     ("textbook", "U = 1.25 |f_1 − f_2| / ((h_2/h_1)^p − 1), p observed", "Roache (1998); ASME V&V 20 (2009)"),
 )
 
