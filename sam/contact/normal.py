@@ -134,6 +134,8 @@ class Contact:
         returned fields.
     ending
         In words, if not converged.
+    compliance
+        Displacement in m per Pa that the pressure of one cell causes at its centre; 0 without a search.
     """
 
     pressure: Array
@@ -151,6 +153,7 @@ class Contact:
     area: float | None = None
     residuals: tuple[float, ...] = ()
     ending: str = ""
+    compliance: float = 0.0
 
     @property
     def residual(self) -> float:
@@ -378,6 +381,7 @@ def measured(
         load_error=abs(total - force) / force,
         iterations=found.iterations,
         converged=max(gap_residual, penetration) <= 2 * tolerance,
+        compliance=operators.self_influence * hx / units.pressure,
     )
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from sam.arrays import Array
 from sam.contact.normal import Contact
@@ -18,8 +19,10 @@ from sam.scene.surface import Roughness
 from sam.schedule import Target
 from sam.slip import Coefficient
 
-PERIMETER_SHARE = (np.pi - 1 + np.log(2)) / 24  # Yastrebov, Anciaux & Molinari 2017, Eq. 12
-
+OUTERMOST, HALFWAY = 0.785, 1.866
+"""Of `contact_area`. Fitted to the areas of 42 contacts of Hertz of 4 to 28 cells in the radius, the apex
+anywhere in a cell; with a range and an exponent of its own the fit finds one cell, as it must be, and 1.07.
+"""
 
 OF_CYCLE = ("new_strain_max", "yielding_cells", "wear_of_cycle_m3")  # zero of a body that stays elastic
 
@@ -152,20 +155,56 @@ def largest_pressure(contact: Contact, grid: CellGrid) -> float:
 
 
 def contact_area(contact: Contact, grid: CellGrid) -> float:
-    """Area in m^2 of the cells with p > 0, less the part of the outermost cells that is not in contact.
+    """Area in m^2 within an outline between the cells with p > 0 and the others.
 
-    A contact that ends by itself covers on average less than the whole of its outermost cells; each face
-    between a cell in contact and one out of contact (not one beside the counter-body) takes off
-    PERIMETER_SHARE of a cell.
+    At a distance d from the edge of a contact the pressure inside is in proportion to sqrt(d), and the gap
+    outside to d^(3/2) (Johnson 1985, Sec. 4.2). Of two neighbouring cells, one in contact, q = gap E*/(p h)
+    therefore tells where between their centres the edge is: q grows from 0 to infinity while it moves
+    inwards by a cell. h is the distance of lines of centres that follow the edge: in cells that are not
+    square it is found in a second pass. Straight lines join these places in each square of four centres
+    (marching squares); arcs add an eighth of a cell for each corner that turns outwards. At the end of the
+    counter-body and of the grid the outline is halfway, which gives the area of the cells.
     """
     if contact.area is not None:
         return contact.area
-    touching, possible = contact.pressure > 0, np.isfinite(contact.gap)
-    faces = 0
-    for axis in (0, 1):
-        t, q = np.moveaxis(touching, axis, 0), np.moveaxis(possible, axis, 0)
-        faces += int(np.count_nonzero((t[1:] != t[:-1]) & q[1:] & q[:-1]))
-    return float((np.count_nonzero(touching) - PERIMETER_SHARE * faces) * grid.hx * grid.hy)
+    hx, hy = grid.hx, grid.hy
+    own = 2 / np.pi * (hx * np.arcsinh(hy / hx) + hy * np.arcsinh(hx / hy))  # compliance times E*, Love 1929
+    p, gap = np.pad(contact.pressure, 1), np.pad(contact.gap, 1, constant_values=np.inf)
+    unit, mean = HALFWAY * contact.compliance / own, np.array(2 / (1 / hx + 1 / hy))
+    along_x, along_y = _shares(p, gap, unit * mean), _shares(p.T, gap.T, unit * mean).T
+    if hx != hy:
+        normal = np.diff(along_y, axis=0), np.diff(along_x, axis=1)
+        h_x, h_y = (_distances(normal, axis, (hx, hy)) for axis in (1, 0))
+        along_x, along_y = _shares(p, gap, unit * h_x), _shares(p.T, gap.T, unit * h_y.T).T
+    two_x, two_y = along_x[:, :-1] + along_x[:, 1:], along_y[:-1] + along_y[1:]
+    touching = sliding_window_view(p > 0, (2, 2)).sum(axis=(2, 3))
+    squares = np.where(touching <= 2, two_x * two_y / 2, 1 - (2 - two_x) * (2 - two_y) / 2)
+    corners = np.count_nonzero(touching == 1) - np.count_nonzero(touching == 3)
+    return float((squares.sum() + corners / 8) * hx * hy)
+
+
+def _shares(p: Array, gap: Array, unit: Array) -> Array:
+    """Of the line to each next cell along the first axis, the share in contact; unit: of gap over p."""
+    first, second = p[:-1] > 0, p[1:] > 0
+    inside, outside = np.where(first, p[:-1], p[1:]), np.where(first, gap[1:], gap[:-1]).clip(0.0)
+    share = (first & second).astype(float)
+    edge, ended = first != second, np.isinf(outside)
+    share[edge & ended] = 0.5
+    edge &= ~ended
+    scale = np.broadcast_to(unit, share.shape)[edge] * inside[edge]
+    share[edge] = OUTERMOST - outside[edge] / (outside[edge] + scale)
+    return share
+
+
+def _distances(normal: tuple[Array, Array], axis: int, cell: tuple[float, float]) -> Array:
+    """In m, of lines of centres that follow the outline, at each line to a next cell. normal: of the outline
+    in squares of four centres, in cells, of any length; axis: along which two squares share such a line.
+    """
+    width = [(1, 1) if each == axis else (0, 0) for each in (0, 1)]
+    u, v = (sliding_window_view(np.pad(part, width), 2, axis).sum(axis=-1) for part in normal)
+    reach, found = np.hypot(u / cell[0], v / cell[1]), np.full(u.shape, min(cell))
+    np.divide(np.hypot(u, v), reach, out=found, where=reach > 0)
+    return found
 
 
 def history_table(rows: Sequence[Row]) -> dict[str, list[Any]]:

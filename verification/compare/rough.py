@@ -19,7 +19,7 @@ from verification.compare.rows import Comparison, Pair, Solution, field_row, sca
 EDGES = "cells and nodes at the edges of spots of a few cells"
 SCALARS = (
     ("approach_m", "relative", 2e-2, "a global quantity, first order in the cells of small spots"),
-    ("contact_area_m2", "relative", 5e-2, f"{EDGES}; what these add on average is taken off"),
+    ("contact_area_m2", "relative", 5e-2, f"{EDGES}, in between which both models place the edge"),
 )
 LOAD = (2e-2, "an integral of the pressure, insensitive to the edge of the spot")
 PRESSURE = (0.15, EDGES)

@@ -19,7 +19,7 @@ def coverage(panels: Mapping[str, Points]) -> Drawing:
         for axis, (title, points), (colour, mark) in zip(axes, panels.items(), _LOOKS, strict=True):
             errors, bounds = ([1e2 * point[k] for point in points] for k in (2, 3))
             look = {"color": colour, "marker": mark, "markersize": 3.0}
-            axis.loglog(errors, bounds, linestyle="none", **look, label="a value on a triplet")
+            axis.loglog(errors, bounds, linestyle="none", **look, label="a value")
             ends = [min(errors), max(bounds)]
             axis.loglog(ends, ends, color=BLACK, linewidth=1.0, label="uncertainty = error")
             axis.set(title=title, xlabel="error [%]")

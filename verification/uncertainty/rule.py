@@ -39,11 +39,11 @@ def bound(values: Sequence[float], sizes: Sequence[float], order: float, factor:
     return factor * max(abs(first - value) / abs((other / size) ** order - 1.0) for value, other in changes)
 
 
-def of_edge(value: float, cells: float) -> float:
+def of_edge(value: float, cells: float, share: float = EDGE) -> float:
     """What the edge of a contact, which falls anywhere between the cells, leaves of a value of second order,
-    in its unit; cells: in the contact radius.
+    in its unit; cells: in the contact radius; share: of the value with one cell.
     """
-    return EDGE * abs(value) / cells**2
+    return share * abs(value) / cells**2
 
 
 def order_seen(values: Sequence[float], sizes: Sequence[float]) -> float | None:

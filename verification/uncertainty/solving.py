@@ -22,8 +22,17 @@ from verification.uncertainty.members import (
     depths_of_maxima,
     family,
 )
-from verification.uncertainty.quantities import BOX_ORDERS, OF_ELEMENTS, ORDERS, STEP_ORDER, is_given, why_not
-from verification.uncertainty.rule import FACTOR, STEP_FACTOR, bound, converging, of_edge, order_seen
+from verification.uncertainty.quantities import (
+    BOX_ORDERS,
+    EDGES,
+    OF_ELEMENTS,
+    ORDERS,
+    OUTLINE_FACTOR,
+    STEP_ORDER,
+    is_given,
+    why_not,
+)
+from verification.uncertainty.rule import EDGE, FACTOR, STEP_FACTOR, bound, converging, of_edge, order_seen
 
 Solve = Callable[[Scene, str], Result]
 """Solves a scene of the family; the text says which it is."""
@@ -152,13 +161,15 @@ def entry(name: str, solved: Solved, tolerance: float) -> dict[str, Any]:
     cells is at least what the edge of the contact leaves.
     """
     value = solved.cells[0].quantities[name]
-    of_cells, values = _bound(name, solved.family.cells, solved.cells, ORDERS[name])
+    outline = name in EDGES and solved.edge < inf and solved.cells[0].model == models.SAM
+    factor = OUTLINE_FACTOR if outline else FACTOR
+    of_cells, values = _bound(name, solved.family.cells, solved.cells, ORDERS[name], factor=factor)
     of_steps, on_steps = _bound(name, solved.family.steps, solved.steps, STEP_ORDER, factor=STEP_FACTOR)
     of_box, in_boxes = _bound(name, solved.family.box, solved.box, BOX_ORDERS.get(name, 2.0))
     if of_cells is None:
         return {"u_num": None, "flag": "a coarser solve does not have it"}
     left = solved.cells[0].model == models.SAM or name in OF_ELEMENTS
-    edge = of_edge(value, solved.edge) if ORDERS[name] == 2.0 and left else 0.0
+    edge = of_edge(value, solved.edge, EDGES.get(name, EDGE)) if ORDERS[name] == 2.0 and left else 0.0
     parts = {"u_cells": max(of_cells, edge), "u_steps": _carried(of_steps, on_steps, value)}
     parts["u_box"] = _carried(of_box, in_boxes, value)
     total = max(sum(parts.values()), tolerance * abs(value))

@@ -1,104 +1,92 @@
 # SPDX-License-Identifier: MIT
-"""Scenes with known answers, solved on triplets of grids: how often an uncertainty covers the error."""
+"""Problems that differ, drawn from a seed, with known answers: whether an uncertainty covers the error.
+
+Dimensionless numbers make a problem: two elastic spheres are one, whatever their loads. So an elastic sphere
+is drawn once, and of the others shape, film, law, friction and load over yield stress differ.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
-from math import inf
+from functools import partial
+from typing import Any
 
 import numpy as np
 
-from sam.scene import CounterBody, Result, Scene
+from sam.scene import Result, Scene
 from verification.reference.elliptic import EllipticContact
 from verification.reference.hamilton import largest_von_mises
-from verification.reference.hertz import CircularContact
+from verification.reference.rounded_punch import RoundedPunch
 from verification.runs.store import solve_or_reuse
 from verification.suite.cases.case import FEM, SAM, Context, with_grid, with_keys, with_loading
 from verification.suite.cases.coated_sphere import answer_of
+from verification.suite.cases.hertz import contact_of
 from verification.suite.cases.misfit_sphere import closed_form
 from verification.suite.cases.plastic import at_ratio
-from verification.uncertainty import (
-    FACTOR,
-    ORDERS,
-    STEP_FACTOR,
-    STEP_ORDER,
-    Family,
-    Member,
-    bound,
-    cells_to_edge,
-    family,
-    of_edge,
-    order_seen,
-)
+from verification.uncertainty import asked_of, bound, order_seen, solve
 
-KNOWN = 3.0  # times better than the uncertainty is a reference that counts
-MESHES = (24, 32)  # elements in the radius of the finite-element references
-QUICK_MESHES = (16, 24)
-STEPS, MANY_STEPS = (5, 6, 8, 10, 15, 20), (40, 80)
-CELLS_OF_STEPS = 55  # of the finest grid; load steps are varied on 25 cells
-REFERENCE_BOX = 20.0  # radii: 10 leave 0.02 % of the approach, 20 a quarter of that
+SEED = 42
+KNOWN = 3.0  # times better than uncertainty or error is a reference that counts
+MESHES, BOX = (
+    (16, 24),
+    20.0,
+)  # elements in the radius of a reference by finite elements; 20 radii: 0.005 % off
+FINER = 1.75  # times as many cells, of a reference by SAM
+MORE_STEPS = (2, 4)  # times as many load steps, of a reference
 FRICTION = 0.2
-OF_PLASTIC = ("peeq_max", "approach_m", "p_max_Pa", "residual_uz_center_m")
+OF_PLASTIC = ("peeq_max", "approach_m", "p_max_Pa", "residual_uz_center_m", "contact_area_m2")
+OF_SLIDING = (*OF_PLASTIC, "p_center_Pa", "mises_max_Pa", "tangential_displacement_center_m")
+OF_SLIDING += ("residual_ux_center_m", "plastic_shear_center_m")
+OF_FEW = ("Hertz, sphere", "ellipsoid", "film", "misfit sphere", "yielding sphere")  # at the quick level
 Truth = Mapping[str, tuple[float, float]]
 """Quantity -> its value, and the uncertainty of that."""
+Draw = np.random.Generator
 
 
 @dataclass(frozen=True)
 class Subject:
-    """A scene with a known answer. finest: cells of the finest grid of each triplet; chose: whether the rule
-    was chosen with it, else it was kept apart.
-    """
+    """A problem: its kind and its scene, which is asked for its uncertainty."""
 
-    name: str
+    kind: str
     scene: Scene
     truth: Callable[[Context, Scene], Truth]
-    finest: Sequence[int]
-    chose: bool = False
 
 
 @dataclass(frozen=True)
 class Row:
-    """A quantity on a triplet. values, sizes: fine to coarse; truth, doubt: the reference and its own; edge:
-    cells in the contact radius of the finest, infinite where no edge falls between cells; factor: of the
-    rule.
-    """
+    """A quantity of a problem. entry: what the program says of it; truth: the reference, doubt: of that."""
 
     subject: str
-    chose: bool
     quantity: str
-    cells: tuple[float, ...]
-    values: tuple[float, ...]
-    sizes: tuple[float, ...]
+    entry: Mapping[str, Any]
     truth: float
     doubt: float
-    order: float
-    edge: float = inf
-    factor: float = FACTOR
 
-    @cached_property
+    @property
     def error(self) -> float:
-        """Of the finest value."""
-        return abs(self.values[0] - self.truth)
+        """Of the value."""
+        return abs(self.entry["values"][0] - self.truth)
 
     @property
     def known(self) -> bool:
-        """Whether the reference is good enough to say anything."""
-        return self.doubt <= of_program(self) / KNOWN
+        """Whether the reference is good enough to say anything: that it is covered, or that it is not."""
+        return self.doubt <= max(of_program(self), self.error) / KNOWN
 
 
 def of_program(row: Row) -> float:
-    """The rule of the program."""
-    edge = of_edge(row.values[0], row.edge) if row.order == ORDERS["approach_m"] else 0.0
-    return max(bound(row.values, row.sizes, row.order, row.factor), edge)
+    """The uncertainty that the program states."""
+    return row.entry["u_num"]
 
 
 def of_textbook(row: Row) -> float:
-    """With the observed order and the factor 1.25 (Roache 1998); where none is seen, the formal one and 3."""
-    seen = order_seen(row.values, row.sizes)
-    order, factor = (row.order, 3.0) if seen is None else (seen, 1.25)
-    return bound(row.values[:2], row.sizes[:2], order, factor)
+    """By the cells with the observed order and the factor 1.25 (Roache 1998), where none is seen with the
+    second and 3; by load steps and box as the program.
+    """
+    values, sizes = row.entry["values"], [1.0 / count for count in row.entry["cells"]]
+    seen = order_seen(values, sizes)
+    order, factor = (2.0, 3.0) if seen is None else (seen, 1.25)
+    return bound(values[:2], sizes[:2], order, factor) + row.entry["u_steps"] + row.entry["u_box"]
 
 
 def covered(rows: Sequence[Row], rule: Callable[[Row], float]) -> float:
@@ -112,41 +100,12 @@ def over_error(rows: Sequence[Row], rule: Callable[[Row], float]) -> float:
 
 
 def rows_of(context: Context, subject: Subject) -> Iterator[Row]:
-    """Every quantity of a scene on each of its triplets."""
-    truth = subject.truth(context, subject.scene)
-    for count in subject.finest:
-        members = family(with_grid(subject.scene, cells=(count, count)), SAM).cells
-        yield from _rows(context, subject, members, truth)
-
-
-def step_rows(context: Context) -> Iterator[Row]:
-    """Every quantity of spheres beyond yield on triplets of load steps; their limits on the same cells are
-    known by far more steps.
-    """
-    for name, ratio in (("plastic-swift-rigid", 3.0), ("plastic-swift-rigid", 4.0), ("plastic-perfect", 3.0)):
-        scene = with_grid(plastic(context, name, ratio), cells=(CELLS_OF_STEPS, CELLS_OF_STEPS))
-        many, most = (
-            solved(context, with_loading(family(scene, SAM).cells[-1].scene, steps=steps), SAM).quantities
-            for steps in MANY_STEPS
-        )
-        truth = {key: (2 * most[key] - many[key], abs(most[key] - many[key]) / 2) for key in OF_PLASTIC}
-        subject = Subject(f"{scene.title}, {ratio:g}", scene, of_finite_elements, ())
-        for steps in STEPS:
-            members = family(with_loading(scene, steps=steps), SAM).steps
-            yield from _rows(context, subject, members, truth, order=STEP_ORDER)
-
-
-def _rows(
-    context: Context, subject: Subject, members: Sequence[Member], truth: Truth, *, order: float | None = None
-) -> Iterator[Row]:
-    context.progress(f"uncertainty: {subject.name}, {members[0].label}", 0, 1)
-    results = [solved(context, member.scene, SAM) for member in members]
-    numbers, sizes = tuple(each.number for each in members), tuple(each.size for each in members)
-    edge = inf if order else cells_to_edge(subject.scene, results[0], Family(tuple(members)))
-    for name, (value, doubt) in truth.items():
-        values, own = tuple(result.quantities[name] for result in results), order or ORDERS[name]
-        factor = STEP_FACTOR if order else FACTOR
-        yield Row(subject.name, subject.chose, name, numbers, values, sizes, value, doubt, own, edge, factor)
+    """Every quantity of a problem that has an uncertainty and a reference."""
+    found = solve(asked_of(subject.scene, subject.kind), SAM, lambda each, _: solved(context, each, SAM))
+    for name, (value, doubt) in subject.truth(context, subject.scene).items():
+        entry = found.uncertainty.get(name, {})
+        if entry.get("u_num") is not None:
+            yield Row(subject.kind, name, entry, value, doubt)
 
 
 def solved(context: Context, scene: Scene, model: str) -> Result:
@@ -157,31 +116,56 @@ def solved(context: Context, scene: Scene, model: str) -> Result:
     return result
 
 
-def of_finite_elements(context: Context, scene: Scene, meshes: tuple[int, int] = MESHES) -> Truth:
-    """From the axisymmetric model on two meshes, in the same load steps; doubt: what the last one changed."""
-    before, fine = (
-        solved(context, with_keys(scene, "fem", cells_per_radius=count, box=REFERENCE_BOX), FEM).quantities
-        for count in meshes
-    )
-    return {name: (fine[name], abs(fine[name] - before[name])) for name in OF_PLASTIC}
+def finer(context: Context, scene: Scene, model: str, names: Sequence[str]) -> Truth:
+    """From finer cells or elements, and more load steps, extrapolated in both by their formal orders. doubt:
+    the extrapolation, of load steps a half; names: of the quantities.
+    """
+    few, many = (with_loading(scene, steps=scene.loading.steps * times) for times in MORE_STEPS)
+
+    def of(other: Scene, rank: int) -> Mapping[str, Any]:
+        if model == FEM:
+            other = with_keys(other, "fem", cells_per_radius=MESHES[rank], box=BOX)
+        else:
+            factor = FINER if rank else FINER / 1.5
+            other = with_grid(other, cells=tuple(2 * round(factor * n / 2) + 1 for n in scene.grid.cells))
+        return solved(context, other, model).quantities
+
+    few_coarse, many_coarse, best = of(few, 0), of(many, 0), of(many, 1)
+    truth = {}
+    for name in names:
+        values = [each.get(name) for each in (few_coarse, many_coarse, best)]
+        if None not in values:
+            steps, cells = values[1] - values[0], (values[2] - values[1]) / (1.5**2 - 1)
+            truth[name] = values[2] + steps + cells, abs(cells) + abs(steps) / 2
+    return truth
 
 
 def of_hertz(_: Context, scene: Scene) -> Truth:
     """A sphere, sliding or at rest without coupling."""
-    exact = CircularContact(scene.loading.force, scene.counterbody.radius, _modulus(scene))
-    found = {"p_max_Pa": exact.peak_pressure, "approach_m": exact.approach}
-    radius, mu = exact.contact_radius, scene.coefficient
-    found["contact_radius_m"] = radius
-    found["mises_max_Pa"] = largest_von_mises(exact.peak_pressure, radius, scene.body.poisson, mu)[0][0]
+    exact, mu = contact_of(scene), scene.coefficient
+    stress = largest_von_mises(exact.peak_pressure, exact.contact_radius, scene.body.poisson, mu)[0][0]
+    found = {"p_max_Pa": exact.peak_pressure, "approach_m": exact.approach, "mises_max_Pa": stress}
+    return _exact(found | {"contact_area_m2": np.pi * exact.contact_radius**2})
+
+
+def _exact(found: Mapping[str, float]) -> Truth:
     return {name: (value, 0.0) for name, value in found.items()}
 
 
 def of_ellipse(_: Context, scene: Scene) -> Truth:
-    """An ellipsoid."""
+    """A rigid ellipsoid."""
     exact = EllipticContact(scene.loading.force, *scene.counterbody.radii, _modulus(scene))
     a, b = exact.semi_axes
     found = {"p_max_Pa": exact.peak_pressure, "approach_m": exact.approach, "contact_area_m2": np.pi * a * b}
-    return {name: (value, 0.0) for name, value in found.items()}
+    return _exact(found)
+
+
+def of_rounded(_: Context, scene: Scene) -> Truth:
+    """A rigid punch with a rounded edge."""
+    other = scene.counterbody
+    exact = RoundedPunch(scene.loading.force, other.flat_radius, other.radius, _modulus(scene))
+    found = {"approach_m": exact.approach, "contact_area_m2": np.pi * exact.contact_radius**2}
+    return _exact(found | {"p_center_Pa": float(exact.pressure(0.0))})
 
 
 def of_film(_: Context, scene: Scene) -> Truth:
@@ -190,23 +174,21 @@ def of_film(_: Context, scene: Scene) -> Truth:
     found = {
         "p_center_Pa": answer.contact.central_pressure,
         "approach_m": answer.contact.approach,
-        "contact_radius_m": answer.contact.contact_radius,
+        "contact_area_m2": np.pi * answer.contact.contact_radius**2,
         "mises_max_substrate_Pa": answer.mises_body,
     }
-    return {name: (value, 0.0) for name, value in found.items()}
+    return _exact(found)
 
 
 def of_misfit(_: Context, scene: Scene) -> Truth:
     """A misfit sphere held in an infinite body: its largest strain by the closed form."""
     radius = scene.loading.radius * np.linspace(0.5, 1.0, 4001)
-    return {"peeq_max": (float(closed_form(scene).fields(radius).peeq.max()), 0.0)}
+    return _exact({"peeq_max": float(closed_form(scene).fields(radius).peeq.max())})
 
 
 def _modulus(scene: Scene) -> float:
-    """E* of a scene."""
-    other, body = scene.counterbody, scene.body
-    compliance = (1 - body.poisson**2) / body.young
-    return 1 / (compliance + ((1 - other.poisson**2) / other.young if other.elastic else 0.0))
+    """E* below a rigid counter-body."""
+    return scene.body.young / (1 - scene.body.poisson**2)
 
 
 def plastic(context: Context, name: str, ratio: float, steps: int = 5) -> Scene:
@@ -215,36 +197,139 @@ def plastic(context: Context, name: str, ratio: float, steps: int = 5) -> Scene:
     return with_loading(scene, steps=steps, unload=True).model_copy(update={"grid": None})
 
 
-def sliding(scene: Scene) -> Scene:
+def sliding(scene: Scene, friction: float = FRICTION) -> Scene:
     """The sphere of the same material, so that traction does not move the gap, sliding."""
-    body = scene.body
-    other = CounterBody(
-        shape="sphere", radius=scene.counterbody.radius, young=body.young, poisson=body.poisson
+    body = {"young": scene.body.young, "poisson": scene.body.poisson}
+    other = scene.counterbody.model_copy(update=body)
+    return Scene(body=body, counterbody=other, loading=scene.loading, friction={"coefficient": friction})
+
+
+def _elastic(draw: Draw) -> dict[str, float]:
+    return {"young": draw.uniform(60e9, 400e9), "poisson": draw.uniform(0.2, 0.4)}
+
+
+def _pressed(draw: Draw, other: Mapping[str, Any], **body: Any) -> Scene:
+    """An elastic body below a rigid one, of a force that makes a contact of some per cent of its radius."""
+    body = _elastic(draw) | body
+    loading = {"force": draw.uniform(1e-5, 1e-4) * body["young"] * 1e-6}
+    return Scene(body=body, counterbody=other, loading=loading)
+
+
+def _sphere(draw: Draw) -> Scene:
+    return _pressed(draw, {"shape": "sphere", "radius": 1e-3})
+
+
+def _ellipsoid(draw: Draw) -> Scene:
+    return _pressed(draw, {"shape": "ellipsoid", "radius_x": 1e-3, "radius_y": draw.uniform(1.5, 8.0) * 1e-3})
+
+
+def _rounded(draw: Draw) -> Scene:
+    other = {"shape": "rounded-punch", "flat_radius": draw.uniform(5e-6, 3e-5), "radius": 1e-3}
+    return _pressed(draw, other)
+
+
+def _film(draw: Draw) -> Scene:
+    sphere = _sphere(draw)
+    film = {"young": sphere.body.young * 10 ** draw.uniform(-0.6, 0.6), "poisson": draw.uniform(0.2, 0.4)}
+    film["thickness"] = contact_of(sphere).contact_radius * draw.uniform(0.15, 1.0)
+    return Scene(
+        body=sphere.body.model_dump(exclude_none=True) | {"coating": film},
+        counterbody=sphere.counterbody,
+        loading=sphere.loading,
     )
-    return Scene(body=body, counterbody=other, loading=scene.loading, friction={"coefficient": FRICTION})
 
 
-def subjects(context: Context, *, study: bool) -> list[Subject]:
-    """The scenes of the study, or a few."""
-    swift, perfect = "plastic-swift-rigid", "plastic-perfect"
-    hertz, pairs = context.scene("hertz-sphere"), range(41, 86, 2)
-    if not study:
-        rough = partial(of_finite_elements, meshes=QUICK_MESHES)
-        return [
-            Subject("Hertz, sphere", hertz, of_hertz, (41, 61), chose=True),
-            Subject("Swift, p0 = 3 yield stresses", plastic(context, swift, 3.0), rough, (43,), chose=True),
-        ]
-    some, fem = range(41, 62, 2), of_finite_elements
-    return [
-        Subject("Swift, p0 = 3 yield stresses", plastic(context, swift, 3.0), fem, some, chose=True),
-        Subject("Swift, 4", plastic(context, swift, 4.0), fem, some, chose=True),
-        Subject("perfect, 3", plastic(context, perfect, 3.0), fem, some, chose=True),
-        Subject("Swift, 6", plastic(context, swift, 6.0), fem, some),
-        Subject("Swift, steel on steel, 4.5", plastic(context, "plastic-swift-steel", 4.5), fem, some),
-        Subject("linear, 5", plastic(context, "plastic-linear", 5.0, 10), fem, some),
-        Subject("Hertz, sphere", hertz, of_hertz, pairs, chose=True),
-        Subject("Hertz, ellipse 3 : 1", context.scene("hertz-ellipse"), of_ellipse, pairs),
-        Subject("sliding sphere", sliding(hertz), of_hertz, pairs, chose=True),
-        Subject("coated sphere", context.scene("coated-sphere"), of_film, range(41, 64, 2), chose=True),
-        Subject("misfit sphere", context.scene("misfit-sphere"), of_misfit, range(31, 40, 2)),
-    ]
+def _law(draw: Draw, young: float, kind: str) -> dict[str, Any]:
+    """A hardening law whose yield stress is 0.3 to 1 % of Young's modulus."""
+    stress = young * draw.uniform(0.003, 0.01)
+    if kind == "swift":
+        n = draw.uniform(0.05, 0.2)
+        return {"law": kind, "B": stress / 20**n, "C": 20.0, "n": n}
+    if kind == "table":
+        at, rise = (
+            np.array([0.0, 0.005, 0.02, 0.1]),
+            np.array([1.0, *(1 + draw.uniform(0.05, 0.3, 3).cumsum())]),
+        )
+        return {"law": kind, "file": tuple(zip(at.tolist(), (stress * rise).tolist(), strict=True))}
+    own = {"modulus": young * draw.uniform(0.01, 0.1)} if kind == "linear" else {}
+    return {"law": kind, "yield_stress": stress} | own
+
+
+LAWS = ("swift", "linear", "perfect", "table")
+
+
+def _yielding(draw: Draw, rank: int, *, friction: float = 0.0, slender: float = 1.0) -> Scene:
+    """A sphere, or an ellipsoid, beyond yield; one in seven on an elastic counter-body."""
+    elastic, kind = _elastic(draw), LAWS[rank % len(LAWS)]
+    other = {"shape": "sphere", "radius": 1e-3} | (_elastic(draw) if rank % 7 == 1 else {})
+    body = elastic | {"plasticity": _law(draw, elastic["young"], kind)}
+    loading = {"force": 1.0, "steps": int(draw.integers(4, 7)), "unload": True}
+    scene = Scene(body=body, counterbody=other, loading=loading, solver={"tolerance": 1e-5})
+    scene = at_ratio(scene, draw.uniform(2.5, 4.0 if kind == "perfect" else 5.5))
+    if slender > 1.0:
+        shape = {"shape": "ellipsoid", "radius_x": 1e-3 / slender, "radius_y": 1e-3 * slender}
+        content = scene.model_dump(exclude_none=True) | {"counterbody": shape}
+        return Scene(**content)
+    return (
+        Scene(**scene.model_dump(exclude_none=True) | {"friction": {"coefficient": friction}})
+        if friction
+        else scene
+    )
+
+
+def _given(draw: Draw, rank: int) -> Scene:
+    scene = _yielding(draw, 2 * rank)
+    stress = float(scene.body.plasticity.curve().stress(0.0))
+    steps = {"steps": scene.loading.steps, "unload": True}
+    loading = {"prescribed": "hertz", "p0": stress * draw.uniform(2.0, 2.6), "radius": 1e-5} | steps
+    return Scene(body=scene.body, loading=loading, solver=scene.solver)
+
+
+def _misfit(draw: Draw, rank: int) -> Scene:
+    elastic = _elastic(draw)
+    body = elastic | {"plasticity": _law(draw, elastic["young"], LAWS[rank])}
+    loading = {"prescribed": "misfit-sphere", "depth": draw.uniform(1.3, 2.0) * 1e-5, "radius": 1e-5}
+    loading |= {"misfit": draw.uniform(0.03, 0.06), "profile": "smooth", "surface": "held", "steps": 1}
+    return Scene(body=body, loading=loading)
+
+
+def subjects(*, study: bool) -> list[Subject]:
+    """The forty problems, or one of some kinds."""
+    of_elements, of_cells = (
+        partial(finer, model=FEM, names=OF_PLASTIC),
+        partial(finer, model=SAM, names=OF_SLIDING),
+    )
+    kinds: Sequence[tuple[str, int, Callable[[Draw, int], Scene], Callable[[Context, Scene], Truth]]] = (
+        ("Hertz, sphere", 1, lambda draw, _: _sphere(draw), of_hertz),
+        ("ellipsoid", 4, lambda draw, _: _ellipsoid(draw), of_ellipse),
+        ("rounded punch", 3, lambda draw, _: _rounded(draw), of_rounded),
+        ("sliding sphere", 2, lambda draw, _: sliding(_sphere(draw), draw.uniform(0.1, 0.4)), of_hertz),
+        ("film", 6, lambda draw, _: _film(draw), of_film),
+        ("misfit sphere", 3, _misfit, of_misfit),
+        ("given pressure", 3, _given, of_elements),
+        ("yielding sphere", 14, _yielding, of_elements),
+        (
+            "yielding, sliding",
+            2,
+            lambda draw, rank: _yielding(draw, rank, friction=draw.uniform(0.05, 0.2)),
+            of_cells,
+        ),
+        (
+            "yielding, ellipsoid",
+            2,
+            lambda draw, rank: _yielding(draw, rank, slender=draw.uniform(1.2, 1.6)),
+            of_cells,
+        ),
+    )
+    found = []
+    for place, (kind, count, make, truth) in enumerate(kinds):
+        for rank in range(count):
+            draw = np.random.default_rng((SEED, place, rank))
+            scene = make(draw, rank)
+            fewest, most = (40, 50) if scene.body.plasticity else (40, 100)
+            cells = int(draw.integers(fewest, most))
+            scene = with_grid(scene, cells=(cells, cells))
+            if study or (rank == 0 and kind in OF_FEW):
+                name = f"{kind} {rank + 1}" if count > 1 else kind
+                found.append(Subject(name, scene, truth))
+    return found
