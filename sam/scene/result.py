@@ -135,6 +135,7 @@ CYCLES = (
     "margin_to_limit",
     "wear_of_cycle_m3",
 )
+PERIODS_TO_DECIDE = "periods_to_decide"
 VERDICT_COLUMNS = (
     "period",
     "peeq_step_max",
@@ -144,6 +145,7 @@ VERDICT_COLUMNS = (
     "flowing_volume_m3",
     "ratchetting_volume_m3",
     "verdict",
+    PERIODS_TO_DECIDE,
 )
 """Last columns of the table cycles of a scene that is judged, see `sam.scene.verdict`."""
 BACK_STRESS = "back_stress_Pa"
@@ -218,7 +220,7 @@ EXTRA_COLUMNS = {
     "surface": (COUNTER_HEIGHT,),
     "passes": OF_PASSES,
     "track": (TRACK_WORN,),
-    "cycles": (*VERDICT_COLUMNS, DISSIPATED, FRICTION_SIGN),
+    "cycles": (*VERDICT_COLUMNS[:-1], DISSIPATED, FRICTION_SIGN, PERIODS_TO_DECIDE),
 }
 """Last columns of a table that only some scenes have."""
 

@@ -246,9 +246,9 @@ class Verdict:
         below the floor; else None.
     flowing, volumes
         Volume in m^3 of the cells whose dp is beyond the floor, and of the cells of each class.
-    further
-        Periods after which an undecided body will be decided if it goes on like this, infinite if noise never
-        lets it; None if it is decided.
+    periods_to_decide
+        Further periods after which an undecided body will be decided if it goes on like this; None if it is
+        decided, or noise never lets it be.
     """
 
     behaviour: Behaviour
@@ -260,14 +260,14 @@ class Verdict:
     periods_to_floor: float | None
     flowing: float
     volumes: Mapping[str, float]
-    further: float | None = None
+    periods_to_decide: int | None = None
 
     @property
-    def columns(self) -> tuple[float | str | None, ...]:
+    def columns(self) -> tuple[float | int | str | None, ...]:
         """The values of VERDICT_COLUMNS after the number of the period."""
         ratchets = self.volumes[Behaviour.RATCHETTING]
         numbers = self.accumulated, self.strain, self.ratio, self.closure, self.flowing, ratchets
-        return *numbers, str(self.behaviour)
+        return *numbers, str(self.behaviour), self.periods_to_decide
 
 
 UNSTRAINED = Verdict(
@@ -319,14 +319,15 @@ def verdict_on(
     )
 
 
-def _until(further: Array, undecided: Array, small: float) -> float:
-    """Periods after which cells with no more than a small part of the undecided strain are still undecided."""
+def _until(further: Array, undecided: Array, small: float) -> int | None:
+    """Periods after which no more than a small part of the undecided strain is left; None if never."""
     waiting = np.flatnonzero(undecided)
     if not waiting.size:
-        return 1.0
+        return 1
     order = waiting[np.argsort(further[waiting])[::-1]]
     left = np.cumsum(undecided[order]) > small
-    return float(further[order[int(left.argmax()) if left.any() else -1]])
+    found = further[order[int(left.argmax()) if left.any() else -1]]
+    return int(found) if np.isfinite(found) else None
 
 
 def verdict_columns(
@@ -376,7 +377,6 @@ def summary(verdicts: Sequence[Verdict], cycles_in_period: int, floor: float) ->
         first -= 1
     trend = _trend([each.accumulated for each in verdicts]) if last.flowing else None
     settles = trend == "geometric"
-    further = last.further
     return {
         "class": str(last.behaviour),
         "decided_at_cycle": first * cycles_in_period,
@@ -388,7 +388,7 @@ def summary(verdicts: Sequence[Verdict], cycles_in_period: int, floor: float) ->
         "floor": floor,
         "volumes_m3": dict(last.volumes),
         "cycles_in_period": cycles_in_period,
-        "periods_to_decide": None if further is None or not np.isfinite(further) else int(further),
+        "periods_to_decide": last.periods_to_decide,
     }
 
 
