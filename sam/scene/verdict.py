@@ -170,12 +170,14 @@ def _open_strain(
         closes, lasts = closes | (turn < 1).all(axis=0), np.zeros_like(lasts)
     with np.errstate(divide="ignore", invalid="ignore"):
         rate, root = np.log(a / c) / (2 * apart), np.sqrt(noise / small)
-        ends = np.log(c / small) / rate  # as a geometric series, or where it slows down as 1/k
-        ends = np.where(excess > doubt, apart * (1 / small - 1 / c) / (1 / c - 1 / b), ends)
+        # as a geometric series it is small, or surely ends small; where it slows down it is small as 1/k, or
+        # has become steady as a geometric series in its differences
         tells = np.where(root < 1, 2 * np.log((1 + root) / (1 - root)) / rate, np.inf) - 2 * apart
-        falling = np.where((excess > doubt) | (tells < 1), ends, np.minimum(ends, tells))
+        ends = np.fmin(np.log(c / small) / rate, np.where(tells < 1, np.inf, tells))
+        steady = end - first + 2 * apart * np.log((b - c) / noise) / np.log((a - b) / (b - c))
+        slows = np.fmin(apart * (1 / small - 1 / c) / (1 / c - 1 / b), steady)
         still = np.maximum(2 * LASTS * noise / c, 2.0 * (end - first)) - (end - first)
-    further: Array = np.where(falls | (rate * LASTS > 1), falling, still)
+    further: Array = np.where(falls | (rate * LASTS > 1), np.where(excess > doubt, slows, ends), still)
     return closes, lasts, np.where(np.isnan(further), np.inf, further)
 
 
@@ -235,8 +237,9 @@ class Verdict:
     Parameters
     ----------
     behaviour
-        The worst class that carries a hundredth of the plastic strain of the period; undecided where a worse
-        one is possible, and de of undecided cells is more than OPEN of that strain.
+        The worst class that carries a hundredth of the plastic strain of the period. Undecided where a worse
+        one is possible, and de of undecided cells is more than OPEN of that strain; and where some cells
+        ratchet, but de of them and of undecided cells together falls: then strain moves from cell to cell.
     accumulated, strain
         Largest dp of a cell, and largest de.
     ratio, closure
@@ -303,7 +306,14 @@ def verdict_on(
     settles = ORDER[found[at]] is Behaviour.SETTLING and ratio is not None
     undecided = np.where((found == ORDER.index(Behaviour.UNDECIDED)) & (flow > 0), last.norm * volume, 0.0)
     behaviour = _worst(found, flow, total)
-    if ORDER.index(behaviour) < ORDER.index(judging.worst) and undecided.sum() > OPEN * flow.sum():
+    if behaviour is Behaviour.RATCHETTING:
+        lasts = (flow > 0) & (found >= ORDER.index(behaviour))
+        fall = periods[-1 - max((len(periods) - 2) // 2, 2)].norm - last.norm - judging.noise * yield_strain
+        open_question = (fall * volume)[lasts].sum() > 0
+    else:
+        worse = ORDER.index(behaviour) < ORDER.index(judging.worst)
+        open_question = worse and undecided.sum() > OPEN * flow.sum()
+    if open_question:
         behaviour = Behaviour.UNDECIDED
     return Verdict(
         behaviour,
