@@ -170,14 +170,15 @@ def _open_strain(
         closes, lasts = closes | (turn < 1).all(axis=0), np.zeros_like(lasts)
     with np.errstate(divide="ignore", invalid="ignore"):
         rate, root = np.log(a / c) / (2 * apart), np.sqrt(noise / small)
-        # as a geometric series it is small, or surely ends small; where it slows down it is small as 1/k, or
-        # has become steady as a geometric series in its differences
+        # nearly a geometric series: small, or surely ending small, after as many periods again at least if its
+        # end is not yet; where it slows down: small as 1/k, or steady, as its differences are such a series
         tells = np.where(root < 1, 2 * np.log((1 + root) / (1 - root)) / rate, np.inf) - 2 * apart
-        ends = np.fmin(np.log(c / small) / rate, np.where(tells < 1, np.inf, tells))
+        ends = np.fmin(np.log(c / small) / rate, np.where(excess > doubt, np.maximum(tells, end - first), tells))
+        nearly = (excess <= doubt) | ((a - c / 2) * c / 2 <= (b - c / 2) ** 2)
         steady = end - first + 2 * apart * np.log((b - c) / noise) / np.log((a - b) / (b - c))
         slows = np.fmin(apart * (1 / small - 1 / c) / (1 / c - 1 / b), steady)
         still = np.maximum(2 * LASTS * noise / c, 2.0 * (end - first)) - (end - first)
-    further: Array = np.where(falls | (rate * LASTS > 1), np.where(excess > doubt, slows, ends), still)
+    further: Array = np.where(falls | (rate * LASTS > 1), np.where(nearly, ends, slows), still)
     return closes, lasts, np.where(np.isnan(further), np.inf, further)
 
 

@@ -33,7 +33,7 @@ YOUNG, POISSON, YIELD, RADIUS, DEPTH = 210e9, 0.3, 1e9, 1e-5, 3.2
 REACHES = np.linspace(0.3, 3.0, 2701)  # radii at which the exact solution is looked at
 LIMIT = 2 * YIELD * (1 - POISSON) / (YOUNG * float(PROFILES["gauss"](REACHES)[1].max()))
 """Misfit at the centre below which the elastic range holds a period everywhere, in the end."""
-TOLERANCE = 1e-6
+TOLERANCE = 1e-7  # sets the noise of the verdict: at 1e-6 the periods until it is decided are three times as many
 MODELS = {"sam": SAM, "fem": FEM}
 TOLD = 6  # the period after which the number of further periods is read
 RIGHT = 1.5  # times the number that was told, at most
@@ -128,7 +128,6 @@ class MisfitCycles(Case):
         values: dict[str, Measured | float] = {}
         false = 0
         for name, each in found.items():
-            peeq, strain = each.exact[:, -1]
             for model, result in each.results.items():
                 false += column(result, "verdict").count("ratchetting")
                 if name in self.near:
@@ -136,9 +135,10 @@ class MisfitCycles(Case):
                     values[f"{model}-{name}-told"] = decided(result) / told
                     continue
                 values[f"{model}-{name}-class"] = decided(result)
-                values[f"{model}-{name}-peeq"] = Measured(result.verdict["peeq_per_period"], peeq)
-                if each.run.recovery:
-                    values[f"{model}-{name}-strain"] = Measured(result.verdict["strain_per_period"], strain)
+                for column_name, exact in zip(("peeq_step_max", "strain_step_max"), each.exact, strict=True):
+                    if each.run.recovery or column_name != "strain_step_max":  # of Prager's law it is zero
+                        gate = f"{model}-{name}-{column_name.removesuffix('_step_max')}"
+                        values[gate] = Measured(np.array(column(result, column_name))[1:], exact[1:])
         return values | {"ratchetting": Measured(float(false), 0.0)}
 
     def setup(self, found: dict[str, Found]) -> list[tuple[str, str]]:
@@ -191,7 +191,7 @@ class MisfitCycles(Case):
         )
 
 
-AF, PRAGER, FAST = (160e9, 90.0), (160e9, 0.0), (40e9, 300.0)
+AF, PRAGER = (160e9, 90.0), (160e9, 0.0)
 EQUATIONS = (
     (
         "At each radius",
@@ -206,7 +206,7 @@ CASES = (
         "A misfit sphere in cycles",
         "Is the exact class found where a strain falls slowly to nothing, and the strain of a period?",
         EQUATIONS,
-        strains={"af-20": Run(0.2, *AF, 8, 8), "prager-20": Run(0.2, *PRAGER, 8, 4)},
+        strains={"af-20": Run(0.2, *AF, 6, 8), "prager-20": Run(0.2, *PRAGER, 6, 4)},
         near={},
     ),
     MisfitCycles(
@@ -215,7 +215,7 @@ CASES = (
         "Is what is undecided decided, and rightly, after the number of periods that was told?",
         EQUATIONS,
         ("full",),
-        strains={"af-5": Run(0.05, *AF, 8, 30), "prager-5": Run(0.05, *PRAGER, 8, 4)},
-        near={"near-2": Run(0.02, *FAST, 6, 32), "near-1": Run(0.01, *FAST, 6, 36)},
+        strains={"af-5": Run(0.05, *AF, 8, 16), "prager-5": Run(0.05, *PRAGER, 8, 4)},
+        near={"near-2": Run(0.02, *AF, 8, 40), "near-1": Run(0.01, *AF, 8, 100)},
     ),
 )
