@@ -115,8 +115,8 @@ def check_cycled_sphere(module, periods=3):
                 begin = (q + compliance * (back + sign * yields)) / excess
                 if sign * (end - begin) > 0:
 
-                    def rates(_, state, *, sign=sign, excess=excess):
-                        slope = 2 * (modulus - recovery * sign * state[1])
+                    def rates(_, state, law=(modulus, recovery), sign=sign, excess=excess):
+                        slope = 2 * (law[0] - law[1] * sign * state[1])
                         rate = excess / (1 + compliance * slope)
                         return rate, slope * rate, 2 * sign * rate
 

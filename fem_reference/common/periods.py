@@ -44,7 +44,7 @@ def verdicts_of(model: ContactModel, steps: Sequence[Step], judging: Judging) ->
     histories, periods = _periods_of(model, steps, judging)
     strain, volume = _yield_strain(model), model.body.weights.ravel() * model.scales.length**3 / model.part
     return [
-        verdict_on(periods[:number], after.peeq.ravel(), strain, volume, judging)
+        verdict_on(periods[:number], after.peeq.ravel(), strain, judging, volume=volume)
         for number, after in enumerate(histories, start=1)
     ]
 
@@ -157,4 +157,6 @@ def verdict_summary(model: ContactModel, steps: Sequence[Step]) -> Mapping[str, 
     if judging is None:
         return None
     found = verdicts_of(model, steps, judging)
-    return summary(found, judging.period, judging.floor * float(_yield_strain(model).min())) if found else None
+    return (
+        summary(found, judging.period, judging.floor * float(_yield_strain(model).min())) if found else None
+    )

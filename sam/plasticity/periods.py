@@ -76,8 +76,8 @@ class Periods:
             _compared(added, extent),
             state.material.peeq.ravel(),
             _yield_strain(model, extent),
-            np.broadcast_to(model.volumes(extent), extent.shape).ravel(),
             model.judging,
+            volume=np.broadcast_to(model.volumes(extent), extent.shape).ravel(),
         )
         return Periods(None, added, (*self.verdicts, found))
 

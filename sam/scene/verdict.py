@@ -97,7 +97,7 @@ def classes(
     """Classify each cell by all periods after the first, which holds the first loading.
 
     A cell whose dp is steady alternates if its strain closes: de is small, or has fallen by a tenth and ends
-    small whatever noise hides of it, as the geometric series through three periods at equal distances says. It
+    small whatever noise hides, as the geometric series through three periods at equal distances says. It
     ratchets if de does not fall beyond noise over the last half of the periods, keeps its direction, and has
     been followed long enough to see a fall by which it would last less than LASTS periods. What falls never
     ratchets: a fall may slow down, and goes on all the same. Where some back-stress never recovers, its
@@ -167,13 +167,15 @@ def _open_strain(
     lasts = (begin - c <= noise) & (noise * LASTS <= back * c) & (turn <= 1 + GROWS).all(axis=0)
     lasts &= (end - first >= 2) & ~closes & (_cosine(*periods[-2:]) >= ALIGNED)
     if judging.worst is not Behaviour.RATCHETTING:
-        closes, lasts = closes | (turn < 1).all(axis=0), np.zeros_like(lasts)
+        closes, lasts = (c <= small) | (turn < 1).all(axis=0), np.zeros_like(lasts)
     with np.errstate(divide="ignore", invalid="ignore"):
         rate, root = np.log(a / c) / (2 * apart), np.sqrt(noise / small)
-        # nearly a geometric series: small, or surely ending small, after as many periods again at least if its
-        # end is not yet; where it slows down: small as 1/k, or steady, as its differences are such a series
+        # nearly a geometric series: until it is small, or sure to end small, but if its limit is not yet small
+        # as many periods again; where it slows down: small as 1/k, or steady as its differences fall
         tells = np.where(root < 1, 2 * np.log((1 + root) / (1 - root)) / rate, np.inf) - 2 * apart
-        ends = np.fmin(np.log(c / small) / rate, np.where(excess > doubt, np.maximum(tells, end - first), tells))
+        ends = np.fmin(
+            np.log(c / small) / rate, np.where(excess > doubt, np.maximum(tells, end - first), tells)
+        )
         nearly = (excess <= doubt) | ((a - c / 2) * c / 2 <= (b - c / 2) ** 2)
         steady = end - first + 2 * apart * np.log((b - c) / noise) / np.log((a - b) / (b - c))
         slows = np.fmin(apart * (1 / small - 1 / c) / (1 / c - 1 / b), steady)
@@ -238,9 +240,9 @@ class Verdict:
     Parameters
     ----------
     behaviour
-        The worst class that carries a hundredth of the plastic strain of the period. Undecided where a worse
-        one is possible, and de of undecided cells is more than OPEN of that strain; and where some cells
-        ratchet, but de of them and of undecided cells together falls: then strain moves from cell to cell.
+        The worst class that carries a hundredth of the plastic strain of the period. Undecided where
+        cells may ratchet, and de of undecided ones is more than OPEN of that strain; and where some ratchet,
+        but de of them and of undecided cells together falls: then strain moves from cell to cell.
     accumulated, strain
         Largest dp of a cell, and largest de.
     ratio, closure
@@ -281,7 +283,7 @@ UNSTRAINED = Verdict(
 
 
 def verdict_on(
-    periods: Sequence[Period], total: Array, yield_strain: Array, volume: Array, judging: Judging
+    periods: Sequence[Period], total: Array, yield_strain: Array, judging: Judging, *, volume: Array
 ) -> Verdict:
     """Sum up the cells of a body after the last of some periods.
 
@@ -312,8 +314,8 @@ def verdict_on(
         fall = periods[-1 - max((len(periods) - 2) // 2, 2)].norm - last.norm - judging.noise * yield_strain
         open_question = (fall * volume)[lasts].sum() > 0
     else:
-        worse = ORDER.index(behaviour) < ORDER.index(judging.worst)
-        open_question = worse and undecided.sum() > OPEN * flow.sum()
+        may_ratchet = judging.worst is Behaviour.RATCHETTING
+        open_question = may_ratchet and undecided.sum() > OPEN * flow.sum()
     if open_question:
         behaviour = Behaviour.UNDECIDED
     return Verdict(
@@ -442,7 +444,13 @@ def judging_of(scene: Scene) -> Judging | None:
     loading, length = scene.loading, cycles_in_period(scene)
     steps = length * (loading.steps + scene.strokes.count + (loading.unload_steps or loading.steps))
     noise = FLOOR[1] * scene.solver.tolerance * steps
-    return Judging(length, max(FLOOR[0], noise), noise, _worst_of(stated(scene.body.plasticity)), scene.strokes.goes_back(2))
+    return Judging(
+        length,
+        max(FLOOR[0], noise),
+        noise,
+        _worst_of(stated(scene.body.plasticity)),
+        scene.strokes.goes_back(2),
+    )
 
 
 def _worst_of(plasticity: Plasticity) -> Behaviour:

@@ -175,7 +175,7 @@ def test_a_strain_that_falls_to_nothing_is_never_taken_for_a_ratchet(ratio, seed
     share = 0.3 * ratio ** np.arange(count) + 1e-5 * rng.uniform(-0.5, 0.5, count)
     found = periods((5e-3, *(1e-3,) * (count - 1)), np.abs(share))
     numbers = [*range(4, 40), *range(40, count, 20)]
-    said = [verdict_on(found[:n], np.ones(1), STRAIN, np.ones(1), judging()) for n in numbers]
+    said = [verdict_on(found[:n], np.ones(1), STRAIN, judging(), volume=np.ones(1)) for n in numbers]
     decided = [each.behaviour is Behaviour.ALTERNATING for each in said]
     assert {each.behaviour for each in said} <= {Behaviour.ALTERNATING, Behaviour.UNDECIDED}
     assert decided[-1]
@@ -202,7 +202,9 @@ def test_material_that_wear_has_moved_is_not_judged():
 
 def test_what_settles_is_told_its_end():
     """A geometric series: dp rho/(1 - rho) is still to come."""
-    found = verdict_on(periods(1e-3 * 0.8 ** np.arange(5)), np.ones(1), STRAIN, np.full(1, 2.0), judging())
+    found = verdict_on(
+        periods(1e-3 * 0.8 ** np.arange(5)), np.ones(1), STRAIN, judging(), volume=np.full(1, 2.0)
+    )
     top = 1e-3 * 0.8**4
     assert found.behaviour is Behaviour.SETTLING
     assert found.remaining == pytest.approx(top * 4)
@@ -218,9 +220,9 @@ def test_the_body_has_the_worst_class_that_carries_its_share():
         for a, b in zip(alternating, ratchets, strict=True)
     ]
     total, strain = np.ones(2), np.full(2, 1e-3)
-    small = verdict_on(both, total, strain, np.array([1.0, 0.005]), judging())
+    small = verdict_on(both, total, strain, judging(), volume=np.array([1.0, 0.005]))
     assert (small.behaviour, small.volumes[Behaviour.RATCHETTING]) == (Behaviour.ALTERNATING, 0.005)
-    large = verdict_on(both, total, strain, np.array([1.0, 0.02]), judging())
+    large = verdict_on(both, total, strain, judging(), volume=np.array([1.0, 0.02]))
     assert large.behaviour is Behaviour.RATCHETTING
 
 

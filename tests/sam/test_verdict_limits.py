@@ -103,7 +103,7 @@ def test_a_hundredth_of_the_strain_makes_the_class_of_the_body(share, wanted):
         period(np.append(a.accumulated, b.accumulated), np.hstack([a.strain, b.strain]))
         for a, b in zip(mild, bad, strict=True)
     ]
-    found = verdict_on(both, np.ones(2), np.full(2, 1e-3), np.array([1 - share, share]), judging())
+    found = verdict_on(both, np.ones(2), np.full(2, 1e-3), judging(), volume=np.array([1 - share, share]))
     assert found.behaviour is wanted
 
 

@@ -136,7 +136,9 @@ def near(name="", *, model="sam", **wrong):
             said = here.get("verdict", ["undecided"] * 3 + ["alternating"] * (run.cycles - 3))
             rows = dict(zip(("peeq_step_max", "strain_step_max"), exact, strict=True))
             rows = {column: values * here.get(column, 1.0) for column, values in rows.items()}
-            results[of] = Made(tables={"cycles": rows | {"verdict": said, "periods_to_decide": [4] * run.cycles}})
+            results[of] = Made(
+                tables={"cycles": rows | {"verdict": said, "periods_to_decide": [4] * run.cycles}}
+            )
         found[label] = misfit_cycles.Found(run, exact, results)
     return found
 

@@ -31,7 +31,7 @@ def load_line(result: Result | Run) -> str:
 
 
 def undecided_line(result: Result | Run) -> str:
-    """How many more load cycles would tell what becomes of the body, where its verdict is open; else empty."""
+    """How many more load cycles would tell what becomes of the body, where that is undecided; else empty."""
     verdict = result.verdict
     if not verdict or verdict["class"] != "undecided":
         return ""

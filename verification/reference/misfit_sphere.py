@@ -2,17 +2,17 @@
 """An elasto-plastic body in which a sphere grows: material about a centre with an isotropic eigenstrain e(r).
 
 Small strain, von Mises plasticity with isotropic hardening Y(peeq) and a back-stress, an infinite body. With
-the deviator D = s_theta - s_r, the plastic strain (r, theta, phi) = q (-2, 1, 1) and G(r) = 3/r^3 int_0^r e s^2
-ds - e(r), equilibrium r s_r' = 2 D and compatibility (r eps_theta)' = eps_r give (r^3 [(1 - nu) D/E + q])' =
--r^3 e', so that at each radius by itself
+the deviator D = s_theta - s_r, the plastic strain (r, theta, phi) = q (-2, 1, 1) and G(r) = 3/r^3 int_0^r e
+s^2 ds - e(r), equilibrium r s_r' = 2 D and compatibility (r eps_theta)' = eps_r give (r^3 [(1 - nu) D/E +
+q])' = -r^3 e', so that at each radius by itself
 
     (1 - nu) D/E + q = G,    |D - x| <= Y(peeq),    dx = 2 C dq - 2 g x |dq|,    dpeeq = 2 |dq|,
 
-x = 3/2 of the back-stress in the direction of s_theta - s_r (Prager: g = 0; Armstrong & Frederick 1966,
-Mater. High Temp. 24 (2007) 1). Its direction never turns, so that while q grows one way x is known: x = +-C/g +
-(x0 -+ C/g) exp(-2 g |q - q0|). Where the sphere grows and shrinks over and over and Y is constant, a radius with E G
-<= 2 (1 - nu) Y is elastic in the end, and any other one yields to and fro: there g makes x tend to the same
-range about 0, and the strain that a period leaves to 0, as a bar does between fixed strains.
+with the back-stress x/3 (-2, 1, 1), modulus C and recovery g (Prager: g = 0; Armstrong & Frederick 1966,
+Mater. High Temp. 24 (2007) 1). Its direction never turns, so that while q grows one way x is known: x =
++-C/g + (x0 -+ C/g) exp(-2 g |q - q0|). Where the sphere grows and shrinks over and over and Y is constant, a
+radius with E G <= 2 (1 - nu) Y is elastic in the end, and any other one yields to and fro: there g makes x
+tend to a range about 0, and the strain that a period leaves to 0, as in a bar between fixed strains.
 
 What yields makes no stress outside of its zone: there D = E G/(1 - nu) and s_r = -2 D/3, those of an elastic
 body. So a free surface that the zone does not reach changes nothing in the plastic strain's own stress.

@@ -33,7 +33,9 @@ YOUNG, POISSON, YIELD, RADIUS, DEPTH = 210e9, 0.3, 1e9, 1e-5, 3.2
 REACHES = np.linspace(0.3, 3.0, 2701)  # radii at which the exact solution is looked at
 LIMIT = 2 * YIELD * (1 - POISSON) / (YOUNG * float(PROFILES["gauss"](REACHES)[1].max()))
 """Misfit at the centre below which the elastic range holds a period everywhere, in the end."""
-TOLERANCE = 1e-7  # sets the noise of the verdict: at 1e-6 the periods until it is decided are three times as many
+TOLERANCE = (
+    1e-7  # sets the noise of the verdict: at 1e-6 the periods until it is decided are three times as many
+)
 MODELS = {"sam": SAM, "fem": FEM}
 TOLD = 6  # the period after which the number of further periods is read
 RIGHT = 1.5  # times the number that was told, at most
@@ -80,8 +82,8 @@ class Run:
         """Largest dp and de of each period, (2, cycles)."""
         sphere = closed_form(self.scene, (1.0, 0.0) * self.cycles)
         ends = list(sphere.history(REACHES * RADIUS))[1::2]
-        peeq, strain = ([0 * REACHES, *values] for values in zip(*((f.peeq, 2 * f.plastic) for f in ends)))
-        return np.abs([np.diff(each, axis=0) for each in (peeq, strain)]).max(axis=2)
+        both = np.array([(0 * REACHES, 0 * REACHES), *((each.peeq, 2 * each.plastic) for each in ends)])
+        return np.abs(np.diff(both, axis=0)).max(axis=2).T
 
 
 @dataclass(frozen=True)
