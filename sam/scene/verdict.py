@@ -170,7 +170,7 @@ def _open_strain(
         closes, lasts = (c <= small) | (turn < 1).all(axis=0), np.zeros_like(lasts)
     with np.errstate(divide="ignore", invalid="ignore"):
         rate, root = np.log(a / c) / (2 * apart), np.sqrt(noise / small)
-        # nearly a geometric series: until it is small, or sure to end small, but if its limit is not yet small
+        # nearly a geometric series: until it is small, or sure to end small, but if its limit is not small
         # as many periods again; where it slows down: small as 1/k, or steady as its differences fall
         tells = np.where(root < 1, 2 * np.log((1 + root) / (1 - root)) / rate, np.inf) - 2 * apart
         ends = np.fmin(
