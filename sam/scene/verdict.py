@@ -30,6 +30,7 @@ STEADY, SETTLES = 0.02, 0.9
 OPEN = 0.02  # of de over dp: more of it does not close
 GROWS = 0.05  # of the ratio of de: growth that is none
 LASTS = 3000  # periods that a strain lasts in which noise hides the fall: fewer say nothing
+MARGIN = 1.5  # of the periods after which a geometric series would be told: the fall slows down a little
 ALIGNED = 0.99  # cosine of the directions of dE in two periods
 POWER = 0.5  # least exponent of a trend that is a power of the number of periods
 SHARES = 1.0, 0.5, 0.1  # of the largest strain: of the points whose loops are recorded
@@ -172,7 +173,8 @@ def _open_strain(
         rate, root = np.log(a / c) / (2 * apart), np.sqrt(noise / small)
         # nearly a geometric series: until it is small, or sure to end small, but if its limit is not small
         # as many periods again; where it slows down: small as 1/k, or steady as its differences fall
-        tells = np.where(root < 1, 2 * np.log((1 + root) / (1 - root)) / rate, np.inf) - 2 * apart
+        tells = np.where(root < 1, 2 * np.log((1 + root) / (1 - root)) / rate, np.inf)
+        tells = MARGIN * tells - 2 * apart
         ends = np.fmin(
             np.log(c / small) / rate, np.where(excess > doubt, np.maximum(tells, end - first), tells)
         )

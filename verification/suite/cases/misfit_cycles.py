@@ -217,7 +217,7 @@ CASES = (
         "Is what is undecided decided, and rightly, after the number of periods that was told?",
         EQUATIONS,
         ("full",),
-        strains={"af-5": Run(0.05, *AF, 8, 16), "prager-5": Run(0.05, *PRAGER, 8, 4)},
-        near={"near-2": Run(0.02, *AF, 8, 40), "near-1": Run(0.01, *AF, 8, 100)},
+        strains={"af-5": Run(0.05, *AF, 8, 30), "prager-5": Run(0.05, *PRAGER, 8, 4)},
+        near={"near-2": Run(0.02, *AF, 8, 60), "near-1": Run(0.01, *AF, 6, 160)},
     ),
 )
