@@ -15,13 +15,13 @@ from fem_reference.common.model import ContactModel
 from fem_reference.common.plasticity import History
 from sam.scene.result import BACK_STRESS, LOOPS
 from sam.scene.verdict import (
-    KEPT,
     Judging,
     Period,
     Verdict,
     cell_fields,
     last_period,
     loop_places,
+    norm_of,
     summary,
     verdict_columns,
     verdict_on,
@@ -31,22 +31,21 @@ AXISYMMETRIC = [0, 1, 2, 4]
 """Where rr, tt, zz, rz are among six components in the plane y = 0."""
 
 
-def floor(model: ContactModel) -> Array:
-    """The strain at each Gauss point below which a period counts as without plastic strain, (n,)."""
-    material, judging = model.problem.material, model.plan.judging
-    if material is None or judging is None:
-        raise ValueError("the contact is not judged")
-    found: Array = judging.floor * model.scales.strain * material.yield_strain.ravel()
+def _yield_strain(model: ContactModel) -> Array:
+    """Initial yield stress over Young's modulus at each Gauss point, (n,)."""
+    if model.problem.material is None:
+        raise ValueError("the body does not yield")
+    found: Array = model.scales.strain * model.problem.material.yield_strain.ravel()
     return found
 
 
 def verdicts_of(model: ContactModel, steps: Sequence[Step], judging: Judging) -> list[Verdict]:
     """After each period that was finished: of the steps of a contact whose body yields."""
     histories, periods = _periods_of(model, steps, judging)
-    limit, volume = floor(model), model.body.weights.ravel() * model.scales.length**3 / model.part
+    strain, volume = _yield_strain(model), model.body.weights.ravel() * model.scales.length**3 / model.part
     return [
-        verdict_on(last, after.peeq.ravel(), limit, volume, worst=judging.worst)
-        for last, after in zip(_last_of(periods), histories, strict=True)
+        verdict_on(periods[:number], after.peeq.ravel(), strain, judging, volume=volume)
+        for number, after in enumerate(histories, start=1)
     ]
 
 
@@ -125,17 +124,13 @@ def element_fields(model: ContactModel, state: Equilibrium, steps: Sequence[Step
     histories, periods = ([], []) if judging is None else _periods_of(model, steps, judging)
     if judging is None or not periods:
         return out
-    last, total = _last_of(periods)[-1], histories[-1].peeq.ravel()
-    for name, values in cell_fields(last, total, floor(model), worst=judging.worst).items():
+    for name, values in cell_fields(
+        periods, histories[-1].peeq.ravel(), _yield_strain(model), judging
+    ).items():
         points = values.reshape(weights.shape)
         mean = (points * weights).sum(axis=-1) / weights.sum(axis=-1)
         out[name] = points.max(axis=-1) if name == "class" else mean
     return out
-
-
-def _last_of(periods: Sequence[Period]) -> list[Sequence[Period]]:
-    """After each period those that are compared."""
-    return [periods[max(0, k - KEPT) : k] for k in range(1, len(periods) + 1)]
 
 
 def _added(before: History, after: History, unit: float) -> Period:
@@ -143,7 +138,7 @@ def _added(before: History, after: History, unit: float) -> Period:
     strain = unit * (after.plastic_strain - before.plastic_strain).reshape(len(after.plastic_strain), -1)
     tensor = np.zeros((6, strain.shape[1]))
     tensor[:3], tensor[3 : len(strain)] = strain[:3], strain[3:] / 2.0
-    return Period(unit * (after.peeq - before.peeq).ravel(), tensor)
+    return Period(unit * (after.peeq - before.peeq).ravel(), norm_of(tensor), tensor)
 
 
 def verdict_columns_of(
@@ -162,4 +157,6 @@ def verdict_summary(model: ContactModel, steps: Sequence[Step]) -> Mapping[str, 
     if judging is None:
         return None
     found = verdicts_of(model, steps, judging)
-    return summary(found, judging.period, float(floor(model).min())) if found else None
+    return (
+        summary(found, judging.period, judging.floor * float(_yield_strain(model).min())) if found else None
+    )

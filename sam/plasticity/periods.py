@@ -13,29 +13,32 @@ import numpy as np
 from sam.arrays import Array
 from sam.plasticity.model import Model
 from sam.plasticity.state import Extent, State, surrounded
-from sam.scene.verdict import KEPT, Period, Verdict, cell_fields, verdict_on
+from sam.scene.verdict import Period, Verdict, cell_fields, norm_of, verdict_on
 
 
 @dataclass(frozen=True)
 class Added:
-    """What a period added on a box: accumulated (n_layers, nx, ny), strain (6, n_layers, nx, ny); worn: depth
-    in m at its beginning on the grid, (nx, ny), None if nothing wears.
+    """What a period added on a box: accumulated and the norm of the strain, (n_layers, nx, ny), and the
+    strain, (6, n_layers, nx, ny), None of all but the last two periods; worn: depth in m at its beginning on
+    the grid, (nx, ny), None if nothing wears.
     """
 
     extent: Extent
     accumulated: Array
-    strain: Array
+    norm: Array
+    strain: Array | None
     worn: Array | None = None
 
     def on(self, extent: Extent, before: Array | None) -> Period:
         """The cells of a box in one row. before: worn depth at the beginning of the period before it."""
         where, shape = self.extent.inside(extent), extent.shape
-        strain = surrounded(self.strain, where, shape).reshape(6, -1)
+        accumulated, norm = (surrounded(each, where, shape).ravel() for each in (self.accumulated, self.norm))
+        strain = None if self.strain is None else surrounded(self.strain, where, shape).reshape(6, -1)
         restarted = None
         if self.worn is not None and before is not None:
             moved = (self.worn != before)[extent.window.slices]
             restarted = np.broadcast_to(moved, shape).ravel()
-        return Period(surrounded(self.accumulated, where, shape).ravel(), strain, restarted)
+        return Period(accumulated, norm, strain, restarted)
 
 
 @dataclass(frozen=True)
@@ -50,17 +53,14 @@ class Begun:
     def added(self, state: State, extent: Extent) -> Added:
         """What a later state has more."""
         where, shape = self.extent.inside(extent), extent.shape
-        return Added(
-            extent,
-            state.material.peeq - surrounded(self.peeq, where, shape),
-            state.material.strain - surrounded(self.strain, where, shape),
-            self.worn,
-        )
+        strain = state.material.strain - surrounded(self.strain, where, shape)
+        accumulated = state.material.peeq - surrounded(self.peeq, where, shape)
+        return Added(extent, accumulated, norm_of(strain), strain, self.worn)
 
 
 @dataclass(frozen=True)
 class Periods:
-    """The periods so far. begun: of the present one; last: those that are compared; verdicts: after each."""
+    """The periods so far. begun: of the present one; last: those that have ended; verdicts: after each."""
 
     begun: Begun | None = None
     last: tuple[Added, ...] = ()
@@ -70,13 +70,14 @@ class Periods:
         """The same with the period that a state ends, before anything is removed from it."""
         if self.begun is None or model.judging is None:
             raise ValueError("no period has begun")
-        added = (*self.last, self.begun.added(state, extent))[-KEPT:]
+        earlier = (*(replace(each, strain=None) for each in self.last[:-1]), *self.last[-1:])
+        added = (*earlier, self.begun.added(state, extent))
         found = verdict_on(
             _compared(added, extent),
             state.material.peeq.ravel(),
-            floor(model, extent),
-            np.broadcast_to(model.volumes(extent), extent.shape).ravel(),
-            worst=model.judging.worst,
+            _yield_strain(model, extent),
+            model.judging,
+            volume=np.broadcast_to(model.volumes(extent), extent.shape).ravel(),
         )
         return Periods(None, added, (*self.verdicts, found))
 
@@ -84,12 +85,8 @@ class Periods:
         """Fields of the last period on a box, (n_layers, nx, ny) each; nothing before its end."""
         if model.judging is None or not self.last:
             return {}
-        compared, total, worst = (
-            _compared(self.last, extent),
-            state.material.peeq.ravel(),
-            model.judging.worst,
-        )
-        found = cell_fields(compared, total, floor(model, extent), worst=worst)
+        compared, total = _compared(self.last, extent), state.material.peeq.ravel()
+        found = cell_fields(compared, total, _yield_strain(model, extent), model.judging)
         return {name: values.reshape(extent.shape) for name, values in found.items()}
 
     def at(self, place: Callable[[Extent], Extent]) -> Periods:
@@ -106,9 +103,14 @@ def _compared(added: Sequence[Added], extent: Extent) -> list[Period]:
     return [each.on(extent, worn) for each, worn in zip(added, before, strict=False)]
 
 
+def _yield_strain(model: Model, extent: Extent) -> Array:
+    """Initial yield stress over Young's modulus in each cell of a box, (n,)."""
+    strain = model.body.initial_yield(model.grid.depths[: extent.layers]) / model.body.elastic.young
+    return np.broadcast_to(strain[:, None, None], extent.shape).ravel()
+
+
 def floor(model: Model, extent: Extent) -> Array:
     """Strain of each cell of a box below which a period counts as without plastic strain, (n,)."""
     if model.judging is None:
         raise ValueError("the scene is not judged")
-    strain = model.body.initial_yield(model.grid.depths[: extent.layers]) / model.body.elastic.young
-    return np.broadcast_to(model.judging.floor * strain[:, None, None], extent.shape).ravel()
+    return model.judging.floor * _yield_strain(model, extent)

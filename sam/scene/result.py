@@ -145,6 +145,7 @@ CYCLES = (
     "margin_to_limit",
     "wear_of_cycle_m3",
 )
+PERIODS_TO_DECIDE = "periods_to_decide"
 VERDICT_COLUMNS = (
     "period",
     "peeq_step_max",
@@ -154,6 +155,7 @@ VERDICT_COLUMNS = (
     "flowing_volume_m3",
     "ratchetting_volume_m3",
     "verdict",
+    PERIODS_TO_DECIDE,
 )
 """Last columns of the table cycles of a scene that is judged, see `sam.scene.verdict`."""
 BACK_STRESS = "back_stress_Pa"
@@ -230,7 +232,7 @@ EXTRA_COLUMNS = {
     "surface": (COUNTER_HEIGHT,),
     "passes": OF_PASSES,
     "track": (TRACK_WORN,),
-    "cycles": (*VERDICT_COLUMNS, DISSIPATED, FRICTION_SIGN, ROOFED),
+    "cycles": (*VERDICT_COLUMNS[:-1], DISSIPATED, FRICTION_SIGN, PERIODS_TO_DECIDE, ROOFED),
 }
 """Last columns of a table that only some scenes have."""
 

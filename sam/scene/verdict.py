@@ -23,12 +23,14 @@ from sam.scene.result import VERDICT_COLUMNS
 from sam.scene.schema import Scene
 from sam.scene.section import stated
 
-NEEDED = 3  # periods that are compared; a class other than elastic or shakedown needs one more before them
-KEPT = NEEDED + 1
-# of the ratio of dp to that of the period before: 1 up to so much, of de too; at most so much
+NEEDED = 3  # periods whose dp is compared; a class other than elastic or shakedown needs one more before them
+LEAST = NEEDED + 1
+# of the ratio of dp to that of the period before: 1 up to so much; at most so much
 STEADY, SETTLES = 0.02, 0.9
 OPEN = 0.02  # of de over dp: more of it does not close
-EQUAL = 0.05  # of the ratio of de: the same in each period
+GROWS = 0.05  # of the ratio of de: growth that is none
+LASTS = 3000  # periods that a strain lasts in which noise hides the fall: fewer say nothing
+MARGIN = 1.5  # of the periods after which a geometric series would be told: the fall slows down a little
 ALIGNED = 0.99  # cosine of the directions of dE in two periods
 POWER = 0.5  # least exponent of a trend that is a power of the number of periods
 SHARES = 1.0, 0.5, 0.1  # of the largest strain: of the points whose loops are recorded
@@ -57,102 +59,141 @@ ORDER = tuple(Behaviour)
 
 @dataclass(frozen=True)
 class Period:
-    """What a period added. accumulated: dp, (n,); strain: components of dE, (6, n), 11 22 33 23 13 12;
-    restarted: (n,), cells in which wear has moved the material.
+    """What a period added. accumulated: dp, (n,); norm: de, (n,); strain: components of dE, (6, n), 11 22 33
+    23 13 12, wanted of the last two periods; restarted: (n,), cells in which wear has moved the material.
     """
 
     accumulated: Array
-    strain: Array
+    norm: Array
+    strain: Array | None = None
     restarted: Mask | None = None
 
-    @property
-    def norm(self) -> Array:
-        """The norm de, (n,)."""
-        square = (self.strain[:3] ** 2).sum(axis=0) + 2 * (self.strain[3:] ** 2).sum(axis=0)
-        found: Array = np.sqrt(2 / 3 * square)
-        return found
+
+def norm_of(strain: Array) -> Array:
+    """The norm sqrt(2/3 dE : dE), (...), of components 11 22 33 23 13 12, (6, ...)."""
+    square = (strain[:3] ** 2).sum(axis=0) + 2 * (strain[3:] ** 2).sum(axis=0)
+    found: Array = np.sqrt(2 / 3 * square)
+    return found
 
 
 @dataclass(frozen=True)
 class Judging:
     """How a scene is judged. period: load cycles of a period; floor: strain below which a period counts as
-    without plastic strain, over the yield strain (initial yield stress over Young's modulus); worst: what the
-    hardening law lets happen at worst, see `classes`; loaded: whether periods end below the load, which stays
-    on between them, and not unloaded.
+    without plastic strain, over the yield strain (initial yield stress over Young's modulus); noise: what the
+    solver leaves undetermined of the strain of a period, likewise; worst: what the hardening law lets happen
+    at worst, see `classes`; loaded: whether periods end below the load, which stays on between them, and not
+    unloaded.
     """
 
     period: int
     floor: float
+    noise: float
     worst: Behaviour = Behaviour.RATCHETTING
     loaded: bool = False
 
 
 def classes(
-    periods: Sequence[Period],
-    total: Array,
-    floor: Array,
-    *,
-    worst: Behaviour = Behaviour.RATCHETTING,
-) -> Array:
-    """Classify each cell by the last periods.
+    periods: Sequence[Period], total: Array, yield_strain: Array, judging: Judging
+) -> tuple[Array, Array]:
+    """Classify each cell by all periods after the first, which holds the first loading.
 
-    A cell alternates if its dp is steady and its strain closes: de is small, or falls to a small value.
-    Where some back-stress never recovers, its energy bounds the plastic strain: no step of the strain lasts,
-    however slowly it falls, and nothing ratchets. Where the yield stress grows for ever everything settles.
+    A cell whose dp is steady alternates if its strain closes: de is small, or has fallen by a tenth and ends
+    small whatever noise hides, as the geometric series through three periods at equal distances says. It
+    ratchets if de does not fall beyond noise over the last half of the periods, keeps its direction, and has
+    been followed long enough to see a fall by which it would last less than LASTS periods. What falls never
+    ratchets: a fall may slow down, and goes on all the same. Where some back-stress never recovers, its
+    energy bounds the plastic strain: no step of the strain lasts, however slowly it falls, and nothing
+    ratchets. Where the yield stress grows for ever everything settles.
 
     Parameters
     ----------
     periods
-        All of them, or the last four; the first holds the first loading.
+        All of them.
     total
         Accumulated plastic strain of each cell, (n,).
-    floor
-        Strain below which a period counts as without plastic strain, (n,).
-    worst
-        What can happen at worst: settling, alternating or ratchetting.
+    yield_strain
+        Initial yield stress over Young's modulus, (n,).
+    judging
+        Floor, noise, and what can happen at worst.
 
     Returns
     -------
-    Array
-        Places in `ORDER`, (n,).
+    found, further
+        Places in `ORDER`, (n,), and periods after which an undecided cell will be decided if it goes on like
+        this, (n,), infinite where noise never lets it.
     """
-    found = np.full(total.shape, ORDER.index(Behaviour.UNDECIDED))
+    found, further = np.full(total.shape, ORDER.index(Behaviour.UNDECIDED)), np.zeros(total.shape)
     found[total == 0] = ORDER.index(Behaviour.ELASTIC)
     if len(periods) < NEEDED:
-        return found
-    last = periods[-NEEDED:]
-    p, e = (np.array(values) for values in ([one.accumulated for one in last], [one.norm for one in last]))
+        return found, further + LEAST - len(periods)
+    floor, last = judging.floor * yield_strain, periods[-NEEDED:]
+    p = np.array([one.accumulated for one in last])
     quiet = (total > 0) & (p[1:] <= floor).all(axis=0)
     if len(periods) > NEEDED:
-        flows, rho, turn = p[-1] > floor, _ratio(p), _ratio(e)
-        slower, steady = flows & (rho < 1).all(axis=0), flows & (np.abs(rho - 1) <= STEADY).all(axis=0)
-        closes = (e[-1] <= OPEN * p[-1]) | ((turn <= 1 - STEADY).all(axis=0) & (_limit(e) <= OPEN * p[-1]))
-        same = (np.abs(turn - 1) <= EQUAL).all(axis=0) & (_cosine(last[-2], last[-1]) >= ALIGNED)
-        if worst is not Behaviour.RATCHETTING:
-            closes, same = closes | (turn < 1).all(axis=0), np.zeros_like(same)
+        flows, rho = p[-1] > floor, _ratio(p)
+        change = np.abs(rho - 1).max(axis=0)
+        slower, steady = flows & (rho < 1).all(axis=0), flows & (change <= STEADY)
+        closes, lasts, further = _open_strain(periods, p[-1], yield_strain, judging)
         found[steady & closes] = ORDER.index(Behaviour.ALTERNATING)
-        found[steady & ~closes & same] = ORDER.index(Behaviour.RATCHETTING)
-        settles = slower if worst is Behaviour.SETTLING else flows & (rho <= SETTLES).all(axis=0)
+        found[steady & lasts] = ORDER.index(Behaviour.RATCHETTING)
+        settles = slower if judging.worst is Behaviour.SETTLING else flows & (rho <= SETTLES).all(axis=0)
         found[settles] = ORDER.index(Behaviour.SETTLING)
+        further = np.where(steady, further, np.maximum(further, len(periods) * (change / STEADY - 1)))
     found[quiet] = ORDER.index(Behaviour.SHAKEDOWN)
     for one in last:
         if one.restarted is not None:
             found[one.restarted] = ORDER.index(Behaviour.UNDECIDED)
-    return found
+    return found, np.maximum(np.ceil(further), 1.0)
+
+
+def _open_strain(
+    periods: Sequence[Period], dp: Array, yield_strain: Array, judging: Judging
+) -> tuple[Mask, Mask, Array]:
+    """Of cells with steady dp: whether the strain of a period closes; whether it lasts; else how many further
+    periods will tell.
+    """
+    e, first = np.array([one.norm for one in periods]), np.ones(dp.shape, dtype=int)
+    for number, one in enumerate(periods):
+        if one.restarted is not None:
+            first[one.restarted] = number + 1
+    end, noise, small = len(periods) - 1, judging.noise * yield_strain, OPEN * dp
+    apart, back = np.maximum((end - first) // 2, 0), np.maximum((end - first) // 2, 2)
+    a, b, begin = (
+        np.take_along_axis(e, np.maximum(end - each, 0)[None], axis=0)[0] for each in (2 * apart, apart, back)
+    )
+    c, turn, falls = e[-1], _ratio(e[-NEEDED:]), a - e[-1] > noise
+    # the geometric series through a, b, c ends below `small` if (a - small)(c - small) <= (b - small)^2
+    excess, doubt = (a - small) * (c - small) - (b - small) ** 2, noise * (a + 2 * b + c - 4 * small)
+    closes = (c <= small) | (falls & (c <= SETTLES * a) & (excess + doubt <= 0))
+    lasts = (begin - c <= noise) & (noise * LASTS <= back * c) & (turn <= 1 + GROWS).all(axis=0)
+    lasts &= (end - first >= 2) & ~closes & (_cosine(*periods[-2:]) >= ALIGNED)
+    if judging.worst is not Behaviour.RATCHETTING:
+        closes, lasts = (c <= small) | (turn < 1).all(axis=0), np.zeros_like(lasts)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rate, root = np.log(a / c) / (2 * apart), np.sqrt(noise / small)
+        # nearly a geometric series: until it is small, or sure to end small, but if its limit is not small
+        # as many periods again; where it slows down: small as 1/k, or steady as its differences fall
+        tells = np.where(root < 1, 2 * np.log((1 + root) / (1 - root)) / rate, np.inf)
+        tells = MARGIN * tells - 2 * apart
+        ends = np.fmin(
+            np.log(c / small) / rate, np.where(excess > doubt, np.maximum(tells, end - first), tells)
+        )
+        nearly = (excess <= doubt) | ((a - c / 2) * c / 2 <= (b - c / 2) ** 2)
+        steady = end - first + 2 * apart * np.log((b - c) / noise) / np.log((a - b) / (b - c))
+        slows = np.fmin(apart * (1 / small - 1 / c) / (1 / c - 1 / b), steady)
+        still = np.maximum(2 * LASTS * noise / c, 2.0 * (end - first)) - (end - first)
+    further: Array = np.where(falls | (rate * LASTS > 1), np.where(nearly, ends, slows), still)
+    return closes, lasts, np.where(np.isnan(further), np.inf, further)
 
 
 def cell_fields(
-    periods: Sequence[Period],
-    total: Array,
-    floor: Array,
-    *,
-    worst: Behaviour = Behaviour.RATCHETTING,
+    periods: Sequence[Period], total: Array, yield_strain: Array, judging: Judging
 ) -> dict[str, Array]:
     """Fields of the last of some periods, as the meshes have them.
 
     Parameters
     ----------
-    periods, total, floor, worst
+    periods, total, yield_strain, judging
         See `classes`.
 
     Returns
@@ -161,7 +202,7 @@ def cell_fields(
         Name -> (n,): peeq_step, dp; strain_step, de; class, the place in `ORDER`.
     """
     last = periods[-1]
-    found = classes(periods, total, floor, worst=worst).astype(float)
+    found = classes(periods, total, yield_strain, judging)[0].astype(float)
     return {"peeq_step": last.accumulated, "strain_step": last.norm, "class": found}
 
 
@@ -201,7 +242,9 @@ class Verdict:
     Parameters
     ----------
     behaviour
-        The worst class that carries a hundredth of the plastic strain of the period.
+        The worst class that carries a hundredth of the plastic strain of the period. Undecided where
+        cells may ratchet, and de of undecided ones is more than OPEN of that strain; and where some ratchet,
+        but de of them and of undecided cells together falls: then strain moves from cell to cell.
     accumulated, strain
         Largest dp of a cell, and largest de.
     ratio, closure
@@ -211,6 +254,9 @@ class Verdict:
         below the floor; else None.
     flowing, volumes
         Volume in m^3 of the cells whose dp is beyond the floor, and of the cells of each class.
+    periods_to_decide
+        Further periods after which an undecided body will be decided if it goes on like this; None if it is
+        decided, or noise never lets it be.
     """
 
     behaviour: Behaviour
@@ -222,13 +268,14 @@ class Verdict:
     periods_to_floor: float | None
     flowing: float
     volumes: Mapping[str, float]
+    periods_to_decide: int | None = None
 
     @property
-    def columns(self) -> tuple[float | str | None, ...]:
+    def columns(self) -> tuple[float | int | str | None, ...]:
         """The values of VERDICT_COLUMNS after the number of the period."""
         ratchets = self.volumes[Behaviour.RATCHETTING]
         numbers = self.accumulated, self.strain, self.ratio, self.closure, self.flowing, ratchets
-        return *numbers, str(self.behaviour)
+        return *numbers, str(self.behaviour), self.periods_to_decide
 
 
 UNSTRAINED = Verdict(
@@ -238,18 +285,13 @@ UNSTRAINED = Verdict(
 
 
 def verdict_on(
-    periods: Sequence[Period],
-    total: Array,
-    floor: Array,
-    volume: Array,
-    *,
-    worst: Behaviour = Behaviour.RATCHETTING,
+    periods: Sequence[Period], total: Array, yield_strain: Array, judging: Judging, *, volume: Array
 ) -> Verdict:
     """Sum up the cells of a body after the last of some periods.
 
     Parameters
     ----------
-    periods, total, floor, worst
+    periods, total, yield_strain, judging
         See `classes`.
     volume
         Of each cell in m^3, (n,).
@@ -259,24 +301,48 @@ def verdict_on(
     Verdict
         Of the body.
     """
-    found, last = classes(periods, total, floor, worst=worst), periods[-1]
+    (found, further), last = classes(periods, total, yield_strain, judging), periods[-1]
+    floor = judging.floor * yield_strain
     flow = np.where(last.accumulated > floor, last.accumulated * volume, 0.0)
     at = int(last.accumulated.argmax())
-    top, norm = float(last.accumulated[at]), last.norm
+    top = float(last.accumulated[at])
     before = float(periods[-2].accumulated[at]) if len(periods) > 1 else 0.0
     ratio = top / before if before else None
     settles = ORDER[found[at]] is Behaviour.SETTLING and ratio is not None
+    undecided = np.where((found == ORDER.index(Behaviour.UNDECIDED)) & (flow > 0), last.norm * volume, 0.0)
+    behaviour = _worst(found, flow, total)
+    if behaviour is Behaviour.RATCHETTING:
+        lasts = (flow > 0) & (found >= ORDER.index(behaviour))
+        fall = periods[-1 - max((len(periods) - 2) // 2, 2)].norm - last.norm - judging.noise * yield_strain
+        open_question = (fall * volume)[lasts].sum() > 0
+    else:
+        may_ratchet = judging.worst is Behaviour.RATCHETTING
+        open_question = may_ratchet and undecided.sum() > OPEN * flow.sum()
+    if open_question:
+        behaviour = Behaviour.UNDECIDED
     return Verdict(
-        _worst(found, flow, total),
+        behaviour,
         top,
-        float(norm.max()),
+        float(last.norm.max()),
         ratio,
-        float(norm[at] / top) if top else 0.0,
+        float(last.norm[at] / top) if top else 0.0,
         top * ratio / (1 - ratio) if settles and ratio is not None else None,
         float(np.log(floor[at] / top) / np.log(ratio)) if settles and ratio is not None else None,
         float(volume[flow > 0].sum()),
         {str(each): float(volume[found == k].sum()) for k, each in enumerate(ORDER)},
+        _until(further, undecided, OPEN * flow.sum()) if behaviour is Behaviour.UNDECIDED else None,
     )
+
+
+def _until(further: Array, undecided: Array, small: float) -> int | None:
+    """Periods after which no more than a small part of the undecided strain is left; None if never."""
+    waiting = np.flatnonzero(undecided)
+    if not waiting.size:
+        return 1
+    order = waiting[np.argsort(further[waiting])[::-1]]
+    left = np.cumsum(undecided[order]) > small
+    found = further[order[int(left.argmax()) if left.any() else -1]]
+    return int(found) if np.isfinite(found) else None
 
 
 def verdict_columns(
@@ -337,6 +403,7 @@ def summary(verdicts: Sequence[Verdict], cycles_in_period: int, floor: float) ->
         "floor": floor,
         "volumes_m3": dict(last.volumes),
         "cycles_in_period": cycles_in_period,
+        "periods_to_decide": last.periods_to_decide,
     }
 
 
@@ -367,8 +434,8 @@ def reason_without(scene: Scene) -> str:
     if not loading.unload:
         return "loading.unload is false: the strains of unloaded bodies are compared"
     length = cycles_in_period(scene)
-    if loading.cycles < KEPT * length:
-        return f"loading.cycles = {loading.cycles}: {KEPT * length} are needed, four periods"
+    if loading.cycles < LEAST * length:
+        return f"loading.cycles = {loading.cycles}: {LEAST * length} are needed, four periods"
     return ""
 
 
@@ -378,8 +445,14 @@ def judging_of(scene: Scene) -> Judging | None:
         return None
     loading, length = scene.loading, cycles_in_period(scene)
     steps = length * (loading.steps + scene.strokes.count + (loading.unload_steps or loading.steps))
-    floor = max(FLOOR[0], FLOOR[1] * scene.solver.tolerance * steps)
-    return Judging(length, floor, _worst_of(stated(scene.body.plasticity)), scene.strokes.goes_back(2))
+    noise = FLOOR[1] * scene.solver.tolerance * steps
+    return Judging(
+        length,
+        max(FLOOR[0], noise),
+        noise,
+        _worst_of(stated(scene.body.plasticity)),
+        scene.strokes.goes_back(2),
+    )
 
 
 def _worst_of(plasticity: Plasticity) -> Behaviour:
@@ -426,19 +499,10 @@ def _ratio(values: Array) -> Array:
     return np.divide(values[1:], values[:-1], out=np.full_like(values[1:], np.inf), where=values[:-1] > 0)
 
 
-def _limit(values: Array) -> Array:
-    """Where three rows that fall tend to, if their differences are a geometric series (Aitken); 0 where they
-    fall faster and faster.
-    """
-    first, second = np.diff(values, axis=0)
-    left: Array = values[-1] + np.divide(
-        second**2, first - second, out=-values[-1], where=(first < second) & (second < 0)
-    )
-    return left
-
-
 def _cosine(a: Period, b: Period) -> Array:
-    """Of the angle between dE of two periods, (n,); 0 where one is zero."""
+    """Of the angle between dE of two periods, (n,); 0 where one is zero, or is no longer known."""
+    if a.strain is None or b.strain is None:
+        return np.zeros_like(a.norm)
     weights = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])[:, None]
     along, norms = (weights * a.strain * b.strain).sum(axis=0), 1.5 * a.norm * b.norm
     found: Array = np.divide(along, norms, out=np.zeros_like(along), where=norms > 0)

@@ -12,14 +12,13 @@ from sam.scene.verdict import (
     UNSTRAINED,
     Behaviour,
     Judging,
-    Period,
     Verdict,
     last_period,
     loop_places,
     summary,
     verdict_on,
 )
-from tests.sam.test_verdict import class_of, periods
+from tests.sam.test_verdict import class_of, judging, period, periods
 
 NEAR = 1e-5
 UNIT = np.array([1.0, -2.0, 1.0, 1.0, 1.0, 1.0]) / np.sqrt(8.0)  # de = 1, all components at work
@@ -48,16 +47,36 @@ def falling(turn):
         (steady(ratio=0.9 + NEAR), U),
         (steady(0.02 - NEAR / 10), A),
         (steady(0.02 + NEAR / 10), R),
-        (steady(falling(0.98 - NEAR)), A),
-        (steady(falling(0.98 + NEAR)), R),
+        (steady(falling(np.sqrt(0.9) - NEAR)), A),
+        (steady(falling(np.sqrt(0.9) + NEAR)), U),
+        (steady((1.0, 0.5, 0.5, 0.5 - 1e-5 + 1e-8)), R),
+        (steady((1.0, 0.5, 0.5, 0.5 - 1e-5 - 1e-8)), U),
         (steady((1.0, 0.5, 0.5 * (1.05 - NEAR), 0.5 * (1.05 - NEAR) ** 2)), R),
         (steady((1.0, 0.5, 0.5 * (1.05 + NEAR), 0.5 * (1.05 + NEAR) ** 2)), U),
-        (steady((1.0, 0.5, 0.5 * (0.95 + NEAR), 0.5 * (0.95 + NEAR) * 0.9504)), R),
-        (steady((1.0, 0.5, 0.5 * (0.95 - NEAR), 0.5 * (0.95 - NEAR) * 0.9504)), U),
     ],
 )
 def test_either_side_of_a_limit(found, wanted):
     assert class_of(found) is wanted
+
+
+@pytest.mark.parametrize(
+    ("share", "noise", "sure"),
+    [
+        (falling(0.9), 1e-10 / 1.725e-6, A),  # small (a + c - 2 b) over (a + 2 b + c - 4 small)
+        (0.5, 2 * 5e-4 / 3e3 / 1e-3, R),  # two periods of de over LASTS
+        (0.05, 2 * 5e-5 / 3e3 / 1e-3, R),
+    ],
+)
+def test_noise_that_hides_what_the_strain_does_leaves_it_undecided(share, noise, sure):
+    assert class_of(steady(share), noise=noise * (1 - NEAR)) is sure
+    assert class_of(steady(share), noise=noise * (1 + NEAR)) is U
+
+
+def test_a_ratchet_lasts_over_half_of_all_periods():
+    """What falls in the first ten periods, to more than nothing, and not in the next nine."""
+    share = np.array([1.0, *(0.3 + 0.2 * 0.7 ** np.minimum(np.arange(18), 8))])
+    found = periods((5e-3, *(1e-3,) * 18), share)
+    assert [class_of(found[:n]) for n in range(4, 20)] == [U] * 13 + [R] * 3
 
 
 @pytest.mark.parametrize(("ratio", "wanted"), [(1.0 - NEAR, S), (1.0 + NEAR, A)])
@@ -81,10 +100,10 @@ def test_directions_of_two_periods(cosine, turned):
 def test_a_hundredth_of_the_strain_makes_the_class_of_the_body(share, wanted):
     mild, bad = steady(), steady(0.5)
     both = [
-        Period(np.append(a.accumulated, b.accumulated), np.hstack([a.strain, b.strain]))
+        period(np.append(a.accumulated, b.accumulated), np.hstack([a.strain, b.strain]))
         for a, b in zip(mild, bad, strict=True)
     ]
-    found = verdict_on(both, np.ones(2), np.full(2, 1e-6), np.array([1 - share, share]))
+    found = verdict_on(both, np.ones(2), np.full(2, 1e-3), judging(), volume=np.array([1 - share, share]))
     assert found.behaviour is wanted
 
 
@@ -96,8 +115,8 @@ def test_loops_are_of_the_most_strained_point_and_near_a_half_and_a_tenth_of_it(
 
 
 def test_the_last_whole_period():
-    assert last_period(Judging(2, 1e-4), 9) == range(7, 9)
-    assert last_period(Judging(1, 1e-4), 9) == range(9, 10)
+    assert last_period(Judging(2, 1e-4, 1e-5), 9) == range(7, 9)
+    assert last_period(Judging(1, 1e-4, 1e-5), 9) == range(9, 10)
 
 
 def verdicts(largest, behaviour=S) -> list[Verdict]:

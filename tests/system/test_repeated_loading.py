@@ -125,3 +125,38 @@ def test_a_body_that_yields_nowhere_is_elastic():
         assert (result.verdict["class"], result.verdict["decided_at_cycle"]) == ("elastic", 1)
         assert result.verdict["trend"] is None and result.verdict["peeq_per_period"] == 0.0
         assert list(result.tables["cycles"]["peeq_step_max"]) == [0.0] * 4
+
+
+def sheared_layer(thickness):
+    """A pressure of Hertz and its traction come and go on a soft layer on an elastic body. thickness: in
+    contact radii.
+    """
+    kinematic = {"modulus": (120e9,), "recovery": (200.0,)}
+    layer = {"law": "perfect", "yield_stress": 0.46e9, "kinematic": kinematic}
+    hard = {"law": "perfect", "yield_stress": 20e9, "layer_thickness": 1e-5 * thickness, "layer": layer}
+    return Scene(
+        body={"young": 210e9, "poisson": 0.3, "plasticity": hard},
+        loading={"prescribed": "hertz", "p0": 2e9, "radius": 1e-5, "steps": 3, "unload": True, "cycles": 10},
+        friction={"coefficient": 0.25},
+        grid={
+            "cells": (17, 17),
+            "extent": (3.4e-5, 3.4e-5),
+            "depths": tuple(1e-5 * thickness * np.array([0, 0.5, 1, 2, 4, 8, 16, 32])),
+        },
+        solver={"verdict": True},
+    )
+
+
+def test_a_thin_layer_that_is_sheared_ratchets():
+    """Its mean shear stress is that of the traction, and no residual stress takes it from so thin a layer:
+    it creeps forward in each cycle. What a tenth of the radius is thick piles up against the rest of the
+    body, so that its strain falls: undecided, and never a ratchet.
+    """
+    thin = solve(sheared_layer(0.005), SAM)
+    strain = np.array(thin.tables["cycles"]["strain_step_max"])
+    assert thin.verdict["class"] == "ratchetting" and thin.verdict["periods_to_decide"] is None
+    assert strain[-1] > 1e-3 and strain[-1] == pytest.approx(strain[1], rel=0.1)
+    thick = solve(sheared_layer(0.1), SAM)
+    falling = np.array(thick.tables["cycles"]["strain_step_max"][1:])
+    assert (np.diff(falling) < 0).all() and "ratchetting" not in thick.tables["cycles"]["verdict"]
+    assert thick.verdict["class"] != "undecided" or thick.verdict["periods_to_decide"] > 0

@@ -61,8 +61,8 @@ CHABOCHE = {"modulus": (150e9, 11e9), "recovery": (300.0, 0.0)}
 
 
 def judged(cells=(13, 11), **tables) -> Scene:
-    """A given pressure on a body with back-stresses that strains in each of four cycles."""
-    loading = {"prescribed": "hertz", "p0": 3.5e9, "radius": 5e-6, "steps": 1, "unload": True, "cycles": 4}
+    """A given pressure on a body with back-stresses that strains in each of six cycles."""
+    loading = {"prescribed": "hertz", "p0": 3.5e9, "radius": 5e-6, "steps": 1, "unload": True, "cycles": 6}
     return scene(
         body={"plasticity": PERFECT | {"kinematic": CHABOCHE}},
         loading=loading | tables.pop("loading", {}),

@@ -27,7 +27,7 @@ from closed_form_checks import (
     gauss,
     partial,
 )
-from growing_sphere_checks import check_growing_sphere
+from growing_sphere_checks import check_cycled_sphere, check_growing_sphere
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipkm1
 
@@ -358,7 +358,11 @@ MUTATIONS = [
     (mindlin_cheng, "-4.0 * (1.0 - self.nu)", "-4.001 * (1.0 - self.nu)", check_sphere_surface),
     (misfit_sphere, "(4 / 5) * s", "(4.004 / 5) * s", check_growing_sphere),
     (misfit_sphere, "(1 - self.nu) / self.young", "(1.001 - self.nu) / self.young", check_growing_sphere),
-    (misfit_sphere, "peeq + 2 * np.abs(grown)", "peeq + 2.002 * np.abs(grown)", check_growing_sphere),
+    (misfit_sphere, "peeq + 2 * dq, sign", "peeq + 2.002 * dq, sign", check_growing_sphere),
+    (misfit_sphere, "part = 2 * dq", "part = 2.002 * dq", check_cycled_sphere),
+    (misfit_sphere, "-np.expm1(-2 * self", "-np.expm1(-2.002 * self", check_cycled_sphere),
+    (misfit_sphere, "(self.modulus - self.recovery * start)", "self.modulus", check_cycled_sphere),
+    (misfit_sphere, "sign * self._back(sign", "self._back(sign", check_cycled_sphere),
     (misfit_sphere, "(2 * self.fields(", "(2.002 * self.fields(", check_growing_sphere),
     (misfit_sphere, "last = -2 / 3", "last = -3 / 3", check_growing_sphere),
 ]

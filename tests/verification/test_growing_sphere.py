@@ -5,7 +5,7 @@ it.
 
 import numpy as np
 import pytest
-from growing_sphere_checks import LAWS, NU, YOUNG, check_growing_sphere
+from growing_sphere_checks import LAWS, NU, YOUNG, check_cycled_sphere, check_growing_sphere
 
 import sam
 from sam.scene import Scene
@@ -17,6 +17,10 @@ A = 1e-5  # radius in m
 
 def test_radial_elements_meet_the_closed_form_with_second_order():
     check_growing_sphere(misfit_sphere)
+
+
+def test_rates_with_a_back_stress_meet_the_exact_solution():
+    check_cycled_sphere(misfit_sphere)
 
 
 def test_the_pressure_in_a_ball_is_that_of_an_expanding_cavity():

@@ -8,7 +8,7 @@ import pytest
 from made_results import Made, red
 
 from sam.scene import FieldMesh
-from verification.suite.cases import all_cases
+from verification.suite.cases import all_cases, misfit_cycles
 from verification.suite.cases.repeated_loading import (
     NESTED,
     RADIUS,
@@ -118,3 +118,45 @@ def test_a_wrong_limit_or_class_turns_its_gate_red(gates, wrong):
     found = judged(KEPT, wrong)
     assert {gate.removeprefix("prager-") for gate in found if gate.startswith("prager-")} == gates
     assert found - {f"prager-{gate}" for gate in gates} <= {"chaboche-classes"}
+
+
+NEAR = "misfit-cycles-near"
+
+
+def near(name="", *, model="sam", **wrong):
+    """The exact strains in both models, decided and told as exactly, but for one run. wrong: of it the share
+    of a column, or its list of verdicts.
+    """
+    (case,) = (each for each in misfit_cycles.CASES if each.name == NEAR)
+    found = {}
+    for label, run in (case.strains | case.near).items():
+        exact, results = run.exact(), {}
+        for of in misfit_cycles.MODELS:
+            here = wrong if (label, of) == (name, model) else {}
+            said = here.get("verdict", ["undecided"] * 3 + ["alternating"] * (run.cycles - 3))
+            rows = dict(zip(("peeq_step_max", "strain_step_max"), exact, strict=True))
+            rows = {column: values * here.get(column, 1.0) for column, values in rows.items()}
+            results[of] = Made(
+                tables={"cycles": rows | {"verdict": said, "periods_to_decide": [4] * run.cycles}}
+            )
+        found[label] = misfit_cycles.Found(run, exact, results)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("gates", "wrong"),
+    [
+        (set(), {}),
+        ({"sam-af-5-peeq"}, {"name": "af-5", "peeq_step_max": 1.031}),
+        ({"fem-af-5-strain"}, {"name": "af-5", "model": "fem", "strain_step_max": 0.969}),
+        ({"fem-prager-5-peeq"}, {"name": "prager-5", "model": "fem", "peeq_step_max": 0.969}),
+        ({"sam-prager-5-class"}, {"name": "prager-5", "verdict": ["undecided"] * 4}),
+        ({"sam-near-2-told"}, {"name": "near-2", "verdict": ["undecided"] * 15 + ["alternating"] * 45}),
+        ({"fem-near-1-told"}, {"name": "near-1", "model": "fem", "verdict": ["undecided"] * 160}),
+        ({"ratchetting"}, {"name": "near-1", "verdict": ["ratchetting"] + ["alternating"] * 159}),
+        ({"ratchetting", "sam-af-5-class"}, {"name": "af-5", "verdict": ["ratchetting"] * 30}),
+    ],
+    ids=lambda part: "-".join(sorted(part)) if isinstance(part, set) else "",
+)
+def test_a_wrong_misfit_sphere_in_cycles_turns_its_gate_red(gates, wrong):
+    assert judged(NEAR, near(**wrong)) == gates

@@ -30,6 +30,17 @@ def load_line(result: Result | Run) -> str:
     )
 
 
+def undecided_line(result: Result | Run) -> str:
+    """How many more load cycles would tell what becomes of the body, where that is undecided; else empty."""
+    verdict = result.verdict
+    if not verdict or verdict["class"] != "undecided":
+        return ""
+    more = verdict.get("periods_to_decide")
+    what = f"about {more * verdict['cycles_in_period']} more of loading.cycles" if more else "no more cycles"
+    hint = "" if more else ", a smaller solver.tolerance might"
+    return f"what becomes of the body under repeated loading is undecided: {what} would decide it{hint}"
+
+
 def _cells(found: Mapping[str, object]) -> str:
     """The discretisation in words."""
     if "cells" in found:

@@ -18,6 +18,7 @@ from verification.app.shown import (
     status_line,
     uncertain_lines,
     uncertain_table,
+    undecided_line,
 )
 from verification.cost.accuracy import missed, solve as solve_family
 from verification.cost.choice import chosen_scene, first_choice
@@ -67,7 +68,8 @@ def _solve(
         print(f"samfem: {folder} is already finished: nothing is solved", file=sys.stderr)
     else:
         result = _solved_in_parts(scene, model, folder, inputs, resume=resume)
-    print(*filter(None, (status_line(result), load_line(result))), sep="\n")
+    heads = status_line(result), undecided_line(result), load_line(result)
+    print(*filter(None, heads), sep="\n")
     if result.uncertainty:
         print_table(*uncertain_table(result, sys.stdout.isatty()))
         print(*uncertain_lines(result), sep="\n")

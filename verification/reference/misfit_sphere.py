@@ -1,12 +1,18 @@
 # SPDX-License-Identifier: MIT
 """An elasto-plastic body in which a sphere grows: material about a centre with an isotropic eigenstrain e(r).
 
-Small strain, von Mises plasticity with isotropic hardening Y(peeq), an infinite body. With the deviator D =
-s_theta - s_r, the plastic strain (r, theta, phi) = q (-2, 1, 1) and G(r) = 3/r^3 int_0^r e s^2 ds - e(r),
-equilibrium r s_r' = 2 D and compatibility (r eps_theta)' = eps_r give (r^3 [(1 - nu) D/E + q])' = -r^3 e', so
-that at each radius by itself
+Small strain, von Mises plasticity with isotropic hardening Y(peeq) and a back-stress, an infinite body. With
+the deviator D = s_theta - s_r, the plastic strain (r, theta, phi) = q (-2, 1, 1) and G(r) = 3/r^3 int_0^r e
+s^2 ds - e(r), equilibrium r s_r' = 2 D and compatibility (r eps_theta)' = eps_r give (r^3 [(1 - nu) D/E +
+q])' = -r^3 e', so that at each radius by itself
 
-    (1 - nu) D/E + q = G.
+    (1 - nu) D/E + q = G,    |D - x| <= Y(peeq),    dx = 2 C dq - 2 g x |dq|,    dpeeq = 2 |dq|,
+
+with the back-stress x/3 (-2, 1, 1), modulus C and recovery g (Prager: g = 0; Armstrong & Frederick 1966,
+Mater. High Temp. 24 (2007) 1). Its direction never turns, so that while q grows one way x is known: x =
++-C/g + (x0 -+ C/g) exp(-2 g |q - q0|). Where the sphere grows and shrinks over and over and Y is constant, a
+radius with E G <= 2 (1 - nu) Y is elastic in the end, and any other one yields to and fro: there g makes x
+tend to a range about 0, and the strain that a period leaves to 0, as in a bar between fixed strains.
 
 What yields makes no stress outside of its zone: there D = E G/(1 - nu) and s_r = -2 D/3, those of an elastic
 body. So a free surface that the zone does not reach changes nothing in the plastic strain's own stress.
@@ -15,7 +21,7 @@ Lame's problem of a sphere: Timoshenko & Goodier 1970, Art. 152; Hill 1950, Ch. 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -66,7 +72,7 @@ class Fields:
 @dataclass(frozen=True)
 class GrowingSphere:
     """e0 profile(r/radius) in an infinite body; young in Pa, radius in m, law: yield stress in Pa of the
-    accumulated plastic strain.
+    accumulated plastic strain; modulus in Pa, recovery: C and g of its back-stress.
 
     shares: of e0, which the sphere takes one after the other; (1,) is loading, (1, 0) loading and removal.
     """
@@ -78,6 +84,8 @@ class GrowingSphere:
     radius: float
     profile: str = "smooth"
     shares: Sequence[float] = (1.0,)
+    modulus: float = 0.0
+    recovery: float = 0.0
 
     def __post_init__(self):
         for name in ("young", "radius", "misfit"):
@@ -88,27 +96,42 @@ class GrowingSphere:
 
     def fields(self, r) -> Fields:
         """D, q and peeq at distances r from the centre in m, any shape."""
+        *_, last = self.history(r)
+        return last
+
+    def history(self, r) -> Iterator[Fields]:
+        """The same after each of the shares."""
         x = coordinate("r", r) / self.radius
         excess = self.misfit * PROFILES[self.profile](x)[1]
-        q, peeq, compliance = np.zeros_like(excess), np.zeros_like(excess), (1 - self.nu) / self.young
+        q, peeq, back = np.zeros((3, *excess.shape))
+        compliance = (1 - self.nu) / self.young
         for share in self.shares:
-            grown = self._yielded((share * excess - q) / compliance, peeq, compliance)
-            q, peeq = q + grown, peeq + 2 * np.abs(grown)
-        return Fields((self.shares[-1] * excess - q) / compliance, q, peeq)
+            trial = (share * excess - q) / compliance
+            sign = np.sign(trial - back)
+            dq = self._yielded(sign * trial, peeq, sign * back, compliance)
+            q, peeq, back = q + sign * dq, peeq + 2 * dq, sign * self._back(sign * back, dq)
+            yield Fields((share * excess - q) / compliance, q, peeq)
 
-    def _yielded(self, trial: np.ndarray, peeq: np.ndarray, compliance: float) -> np.ndarray:
-        """The increment of q: |trial| - |dq|/compliance = Y(peeq + 2 |dq|), by Newton's method."""
-        size = np.abs(trial)
-        low, high = np.zeros_like(size), size * compliance
-        yields, dq = size > self.law(peeq), np.zeros_like(size)
+    def _back(self, start: np.ndarray, dq: np.ndarray) -> np.ndarray:
+        """x after q has grown by dq from x = start."""
+        part = 2 * dq if self.recovery == 0 else -np.expm1(-2 * self.recovery * dq) / self.recovery
+        return start + (self.modulus - self.recovery * start) * part
+
+    def _yielded(
+        self, trial: np.ndarray, peeq: np.ndarray, back: np.ndarray, compliance: float
+    ) -> np.ndarray:
+        """The increment dq >= 0 of q: trial - dq/compliance = x(dq) + Y(peeq + 2 dq), by Newton's method."""
+        low, high = np.zeros_like(trial), (trial - back) * compliance
+        yields, dq = trial - back > self.law(peeq), np.zeros_like(trial)
         for _ in range(ITERATIONS):
-            excess = size - dq / compliance - self.law(peeq + 2 * dq)
+            excess = trial - dq / compliance - self._back(back, dq) - self.law(peeq + 2 * dq)
             low, high = np.where(excess > 0, dq, low), np.where(excess < 0, dq, high)
             step = 1e-7 * (peeq + 2 * dq + 1e-9)
             slope = 2 * (self.law(peeq + 2 * dq + step) - self.law(peeq + 2 * dq)) / step
+            slope += 2 * (self.modulus - self.recovery * self._back(back, dq))
             newton = dq + excess / (1 / compliance + slope)
             dq = np.where((newton > low) & (newton < high), newton, (low + high) / 2)
-        return np.where(yields, np.sign(trial) * dq, 0.0)
+        return np.where(yields, dq, 0.0)
 
     @cached_property
     def _outward(self) -> np.ndarray:

@@ -75,6 +75,10 @@ class Run:
         return self.summary.get("last_fitting") or {}
 
     @property
+    def verdict(self) -> Mapping[str, Any] | None:
+        return self.summary.get("verdict")
+
+    @property
     def uncertainty(self) -> Mapping[str, Mapping[str, Any]] | None:
         return self.summary.get("uncertainty")
 

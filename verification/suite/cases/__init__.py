@@ -46,6 +46,7 @@ _MODULES = (
         "friction",
         "cyclic",
         "repeated_loading",
+        "misfit_cycles",
         "shakedown_limits",
         "repeated_sliding",
         "energy",

@@ -111,12 +111,11 @@ def with_law(scene: Scene, name: str) -> Scene:
 
 
 def closed_form(scene: Scene, shares: tuple[float, ...] = (1.0,)) -> GrowingSphere:
-    """The closed form of a held scene."""
-    body, loading = scene.body, scene.loading
-    law = body.plasticity.curve().stress
-    return GrowingSphere(
-        body.young, body.poisson, law, loading.misfit, loading.radius, loading.profile, shares
-    )
+    """The closed form of a held scene, with at most one back-stress."""
+    body, loading, back = scene.body, scene.loading, scene.body.plasticity.kinematic
+    law, constants = body.plasticity.curve().stress, (back.modulus[0], back.recovery[0]) if back else ()
+    sphere = loading.misfit, loading.radius, loading.profile
+    return GrowingSphere(body.young, body.poisson, law, *sphere, shares, *constants)
 
 
 def on_grid(scene: Scene, size: int) -> Scene:
