@@ -28,13 +28,14 @@ from sam.scene import (
     PATH_QUANTITIES,
     PEAK,
     QUANTITIES,
+    InputError,
     Result,
     Scene,
     Table,
     open_file,
     resolved,
 )
-from verification.runs.meshes import is_mesh, mesh_files
+from verification.runs.meshes import is_mesh, mesh_files, read_mesh
 from verification.runs.provenance import collect
 from verification.runs.tables import columns_text, frame_of, read_table
 
@@ -139,6 +140,14 @@ def read_run(folder: str | Path) -> Run:
         name: _read_table(folder / f"{name}.csv") for name in COLUMNS if (folder / f"{name}.csv").exists()
     }
     return Run(folder, summary, tables)
+
+
+def mesh_of(folder: Path, name: str) -> Any:
+    """A mesh of a run, as pyvista holds it. Raises FolderError for one that is damaged."""
+    try:
+        return read_mesh(folder / name)[1]
+    except InputError as error:
+        raise FolderError(f"{folder / name} is damaged ({error}): solve the scene again") from None
 
 
 def run_of(result: Result, scene: Scene) -> Run:
