@@ -202,21 +202,27 @@ def check_target(folder: Path, also: Sequence[str] = ()) -> None:
     also: names that the folder may hold besides the files of a run.
     """
     try:
-        _check_target(folder, also)
+        check_place(folder)
+        _check_content(folder, also)
     except OSError as error:  # no permission, a name that is too long
         raise FolderError(f"{folder} cannot be used: {error.strerror}") from None
 
 
-def _check_target(folder: Path, also: Sequence[str]) -> None:
+def check_place(folder: Path) -> None:
+    """Raise FolderError, or OSError, unless a folder can be written to, or made."""
     if not folder.exists():
         parent = next(above for above in folder.absolute().parents if above.exists())
         if not parent.is_dir() or not os.access(parent, os.W_OK):
             raise FolderError(f"{folder} cannot be made: {parent} is no folder that can be written to")
-        return
-    if not folder.is_dir() or not os.access(folder, os.W_OK):
+    elif not folder.is_dir() or not os.access(folder, os.W_OK):
         raise FolderError(
             f"{folder} is no folder that can be written to: give one, new, empty or of an older run"
         )
+
+
+def _check_content(folder: Path, also: Sequence[str]) -> None:
+    if not folder.exists():
+        return
     if (folder / SUMMARY).exists():
         read_summary(folder)
         return
