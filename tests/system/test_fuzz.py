@@ -42,7 +42,7 @@ def number_of(kind: str, turn: int = 0) -> int:
 
 
 def test_inputs_are_the_same_for_the_same_seed():
-    numbers = range(-3, 3 * COUNT)
+    numbers = range(-3 * len(MORE_KINDS), 3 * COUNT)
     inputs = [bad_input(3, number) for number in numbers]
     assert inputs == [bad_input(3, number) for number in numbers]
     assert inputs != [bad_input(4, number) for number in numbers]

@@ -185,7 +185,7 @@ WRONG_MAPPINGS = {
     "file": ([("abaqus.vtu", "none.vtu")], 'file = "none.vtu": no mesh: cannot be read'),
     "no mesh": ([("abaqus.vtu", "abaqus.toml")], 'file = "abaqus.toml": no mesh: its name ends in none of'),
     "above": ([("abaqus.vtu", "../abaqus.vtu")], "outside the folder of the mapping: copy it there"),
-    "absolute": ([("abaqus.vtu", "/abaqus.vtu")], 'file = "/abaqus.vtu": a path from the folder of the mapping'),
+    "absolute": ([("abaqus.vtu", "/abaqus.vtu")], 'file = "/abaqus.vtu": a path from the'),
     "escapes in a key": ([("stress_unit", '"\\u001b[31m\\n"')], "?[31m? = "),
     "not TOML": ([("=", ":")], "not TOML"),
 }

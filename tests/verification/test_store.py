@@ -234,7 +234,11 @@ def test_an_entry_under_another_name_is_damage(kept):
 @pytest.mark.parametrize(
     "save, change, words",
     [
-        (np.savez, lambda inside: inside | {"tables.axis.z_m": inside["tables.axis.z_m"] + 1}, "the digest of its content"),
+        (
+            np.savez,
+            lambda inside: inside | {"tables.axis.z_m": inside["tables.axis.z_m"] + 1},
+            "the digest of its content",
+        ),
         (np.savez, lambda inside: {k: v for k, v in inside.items() if k != DIGEST}, "of an older version"),
         (np.savez_compressed, lambda inside: inside | {"0": np.zeros(10**6)}, "larger than it is"),
     ],
