@@ -51,8 +51,13 @@ def read_apart(
         If it raised, did not end in time, ended without an answer or answered nonsense.
     """
     command = [sys.executable, "-P", str(CHILD), str(reader), str(memory), str(SECONDS / 2), *arguments]
-    alone = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-    how: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL, "env": alone}
+    # the library of instruments loads matplotlib, which else makes a folder in that of the user
+    alone = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MPLCONFIGDIR": os.devnull}
+    how: dict[str, Any] = {
+        "stdout": subprocess.PIPE,
+        "stderr": subprocess.DEVNULL,
+        "env": {**os.environ, **alone},
+    }
     try:
         said = subprocess.run(command, input=content, timeout=SECONDS, check=False, **how).stdout
         head = json.loads(said[: said.index(b"\n")])

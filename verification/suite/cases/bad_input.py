@@ -231,6 +231,7 @@ def run_command(
     how: draws its address space and what is closed; without it neither is limited.
     """
     homes = {"HOME": "home", "TMPDIR": "tmp", "XDG_CACHE_HOME": "home/cache", "SAMFEM_STORE": "cwd/out/store"}
+    homes["MPLCONFIGDIR"] = "cwd/out/matplotlib"  # it keeps a list of fonts
     for name in ("home", "tmp", "cwd"):
         (base / name).mkdir(exist_ok=True)
     environment = (
