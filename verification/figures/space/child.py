@@ -10,7 +10,6 @@ import sys
 from pathlib import Path
 
 from verification.figures.space.meshes import Found
-from verification.figures.space.offscreen import WRONG
 from verification.figures.space.pictures import PICTURES
 from verification.figures.space.view import drawn, page, png
 from verification.runs.files import FolderError, of_last_load, read_run
@@ -43,4 +42,4 @@ if __name__ == "__main__":
         main()
     except FolderError as error:
         print(error, file=sys.stderr)
-        sys.exit(WRONG)
+        sys.exit(2)  # as `offscreen` knows it
