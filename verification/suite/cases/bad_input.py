@@ -5,6 +5,7 @@ purpose.
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import random
@@ -21,6 +22,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
+from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -45,6 +47,10 @@ from verification.suite.cases.case import FEM, SAM, Case, Context, Measured, Sma
 SEED = 20260
 READ = {"quick": 120, "full": 400}
 RUNS = {"quick": 8, "full": 32}
+CAMPAIGN = (
+    "once, by commit 0f8782d: 20000 inputs read (-1000 to 18999), 300 through the command (-150 to 149)"
+)
+"""How often, by what and on which inputs `main` was run for verification/data/bad-input.csv."""
 ALL_KINDS = (*KINDS, *MORE_KINDS)
 MORE = 4  # so many inputs for each one of MORE_KINDS
 LIMIT_S = 2.0  # of processor time for a reader; the usual input takes milliseconds
@@ -368,14 +374,23 @@ class BadInputs(Case):
             ),
             (
                 "Limits",
-                f"{LIMIT_S:g} s and {MEMORY / 2**30:g} GiB for a reader, {COMMAND_LIMIT_S:g} s for a command",
+                f"{LIMIT_S:g} s and {MEMORY / 2**30:g} GiB for a reader; {COMMAND_LIMIT_S:g} s and an address "
+                "space of 1, 2, 4 GiB or any for a command, every second one with closed streams on average",
             ),
+            ("Campaign", CAMPAIGN),
             ("Slowest", f"{read.slowest[0]:.2f} s ({read.slowest[1]}); command {ran.slowest[0]:.1f} s"),
         ]
 
     def tables(self, found: tuple[str, Tally, Tally]) -> list[SmallTable]:
         captions = "Read: valid or refused, with every reason", "Through the command, by exit code"
-        return [counts_table(caption, tally) for caption, tally in zip(captions, found[1:], strict=True)]
+        tables = [counts_table(caption, tally) for caption, tally in zip(captions, found[1:], strict=True)]
+        rows = csv.reader(
+            resources.files("verification").joinpath("data", "bad-input.csv").open(encoding="utf-8")
+        )
+        campaign = {"read": Tally(), "run": Tally()}
+        for how, kind, end, count in list(rows)[1:]:
+            campaign[how].counts[kind, end] = int(count)
+        return tables + [counts_table(f"Campaign: {how}", tally) for how, tally in campaign.items()]
 
     def notes(self, found: tuple[str, Tally, Tally]) -> list[str]:
         every = (item for tally in found[1:] for item in tally.findings.items())
