@@ -374,8 +374,8 @@ class BadInputs(Case):
             ),
             (
                 "Limits",
-                f"{LIMIT_S:g} s and {MEMORY / 2**30:g} GiB for a reader; {COMMAND_LIMIT_S:g} s and an address "
-                "space of 1, 2, 4 GiB or any for a command, every second one with closed streams on average",
+                f"{LIMIT_S:g} s and {MEMORY / 2**30:g} GiB for a reader; {COMMAND_LIMIT_S:g} s and an "
+                "address space of 1, 2, 4 GiB or any for a command, every second one with closed streams on average",
             ),
             ("Campaign", CAMPAIGN),
             ("Slowest", f"{read.slowest[0]:.2f} s ({read.slowest[1]}); command {ran.slowest[0]:.1f} s"),
