@@ -375,7 +375,7 @@ class BadInputs(Case):
             (
                 "Limits",
                 f"{LIMIT_S:g} s and {MEMORY / 2**30:g} GiB for a reader; {COMMAND_LIMIT_S:g} s and an "
-                "address space of 1, 2, 4 GiB or any for a command, every second one with closed streams on average",
+                "address space of 1, 2, 4 GiB or any for a command, half of them with closed streams",
             ),
             ("Campaign", CAMPAIGN),
             ("Slowest", f"{read.slowest[0]:.2f} s ({read.slowest[1]}); command {ran.slowest[0]:.1f} s"),
