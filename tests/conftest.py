@@ -9,6 +9,7 @@ Python to keep what it has compiled.
 """
 
 import os
+from pathlib import Path
 
 import pytest
 
@@ -23,6 +24,7 @@ from builders import COARSE, scene_text  # noqa: E402 - these load numpy
 from hypothesis import settings  # noqa: E402
 
 from verification.app.cli import main  # noqa: E402
+from verification.runs import meshes  # noqa: E402
 
 # the same examples in every run, on a machine of any speed; nothing is written
 settings.register_profile("fixed", derandomize=True, deadline=None)
@@ -34,6 +36,26 @@ def pytest_xdist_auto_num_workers() -> int:
     machine has.
     """
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@pytest.fixture(scope="session", autouse=True)
+def meshes_once():
+    """Each mesh of a run is read by a process of its own once: that takes half a second, and tests draw the
+    same.
+    """
+    found, read = {}, meshes.read_apart
+
+    def once(reader, path, *more, **how):
+        key = path[-4:], Path(path).read_bytes()
+        if path[-4:] not in (".vtr", ".vtu"):
+            return read(reader, path, *more, **how)
+        if key not in found:
+            found[key] = read(reader, path, *more, **how)
+        return found[key]
+
+    meshes.read_apart = once
+    yield
+    meshes.read_apart = read
 
 
 @pytest.fixture

@@ -10,6 +10,7 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
+import meshio
 import numpy as np
 import pyvista
 
@@ -59,12 +60,26 @@ def wrong_list(folder: Path) -> Iterator[str]:
 
 
 def wrong_values(folder: Path) -> Iterator[str]:
-    """Values that are no numbers."""
+    """Values that are no numbers, and meshes that meshio reads otherwise than VTK."""
     for path in sorted(folder.glob("*.vt[ur]")):
         mesh = pyvista.read(path)
+        if path.suffix == ".vtu" and not same_in_meshio(path, mesh):
+            yield f"{path.name}: another mesh for meshio"
         for name, values in (*mesh.point_data.items(), *mesh.cell_data.items()):
             if not np.isfinite(values).all():
                 yield f"{path.name}: {name} is not finite"
+
+
+def same_in_meshio(path: Path, mesh: pyvista.UnstructuredGrid) -> bool:
+    """Whether nodes, numbers of cells and fields are the same, bit by bit."""
+    other = meshio.read(path)
+    fields = other.point_data | {name: np.concatenate(values) for name, values in other.cell_data.items()}
+    return (
+        np.array_equal(other.points, mesh.points)
+        and sum(len(block.data) for block in other.cells) == mesh.n_cells
+        and fields.keys() == set(mesh.array_names)
+        and all(np.array_equal(values, mesh[name], equal_nan=True) for name, values in fields.items())
+    )
 
 
 def compared_stress(run: Run) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:

@@ -9,13 +9,14 @@ load cattrs; so are the energies of plastic strain.
 from importlib import import_module
 from typing import Any
 
+from sam.scene.apart import read_apart
 from sam.scene.body import LAWS, Body, Coating, Hardening, Plasticity
 from sam.scene.compare import Compare
 from sam.scene.counterbody import SHAPES, CounterBody
 from sam.scene.errors import Problem, SceneError, printable, spelling
 from sam.scene.friction import Friction
 from sam.scene.grid import Grid
-from sam.scene.inputs import InputError, Inputs, open_file, read_limited
+from sam.scene.inputs import InputError, Inputs, below, open_file, read_limited
 from sam.scene.load import load_scene, parse_scene, parse_toml, problems, read_scene, scene_of
 from sam.scene.loading import Loading
 from sam.scene.numerics import Fem, Solver
@@ -113,6 +114,7 @@ __all__ = [
     "Table",
     "Wear",
     "YieldCurve",
+    "below",
     "decode",
     "either",
     "encode",
@@ -127,6 +129,7 @@ __all__ = [
     "plastic_work",
     "printable",
     "problems",
+    "read_apart",
     "read_limited",
     "read_scene",
     "resolved",

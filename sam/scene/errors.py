@@ -33,7 +33,7 @@ class Problem:
         if not self.key:
             return self.allowed
         between = " is " if self.value == MISSING else " = "
-        return f"{self.key}{between}{self.value}: {self.allowed}"
+        return f"{printable(self.key)}{between}{self.value}: {self.allowed}"
 
 
 MISSING = "missing"
@@ -56,12 +56,13 @@ class SceneError(ValueError):
         super().__init__(str(self))
 
     def __str__(self) -> str:
+        source = printable(self.source)
         if len(self.problems) == 1:
-            return f"{self.source}: {self.problems[0]}"
+            return f"{source}: {self.problems[0]}"
         shown = list(map(str, self.problems[:MOST_SHOWN]))
         if len(self.problems) > MOST_SHOWN:
             shown.append(f"and {len(self.problems) - MOST_SHOWN} more")
-        return "\n  ".join([f"{self.source}: {len(self.problems)} errors", *shown])
+        return "\n  ".join([f"{source}: {len(self.problems)} errors", *shown])
 
 
 def spelling(value: object) -> str:

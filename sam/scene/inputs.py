@@ -95,6 +95,38 @@ def read_limited(path: str | Path, largest: int = LARGEST_FILE) -> bytes:
     return content
 
 
+def below(folder: Path, name: str, what: str) -> Path:
+    """The path of a file that another one names.
+
+    Parameters
+    ----------
+    folder
+        Of the file that names it.
+    name
+        As it is spelt there.
+    what
+        That file is.
+
+    Returns
+    -------
+    Path
+        In the folder or below it, links followed.
+
+    Raises
+    ------
+    InputError
+        If it is elsewhere.
+    """
+    try:
+        home = folder.resolve()
+        path = (home / name).resolve()
+    except (OSError, ValueError, RuntimeError) as error:  # RuntimeError: links in a circle
+        raise InputError(f"cannot be read: {error}") from None
+    if not path.is_relative_to(home):
+        raise InputError(f"outside the folder of the {what}: copy it there")
+    return path
+
+
 @dataclass
 class Inputs:
     """The folder of a scene, and what has been read from it.
@@ -112,14 +144,7 @@ class Inputs:
 
     def read(self, name: str, largest: int = LARGEST_FILE) -> bytes:
         """The content of a file in the folder or below it, of at most `largest` bytes. Raises InputError."""
-        try:
-            home = self.folder.resolve()
-            path = (home / name).resolve()
-        except (OSError, ValueError, RuntimeError) as error:  # RuntimeError: links in a circle
-            raise InputError(f"cannot be read: {error}") from None
-        if not path.is_relative_to(home):
-            raise InputError("outside the folder of the scene: copy it there")
-        self.contents[name] = read_limited(path, largest)
+        self.contents[name] = read_limited(below(self.folder, name, "scene"), largest)
         return self.contents[name]
 
 

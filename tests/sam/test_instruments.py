@@ -3,12 +3,13 @@
 or refused.
 """
 
+import json
 import struct
 
 import numpy as np
 import pytest
 
-from sam.scene import HeightMap, Scene, SceneError, load_scene
+from sam.scene import HeightMap, Scene, SceneError, apart, load_scene
 from sam.scene.inputs import InputError
 from sam.scene.surface import instrument_formats, instruments, processed
 from sam.scene.surface.instrument_child import RefusedError, heights_in
@@ -81,7 +82,7 @@ def test_x_y_sign_and_unit_of_files_written_by_hand(library):
     """
     for name, content in (("sdf", sdf_in_words()), ("sdf", sdf_in_bytes()), ("asc", matrix(GWYDDION_TEXT))):
         head, found = heights_in(content, [name], 4097)
-        assert head["cells"] == [5, 4] and head["extent"] == pytest.approx([1e-5, 4e-6], rel=1e-12)
+        assert found.shape == (5, 4) and head["extent"] == pytest.approx([1e-5, 4e-6], rel=1e-12)
         assert np.allclose(found, WANTED, rtol=1e-12, atol=0)
         for wrong in (found[::-1], found[:, ::-1], -found, found * 1e3):
             assert not np.allclose(wrong, WANTED, rtol=1e-3, atol=0)
@@ -150,6 +151,11 @@ def test_bytes_that_are_no_instruments_file_end_in_one_message(library, tmp_path
         rough(tmp_path, "pin.SDF", sdf_in_words()[:150])
 
 
+def said(name: str, shape: list[int], kind: str = "<f8") -> str:
+    head = {"said": {"extent": [1, 1]}, "arrays": {name: [kind, shape]}}
+    return f"print({json.dumps(json.dumps(head))})"
+
+
 @pytest.mark.parametrize(
     ("script", "message"),
     [
@@ -158,15 +164,18 @@ def test_bytes_that_are_no_instruments_file_end_in_one_message(library, tmp_path
         ("print('hello')", "ended without an answer"),
         ("print('[1]')", "answered nonsense"),
         ("print('{}')", "answered nonsense"),
-        ("""print('{"cells": [5, 4], "extent": [1, 1]}')""", "answered nonsense"),
-        ("""print('{"cells": [0, 4], "extent": [1, 1]}')""", "0 x 4 heights"),
+        (said("heights", [5, 4]), "answered nonsense"),
+        (said("heights", [9**99]), "answered nonsense"),
+        (said("heights", [0, 4], "|O"), "answered nonsense"),
+        (said("other", [0, 4]), "answered nonsense"),
+        (said("heights", [0, 4]), "0 x 4 heights"),
         ("""print('{"refused": "a\\\\u001b[31mb"}')""", r"no heights, read as sdf: a\?\[31mb"),
     ],
 )
 def test_a_reader_that_hangs_or_dies_is_a_refusal(monkeypatch, tmp_path, script, message):
     (tmp_path / "child.py").write_text(script)
-    monkeypatch.setattr(instruments, "CHILD", tmp_path / "child.py")
-    monkeypatch.setattr(instruments, "SECONDS", 0.5 if "sleep" in script else 30.0)
+    monkeypatch.setattr(apart, "CHILD", tmp_path / "child.py")
+    monkeypatch.setattr(apart, "SECONDS", 0.5 if "sleep" in script else 30.0)
     monkeypatch.setattr(instruments, "find_spec", lambda _: True)
     with pytest.raises(InputError, match=message):
         instruments.read("h.sdf", b"")

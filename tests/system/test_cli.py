@@ -175,10 +175,26 @@ def test_an_interrupt_in_a_process_of_its_own(folder):
     assert process.returncode == 130 and "interrupted" in message and "Traceback" not in message
 
 
-def test_a_reader_that_goes_away_is_no_error_to_report(folder):
-    command = f"{sys.executable} -m verification.app.cli plan sphere.toml --json | true"
+@pytest.mark.parametrize(
+    "before, after, code, words",
+    [
+        ("", "--json | true", 0, ""),  # that a reader goes away is no error to report
+        ("", ">&-", 1, "standard output is closed"),
+        ("ulimit -v 150000;", "", 1, "out of memory"),
+    ],
+)
+def test_closed_streams_and_little_memory_end_in_words(folder, before, after, code, words):
+    command = f"{before} {sys.executable} -m verification.app.cli plan sphere.toml {after}"
     done = subprocess.run(command, shell=True, capture_output=True, text=True, check=False)
-    assert done.stderr == ""
+    assert done.returncode == code and done.stderr.count("\n") == bool(words) and words in done.stderr
+
+
+def test_escapes_in_names_do_not_reach_the_terminal(folder, samfem):
+    said = samfem("plan", "a\x1b[31m\nb.toml", code=2).err + samfem("sol\x9bve", code=2).err
+    (folder / "s\x1b.toml").write_text((folder / "sphere.toml").read_text() + '"\\u001b[31m\\r" = 1\n')
+    said += samfem("plan", "s\x1b.toml", code=2).err
+    assert "a?[31m?b.toml: " in said and "?[31m? = 1: unknown key" in said
+    assert all(letter.isprintable() or letter == "\n" for letter in said)
 
 
 # plan

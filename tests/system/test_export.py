@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """`samfem export`: what meshio reads back is the mesh of the run, with every digit."""
 
+import shutil
+
 import meshio
 import numpy as np
 import pytest
@@ -82,3 +84,15 @@ def test_what_cannot_be_exported_is_named_and_nothing_is_written(
     assert main(["export", *(run if word == "RUN" else word for word in words)]) == 2
     error = capsys.readouterr().err
     assert named in error and "Traceback" not in error and not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    "words", [["export", "--format", "msh", "--part", "surface"], ["view"], ["report", "--pdf"]]
+)
+def test_a_run_whose_mesh_is_damaged_is_refused(runs, folder, refused, words, monkeypatch):
+    monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")  # of a display nothing is needed
+    shutil.copytree(runs / models.FEM_3D, folder / "run")
+    surface = (folder / "run" / "surface.vtr").read_bytes()
+    (folder / "run" / "surface.vtr").write_bytes(surface[: len(surface) // 2])
+    said = refused(words[0], "run", *words[1:])
+    assert "run/surface.vtr is damaged (it cannot be read): solve the scene again" in said

@@ -20,8 +20,9 @@ from sam.scene import SceneError, parse_scene, read_scene
 from sam.scene.inputs import open_file
 from sam.scene.load import parse_toml, scene_of
 from verification.cost.plan import check_needs, plan, plan_lines
-from verification.robustness.bad_files import mutated, with_pickle
-from verification.robustness.fuzz import ARCHIVE, KINDS, MORE_KINDS, RUN, bad_input, good_scenes, lay
+from verification.robustness.bad_files import ARCHIVE, RUN, lay, mutated, with_pickle
+from verification.robustness.bad_meshes import GOOD, good_meshes, with_mapping
+from verification.robustness.fuzz import KINDS, MAPPINGS, MESHES, MORE_KINDS, STUDIES, bad_input, good_scenes
 from verification.robustness.hostile import MARKUP, SMALL
 from verification.runs import models
 from verification.runs.archive import ArchiveError, read_archive, write_archive
@@ -42,7 +43,7 @@ def number_of(kind: str, turn: int = 0) -> int:
 
 
 def test_inputs_are_the_same_for_the_same_seed():
-    numbers = range(-3, 3 * COUNT)
+    numbers = range(-3 * len(MORE_KINDS), 3 * COUNT)
     inputs = [bad_input(3, number) for number in numbers]
     assert inputs == [bad_input(3, number) for number in numbers]
     assert inputs != [bad_input(4, number) for number in numbers]
@@ -51,11 +52,21 @@ def test_inputs_are_the_same_for_the_same_seed():
 
 def test_some_inputs_are_valid_and_most_are_not(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    tally = case.judge_readers(range(-60, 20 * COUNT), tmp_path)
+    tally = case.judge_readers([*range(-300, -10, len(MORE_KINDS)), *range(-10, 20 * COUNT)], tmp_path)
     ends = Counter(end for (_, end), count in tally.counts.items() for _ in range(count))
     assert tally.findings == {}
     assert set(ends) == {"valid", "refused"} and ends["refused"] > ends["valid"] > 20
+    assert all(tally.counts[kind, "refused"] for kind in MORE_KINDS)
     assert min(tally.counts["approaches", end] for end in ends) > 10
+    assert tally.counts[MAPPINGS, "valid"] and tally.counts[STUDIES, "valid"]
+
+
+def test_a_good_mesh_is_read_in_each_format(tmp_path):
+    for name in good_meshes():
+        text = GOOD.replace("own.vtu", name)
+        text = text if name != "own.vtk" else text[: text.index("mises = ")]
+        bad = with_mapping(MESHES, text, good_meshes())
+        assert case.read_all(lay(bad, tmp_path / name), bad) == "valid"
 
 
 @SHARED_FOLDER
@@ -265,8 +276,8 @@ def test_kinds_that_were_not_tried_are_counted():
 
 
 def test_the_command_ends_well_on_one_input_of_some_kinds(tmp_path):
-    tally = case.judge_commands([number_of("paths"), number_of("titles"), number_of(RUN)], tmp_path)
-    assert tally.findings == {} and sum(tally.counts.values()) == 3
+    tally = case.judge_commands([number_of("paths"), number_of(RUN)], tmp_path)
+    assert tally.findings == {} and sum(tally.counts.values()) == 2
 
 
 def test_a_name_with_a_null_character_is_passed_as_far_as_systems_do(tmp_path):

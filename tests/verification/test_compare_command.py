@@ -159,8 +159,9 @@ REFUSED = {
     "mesh without a mapping": (["--with", "mesh.vtu"], "the mapping (TOML) that names and explains a mesh"),
     "data of several scenes": (["good.toml", "--with", "none.csv"], "--with = none.csv: for one scene only"),
     "page in another folder": (["--report", "."], "no finished verification report here"),
-    "page in a file": (["--report", "off.toml"], "--report off.toml: not a folder"),
-    "JUnit in no folder": (["--junit", "none/rows.xml"], "a file in a folder that is there"),
+    "page in a file": (["--report", "off.toml"], "--report off.toml is no folder that can be"),
+    "page below a file": (["--report", "off.toml/page"], "--report off.toml/page cannot be made"),
+    "JUnit in no folder": (["--junit", "none/rows.xml"], "a file in a folder that can be written to"),
     "claim about no film": (["--claim", "negligible-film"], "only for a scene with [body.coating]"),
     "missing scene": (["none.toml"], "none.toml: cannot be read"),
 }

@@ -6,6 +6,7 @@ and what cannot be of the scene is refused by name.
 import numpy as np
 import pandas as pd
 import pytest
+import pyvista
 from builders import parsed, scene_text
 from own_meshes import ABAQUS, abaqus_mesh, mirrored, write_exodus
 from stored import BOTH
@@ -181,8 +182,11 @@ WRONG_MAPPINGS = {
     "array": ([('"CPRESS"', '"CPRES"')], "unknown array 'CPRES' (did you mean CPRESS?): the mesh has CPRESS"),
     "components": ([('"S"', '"U"')], "6 components, here 3"),
     "key": ([("pressure", "presure")], "presure = \"CPRESS\": unknown key, did you mean pressure?"),
-    "file": ([("abaqus.vtu", "none.vtu")], 'file = "none.vtu": a mesh that pyvista reads'),
-    "no mesh": ([("abaqus.vtu", "abaqus.toml")], 'file = "abaqus.toml": a mesh that pyvista reads'),
+    "file": ([("abaqus.vtu", "none.vtu")], 'file = "none.vtu": no mesh: cannot be read'),
+    "no mesh": ([("abaqus.vtu", "abaqus.toml")], 'file = "abaqus.toml": no mesh: its name ends in none of'),
+    "above": ([("abaqus.vtu", "../abaqus.vtu")], "outside the folder of the mapping: copy it there"),
+    "absolute": ([("abaqus.vtu", "/abaqus.vtu")], 'file = "/abaqus.vtu": a path from the'),
+    "escapes in a key": ([("stress_unit", '"\\u001b[31m\\n"')], "?[31m? = "),
     "not TOML": ([("=", ":")], "not TOML"),
 }
 # fmt: on
@@ -253,12 +257,44 @@ def test_everything_that_is_wrong_is_said_at_once(tmp_path):
         assert words in said
 
 
-@pytest.mark.parametrize("content", [b"", b"<VTKFile", bytes(range(256)) * 12], ids=["empty", "cut", "bytes"])
-@pytest.mark.parametrize("name", ["own.vtu", "own.exo", "own.vtk", "own.stl", "own.xyz"])
-def test_a_file_that_is_no_mesh_is_refused_without_noise(mapped, tmp_path, capfd, name, content):
+@pytest.fixture(scope="module")
+def cubes(tmp_path_factory):
+    """Ending -> bytes of a mesh of 27 cubes: VTU in words, and VTK in bytes."""
+    mesh = pyvista.ImageData(dimensions=(4, 4, 4)).cast_to_unstructured_grid()
+    place = tmp_path_factory.mktemp("cubes")
+    for ending in ("vtu", "vtk"):
+        mesh.save(place / f"cubes.{ending}", binary=ending == "vtk")
+    return {ending: (place / f"cubes.{ending}").read_bytes() for ending in ("vtu", "vtk")}
+
+
+PVD = b'<VTKFile type="Collection"><Collection><DataSet file="%s"/></Collection></VTKFile>'
+DAMAGED = {
+    "points.vtu": (
+        ("vtu", b'NumberOfPoints="64"', b'NumberOfPoints="6400000000000"'),
+        "its reader ended without",
+    ),
+    "nodes.vtu": (("vtu", b" 21 ", b" 99 "), "its nodes, cells or fields contradict each other"),
+    "kinds.vtu": (("vtu", b"11 11 11", b"10 10 10"), "cells that are not read"),
+    "places.vtu": (("vtu", b"2 2 2", b"2 2 nan"), "its coordinates are not between"),
+    "cut.vtu": (b"<VTKFile", "it cannot be read"),
+    "counts.vtk": (("vtk", b"POINTS 64", b"POINTS 64000000000"), "no mesh: it"),
+    "bytes.exo": (bytes(range(256)) * 12, "no mesh: it"),
+    "above.pvd": (PVD % b"../cubes.vtu", "it names ../cubes.vtu, outside of its folder: copy it there"),
+    "above.case": (b"FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: 1 sub/../../cubes.geo\n", "outside of its"),
+    **{f"own.{kind}": (b"\n" * 189, "its name ends in") for kind in ("neu", "res", "nek5000", "xdmf", "stl")},
+}
+
+
+@pytest.mark.parametrize("name", DAMAGED)
+def test_a_damaged_mesh_is_refused_without_noise(cubes, mapped, tmp_path, capfd, name):
+    content, words = DAMAGED[name]
+    if isinstance(content, tuple):
+        kind, old, new = content
+        assert old in cubes[kind]
+        content = cubes[kind].replace(old, new, 1)
     (tmp_path / name).write_bytes(content)
     said = refused(mapped(None, name=name), tmp_path)
-    assert f'file = "{name}": a mesh that pyvista reads' in said
+    assert f'file = "{name}": no mesh: ' in said and words in said
     assert capfd.readouterr() == ("", "")
 
 

@@ -12,16 +12,19 @@ import errno
 import os
 import sys
 from collections.abc import Sequence
+from contextlib import ExitStack, redirect_stderr, redirect_stdout
 from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
 
 from verification import foreign_package
 from verification.runs.models import MODELS, SAM
-from verification.text.console import print_anything, unknown
+from verification.text.console import Cleaned, print_anything, unknown
 
 NOT_MET, WRONG_INPUT, INTERRUPTED = 1, 2, 130
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+NO_MEMORY = ("failed to map segment", "annot allocate memory", "can't start new thread")
+"""In the errors of libraries that are loaded or threads that are started without memory for them."""
 DEBUG = "SAMFEM_DEBUG"
 MOST_WORKERS = 1000  # more than any machine has; a mistyped number is refused
 STARTS = ("sphere", "plastic", "indentation", "sliding", "coated", "rough", "measured", "running-in")
@@ -56,9 +59,21 @@ REFUSALS = "verification.app.refusals"
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code; wrong input ends in a message, never in a traceback."""
-    print_anything(sys.stdout)
+    with ExitStack() as streams:
+        if sys.stderr is None:
+            streams.enter_context(redirect_stderr(streams.enter_context(open(os.devnull, "w"))))
+        if sys.stdout is None:  # the next file that is opened would take its place
+            return _fail("standard output is closed: give it a place, such as > /dev/null", NOT_MET)
+        print_anything(sys.stdout)
+        streams.enter_context(redirect_stdout(Cleaned(sys.stdout)))
+        streams.enter_context(redirect_stderr(Cleaned(sys.stderr)))
+        return _ended(sys.argv[1:] if arguments is None else arguments)
+
+
+def _ended(arguments: Sequence[str]) -> int:
+    """The exit code of one command."""
     try:
-        code = _run(_options(sys.argv[1:] if arguments is None else arguments))
+        code = _run(_options(arguments))
         sys.stdout.flush()
         return code
     except SystemExit as stop:  # argparse: 0 after --help, 2 for a wrong command line
@@ -68,14 +83,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # the reader of stdout is gone
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return NOT_MET
-    except MemoryError:
-        lower = "lower grid.cells, grid.layers or fem.cells_per_radius"
-        return _fail(f"out of memory: {lower}; samfem plan estimates the need", NOT_MET)
     except OSError as error:
         full = "; free some space there, or give another --out" if error.errno in FULL else ""
         return _fail(f"{error}{full}", NOT_MET)
-    except Exception as error:  # a defect of the program, not of the input
-        if os.environ.get(DEBUG):
+    except Exception as error:
+        if isinstance(error, MemoryError) or any(words in str(error) for words in NO_MEMORY):
+            lower = "lower grid.cells, grid.layers or fem.cells_per_radius, or raise the limit (ulimit -v)"
+            return _fail(f"out of memory: {lower}; samfem plan estimates the need", NOT_MET)
+        if os.environ.get(DEBUG):  # a defect of the program, not of the input
             raise
         if words := foreign_package():
             return _fail(words, NOT_MET)

@@ -6,6 +6,7 @@ Wrong input of any of them raises, with everything that is wrong, before anythin
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -140,8 +141,10 @@ def _check_pages(given: Options) -> None:
         from verification.app.comparison_page import check_report  # noqa: PLC0415 - loads the suite
 
         check_report(given.report)
-    if given.junit is not None and (given.junit.is_dir() or not given.junit.absolute().parent.is_dir()):
-        raise FolderError(f"--junit {given.junit}: a file in a folder that is there")
+    if given.junit is not None:
+        above = given.junit.absolute().parent
+        if given.junit.is_dir() or not above.is_dir() or not os.access(above, os.W_OK):
+            raise FolderError(f"--junit {given.junit}: a file in a folder that can be written to")
 
 
 def _answered(job: Job, store: Store | None) -> Compared:

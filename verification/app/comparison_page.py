@@ -13,7 +13,7 @@ from verification.app.shown import status_line
 from verification.compare.rows import Comparison
 from verification.figures import compare_figures
 from verification.runs import provenance
-from verification.runs.files import FIGURES, FolderError, json_text, plain, write_atomically
+from verification.runs.files import FIGURES, FolderError, check_place, json_text, plain, write_atomically
 from verification.suite import pages
 from verification.suite.judging import GateStatus
 from verification.suite.records import gates_csv, junit_xml
@@ -38,8 +38,10 @@ class Scenes:
 
 def check_report(folder: Path) -> None:
     """Raise FolderError unless the folder is new, empty or of an older page."""
-    if folder.exists() and not folder.is_dir():
-        raise FolderError(f"--report {folder}: not a folder")
+    try:
+        check_place(folder)
+    except (FolderError, OSError) as error:
+        raise FolderError(f"--report {error}") from None
     if folder.is_dir() and any(folder.iterdir()):
         finished(folder)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from verification.runs.files import FolderError, read_summary, replacing
+from verification.runs.files import FolderError, mesh_of, read_summary, replacing
 from verification.runs.meshes import mesh_names
 
 XDMF = {"file_format": "xdmf", "data_format": "XML"}  # all in one file
@@ -26,7 +26,7 @@ def export(folder: Path, *, file_format: str, part: str, state: str, out: Path |
     be written to.
     """
     import meshio
-    from pyvista import read, to_meshio
+    from pyvista import to_meshio
 
     read_summary(folder)
     source = _source(folder, part, state)
@@ -35,8 +35,7 @@ def export(folder: Path, *, file_format: str, part: str, state: str, out: Path |
         raise FolderError(f"--out {place}: a name that ends in .{file_format} is needed")
     if place.is_dir() or not place.absolute().parent.is_dir():
         raise FolderError(f"--out {place}: the name of a file in a folder that exists is needed")
-    mesh = to_meshio(read(source).cast_to_unstructured_grid())
-    mesh.field_data = {}
+    mesh = to_meshio(mesh_of(folder, source.name).cast_to_unstructured_grid())
     mesh.point_data = _whole(mesh.point_data)
     mesh.cell_data = {
         name: list(_whole(dict(enumerate(each))).values()) for name, each in mesh.cell_data.items()

@@ -10,10 +10,7 @@ loaded for a mesh only.
 
 from __future__ import annotations
 
-import logging
-import os
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
@@ -26,6 +23,7 @@ from sam.scene import (
     Problem,
     SceneError,
     Section,
+    below,
     in_unit,
     parse_toml,
     problems,
@@ -33,6 +31,7 @@ from sam.scene import (
     spelling,
 )
 from verification.compare.expected import NEAR, PLACES, SHORTEST
+from verification.runs.meshes import read_mesh
 from verification.text.console import unknown
 
 if TYPE_CHECKING:
@@ -44,7 +43,6 @@ STRESSES = ("xx", "yy", "zz", "yz", "xz", "xy")
 VTK = ("xx", "yy", "zz", "xy", "yz", "xz")
 ON = 1e-4  # contact radii: a node is on a line if it is as near; coordinates may be in single precision
 REACH = 4.0  # contact radii: how far a mesh is read, twice as far as is compared
-STDERR = 2  # file descriptor
 LEAST_NODES = 8  # on a line within that reach; with fewer it is read between nodes
 ALONG = {"line": (801, 1), "axis": (1, 401), "plane": (161, 81)}
 """Points along x and z where a mesh is read between its nodes."""
@@ -104,6 +102,8 @@ class MeshMapping(Section):
                 yield key, f'a unit of the dimension of {unit}, such as "{ {"m": "mm", "Pa": "MPa"}[unit] }"'
         if self.origin is not None and (len(self.origin) != 3 or not np.isfinite(self.origin).all()):
             yield "origin", "three numbers in length_unit"
+        if Path(self.file).is_absolute():
+            yield "file", "a path from the folder of the mapping, to a mesh in it or below"
         if self.step is not None and self.step < 1:
             yield "step", "a whole number from 1"
         if not any((self.pressure, self.mises, self.peeq, self.displacement, self.stress)):
@@ -163,50 +163,13 @@ def _mapping(path: Path) -> MeshMapping:
 
 def _mesh(mapping: MeshMapping, path: Path) -> UnstructuredGrid:
     """The mesh as one grid, at its load step, undeformed."""
-    import pyvista
-
-    place = path.parent / mapping.file
     try:
-        if not place.is_file():
-            raise ValueError("there is no such file")
-        with _silent():
-            reader = pyvista.get_reader(place)
-            steps = max(getattr(reader, "number_time_points", 0), 1)
-            if steps > 1 and (mapping.step or steps) <= steps:
-                reader.set_active_time_point((mapping.step or steps) - 1)
-            if hasattr(reader.reader, "SetApplyDisplacements"):
-                reader.reader.SetApplyDisplacements(0)
-            mesh = reader.read()
-        mesh = mesh.combine() if isinstance(mesh, pyvista.MultiBlock) else mesh.cast_to_unstructured_grid()
-        if not mesh.n_points or not mesh.n_cells:
-            raise ValueError("it has no nodes or no cells")
-    except Exception as error:  # each reader of pyvista has its own
-        allowed = f"a mesh that pyvista reads, such as .vtu or .exo ({_first_line(error)})"
-        raise SceneError([Problem("file", spelling(mapping.file), allowed)], str(path)) from None
+        steps, mesh = read_mesh(below(path.parent, mapping.file, "mapping"), mapping.step or 0)
+    except InputError as error:
+        raise SceneError([Problem("file", spelling(mapping.file), f"no mesh: {error}")], str(path)) from None
     if (mapping.step or 1) > steps:
         raise SceneError([Problem("step", str(mapping.step), f"at most {steps}")], str(path))
-    return mesh
-
-
-@contextmanager
-def _silent() -> Iterator[None]:
-    """A block in which the readers of VTK write nothing on stderr; what is raised says enough."""
-    kept = os.dup(STDERR)
-    logging.disable(logging.CRITICAL)
-    try:
-        with open(os.devnull, "w") as nothing:
-            os.dup2(nothing.fileno(), STDERR)
-        yield
-    finally:
-        os.dup2(kept, STDERR)
-        os.close(kept)
-        logging.disable(logging.NOTSET)
-
-
-def _first_line(error: Exception) -> str:
-    """The first line of an error; those of VTK name a line of its source."""
-    text = (str(error).splitlines() or [type(error).__name__])[0]
-    return "it cannot be read" if text.startswith("ERROR: In vtk") else text
+    return mesh.cast_to_unstructured_grid()
 
 
 def _fields(mapping: MeshMapping, mesh: UnstructuredGrid, path: Path) -> dict[str, tuple[np.ndarray, bool]]:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from sam.scene.surface import border_cells
-from verification.runs.files import Run
+from verification.runs.files import Run, mesh_of
 from verification.runs.meshes import SURFACE
 from verification.runs.sampling import Tables, peak, plane_field_on
 
@@ -64,11 +64,9 @@ class SurfaceMap:
 
 def surface_map(run: Run) -> SurfaceMap | None:
     """The surface of a run; None of an axisymmetric one, which has no map."""
-    import pyvista  # noqa: PLC0415 - reads a file of fields
-
     if run.model == "fem-axisymmetric":
         return None
-    mesh = pyvista.read(run.folder / SURFACE)
+    mesh = mesh_of(run.folder, SURFACE)
     if run.model == "sam":
         x, y = (0.5 * (faces[1:] + faces[:-1]) for faces in (mesh.x, mesh.y))
         known = {name: mesh.cell_data[name] for name in ON_CELLS if name in mesh.cell_data}

@@ -27,7 +27,7 @@ from verification.figures.style import (
     log_ticks,
     sheet,
 )
-from verification.runs.files import Run
+from verification.runs.files import Run, mesh_of
 from verification.runs.meshes import FIELDS
 
 MICRO, GIGA, PERCENT = 1e6, 1e-9, 1e2
@@ -124,10 +124,8 @@ def classified(folder: Path) -> tuple[np.ndarray, np.ndarray] | None:
     """Corners (n, 4, 2) of the cells or elements that touch the plane y = 0, x and z in m, and their classes
     (n,); None where nothing is judged.
     """
-    import pyvista  # noqa: PLC0415 - reads a file of fields
-
     of_sam = (folder / BODY).exists()
-    mesh = pyvista.read(folder / (BODY if of_sam else FIELDS))
+    mesh = mesh_of(folder, BODY if of_sam else FIELDS)
     if "class" not in mesh.cell_data:
         return None
     boxes = np.array([mesh.get_cell(k).bounds for k in range(mesh.n_cells)]).reshape(-1, 3, 2)

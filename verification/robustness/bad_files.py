@@ -20,6 +20,7 @@ from typing import Literal
 import numpy as np
 
 from verification.robustness.hostile import DEPTH, YIELD
+from verification.runs.archive import DIGEST, VALUES, digest_of
 
 SCENE = "scene.toml"
 ARCHIVE, RUN = "archive", "run"
@@ -112,7 +113,9 @@ def toml_string(text: str) -> str:
 
 def bad_archive(rng: random.Random, kind: str) -> BadInput:
     """An npz file with flipped bits, pickles, absurd shapes, odd values, or none at all."""
-    good = npz({"a": np.arange(24.0).reshape(4, 6), "b": np.array(["x", "yy"])}, {"x": [1, None, "é"]})
+    arrays = {"a": np.arange(24.0).reshape(4, 6), "b": np.array(["x", "yy"])}
+    arrays[VALUES] = np.frombuffer(json.dumps({"x": [1, None, "é"]}).encode(), dtype=np.uint8)
+    good = npz({**arrays, DIGEST: digest_of(arrays)})
     edit = rng.randrange(6)
     if edit == 0:
         return BadInput(kind, {ARCHIVE: with_pickle()}, ARCHIVE)

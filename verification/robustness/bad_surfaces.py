@@ -68,6 +68,49 @@ def bad_surface(rng: random.Random, kind: str) -> BadInput:
     return BadInput(kind, {SCENE: _bad_generator(rng).encode()})
 
 
+def bad_matrix(rng: random.Random, kind: str) -> BadInput:
+    """Heights as laboratories export them: a matrix alone, or x, y and z in other units, good and bad."""
+    rows = [[f"{value:.6g}" for value in row] for row in 1e9 * _arrays()["height_m"].T]
+    for _ in range(rng.choice((0, 0, 1, 3))):
+        row = rng.choice(rows)
+        row[rng.randrange(len(row))] = rng.choice(BAD_NUMBERS)
+    if rng.random() < 0.2:
+        del rows[rng.randrange(len(rows))][rng.randrange(12) :]
+    if rng.random() < 0.3:
+        rows = [
+            ["x_um", "y_um", "z_um"],
+            *([str(x), str(y), z] for y, row in enumerate(rows) for x, z in enumerate(row)),
+        ]
+    between = rng.choice((",", ";", "\t", " ", "  ", ", "))
+    text = "\n".join(between.join(row) for row in rows) + rng.choice(("", "\n", "\n\n"))
+    text = text.replace(".", ",") if between != "," and rng.random() < 0.2 else text
+    heads = "", "", "", "# nm\n", "x,y,z\n", "\ufeff", "1\n", "[Header]\nWidth=10 um\n\n"
+    content = (rng.choice(heads) + text).encode(
+        rng.choice(("utf-8", "utf-8", "utf-16", "latin-1")), "replace"
+    )
+    ending = rng.choice((".csv", ".txt", ".npy", ".asc", ".dat"))
+    if ending == ".npy":
+        values = _arrays()["height_m"].astype(
+            rng.choice(("<f8", "<f4", ">f8", "<i8", "<c16", "?", "|O", "<U9"))
+        )
+        member = io.BytesIO()
+        np.lib.format.write_array(member, values, allow_pickle=True)  # an object is refused
+        content = rng.choice((member.getvalue(), lying_header(rng)))
+    content = mutated(rng, content) if rng.random() < 0.2 else content
+    keys = (
+        'extent = ["12 um", "10 um"]',
+        'unit = "nm"',
+        'extent = "12 um"',
+        'unit = "N"',
+        "unit = 1",
+        'extent = ["0 m", "1 m"]',
+    )
+    name = f"heights{ending}"
+    path = toml_string(name) + "\n" + "\n".join(rng.sample(keys, rng.randrange(3)))
+    files = {**AROUND, name: content, SCENE: ROUGH.replace(toml_string(HEIGHTS), path).encode()}
+    return BadInput(kind, files)
+
+
 def _rough(kind: str, path: str, files: dict[str, bytes]) -> BadInput:
     text = ROUGH.replace(toml_string(HEIGHTS), toml_string(path)).encode("utf-8", "surrogatepass")
     around: dict[str, bytes | Special] = {**AROUND, "pickle.npz": with_pickle(), HEIGHTS: good_heights()}

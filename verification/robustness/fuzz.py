@@ -23,12 +23,12 @@ from verification.robustness.bad_files import (
     BadInput,
     bad_archive,
     bad_run,
-    lay,
     mutated,
     toml_string,
     with_pickle,
 )
-from verification.robustness.bad_surfaces import bad_surface, good_heights
+from verification.robustness.bad_meshes import GOOD, bad_mesh, good_meshes, with_mapping
+from verification.robustness.bad_surfaces import bad_matrix, bad_surface, good_heights
 from verification.robustness.hostile import (
     APPROACHES,
     DEPTH,
@@ -37,18 +37,21 @@ from verification.robustness.hostile import (
     MARKUP,
     MOVING,
     NUMBERS,
+    OF_STUDIES,
     ON_WAY,
     PLACES,
     PLASTIC,
     ROUGH,
     RUNNING_IN,
     SMALL,
+    STUDY,
     UNITS,
     VALUES,
     WAVES,
     YIELD,
 )
 
+MESHES, MAPPINGS, STUDIES = "meshes", "mappings", "studies"
 Generator = Callable[[random.Random, str], BadInput]
 _FORCE = re.compile(r"(?m)^force = .+$")
 _LINE = re.compile(r"(?m)^(\w+) = (.+)$")
@@ -64,9 +67,6 @@ def good_scenes() -> tuple[str, ...]:
     shipped = sorted(path.name for path in folder.iterdir() if path.name.endswith(".toml"))
     texts = tuple(folder.joinpath(name).read_text(encoding="utf-8") for name in shipped)
     return (*texts, EVERY_KEY, PLASTIC, JUDGED, SMALL, MOVING, ROUGH, WAVES, RUNNING_IN, ON_WAY)
-
-
-__all__ = ["ARCHIVE", "KINDS", "MORE_KINDS", "RUN", "BadInput", "bad_input", "good_scenes", "lay"]
 
 
 def bad_input(seed: int, number: int) -> BadInput:
@@ -361,6 +361,40 @@ def _approach(rng: random.Random, kind: str) -> BadInput:
     return _scene(_FORCE.sub(lambda match: match.expand(kept) + f"approach = {value}", text), kind)
 
 
+def _mapping(rng: random.Random, kind: str) -> BadInput:
+    """The mapping of a good mesh, with other values, paths and bytes."""
+    text = GOOD
+    edit = rng.randrange(5)
+    if edit == 0:
+        text = text.replace('"own.vtu"', toml_string(rng.choice(PLACES)))
+    elif edit == 1:
+        return with_mapping(kind, mutated(rng, text.encode()).decode(errors="surrogateescape"), good_meshes())
+    elif edit == 2:
+        line = rng.choice(text.splitlines())
+        text = text.replace(
+            line, rng.choice(("", f"{line}\n{line}", f"x{line}", "stress = ['p_Pa', 'x']")), 1
+        )
+    for _ in range(rng.randint(0, 2)):
+        hostile = rng.choice(VALUES), _number(rng), toml_string(rng.choice((*MARKUP, *UNITS)))
+        text = _with_value(rng, text, rng.choice(hostile))
+    return with_mapping(kind, text, good_meshes())
+
+
+def _study(rng: random.Random, kind: str) -> BadInput:
+    """A study with other values, keys, modes and bytes, of a scene that is good, bad or not there."""
+    text = STUDY
+    for _ in range(rng.choice((0, 1, 1, 2, 3))):
+        match = rng.choice(list(re.finditer(r'(?<=")[^"\n]*(?=")|\w+|"[^"\n]*"|\{.*\}', text)))
+        hostile = rng.choice(OF_STUDIES), rng.choice(VALUES), _number(rng), toml_string(rng.choice(PLACES))
+        text = text[: match.start()] + rng.choice(hostile) + text[match.end() :]
+    content = text.encode("utf-8", "surrogatepass")
+    scene = rng.choice((SMALL, SMALL, SMALL, rng.choice(good_scenes()))).encode()
+    made = mutated(rng, content) if rng.random() < 0.1 else content
+    return BadInput(
+        kind, {**AROUND, "heights.npz": good_heights(), SCENE: scene, "study.toml": made}, "study.toml"
+    )
+
+
 KINDS: dict[str, Generator] = {
     "values": _values,
     "units": _units,
@@ -377,5 +411,11 @@ KINDS: dict[str, Generator] = {
     RUN: bad_run,
 }
 """Name of a kind -> its generator."""
-MORE_KINDS: dict[str, Generator] = {"approaches": _approach}
+MORE_KINDS: dict[str, Generator] = {
+    "approaches": _approach,
+    MESHES: bad_mesh,
+    MAPPINGS: _mapping,
+    "matrices": bad_matrix,
+    STUDIES: _study,
+}
 """Kinds of negative numbers: the inputs of KINDS stay what they are."""

@@ -193,6 +193,40 @@ cells = [20, 20]
 extent = ["24 um", "24 um"]
 border = "relief"
 """
+STUDY = """scene = "scene.toml"
+mode = "zip"
+model = "sam"
+seed = 1
+[vary]
+"loading.force" = { range = ["1 N", "2 N"], count = 2 }
+"body.young" = { random = ["200 GPa", "220 GPa"], count = 2 }
+"""
+OF_STUDIES = (
+    *(
+        "grid",
+        "zip",
+        "morris",
+        "sobol",
+        "uniform",
+        "samples = 2",
+        "count = 3",
+        "range",
+        "log",
+        "random-log",
+        "list",
+    ),
+    *(
+        "block = true",
+        "loading.steps",
+        "grid.cells",
+        "fem-axisymmetric",
+        "title",
+        "body",
+        "[33, 33]",
+        "1e9",
+        "x.y.z",
+    ),
+)
 YIELD = b"peeq,yield_stress_Pa\n0,1e9\n0.01,1.2e9\n1,2e9\n"
 DEPTH = b"depth_m,factor\n0,1.3\n1e-6,1\n"
 

@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: MIT
 """Arrays and plain values in one file (npz), written whole or not at all and read without trusting it.
 
-The values are JSON in an array of bytes; nothing is ever unpickled. A file that is damaged in any way is an
-ArchiveError: the checksums of the zip container cover every byte of the members.
+The values are JSON in an array of bytes; nothing is ever unpickled and nothing inflated: the members are
+stored as they are. A file that is damaged in any way is an ArchiveError: a digest covers names, types, shapes
+and content of all members.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
+import os
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -17,7 +20,8 @@ import numpy as np
 from sam.scene import open_file
 from verification.runs.files import replacing
 
-VALUES = "values.json"
+VALUES, DIGEST = "values.json", "sha256"
+_TAKEN = {VALUES, DIGEST}
 
 
 class ArchiveError(ValueError):
@@ -28,11 +32,12 @@ def write_archive(path: Path, arrays: Mapping[str, np.ndarray], values: Mapping)
     """Write arrays (no objects among them) and values (what JSON holds; floats keep every digit, NaN and inf
     allowed).
     """
-    if VALUES in arrays:
-        raise ValueError(f"the name {VALUES} is taken")
-    text = np.frombuffer(json.dumps(values).encode(), dtype=np.uint8)
+    if taken := _TAKEN & arrays.keys():
+        raise ValueError(f"the name {min(taken)} is taken")
+    members = {**arrays, VALUES: np.frombuffer(json.dumps(values).encode(), dtype=np.uint8)}
+    members[DIGEST] = digest_of(members)
     with replacing(path) as temporary, open(temporary, "wb") as stream:
-        np.savez(stream, allow_pickle=False, **arrays, **{VALUES: text})
+        np.savez(stream, allow_pickle=False, **members)
 
 
 def read_archive(path: Path) -> tuple[dict[str, np.ndarray], dict]:
@@ -40,12 +45,12 @@ def read_archive(path: Path) -> tuple[dict[str, np.ndarray], dict]:
     try:
         with open_file(path) as stream:
             with zipfile.ZipFile(stream) as members:
-                whole = members.testzip() is None
-            if not whole:
-                raise ArchiveError(f"{path} is damaged")
+                if sum(each.file_size for each in members.infolist()) > os.fstat(stream.fileno()).st_size:
+                    raise ArchiveError(f"{path} is damaged: it would become larger than it is")
             stream.seek(0)
             with np.load(stream, allow_pickle=False) as content:
                 arrays = {name: content[name] for name in content.files}
+        said, found = arrays.pop(DIGEST, None), digest_of(arrays)
         values = json.loads(arrays.pop(VALUES).tobytes())
     except FileNotFoundError:
         raise ArchiveError(f"{path} is not there") from None
@@ -57,4 +62,15 @@ def read_archive(path: Path) -> tuple[dict[str, np.ndarray], dict]:
         raise ArchiveError(f"{path} is no archive, or a damaged one ({error})") from None
     if not isinstance(values, dict):
         raise ArchiveError(f"{path} is no archive: its values are no table")
+    if not np.array_equal(said, found):
+        raise ArchiveError(f"{path} is damaged, or of an older version: it has not the digest of its content")
     return arrays, values
+
+
+def digest_of(members: Mapping[str, np.ndarray]) -> np.ndarray:
+    """SHA-256 of names, types, shapes and content, as bytes in an array."""
+    found = hashlib.sha256()
+    for name, array in sorted(members.items()):
+        found.update(json.dumps([name, array.dtype.str, array.shape]).encode())
+        found.update(np.ascontiguousarray(array))
+    return np.frombuffer(found.digest(), dtype=np.uint8)

@@ -28,13 +28,14 @@ from sam.scene import (
     PATH_QUANTITIES,
     PEAK,
     QUANTITIES,
+    InputError,
     Result,
     Scene,
     Table,
     open_file,
     resolved,
 )
-from verification.runs.meshes import is_mesh, mesh_files
+from verification.runs.meshes import is_mesh, mesh_files, read_mesh
 from verification.runs.model_range import OUTSIDE, outside_of_model, range_lines
 from verification.runs.provenance import collect
 from verification.runs.tables import columns_text, frame_of, read_table
@@ -156,6 +157,14 @@ def read_run(folder: str | Path) -> Run:
     return Run(folder, summary, tables)
 
 
+def mesh_of(folder: Path, name: str) -> Any:
+    """A mesh of a run, as pyvista holds it. Raises FolderError for one that is damaged."""
+    try:
+        return read_mesh(folder / name)[1]
+    except InputError as error:
+        raise FolderError(f"{folder / name} is damaged ({error}): solve the scene again") from None
+
+
 def run_of(result: Result, scene: Scene) -> Run:
     """A result that is in no folder, as it would be read back from one."""
     tables = {name: frame_of(table) for name, table in result.tables.items()}
@@ -208,21 +217,27 @@ def check_target(folder: Path, also: Sequence[str] = ()) -> None:
     also: names that the folder may hold besides the files of a run.
     """
     try:
-        _check_target(folder, also)
+        check_place(folder)
+        _check_content(folder, also)
     except OSError as error:  # no permission, a name that is too long
         raise FolderError(f"{folder} cannot be used: {error.strerror}") from None
 
 
-def _check_target(folder: Path, also: Sequence[str]) -> None:
+def check_place(folder: Path) -> None:
+    """Raise FolderError, or OSError, unless a folder can be written to, or made."""
     if not folder.exists():
         parent = next(above for above in folder.absolute().parents if above.exists())
         if not parent.is_dir() or not os.access(parent, os.W_OK):
             raise FolderError(f"{folder} cannot be made: {parent} is no folder that can be written to")
-        return
-    if not folder.is_dir() or not os.access(folder, os.W_OK):
+    elif not folder.is_dir() or not os.access(folder, os.W_OK):
         raise FolderError(
             f"{folder} is no folder that can be written to: give one, new, empty or of an older run"
         )
+
+
+def _check_content(folder: Path, also: Sequence[str]) -> None:
+    if not folder.exists():
+        return
     if (folder / SUMMARY).exists():
         read_summary(folder)
         return

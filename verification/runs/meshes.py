@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The fields of a result as files that VTK, ParaView and pyvista read, z pointing up: z of the tables, into
-the body, with the other sign.
+"""The fields of a result as files that VTK, ParaView, pyvista and meshio read, z pointing up: z of the
+tables, into the body, with the other sign. And the meshes of any program, read in a process of their own.
 
 Nothing else turns the axes or the order of components of the records into those of the files. Written with
 VTK itself, which takes a quarter of the time to load that pyvista takes, and loaded only here.
@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from sam.scene import UNLOADED, FieldMesh, GridFields, Result
+from sam.scene import UNLOADED, FieldMesh, GridFields, InputError, Result, open_file, read_apart
 from verification.runs.model_range import OUTSIDE
 
 FIELDS, SURFACE, PARTS, STEPS = "fields.vtu", "surface.vtr", ("surface", "body"), "run.pvd"
@@ -29,6 +30,14 @@ _TURNED = {3: np.array([1.0, 1.0, -1.0]), 6: np.array([1.0, 1.0, 1.0, 1.0, -1.0,
 AXES = "z points up, out of the body: minus z_m of the tables; vectors and tensors are turned with it"
 _CELLS = {"quad": (9, [0, 1, 2, 3]), "triangle": (5, [0, 1, 2]), "hexahedron": (12, [4, 5, 6, 7, 0, 1, 2, 3])}
 """Kind of cell: its number in VTK, and its corners in an order that keeps volumes above zero."""
+
+READABLE = (".vtu", ".vtk", ".exo", ".e", ".ex2", ".pvd", ".case", ".vtr", ".vts", ".vtm", ".pvtu")
+"""Endings of the meshes that are read."""
+READER, BYTES = Path(__file__).with_name("mesh_child.py"), 8 << 30
+FARTHEST = 1e30
+"""Of a coordinate, in any unit; squares of larger ones overflow."""
+_ANY_SIZE = (2, 4, 6, 7)
+"""Kinds of cell of any number of nodes: points, a line, a strip, a polygon."""
 
 
 def mesh_names() -> tuple[str, ...]:
@@ -78,7 +87,63 @@ def mesh_file(fields: FieldMesh | GridFields, outside: float | None = None) -> b
     writer.SetInputData(mesh)
     writer.WriteToOutputStringOn()
     writer.Write()
-    return writer.GetOutputString().encode()
+    text = writer.GetOutputString()
+    return text.encode() if grid else text.replace("<VTKFile", f"<!-- {AXES} -->\n<VTKFile", 1).encode()
+
+
+def read_mesh(path: Path, step: int = 0) -> tuple[int, Any]:
+    """The number of load steps in a file, and the mesh at one of them, from 1, else the last, as pyvista
+    holds it: a rectilinear grid, or else an unstructured one. Raises InputError.
+    """
+    if path.suffix.lower() not in READABLE:
+        raise InputError(f"its name ends in none of {', '.join(READABLE)}")
+    try:
+        open_file(path).close()
+    except (OSError, ValueError) as error:
+        raise InputError(f"cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    said, arrays = read_apart(READER, str(path.absolute()), str(step), memory=BYTES)
+    try:
+        return int(said["steps"]), _mesh_of(arrays)
+    except InputError:
+        raise
+    except (KeyError, TypeError, ValueError, IndexError):
+        raise InputError("its nodes, cells or fields contradict each other") from None
+
+
+def _mesh_of(arrays: Mapping[str, np.ndarray]) -> Any:
+    """The mesh, none of whose arrays is trusted. Raises KeyError, TypeError, ValueError or IndexError."""
+    import pyvista
+
+    places = [arrays[axis].astype(float) for axis in ("xyz" if "x" in arrays else ("points",))]
+    if not all((np.abs(each) < FARTHEST).all() for each in places):
+        raise InputError(f"its coordinates are not between {-FARTHEST:g} and {FARTHEST:g}")
+    if "x" in arrays:
+        mesh = pyvista.RectilinearGrid(*places)
+    else:
+        points, kinds, ends, nodes = (arrays[name] for name in ("points", "kinds", "ends", "nodes"))
+        sizes = np.diff(ends, prepend=0)
+        if points.shape != (len(points), 3) or sizes.sum() != nodes.size or (sizes < 1).any():
+            raise ValueError("shapes")
+        if not ((nodes >= 0) & (nodes < len(points))).all() or kinds.shape != ends.shape:
+            raise ValueError("nodes")
+        if not all(
+            kind in _ANY_SIZE or (sizes[kinds == kind] == _size(kind)).all() for kind in np.unique(kinds)
+        ):
+            raise InputError("it has cells that are not read: those of fixed numbers of nodes are")
+        mesh = pyvista.UnstructuredGrid(np.insert(nodes, ends - sizes, sizes), kinds, points)
+    for name, values in arrays.items():
+        where, _, field = name.partition(" ")
+        if field:
+            (mesh.point_data if where == "node" else mesh.cell_data)[field] = values
+    return mesh
+
+
+def _size(kind: int) -> int:
+    """The number of nodes of a cell of VTK; 0 where that is not fixed."""
+    from vtkmodules.vtkCommonDataModel import vtkGenericCell
+
+    cell = vtkGenericCell.InstantiateCell(int(kind))
+    return cell.GetNumberOfPoints() if cell else 0
 
 
 def _named(part: str, state: str) -> str:
@@ -98,6 +163,7 @@ def _as_mesh(plane: GridFields) -> FieldMesh:
 
 def _rectilinear(fields: GridFields) -> Any:
     """A grid of VTK: its points and cells run along x first, and its coordinates ascend."""
+    from vtkmodules.vtkCommonCore import vtkStringArray
     from vtkmodules.vtkCommonDataModel import vtkRectilinearGrid
 
     grid = vtkRectilinearGrid()
@@ -106,7 +172,10 @@ def _rectilinear(fields: GridFields) -> Any:
         getattr(grid, f"Set{axis}Coordinates")(_array("", values))
     for data, found in ((grid.GetPointData(), fields.point_data), (grid.GetCellData(), fields.cell_data)):
         _add(data, {name: _upwards(np.asarray(values)) for name, values in found.items()})
-    _say(grid)
+    words = vtkStringArray()  # of an unstructured grid a comment: meshio reads no words
+    words.SetName("axes")
+    words.InsertNextValue(AXES)
+    grid.GetFieldData().AddArray(words)
     return grid
 
 
@@ -139,7 +208,6 @@ def _unstructured(fields: FieldMesh) -> Any:
     mesh.SetCells(numpy_to_vtk(np.concatenate(kinds), deep=1), cells)
     _add(mesh.GetPointData(), fields.point_data)
     _add(mesh.GetCellData(), fields.cell_data)
-    _say(mesh)
     return mesh
 
 
@@ -165,13 +233,3 @@ def _array(name: str, values: np.ndarray) -> Any:
         for k, component in enumerate(TENSOR_NAMES):
             array.SetComponentName(k, component)
     return array
-
-
-def _say(grid: Any) -> None:
-    """Say in the file where z points."""
-    from vtkmodules.vtkCommonCore import vtkStringArray
-
-    words = vtkStringArray()
-    words.SetName("axes")
-    words.InsertNextValue(AXES)
-    grid.GetFieldData().AddArray(words)

@@ -29,6 +29,7 @@ from sam.scene import (
     Scene,
     SceneError,
     Section,
+    below,
     parse_toml,
     problems,
     read_limited,
@@ -223,7 +224,7 @@ def read_study(path: str | Path) -> Points:
     name, base = table.get("scene"), b""
     if isinstance(name, str):
         try:
-            base = _scene_file(path.parent, name)
+            base = read_limited(below(path.parent, name, "study"))
         except InputError as error:
             found.append(Problem("scene", spelling(name), str(error)))
     if found:
@@ -231,17 +232,6 @@ def read_study(path: str | Path) -> Points:
     place = path.parent / name
     points, inputs = _points(study, parse_toml(base, str(place)), place, str(path))
     return Points(study, points, {path.name: content, name: base, **inputs})
-
-
-def _scene_file(folder: Path, name: str) -> bytes:
-    try:
-        home = folder.resolve()
-        inside = (home / name).resolve().is_relative_to(home)
-    except (OSError, ValueError, RuntimeError) as error:
-        raise InputError(f"cannot be read: {error}") from None
-    if not inside:
-        raise InputError("outside the folder of the study: copy it there")
-    return read_limited(home / name)
 
 
 def _points(

@@ -48,6 +48,8 @@ def read_table(content: bytes) -> DataFrame:
 
     kinds: defaultdict[str, type] = defaultdict(lambda: float, dict.fromkeys(TEXT_COLUMNS, str))
     table = pd.read_csv(io.BytesIO(content), dtype=kinds, na_values=[""], keep_default_na=False)
+    if not len(table):  # pandas forgets the kinds of columns without rows
+        table = table.astype({name: kinds[name] for name in table.columns})
     cells = _QUOTED.sub(b"", content).count(b",") + len(table) + 1
     if cells != len(table.columns) * (len(table) + 1):  # pandas fills rows that are too short
         raise ValueError(f"{cells} cells for {len(table)} rows of {len(table.columns)} columns")

@@ -38,6 +38,29 @@ _ANYTHING = "samfem.bytes-or-marks"
 codecs.register_error(_ANYTHING, _bytes_or_marks)
 
 
+class Cleaned:
+    """A text stream on which what could act on a terminal becomes question marks: a key, a column or the name
+    of a file may hold such characters. What rich draws goes to `uncleaned`.
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        self.uncleaned = stream
+
+    def write(self, text: str) -> int:
+        """Write a text; line ends, tabs and bytes of names that are no control characters stay."""
+        shown = (c if c.isprintable() or c in "\n\t" or "\udca0" <= c <= "\udcff" else "?" for c in text)
+        return self.uncleaned.write(text if text.isprintable() else "".join(shown))
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.uncleaned, name)
+
+
+def _console(stream: TextIO, **how: bool) -> Any:
+    from rich.console import Console
+
+    return Console(file=getattr(stream, "uncleaned", stream), **how)
+
+
 class Progress:
     """The `progress` callable of the solvers: a bar on a terminal, plain lines elsewhere. A context manager.
 
@@ -80,10 +103,9 @@ class Progress:
         if self._bar is None and now < self._next:
             return
         if self._bar is None:
-            from rich.console import Console
             from rich.progress import Progress as Bar
 
-            self._bar = Bar(console=Console(stderr=True), transient=True)
+            self._bar = Bar(console=_console(sys.stderr), transient=True)
             self._bar.start()
             self._task = self._bar.add_task("")
         if stage != self._stage:
@@ -98,7 +120,6 @@ def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], red: Sequ
     """A table on stdout: drawn by rich on a terminal (rows marked red stand out), aligned text elsewhere."""
     if sys.stdout.isatty():
         from rich.box import SIMPLE_HEAD
-        from rich.console import Console
         from rich.table import Column, Table
 
         narrow = (
@@ -109,7 +130,7 @@ def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], red: Sequ
         )
         for k, row in enumerate(rows):
             table.add_row(*row, style="bold red" if k < len(red) and red[k] else None)
-        Console(markup=False, emoji=False).print(table)
+        _console(sys.stdout, markup=False, emoji=False).print(table)
         return
     print("\n".join(table_lines(columns, rows)))
 

@@ -1,29 +1,23 @@
 # SPDX-License-Identifier: MIT
-"""A script, run in a process of its own: an instrument's file on stdin, its heights on stdout.
-
-Arguments: the formats to try, as SurfaceTopography calls them, then the most cells of a side. Answer: a line
-of JSON, with "refused", or with format, cells and extent in m, followed by the heights in m, float64, x
-first, nan where one is missing.
-"""
+"""An instrument's file read by SurfaceTopography, in a process of its own: see `sam.scene.apart`."""
 
 from __future__ import annotations
 
 import io
-import json
-import os
-import sys
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-SECONDS = 60  # of processor time: half of what the parent waits by the clock
-BYTES = 4 << 30  # of address space: a file may hold at most 256 MiB
-WORDS = 200  # characters of the library's words
-
 
 class RefusedError(Exception):
     """A file without usable heights; the message says why."""
+
+
+def answer(content: bytes, most: str, *formats: str) -> tuple[dict[str, Any], dict[str, NDArray[np.float64]]]:
+    """The extent in m, and the heights in m, x first, nan where one is missing; at most so many a side."""
+    head, heights = heights_in(content, list(formats), int(most))
+    return head, {"heights": heights}
 
 
 def heights_in(content: bytes, formats: list[str], most: int) -> tuple[dict[str, Any], NDArray[np.float64]]:
@@ -63,39 +57,4 @@ def _heights_of(reader: Any, name: str, most: int) -> tuple[dict[str, Any], NDAr
     topography = topography.to_unit("m")
     heights: NDArray[np.float64] = np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan)
     extent = [float(side) for side in topography.physical_sizes]
-    return {"format": name, "cells": list(heights.shape), "extent": extent}, heights
-
-
-def _limit() -> None:
-    """Limits of this process; where the system knows none, the parent's clock has to do."""
-    try:
-        import resource  # noqa: PLC0415 - not on every system
-    except ImportError:
-        return
-    for kind, most in (
-        (resource.RLIMIT_CPU, SECONDS),
-        (resource.RLIMIT_AS, BYTES),
-        (resource.RLIMIT_CORE, 0),
-    ):
-        hard = resource.getrlimit(kind)[1]
-        resource.setrlimit(kind, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
-
-
-def main() -> None:
-    """Read, answer."""
-    answer = os.dup(1)
-    os.dup2(2, 1)  # what the library prints is no answer
-    _limit()
-    content, (*formats, most) = sys.stdin.buffer.read(), sys.argv[1:]
-    try:
-        head, heights = heights_in(content, formats, int(most))
-        raw = np.ascontiguousarray(heights, dtype="<f8").tobytes()
-    except Exception as error:
-        words = str(error) if isinstance(error, RefusedError) else f"{type(error).__name__} {error}"
-        head, raw = {"refused": words[:WORDS]}, b""
-    with os.fdopen(answer, "wb") as stream:
-        stream.write(json.dumps(head).encode() + b"\n" + raw)
-
-
-if __name__ == "__main__":
-    main()
+    return {"format": name, "extent": extent}, heights

@@ -6,13 +6,14 @@ that a run has, or one of them as NAME.html.
 from __future__ import annotations
 
 import argparse
+import sys
 from dataclasses import replace
 from pathlib import Path
 
 from verification.figures.space.meshes import Found
 from verification.figures.space.pictures import PICTURES
 from verification.figures.space.view import drawn, page, png
-from verification.runs.files import of_last_load, read_run
+from verification.runs.files import FolderError, of_last_load, read_run
 from verification.runs.model_range import outside_in_words, outside_of_model
 
 
@@ -42,4 +43,8 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except FolderError as error:
+        print(error, file=sys.stderr)
+        sys.exit(2)  # as `offscreen` knows it

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 import pyvista as pv
 
 from sam.scene import PEAK, UNLOADED
 from verification.figures.places import Section, plane_of, section_of, surface_map
-from verification.runs.files import Run
+from verification.runs.files import Run, mesh_of
 
 MICRO = 1e6
 FILES = {PEAK: "surface.vtr", UNLOADED: "surface-unloaded.vtr"}
@@ -22,6 +22,9 @@ FILES = {PEAK: "surface.vtr", UNLOADED: "surface-unloaded.vtr"}
 TURNS, REACH, POINTS = 61, 2.0, 161
 """Of an axisymmetric run: steps of half a turn, and the square that is drawn, in contact radii, with its
 points along x and y."""
+
+_mesh = cache(mesh_of)
+"""Each file once in a process, which draws and ends."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +98,7 @@ class Found:
         path, radius = self.run.folder / FILES[state], self.run.quantities["contact_radius_m"]
         if not path.exists() or (self.run.model == "fem-axisymmetric" and not radius):
             return None
-        grid = pv.read(path)
+        grid = _mesh(self.run.folder, path.name)
         x, y = MICRO * np.array(grid.x), MICRO * np.array(grid.y)
         fields = {name: _folded(grid.cell_data[name], x.size - 1) for name in grid.cell_data.keys()}
         vectors = [
@@ -143,7 +146,7 @@ class Found:
         path = self.run.folder / ("body.vtr" if self.run.model == "sam" else "fields.vtu")
         if not path.exists():
             return None
-        body = pv.read(path)
+        body = _mesh(self.run.folder, path.name).copy()
         for name in set(body.cell_data.keys()) - {"peeq"}:
             del body.cell_data[name]
         return body.cell_data_to_point_data().cast_to_unstructured_grid().scale(MICRO)

@@ -11,7 +11,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from verification.runs.files import FIGURES, write_atomically
+from verification.runs.files import FIGURES, FolderError, write_atomically
 
 IN_SPACE = "-3d"
 """At the end of the names of the files: a map may be called as a picture is."""
@@ -22,6 +22,8 @@ WINDOWS = {"libEGL.so.1": "vtkEGLRenderWindow", "libOSMesa.so.8": "vtkOSOpenGLRe
 INSTALL = "apt-get install --no-install-recommends libegl1 libgl1-mesa-dri"
 REMEDY = f"without a display VTK needs EGL, on Debian and Ubuntu: {INSTALL}"
 CHILD = ("-m", "verification.figures.space.child")
+WRONG = 2
+"""Exit code of the child for a run that is damaged, which it names."""
 LONGEST_S = 600.0
 """A picture takes seconds; whatever takes that long does not end."""
 
@@ -40,7 +42,7 @@ def window() -> str | None:
 def draw(folder: Path, name: str | None = None, *, one: bool = False, page: bool = False) -> dict[str, bytes]:
     """The pictures that the run in `folder` has: name -> the content of a PNG, or of an HTML page.
 
-    name: this one alone; one: the first alone. Raises CannotDrawError.
+    name: this one alone; one: the first alone. Raises CannotDrawError, or FolderError for a damaged run.
     """
     found = window()
     if found is None and not page:  # a page is drawn by the browser
@@ -89,6 +91,8 @@ def _run(arguments: list[str], environment: dict[str, str]) -> None:
         )
     except (OSError, subprocess.TimeoutExpired) as error:
         raise CannotDrawError(f"no pictures in space: {error}; {REMEDY}") from None
+    if ended.returncode == WRONG:
+        raise FolderError(ended.stderr.strip())
     if ended.returncode:
         raise CannotDrawError(f"no pictures in space: drawing ended with {_how(ended)}")
 

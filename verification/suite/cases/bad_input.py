@@ -5,7 +5,10 @@ purpose.
 
 from __future__ import annotations
 
+import csv
+import json
 import os
+import random
 import re
 import resource
 import signal
@@ -19,33 +22,44 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
+from importlib import resources
 from pathlib import Path
+from typing import Any
 
 from sam.scene import Scene, SceneError, parse_scene, read_scene, resolved
+from verification.compare.own_data import read_data
 from verification.cost.plan import plan, plan_lines
+from verification.robustness.bad_files import ARCHIVE, RUN, SCENE, BadInput, lay
 from verification.robustness.fuzz import (
-    ARCHIVE,
     KINDS,
+    MAPPINGS,
+    MESHES,
     MORE_KINDS,
-    RUN,
-    BadInput,
+    STUDIES,
     bad_input,
     good_scenes,
-    lay,
 )
 from verification.runs.archive import ArchiveError, read_archive
 from verification.runs.files import FolderError, json_text, read_run
+from verification.runs.study import read_study
 from verification.suite.cases.case import FEM, SAM, Case, Context, Measured, SmallTable
 
 SEED = 20260
-READ = {"quick": 1_000, "full": 20_000}
-RUNS = {"quick": 13, "full": 300}
+READ = {"quick": 120, "full": 400}
+RUNS = {"quick": 8, "full": 32}
+CAMPAIGN = (
+    "once, by commit 0f8782d: 20000 inputs read (-1000 to 18999), 300 through the command (-150 to 149)"
+)
+"""How often, by what and on which inputs `main` was run for verification/data/bad-input.csv."""
 ALL_KINDS = (*KINDS, *MORE_KINDS)
-MORE = 10  # so many inputs for each one of MORE_KINDS
+MORE = 4  # so many inputs for each one of MORE_KINDS
 LIMIT_S = 2.0  # of processor time for a reader; the usual input takes milliseconds
-MEMORY = 4 << 30  # bytes that a reader may take beyond what the process has
+MEMORY = 1 << 30  # bytes that a reader may take beyond what the process has
+ADDRESSES = (1 << 30, 2 << 30, 4 << 30, None)  # bytes that a command may take
+STREAMS = ("", "", "", ">&-", "2>&-", ">&- 2>&-")  # what is closed when a command begins
 COMMAND_LIMIT_S = 120.0  # for a command; it starts in a second, and scenes that are solved take a few
 SMALL_S, SMALL_BYTES = 1.0, 400e6  # predicted: scenes that the command solves, larger ones are planned
+MOST_SCENES = 3  # of a study that is solved
 AT_ONCE = 2
 TRACEBACK = re.compile(r"Traceback \(most recent|internal error")
 Snapshot = Mapping[str, tuple]
@@ -77,7 +91,11 @@ def read_all(path: Path, bad: BadInput) -> str:
     out.
     """
     try:
-        if bad.kind == ARCHIVE:
+        if bad.kind in (MESHES, MAPPINGS):
+            read_data(path, read_scene(path.parent / SCENE)[0])
+        elif bad.kind == STUDIES:
+            read_study(path)
+        elif bad.kind == ARCHIVE:
             read_archive(path)
         elif bad.kind == RUN:
             read_run(path)
@@ -179,6 +197,11 @@ def words_for(bad: BadInput, path: Path, number: int) -> list[str]:
         return ["solve", "scene.toml", "--out", str(path)]
     if bad.kind == ARCHIVE:
         return ["report", str(path)]
+    if bad.kind in (MESHES, MAPPINGS):
+        return ["compare", str(path.parent / SCENE), "--with", str(path), "--out", "out/run"]
+    if bad.kind == STUDIES and _is_small(path, read_study):
+        return ["sweep", str(path), "--workers", "1", "--out", "out/run"]
+    path = path.parent / SCENE if bad.kind == STUDIES else path
     commands = [["solve", str(path), "--model", (SAM, FEM)[number % 2], "--out", "out/run"]]
     commands += [
         ["compare", str(path), "--out", "out/run"],
@@ -190,27 +213,41 @@ def words_for(bad: BadInput, path: Path, number: int) -> list[str]:
     )
 
 
-def _is_small(path: Path) -> bool:
-    """Whether a scene is solved in no time, as far as can be predicted, or refused."""
+def _is_small(path: Path, read: Callable[[Path], Any] = read_scene) -> bool:
+    """Whether a scene, or those of a study, are solved in no time, as far as can be predicted, or refused."""
     try:
         with guarded(LIMIT_S, MEMORY):
-            scene, _ = read_scene(path)
-            estimates = [model["estimate"] for model in plan(scene)["models"] if model["estimate"]]
+            found = read(path)
+            scenes = [found[0]] if read is read_scene else [each.scene for each in found.points]
+            if len(scenes) > MOST_SCENES:
+                return False
+            models = [model["estimate"] for scene in scenes for model in plan(scene)["models"]]
     except (Exception, Hang):
         return True
-    small = all(entry["time_s"] < SMALL_S and entry["memory_bytes"] < SMALL_BYTES for entry in estimates)
-    return small and scene.loading.cycles * scene.loading.steps <= 20 and scene.solver.tolerance > 1e-7
+    small = all(each["time_s"] < SMALL_S and each["memory_bytes"] < SMALL_BYTES for each in models if each)
+    few = all(scene.loading.cycles * scene.loading.steps <= 20 for scene in scenes)
+    return small and few and all(scene.solver.tolerance > 1e-7 for scene in scenes)
 
 
-def run_command(words: Sequence[str], base: Path, command: Sequence[str] = SAMFEM) -> EndedCommand:
-    """Run a command in base/cwd with homes of its own, and look at everything in `base` before and after."""
+def run_command(
+    words: Sequence[str], base: Path, command: Sequence[str] = SAMFEM, how: random.Random | None = None
+) -> EndedCommand:
+    """Run a command in base/cwd with homes of its own, and look at everything in `base` before and after.
+
+    how: draws its address space and what is closed; without it neither is limited.
+    """
     homes = {"HOME": "home", "TMPDIR": "tmp", "XDG_CACHE_HOME": "home/cache", "SAMFEM_STORE": "cwd/out/store"}
+    homes["MPLCONFIGDIR"] = "cwd/out/matplotlib"  # it keeps a list of fonts
     for name in ("home", "tmp", "cwd"):
         (base / name).mkdir(exist_ok=True)
     environment = (
         os.environ | {key: str(base / name) for key, name in homes.items()} | {"OMP_NUM_THREADS": "1"}
     )
     words = [word.partition("\0")[0] for word in words]  # a system passes no more of it to a program
+    if how is not None:
+        most, closed = how.choice(ADDRESSES), how.choice(STREAMS)
+        limit = f"ulimit -v {most >> 10}; " if most else ""
+        command = ["sh", "-c", f'{limit}exec "$@" {closed}', "sh", *command]
     before, began = snapshot(base), time.perf_counter()
     try:
         done = subprocess.run(
@@ -273,6 +310,10 @@ def judge_commands(
 ) -> Tally:
     """Run the command on inputs of SEED, AT_ONCE at a time, each in a folder of its own."""
     tally, prepared = Tally(), []
+
+    def drawn(number: int) -> random.Random | None:
+        return random.Random(f"{SEED}/{number}/how") if command is SAMFEM else None
+
     for number in numbers:
         folder, bad = base / str(number), bad_input(SEED, number)
         (folder / "cwd").mkdir(parents=True)
@@ -281,7 +322,7 @@ def judge_commands(
             lay(bad_input(SEED, tuple(KINDS).index("titles")), folder / "cwd")
         prepared.append((number, bad, folder, words_for(bad, path, number)))
     with ThreadPoolExecutor(AT_ONCE) as pool:
-        ran = pool.map(lambda entry: run_command(entry[3], entry[2], command), prepared)
+        ran = pool.map(lambda each: run_command(each[3], each[2], command, drawn(each[0])), prepared)
         for done, ((number, bad, _, _), ended) in enumerate(zip(prepared, ran, strict=True), start=1):
             judge_command(ended, f"input {number}", tally, bad.kind)
             progress(done, len(prepared))
@@ -333,14 +374,23 @@ class BadInputs(Case):
             ),
             (
                 "Limits",
-                f"{LIMIT_S:g} s and {MEMORY / 2**30:g} GiB for a reader, {COMMAND_LIMIT_S:g} s for a command",
+                f"{LIMIT_S:g} s and {MEMORY / 2**30:g} GiB for a reader; {COMMAND_LIMIT_S:g} s and an "
+                "address space of 1, 2, 4 GiB or any for a command, half of them with closed streams",
             ),
+            ("Campaign", CAMPAIGN),
             ("Slowest", f"{read.slowest[0]:.2f} s ({read.slowest[1]}); command {ran.slowest[0]:.1f} s"),
         ]
 
     def tables(self, found: tuple[str, Tally, Tally]) -> list[SmallTable]:
         captions = "Read: valid or refused, with every reason", "Through the command, by exit code"
-        return [counts_table(caption, tally) for caption, tally in zip(captions, found[1:], strict=True)]
+        tables = [counts_table(caption, tally) for caption, tally in zip(captions, found[1:], strict=True)]
+        rows = csv.reader(
+            resources.files("verification").joinpath("data", "bad-input.csv").open(encoding="utf-8")
+        )
+        campaign = {"read": Tally(), "run": Tally()}
+        for how, kind, end, count in list(rows)[1:]:
+            campaign[how].counts[kind, end] = int(count)
+        return tables + [counts_table(f"Campaign: {how}", tally) for how, tally in campaign.items()]
 
     def notes(self, found: tuple[str, Tally, Tally]) -> list[str]:
         every = (item for tally in found[1:] for item in tally.findings.items())
@@ -355,3 +405,22 @@ CASES = (
         "elsewhere?",
     ),
 )
+
+
+def main(what: str, first: str, last: str) -> None:
+    """Part of a campaign, larger than the case: `read` or `run` the inputs from the first to before the last,
+    and print kinds, ends and findings as a line of JSON.
+    """
+    judge = {"read": judge_readers, "run": judge_commands}[what]
+    with tempfile.TemporaryDirectory(prefix="samfem-bad-input-") as base:
+        tally = judge(range(int(first), int(last)), Path(base))
+    counts = [[*key, count] for key, count in sorted(tally.counts.items())]
+    print(
+        json.dumps(
+            {what: [first, last], "counts": counts, "findings": tally.findings, "slowest": tally.slowest}
+        )
+    )
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
