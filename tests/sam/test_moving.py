@@ -116,8 +116,8 @@ LARGEST = ("mises_max_Pa", "mises_max_depth_m", "residual_mises_max_Pa", "peeq_m
 @pytest.mark.parametrize("cells", [(24, 30), (25, 31)])
 def test_a_turned_scene_has_the_same_largest_stresses(cells, plasticity, rolls):
     """An ellipsoid on its longer axis, and the same with x and y exchanged. Sums are taken in another order,
-    and iterations end at 1e-4 and 1e-8 of the pressure: these leave 2e-8. Searched in one plane, the stress
-    was .1 % off, and what is left of it more.
+    and iterations end at solver.tolerance: ten times that is asked. Searched in one plane, the stress was .2
+    to .3 % off, and what is left of it up to 3 %.
     """
     path = {"start": (-A, 0.0), "end": (A / 2, 0.0), "steps": 3} if rolls else None
     found = []
