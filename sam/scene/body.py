@@ -211,7 +211,7 @@ class Coating(Section):
     def excesses(self) -> Iterator[Conflict]:
         """A yield stress in another unit than Young's modulus."""
         limit = self.yield_stress
-        if limit is not None and (words := off_unit(limit, limit, self.young, "young")):
+        if limit is not None and (words := off_unit(limit, self.young, "young")):
             yield "yield_stress", words
 
 
@@ -243,10 +243,10 @@ class Body(Section):
         for table, law in (("plasticity", self.plasticity), ("plasticity.layer", self.plasticity.layer)):
             if law is None:
                 continue
-            least, usual = (float(law.curve().stress(peeq)) for peeq in (0.0, OFFSET))
-            if words := off_unit(least, usual, self.young, "young"):
+            usual = float(law.curve().stress(OFFSET))
+            if words := off_unit(usual, self.young, "young"):
                 column = f"column {YIELD_TABLE.columns[1]}: " if law.file is not None else ""
                 yield f"{table}.{LAWS[law.law].needed[0]}", f"{column}{words}"
-            elif words := off_unit(max(factors) * least, min(factors) * usual, self.young, "young"):
+            elif words := off_unit(min(factors) * usual, self.young, "young"):
                 yield "plasticity.profile", f"factors from {min(factors):g} to {max(factors):g} for {words}"
                 return

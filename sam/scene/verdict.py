@@ -30,7 +30,6 @@ STEADY, SETTLES = 0.02, 0.9
 OPEN = 0.02  # of de over dp: more of it does not close
 GROWS = 0.05  # of the ratio of de: growth that is none
 LASTS = 3000  # periods that a strain lasts in which noise hides the fall: fewer say nothing
-MARGIN = 1.5  # of the periods after which a geometric series would be told: the fall slows down a little
 ALIGNED = 0.99  # cosine of the directions of dE in two periods
 POWER = 0.5  # least exponent of a trend that is a power of the number of periods
 SHARES = 1.0, 0.5, 0.1  # of the largest strain: of the points whose loops are recorded
@@ -171,13 +170,12 @@ def _open_strain(
         closes, lasts = (c <= small) | (turn < 1).all(axis=0), np.zeros_like(lasts)
     with np.errstate(divide="ignore", invalid="ignore"):
         rate, root = np.log(a / c) / (2 * apart), np.sqrt(noise / small)
-        # nearly a geometric series: until it is small, or sure to end small, but if its limit is not small
-        # as many periods again; where it slows down: small as 1/k, or steady as its differences fall
-        tells = np.where(root < 1, 2 * np.log((1 + root) / (1 - root)) / rate, np.inf)
-        tells = MARGIN * tells - 2 * apart
-        ends = np.fmin(
-            np.log(c / small) / rate, np.where(excess > doubt, np.maximum(tells, end - first), tells)
-        )
+        # nearly a geometric series: until it is small, or sure to end small, but at least half as many
+        # periods again, as it slows down a little, and as many where its limit is not small; where it slows
+        # down: small as 1/k, or steady as its differences fall
+        tells = np.where(root < 1, 2 * np.log((1 + root) / (1 - root)) / rate, np.inf) - 2 * apart
+        again = np.where(excess > doubt, 1.0, 0.5) * (end - first)
+        ends = np.fmin(np.log(c / small) / rate, np.maximum(tells, again))
         nearly = (excess <= doubt) | ((a - c / 2) * c / 2 <= (b - c / 2) ** 2)
         steady = end - first + 2 * apart * np.log((b - c) / noise) / np.log((a - b) / (b - c))
         slows = np.fmin(apart * (1 / small - 1 / c) / (1 / c - 1 / b), steady)
@@ -309,16 +307,17 @@ def verdict_on(
     before = float(periods[-2].accumulated[at]) if len(periods) > 1 else 0.0
     ratio = top / before if before else None
     settles = ORDER[found[at]] is Behaviour.SETTLING and ratio is not None
-    undecided = np.where((found == ORDER.index(Behaviour.UNDECIDED)) & (flow > 0), last.norm * volume, 0.0)
-    behaviour = _worst(found, flow, total)
+    behaviour, class_of = _worst(found, flow, total), found
     if behaviour is Behaviour.RATCHETTING:
         lasts = (flow > 0) & (found >= ORDER.index(behaviour))
         fall = periods[-1 - max((len(periods) - 2) // 2, 2)].norm - last.norm - judging.noise * yield_strain
-        open_question = (fall * volume)[lasts].sum() > 0
-    else:
-        may_ratchet = judging.worst is Behaviour.RATCHETTING
-        open_question = may_ratchet and undecided.sum() > OPEN * flow.sum()
-    if open_question:
+        if (fall * volume)[lasts].sum() > 0:
+            class_of = np.where(found == ORDER.index(behaviour), ORDER.index(Behaviour.UNDECIDED), found)
+            behaviour = _worst(class_of, flow, total)
+    waits = (class_of == ORDER.index(Behaviour.UNDECIDED)) & (flow > 0)
+    undecided = np.where(waits, last.norm * volume, 0.0)
+    may_ratchet = judging.worst is Behaviour.RATCHETTING and behaviour is not Behaviour.RATCHETTING
+    if may_ratchet and undecided.sum() > OPEN * flow.sum():
         behaviour = Behaviour.UNDECIDED
     return Verdict(
         behaviour,

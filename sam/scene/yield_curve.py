@@ -25,19 +25,18 @@ SOFTEST = 1e5
 OFFSET = 2e-3  # plastic strain of the yield stress that handbooks give, R_p0.2
 
 
-def off_unit(least: float, usual: float, young: float, key: str) -> str:
-    """What a yield stress may be beside Young's modulus, where it can only be in another unit; else empty.
+def off_unit(usual: float, young: float, key: str) -> str:
+    """What a yield stress at a plastic strain of OFFSET may be beside Young's modulus, where it can only be
+    in another unit; else empty. A law that rises from nearly 0 has one there.
 
-    least: yield stress without plastic strain; usual: that at OFFSET, which a law that rises from nearly 0
-    has; young: all in Pa; key: of Young's modulus.
+    usual, young: in Pa; key: of Young's modulus. A yield stress that is never reached may be of any size.
     """
-    allowed = f"a yield stress from {young / SOFTEST:.4g} Pa to {young:.4g} Pa, {key}/{SOFTEST:g} to {key}"
-    if usual < young / SOFTEST:
-        where = f" at a plastic strain of {OFFSET:g}" if usual != least else ""
-        return f"{allowed}: it is {usual:.4g} Pa{where}: are values in MPa taken as Pa?"
-    if least > young:
-        return f"{allowed}: it is {least:.4g} Pa: are MPa taken as GPa, or is {key} too small?"
-    return ""
+    if usual >= young / SOFTEST:
+        return ""
+    return (
+        f"a yield stress of at least {young / SOFTEST:.4g} Pa, {key}/{SOFTEST:g}, at a plastic strain of "
+        f"{OFFSET:g}: it is {usual:.4g} Pa: are values in MPa taken as Pa?"
+    )
 
 
 class YieldCurve(Protocol):

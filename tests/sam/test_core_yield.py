@@ -114,7 +114,7 @@ def test_no_parabola_goes_across_a_kink_of_the_yield_stress():
         kinks = Kinks(rows)
         flat = SimpleNamespace(kinks=kinks, axis_z=z, z=z)
         space = SimpleNamespace(kinks=kinks, x=np.zeros(1), z=z)
-        snapshot = SimpleNamespace(mises_at_depths=field[:, None], mises=None, peeq=np.zeros((4, 1, 1)))
+        snapshot = SimpleNamespace(mises=field[:, None], flowed=None)
         found = (
             recovery.largest(flat, 0 * field, field),
             spatial.largest(space, 0 * field[None, None], field[None]),
@@ -154,8 +154,7 @@ def test_largest_stress_of_a_body_that_yields_is_not_beyond_its_yield_stress():
     stress = np.zeros((6, 4, 1))
     stress[2] = -q[:, None]
     for strained, expected in ((0.0, recovery.parabola_peak(z[1:], q[1:])), (1e-3, (1.0, 0.3))):
-        peeq = np.full((4, 1, 1), strained)
-        peak = SimpleNamespace(mises=None, mises_at_depths=von_mises(stress), peeq=peeq)
+        peak = SimpleNamespace(mises=von_mises(stress), flowed=np.full((4, 1), strained > 0))
         depth, largest = largest_mises(z, peak)
         assert (largest, depth) == pytest.approx(expected, rel=1e-12)
         assert largest == 1.0 if strained else largest > 1.02

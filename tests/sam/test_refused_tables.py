@@ -62,15 +62,9 @@ MATERIALS = [
         {"plasticity": MPA},
         None,
         "body.plasticity.file",
-        "column yield_stress_Pa: .* it is 374 Pa at a plastic strain of 0.002: are values in MPa",
+        "column yield_stress_Pa: .* at a plastic strain of 0.002: it is 374 Pa: are values in MPa",
     ),
-    ({"plasticity": SWIFT | {"B": 945.0}}, None, "body.plasticity.B", "from 2.1e.06 Pa to 2.1e.11 Pa"),
-    (
-        {"plasticity": PERFECT | {"yield_stress": 355e9}},
-        None,
-        "body.plasticity.yield_stress",
-        "MPa taken as GPa",
-    ),
+    ({"plasticity": SWIFT | {"B": 945.0}}, None, "body.plasticity.B", "at least 2.1e.06 Pa"),
     (
         {"plasticity": PERFECT | {"profile": ((0.0, 1.0), (1e-5, 1e-3))}},
         None,
@@ -83,12 +77,12 @@ MATERIALS = [
         f"{AT}.yield_stress",
         "it is 1 Pa",
     ),
-    ({"coating": FILM | {"yield_stress": 4e3}}, None, "body.coating.yield_stress", "from 3e.06 Pa"),
+    ({"coating": FILM | {"yield_stress": 4e3}}, None, "body.coating.yield_stress", "at least 3e.06 Pa"),
     ({}, FILMED | {"film_yield": 700.0}, "friction.film_yield", "film_young/100000"),
-    ({"young": 210e3, "plasticity": PERFECT}, None, "body.plasticity.yield_stress", "young too small"),
     ({"young": 11e9, "plasticity": PERFECT | {"yield_stress": 1e6}}, None, "", ""),  # annealed indium
     ({"young": 1141e9, "plasticity": PERFECT | {"yield_stress": 80e9}}, None, "", ""),  # diamond
     ({"plasticity": SWIFT | {"C": 1e-15, "n": 0.5}}, None, "", ""),  # rises from nearly 0
+    ({"plasticity": PERFECT | {"yield_stress": 1e12}}, None, "", ""),  # never yields
 ]
 WAVE = {"kind": '"sinusoid"', "amplitude": '"0.1 um"', "wavelength_x": '"10 um"', "wavelength_y": '"8 um"'}
 DISC = {"kind": '"self-affine"', "sq": '"20 nm"', "cutoff_long": '"16 um"', "cutoff_short": '"8 um"'}

@@ -48,7 +48,7 @@ def test_failed_gates_are_named_and_counted(published):
     assert "Every gate of the published pages holds." in renewed(README, none)
     one = renewed(README, changed(none, pavement_fox={"status": "failed", "error": 2.0, "tolerance": 1.0}))
     assert "One gate fails on the published pages: `pavement.fox` (2 against \u2264 1)." in one
-    assert re.search(r"As printed, [0-9]+ of its 17 statements", " ".join(one.split()))
+    assert re.search(r"With the printed inputs, [0-9]+ of its 17 statements", " ".join(one.split()))
 
 
 def test_a_case_whose_figure_cannot_be_read_is_named(published):

@@ -37,7 +37,7 @@ TOLERANCE = (
     1e-7  # sets the noise of the verdict: at 1e-6 the periods until it is decided are three times as many
 )
 MODELS = {"sam": SAM, "fem": FEM}
-TOLD = 6  # the period after which the number of further periods is read
+TOLD = 30  # the period after which the number of further periods is read
 RIGHT = 1.5  # times the number that was told, at most
 
 
@@ -133,7 +133,7 @@ class MisfitCycles(Case):
             for model, result in each.results.items():
                 false += column(result, "verdict").count("ratchetting")
                 if name in self.near:
-                    told = TOLD + column(result, "periods_to_decide")[TOLD - 1]
+                    told = TOLD + (column(result, "periods_to_decide")[TOLD - 1] or 0)
                     values[f"{model}-{name}-told"] = decided(result) / told
                     continue
                 values[f"{model}-{name}-class"] = decided(result)
@@ -162,7 +162,7 @@ class MisfitCycles(Case):
                     )
                 ),
                 f"{decided(result):g} of {each.run.cycles}",
-                str((*column(result, "periods_to_decide"), *"      ")[TOLD - 1] or ""),
+                str((*column(result, "periods_to_decide"), *[""] * TOLD)[TOLD - 1] or ""),
             )
             for each in found.values()
             for model, result in each.results.items()
@@ -218,6 +218,6 @@ CASES = (
         EQUATIONS,
         ("full",),
         strains={"af-5": Run(0.05, *AF, 8, 30), "prager-5": Run(0.05, *PRAGER, 8, 4)},
-        near={"near-2": Run(0.02, *AF, 8, 60), "near-1": Run(0.01, *AF, 6, 160)},
+        near={"near-2": Run(0.02, *AF, 8, 75), "near-1": Run(0.01, *AF, 6, 240)},
     ),
 )
