@@ -50,13 +50,13 @@ def test_points_that_say_nothing_are_left_out():
 
 
 def test_what_has_no_cause_is_not_predicted():
-    """At most two of 200 results without any cause are believed, and most are predicted worse than by the
+    """At most one of 60 results without any cause is believed, and most are predicted worse than by the
     mean.
     """
     rng = np.random.default_rng(4)
-    found = [surrogate(SHARES, rng.normal(size=POINTS)) for _ in range(200)]
-    assert sum(each.predicted >= PREDICTS for each in found) <= 2
-    assert sum(each.predicted < 0.0 for each in found) > 150
+    found = [surrogate(SHARES, rng.normal(size=POINTS)) for _ in range(60)]
+    assert sum(each.predicted >= PREDICTS for each in found) <= 1
+    assert sum(each.predicted < 0.0 for each in found) > 45
     assert all(not each.shares.any() for each in found if each.predicted < 0.0)
 
 
