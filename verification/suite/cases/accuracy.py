@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from sam.scene import Result, Scene
 from verification.cost.accuracy import solve
 from verification.cost.choice import Choice, chosen_scene, quantities_of
 from verification.cost.estimates import estimate
+from verification.runs import models
 from verification.runs.models import ModelError
 from verification.runs.store import solve_or_reuse
 from verification.suite.cases.case import (
@@ -32,6 +33,7 @@ from verification.uncertainty import alone, has_history
 ACCURACIES = (0.05, 0.02, 0.01, 0.005)
 ELEMENTS, STEPS = 32, (20, 40)  # of the finite-element references, extrapolated in the load steps
 LADDER, LADDER_STEPS = (3.0, 4.5, 6.7, 10.0, 15.0), (1, 2, 4, 8, 16)  # of the best fixed grid
+SHORT = 0.5  # s of processor time: a solve that takes less is timed three times
 FILM = 5.0  # modulus of the stiff film over that of the body
 
 
@@ -121,12 +123,17 @@ def subjects(context: Context) -> list[Subject]:
 
 
 def runs_of(context: Context, subject: Subject, accuracies: Sequence[float]) -> Iterator[Run]:
-    """A scene at some accuracies; every solve is made once, and kept in the store."""
+    """A scene at some accuracies; every solve is made once, and kept in the store; the time of a
+    short one is the least of three, as the first of its kind also loads what it needs.
+    """
     kept: dict[str, Result] = {}
 
     def by_sam(scene: Scene) -> Result:
         if (text := scene.model_dump_json()) not in kept:
-            kept[text] = solve_or_reuse(context.store, scene, SAM)[0]
+            result = solve_or_reuse(context.store, scene, SAM)[0]
+            if (least := result.cost["cpu_s"]) < SHORT:
+                least = min(least, *(models.solve(scene, SAM).cost["cpu_s"] for _ in range(2)))
+            kept[text] = replace(result, cost={**result.cost, "cpu_s": least})
         return kept[text]
 
     truth = subject.truth(context, subject.scene)
