@@ -58,7 +58,7 @@ def test_what_a_doubtful_reference_says_does_not_count(rows):
 
 def test_the_study_has_problems_that_differ():
     """Forty; one elastic sphere at rest, every law, and grids of at least five sizes."""
-    scenes = [each.scene for each in study.subjects(study=True)]
+    scenes = [each.drawn(0) for each in study.subjects(study=True)]
     assert len(scenes) == 40 == len({each.kind for each in study.subjects(study=True)})
     elastic = [each for each in scenes if each.body.plasticity is None and each.counterbody.shape == "sphere"]
     assert sum(each.body.coating is None and not each.coefficient for each in elastic) == 1
