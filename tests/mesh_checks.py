@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Shipped scenes with fewer load steps, cells and elements, and what VTK reads of the meshes of their runs.
 
-As a program (`python tests/mesh_checks.py [SCENE ...]`) it solves the shipped scenes in every model that can
+As a program (`python -m tests.mesh_checks [SCENE ...]`) it solves the shipped scenes in every model that can
 represent them and that is predicted to be quick, and prints what is wrong and the sizes of the files.
 """
 
