@@ -240,9 +240,9 @@ class Verdict:
     Parameters
     ----------
     behaviour
-        The worst class that carries a hundredth of the plastic strain of the period. Undecided where
-        cells may ratchet, and de of undecided ones is more than OPEN of that strain; and where some ratchet,
-        but de of them and of undecided cells together falls: then strain moves from cell to cell.
+        The worst class that carries a hundredth of the plastic strain of the period. Undecided where cells
+        may ratchet, and de of undecided ones is more than OPEN of that strain. Cells that ratchet count as
+        undecided where de of both together falls: then strain moves from cell to cell.
     accumulated, strain
         Largest dp of a cell, and largest de.
     ratio, closure

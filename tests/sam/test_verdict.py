@@ -226,6 +226,27 @@ def test_the_body_has_the_worst_class_that_carries_its_share():
     assert large.behaviour is Behaviour.RATCHETTING
 
 
+@pytest.mark.parametrize(
+    ("volumes", "wanted"),
+    [
+        ((1.0, 0.02, 0.0), Behaviour.RATCHETTING),
+        ((1.0, 0.02, 0.03), Behaviour.ALTERNATING),
+        ((1.0, 0.2, 0.03), Behaviour.UNDECIDED),
+    ],
+)
+def test_cells_that_ratchet_beside_cells_that_fall_count_as_undecided(volumes, wanted):
+    """One alternates, one ratchets, one leaves less each time: strain moves from cell to cell."""
+    dp = (5e-3, 1e-3, 1e-3, 1e-3)
+    cells = [periods(dp), periods(dp, 0.1), periods(dp, (0.2, 0.195, 0.19, 0.185))]
+    all_of_them = [
+        period(np.concatenate([one.accumulated for one in each]), np.hstack([one.strain for one in each]))
+        for each in zip(*cells, strict=True)
+    ]
+    found = verdict_on(all_of_them, np.ones(3), np.full(3, 1e-3), judging(), volume=np.array(volumes))
+    assert found.behaviour is wanted and found.volumes[Behaviour.RATCHETTING] == volumes[1]
+    assert (found.periods_to_decide is None) is (wanted is not Behaviour.UNDECIDED)
+
+
 def test_floor_follows_the_tolerance():
     """Four tolerances for each load step of a period, at least 1e-4 of the yield strain."""
     for tolerance, wanted in ((1e-6, 1e-4), (1e-4, 4e-4 * 24)):
