@@ -17,8 +17,8 @@ from sam.scene import SceneError
 from sam.scene.inputs import Inputs
 from sam.scene.load import scene_of
 from verification.app.cli import _options
+from verification.cases import all_cases
 from verification.runs.study import read_study
-from verification.suite.cases import all_cases
 
 ROOT = Path(__file__).resolve().parents[2]
 README = ROOT / "README.md"

@@ -12,10 +12,10 @@ from verification.app.compared import Compared, seconds
 from verification.app.shown import status_line
 from verification.compare.rows import Comparison
 from verification.figures import compare_figures
+from verification.rows import RowStatus
 from verification.runs import provenance
 from verification.runs.files import FIGURES, FolderError, check_place, json_text, plain, write_atomically
 from verification.suite import pages
-from verification.suite.judging import GateStatus
 from verification.suite.records import gates_csv, junit_xml
 from verification.suite.verify import FORMAT, RESULTS, finished
 from verification.text.readable import with_time
@@ -75,7 +75,7 @@ def _results(scenes: Scenes) -> dict:
             "complete": True,
             "command": f"samfem compare {' '.join(scenes.found)}",
             "provenance": provenance.collect(dict(scenes.inputs)),
-            "summary": {status: sum(gate["status"] == status for gate in gates) for status in GateStatus},
+            "summary": {status: sum(gate["status"] == status for gate in gates) for status in RowStatus},
             "cases": [_case(name, each) for name, each in scenes.found.items()],
             "gates": gates,
         }
@@ -97,7 +97,7 @@ def _rows(case: str, found: Compared) -> Iterator[dict]:
 
 def _gate(case: str, name: str, row: Comparison) -> dict:
     unit = row.quantity.split(" ")[0].rpartition("_")[2]
-    status = GateStatus.PASSED if row.passed else GateStatus.FAILED
+    status = RowStatus.PASSED if row.passed else RowStatus.FAILED
     values = {"value": row.sam, "expected": row.fem, "error": row.difference, "tolerance": row.tolerance}
     return plain(
         {
@@ -125,7 +125,7 @@ def _case(name: str, found: Compared) -> dict:
         "question": QUESTION,
         "equations": [],
         "setup": setup,
-        "status": str(GateStatus.PASSED if found.passed else GateStatus.FAILED),
+        "status": str(RowStatus.PASSED if found.passed else RowStatus.FAILED),
         "failure": "; ".join(ended),
         "seconds": sum(map(seconds, found.results)),
         "runs": [],

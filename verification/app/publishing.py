@@ -18,13 +18,13 @@ from pathlib import Path
 
 from sam.scene import Result, Scene
 from verification.app.executors import Failure, Processes, run
-from verification.runs.code_version import modules_of_case, version_of_case
+from verification.cases import Case, all_cases
+from verification.cases.case import Context, Outcome
+from verification.runs.code_version import version_of_cases
 from verification.runs.lock import locked
 from verification.runs.models import SAM
 from verification.runs.store import RESULT, UNCONVERGED, Lookup, Reuse, Store, solve_or_reuse
 from verification.suite import outcomes, verify
-from verification.suite.cases import Case, all_cases, module_of
-from verification.suite.cases.case import Context, Outcome
 from verification.suite.earlier import earlier
 from verification.suite.lighter import lighter
 from verification.suite.verify import RanCase
@@ -137,23 +137,16 @@ def make(name: str, level: str, folder: Path, scene: Scene | None = None) -> tup
         return "", time.perf_counter() - began
     context = _context(case, store, level)
     shutil.rmtree(context.out, ignore_errors=True)
-    version_of_case(module_of(name))  # of the files as they are before anything is computed
-    before, began = frozenset(sys.modules), time.perf_counter()  # the imports of all cases are done
+    version_of_cases()  # of the files as they are before anything is computed
+    began = time.perf_counter()
     outcome, failure = verify.attempt(case, context)
     seconds = time.perf_counter() - began + context.taken_s
-    if failure := failure or _not_counted(name, before):
+    if failure:
         return failure, seconds
     outcomes.keep(store, case, context, outcome, seconds=seconds)
     kept = outcomes.find(store, case, context).result is not None
     shutil.rmtree(context.out, ignore_errors=True)
     return "" if kept else CHANGED, seconds
-
-
-def _not_counted(name: str, before: frozenset[str]) -> str:
-    """What the case loaded that its version does not count, so that a change there would go unseen."""
-    counted = modules_of_case(module_of(name))
-    rest = {module for module in sys.modules if module.startswith("verification.")} - before - counted
-    return f"its version does not count {', '.join(sorted(rest))}" if rest and counted else ""
 
 
 def _context(case: Case, store: Store, level: str) -> Context:
