@@ -9,7 +9,7 @@ import pytest
 from builders import running_in
 
 from sam.scene import load_scene
-from verification.app.cli import main
+from samfem.cli import main
 from verification.cost import advice
 from verification.cost.advice import advice_of, kind_of
 from verification.cost.advice_rows import (

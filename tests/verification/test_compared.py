@@ -9,7 +9,7 @@ from builders import parsed
 from stored import COARSE
 
 from sam.scene import Scene, SceneError, Status, resolved
-from verification.app.compared import asked, compared
+from samfem.compared import asked, compared
 from verification.compare.comparison import compare_scene, names_of_rows
 from verification.compare.rows import COLUMNS
 

@@ -11,7 +11,7 @@ from stored import COARSE
 from test_report import sketch
 
 from sam.scene import Status
-from verification.app import publishing
+from samfem import publishing
 from verification.runs import models
 from verification.suite import earlier, freshness, outcomes, verify
 from verification.suite.cases.case import Case, Context, NotDrawnError, Outcome, Plot, with_loading

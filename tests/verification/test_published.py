@@ -12,7 +12,7 @@ from builders import scene_text
 from fake_case import FakeCase
 from test_report import CASES, TABLE
 
-from verification.app.cli import main
+from samfem.cli import main
 from verification.suite import verify
 from verification.suite.gates import load_gates
 

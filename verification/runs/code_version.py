@@ -44,7 +44,7 @@ FINITE_ELEMENTS = re.compile(
     rb"\b(FEM|FEM_3D|MODELS|cheapest_reference|fem_reference|fem-axisymmetric|fem-3d)\b"
 )
 """Words by which a source file asks for finite elements; a case without any of them solves by SAM alone."""
-OF_CASES = (*SOLVERS, "verification")
+OF_CASES = (*SOLVERS, "verification", "samfem")
 """What may decide the outcome of a verification case."""
 NOT_OF_CASES = (
     *("verification/suite/pages", "verification/suite/records.py", "verification/suite/templates"),
@@ -93,7 +93,7 @@ def version_of_case(module: str, root: Path = ROOT) -> str:
 
 @lru_cache
 def modules_of_case(module: str, root: Path = ROOT) -> frozenset[str]:
-    """The modules of `verification` that version_of_case counts, by name; none: all of them."""
+    """The modules of `verification` and `samfem` that version_of_case counts, by name; none: all of them."""
     reached = _sources(root).reached(module)
     parts = (path.parent.parts if path.stem == "__init__" else path.with_suffix("").parts for path in reached)
     return frozenset() if EVERYTHING in reached else frozenset(map(".".join, parts))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Which files of the package `verification` a module comes to: the imports of its source, anywhere in it, and
-the modules that it names as text, to load or to run them.
+"""Which files of `verification` and `samfem` a module comes to: the imports of its source, anywhere in it,
+and the modules that it names as text, to load or to run them.
 """
 
 from __future__ import annotations
@@ -11,14 +11,14 @@ from collections.abc import Iterable, Iterator
 from functools import cached_property
 from pathlib import Path
 
-PACKAGE = "verification"
+PACKAGES = ("samfem", "verification")
 REGISTRY = Path("verification/suite/cases/__init__.py")
 """It names every case, and a case needs none of the others: what it loads is not followed."""
-_MODULE = re.compile(rf"{PACKAGE}(\.\w+)+\.?")
+_MODULE = re.compile(rf"({'|'.join(PACKAGES)})(\.\w+)+\.?")
 
 
 class Sources:
-    """The modules of `verification` below `root`, each read at most once."""
+    """The modules of these packages below `root`, each read at most once."""
 
     def __init__(self, root: Path):
         self._root = root
@@ -30,7 +30,9 @@ class Sources:
         return {
             ".".join((path.parent if path.name == "__init__.py" else path.with_suffix("")).parts): path
             for path in (
-                found.relative_to(self._root) for found in sorted((self._root / PACKAGE).rglob("*.py"))
+                found.relative_to(self._root)
+                for package in PACKAGES
+                for found in sorted((self._root / package).rglob("*.py"))
             )
         }
 

@@ -37,24 +37,24 @@ SHELLS = ("bash", "zsh", "tcsh")
 CLAIMS = ("negligible-film",)
 """Those of [compare] in a scene."""
 COMMANDS = {
-    "solve": ("verification.app.solving", "solve"),
-    "plan": ("verification.app.planning", "plan"),
-    "compare": ("verification.app.comparing", "compare"),
-    "verify": ("verification.app.verifying", "verify"),
-    "report": ("verification.app.verifying", "report"),
-    "publish": ("verification.app.publishing", "publish"),
-    "pages": ("verification.app.verifying", "pages"),
-    "export": ("verification.app.exporting", "export"),
-    "store": ("verification.app.housekeeping", "store"),
-    "sweep": ("verification.app.sweep", "sweep"),
-    "view": ("verification.app.viewing", "view"),
-    "new": ("verification.app.starting", "new"),
-    "examples": ("verification.app.starting", "examples"),
-    "schema": ("verification.app.starting", "schema"),
-    "completion": ("verification.app.starting", "completion"),
+    "solve": ("samfem.solving", "solve"),
+    "plan": ("samfem.planning", "plan"),
+    "compare": ("samfem.comparing", "compare"),
+    "verify": ("samfem.verifying", "verify"),
+    "report": ("samfem.verifying", "report"),
+    "publish": ("samfem.publishing", "publish"),
+    "pages": ("samfem.verifying", "pages"),
+    "export": ("samfem.exporting", "export"),
+    "store": ("samfem.housekeeping", "store"),
+    "sweep": ("samfem.sweeping", "sweep"),
+    "view": ("samfem.viewing", "view"),
+    "new": ("samfem.starting", "new"),
+    "examples": ("samfem.starting", "examples"),
+    "schema": ("samfem.starting", "schema"),
+    "completion": ("samfem.starting", "completion"),
 }
 """Command -> module and function that run it; its options are the keywords of the function."""
-REFUSALS = "verification.app.refusals"
+REFUSALS = "samfem.refusals"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sam.scene import Problem, Result, Scene, SceneError, either, finer_cells, finer_mesh, read_scene
-from verification.app.compared import COMPANION, Compared, Question, Uncertain, agreement, asked, seconds
-from verification.app.refusals import Refusals
-from verification.app.solving import unconverged, write_solved
+from samfem.compared import COMPANION, Compared, Question, Uncertain, agreement, asked, seconds
+from samfem.refusals import Refusals
+from samfem.solving import unconverged, write_solved
 from verification.compare.rows import Comparison
 from verification.compare.verdicts import CLAIM, NOT_JUDGED
 from verification.figures import compare_figures
@@ -138,7 +138,7 @@ def _check_comparison(folder: Path) -> None:
 def _check_pages(given: Options) -> None:
     """Raise FolderError where a page or a JUnit file cannot be written."""
     if given.report is not None:
-        from verification.app.comparison_page import check_report  # noqa: PLC0415 - loads the suite
+        from samfem.comparison_page import check_report  # noqa: PLC0415 - loads the suite
 
         check_report(given.report)
     if given.junit is not None:
@@ -190,7 +190,7 @@ def _write_pages(jobs: Sequence[Job], found: Sequence[Compared], given: Options)
     """The page and the JUnit file, if they are asked for."""
     if given.report is None and given.junit is None:
         return
-    from verification.app.comparison_page import Scenes, junit_of, write_report  # noqa: PLC0415 - loads the suite
+    from samfem.comparison_page import Scenes, junit_of, write_report  # noqa: PLC0415 - loads the suite
 
     scenes = Scenes(
         {job.name: each for job, each in zip(jobs, found, strict=True)},

@@ -21,7 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from sam.scene import QUANTITIES, Problem, Result, Scene, SceneError, resolved, spelling
-from verification.app.executors import Cluster, Failure, Processes, Workers, run
+from samfem.executors import Cluster, Failure, Processes, Workers, run
 from verification.cost.plan import check_needs
 from verification.figures import sensitivity_figure, sweep_figure
 from verification.runs import models

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sam.scene import Problem, Progress, Result, Scene, SceneError, spelling
-from verification.app.refusals import Refusals
-from verification.app.solving import check
+from samfem.refusals import Refusals
+from samfem.solving import check
 from verification.compare.comparison import compare_data, compare_scene
 from verification.compare.own_data import OwnData, read_data
 from verification.compare.rows import COLUMNS, Comparison, Solution, table_rows

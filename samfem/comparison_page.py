@@ -8,8 +8,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from verification.app.compared import Compared, seconds
-from verification.app.shown import status_line
+from samfem.compared import Compared, seconds
+from samfem.shown import status_line
 from verification.compare.rows import Comparison
 from verification.figures import compare_figures
 from verification.runs import provenance

@@ -17,7 +17,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from sam.scene import Result, Scene
-from verification.app.executors import Failure, Processes, run
+from samfem.executors import Failure, Processes, run
 from verification.runs.code_version import modules_of_case, version_of_case
 from verification.runs.lock import locked
 from verification.runs.models import SAM
@@ -152,7 +152,8 @@ def make(name: str, level: str, folder: Path, scene: Scene | None = None) -> tup
 def _not_counted(name: str, before: frozenset[str]) -> str:
     """What the case loaded that its version does not count, so that a change there would go unseen."""
     counted = modules_of_case(module_of(name))
-    rest = {module for module in sys.modules if module.startswith("verification.")} - before - counted
+    loaded = {module for module in sys.modules if module.startswith(("verification.", "samfem."))}
+    rest = loaded - before - counted
     return f"its version does not count {', '.join(sorted(rest))}" if rest and counted else ""
 
 
