@@ -153,24 +153,6 @@ class Compared:
         parts.append(", ".join(f"{name} {with_time(time)}" for name, time in times))
         return "".join(ended) + "; ".join(parts)
 
-    def check(self) -> None:
-        """Raise AssertionError with every row that does not hold, and every model that did not converge."""
-        lines = [
-            f"{each.model}: {each.status}: {each.message}" for each in self.results if not each.converged
-        ]
-        lines += [
-            f"{row.quantity}: SAM {row.sam:.6g}, FEM {row.fem:.6g}, {row.metric} {row.difference:.3g}, "
-            f"tolerance {row.tolerance:g}"
-            for row in self.failed
-        ]
-        lines += [
-            f"{name}: {row.quantity}: SAM {row.sam:.6g}, {name} {row.fem:.6g}, {row.metric} "
-            f"{row.difference:.3g}, tolerance {row.tolerance:g}"
-            for name, row in self.off
-        ]
-        if lines:
-            raise AssertionError("\n  ".join([self.line, *lines]))
-
 
 @dataclass(frozen=True)
 class Question:

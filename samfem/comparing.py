@@ -280,7 +280,9 @@ def _judge(
     off: Sequence[tuple[str, Comparison]] = (),
 ) -> int:
     """Exit code; what did not hold, and what to change, on stderr. off: rows of data that did not hold."""
-    code, (failed, claimed) = unconverged(results), _broken(rows)
+    code, broken = unconverged(results), [row for row in rows if not row.passed]
+    claimed = [row.quantity for row in broken if row.metric == CLAIM]
+    failed = [row.quantity for row in broken if row.metric != CLAIM]
     if failed and not code:  # else there is something to change first
         finer = f"to see whether the meshes are too coarse, {_finer(scene)}, and compare again"
         print(f"samfem: outside the tolerance: {', '.join(failed)}: {finer}", file=sys.stderr)
@@ -299,10 +301,3 @@ def _finer(scene: Scene) -> str:
         finer_mesh(scene) if scene.patch_surface is None else ""
     )  # of a rough scene both have the same cells
     return either(finer_cells(scene), layers, mesh) or "lower grid.extent"
-
-
-def _broken(rows: Sequence[Comparison]) -> tuple[list[str], list[str]]:
-    """Quantities outside of their tolerance, and those that break the claim of a negligible film."""
-    broken = [row for row in rows if not row.passed]
-    claimed = [row.quantity for row in broken if row.metric == CLAIM]
-    return [row.quantity for row in broken if row.metric != CLAIM], claimed
