@@ -53,6 +53,15 @@ class Reference:
 
 
 @dataclass(frozen=True)
+class Solved:
+    """A scene with its reference and the result of each model, by the name of its run."""
+
+    scene: Scene
+    reference: Reference | None
+    results: dict[str, Result]
+
+
+@dataclass(frozen=True)
 class Values:
     """A field. places: coordinates in m, as the function of the reference takes them; weight: see
     Measured.

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from verification.app import cli
+from samfem import cli
 from verification.cases.robustness import faults as case
 from verification.robustness.kills import (
     Ended,

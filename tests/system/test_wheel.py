@@ -20,7 +20,7 @@ from verification.suite import verify
 
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-OWN = ("sam", "fem_reference", "verification")
+OWN = ("samfem", "sam", "fem_reference", "verification")
 LEFT_OUT = "verification/robustness/mutants/"
 OF_SOURCE = ("verification.robustness.mutants", "tests")
 OF_EXTRAS = (

@@ -9,7 +9,7 @@ import pytest
 from builders import running_in
 
 from sam.scene import load_scene
-from verification.app.cli import main
+from samfem.cli import main
 from verification.cases.case import with_loading
 from verification.cases.cost.work_precision import ADVISED
 from verification.cases.cost.work_precision_problems import PROBLEMS

@@ -11,7 +11,7 @@ from stored import COARSE
 from test_report import sketch
 
 from sam.scene import Status
-from verification.app import publishing
+from samfem import publishing
 from verification.cases.case import Case, Context, NotDrawnError, Outcome, Plot, with_loading
 from verification.quantities import Measured
 from verification.rows import load_rows

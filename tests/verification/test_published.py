@@ -12,7 +12,7 @@ from builders import scene_text
 from fake_case import FakeCase
 from test_report import CASES, TABLE
 
-from verification.app.cli import main
+from samfem.cli import main
 from verification.rows import load_rows
 from verification.suite import verify
 

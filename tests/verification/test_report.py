@@ -12,7 +12,7 @@ import pytest
 from fake_case import FakeCase
 from matplotlib.lines import Line2D
 
-from verification.app.cli import main
+from samfem.cli import main
 from verification.cases.case import Outcome, Plot, SmallTable, View
 from verification.figures import space
 from verification.figures.profiles import Profile, profiles

@@ -214,7 +214,7 @@ def untouched(tree) -> tuple[str, ...]:
         ("verification/cases/coated/layered.py", (0, 0, 0, 0, 1, 0, 0)),
         ("verification/figures/style.py", (0, 0, 1, 1, 1, 1, 1)),
         ("verification/figures/space/child.py", (0, 0, 1, 1, 1, 1, 1)),
-        ("verification/app/sweep.py", (0, 0, 0, 0, 1, 0, 0)),
+        ("samfem/sweeping.py", (0, 0, 0, 0, 1, 0, 0)),
         ("verification/data/advice.csv", (0, 0, 0, 0, 1, 0, 1)),
         ("verification/data/table-2.csv", (0, 0, 1, 1, 1, 1, 1)),
         ("verification/robustness/mutants/scope.py", (0, 0, 0, 0, 1, 1, 0)),

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from sam.scene import Result, Scene
+from sam.scene import Scene
 from verification.cases.case import (
     Case,
     Context,
@@ -22,22 +22,13 @@ from verification.cases.case import (
 )
 from verification.cases.recipes import RECIPES
 from verification.compare.comparison import compare_scene
-from verification.quantities import QUANTITIES, Measured, Reference
+from verification.quantities import QUANTITIES, Measured, Solved
 from verification.references import REFERENCES
 from verification.rows import CaseFile
 from verification.runs.models import FEM, FEM_3D, SAM
 from verification.text.console import number
 
 MODELS = {"sam": SAM, "fem": FEM, "fem-3d": FEM_3D}
-
-
-@dataclass(frozen=True)
-class Solved:
-    """A scene with its reference and the result of each model, by the name of its run."""
-
-    scene: Scene
-    reference: Reference | None
-    results: dict[str, Result]
 
 
 def scene_of(context: Context, file: CaseFile) -> Scene:

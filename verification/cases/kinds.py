@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Kinds of figures that the file of a case names, each drawn of a scene, its reference and the results of
-both models (`verification.cases.compared.Solved`). Titles and captions follow from the vocabulary.
+both models (`verification.quantities.Solved`). Titles and captions follow from the vocabulary.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,11 +15,9 @@ from verification.figures.plastic import axis_profiles, compared_peeq, residual_
 from verification.figures.profiles import Profile, profiles
 from verification.figures.style import Drawing
 from verification.figures.views import SURFACE_AXES, VON_MISES, compared_mises, compared_pressure
+from verification.quantities import Solved
 from verification.references import contact_of
 from verification.runs.sampling import peak, pressure_map
-
-if TYPE_CHECKING:
-    from verification.cases.compared import Solved
 
 COLUMNS = {
     ("line", "p_Pa"): ("Pressure", "$p/p_0$", "p0"),

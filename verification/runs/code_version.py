@@ -35,7 +35,7 @@ PACKAGES = {
     FEM: ("numpy", "scipy", "scikit-fem"),
     FEM_3D: ("numpy", "scipy", "scikit-fem", "pyamg"),
 }
-OF_CASES = ("sam", "fem_reference", "verification")
+OF_CASES = ("sam", "fem_reference", "verification", "samfem")
 NOT_OF_CASES = (
     *("verification/suite", "verification/scenes"),
     "verification/runs/code_version.py",

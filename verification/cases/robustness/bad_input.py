@@ -186,7 +186,7 @@ class EndedCommand:
     seconds: float
 
 
-SAMFEM = (sys.executable, "-m", "verification.app.cli")
+SAMFEM = (sys.executable, "-m", "samfem.cli")
 
 
 def words_for(bad: BadInput, path: Path, number: int) -> list[str]:

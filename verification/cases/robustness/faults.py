@@ -92,7 +92,7 @@ def interrupted(base: Path, seconds: float) -> tuple[Ended, Path]:
 
 def full_disk(base: Path, seconds: float) -> tuple[Ended, Path]:
     """No file may grow beyond 4 KiB: as on a full disk, writing fails in the middle of a file."""
-    code = "import resource, sys; from verification.app.cli import main; "
+    code = "import resource, sys; from samfem.cli import main; "
     code += "resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)); sys.exit(main())"
     return run(
         ["solve", str(base / "scene.toml"), "--out", str(base / "run")],
@@ -114,7 +114,7 @@ def full_file_system(base: Path, seconds: float) -> tuple[Ended, Path]:
         "sh",
         sys.executable,
         "-m",
-        "verification.app.cli",
+        "samfem.cli",
     )
     return run(
         ["solve", str(base / "scene.toml"), "--out", str(small / "run")], small / "store", command=command

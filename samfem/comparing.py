@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sam.scene import Problem, Result, Scene, SceneError, either, finer_cells, finer_mesh, read_scene
-from verification.app.compared import COMPANION, Compared, Question, Uncertain, agreement, asked, seconds
-from verification.app.refusals import Refusals
-from verification.app.solving import unconverged, write_solved
+from samfem.compared import COMPANION, Compared, Question, Uncertain, agreement, asked, seconds
+from samfem.refusals import Refusals
+from samfem.solving import unconverged, write_solved
 from verification.compare.rows import Comparison
 from verification.compare.verdicts import CLAIM, NOT_JUDGED
 from verification.figures import compare_figures
@@ -138,7 +138,7 @@ def _check_comparison(folder: Path) -> None:
 def _check_pages(given: Options) -> None:
     """Raise FolderError where a page or a JUnit file cannot be written."""
     if given.report is not None:
-        from verification.app.comparison_page import check_report  # noqa: PLC0415 - loads the suite
+        from samfem.comparison_page import check_report  # noqa: PLC0415 - loads the suite
 
         check_report(given.report)
     if given.junit is not None:
@@ -190,7 +190,7 @@ def _write_pages(jobs: Sequence[Job], found: Sequence[Compared], given: Options)
     """The page and the JUnit file, if they are asked for."""
     if given.report is None and given.junit is None:
         return
-    from verification.app.comparison_page import Scenes, junit_of, write_report  # noqa: PLC0415 - loads the suite
+    from samfem.comparison_page import Scenes, junit_of, write_report  # noqa: PLC0415 - loads the suite
 
     scenes = Scenes(
         {job.name: each for job, each in zip(jobs, found, strict=True)},
@@ -280,7 +280,9 @@ def _judge(
     off: Sequence[tuple[str, Comparison]] = (),
 ) -> int:
     """Exit code; what did not hold, and what to change, on stderr. off: rows of data that did not hold."""
-    code, (failed, claimed) = unconverged(results), _broken(rows)
+    code, broken = unconverged(results), [row for row in rows if not row.passed]
+    claimed = [row.quantity for row in broken if row.metric == CLAIM]
+    failed = [row.quantity for row in broken if row.metric != CLAIM]
     if failed and not code:  # else there is something to change first
         finer = f"to see whether the meshes are too coarse, {_finer(scene)}, and compare again"
         print(f"samfem: outside the tolerance: {', '.join(failed)}: {finer}", file=sys.stderr)
@@ -299,10 +301,3 @@ def _finer(scene: Scene) -> str:
         finer_mesh(scene) if scene.patch_surface is None else ""
     )  # of a rough scene both have the same cells
     return either(finer_cells(scene), layers, mesh) or "lower grid.extent"
-
-
-def _broken(rows: Sequence[Comparison]) -> tuple[list[str], list[str]]:
-    """Quantities outside of their tolerance, and those that break the claim of a negligible film."""
-    broken = [row for row in rows if not row.passed]
-    claimed = [row.quantity for row in broken if row.metric == CLAIM]
-    return [row.quantity for row in broken if row.metric != CLAIM], claimed

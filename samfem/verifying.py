@@ -27,7 +27,7 @@ def verify(
     if show:
         return {"cases": show_cases, "gates": show_gates}[show](case)
     with Progress(remaining=True) as progress:
-        return suite.main(case, level, out, progress, store=default_store() if use_store else None)
+        return suite.main(list(case), level, out, progress, store=default_store() if use_store else None)
 
 
 def report(folder: Path, against: Path | None = None, *, single_file: bool = False, pdf: bool = False) -> int:

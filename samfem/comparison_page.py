@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from verification.app.compared import Compared, seconds
-from verification.app.shown import status_line
+from samfem.compared import Compared, seconds
+from samfem.shown import status_line
 from verification.compare.rows import Comparison
 from verification.figures import compare_figures
 from verification.rows import RowStatus
@@ -66,9 +67,9 @@ def junit_of(scenes: Scenes) -> bytes:
     return junit_xml(cases, _gates(scenes), name="samfem compare")
 
 
-def _results(scenes: Scenes) -> dict:
+def _results(scenes: Scenes) -> dict[str, Any]:
     gates = _gates(scenes)
-    return plain(
+    content: dict[str, Any] = plain(
         {
             "format": FORMAT,
             "kind": "comparison",
@@ -80,13 +81,14 @@ def _results(scenes: Scenes) -> dict:
             "gates": gates,
         }
     )
+    return content
 
 
-def _gates(scenes: Scenes) -> list[dict]:
+def _gates(scenes: Scenes) -> list[dict[str, Any]]:
     return [gate for name, each in scenes.found.items() for gate in _rows(name, each)]
 
 
-def _rows(case: str, found: Compared) -> Iterator[dict]:
+def _rows(case: str, found: Compared) -> Iterator[dict[str, Any]]:
     """Every row as a gate: SAM is what is computed, FEM or the data what is expected."""
     for row in found.rows:
         yield _gate(case, row.quantity, row)
@@ -95,11 +97,11 @@ def _rows(case: str, found: Compared) -> Iterator[dict]:
             yield _gate(case, f"{data.name}: {row.quantity}", row)
 
 
-def _gate(case: str, name: str, row: Comparison) -> dict:
+def _gate(case: str, name: str, row: Comparison) -> dict[str, Any]:
     unit = row.quantity.split(" ")[0].rpartition("_")[2]
     status = RowStatus.PASSED if row.passed else RowStatus.FAILED
     values = {"value": row.sam, "expected": row.fem, "error": row.difference, "tolerance": row.tolerance}
-    return plain(
+    gate: dict[str, Any] = plain(
         {
             "id": name,
             "case": case,
@@ -112,9 +114,10 @@ def _gate(case: str, name: str, row: Comparison) -> dict:
             "note": "",
         }
     )
+    return gate
 
 
-def _case(name: str, found: Compared) -> dict:
+def _case(name: str, found: Compared) -> dict[str, Any]:
     """A scene as the page shows a case."""
     ended = [f"{each.model}: {each.status}: {each.message}" for each in found.results if not each.converged]
     setup = [(each.model, status_line(each)) for each in found.results]
@@ -135,12 +138,12 @@ def _case(name: str, found: Compared) -> dict:
     }
 
 
-def _figure(case: str, kind: str, title: str, words: str) -> dict:
+def _figure(case: str, kind: str, title: str, words: str) -> dict[str, Any]:
     files = {suffix: f"figures/{case}-{kind}.{suffix}" for suffix in ("png", "csv")}
     return {"title": title, "alt": words, "caption": words, "embedded": True, **files}
 
 
-def _uncertainties(found: Compared) -> dict:
+def _uncertainties(found: Compared) -> dict[str, Any]:
     rows = [
         [each.quantity, *(f"{value:.2g}" for value in (each.difference, each.sam, each.fem)), str(each.holds)]
         for each in found.uncertain
@@ -152,24 +155,12 @@ def _uncertainties(found: Compared) -> dict:
     }
 
 
-def _costs(found: Compared) -> dict:
-    def cells(values: Sequence[float | None]) -> list[str]:
-        return ["-" if value is None else f"{value:.3g}" for value in values]
-
-    rows = [
-        [
-            each.model,
-            with_time(seconds(each)),
-            *cells([each.cost.get("cpu_s"), _gib(each.cost.get("peak_memory_bytes"))]),
-        ]
-        for each in found.results
-    ]
-    return {
-        "caption": "Cost",
-        "columns": ["Model", "Wall time", "CPU time [s]", "Memory [GiB]"],
-        "rows": rows,
-    }
-
-
-def _gib(size: float | None) -> float | None:
-    return None if size is None else size / 2**30
+def _costs(found: Compared) -> dict[str, Any]:
+    rows = []
+    for each in found.results:
+        cpu, memory = each.cost.get("cpu_s"), each.cost.get("peak_memory_bytes")
+        gib = None if memory is None else memory / 2**30
+        cells = ("-" if value is None else f"{value:.3g}" for value in (cpu, gib))
+        rows.append([each.model, with_time(seconds(each)), *cells])
+    columns = ["Model", "Wall time", "CPU time [s]", "Memory [GiB]"]
+    return {"caption": "Cost", "columns": columns, "rows": rows}

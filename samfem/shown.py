@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from sam.scene import Result
 from verification.runs.files import Run
@@ -41,7 +42,7 @@ def undecided_line(result: Result | Run) -> str:
     return f"what becomes of the body under repeated loading is undecided: {what} would decide it{hint}"
 
 
-def _cells(found: Mapping[str, object]) -> str:
+def _cells(found: Mapping[str, Any]) -> str:
     """The discretisation in words."""
     if "cells" in found:
         size = " x ".join(dict.fromkeys(with_prefix(side, "m") for side in found["cell_m"]))
@@ -75,7 +76,9 @@ def uncertain_table(result: Result | Run, terminal: bool) -> tuple[tuple[str, ..
         entry = found.get(words, {})
         total, size = entry.get("u_num"), abs(result.quantities[words] or 0.0)
         of_parts = [_percent(entry.get(key), size) for name, key in parts.items() if name in shown]
-        around = "" if total is None else _quantity_text(words, total, terminal)
+        around = ""
+        if total is not None:
+            around = in_working_unit(words, total, digits=2)[1] if terminal else f"{total:.2g}"
         order = "" if entry.get("order_seen") is None else f"{entry['order_seen']:.2g}"
         short = "not converging" if total is not None and entry["flag"] else ""
         rows.append((*value, around, _percent(total, size), *of_parts, order, short))
@@ -85,7 +88,8 @@ def uncertain_table(result: Result | Run, terminal: bool) -> tuple[tuple[str, ..
 
 def uncertain_lines(result: Result | Run) -> list[str]:
     """What the uncertainty is taken from, and which quantities have none, with the reason."""
-    lines, without = [], {}
+    lines: list[str] = []
+    without: dict[str, list[str]] = {}
     for name, entry in (result.uncertainty or {}).items():
         if entry["u_num"] is None:
             without.setdefault(entry["flag"], []).append(name)
@@ -101,11 +105,6 @@ def uncertain_lines(result: Result | Run) -> list[str]:
 def _known(result: Result | Run) -> list[str]:
     """Names of the quantities that apply, in the order of `quantity_rows`."""
     return [name for name, value in (result.last_fitting or result.quantities).items() if value is not None]
-
-
-def _quantity_text(name: str, value: float, terminal: bool) -> str:
-    """An uncertainty to two digits."""
-    return in_working_unit(name, value, digits=2)[1] if terminal else f"{value:.2g}"
 
 
 def _percent(part: float | None, size: float) -> str:

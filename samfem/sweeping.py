@@ -21,7 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from sam.scene import QUANTITIES, Problem, Result, Scene, SceneError, resolved, spelling
-from verification.app.executors import Cluster, Failure, Processes, Workers, run
+from samfem.executors import Cluster, Failure, Processes, Workers, run
 from verification.cost.plan import check_needs
 from verification.figures import sensitivity_figure, sweep_figure
 from verification.runs import models
@@ -171,7 +171,8 @@ def sweep(
     if content.study.design:
         found = index_rows(state)
         write_atomically(folder / SENSITIVITY, csv_text(INDEX_COLUMNS, found).encode())
-        _draw_indices([dict(zip(INDEX_COLUMNS, row, strict=True)) for row in found], folder)
+        rows = [dict(zip(INDEX_COLUMNS, row, strict=True)) for row in found]
+        sensitivity_figure(rows, folder / "sensitivity")
     described = {"kind": "dask" if scheduler else "processes", "lost": executor.lost}
     record = _record(state) | {"workers": described, "elapsed_s": time.monotonic() - began}
     write_atomically(folder / RECORD, json_text(record).encode())
@@ -347,10 +348,6 @@ def index_rows(state: Sweep) -> list[tuple]:
             ]
             found += sorted(rows, key=lambda row: -abs(row[3]))
     return found
-
-
-def _draw_indices(rows: Sequence[Mapping], folder: Path) -> None:
-    sensitivity_figure(rows, folder / "sensitivity")
 
 
 def _record(state: Sweep) -> dict:

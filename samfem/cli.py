@@ -16,6 +16,7 @@ from contextlib import ExitStack, redirect_stderr, redirect_stdout
 from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 from verification import foreign_package
 from verification.runs.models import MODELS, SAM
@@ -37,24 +38,24 @@ SHELLS = ("bash", "zsh", "tcsh")
 CLAIMS = ("negligible-film",)
 """Those of [compare] in a scene."""
 COMMANDS = {
-    "solve": ("verification.app.solving", "solve"),
-    "plan": ("verification.app.planning", "plan"),
-    "compare": ("verification.app.comparing", "compare"),
-    "verify": ("verification.app.verifying", "verify"),
-    "report": ("verification.app.verifying", "report"),
-    "publish": ("verification.app.publishing", "publish"),
-    "pages": ("verification.app.verifying", "pages"),
-    "export": ("verification.app.exporting", "export"),
-    "store": ("verification.app.housekeeping", "store"),
-    "sweep": ("verification.app.sweep", "sweep"),
-    "view": ("verification.app.viewing", "view"),
-    "new": ("verification.app.starting", "new"),
-    "examples": ("verification.app.starting", "examples"),
-    "schema": ("verification.app.starting", "schema"),
-    "completion": ("verification.app.starting", "completion"),
+    "solve": ("samfem.solving", "solve"),
+    "plan": ("samfem.planning", "plan"),
+    "compare": ("samfem.comparing", "compare"),
+    "verify": ("samfem.verifying", "verify"),
+    "report": ("samfem.verifying", "report"),
+    "publish": ("samfem.publishing", "publish"),
+    "pages": ("samfem.verifying", "pages"),
+    "export": ("samfem.exporting", "export"),
+    "store": ("samfem.housekeeping", "store"),
+    "sweep": ("samfem.sweeping", "sweep"),
+    "view": ("samfem.viewing", "view"),
+    "new": ("samfem.starting", "new"),
+    "examples": ("samfem.starting", "examples"),
+    "schema": ("samfem.starting", "schema"),
+    "completion": ("samfem.starting", "completion"),
 }
 """Command -> module and function that run it; its options are the keywords of the function."""
-REFUSALS = "verification.app.refusals"
+REFUSALS = "samfem.refusals"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -77,7 +78,7 @@ def _ended(arguments: Sequence[str]) -> int:
         sys.stdout.flush()
         return code
     except SystemExit as stop:  # argparse: 0 after --help, 2 for a wrong command line
-        return stop.code
+        return stop.code if isinstance(stop.code, int) else NOT_MET
     except KeyboardInterrupt as stop:
         return _fail(str(stop) or "interrupted: nothing unfinished counts as a result", INTERRUPTED)
     except BrokenPipeError:  # the reader of stdout is gone
@@ -103,9 +104,10 @@ def _run(options: argparse.Namespace) -> int:
     module, function = COMMANDS[words.pop("command")]
     refusals = import_module(REFUSALS).REFUSALS
     try:
-        return getattr(import_module(module), function)(**words)
+        code: int = getattr(import_module(module), function)(**words)
     except refusals as error:
         return _fail(str(error), WRONG_INPUT)
+    return code
 
 
 def _fail(message: str, code: int) -> int:
@@ -133,7 +135,7 @@ def _parser() -> argparse.ArgumentParser:
         "2: the input is wrong.",
         allow_abbrev=False,
     )
-    what = {"dest": argparse.SUPPRESS, "default": argparse.SUPPRESS, "nargs": 0}
+    what: dict[str, Any] = {"dest": argparse.SUPPRESS, "default": argparse.SUPPRESS, "nargs": 0}
     made.add_argument("--version", action=_Version, help="show the version and stop", **what)
     commands = made.add_subparsers(title="commands", metavar="COMMAND", required=True)
     _add_scene_commands(commands)
@@ -146,15 +148,15 @@ def _parser() -> argparse.ArgumentParser:
     return made
 
 
-def _add(commands, name: str, text: str) -> argparse.ArgumentParser:
-    parser = commands.add_parser(
+def _add(commands: Any, name: str, text: str) -> argparse.ArgumentParser:
+    parser: argparse.ArgumentParser = commands.add_parser(
         name, help=text, description=text[0].upper() + text[1:] + ".", allow_abbrev=False
     )
     parser.set_defaults(command=name)
     return parser
 
 
-def _add_scene_commands(commands) -> None:
+def _add_scene_commands(commands: Any) -> None:
     solve = _add(commands, "solve", "solve a scene with one model")
     compare = _add(commands, "compare", "solve scenes with SAM and FEM and compare the results")
     plan = _add(commands, "plan", "say what will be computed and what is left out; solves nothing")
@@ -216,7 +218,7 @@ def _tolerance(text: str) -> tuple[str, float | str]:
         return name, value
 
 
-def _add_export_command(commands) -> None:
+def _add_export_command(commands: Any) -> None:
     export = _add(commands, "export", "write a mesh of a run for other programs")
     export.add_argument("folder", metavar="RUN", type=Path, help="folder that samfem solve wrote")
     what = "of Abaqus and CalculiX (the mesh alone), of Gmsh, or XDMF"
@@ -228,7 +230,7 @@ def _add_export_command(commands) -> None:
     export.add_argument("--out", metavar="FILE", type=Path, help="default: ./<its name>.<format>")
 
 
-def _add_verification_commands(commands) -> None:
+def _add_verification_commands(commands: Any) -> None:
     verify = _add(commands, "verify", "run verification cases, judge their gates and write the report")
     verify.add_argument("case", metavar="CASE", nargs="*", help="default: all cases of the level")
     verify.add_argument("--level", choices=("quick", "full"), default="quick", help="default: quick")
@@ -253,7 +255,7 @@ def _add_verification_commands(commands) -> None:
     report.add_argument("--against", metavar="OLDER", type=Path, help=older)
 
 
-def _add_publish_command(commands) -> None:
+def _add_publish_command(commands: Any) -> None:
     publish = _add(
         commands, "publish", "run the cases that are missing in a store, and write the report of all"
     )
@@ -275,7 +277,7 @@ def _add_publish_command(commands) -> None:
     publish.add_argument("--workers", metavar="N", type=_workers, default=2, help=many)
 
 
-def _add_store_command(commands) -> None:
+def _add_store_command(commands: Any) -> None:
     store = _add(commands, "store", "list the results that are kept for reuse, or prune them")
     what = "remove what is stale, damaged or left over; all: everything"
     store.add_argument("--prune", nargs="?", const="unusable", choices=("unusable", "all"), help=what)
@@ -300,7 +302,7 @@ def _days(text: str) -> float:
     return days
 
 
-def _add_sweep_command(commands) -> None:
+def _add_sweep_command(commands: Any) -> None:
     sweep = _add(commands, "sweep", "solve the scenes of a study and write one table of them")
     sweep.add_argument("path", metavar="STUDY", type=Path, help="study file (TOML)")
     place = "folder of the table, new or of an older one, which is replaced; default: ./<name of STUDY>-sweep"
@@ -319,7 +321,7 @@ def _add_sweep_command(commands) -> None:
     _add_anyway(sweep)
 
 
-def _add_view_command(commands) -> None:
+def _add_view_command(commands: Any) -> None:
     view = _add(commands, "view", "draw pictures in space of a finished run; needs no display")
     view.add_argument("folder", metavar="RUN", type=Path, help="folder that samfem solve wrote")
     one = "default: the first of these that the run has; without --out and --html: all of them"
@@ -330,7 +332,7 @@ def _add_view_command(commands) -> None:
     where.add_argument("--html", dest="page", metavar="FILE.html", type=Path, help=turned)
 
 
-def _add_starting_commands(commands, whole: argparse.ArgumentParser) -> None:
+def _add_starting_commands(commands: Any, whole: argparse.ArgumentParser) -> None:
     new = _add(commands, "new", "write a commented scene that runs")
     new.add_argument(
         "kind",
@@ -360,7 +362,7 @@ def _workers(text: str) -> int:
 
 
 class _Version(argparse.Action):
-    def __call__(self, parser, *_):
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
         print(f"samfem {version('samfem')}")
         parser.exit()
 

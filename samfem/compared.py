@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sam.scene import Problem, Progress, Result, Scene, SceneError, spelling
-from verification.app.refusals import Refusals
-from verification.app.solving import check
+from samfem.refusals import Refusals
+from samfem.solving import check
 from verification.compare.comparison import compare_data, compare_scene
 from verification.compare.own_data import OwnData, read_data
 from verification.compare.rows import COLUMNS, Comparison, Solution, table_rows
@@ -152,24 +152,6 @@ class Compared:
         times = zip(("SAM", "FEM"), map(seconds, self.results), strict=True)
         parts.append(", ".join(f"{name} {with_time(time)}" for name, time in times))
         return "".join(ended) + "; ".join(parts)
-
-    def check(self) -> None:
-        """Raise AssertionError with every row that does not hold, and every model that did not converge."""
-        lines = [
-            f"{each.model}: {each.status}: {each.message}" for each in self.results if not each.converged
-        ]
-        lines += [
-            f"{row.quantity}: SAM {row.sam:.6g}, FEM {row.fem:.6g}, {row.metric} {row.difference:.3g}, "
-            f"tolerance {row.tolerance:g}"
-            for row in self.failed
-        ]
-        lines += [
-            f"{name}: {row.quantity}: SAM {row.sam:.6g}, {name} {row.fem:.6g}, {row.metric} "
-            f"{row.difference:.3g}, tolerance {row.tolerance:g}"
-            for name, row in self.off
-        ]
-        if lines:
-            raise AssertionError("\n  ".join([self.line, *lines]))
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from sam.scene import Result, Scene
-from verification.app.executors import Failure, Processes, run
+from samfem.executors import Failure, Processes, run
 from verification.cases import Case, all_cases
 from verification.cases.case import Context, Outcome
 from verification.runs.code_version import version_of_cases

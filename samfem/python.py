@@ -1,26 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""samfem from Python: a scene, solved by SAM and by finite elements; results as pandas tables and figures.
-
-Quantities and tables are in SI units, with the unit in their name; a scene takes SI numbers or strings with
-units.
-
-Examples
---------
->>> import samfem
->>> scene = samfem.Scene(
-...     body={"young": "210 GPa", "poisson": 0.3},
-...     counterbody={"shape": "sphere", "radius": "105 um"},
-...     loading={"force": 0.65},
-... )
->>> run = samfem.solve(scene)
->>> run  # doctest: +NORMALIZE_WHITESPACE
-<samfem.Run sam, converged: p_max 8.47 GPa, contact_radius 6.05 um, approach 0.349 um;
- model: mean pressure -1.7 %>
->>> round(run.quantities["p_max_Pa"] / 1e9, 2)
-8.47
->>> run.tables["history"][["force_N", "p_max_Pa"]].shape
-(1, 2)
-"""
+"""What `import samfem` gives: the functions, what they return, and what they raise."""
 
 from __future__ import annotations
 
@@ -41,7 +20,7 @@ if TYPE_CHECKING:
 
 _others = import_module("verification")
 _file = getattr(_others, "__file__", None)
-if _file is None or Path(_file).resolve().parents[1] != Path(__file__).resolve().parent:
+if _file is None or Path(_file).resolve().parents[1] != Path(__file__).resolve().parents[1]:
     raise ImportError(
         f"samfem needs its own package verification, and Python finds another one, {_file or 'a folder'}: "
         f"uninstall the distribution that it belongs to, or install samfem in an environment of its own"
@@ -49,10 +28,16 @@ if _file is None or Path(_file).resolve().parents[1] != Path(__file__).resolve()
 if _words := _others.foreign_package():
     raise ImportError(_words)
 
-from sam.scene import HeightMap, Result, Scene, SceneError, load_scene  # noqa: E402 - only once they are ours
+from sam.scene import (  # noqa: E402 - only once they are ours
+    HeightMap as HeightMap,
+    Result,
+    Scene,
+    SceneError as SceneError,
+    load_scene,
+)
+from samfem.compared import COMPANION, Compared, compared  # noqa: E402
+from samfem.refusals import SeveralError as SeveralError  # noqa: E402
 from verification import figures  # noqa: E402
-from verification.app.compared import COMPANION, Compared, compared  # noqa: E402
-from verification.app.refusals import SeveralError  # noqa: E402
 from verification.compare.own_data import OwnData  # noqa: E402
 from verification.cost.accuracy import solve as solve_family  # noqa: E402
 from verification.runs import files, models  # noqa: E402
@@ -63,26 +48,6 @@ from verification.runs.store import default_store  # noqa: E402
 from verification.runs.study import read_study  # noqa: E402
 from verification.runs.tables import read_any_table  # noqa: E402
 from verification.text.readable import in_working_unit  # noqa: E402
-
-__all__ = [
-    "MODELS",
-    "Comparison",
-    "FolderError",
-    "HeightMap",
-    "ModelError",
-    "Run",
-    "Scene",
-    "SceneError",
-    "SeveralError",
-    "Sweep",
-    "compare",
-    "load",
-    "plan",
-    "plot",
-    "read",
-    "solve",
-    "sweep",
-]
 
 SHOWN = ("p_max_Pa", "contact_radius_m", "approach_m", "peeq_max", "friction_coefficient", "wear_volume_m3")
 """Quantities of the short representation, those of them that are not zero."""
@@ -319,9 +284,7 @@ def sweep(study: str | Path, out: str | Path | None = None, workers: int | None 
     folder = Path(out or f"{Path(study).stem}-sweep")
     words = [str(study), "--anyway", "--out", str(folder), *(["--workers", str(workers)] if workers else [])]
     # a process of its own, as its workers would run the script of the user again
-    ended = subprocess.run(
-        [sys.executable, "-m", "verification.app.cli", "sweep", *words], capture_output=True
-    )
+    ended = subprocess.run([sys.executable, "-m", "samfem.cli", "sweep", *words], capture_output=True)
     if ended.returncode == 2 or not (folder / "sweep.json").exists():
         raise FolderError(ended.stderr.decode(errors="replace").strip())
     return _sweep_in(folder)

@@ -12,7 +12,7 @@ from pathlib import Path
 from shutil import rmtree
 
 from sam.scene import Checkpoint, Result, Scene, read_scene
-from verification.app.shown import (
+from samfem.shown import (
     load_line,
     quantity_rows,
     status_line,

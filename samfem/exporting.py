@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -60,7 +61,7 @@ def _source(folder: Path, part: str, state: str) -> Path:
     raise FolderError(f"{folder} has no {stem}: it has {have}")
 
 
-def _whole(fields: Mapping) -> dict:
+def _whole(fields: Mapping[Any, Any]) -> dict[Any, Any]:
     """The fields, tensors with all nine components."""
     return {
         name: np.ascontiguousarray(values[:, NINE] if values.shape[1:] == (6,) else values)
