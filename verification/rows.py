@@ -30,18 +30,17 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
-from importlib import resources
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
-from sam.scene import Problem, SceneError, problems, spelling
+from sam.scene import Problem, SceneError, spelling
 from verification.quantities import QUANTITIES, Measured
 
 LEVELS = ("quick", "full")
-CASES = "verification/cases"
+FOLDER = Path(__file__).resolve().parent / "cases"
 FAMILIES = (
     *("hertz", "plastic", "sliding", "cyclic", "moving", "published", "energy"),
     *("coated", "rough", "film", "running_in"),
@@ -94,8 +93,9 @@ class CaseFile(BaseModel):
 
     scene: of `verification/scenes`; set: key of the scene, as `loading.force` -> its value here, in SI;
     vary: recipe of `verification.cases.recipes` -> its value; quick: `set` and `vary` that differ at that
-    level; models: that solve it; reference: an independent answer, a name in `verification.references`;
-    figures: kinds of `verification.cases.kinds`; claims: table of rows -> the names in it.
+    level; models: that solve it; values: quantity -> the number that it is held against; reference: an
+    independent answer, a name in `verification.references`; figures: kinds of `verification.cases.kinds`;
+    claims: table of rows -> the names in it.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
@@ -110,6 +110,7 @@ class CaseFile(BaseModel):
     scene: str = ""
     set: dict[str, Any] = {}
     vary: dict[str, Any] = {}
+    values: dict[str, float] = {}
     quick: dict[str, Any] = {}
     models: tuple[Literal["sam", "fem", "fem-3d"], ...] = ()
     reference: str = ""
@@ -117,20 +118,23 @@ class CaseFile(BaseModel):
     rows: tuple[Row, ...]
     claims: dict[str, tuple[str, ...]]
 
+    @property
+    def own(self) -> bool:
+        """Whether it is a file of a user."""
+        return FOLDER not in self.path.parents
+
 
 @cache
 def case_files() -> Mapping[str, CaseFile]:
     """Name -> case of the suite, in the order of the families and of the names of their files."""
-    folder = Path(str(resources.files("verification"))) / "cases"
-    paths = [path for family in FAMILIES for path in sorted((folder / family).glob("*.toml"))]
+    paths = [path for family in FAMILIES for path in sorted((FOLDER / family).glob("*.toml"))]
     cases = [case for path in paths for case in read_cases(path)]
     return {case.name: case for family in FAMILIES for case in cases if case.family == family}
 
 
 @cache
 def _equations() -> Mapping[str, Sequence[str]]:
-    text = resources.files("verification").joinpath("cases", "equations.toml").read_text(encoding="utf-8")
-    return tomllib.loads(text)
+    return tomllib.loads((FOLDER / "equations.toml").read_text(encoding="utf-8"))
 
 
 def read_cases(path: Path) -> list[CaseFile]:
@@ -171,7 +175,7 @@ def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
             **{**content, **lists}, rows=tuple(rows), claims={k: tuple(v) for k, v in tables.items()}
         )
     except ValidationError as error:
-        faults += problems(error)
+        faults += _faults(error)
     if faults:
         raise SceneError(faults, str(content["path"]))
     return case
@@ -201,9 +205,17 @@ def _rows(case: str, table: str, named: Mapping, *, reasons: Mapping, faults: li
                     kind=kind,
                 )
         except ValidationError as error:
-            faults += [Problem(f"rows.{table}.{key}.{p.key}", p.value, p.allowed) for p in problems(error)]
+            faults += _faults(error, f"rows.{table}.{key}")
         except (KeyError, TypeError, ValueError, AttributeError):
             faults.append(Problem(f"rows.{table}.{key}", spelling(cells), ROW))
+
+
+def _faults(error: ValidationError, *above: str) -> list[Problem]:
+    """What pydantic says of a file, by key."""
+    return [
+        Problem(".".join((*above, *map(str, item["loc"]))), spelling(item["input"]), item["msg"])
+        for item in error.errors(include_url=False)
+    ]
 
 
 def _braces(text: str) -> list[str]:
@@ -239,8 +251,8 @@ class RowStatus(StrEnum):
 
 @dataclass(frozen=True)
 class Verdict:
-    """A row after evaluation. value, expected: None for fields; error: in the gate's metric; note: why it is
-    red.
+    """A row after evaluation. value, expected: None for fields; points: how many values of a field;
+    error: in the gate's metric; note: why it is red.
     """
 
     row: Row
@@ -249,6 +261,7 @@ class Verdict:
     expected: float | None = None
     error: float | None = None
     unit: str = ""
+    points: int = 1
     note: str = ""
 
 
@@ -298,7 +311,7 @@ def judge(row: Row, measured: Measured | None, note: str = "") -> Verdict:
     status = RowStatus.PASSED if holds and math.isfinite(error) else RowStatus.FAILED
     note = "" if math.isfinite(error) else "not a finite number"
     value, expected = _scalar(measured.value), _scalar(measured.expected)
-    return Verdict(row, status, value, expected, error, measured.unit, note)
+    return Verdict(row, status, value, expected, error, measured.unit, int(np.size(measured.value)), note)
 
 
 def error_of(metric: str, measured: Measured) -> float:

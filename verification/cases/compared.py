@@ -22,7 +22,7 @@ from verification.cases.case import (
 )
 from verification.cases.recipes import RECIPES
 from verification.compare.comparison import compare_scene
-from verification.quantities import QUANTITIES, Measured, Solved
+from verification.quantities import QUANTITIES, Measured, Reference, Solved
 from verification.references import REFERENCES
 from verification.rows import CaseFile
 from verification.runs.models import FEM, FEM_3D, SAM
@@ -34,7 +34,7 @@ MODELS = {"sam": SAM, "fem": FEM, "fem-3d": FEM_3D}
 def scene_of(context: Context, file: CaseFile) -> Scene:
     """The scene of a case at the level of the context: keys set, then recipes applied in their order."""
     changed = file.quick if context.level == "quick" else {}
-    scene = context.scene(file.scene)
+    scene = context.scene(str(file.path.parent / file.scene) if file.scene.endswith(".toml") else file.scene)
     for key, value in (file.set | changed.get("set", {})).items():
         section, _, name = key.rpartition(".")
         scene = with_keys(scene, section, **{name: tuple(value) if isinstance(value, list) else value})
@@ -47,11 +47,10 @@ def scene_of(context: Context, file: CaseFile) -> Scene:
 class Compared(Case):
     """The case of a file with a scene."""
 
-    file: CaseFile | None = None
-
     def solve(self, context: Context) -> Solved:
         scene = scene_of(context, self.file)
-        reference = REFERENCES[self.file.reference](scene) if self.file.reference else None
+        given = Reference(self.file.values, {}) if self.file.values else None
+        reference = REFERENCES[self.file.reference](scene) if self.file.reference else given
         results = {run: context.solve(MODELS[run], scene, run.partition("-")[0]) for run in self.file.models}
         return Solved(scene, reference, {run.partition("-")[0]: each for run, each in results.items()})
 
@@ -79,7 +78,7 @@ class Compared(Case):
         scene, other, loading = found.scene, found.scene.counterbody, found.scene.loading
         a = (
             found.reference.units["a"]
-            if found.reference
+            if found.reference and found.reference.units
             else found.results["sam"].quantities["contact_radius_m"]
         )
         plasticity = scene.body.plasticity

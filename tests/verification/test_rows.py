@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""The table of gates and its evaluation: whatever is not a value within its tolerance is red."""
+"""The rows of all cases and their evaluation: whatever is not a value within its tolerance is red."""
 
 import math
 
 import numpy as np
 import pytest
+from fake_case import row
 
+from sam.scene import SceneError
 from verification.quantities import Measured
-from verification.rows import Row, RowStatus, error_of, evaluate, judge, load_rows
+from verification.rows import Row, RowStatus, error_of, evaluate, judge, load_rows, read_cases
 
 GATES = load_rows()
 IDS = [gate.id for gate in GATES]
@@ -61,9 +63,7 @@ def test_a_row_is_unchecked_and_red_when_its_case_skips_it(gate):
 
 @pytest.mark.parametrize("metric", ["relative", "absolute", "relative_l2", "at_most", "at_least", "equal"])
 def test_every_metric_turns_red_outside_its_tolerance(metric):
-    gate = Row(
-        id="x", case="y", quantity="q", metric=metric, tolerance=0.0 if metric == "equal" else 0.1, reason="r"
-    )
+    gate = row("x", "y", metric=metric, tolerance=0.0 if metric == "equal" else 0.1)
     assert judge(gate, synthetic(gate, 0.99)).status is RowStatus.PASSED
     assert judge(gate, synthetic(gate, 1.01)).status is RowStatus.FAILED
 
@@ -111,7 +111,7 @@ def test_value_of_another_case_does_not_count():
     ],
 )
 def test_values_that_do_not_fit_the_metric_fail(metric, measured):
-    gate = Row(id="x", case="y", quantity="q", metric=metric, tolerance=0.5, reason="r")
+    gate = row("x", "y", metric=metric, tolerance=0.5)
     verdict = judge(gate, measured)
     assert verdict.status is RowStatus.FAILED and verdict.note
 
@@ -124,38 +124,70 @@ def test_l2_is_weighted():
     )
 
 
-ROW = '[[gate]]\nid = "a"\ncase = "c"\nquantity = "q"\nmetric = "relative"\ntolerance = 0.1\nreason = "r"\n'
+FILE = """
+title = "t"
+question = "q"
+[reasons]
+known = "why it is so"
+[rows.exact]
+a = ["relative", 0.1, "@known", "quantity a"]
+"{sam,fem}-b" = ["at_most", 1, "because of b", "quantity b, {SAM,FEM}"]
+[cases.first]
+[cases.second]
+levels = ["full"]
+[cases.second.rows.exact]
+a = ["relative", 0.2, "wider here", "quantity a"]
+"""
+
+
+def cases_in(text, tmp_path):
+    path = tmp_path / "cases.toml"
+    path.write_text(text, encoding="utf-8")
+    return {case.name: case for case in read_cases(path)}
+
+
+def test_a_file_holds_several_cases_which_override_and_rows_in_braces(tmp_path):
+    cases = cases_in(FILE, tmp_path)
+    said = {
+        name: {r.id: (r.tolerance, r.quantity, r.kind) for r in case.rows} for name, case in cases.items()
+    }
+    pair = {"sam-b": (1.0, "quantity b, SAM", "exact"), "fem-b": (1.0, "quantity b, FEM", "exact")}
+    for name, tolerance in (("first", 0.1), ("second", 0.2)):
+        rows = {"a": (tolerance, "quantity a", "exact"), **pair}
+        assert said[name] == {f"{name}.{key}": row for key, row in rows.items()}
+    assert cases["first"].rows[0].reason == "why it is so" and cases["second"].levels == ("full",)
+
+
+def test_rows_of_models_take_their_words_from_the_vocabulary(tmp_path):
+    text = '[rows."sam/exact"]\np-max = ["relative", 0.1, "because"]\n'
+    text += '[rows."sam/fem"]\napproach = ["at_most", 1, "because"]'
+    rows = cases_in('title = "t"\n' + text, tmp_path)["cases"].rows
+    assert [(row.id, row.quantity, row.kind) for row in rows] == [
+        ("cases.sam-p-max", "largest pressure, SAM", "exact"),
+        ("cases.approach", "approach, SAM against FEM", "model"),
+    ]
 
 
 @pytest.mark.parametrize(
-    "text",
+    ("old", "new", "said"),
     [
-        ROW + ROW,
-        ROW.replace("relative", "roughly"),
-        ROW.replace("0.1", "0.0"),
-        ROW.replace("0.1", "-0.1"),
-        ROW.replace("0.1", "nan"),
-        ROW.replace("0.1", "inf"),
-        ROW.replace("0.1", '"0.1"'),
-        ROW.replace("0.1", "true"),
-        ROW.replace('reason = "r"\n', ""),
-        ROW.replace('reason = "r"', 'reason = ""'),
-        ROW + 'remark = "x"\n',
-        ROW.replace('"relative"', '"equal"'),
-        ROW.replace('case = "c"', 'case = "c"\ncases = ["c"]'),
-        ROW.replace('case = "c"', 'cases = ["c", "c"]'),
-        ROW.replace('case = "c"', "cases = [1]"),
+        ('["relative", 0.1, "@known"', '["roughly", 0.1, "@known"', "rows.exact.a.metric"),
+        ('["relative", 0.1', '["relative", 0.0', "above 0 for the others"),
+        ('["relative", 0.1', '["relative", -0.1', "rows.exact.a.tolerance"),
+        ('["relative", 0.1', '["relative", nan', "rows.exact.a.tolerance"),
+        ('["relative", 0.1', '["relative", "0.1"', "rows.exact.a.tolerance"),
+        ('["relative", 0.1', '["relative", true', "rows.exact.a.tolerance"),
+        ('"because of b"', '""', "reason"),
+        ('"@known"', '"@unknown"', "rows.exact.a"),
+        ('"quantity a"]', '"quantity a", "more"]', "rows.exact.a"),
+        ("[rows.exact]", "[rows.roughly]", "kind"),
+        ("{SAM,FEM}", "{SAM}", "rows.exact.{sam,fem}-b"),
+        ('"{sam,fem}-b"', '"{a,fem-b}"', "occurs twice"),
+        ('title = "t"', 'titel = "t"', "titel"),
+        ('title = "t"', "title = t", "case file"),
     ],
 )
-def test_bad_table_is_refused(text):
-    assert load_rows(ROW)[0].tolerance == 0.1
-    with pytest.raises(ValueError):
-        load_rows(text)
-
-
-def test_row_of_several_cases_is_one_gate_for_each():
-    gates = load_rows(ROW.replace('case = "c"', 'cases = ["c", "d-2"]'))
-    assert [(gate.id, gate.case, gate.tolerance) for gate in gates] == [
-        ("c.a", "c", 0.1),
-        ("d-2.a", "d-2", 0.1),
-    ]
+def test_a_bad_file_ends_in_an_error_that_names_file_key_and_what_is_allowed(old, new, said, tmp_path):
+    with pytest.raises(SceneError) as error:
+        cases_in(FILE.replace(old, new, 1), tmp_path)
+    assert said in str(error.value) and "cases.toml" in str(error.value)
