@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from verification.cases.case import Case, Context, Outcome
-from verification.rows import Row
+from verification.judging import Row
 
 
 @dataclass(frozen=True)

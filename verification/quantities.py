@@ -16,22 +16,9 @@ from typing import Any
 import numpy as np
 
 from sam.scene import Result, Scene
+from verification.judging import Measured
 from verification.runs.models import SAM
 from verification.runs.sampling import peak, pressure_map, pressure_on
-
-
-@dataclass(frozen=True)
-class Measured:
-    """A computed value and its independent answer.
-
-    value, expected: numbers, or arrays of one shape for relative_l2; expected stays None for at_most and
-    at_least; weight: of each entry of the arrays (1 by default); unit: for the reader only.
-    """
-
-    value: object
-    expected: object = None
-    weight: object = None
-    unit: str = ""
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from verification.cases.case import Context
 from verification.cases.coated import coated_sphere, film_limits, film_map, layered, thin_film
 from verification.cases.coated.coated_convergence import coarse_depths
 from verification.figures.coated import Map, PaperCase, change_maps, film_planes, response_errors
-from verification.quantities import Measured
+from verification.judging import Measured
 from verification.reference.layered_errors import Worst
 from verification.rows import load_rows
 from verification.runs import models

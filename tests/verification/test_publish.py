@@ -13,7 +13,7 @@ from test_report import sketch
 from sam.scene import Status
 from samfem import publishing
 from verification.cases.case import Case, Context, NotDrawnError, Outcome, Plot, with_loading
-from verification.quantities import Measured
+from verification.judging import Measured
 from verification.runs import models
 from verification.suite import earlier, freshness, outcomes, verify
 

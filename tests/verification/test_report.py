@@ -19,7 +19,7 @@ from verification.cases.case import Outcome, Plot, SmallTable, View
 from verification.figures import space
 from verification.figures.profiles import Profile, profiles
 from verification.figures.style import Drawing, new_figure, save
-from verification.quantities import Measured
+from verification.judging import Measured
 from verification.references import contact_of
 from verification.runs.files import FolderError
 from verification.suite import listing, verify

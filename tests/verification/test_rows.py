@@ -8,8 +8,8 @@ import pytest
 from fake_case import row
 
 from sam.scene import SceneError
-from verification.quantities import Measured
-from verification.rows import Row, RowStatus, error_of, evaluate, judge, load_rows, read_cases
+from verification.judging import Measured, Row, RowStatus, error_of, evaluate, judge
+from verification.rows import load_rows, read_cases
 
 GATES = load_rows()
 IDS = [gate.id for gate in GATES]

@@ -12,7 +12,7 @@ from stored import BOTH, COARSE, COARSE_KEYS, flipped
 from test_report import sketch
 
 from verification.cases.case import Context, Outcome, Plot
-from verification.quantities import Measured
+from verification.judging import Measured
 from verification.runs import models, store
 from verification.runs.store import FOLDER, Store
 from verification.suite import outcomes, verify

@@ -15,7 +15,7 @@ from pydantic import BaseModel
 
 from sam.scene import Body, CounterBody, Grid, Progress, Result, Scene, printable, read_scene
 from verification.figures import space
-from verification.quantities import Measured
+from verification.judging import Measured
 from verification.rows import LEVELS, CaseFile
 from verification.runs.files import write_atomically, write_run
 from verification.runs.models import FEM, FEM_3D, SAM

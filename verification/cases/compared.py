@@ -22,7 +22,8 @@ from verification.cases.case import (
 )
 from verification.cases.recipes import RECIPES
 from verification.compare.comparison import compare_scene
-from verification.quantities import QUANTITIES, Measured, Reference, Solved
+from verification.judging import Measured
+from verification.quantities import QUANTITIES, Reference, Solved
 from verification.references import REFERENCES
 from verification.rows import CaseFile
 from verification.runs.models import FEM, FEM_3D, SAM
@@ -119,4 +120,4 @@ class Compared(Case):
 def rows_of_compare(found: Solved) -> dict[str, Any]:
     """Name of a row of `compare` -> the difference of both models."""
     rows = compare_scene(found.scene, *found.results.values())
-    return {row.quantity: row.difference for row in rows}
+    return {row.quantity: row.error for row in rows}

@@ -19,7 +19,8 @@ from pathlib import Path
 from sam.scene import Progress
 from verification.cases import LEVELS, Case, all_cases, case_of
 from verification.cases.case import Context, NotDrawnError, Outcome
-from verification.rows import RowStatus, Verdict, evaluate, load_rows, read_cases
+from verification.judging import RowStatus, Verdict, evaluate
+from verification.rows import load_rows, read_cases
 from verification.runs import provenance
 from verification.runs.code_version import version_of_cases
 from verification.runs.files import FolderError, plain, write_atomically

@@ -25,9 +25,9 @@ from verification.cases.case import (
 )
 from verification.cases.hertz.hertz import fem_values, sam_values
 from verification.figures.profiles import convergence
+from verification.judging import error_of
 from verification.reference.convergence import Order, fit_order
 from verification.references import contact_of
-from verification.rows import error_of
 
 GRIDS = {"quick": (33, 65, 129, 257), "full": (33, 65, 129, 257, 513)}
 MESHES = {"quick": (8, 16, 32), "full": (8, 16, 32, 64)}

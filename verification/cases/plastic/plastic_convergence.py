@@ -175,7 +175,7 @@ def differences(scene: Scene, sam: Sequence[Result], fem: Sequence[Result]) -> n
     """
     rungs = []
     for pair in zip(sam, fem, strict=True):
-        rows = {row.quantity: row.difference for row in compare_scene(scene, *pair)}
+        rows = {row.quantity: row.error for row in compare_scene(scene, *pair)}
         rungs.append([rows[name] for name in NORMS])
     return np.array(rungs)
 
