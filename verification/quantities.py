@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from sam.scene import Result, Scene
 from verification.judging import Measured
 from verification.runs.models import SAM
 from verification.runs.sampling import peak, pressure_map, pressure_on
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True)
@@ -41,11 +44,14 @@ class Reference:
 
 @dataclass(frozen=True)
 class Solved:
-    """A scene with its reference and the result of each model, by the name of its run."""
+    """A scene with its reference and the result of each model, by the name of its run; frame: of the sweeps
+    of the case, see `verification.cases.sweep`.
+    """
 
     scene: Scene
     reference: Reference | None
     results: dict[str, Result]
+    frame: pd.DataFrame | None = None
 
 
 @dataclass(frozen=True)

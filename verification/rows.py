@@ -5,6 +5,10 @@ A file `verification/cases/<family>/<name>.toml` is a case, or several where it 
 each of which overrides the keys above it. A row is `name = [metric, tolerance, reason, words]` in a table
 `[rows.KIND]`; its id is `<case>.<name>`. Braces stand for several rows: `"{sam,fem}-radius"` with
 "radius, {SAM,FEM}" are two. A reason "@name" stands in `[reasons]`, an equation "name" in equations.toml.
+
+Where a case has tables `[sweeps.NAME]`, a fifth entry says what a row takes of the points of the sweeps, see
+`Take`: `"order p-max of sam"`, `"share of fem at depth = 3"`, `"limit peeq-max of sam | limit peeq-max of
+fem"` with what it is held against.
 """
 
 from __future__ import annotations
@@ -14,9 +18,9 @@ import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from sam.scene import Problem, SceneError, spelling
 from verification.judging import Row
@@ -30,7 +34,64 @@ FAMILIES = (
     *("limits", "cost", "peers", "certificates", "robustness"),
 )
 """Folders of cases, in the order of the report."""
-ROW = "a row is [metric, tolerance, reason, words]; without words its name is a quantity"
+ROW = "a row is [metric, tolerance, reason, words, take]; without words its name is a quantity"
+_TAKE = re.compile(
+    r"(?:([a-z-]+) )??([a-z0-9-]+)(?: of ([a-z0-9/ -]+?))?(?: at (.+))?|([-+.0-9e]+)", re.ASCII
+)
+_AT = re.compile(r"([a-zA-Z0-9_.-]+) (=|<|>|<=|>=) (\S+)")
+
+
+class Take(NamedTuple):
+    """What a row takes of the frame of the sweeps: `STATISTIC COLUMN of SWEEP MODEL at AXIS = VALUE, ...`.
+
+    statistic: a name in `verification.cases.sweep.STATISTICS` or of a function beside the file; of: names of
+    sweeps and models; at: (axis, comparison, value); a number alone: what is expected.
+    """
+
+    statistic: str
+    column: str
+    of: tuple[str, ...] = ()
+    at: tuple[tuple[str, str, str], ...] = ()
+    number: float | None = None
+
+    @classmethod
+    def parse(cls, text: str) -> Take:
+        """Raises ValueError for what does not read as one."""
+        found = _TAKE.fullmatch(text.strip())
+        if not found:
+            raise ValueError(f"no take: {text}")
+        statistic, column, of, at, alone = found.groups()
+        if alone or re.fullmatch(r"[0-9.]+", column):
+            return cls("", "", number=float(alone or column))
+        conditions = [_AT.fullmatch(each.strip()) for each in at.split(",")] if at else []
+        read = tuple((c[1], c[2], c[3]) for c in conditions if c)
+        if len(read) < len(conditions):
+            raise ValueError(f"no condition: {at}")
+        return cls(statistic or "value", column, tuple((of or "").split()), read)
+
+
+class SweepFile(BaseModel):
+    """Points at which the scene of a case is solved.
+
+    models: that solve each; axes: key of the scene or recipe -> its values, or name -> the keys and recipes
+    of a value; quick: axes with other values at that level; columns: quantity, or a function beside the
+    file -> "value", "between" (SAM against FEM), or the metric of its error against the reference; size: what
+    is refined, for orders and limits; demand: whether a point that does not converge breaks the case off.
+    """
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
+
+    models: tuple[Literal["sam", "fem", "fem-3d"], ...]
+    axes: dict[str, list | dict[str, dict[str, Any]]] = Field(min_length=1)
+    quick: dict[str, list | dict[str, dict[str, Any]]] = {}
+    columns: dict[str, Literal["value", "between", "relative", "absolute", "relative_l2"]]
+    size: Literal["", "cell", "step"] = ""
+    demand: bool = True
+
+    @field_validator("models", mode="before")
+    @classmethod
+    def _accept_lists(cls, value: object) -> object:
+        return tuple(value) if isinstance(value, list) else value
 
 
 class CaseFile(BaseModel):
@@ -44,7 +105,8 @@ class CaseFile(BaseModel):
     vary: recipe of `verification.cases.recipes` -> its value; quick: `set` and `vary` that differ at that
     level; models: that solve it; values: quantity -> the number that it is held against; reference: an
     independent answer, a name in `verification.references`; figures: kinds of `verification.cases.kinds`;
-    claims: table of rows -> the names in it.
+    claims: table of rows -> the names in it without a take; sweeps: its points beside the scene itself;
+    takes: id of a row -> what it takes of them, see `Take`; notes: sentences below the tables.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
@@ -66,6 +128,9 @@ class CaseFile(BaseModel):
     figures: tuple[str, ...] = ()
     rows: tuple[Row, ...]
     claims: dict[str, tuple[str, ...]]
+    sweeps: dict[str, SweepFile] = {}
+    takes: dict[str, tuple[Take, ...]] = {}
+    notes: tuple[str, ...] = ()
 
     @property
     def own(self) -> bool:
@@ -108,11 +173,13 @@ def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     """One case of a file. Raises SceneError with every fault of it."""
     faults: list[Problem] = []
     tables = content.pop("rows", {})
+    takes: dict[str, tuple[Take, ...]] = {}
     rows = [
         row
         for table in tables
-        for row in _rows(content["name"], table, tables[table], reasons=reasons, faults=faults)
+        for row in _rows(content["name"], table, tables[table], reasons=reasons, takes=takes, faults=faults)
     ]
+    claims = {table: tuple(n for n, cells in own.items() if len(cells) < 5) for table, own in tables.items()}
     named = [each for each in content.get("equations", ()) if isinstance(each, str)]
     content["equations"] = [_equations().get(e, e) if e in named else e for e in content.get("equations", ())]
     lists = {key: tuple(value) for key, value in content.items() if isinstance(value, list)}
@@ -121,7 +188,10 @@ def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     faults += [Problem("rows", name, "occurs twice") for name in twice]
     try:
         case = CaseFile(
-            **{**content, **lists}, rows=tuple(rows), claims={k: tuple(v) for k, v in tables.items()}
+            **{**content, **lists},
+            rows=tuple(rows),
+            claims={table: names for table, names in claims.items() if names},
+            takes=takes,
         )
     except ValidationError as error:
         faults += _faults(error)
@@ -130,9 +200,11 @@ def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     return case
 
 
-def _rows(case: str, table: str, named: Mapping, *, reasons: Mapping, faults: list[Problem]) -> Iterator[Row]:
+def _rows(
+    case: str, table: str, named: Mapping, *, reasons: Mapping, takes: dict, faults: list[Problem]
+) -> Iterator[Row]:
     """The rows of a table, of kind `exact`, or, where two models are held against each other or one against
-    something, `sam/fem`, `sam/exact`; what is wrong with one is added to `faults`.
+    something, `sam/fem`, `sam/exact`; what they take is added to `takes`, what is wrong with one to `faults`.
     """
     model, _, against = table.rpartition("/")
     kind = "model" if against == "fem" else against
@@ -142,8 +214,15 @@ def _rows(case: str, table: str, named: Mapping, *, reasons: Mapping, faults: li
         try:
             metric, tolerance, reason, *words = cells
             reason = reasons[reason[1:]] if reason.startswith("@") else reason
-            said = words or [f"{QUANTITIES[key].words}{of}"]
-            for name, quantity in zip(_braces(key), _braces(*said), strict=True):
+            said, *take = words or [f"{QUANTITIES[key].words}{of}"]
+            names = _braces(key)
+            if take:
+                parts = [each.split(" | ") for each in _braces(*take)]
+                takes |= {
+                    f"{case}.{name}": tuple(map(Take.parse, part))
+                    for name, part in zip(names, parts, strict=True)
+                }
+            for name, quantity in zip(names, _braces(said), strict=True):
                 yield Row(
                     id=f"{case}.{lead}{name}",
                     case=case,
