@@ -18,6 +18,7 @@ from verification.reference.elliptic import EllipticContact
 from verification.reference.flat_punch import FlatPunch
 from verification.reference.hertz import CircularContact, axis_stress, effective_modulus, largest_von_mises
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
+from verification.reference.rounded_punch import RoundedPunch
 from verification.reference.stress import von_mises
 
 
@@ -134,6 +135,48 @@ def flat_punch(scene: Scene) -> Reference:
     )
 
 
+def rounded_contact(scene: Scene) -> RoundedPunch:
+    """The elastic contact of a scene with a punch with a rounded edge."""
+    other = scene.counterbody
+    return RoundedPunch(scene.loading.force, other.flat_radius, other.radius, modulus_of(scene))
+
+
+def rounded_punch(scene: Scene) -> Reference:
+    """Ciavarella, Hills & Monno (1998); the largest pressure on 4001 places in the edge, within 1e-6; the
+    pressure to the flat end, beyond which it is steeper than any power.
+    """
+    exact, nu = rounded_contact(scene), scene.body.poisson
+    a, b, centre = exact.contact_radius, exact.flat, float(exact.pressure(0.0))
+    largest = float(exact.pressure(np.linspace(b, a, 4001)).max())
+
+    def mises(z: np.ndarray) -> np.ndarray:
+        return von_mises(exact.axis_stress(z, nu))
+
+    return Reference(
+        {
+            "approach": exact.approach,
+            "radius": a,
+            "p-center": centre,
+            "p-max": largest,
+            "pressure": lambda x, y: exact.pressure(np.hypot(x, y)),
+            "mises-axis": mises,
+        },
+        {"a": a, "p0": centre, "approach": exact.approach},
+        {
+            ("line", "p_Pa"): lambda x: exact.pressure(np.abs(x)),
+            ("line", "uz_m"): lambda x: exact.displacement(np.abs(x)),
+            ("axis", "mises_Pa"): mises,
+        },
+        deepest=2.0 * a,
+        inside=b,
+        facts=(
+            ("Contact radius a, flat end b/a", f"{a * 1e6:.5f} µm, {b / a:.5f}"),
+            ("Approach δ", f"{exact.approach * 1e9:.4f} nm"),
+            ("Pressure: centre, largest", f"{centre / 1e9:.4f}, {largest / 1e9:.4f} GPa"),
+        ),
+    )
+
+
 @cache
 def _coated_contact(layers: CoatedHalfSpace, radius: float, force: float, counter: float) -> CoatedContact:
     return solve_force(layers, radius, force, counter)
@@ -166,6 +209,7 @@ REFERENCES: Mapping[str, Callable[[Scene], Reference]] = {
     "hertz-sphere": hertz_sphere,
     "hertz-ellipse": hertz_ellipse,
     "flat-punch": flat_punch,
+    "rounded-punch": rounded_punch,
     "coated-sphere": coated_sphere,
 }
 """Name in a case file -> the answer for a scene."""

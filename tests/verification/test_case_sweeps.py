@@ -36,7 +36,7 @@ order = ["absolute", 1e-9, "made", "order", "order p-max at loading.force = 0.6 
 late = ["absolute", 1e-9, "made", "order", "order p-max at loading.force = 0.6, cells > 9 | 1.5"]
 point = ["relative", 1e-9, "made", "value at a point", "radius at cells = 17, loading.force = 0.3"]
 "r{1,2}" = ["relative", 1e-9, "made", "radius {1,2}", "last radius of {sam,made} | first radius of sam"]
-bound = ["at_least", 2.9, "made", "value alone", "ratio p-max at cells <= 17, loading.force = 0.3"]
+bound = ["at_least", 2.5, "made", "value alone", "ratio p-max at cells <= 17, loading.force = 0.3"]
 {EXTRA}
 """
 

@@ -47,8 +47,12 @@ def _maps(what: str, name: str, draw: Callable[[Solved], Drawing]) -> Callable[[
     return lambda found: Plot(draw(found), name, what[0].upper() + what[1:], alt, alt)
 
 
-def _along(*columns: tuple[str, str], name: str, title: str, until: float) -> Callable[[Solved], Plot]:
-    """Columns of tables on the curves of the reference to `until` times a, with the errors underneath."""
+def _along(
+    *columns: tuple[str, str], name: str, title: str, until: float, pressed: float = np.inf
+) -> Callable[[Solved], Plot]:
+    """Columns of tables on the curves of the reference to `until` times a, the pressure to `pressed` or to
+    where it is compared, with the errors underneath.
+    """
 
     def plot(found: Solved) -> Plot:
         units, curves = found.reference.units, found.reference.curves
@@ -61,7 +65,8 @@ def _along(*columns: tuple[str, str], name: str, title: str, until: float) -> Ca
                 run.upper(): peak(each.tables[table], place, column) for run, each in found.results.items()
             }
             series = {run: (at / a, values / units[unit]) for run, (at, values) in read.items()}
-            end = min(until, found.reference.inside / a) if column == "p_Pa" else until
+            compared = min(until, found.reference.inside / a)
+            end = until if column != "p_Pa" else compared if pressed == np.inf else pressed
 
             def exact(at: np.ndarray) -> np.ndarray:
                 return curves[table, column](at * a) / units[unit]
@@ -205,6 +210,13 @@ KINDS: Mapping[str, Callable[[Solved], Plot]] = {
     ),
     "punch": _along(
         *_PUNCH, name="profiles", title="Pressure, surface and stress under the centre", until=1.5
+    ),
+    "rounded-punch": _along(
+        *_PUNCH,
+        name="profiles",
+        title="Pressure, surface and stress under the centre",
+        until=1.5,
+        pressed=1.2,
     ),
     "loading": _loading,
     "exact-maps": _exact_maps,

@@ -12,11 +12,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sam.scene import Coating, CounterBody, Scene
+from sam.scene import Coating, CounterBody, Grid, Scene
 from verification.cases.case import with_body, with_grid, with_keys, with_loading, with_mesh
 from verification.reference.coated_sphere import CoatedContact
 from verification.reference.hertz import CircularContact
-from verification.references import coated_contact, contact_of
+from verification.references import coated_contact, contact_of, rounded_contact
 from verification.rows import CaseFile
 
 REACH = 2.2  # half of the extent: the plastic zone reaches 1.6 a in the surface at 6.2 times the yield stress
@@ -75,6 +75,13 @@ def depths_over_radius(scene: Scene, depths: Sequence[float]) -> Scene:
     return with_grid(scene, depths=tuple(a * z for z in depths))
 
 
+def grid_over_rounded_punch(scene: Scene, grid: tuple[int, float]) -> Scene:
+    """n by n cells over so many radii of the contact of a punch with a rounded edge; the depths of SAM."""
+    cells, sides = grid
+    side = sides * rounded_contact(scene).contact_radius
+    return scene.model_copy(update={"grid": Grid(cells=(cells, cells), extent=(side, side))})
+
+
 COUNTERBODIES = {"rigid": {}, "steel": {"young": 210e9, "poisson": 0.3}}
 
 
@@ -109,6 +116,7 @@ RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {
     "cells": cells_a_side,
     "depths-over-radius": depths_over_radius,
     "elements": with_mesh,
+    "grid-over-rounded-punch": grid_over_rounded_punch,
     "film": lambda scene, film: coated_scene(scene, *film),
     "cells-in-coated-contact": cells_in_coated_contact,
 }

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -12,12 +12,12 @@ import numpy as np
 
 from sam.scene import Result, Scene
 from verification.cases.case import FEM, SAM, Case, Context, Plot, SmallTable
-from verification.cases.hertz.hertz import stress_panels
 from verification.cases.recipes import COUNTERBODIES, coated_scene, resolved_grid
 from verification.figures.coated import Pressures, film_planes, film_pressures
 from verification.figures.profiles import Profile, profiles
 from verification.reference.coated_changes import largest_bare_mises, largest_mises, pressure_change
 from verification.reference.coated_sphere import CoatedContact
+from verification.reference.stress import von_mises
 from verification.references import coated_contact, contact_of
 from verification.runs.sampling import peak, pressure_map
 
@@ -292,6 +292,30 @@ def axis_panels(each: SolvedSphere) -> list[Profile]:
         return known[zeta.tobytes()]
 
     return stress_panels(each.models, (a0, p0), stress, "$z/a_0$")
+
+
+def scaled_columns(
+    results: Mapping[str, Result], table: str, columns: tuple[str, str], units: tuple[float, float]
+) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Name of a model -> (place, value) at the peak in a table, each divided by its unit."""
+    found = {name: peak(result.tables[table], *columns) for name, result in results.items()}
+    return {name: (x / units[0], y / units[1]) for name, (x, y) in found.items()}
+
+
+def stress_panels(
+    results: Mapping[str, Result], units: tuple[float, float], stress: Callable, xlabel: str
+) -> list[Profile]:
+    """Normal, lateral and von Mises stress on the axis. stress: depths (n,) -> (n, 6), both in `units`."""
+
+    def panel(title: str, ylabel: str, column: str, function: Callable) -> Profile:
+        series = scaled_columns(results, "axis", ("z_m", column), units)
+        return Profile(title, xlabel, ylabel, function, series, 1.0, "$p_0$", (0.0, 2.0))
+
+    return [
+        panel("Normal", r"$\sigma_{zz}/p_0$", "szz_Pa", lambda z: stress(z)[..., 2]),
+        panel("Lateral", r"$\sigma_{xx}/p_0$", "sxx_Pa", lambda z: stress(z)[..., 0]),
+        panel("Von Mises", r"$\sigma_\mathrm{vM}/p_0$", "mises_Pa", lambda z: von_mises(stress(z))),
+    ]
 
 
 CASES = (CoatedSphere("coated-sphere"),)
