@@ -17,7 +17,7 @@ equal          |v - e|                                         error = 0 (tolera
 
 A file `verification/cases/<family>/<name>.toml` is a case, or several where it has tables `[cases.NAME]`,
 each of which overrides the keys above it. A row is `name = [metric, tolerance, reason, words]` in a table
-`[rows.KIND]`; its id is `<case>.<name>`. Braces stand for several rows: `"{sam,fem}-radius"` with
+`[rows.KIND]`; its id is `<case>.<name>`; words may name the quantity where the row has another name. Braces stand for several rows: `"{sam,fem}-radius"` with
 "radius, {SAM,FEM}" are two. A reason "@name" stands in `[reasons]`, an equation "name" in equations.toml.
 """
 
@@ -95,7 +95,11 @@ class CaseFile(BaseModel):
     scene: of `verification/scenes`; set: key of the scene, as `loading.force` -> its value here, in SI;
     vary: recipe of `verification.cases.recipes` -> its value; quick: `set` and `vary` that differ at that
     level; models: that solve it; reference: an independent answer, a name in `verification.references`;
-    figures: kinds of `verification.cases.kinds`; claims: table of rows -> the names in it.
+    figures, views: kinds of `verification.cases.kinds`; claims: table of rows -> name -> its quantity.
+
+    allowance: rows of SAM against FEM that hold the difference over what refinement allows, known from both
+    models at the `coarser` resolution; against: recipe -> value of another scene, solved by the same models,
+    against which rows hold what changes.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
@@ -113,9 +117,13 @@ class CaseFile(BaseModel):
     quick: dict[str, Any] = {}
     models: tuple[Literal["sam", "fem", "fem-3d"], ...] = ()
     reference: str = ""
+    coarser: tuple[int, ...] = ()
+    allowance: tuple[str, ...] = ()
+    against: dict[str, Any] = {}
     figures: tuple[str, ...] = ()
+    views: tuple[str, ...] = ()
     rows: tuple[Row, ...]
-    claims: dict[str, tuple[str, ...]]
+    claims: dict[str, dict[str, str]]
 
 
 @cache
@@ -166,10 +174,9 @@ def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     lists["equations"] = tuple(map(tuple, lists["equations"]))
     twice = sorted({row.id for row in rows if sum(other.id == row.id for other in rows) > 1})
     faults += [Problem("rows", name, "occurs twice") for name in twice]
+    claims = {table: {name: _named(name, cells) for name, cells in tables[table].items()} for table in tables}
     try:
-        case = CaseFile(
-            **{**content, **lists}, rows=tuple(rows), claims={k: tuple(v) for k, v in tables.items()}
-        )
+        case = CaseFile(**{**content, **lists}, rows=tuple(rows), claims=claims)
     except ValidationError as error:
         faults += problems(error)
     if faults:
@@ -189,7 +196,8 @@ def _rows(case: str, table: str, named: Mapping, *, reasons: Mapping, faults: li
         try:
             metric, tolerance, reason, *words = cells
             reason = reasons[reason[1:]] if reason.startswith("@") else reason
-            said = words or [f"{QUANTITIES[key].words}{of}"]
+            quantity = QUANTITIES.get(_named(key, cells))
+            said = words if words and words[0] not in QUANTITIES else [f"{quantity.words}{of}"]
             for name, quantity in zip(_braces(key), _braces(*said), strict=True):
                 yield Row(
                     id=f"{case}.{lead}{name}",
@@ -204,6 +212,11 @@ def _rows(case: str, table: str, named: Mapping, *, reasons: Mapping, faults: li
             faults += [Problem(f"rows.{table}.{key}.{p.key}", p.value, p.allowed) for p in problems(error)]
         except (KeyError, TypeError, ValueError, AttributeError):
             faults.append(Problem(f"rows.{table}.{key}", spelling(cells), ROW))
+
+
+def _named(name: str, cells: Sequence) -> str:
+    """The quantity of a row."""
+    return cells[3] if len(cells) > 3 and cells[3] in QUANTITIES else name
 
 
 def _braces(text: str) -> list[str]:

@@ -9,12 +9,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from sam.scene import Scene
 from verification.cases.case import (
     Case,
     Context,
     Plot,
     SmallTable,
+    View,
     elastic_text,
     grid_text,
     mesh_text,
@@ -22,7 +25,7 @@ from verification.cases.case import (
 )
 from verification.cases.recipes import RECIPES
 from verification.compare.comparison import compare_scene
-from verification.quantities import QUANTITIES, Measured, Solved
+from verification.quantities import QUANTITIES, Measured, Quantity, Solved
 from verification.references import REFERENCES
 from verification.rows import CaseFile
 from verification.runs.models import FEM, FEM_3D, SAM
@@ -31,15 +34,25 @@ from verification.text.console import number
 MODELS = {"sam": SAM, "fem": FEM, "fem-3d": FEM_3D}
 
 
-def scene_of(context: Context, file: CaseFile) -> Scene:
+COUNTED = {
+    "plastic_iterations": "plastic iterations",
+    "operator_applications": "applications of the residual-stress operator",
+    "newton_iterations": "Newton iterations",
+    "step_cuts": "load steps cut",
+    "setup_s": "set-up [s]",
+    "solve_s": "solution [s]",
+}
+
+
+def scene_of(context: Context, file: CaseFile, **vary: Any) -> Scene:
     """The scene of a case at the level of the context: keys set, then recipes applied in their order."""
     changed = file.quick if context.level == "quick" else {}
-    scene = context.scene(file.scene)
+    scene, vary = context.scene(file.scene), file.vary | changed.get("vary", {}) | vary
     for key, value in (file.set | changed.get("set", {})).items():
         section, _, name = key.rpartition(".")
         scene = with_keys(scene, section, **{name: tuple(value) if isinstance(value, list) else value})
-    for name, value in (file.vary | changed.get("vary", {})).items():
-        scene = RECIPES[name](scene, value)
+    for name in (name for name in RECIPES if name in vary):
+        scene = RECIPES[name](scene, vary[name])
     return scene
 
 
@@ -52,27 +65,46 @@ class Compared(Case):
     def solve(self, context: Context) -> Solved:
         scene = scene_of(context, self.file)
         reference = REFERENCES[self.file.reference](scene) if self.file.reference else None
-        results = {run: context.solve(MODELS[run], scene, run.partition("-")[0]) for run in self.file.models}
-        return Solved(scene, reference, {run.partition("-")[0]: each for run, each in results.items()})
+        runs = {run.partition("-")[0]: MODELS[run] for run in self.file.models}
+        results = {run: context.solve(model, scene, run) for run, model in runs.items()}
+        if self.file.against:
+            other = scene_of(context, self.file, **self.file.against)
+            others = {run: context.solve(model, other, f"{run}-other") for run, model in runs.items()}
+            return Solved(scene, reference, results, others=others)
+        if not self.file.allowance:
+            return Solved(scene, reference, results)
+        coarse = scene_of(context, self.file, resolution=self.file.coarser)
+        cell, larger = (each.grid.extent[0] / each.grid.cells[0] for each in (scene, coarse))
+        ratios = larger / cell, scene.fem.cells_per_radius / coarse.fem.cells_per_radius
+        before = [context.solve(model, coarse, f"{run}-coarser") for run, model in runs.items()]
+        return Solved(scene, reference, results, tuple(zip(before, ratios, strict=True)))
 
     def measure(self, found: Solved) -> dict[str, Measured]:
-        """The rows of the file: `sam/exact` and the like by the vocabulary, `sam/fem` by the rows of
-        `compare`.
+        """The rows of the file: `sam/exact` and the like by the vocabulary; `sam/fem`, and what is said of both
+        models, by what is between them, where only the difference is held by the rows of `compare`.
         """
         values, difference = {}, None
+        metrics = {row.id.removeprefix(f"{self.name}."): row.metric for row in self.file.rows}
         for table, names in self.file.claims.items():
-            model, against = table.split("/")
-            for name in names:
-                quantity = QUANTITIES[name]
-                if against != "fem":
-                    measured = quantity.against(name, found.results[model], found.reference)
+            model, _, against = table.rpartition("/")
+            for name, of in names.items():
+                quantity = QUANTITIES[of]
+                if model and against != "fem":
+                    result = found.results[model]
+                    if quantity.of:
+                        measured = quantity.against(of, result, found.reference)
+                    else:
+                        measured = quantity.between(found.scene, result, found.others[model])
                     alone = against == "bound"
                     values[f"{model}-{name}"] = Measured(measured.value) if alone else measured
-                elif quantity.between:
-                    values[name] = quantity.between(found.scene, *found.results.values())
-                else:
+                elif name in self.file.allowance:
+                    *_, apart, allowed = refinement(found, quantity)
+                    values[name] = Measured(apart / allowed)
+                elif quantity.row and (metrics[name] == "at_most" or not quantity.between):
                     difference = difference or rows_of_compare(found)
                     values[name] = Measured(difference[quantity.row])
+                else:
+                    values[name] = quantity.between(found.scene, *found.results.values())
         return values
 
     def setup(self, found: Solved) -> Iterator[tuple[str, str]]:
@@ -109,12 +141,46 @@ class Compared(Case):
                 words = f"{quantity.words} [{quantity.unit}]" if quantity.unit else quantity.words
                 rows.append((words, *(number(value, 5) for value in values), off))
         yield SmallTable("Results", ("quantity", "SAM", "FEM", "difference"), rows)
+        costs = [each.cost for each in found.results.values()]
+        rows = [(words, *(number(cost.get(n), 3) for cost in costs)) for n, words in COUNTED.items()]
+        yield SmallTable("Cost", ("counter", "SAM", "FEM"), rows)
+        if self.file.allowance:
+            named = [QUANTITIES[name] for name in self.file.allowance]
+            rows = [(q.words, *(f"{1e2 * share:.2f} %" for share in refinement(found, q))) for q in named]
+            columns = "quantity", "uncertainty of SAM", "of FEM", "difference", "largest of 1 % and their sum"
+            yield SmallTable("Refinement uncertainties", columns, rows)
 
     def figures(self, found: Solved) -> Iterator[Plot]:
         from verification.cases.kinds import KINDS  # noqa: PLC0415 - loads matplotlib
 
         for kind in self.file.figures:
             yield KINDS[kind](found)
+
+    def views(self, found: Solved) -> Iterator[View]:
+        from verification.cases.kinds import VIEWS  # noqa: PLC0415 - loads matplotlib
+
+        yield from (VIEWS[name] for name in self.file.views)
+
+
+def refinement(found: Solved, quantity: Quantity) -> tuple[float, float, float, float]:
+    """Refinement uncertainties of SAM and FEM, their difference, and what is allowed: 1 %, or both
+    uncertainties where that is more.
+
+    Uncertainty: change from a coarser grid over (ratio - 1), the rest of a first-order error (Roache,
+    Verification and Validation in Computational Science and Engineering, 1998, Eq. 5.10.5.1 without its
+    factor of safety). Fields in the L2 norm, over that of FEM.
+    """
+    sam, fem = found.results.values()
+    both = quantity.between(found.scene, sam, fem)
+    norm = np.linalg.norm
+    rests = []
+    for now, (result, ratio) in zip((both.value, both.expected), found.coarser, strict=True):
+        before = quantity.between(found.scene, sam, result).expected
+        rests.append(
+            float(norm(now - before) / norm(both.expected if np.ndim(now) else before)) / (ratio - 1.0)
+        )
+    apart = float(norm(both.value - both.expected) / norm(both.expected))
+    return *rests, apart, max(0.01, sum(rests))
 
 
 def rows_of_compare(found: Solved) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from verification.cases.case import Plot
+from verification.cases.case import Plot, View
 from verification.figures.maps import FieldPair, pressure_maps
 from verification.figures.plastic import axis_profiles, compared_peeq, residual_surface
 from verification.figures.profiles import Profile, profiles
@@ -203,3 +203,12 @@ KINDS: Mapping[str, Callable[[Solved], Plot]] = {
     "residual-surface": _residual_surface,
 }
 """Name in a case file -> how it is drawn."""
+VIEWS: Mapping[str, View] = {
+    "plastic-zone": View(
+        *("sam", "plastic-zone", "zone", "The plastic zone in space"),
+        "The plastic zone of SAM below the sphere, cut open at y = 0: a bowl that is strained most below the "
+        "centre of the contact.",
+        "Plastic strain of SAM at the peak load on the cut and, where the zone reaches it, on the surface.",
+    ),
+}
+"""Name in a case file -> the picture in space."""

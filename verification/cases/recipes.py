@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sam.scene import Scene
-from verification.cases.case import with_grid, with_loading, with_mesh
+from sam.scene import Plasticity, Scene
+from verification.cases.case import with_body, with_grid, with_loading, with_mesh
 from verification.reference.hertz import CircularContact
 from verification.references import contact_of
 
@@ -59,5 +59,16 @@ def layer_faces(cells: int) -> np.ndarray:
     return even + GROWTH * np.maximum(even - EVEN, 0.0) ** 2
 
 
-RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {"p0-over-yield": at_ratio, "resolution": resolved_at}
-"""Name in a case file -> what it does to the scene."""
+def with_layer(scene: Scene, law: Mapping[str, str | float]) -> Scene:
+    """The scene with another law of its layer."""
+    content = scene.body.plasticity.model_dump() | {"layer": dict(law)}
+    return with_body(scene, plasticity=Plasticity(**content))
+
+
+RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {
+    "elastic": lambda scene, value: with_body(scene, plasticity=None) if value else scene,
+    "layer": with_layer,
+    "p0-over-yield": at_ratio,
+    "resolution": resolved_at,
+}
+"""Name in a case file -> what it does to the scene, in the order in which they are applied."""
