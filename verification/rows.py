@@ -17,8 +17,9 @@ equal          |v - e|                                         error = 0 (tolera
 
 A file `verification/cases/<family>/<name>.toml` is a case, or several where it has tables `[cases.NAME]`,
 each of which overrides the keys above it. A row is `name = [metric, tolerance, reason, words]` in a table
-`[rows.KIND]`; its id is `<case>.<name>`; words may name the quantity where the row has another name. Braces stand for several rows: `"{sam,fem}-radius"` with
-"radius, {SAM,FEM}" are two. A reason "@name" stands in `[reasons]`, an equation "name" in equations.toml.
+`[rows.KIND]`; its id is `<case>.<name>`; words may be the name of its quantity where the row has another.
+Braces stand for several rows: `"{sam,fem}-radius"` with "radius, {SAM,FEM}" are two. A reason "@name"
+stands in `[reasons]`, an equation "name" in equations.toml.
 """
 
 from __future__ import annotations

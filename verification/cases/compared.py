@@ -80,8 +80,8 @@ class Compared(Case):
         return Solved(scene, reference, results, tuple(zip(before, ratios, strict=True)))
 
     def measure(self, found: Solved) -> dict[str, Measured]:
-        """The rows of the file: `sam/exact` and the like by the vocabulary; `sam/fem`, and what is said of both
-        models, by what is between them, where only the difference is held by the rows of `compare`.
+        """The rows of the file: `sam/exact` and the like by the vocabulary; `sam/fem`, and what is said of
+        both models, by what is between them, where only the difference is held by the rows of `compare`.
         """
         values, difference = {}, None
         metrics = {row.id.removeprefix(f"{self.name}."): row.metric for row in self.file.rows}
