@@ -12,25 +12,14 @@ from functools import cache
 import numpy as np
 
 from sam.scene import Scene
-from verification.quantities import Reference
+from verification.quantities import Reference, contact_of, modulus_of
 from verification.reference.coated_sphere import CoatedContact, solve_force
 from verification.reference.elliptic import EllipticContact
 from verification.reference.flat_punch import FlatPunch
-from verification.reference.hertz import CircularContact, axis_stress, effective_modulus, largest_von_mises
+from verification.reference.hertz import axis_stress, largest_von_mises
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
 from verification.reference.rounded_punch import RoundedPunch
 from verification.reference.stress import von_mises
-
-
-def modulus_of(scene: Scene) -> float:
-    """The contact modulus E* in Pa: 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2."""
-    body, other = scene.body, scene.counterbody
-    return effective_modulus(body.young, body.poisson, other.young, other.poisson)
-
-
-def contact_of(scene: Scene) -> CircularContact:
-    """The elastic contact of a scene with a sphere."""
-    return CircularContact(scene.loading.force, scene.counterbody.radius, modulus_of(scene))
 
 
 def elliptic_contact(scene: Scene) -> EllipticContact:
@@ -60,6 +49,7 @@ def hertz_sphere(scene: Scene) -> Reference:
             "mises-depth": depth,
             "pressure": lambda x, y: exact.pressure(np.hypot(x, y)),
             "mises-axis": lambda z: von_mises(stress(z)),
+            "peeq-max": 0.0,
         },
         {"a": a, "p0": p0, "approach": delta},
         {

@@ -3,8 +3,9 @@
 
 A file `verification/cases/<family>/<name>.toml` is a case, or several where it has tables `[cases.NAME]`,
 each of which overrides the keys above it. A row is `name = [metric, tolerance, reason, words]` in a table
-`[rows.KIND]`; its id is `<case>.<name>`. Braces stand for several rows: `"{sam,fem}-radius"` with
-"radius, {SAM,FEM}" are two. A reason "@name" stands in `[reasons]`, an equation "name" in equations.toml.
+`[rows.KIND]`; its id is `<case>.<name>`; words may be the name of its quantity where the row has another.
+Braces stand for several rows: `"{sam,fem}-radius"` with "radius, {SAM,FEM}" are two. A reason "@name"
+stands in `[reasons]`, an equation "name" in equations.toml.
 
 Where a case has tables `[sweeps.NAME]`, a fifth entry says what a row takes of the points of the sweeps, see
 `Take`: `"order p-max of sam"`, `"share of fem at depth = 3"`, `"limit peeq-max of sam | limit peeq-max of
@@ -105,8 +106,13 @@ class CaseFile(BaseModel):
     vary: recipe of `verification.cases.recipes` -> its value; quick: `set` and `vary` that differ at that
     level; models: that solve it; values: quantity -> the number that it is held against; reference: an
     independent answer, a name in `verification.references`; figures: kinds of `verification.cases.kinds`;
-    claims: table of rows -> the names in it without a take; sweeps: its points beside the scene itself;
-    takes: id of a row -> what it takes of them, see `Take`; notes: sentences below the tables.
+    claims: table of rows -> name -> its quantity, of those without a take; sweeps: its points beside the
+    scene itself; takes: id of a row -> what it takes of them, see `Take`; notes: sentences below the
+    tables; views: pictures in space.
+
+    allowance: rows of SAM against FEM that hold the difference over what refinement allows, known from
+    both models at the `coarser` resolution; against: recipe -> value of another scene, solved by the same
+    models, against which rows hold what changes.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
@@ -125,9 +131,13 @@ class CaseFile(BaseModel):
     quick: dict[str, Any] = {}
     models: tuple[Literal["sam", "fem", "fem-3d"], ...] = ()
     reference: str = ""
+    coarser: tuple[int, ...] = ()
+    allowance: tuple[str, ...] = ()
+    against: dict[str, Any] = {}
     figures: tuple[str, ...] = ()
+    views: tuple[str, ...] = ()
     rows: tuple[Row, ...]
-    claims: dict[str, tuple[str, ...]]
+    claims: dict[str, dict[str, str]]
     sweeps: dict[str, SweepFile] = {}
     takes: dict[str, tuple[Take, ...]] = {}
     notes: tuple[str, ...] = ()
@@ -179,20 +189,18 @@ def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
         for table in tables
         for row in _rows(content["name"], table, tables[table], reasons=reasons, takes=takes, faults=faults)
     ]
-    claims = {table: tuple(n for n, cells in own.items() if len(cells) < 5) for table, own in tables.items()}
     named = [each for each in content.get("equations", ()) if isinstance(each, str)]
     content["equations"] = [_equations().get(e, e) if e in named else e for e in content.get("equations", ())]
     lists = {key: tuple(value) for key, value in content.items() if isinstance(value, list)}
     lists["equations"] = tuple(map(tuple, lists["equations"]))
     twice = sorted({row.id for row in rows if sum(other.id == row.id for other in rows) > 1})
     faults += [Problem("rows", name, "occurs twice") for name in twice]
+    claims = {
+        table: {name: _named(name, cells) for name, cells in named.items() if len(cells) < 5}
+        for table, named in tables.items()
+    }
     try:
-        case = CaseFile(
-            **{**content, **lists},
-            rows=tuple(rows),
-            claims={table: names for table, names in claims.items() if names},
-            takes=takes,
-        )
+        case = CaseFile(**{**content, **lists}, rows=tuple(rows), claims=claims, takes=takes)
     except ValidationError as error:
         faults += _faults(error)
     if faults:
@@ -214,7 +222,10 @@ def _rows(
         try:
             metric, tolerance, reason, *words = cells
             reason = reasons[reason[1:]] if reason.startswith("@") else reason
-            said, *take = words or [f"{QUANTITIES[key].words}{of}"]
+            quantity = _named(key, cells)
+            said, *take = (
+                words if words and words[0] not in QUANTITIES else [f"{QUANTITIES[quantity].words}{of}"]
+            )
             names = _braces(key)
             if take:
                 parts = [each.split(" | ") for each in _braces(*take)]
@@ -244,6 +255,11 @@ def _faults(error: ValidationError, *above: str) -> list[Problem]:
         Problem(".".join((*above, *map(str, item["loc"]))), spelling(item["input"]), item["msg"])
         for item in error.errors(include_url=False)
     ]
+
+
+def _named(name: str, cells: Sequence) -> str:
+    """The quantity of a row."""
+    return cells[3] if len(cells) > 3 and cells[3] in QUANTITIES else name
 
 
 def _braces(text: str) -> list[str]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from verification.cases.case import Plot
+from verification.cases.case import Plot, View
 from verification.cases.sweep import BOTH, fitted, spelt, words_of
 from verification.figures.friction import CYCLES, Curve, curves
 from verification.figures.maps import FieldPair, maps_over_axes, pressure_maps
@@ -302,3 +302,12 @@ SWEPT: Mapping[str, Callable[..., Plot]] = {
     "maps": _maps,
 }
 """First word of a figure in a case file -> how the frame of its sweeps is drawn; the others are handed on."""
+VIEWS: Mapping[str, View] = {
+    "plastic-zone": View(
+        *("sam", "plastic-zone", "zone", "The plastic zone in space"),
+        "The plastic zone of SAM below the sphere, cut open at y = 0: a bowl that is strained most below the "
+        "centre of the contact.",
+        "Plastic strain of SAM at the peak load on the cut and, where the zone reaches it, on the surface.",
+    ),
+}
+"""Name in a case file -> the picture in space."""

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sam.scene import Coating, CounterBody, Grid, Scene
+from sam.scene import Coating, CounterBody, Grid, Plasticity, Scene
 from verification.cases.case import with_body, with_grid, with_keys, with_loading, with_mesh
 from verification.reference.coated_sphere import CoatedContact
 from verification.reference.hertz import CircularContact
@@ -64,6 +64,12 @@ def layer_faces(cells: int) -> np.ndarray:
     return even + GROWTH * np.maximum(even - EVEN, 0.0) ** 2
 
 
+def with_layer(scene: Scene, law: Mapping[str, str | float]) -> Scene:
+    """The scene with another law of its layer."""
+    content = scene.body.plasticity.model_dump() | {"layer": dict(law)}
+    return with_body(scene, plasticity=Plasticity(**content))
+
+
 def cells_a_side(scene: Scene, n: int) -> Scene:
     """A grid of n by n cells over the extent of the scene."""
     return with_grid(scene, cells=(n, n))
@@ -111,6 +117,8 @@ def cells_in_coated_contact(scene: Scene, cells: int) -> Scene:
 
 
 RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {
+    "elastic": lambda scene, value: with_body(scene, plasticity=None) if value else scene,
+    "layer": with_layer,
     "p0-over-yield": at_ratio,
     "resolution": resolved_at,
     "cells": cells_a_side,
@@ -120,7 +128,7 @@ RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {
     "film": lambda scene, film: coated_scene(scene, *film),
     "cells-in-coated-contact": cells_in_coated_contact,
 }
-"""Name in a case file -> what it does to the scene."""
+"""Name in a case file -> what it does to the scene, in the order in which those of a case are applied."""
 
 
 def beside(file: CaseFile, name: str, known: Mapping[str, Any]) -> Any:
