@@ -94,8 +94,10 @@ class CaseFile(BaseModel):
 
     scene: of `verification/scenes`; set: key of the scene, as `loading.force` -> its value here, in SI;
     vary: recipe of `verification.cases.recipes` -> its value; quick: `set` and `vary` that differ at that
-    level; models: that solve it; reference: an independent answer, a name in `verification.references`;
-    figures: kinds of `verification.cases.kinds`; claims: table of rows -> the names in it.
+    level; models: that solve it; runs: name -> {model, set, vary}, beside these, which need not converge;
+    variants: name -> {words, set, vary} of the scene, each solved and measured by itself if rows or `also`
+    name it; reference: an independent answer, a name in `verification.references`; figures: kinds of
+    `verification.cases.kinds`; claims: table of rows -> the names in it.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
@@ -112,6 +114,9 @@ class CaseFile(BaseModel):
     vary: dict[str, Any] = {}
     quick: dict[str, Any] = {}
     models: tuple[Literal["sam", "fem", "fem-3d"], ...] = ()
+    runs: dict[str, dict[str, Any]] = {}
+    variants: dict[str, dict[str, Any]] = {}
+    also: tuple[str, ...] = ()
     reference: str = ""
     figures: tuple[str, ...] = ()
     rows: tuple[Row, ...]
@@ -154,11 +159,14 @@ def _merged(first: Mapping, second: Mapping) -> dict:
 def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     """One case of a file. Raises SceneError with every fault of it."""
     faults: list[Problem] = []
-    tables = content.pop("rows", {})
+    variants, tables = content.get("variants", {}), dict[str, dict[str, Any]]()
+    for heads, named in content.pop("rows", {}).items():
+        for head in _braces(heads):
+            tables[head] = tables.get(head, {}) | named
     rows = [
         row
-        for table in tables
-        for row in _rows(content["name"], table, tables[table], reasons=reasons, faults=faults)
+        for table, named in tables.items()
+        for row in _rows(content["name"], table, named, reasons=reasons, variants=variants, faults=faults)
     ]
     named = [each for each in content.get("equations", ()) if isinstance(each, str)]
     content["equations"] = [_equations().get(e, e) if e in named else e for e in content.get("equations", ())]
@@ -167,9 +175,8 @@ def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     twice = sorted({row.id for row in rows if sum(other.id == row.id for other in rows) > 1})
     faults += [Problem("rows", name, "occurs twice") for name in twice]
     try:
-        case = CaseFile(
-            **{**content, **lists}, rows=tuple(rows), claims={k: tuple(v) for k, v in tables.items()}
-        )
+        claims = {head: tuple(n for key in named for n in _braces(key)) for head, named in tables.items()}
+        case = CaseFile(**{**content, **lists}, rows=tuple(rows), claims=claims)
     except ValidationError as error:
         faults += problems(error)
     if faults:
@@ -177,20 +184,33 @@ def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     return case
 
 
-def _rows(case: str, table: str, named: Mapping, *, reasons: Mapping, faults: list[Problem]) -> Iterator[Row]:
+def head_of(table: str, variants: Mapping) -> tuple[str, str, str]:
+    """Variant, model and what it is held against, of the name of a table of rows; "" for what it lacks."""
+    first, _, rest = table.partition("/")
+    variant, rest = (first, rest) if first in variants else ("", table)
+    model, _, against = rest.rpartition("/")
+    return variant, model, against
+
+
+def _rows(
+    case: str, table: str, named: Mapping, *, reasons: Mapping, variants: Mapping, faults: list[Problem]
+) -> Iterator[Row]:
     """The rows of a table, of kind `exact`, or, where two models are held against each other or one against
-    something, `sam/fem`, `sam/exact`; what is wrong with one is added to `faults`.
+    something, `sam/fem`, `sam/exact`, after the name of a variant of the scene if there are; what is wrong
+    with one is added to `faults`.
     """
-    model, _, against = table.rpartition("/")
+    variant, model, against = head_of(table, variants)
     kind = "model" if against == "fem" else against
-    lead = f"{model}-" if model and kind != "model" else ""
-    of = f", {model.upper()}" + " against FEM" * (kind == "model") if model else ""
+    lead = f"{variant}-" * bool(variant) + (f"{model}-" if model and kind != "model" else "")
+    of = f", {variants[variant]['words']}" if variant else ""
+    of += f", {model.upper()}" + " against FEM" * (kind == "model") if model else ""
     for key, cells in named.items():
         try:
             metric, tolerance, reason, *words = cells
             reason = reasons[reason[1:]] if reason.startswith("@") else reason
-            said = words or [f"{QUANTITIES[key].words}{of}"]
-            for name, quantity in zip(_braces(key), _braces(*said), strict=True):
+            names = _braces(key)
+            said = _braces(*words) if words else [f"{QUANTITIES[name].words}{of}" for name in names]
+            for name, quantity in zip(names, said, strict=True):
                 yield Row(
                     id=f"{case}.{lead}{name}",
                     case=case,

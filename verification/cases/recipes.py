@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sam.scene import Scene
-from verification.cases.case import with_grid, with_loading, with_mesh
+from sam.scene import Friction, Grid, Loading, Path, Scene
+from verification.cases.case import with_body, with_grid, with_keys, with_loading, with_mesh
 from verification.reference.hertz import CircularContact
 from verification.references import contact_of
 
@@ -59,5 +59,64 @@ def layer_faces(cells: int) -> np.ndarray:
     return even + GROWTH * np.maximum(even - EVEN, 0.0) ** 2
 
 
-RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {"p0-over-yield": at_ratio, "resolution": resolved_at}
+BOX = 6.0  # elastic contact radii: the far field of the point forces is prescribed there
+
+
+def sliding_scene(base: Scene, ratio: float, friction: float, resolution: Resolution) -> Scene:
+    """Loading to p0 = ratio times the initial yield stress with friction, on these grids."""
+    scene = resolved_at(with_loading(at_ratio(base, ratio), unload=False), resolution)
+    scene = with_keys(scene, "fem", box=BOX)
+    return rubbed(scene, {"coefficient": friction}) if friction else scene
+
+
+def rubbed(scene: Scene, keys: Mapping[str, Any]) -> Scene:
+    """The scene with friction of these keys."""
+    return scene.model_copy(update={"friction": Friction(**keys)})
+
+
+def given_tractions(scene: Scene, friction: float) -> Scene:
+    """The scene with the Hertz pressure of its elastic contact in place of the counter-body, and traction."""
+    elastic, steps = contact_of(scene), scene.loading.steps
+    size = {"p0": elastic.peak_pressure, "radius": elastic.contact_radius}
+    loading = Loading(prescribed="hertz", **size, steps=steps)
+    changed = {"counterbody": None, "loading": loading, "friction": Friction(coefficient=friction)}
+    return scene.model_copy(update=changed)
+
+
+def even_depths(scene: Scene, deepest: float, count: int = 81) -> Scene:
+    """Output depths from 0 to `deepest` radii of a given pressure."""
+    return with_grid(
+        scene, depths=tuple(float(z) * scene.loading.radius for z in np.linspace(0, deepest, count))
+    )
+
+
+WAY, PASS_STEPS, PASS_CELLS = 2.0, 20, 6  # half of the way in radii, its steps, cells in the radius
+BESIDE = (2.0, 1.8, 2.0)  # grid beyond the way of the centre along x, to its sides and in depth, in radii
+
+
+def travelling(scene: Scene, keys: Mapping[str, float]) -> Scene:
+    """A given Hertz pressure of radius 10 um that travels along x in so many passes; over_shear: p0 over the
+    shear yield stress.
+    """
+    radius, (ahead, beside, below) = 1e-5, BESIDE
+    h = radius / PASS_CELLS
+    nx, ny = (2 * round(half * PASS_CELLS) + 1 for half in (WAY + ahead, beside))
+    path = Path(start=(-WAY * radius, 0.0), end=(WAY * radius, 0.0), steps=PASS_STEPS)
+    size = {"p0": keys["over_shear"] * initial_yield(scene) / np.sqrt(3.0), "radius": radius}
+    loading = Loading(prescribed="hertz", **size, path=path, steps=2, unload=True, cycles=int(keys["passes"]))
+    depths = tuple(h * np.arange(round(below * PASS_CELLS) + 1))
+    grid = Grid(cells=(nx, ny), extent=(nx * h, ny * h), depths=depths)
+    return scene.model_copy(update={"counterbody": None, "loading": loading, "grid": grid})
+
+
+RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {
+    "p0-over-yield": at_ratio,
+    "resolution": resolved_at,
+    "elastic": lambda scene, _: with_body(scene, plasticity=None),
+    "friction": rubbed,
+    "coupling": lambda scene, on: with_keys(scene, "friction", coupling=on) if scene.friction else scene,
+    "given": given_tractions,
+    "depths": even_depths,
+    "travelling": travelling,
+}
 """Name in a case file -> what it does to the scene."""
