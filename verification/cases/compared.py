@@ -119,29 +119,19 @@ class Compared(Case):
         if any(each.scene.friction for each in found.values()):
             yield "Traction", "full slip along +x on the body in every step"
         yield from first.reference.facts if first.reference else ()
-        for run, result in first.results.items():
+        for run, result in [*first.results.items()][: len(self.file.models) or 1]:
             yield run.upper(), grid_text(result, a) if result.model == SAM else mesh_text(result)
 
     def tables(self, found: Mapping[str, Solved]) -> Iterator[SmallTable]:
-        runs = {(name, run): each for name, one in found.items() for run, each in one.results.items()}
-        if len(runs) == 2 and [*found] == [""]:
-            yield SmallTable(
-                "Results", ("quantity", "SAM", "FEM", "difference"), _side_by_side(*runs.values())
-            )
         if not self.file.variants:
+            if set(found[""].results) == {"sam", "fem"}:
+                rows = _side_by_side(*found[""].results.values())
+                yield SmallTable("Results", ("quantity", "SAM", "FEM", "difference"), rows)
             return
-        scalars = [q for q in QUANTITIES.values() if any(q.row in each.quantities for each in runs.values())]
-        heads = (f"{q.words} [{q.unit}]" if q.unit else q.words for q in scalars)
-        words = {name: each["words"] for name, each in self.file.variants.items()}
-        yield SmallTable(
-            "Results",
-            ("", "run", *heads),
-            [
-                (words[name], run, *(number(each.quantities.get(q.row, math.nan), 4) for q in scalars))
-                for (name, run), each in runs.items()
-            ],
-        )
-        if self.file.also:
+        also = {name: found[name] for name in self.file.also}
+        yield _results("Results", self.file, {name: found[name] for name in found if name not in also})
+        if also:
+            yield _results("Refinement", self.file, also)
             yield _differences(self.file, found)
 
     def figures(self, found: Mapping[str, Solved]) -> Iterator[Plot]:
@@ -171,6 +161,26 @@ def between(name: str, solved: Solved) -> Measured:
         return measured
     rows = {row.quantity: row.difference for row in compare_scene(solved.scene, *pair)}
     return Measured(rows[quantity.row])
+
+
+def _results(caption: str, file: CaseFile, found: Mapping[str, Solved]) -> SmallTable:
+    """The quantities of every run."""
+    runs = [(name, run, each) for name, solved in found.items() for run, each in solved.results.items()]
+    shown = [
+        q for q in QUANTITIES.values() if any(each.quantities.get(q.row) is not None for *_, each in runs)
+    ]
+    words = {name: file.variants[name]["words"].replace("mu = ", "μ = ").rpartition(" = ") for name in found}
+    (head,) = {head for head, *_ in words.values()} if len({h for h, *_ in words.values()}) == 1 else ("",)
+    columns = (f"{q.words} [{q.unit}]" if q.unit else q.words for q in shown)
+    rows = [
+        (
+            words[name][2],
+            run.upper() if run in ("sam", "fem") else f"SAM, {run}",
+            *(number(each.quantities.get(q.row), 5) for q in shown),
+        )
+        for name, run, each in runs
+    ]
+    return SmallTable(caption, (head or "variant", "model", *columns), rows)
 
 
 def _differences(file: CaseFile, found: Mapping[str, Solved]) -> SmallTable:

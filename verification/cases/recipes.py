@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sam.scene import Friction, Grid, Loading, Path, Scene
+from sam.scene import Friction, Grid, Loading, Path, Plasticity, Scene
 from verification.cases.case import with_body, with_grid, with_keys, with_loading, with_mesh
 from verification.reference.hertz import CircularContact
 from verification.references import contact_of
@@ -109,6 +109,50 @@ def travelling(scene: Scene, keys: Mapping[str, float]) -> Scene:
     return scene.model_copy(update={"counterbody": None, "loading": loading, "grid": grid})
 
 
+BESIDE_TRACK, BEHIND, DEEP = 1.8, 2.2, 3.0  # radii of the grid beside a track, at its ends, and below
+EVEN_TO, LAYER_GROWTH = 1.2, 1.2  # radii down to which layers are as thick as a cell; ratio of deeper ones
+TRACK = 6.0  # radii of a track: three to be steady, one and a half before its end
+TRACK_RATIO = 4.0  # p0 over the initial yield stress
+
+
+def radius_at(scene: Scene, ratio: float = TRACK_RATIO) -> float:
+    """Hertz radius in m of a rigid sphere at p0 = ratio times the initial yield stress."""
+    modulus = scene.body.young / (1 - scene.body.poisson**2)
+    return float(np.pi * ratio * virgin_strength(scene) * scene.counterbody.radius / (2 * modulus))
+
+
+def virgin_strength(scene: Scene) -> float:
+    """Yield stress of unstrained material in Pa."""
+    return float(scene.body.plasticity.strength().stress(0.0, np.zeros(1))[0])
+
+
+def on_track(scene: Scene, keys: Mapping[str, Any]) -> Scene:
+    """The scene with a track along x on a grid of its own. cells, per_radius: cells and steps in a radius;
+    length in radii; ratio: p0 over the yield stress; shift: of the track in cells; back: from its other end;
+    cycles: passes; to_and_fro, or one way.
+    """
+    cells, length, shift = keys["cells"], keys.get("length", TRACK), keys.get("shift", 0.0)
+    ratio = keys.get("ratio", TRACK_RATIO)
+    a = radius_at(scene, ratio)
+    h, faces = a / cells, [0.0]
+    while faces[-1] < DEEP * a:
+        even = len(faces) <= round(EVEN_TO * cells)
+        faces.append(faces[-1] + (h if even else (faces[-1] - faces[-2]) * LAYER_GROWTH))
+    half = length / 2 + BEHIND + abs(shift) / cells
+    count = 2 * int(np.ceil(half * cells)) + 1, 2 * round(BESIDE_TRACK * cells) + 1
+    ends = [(x * a + shift * h, 0.0) for x in (-length / 2, length / 2)]
+    start, end = ends[::-1] if keys.get("back") else ends
+    comes_back = {"return": "to-and-fro" if keys.get("to_and_fro") else "lifted"}
+    path = Path(start=start, end=end, steps=round(length * keys.get("per_radius", 4.0)), **comes_back)
+    force = float(2 / 3 * np.pi * ratio * virgin_strength(scene) * a**2)
+    scene = with_loading(scene, force=force, path=path, cycles=keys.get("cycles", 1))
+    return with_grid(scene, cells=count, extent=(count[0] * h, count[1] * h), depths=tuple(faces))
+
+
+KINEMATIC = {"law": "perfect", "yield_stress": 1e9, "kinematic": {"modulus": (20e9,), "recovery": (0.0,)}}
+"""Steel of Prager's law."""
+
+
 RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {
     "p0-over-yield": at_ratio,
     "resolution": resolved_at,
@@ -118,5 +162,7 @@ RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {
     "given": given_tractions,
     "depths": even_depths,
     "travelling": travelling,
+    "kinematic": lambda scene, _: with_body(scene, plasticity=Plasticity(**KINEMATIC)),
+    "track": on_track,
 }
 """Name in a case file -> what it does to the scene."""
