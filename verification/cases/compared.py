@@ -5,10 +5,9 @@ against the reference, and SAM against finite elements. Everything that is shown
 
 from __future__ import annotations
 
-import math
-from collections import ChainMap
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import reduce
 from typing import Any
 
 from sam.scene import Result, Scene
@@ -24,9 +23,9 @@ from verification.cases.case import (
 )
 from verification.cases.recipes import RECIPES
 from verification.compare.comparison import compare_scene
-from verification.quantities import QUANTITIES, Measured, Solved
+from verification.quantities import QUANTITIES, Measured, Solved, of_passes
 from verification.references import REFERENCES
-from verification.rows import CaseFile, error_of, head_of
+from verification.rows import CaseFile, error_of, head_of, merged
 from verification.runs.models import FEM, FEM_3D, SAM
 from verification.text.console import number
 
@@ -37,12 +36,13 @@ def scene_of(context: Context, file: CaseFile, *changes: Mapping[str, Any]) -> S
     """The scene of a case at the level of the context, changed by a variant and a run of it: keys set, then
     recipes applied in their order.
     """
-    said = ({"set": file.set, "vary": file.vary}, file.quick if context.level == "quick" else {}, *changes)
+    quick = file.quick if context.level == "quick" else {}
+    said = reduce(merged, ({"set": file.set, "vary": file.vary}, quick, *changes))
     scene = context.scene(file.scene)
-    for key, value in ChainMap(*(each.get("set", {}) for each in said[::-1])).items():
+    for key, value in said["set"].items():
         section, _, name = key.rpartition(".")
         scene = with_keys(scene, section, **{name: tuple(value) if isinstance(value, list) else value})
-    for name, value in ChainMap(*(each.get("vary", {}) for each in said[::-1])).items():
+    for name, value in said["vary"].items():
         scene = RECIPES[name](scene, value)
     return scene
 
@@ -130,6 +130,8 @@ class Compared(Case):
             return
         also = {name: found[name] for name in self.file.also}
         yield _results("Results", self.file, {name: found[name] for name in found if name not in also})
+        for name, solved in found.items():
+            yield from _passes(self.file.variants[name]["words"], solved.results)
         if also:
             yield _results("Refinement", self.file, also)
             yield _differences(self.file, found)
@@ -181,6 +183,26 @@ def _results(caption: str, file: CaseFile, found: Mapping[str, Solved]) -> Small
         for name, run, each in runs
     ]
     return SmallTable(caption, (head or "variant", "model", *columns), rows)
+
+
+def _passes(words: str, results: Mapping[str, Result]) -> Iterator[SmallTable]:
+    """What each pass of a counter-body that moves does, in every run."""
+    moving = {run: each for run, each in results.items() if "passes" in each.tables}
+    for name, head, scale in (
+        ("strain", "Largest strain that a pass adds [1e-3]", 1e3),
+        ("energy", "Energy that a pass dissipates [nJ]", 1e9),
+    ):
+        rows = [
+            (
+                run,
+                *(number(scale * v) for v in of_passes(each, name)),
+                str((each.verdict or {}).get("class", "")),
+            )
+            for run, each in moving.items()
+        ]
+        if rows:
+            passes = (f"pass {k + 1}" for k in range(len(rows[0]) - 2))
+            yield SmallTable(f"{head}, {words}", ("run", *passes, "verdict"), rows)
 
 
 def _differences(file: CaseFile, found: Mapping[str, Solved]) -> SmallTable:

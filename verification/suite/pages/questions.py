@@ -204,8 +204,8 @@ QUESTIONS = (
             ),
             Cell("the same in 20 load steps", *LOOP, (PAPER_LOOP, "20"), ("off, same steps",)),
             Value(
-                "pressure off FEM, averaged over 0.2 a, μ = 0.4, solved as if friction did not act on it, over "
-                "that with friction acting on it, as SAM solves it",
+                "pressure off FEM, averaged over 0.2 a, μ = 0.4, solved as if friction did not act on it, "
+                "over that with friction acting on it, as SAM solves it",
                 "figure-8-4.mu-0-4-decoupled-hats",
                 "{} times",
             ),
