@@ -351,6 +351,116 @@ SLIDING: Mapping[str, Quantity] = {
     ),
 }
 
+
+def ladders(solved: Solved) -> list[dict[int, Result]]:
+    """Of SAM and of finite elements, the runs "sam-N" and "fem-N": N -> result, the finest last."""
+    named = {tuple(name.split("-", 1)): each for name, each in solved.results.items()}
+    return [
+        {int(n): named[model, n] for model, n in named if model == run and n.isdigit()}
+        for run in ("sam", "fem")
+    ]
+
+
+def refined(runs: Mapping[int, Result], value: Callable[[Result], Any]) -> np.ndarray:
+    """The limit of a value in 1/N of second order, of the two finest runs; of a single run its own."""
+    *coarse, fine = (np.asarray(value(runs[n])) for n in sorted(runs))
+    if not coarse:
+        return fine
+    n, m = sorted(runs)[-2:]
+    return fine + (fine - coarse[-1]) / ((m / n) ** 2 - 1)
+
+
+def groove_at(result: Result, places: np.ndarray) -> np.ndarray:
+    """Depth of the groove in m at places along the track."""
+    return np.interp(places, result.tables["track"]["x_m"], result.tables["track"]["uz_m"])
+
+
+def _groove(solved: Solved) -> float:
+    """Difference of the finest runs within a radius of the middle, over the depth."""
+    places = np.linspace(-1.0, 1.0, 81) * solved.reference.units["a"]
+    sam, fem = (groove_at(runs[max(runs)], places) for runs in ladders(solved))
+    return float(np.abs(sam - fem).max() / fem.max())
+
+
+OF_TRACKS: Mapping[str, Callable[[Result], float]] = {
+    "groove in the middle of the track": lambda result: float(groove_at(result, 0.0)),
+    "largest depth of the groove": lambda result: float(result.quantities["groove_deepest_m"]),
+    "largest plastic strain": lambda result: float(result.quantities["peeq_max"]),
+}
+
+
+def _both_refined(words: str, unit: str) -> Quantity:
+    """A value of a track, both models refined."""
+
+    def whole(solved: Solved) -> Measured:
+        sam, fem = (float(refined(runs, OF_TRACKS[words])) for runs in ladders(solved))
+        return Measured(sam, fem, unit=unit)
+
+    return Quantity(f"{words}, both models refined", unit, whole=whole)
+
+
+def of_passes(result: Result, name: str) -> np.ndarray:
+    """The "energy" in J that each pass dissipates, or the largest new "strain" of the steady part."""
+    table, column = {"energy": ("cycles", "dissipated_J"), "strain": ("passes", "new_strain_max")}[name]
+    return np.asarray(result.tables[table][column], dtype=float)
+
+
+def _limits_of_passes(solved: Solved, name: str) -> list[np.ndarray]:
+    return [refined(runs, lambda result: of_passes(result, name)) for runs in ladders(solved)]
+
+
+def _counted(solved: Solved) -> np.ndarray:
+    """Which passes strain more than the floor of the verdict, in all runs of both models."""
+    runs = solved.results.values()
+    return np.all([of_passes(each, "strain") > each.verdict["floor"] for each in runs], axis=0)
+
+
+def _pass(name: str, words: str, *, own: bool = False) -> Quantity:
+    """Largest difference of a pass, over what the first one does, as a later pass strains little and has the
+    error of the strain that has accumulated; own: of a pass that counts, over what itself does.
+    """
+
+    def whole(solved: Solved) -> float:
+        sam, fem = _limits_of_passes(solved, name)
+        if own:
+            return float(np.abs(sam[counted := _counted(solved)] / fem[counted] - 1.0).max())
+        return float(np.abs(sam - fem).max() / fem[0])
+
+    over = "of a pass that counts, over itself" if own else "over the first pass"
+    return Quantity(f"{words}, largest difference of both models {over}", whole=whole)
+
+
+def _verdicts(solved: Solved) -> Measured:
+    return Measured(float(len({each.verdict["class"] for each in solved.results.values()})), 1.0)
+
+
+def _becomes(name: str) -> Quantity:
+    """Whether all runs end with a verdict."""
+
+    def whole(solved: Solved) -> Measured:
+        return Measured(float({each.verdict["class"] for each in solved.results.values()} == {name}), 1.0)
+
+    return Quantity(f"1 if the verdict is {name}", whole=whole)
+
+
+MOVING: Mapping[str, Quantity] = {
+    "groove": Quantity("largest difference of the groove between both models over its depth", whole=_groove),
+    "groove-refined": _both_refined("groove in the middle of the track", "m"),
+    "deepest-refined": _both_refined("largest depth of the groove", "m"),
+    "strain-refined": _both_refined("largest plastic strain", ""),
+    "verdict": Quantity("different verdicts of both models on all grids", whole=_verdicts),
+    "energy": _pass("energy", "energy that a pass dissipates"),
+    "strain": _pass("strain", "largest strain that a pass adds"),
+    "own-energy": _pass("energy", "energy of a pass", own=True),
+    "own-strain": _pass("strain", "largest strain of a pass", own=True),
+    "counted": Quantity(
+        "passes that strain some cell by more than the floor of the verdict, on all grids",
+        whole=lambda solved: float(_counted(solved).sum()),
+    ),
+    "shakes-down": _becomes("shakedown"),
+    "alternates": _becomes("alternating"),
+}
+
 QUANTITIES: Mapping[str, Quantity] = {
     "p-max": replace(_scalar("p_max_Pa", "largest pressure", "Pa"), between=_largest_at_nodes),
     "p-center": _scalar("p_center_Pa", "pressure in the centre", "Pa"),
@@ -386,4 +496,5 @@ QUANTITIES: Mapping[str, Quantity] = {
         between=lambda scene, sam, fem: Measured(sam.cost["operator_applications"]),
     ),
     **SLIDING,
+    **MOVING,
 }

@@ -174,13 +174,13 @@ def read_cases(path: Path) -> list[CaseFile]:
         raise SceneError([Problem("case file", path.name, str(error))], str(path)) from error
     own, reasons = content.pop("cases", {}), content.pop("reasons", {})
     common = {"name": path.stem.replace("_", "-"), "family": path.parent.name, "path": path}
-    cases = [_merged(content, case | {"name": name}) for name, case in own.items()] if own else [content]
+    cases = [merged(content, case | {"name": name}) for name, case in own.items()] if own else [content]
     return [_case(common | case, reasons) for case in cases]
 
 
-def _merged(first: Mapping, second: Mapping) -> dict:
+def merged(first: Mapping, second: Mapping) -> dict:
     """Nested tables, the second's values before the first's."""
-    both = {k: _merged(first[k], v) if isinstance(v, dict) and k in first else v for k, v in second.items()}
+    both = {k: merged(first[k], v) if isinstance(v, dict) and k in first else v for k, v in second.items()}
     return {**first, **both}
 
 

@@ -6,9 +6,9 @@ follows from the vocabulary.
 
 from __future__ import annotations
 
-from collections import ChainMap
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -28,9 +28,9 @@ from verification.cases.recipes import RECIPES, beside, changed
 from verification.cases.sweep import MODELS, framed, points, ran, tables_of, taken
 from verification.compare.comparison import compare_scene
 from verification.judging import Measured, error_of
-from verification.quantities import QUANTITIES, Quantity, Reference, Solved
+from verification.quantities import QUANTITIES, Quantity, Reference, Solved, of_passes
 from verification.references import REFERENCES
-from verification.rows import CaseFile, head_of
+from verification.rows import CaseFile, head_of, merged
 from verification.runs.models import SAM
 from verification.text.console import number
 
@@ -48,12 +48,12 @@ def scene_of(context: Context, file: CaseFile, *changes: Mapping[str, Any]) -> S
     """The scene of a case at the level of the context, changed by a variant and a run of it: keys set, then
     recipes applied in the order of RECIPES.
     """
-    said = ({"set": file.set, "vary": file.vary}, file.quick if context.level == "quick" else {}, *changes)
-    keys, vary = (ChainMap(*(each.get(name, {}) for each in said[::-1])) for name in ("set", "vary"))
+    quick = file.quick if context.level == "quick" else {}
+    said = reduce(merged, ({"set": file.set, "vary": file.vary}, quick, *changes))
     place = str(file.path.parent / file.scene) if file.scene.endswith(".toml") else file.scene
     order = list(RECIPES)
-    recipes = sorted(vary, key=lambda name: order.index(name) if name in order else len(order))
-    return changed(context.scene(place), {**keys, **{name: vary[name] for name in recipes}}, file)
+    recipes = sorted(said["vary"], key=lambda name: order.index(name) if name in order else len(order))
+    return changed(context.scene(place), {**said["set"], **{n: said["vary"][n] for n in recipes}}, file)
 
 
 @dataclass(frozen=True)
@@ -165,6 +165,8 @@ class Compared(Case):
         if self.file.variants:
             also = {name: found[name] for name in self.file.also}
             yield _results("Results", self.file, {name: found[name] for name in found if name not in also})
+            for name, solved in found.items():
+                yield from _passes(self.file.variants[name]["words"], solved.results)
             if also:
                 yield _results("Refinement", self.file, also)
                 yield _differences(self.file, found)
@@ -262,6 +264,26 @@ def _results(caption: str, file: CaseFile, found: Mapping[str, Solved]) -> Small
         for name, run, each in runs
     ]
     return SmallTable(caption, (head or "variant", "model", *columns), rows)
+
+
+def _passes(words: str, results: Mapping[str, Result]) -> Iterator[SmallTable]:
+    """What each pass of a counter-body that moves does, in every run."""
+    moving = {run: each for run, each in results.items() if "passes" in each.tables}
+    for name, head, scale in (
+        ("strain", "Largest strain that a pass adds [1e-3]", 1e3),
+        ("energy", "Energy that a pass dissipates [nJ]", 1e9),
+    ):
+        rows = [
+            (
+                run,
+                *(number(scale * v) for v in of_passes(each, name)),
+                str((each.verdict or {}).get("class", "")),
+            )
+            for run, each in moving.items()
+        ]
+        if rows:
+            passes = (f"pass {k + 1}" for k in range(len(rows[0]) - 2))
+            yield SmallTable(f"{head}, {words}", ("run", *passes, "verdict"), rows)
 
 
 def _differences(file: CaseFile, found: Mapping[str, Solved]) -> SmallTable:

@@ -16,12 +16,13 @@ from verification.cases.sweep import BOTH, fitted, spelt, words_of
 from verification.compare.sliding_measures import SHALLOWEST
 from verification.figures.friction import CYCLES, LOOKS, Curve, compared_planes, curves, profile_of
 from verification.figures.maps import FieldPair, maps_over_axes, pressure_maps
+from verification.figures.moving import grooves, new_strains
 from verification.figures.plastic import PERCENT, axis_profiles, compared_peeq, residual_surface
 from verification.figures.profiles import Profile, convergence, profiles
 from verification.figures.refinement import refinement
 from verification.figures.style import Drawing
 from verification.figures.views import SURFACE_AXES, VON_MISES, compared_mises, compared_pressure
-from verification.quantities import Solved, planes
+from verification.quantities import OF_TRACKS, Solved, ladders, of_passes, planes, refined
 from verification.reference.convergence import extrapolate
 from verification.references import contact_of
 from verification.rows import CaseFile
@@ -246,6 +247,53 @@ def _strain_of_cycles(found: Mapping[str, Solved], words: Mapping[str, str]) -> 
     yield Plot(drawing, "strain", "Plastic strain over the cycles", alt, alt)
 
 
+def _grooves(found: Solved) -> Plot:
+    """The groove along the track of the finest runs that are compared."""
+    a, path = found.reference.units["a"], found.scene.loading.path
+    length, lines = (path.end[0] - path.start[0]) / a, {}
+    for runs in ladders(found):
+        n = max(runs)
+        x, depth = (np.asarray(runs[n].tables["track"][column]) / a for column in ("x_m", "uz_m"))
+        near = np.abs(x) <= length / 2 + 2.0
+        lines[f"{runs[n].model}, {n} in a"] = x[near] + length / 2, depth[near]
+    words = "Depth of the unloaded surface over the distance from the start, both models; a: radius of Hertz."
+    return Plot(grooves(lines, length), "groove", "Groove of one pass in both models", words, words)
+
+
+def _cost_of_errors(found: Solved) -> Plot:
+    """The largest error of each run against the limit of the two finest of its model, over its time."""
+    series = {}
+    for run in ("sam", "fem"):
+        named = {int(name.rpartition("-")[2]): r for name, r in found.results.items() if f"{run}-" in name}
+        limits = [(of, refined(named, of)) for of in OF_TRACKS.values()]
+        error = [100 * max(abs(of(named[n]) / limit - 1) for of, limit in limits) for n in sorted(named)]
+        series[run.upper()] = Curve(
+            np.array([named[n].cost["cpu_s"] for n in sorted(named)]), np.array(error)
+        )
+    looks = dict(zip(series, CYCLES, strict=False))
+    drawing = curves(
+        {"Cost of an error": series}, "processor time [s]", "error [%]", looks=looks, logarithmic=True
+    )
+    drawing.figure.axes[0].set_xscale("log")
+    words = (
+        "The largest error of groove, depth and strain over the processor time, against the limit of the two "
+        "finest runs of each model in second order; in the same steps along the path."
+    )
+    return Plot(drawing, "cost", "Error and processor time", words, words)
+
+
+def _new_strains(found: Mapping[str, Solved], words: Mapping[str, str]) -> Iterator[Plot]:
+    """What each pass adds, a figure a variant."""
+    for variant, solved in found.items():
+        runs = {name: of_passes(each, "strain") for name, each in solved.results.items()}
+        floors = sorted({float(each.verdict["floor"]) for each in solved.results.values()})
+        text = (
+            f"Largest plastic strain that a pass adds to a cell or element of the steady part of the track, "
+            f"{words[variant]}; below its floor the verdict counts none."
+        )
+        yield Plot(new_strains(runs, floors), f"new-strain-{variant}", "What each pass adds", text, text)
+
+
 _PUNCH = (("line", "p_Pa"), ("line", "uz_m"), ("axis", "mises_Pa"))
 KINDS: Mapping[str, Callable[[Solved], Plot]] = {
     "pressure-maps": _maps("contact pressure over x/a and y/a", "pressure-maps", _pressure_maps),
@@ -279,6 +327,8 @@ KINDS: Mapping[str, Callable[[Solved], Plot]] = {
     "plastic-axis": _plastic_axis,
     "residual-surface": _residual_surface,
     "strain-planes": _strain_planes,
+    "grooves": _grooves,
+    "cost-of-errors": _cost_of_errors,
 }
 """Name in a case file -> how it is drawn."""
 
@@ -370,5 +420,6 @@ VIEWS: Mapping[str, View] = {
 OVER_VARIANTS: Mapping[str, Callable[[Mapping[str, Solved], Mapping[str, str]], Iterator[Plot]]] = {
     "strain-profiles": _strain_profiles,
     "strain-of-cycles": _strain_of_cycles,
+    "new-strains": _new_strains,
 }
 """The same of all variants of a scene, with the words of each."""

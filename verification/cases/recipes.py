@@ -175,12 +175,7 @@ TRACK_RATIO = 4.0  # p0 over the initial yield stress
 def radius_at(scene: Scene, ratio: float = TRACK_RATIO) -> float:
     """Hertz radius in m of a rigid sphere at p0 = ratio times the initial yield stress."""
     modulus = scene.body.young / (1 - scene.body.poisson**2)
-    return float(np.pi * ratio * virgin_strength(scene) * scene.counterbody.radius / (2 * modulus))
-
-
-def virgin_strength(scene: Scene) -> float:
-    """Yield stress of unstrained material in Pa."""
-    return float(scene.body.plasticity.strength().stress(0.0, np.zeros(1))[0])
+    return float(np.pi * ratio * initial_yield(scene) * scene.counterbody.radius / (2 * modulus))
 
 
 def on_track(scene: Scene, keys: Mapping[str, Any]) -> Scene:
@@ -201,7 +196,7 @@ def on_track(scene: Scene, keys: Mapping[str, Any]) -> Scene:
     start, end = ends[::-1] if keys.get("back") else ends
     comes_back = {"return": "to-and-fro" if keys.get("to_and_fro") else "lifted"}
     path = Path(start=start, end=end, steps=round(length * keys.get("per_radius", 4.0)), **comes_back)
-    force = float(2 / 3 * np.pi * ratio * virgin_strength(scene) * a**2)
+    force = float(2 / 3 * np.pi * ratio * initial_yield(scene) * a**2)
     scene = with_loading(scene, force=force, path=path, cycles=keys.get("cycles", 1))
     return with_grid(scene, cells=count, extent=(count[0] * h, count[1] * h), depths=tuple(faces))
 
