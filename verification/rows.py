@@ -196,8 +196,13 @@ def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     twice = sorted({row.id for row in rows if sum(other.id == row.id for other in rows) > 1})
     faults += [Problem("rows", name, "occurs twice") for name in twice]
     claims = {
-        table: {name: _named(name, cells) for name, cells in named.items() if len(cells) < 5}
-        for table, named in tables.items()
+        table: {
+            name: quantity
+            for key, cells in own.items()
+            if len(cells) < 5
+            for name, quantity in zip(_braces(key), _braces(_named(key, cells)), strict=True)
+        }
+        for table, own in tables.items()
     }
     try:
         case = CaseFile(**{**content, **lists}, rows=tuple(rows), claims=claims, takes=takes)
@@ -222,18 +227,16 @@ def _rows(
         try:
             metric, tolerance, reason, *words = cells
             reason = reasons[reason[1:]] if reason.startswith("@") else reason
-            quantity = _named(key, cells)
-            said, *take = (
-                words if words and words[0] not in QUANTITIES else [f"{QUANTITIES[quantity].words}{of}"]
-            )
-            names = _braces(key)
+            names, named, take = _braces(key), _braces(_named(key, cells)), words[1:]
+            alone = not words or words[0] in QUANTITIES
+            said = [f"{QUANTITIES[name].words}{of}" for name in named] if alone else _braces(words[0])
             if take:
                 parts = [each.split(" | ") for each in _braces(*take)]
                 takes |= {
                     f"{case}.{name}": tuple(map(Take.parse, part))
                     for name, part in zip(names, parts, strict=True)
                 }
-            for name, quantity in zip(names, _braces(said), strict=True):
+            for name, quantity in zip(names, said, strict=True):
                 yield Row(
                     id=f"{case}.{lead}{name}",
                     case=case,
@@ -258,7 +261,7 @@ def _faults(error: ValidationError, *above: str) -> list[Problem]:
 
 
 def _named(name: str, cells: Sequence) -> str:
-    """The quantity of a row."""
+    """The quantity of a row, or the names of several."""
     return cells[3] if len(cells) > 3 and cells[3] in QUANTITIES else name
 
 

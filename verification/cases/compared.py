@@ -5,6 +5,7 @@ reference, and SAM against finite elements. Everything that is shown follows fro
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
@@ -117,7 +118,7 @@ class Compared(Case):
         scene, other, loading = found.scene, found.scene.counterbody, found.scene.loading
         a = found.reference.units.get("a", 0.0) if found.reference else 0.0
         if not a and found.results:
-            a = found.results["sam"].quantities["contact_radius_m"]
+            a = found.results["sam"].quantities["contact_radius_m"] or math.nan
         plasticity = scene.body.plasticity
         law = (
             f"; {plasticity.law}, {plasticity.curve().stress(0.0) / 1e6:.1f} MPa at first yield"
@@ -125,11 +126,20 @@ class Compared(Case):
             else ""
         )
         yield "Half-space", elastic_text(scene.body) + law
-        sizes = ("radius", "radius_x", "radius_y", "flat_radius")
-        size = ", ".join(f"{n.replace('_', ' ')} {v * 1e6:g} µm" for n in sizes if (v := getattr(other, n)))
-        yield other.shape.capitalize(), f"{size}, {elastic_text(other) if other.elastic else 'rigid'}"
+        if film := scene.body.coating:
+            yield "Film", f"{elastic_text(film)}, {1e9 * film.thickness:.4g} nm"
+        if other:
+            sizes = ("radius", "radius_x", "radius_y", "flat_radius")
+            size = "".join(
+                f"{n.replace('_', ' ')} {v * 1e6:g} µm, " for n in sizes if (v := getattr(other, n))
+            )
+            yield other.shape.capitalize(), f"{size}{elastic_text(other) if other.elastic else 'rigid'}"
+        load = f"{loading.force:.5g} N" if other else f"given, {loading.p0 / 1e9:.4f} GPa in the centre"
         unloaded = ", then unloaded" * loading.unload
-        yield "Force", f"{loading.force:.5g} N in {loading.steps} equal steps{unloaded}"
+        yield "Force" if other else "Pressure", f"{load} in {loading.steps} equal steps{unloaded}"
+        if scene.friction:
+            coefficient = f"μ = {scene.coefficient:g}" if scene.friction.law == "constant" else "a map"
+            yield "Friction", f"{coefficient}; full slip along +x on the body in every step"
         yield from found.reference.facts if found.reference else ()
         for run, result in found.results.items():
             yield run.upper(), grid_text(result, a) if result.model == SAM else mesh_text(result)
