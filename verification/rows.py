@@ -201,8 +201,13 @@ def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     twice = sorted({row.id for row in rows if sum(other.id == row.id for other in rows) > 1})
     faults += [Problem("rows", name, "occurs twice") for name in twice]
     claims = {
-        table: {n: _named(n, cells) for key, cells in named.items() if len(cells) < 5 for n in _braces(key)}
-        for table, named in tables.items()
+        table: {
+            name: quantity
+            for key, cells in own.items()
+            if len(cells) < 5
+            for name, quantity in zip(_braces(key), _braces(_named(key, cells)), strict=True)
+        }
+        for table, own in tables.items()
     }
     try:
         case = CaseFile(**{**content, **lists}, rows=tuple(rows), claims=claims, takes=takes)
@@ -237,9 +242,10 @@ def _rows(
         try:
             metric, tolerance, reason, *words = cells
             reason = reasons[reason[1:]] if reason.startswith("@") else reason
-            names, own = _braces(key), bool(words) and words[0] not in QUANTITIES
-            said = _braces(words[0]) if own else [f"{QUANTITIES[_named(n, cells)].words}{of}" for n in names]
-            if take := words[1:]:
+            names, of_names, take = _braces(key), _braces(_named(key, cells)), words[1:]
+            alone = not words or words[0] in QUANTITIES
+            said = [f"{QUANTITIES[name].words}{of}" for name in of_names] if alone else _braces(words[0])
+            if take:
                 parts = [each.split(" | ") for each in _braces(*take)]
                 takes |= {
                     f"{case}.{name}": tuple(map(Take.parse, part))
@@ -270,7 +276,7 @@ def _faults(error: ValidationError, *above: str) -> list[Problem]:
 
 
 def _named(name: str, cells: Sequence) -> str:
-    """The quantity of a row."""
+    """The quantity of a row, or the names of several."""
     return cells[3] if len(cells) > 3 and cells[3] in QUANTITIES else name
 
 

@@ -6,6 +6,7 @@ follows from the vocabulary.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import reduce
@@ -131,7 +132,7 @@ class Compared(Case):
         first = next(iter(found.values()))
         scene, other, loading, units = first.scene, first.scene.counterbody, first.scene.loading, {}
         units = first.reference.units if first.reference else {}
-        a = units.get("a") or first.results["sam"].quantities["contact_radius_m"]
+        a = units.get("a") or first.results["sam"].quantities["contact_radius_m"] or math.nan
         plasticity = scene.body.plasticity
         law = (
             f"; {plasticity.law}, {plasticity.curve().stress(0.0) / 1e6:.1f} MPa at first yield"
@@ -139,12 +140,14 @@ class Compared(Case):
             else ""
         )
         yield "Half-space", elastic_text(scene.body) + law
+        if film := scene.body.coating:
+            yield "Film", f"{elastic_text(film)}, {1e9 * film.thickness:.4g} nm"
         if other:
             sizes = ("radius", "radius_x", "radius_y", "flat_radius")
-            size = ", ".join(
-                f"{n.replace('_', ' ')} {v * 1e6:g} µm" for n in sizes if (v := getattr(other, n))
+            size = "".join(
+                f"{n.replace('_', ' ')} {v * 1e6:g} µm, " for n in sizes if (v := getattr(other, n))
             )
-            yield other.shape.capitalize(), f"{size}, {elastic_text(other) if other.elastic else 'rigid'}"
+            yield other.shape.capitalize(), f"{size}{elastic_text(other) if other.elastic else 'rigid'}"
         again = f", {loading.cycles} times" * (loading.cycles > 1)
         load = f"{loading.force:.5g} N" if other else f"given, {loading.p0 / 1e9:.4f} GPa in the centre"
         steps = f"{load} in {loading.steps} equal steps{', then unloaded' * loading.unload}{again}"
@@ -155,7 +158,8 @@ class Compared(Case):
         if self.file.variants:
             yield "Solved", "; ".join(self.file.variants[name]["words"] for name in found)
         if any(each.scene.friction for each in found.values()):
-            yield "Traction", "full slip along +x on the body in every step"
+            mu = f"μ = {scene.coefficient:g}; " if scene.friction and scene.friction.law == "constant" else ""
+            yield "Traction", f"{mu}full slip along +x on the body in every step"
         yield from first.reference.facts if first.reference else ()
         for run, result in [*first.results.items()][: len(self.file.models) or 1]:
             yield run.upper(), grid_text(result, a) if result.model == SAM else mesh_text(result)
