@@ -11,10 +11,9 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from sam.scene.errors import MISSING, Problem, SceneError, spelling
 from sam.scene.inputs import InputError, Inputs, read_limited
 from sam.scene.schema import Scene
-from sam.scene.section import MISSING_INPUT
+from sam.scene.section import MISSING, MISSING_INPUT, Problem, SceneError, spelling
 from sam.scene.units import IN_FILE
 
 _BETWEEN = re.compile(rb"([\n,={}\[\]#])")
@@ -164,17 +163,12 @@ def problems(error: ValidationError) -> list[Problem]:
     list of Problem
         In the order of the file's keys.
     """
-    found = []
+    listed = []
     for item in error.errors(include_url=False):
-        missing = item["input"] is MISSING_INPUT
-        value = MISSING if missing else spelling(item["input"])
-        found.append(Problem(_key(item["loc"]), value, item["ctx"]["allowed"]))
-    return found
-
-
-def _key(loc: tuple[int | str, ...]) -> str:
-    parts = [f"[{part}]" if isinstance(part, int) else f".{part}" for part in loc]
-    return "".join(parts).removeprefix(".")
+        key = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in item["loc"])
+        value = MISSING if item["input"] is MISSING_INPUT else spelling(item["input"])
+        listed.append(Problem(key.removeprefix("."), value, item["ctx"]["allowed"]))
+    return listed
 
 
 def _whole_file(message: str, source: str | Path) -> SceneError:

@@ -104,22 +104,9 @@ def classes(
     energy bounds the plastic strain: no step of the strain lasts, however slowly it falls, and nothing
     ratchets. Where the yield stress grows for ever everything settles.
 
-    Parameters
-    ----------
-    periods
-        All of them.
-    total
-        Accumulated plastic strain of each cell, (n,).
-    yield_strain
-        Initial yield stress over Young's modulus, (n,).
-    judging
-        Floor, noise, and what can happen at worst.
-
-    Returns
-    -------
-    found, further
-        Places in `ORDER`, (n,), and periods after which an undecided cell will be decided if it goes on like
-        this, (n,), infinite where noise never lets it.
+    total: accumulated plastic strain of each cell; yield_strain: initial yield stress over Young's modulus,
+    both (n,). Returns places in `ORDER`, (n,), and periods after which an undecided cell will be decided if
+    it goes on like this, (n,), infinite where noise never lets it.
     """
     found, further = np.full(total.shape, ORDER.index(Behaviour.UNDECIDED)), np.zeros(total.shape)
     found[total == 0] = ORDER.index(Behaviour.ELASTIC)
@@ -187,44 +174,26 @@ def _open_strain(
 def cell_fields(
     periods: Sequence[Period], total: Array, yield_strain: Array, judging: Judging
 ) -> dict[str, Array]:
-    """Fields of the last of some periods, as the meshes have them.
-
-    Parameters
-    ----------
-    periods, total, yield_strain, judging
-        See `classes`.
-
-    Returns
-    -------
-    dict
-        Name -> (n,): peeq_step, dp; strain_step, de; class, the place in `ORDER`.
+    """Fields of the last of some periods, as the meshes have them, name -> (n,): peeq_step, dp; strain_step,
+    de; class, the place in `ORDER`. Arguments as of `classes`.
     """
     last = periods[-1]
-    found = classes(periods, total, yield_strain, judging)[0].astype(float)
-    return {"peeq_step": last.accumulated, "strain_step": last.norm, "class": found}
+    places = classes(periods, total, yield_strain, judging)[0].astype(float)
+    return {"peeq_step": last.accumulated, "strain_step": last.norm, "class": places}
 
 
 def loop_places(accumulated: Array, total: Array) -> list[int]:
-    """Choose the points whose loops over the last period are recorded: the one that strained most in the
-    period before, and those nearest to a half and to a tenth of that.
-
-    Parameters
-    ----------
-    accumulated, total
-        dp of that period and the accumulated plastic strain of all, (n,); by the latter if nothing flowed.
-
-    Returns
-    -------
-    list of int
-        Three different places, or as many as there are points.
+    """Three different places, or as many as there are points, whose loops over the last period are recorded:
+    where dp of the period before, (n,), was largest, and those nearest to a half and to a tenth of that; by
+    the accumulated plastic strain of all, (n,), if nothing flowed.
     """
     values = accumulated if accumulated.any() else total
-    share, found = values / (values.max() or 1.0), list[int]()
+    share, chosen = values / (values.max() or 1.0), list[int]()
     for wanted in SHARES[: share.size]:
         distance = np.abs(share - wanted)
-        distance[found] = np.inf
-        found.append(int(distance.argmin()))
-    return found
+        distance[chosen] = np.inf
+        chosen.append(int(distance.argmin()))
+    return chosen
 
 
 def last_period(judging: Judging, cycles: int) -> range:
@@ -237,24 +206,15 @@ def last_period(judging: Judging, cycles: int) -> range:
 class Verdict:
     """Of the body after a period.
 
-    Parameters
-    ----------
-    behaviour
-        The worst class that carries a hundredth of the plastic strain of the period. Undecided where cells
-        may ratchet, and de of undecided ones is more than OPEN of that strain. Cells that ratchet count as
-        undecided where de of both together falls: then strain moves from cell to cell.
-    accumulated, strain
-        Largest dp of a cell, and largest de.
-    ratio, closure
-        In the cell of the largest dp: dp over that of the period before, None in the first; de over dp.
-    remaining, periods_to_floor
-        Where the cell of the largest dp settles: accumulated strain still to come, and periods until dp is
-        below the floor; else None.
-    flowing, volumes
-        Volume in m^3 of the cells whose dp is beyond the floor, and of the cells of each class.
-    periods_to_decide
-        Further periods after which an undecided body will be decided if it goes on like this; None if it is
-        decided, or noise never lets it be.
+    behaviour: the worst class that carries a hundredth of the plastic strain of the period; undecided where
+    cells may ratchet, and de of undecided ones is more than OPEN of that strain; cells that ratchet count as
+    undecided where de of both together falls: then strain moves from cell to cell. accumulated, strain:
+    largest dp of a cell, and largest de. ratio, closure: in the cell of the largest dp, dp over that of the
+    period before, None in the first; de over dp. remaining, periods_to_floor: where the cell of the largest
+    dp settles, accumulated strain still to come, and periods until dp is below the floor; else None. flowing,
+    volumes: in m^3, of the cells whose dp is beyond the floor, and of the cells of each class.
+    periods_to_decide: further periods after which an undecided body will be decided if it goes on like this;
+    None if it is decided, or noise never lets it be.
     """
 
     behaviour: Behaviour
@@ -285,19 +245,8 @@ UNSTRAINED = Verdict(
 def verdict_on(
     periods: Sequence[Period], total: Array, yield_strain: Array, judging: Judging, *, volume: Array
 ) -> Verdict:
-    """Sum up the cells of a body after the last of some periods.
-
-    Parameters
-    ----------
-    periods, total, yield_strain, judging
-        See `classes`.
-    volume
-        Of each cell in m^3, (n,).
-
-    Returns
-    -------
-    Verdict
-        Of the body.
+    """Sum up the cells of a body after the last of some periods; volume: of each in m^3, (n,), the others as
+    of `classes`.
     """
     (found, further), last = classes(periods, total, yield_strain, judging), periods[-1]
     floor = judging.floor * yield_strain
@@ -347,24 +296,12 @@ def _until(further: Array, undecided: Array, small: float) -> int | None:
 def verdict_columns(
     cycles: Sequence[int], verdicts: Sequence[Verdict], cycles_in_period: int
 ) -> dict[str, list[Any]]:
-    """VERDICT_COLUMNS of the table cycles: a period in the row of its last cycle, other rows empty.
-
-    Parameters
-    ----------
-    cycles
-        Numbers of the rows.
-    verdicts
-        After each period.
-    cycles_in_period
-        1 or 2.
-
-    Returns
-    -------
-    dict
-        Column -> values, None where there is nothing to say.
+    """VERDICT_COLUMNS of the table cycles with the rows of these cycles: a period in that of its last cycle,
+    the others None.
     """
     rows: dict[int, tuple[Any, ...]] = {
-        number * cycles_in_period: (number, *each.columns) for number, each in enumerate(verdicts, start=1)
+        number * cycles_in_period: (number, *verdict.columns)
+        for number, verdict in enumerate(verdicts, start=1)
     }
     empty = (None,) * len(VERDICT_COLUMNS)
     return {name: [rows.get(cycle, empty)[k] for cycle in cycles] for k, name in enumerate(VERDICT_COLUMNS)}
@@ -372,19 +309,7 @@ def verdict_columns(
 
 def summary(verdicts: Sequence[Verdict], cycles_in_period: int, floor: float) -> dict[str, Any]:
     """What summary.json says of the last of some verdicts; decided_at_cycle: since when the class is the
-    same.
-
-    Parameters
-    ----------
-    verdicts, cycles_in_period
-        See `verdict_columns`.
-    floor
-        The smallest floor of a cell.
-
-    Returns
-    -------
-    dict
-        Numbers by name.
+    same; floor: the smallest of a cell.
     """
     last, first = verdicts[-1], len(verdicts)
     while first > 1 and verdicts[first - 2].behaviour is last.behaviour:

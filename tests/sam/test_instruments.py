@@ -9,11 +9,11 @@ import struct
 import numpy as np
 import pytest
 
-from sam.scene import HeightMap, Scene, SceneError, apart, load_scene
+from sam.scene import HeightMap, Scene, SceneError, inputs, load_scene
 from sam.scene.inputs import InputError
-from sam.scene.surface import instrument_formats, instruments, processed
+from sam.scene.surface import processed, readers
 from sam.scene.surface.instrument_child import RefusedError, heights_in
-from sam.scene.surface.map_files import read_named
+from sam.scene.surface.readers import read_named
 from verification.robustness.bad_files import npz
 from verification.robustness.hostile import ROUGH
 
@@ -174,15 +174,15 @@ def said(name: str, shape: list[int], kind: str = "<f8") -> str:
 )
 def test_a_reader_that_hangs_or_dies_is_a_refusal(monkeypatch, tmp_path, script, message):
     (tmp_path / "child.py").write_text(script)
-    monkeypatch.setattr(apart, "CHILD", tmp_path / "child.py")
-    monkeypatch.setattr(apart, "SECONDS", 0.5 if "sleep" in script else 30.0)
-    monkeypatch.setattr(instruments, "find_spec", lambda _: True)
+    monkeypatch.setattr(inputs, "CHILD", tmp_path / "child.py")
+    monkeypatch.setattr(inputs, "SECONDS", 0.5 if "sleep" in script else 30.0)
+    monkeypatch.setattr(readers, "find_spec", lambda _: True)
     with pytest.raises(InputError, match=message):
-        instruments.read("h.sdf", b"")
+        readers.read_instrument("h.sdf", b"")
 
 
 def test_without_the_extra_only_our_own_files_are_read(monkeypatch, tmp_path):
-    monkeypatch.setattr(instruments, "find_spec", lambda _: None)
+    monkeypatch.setattr(readers, "find_spec", lambda _: None)
     with pytest.raises(
         SceneError,
         match=r"surface.path = .h.al3d.: .*SurfaceTopography, the extra .instruments., not installed",
@@ -202,17 +202,14 @@ def test_without_the_extra_only_our_own_files_are_read(monkeypatch, tmp_path):
         ("h.csv", table.encode()),
     ):
         assert np.array_equal(read_named(name, content).values, plain.values)
-    assert (
-        instrument_formats.formats_of("a/b.DAT") == ("asc", "metropro")
-        and instrument_formats.formats_of("scene.toml") == ()
-    )
+    assert readers.formats_of("a/b.DAT") == ("asc", "metropro") and readers.formats_of("scene.toml") == ()
 
 
 def test_every_ending_is_one_of_the_library(library):
     """Format by format; those without lengths (npy, h5, mat, hgt) and our own two endings are left out on
     purpose.
     """
-    readers = pytest.importorskip("SurfaceTopography.IO").readers
-    known = {reader.format(): set(reader.file_extensions()) for reader in readers}
-    for name, endings in instrument_formats.ENDINGS.items():
+    formats = pytest.importorskip("SurfaceTopography.IO").readers
+    known = {reader.format(): set(reader.file_extensions()) for reader in formats}
+    for name, endings in readers.ENDINGS.items():
         assert set(endings.split()) <= known[name]

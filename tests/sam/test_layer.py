@@ -15,7 +15,7 @@ from fem_reference.spatial.planner import plan as spatial_plan
 from sam.plasticity.return_map import plastic_multiplier
 from sam.scene import Plasticity, load_scene, parse_scene
 from sam.scene.body import LAWS
-from sam.scene.errors import SceneError
+from sam.scene.section import SceneError
 from sam.scene.yield_curve import DepthProfile, Kinks, Linear, Strength, Swift
 from verification.checks.material import yield_stress
 from verification.cost.advice import advice_of

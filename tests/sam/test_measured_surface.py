@@ -10,10 +10,8 @@ import sam
 from sam.grid.rough import RoughPatch
 from sam.scene import Grid, HeightMap, Scene, SceneError, Surface, load_scene, resolved
 from sam.scene.surface import heights, mean_deviation, patch_of, processed, roughness, roughness_as_read
-from sam.scene.surface.filling import harmonic
-from sam.scene.surface.map_files import read_named
-from sam.scene.surface.measured import fitted_form
-from sam.scene.surface.resampling import resampled
+from sam.scene.surface.measured import fitted_form, harmonic, resampled
+from sam.scene.surface.readers import read_named
 from verification.robustness.bad_files import npz
 from verification.robustness.hostile import ROUGH
 from verification.runs.store import identity

@@ -28,7 +28,7 @@ from sam.scene import (
     resolved,
 )
 from sam.scene.body import LAWS
-from sam.scene.errors import SceneError
+from sam.scene.section import SceneError
 from sam.scene.yield_curve import DepthProfile, Linear, Swift, Tabulated
 
 SWIFT, LINEAR, PERFECT, TABLE = (GOOD[law] for law in ("swift", "linear", "perfect", "table"))

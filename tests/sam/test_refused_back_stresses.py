@@ -10,7 +10,7 @@ from builders import SPHERE, SWIFT
 from pydantic import ValidationError
 
 from sam.scene import Scene, load_scene
-from sam.scene.errors import SceneError
+from sam.scene.section import SceneError
 
 AT = "body.plasticity.kinematic"
 GOOD = {"modulus": (1e9, 2e9), "recovery": (300.0, 0.0)}

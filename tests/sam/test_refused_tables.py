@@ -10,7 +10,7 @@ from builders import LINEAR, SPHERE, SWIFT
 from pydantic import ValidationError
 
 from sam.scene import Scene, load_scene
-from sam.scene.errors import SceneError
+from sam.scene.section import SceneError
 
 THICK = SWIFT | {"layer_thickness": 1e-6}
 SOFT = SWIFT | {"alpha": 1e3}

@@ -17,7 +17,7 @@ from fem_reference.common.contact import ended
 from sam import choose_grid
 from sam.contact.normal import Search, solve_contact
 from sam.scene import Status
-from sam.scene.residuals import Attempt, residual_table, stagnates, unfinished
+from sam.scene.result import Attempt, residual_table, stagnates, unfinished
 from verification.checks import axisymmetric as fem_checks, cells as cell_checks, conditions as contact_checks
 from verification.runs import models
 from verification.runs.models import FEM, SAM

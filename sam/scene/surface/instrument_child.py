@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""An instrument's file read by SurfaceTopography, in a process of its own: see `sam.scene.apart`."""
+"""An instrument's file read by SurfaceTopography, in a process of its own: see `sam.scene.inputs`."""
 
 from __future__ import annotations
 
