@@ -21,8 +21,8 @@ from sam.planner.bodies import remedies_of
 from sam.results.advice import advice as words_of
 from sam.scene import Compare, HeightMap, Scene, SceneError, Status, resolved
 from sam.scene.section import OTHER_NAMES, Section, places_of
-from verification.app import comparing
-from verification.app.cli import CLAIMS
+from samfem import comparing
+from samfem.cli import CLAIMS
 from verification.compare.rows import Comparison
 from verification.cost import estimates, plan as plan_module
 from verification.cost.plan import check_needs
