@@ -47,29 +47,15 @@ class CodecError(ValueError):
 
 
 def encode(record: object) -> tuple[JSON, dict[str, np.ndarray[Any, Any]]]:
-    """Take a record apart.
+    """Take a record apart: what JSON holds (NaN and infinity included), and the arrays by name, the path of
+    their field or a number. An array that is met twice is stored once, and is one object again when read.
 
-    Parameters
-    ----------
-    record
-        A dataclass; its fields hold dataclasses, enumerations, mappings with texts as keys, lists, tuples,
-        arrays of any shape, numbers, texts, bytes and None. A field of an open type (`object`, `Any`) holds
-        any of these but dataclasses and enumerations, whose type a reader could not know. The types of the
-        fields must be known when the program runs, not only to the type checker.
+    record: a dataclass; its fields hold dataclasses, enumerations, mappings with texts as keys, lists,
+    tuples, arrays of any shape, numbers, texts, bytes and None. A field of an open type (`object`, `Any`)
+    holds any of these but dataclasses and enumerations, whose type a reader could not know. The types of the
+    fields must be known when the program runs, not only to the type checker. CodecError for a value of
+    another type.
 
-    Returns
-    -------
-    tree, arrays
-        What JSON holds (NaN and infinity included), and the arrays by name: the path of their field, or a
-        number. An array that is met twice is stored once, and is one object again when read.
-
-    Raises
-    ------
-    CodecError
-        For a value of another type.
-
-    Examples
-    --------
     >>> from sam.scene.result import LeftOut
     >>> encode(LeftOut("friction", "no coefficient"))
     ({'stage': 'friction', 'reason': 'no coefficient'}, {})
@@ -81,27 +67,9 @@ def encode(record: object) -> tuple[JSON, dict[str, np.ndarray[Any, Any]]]:
 
 
 def decode(tree: JSON, arrays: Arrays, kind: type[T]) -> T:
-    """Build the record that `encode` took apart.
+    """Build the record, a dataclass `kind`, that `encode` took apart, with every bit of its numbers.
+    CodecError if the values are not those of a `kind`: a field that is missing, unknown or of another type.
 
-    Parameters
-    ----------
-    tree, arrays
-        What `encode` returned.
-    kind
-        The dataclass of the record.
-
-    Returns
-    -------
-    kind
-        The record, with every bit of its numbers.
-
-    Raises
-    ------
-    CodecError
-        If the values are not those of a `kind`: a field that is missing, unknown or of another type.
-
-    Examples
-    --------
     >>> from sam.scene.result import LeftOut
     >>> decode({"stage": "friction", "reason": "no coefficient"}, {}, LeftOut)
     LeftOut(stage='friction', reason='no coefficient')
@@ -265,17 +233,9 @@ _CONVERTER = _converter()
 
 @dataclass(frozen=True)
 class Checkpoint:
-    """A solve in progress.
-
-    Parameters
-    ----------
-    model
-        Name of the model that made it.
-    arrays
-        By name, of numbers or bool, in C order (another order of the memory would sum in another order).
-    values
-        What JSON holds: `done` and `total` load steps, `cost` so far (names of `sam.scene.COST`), and the
-        tree of the record.
+    """A solve in progress of a model. arrays: by name, of numbers or bool, in C order (another order of the
+    memory would sum in another order); values: what JSON holds, `done` and `total` load steps, `cost` so far
+    (names of `sam.scene.COST`), and the tree of the record.
     """
 
     model: str

@@ -44,22 +44,8 @@ class InputError(ValueError):
 
 
 def open_file(path: str | Path) -> BinaryIO:
-    """An ordinary file, open for reading bytes.
-
-    Parameters
-    ----------
-    path
-        Of the file.
-
-    Returns
-    -------
-    BinaryIO
-        To be closed by the caller.
-
-    Raises
-    ------
-    OSError
-        For any other: a pipe or a device could block, or never end.
+    """An ordinary file, open for reading bytes, to be closed by the caller. OSError for any other: a pipe or
+    a device could block, or never end.
     """
 
     def without_waiting(name: str, flags: int) -> int:
@@ -73,25 +59,7 @@ def open_file(path: str | Path) -> BinaryIO:
 
 
 def read_limited(path: str | Path, largest: int = LARGEST_FILE) -> bytes:
-    """The content of a file.
-
-    Parameters
-    ----------
-    path
-        Of the file.
-    largest
-        Bytes that it may have.
-
-    Returns
-    -------
-    bytes
-        All of it.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read or is larger.
-    """
+    """The content of a file of at most `largest` bytes. InputError if it cannot be read or is larger."""
     try:
         with open_file(path) as stream:
             content = stream.read(largest + 1)
@@ -103,26 +71,8 @@ def read_limited(path: str | Path, largest: int = LARGEST_FILE) -> bytes:
 
 
 def below(folder: Path, name: str, what: str) -> Path:
-    """The path of a file that another one names.
-
-    Parameters
-    ----------
-    folder
-        Of the file that names it.
-    name
-        As it is spelt there.
-    what
-        That file is.
-
-    Returns
-    -------
-    Path
-        In the folder or below it, links followed.
-
-    Raises
-    ------
-    InputError
-        If it is elsewhere.
+    """The path of a file that another one names, in the folder of that one or below it, links followed.
+    InputError if it is elsewhere; what: the file is that names it.
     """
     try:
         home = folder.resolve()
@@ -136,14 +86,8 @@ def below(folder: Path, name: str, what: str) -> Path:
 
 @dataclass
 class Inputs:
-    """The folder of a scene, and what has been read from it.
-
-    Parameters
-    ----------
-    folder
-        That of the scene file.
-    contents
-        Name as the scene spells it -> content.
+    """The folder of a scene file, and the contents that have been read from it, by name as the scene spells
+    it.
     """
 
     folder: Path
@@ -158,29 +102,12 @@ class Inputs:
 def read_apart(
     reader: Path, *arguments: str, content: bytes = b"", memory: int
 ) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
-    """What a reader makes of a file.
+    """What a reader makes of a file in a process of its own that takes at most `memory` bytes of address
+    space.
 
-    Parameters
-    ----------
-    reader
-        A script that defines `answer(content, *arguments)`, which returns what JSON holds and arrays by name;
-        its process imports nothing of this package.
-    arguments
-        Passed on.
-    content
-        Passed on, by stdin.
-    memory
-        Bytes of address space that its process may take.
-
-    Returns
-    -------
-    tuple
-        What `answer` returned.
-
-    Raises
-    ------
-    InputError
-        If it raised, did not end in time, ended without an answer or answered nonsense.
+    reader: a script that defines `answer(content, *arguments)`, which returns what JSON holds and arrays by
+    name; its process imports nothing of this package. InputError if it raised, did not end in time, ended
+    without an answer or answered nonsense.
     """
     command = [sys.executable, "-P", str(CHILD), str(reader), str(memory), str(SECONDS / 2), *arguments]
     # the library of instruments loads matplotlib, which else makes a folder in that of the user

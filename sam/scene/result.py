@@ -288,16 +288,9 @@ FALLS = 0.5  # it does if they bring its smallest value below this share of that
 
 @dataclass(frozen=True)
 class Attempt:
-    """An attempt at a load, a whole step or a part of it.
-
-    Parameters
-    ----------
-    accepted
-        False if it was discarded, and the way to it halved.
-    residuals
-        After each iteration, in the measure by which the solver stops (zero: nothing to do).
-    goal
-        The residual at which it may stop.
+    """An attempt at a load, a whole step or a part of it. accepted: False if it was discarded, and the way to
+    it halved; residuals: after each iteration, in the measure by which the solver stops (zero: nothing to
+    do); goal: the residual at which it may stop.
     """
 
     accepted: bool

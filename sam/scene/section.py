@@ -59,16 +59,8 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Problem:
-    """One error of a scene.
-
-    Parameters
-    ----------
-    key
-        Dotted, empty for the file as a whole.
-    value
-        As TOML would spell it, "missing" if it is.
-    allowed
-        What is allowed, in words.
+    """An error of a scene: the dotted key, empty for the file as a whole; the value as TOML would spell it,
+    "missing" if it is; and what is allowed, in words.
     """
 
     key: str
@@ -109,20 +101,9 @@ class SceneError(ValueError):
 
 
 def spelling(value: object) -> str:
-    """A value as a scene file spells it, on one line and shortened.
+    """A value as a scene file spells it, on one line of at most 60 characters; what JSON cannot hold is named
+    by its type.
 
-    Parameters
-    ----------
-    value
-        Anything; what JSON cannot hold is named by its type.
-
-    Returns
-    -------
-    str
-        At most 60 characters.
-
-    Examples
-    --------
     >>> spelling([1, "m"])
     '[1, "m"]'
     """
@@ -135,18 +116,7 @@ def spelling(value: object) -> str:
 
 
 def printable(text: str) -> str:
-    """The text without control characters and line ends, which could act on a terminal or break a file.
-
-    Parameters
-    ----------
-    text
-        Any text.
-
-    Returns
-    -------
-    str
-        Of the same length, with "?" in their places.
-    """
+    """The text with "?" for control characters and line ends, which act on terminals or break files."""
     return "".join(character if character.isprintable() else "?" for character in text)
 
 
@@ -210,15 +180,10 @@ def of_choice(
 class Section(BaseModel):
     """A table of the scene file.
 
-    Attributes
-    ----------
-    of_scene
-        Whether its keys are those of a scene, so that one may belong into another table.
-    unwritten
-        Optional keys that are not written at their default, so that a scene has the identity, the digests and
-        the files that it had before there was such a key: every key that is added from now on.
-    whole
-        The table of all others, the scene, which says so itself (`sam.scene.schema`).
+    of_scene: whether its keys are those of a scene, so that one may belong into another table; whole: the
+    table of all others, the scene, which says so itself (`sam.scene.schema`). unwritten: optional keys that
+    are not written at their default, so that a scene has the identity, the digests and the files that it had
+    before there was such a key: every key that is added from now on.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)

@@ -49,24 +49,9 @@ def refused(text: str) -> PydanticCustomError:
 
 @dataclass(frozen=True)
 class Number:
-    """A kind of number: its closed range in SI, and whether it is whole or a single further value is allowed.
-
-    Parameters
-    ----------
-    name
-        In words, for messages.
-    low, high
-        The range in SI.
-    unit
-        SI unit as pint spells it, empty for a pure number.
-    example
-        As a scene file would spell it.
-    zero
-        Whether 0 is allowed although `low` is above it.
-    whole
-        Whether it must be whole.
-    infinite
-        Whether inf is allowed (also as the string "inf", which JSON can hold).
+    """A kind of number: its name in words; its closed range in SI; its SI unit as pint spells it, empty for a
+    pure number; an example as a scene file would spell it; and whether 0 is allowed although `low` is above
+    it, whether it must be whole, and whether inf is allowed (also as the string "inf", which JSON can hold).
     """
 
     name: str
@@ -150,19 +135,8 @@ def _real(value: object, whole: bool) -> float | int | None:
 
 
 def in_unit(value: object, unit: str) -> Decimal | None:
-    """How many units a string NUMBER UNIT is, exactly.
-
-    Parameters
-    ----------
-    value
-        The string.
-    unit
-        As pint spells it.
-
-    Returns
-    -------
-    Decimal or None
-        None if it is no such string or has another dimension.
+    """How many units, as pint spells them, a string NUMBER UNIT is, exactly; None if it is no such string or
+    has another dimension.
     """
     parts = number_and_unit(value)
     if parts is None:
@@ -172,20 +146,9 @@ def in_unit(value: object, unit: str) -> Decimal | None:
 
 
 def number_and_unit(value: object) -> tuple[str, str] | None:
-    """The two parts of a string NUMBER UNIT.
+    """The two parts of a string NUMBER UNIT, whose unit need not be a known one; None if it is no such
+    string.
 
-    Parameters
-    ----------
-    value
-        The string; its unit need not be a known one.
-
-    Returns
-    -------
-    tuple of str or None
-        None if it is no such string.
-
-    Examples
-    --------
     >>> number_and_unit("2.5 GPa")
     ('2.5', 'GPa')
     """

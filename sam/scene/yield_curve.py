@@ -274,22 +274,9 @@ class StepEnergies:
 
 
 def plastic_work(curve: YieldCurve, peeq: Array, before: Array | float = 0.0) -> Array:
-    """Work of the yield stress, its integral over the accumulated plastic strain, by Gauss's rule.
+    """Work of the yield stress, its integral over the accumulated plastic strain from `before` to `peeq`, of
+    the same shape or numbers, by Gauss's rule; in the unit of the curve.
 
-    Parameters
-    ----------
-    curve
-        The yield stress.
-    peeq, before
-        Ends of the integral, of the same shape or numbers.
-
-    Returns
-    -------
-    Array
-        In the unit of the curve.
-
-    Examples
-    --------
     >>> round(float(plastic_work(Linear(1e9, 2e9), np.array(0.02), 0.01)))  # 1e9 0.01 + 1e9 (4e-4 - 1e-4)
     10300000
     """
@@ -302,19 +289,9 @@ def plastic_work(curve: YieldCurve, peeq: Array, before: Array | float = 0.0) ->
 
 
 def stored_energy(modulus: Array, strains: Array) -> Array:
-    """The energy W that back-stresses store, summed over them.
-
-    Parameters
-    ----------
-    modulus
-        C_k in Pa, (N, ...), which broadcasts with (N, cells).
-    strains
-        a_k, (N, n, cells): three normal components first, then shears of the tensor.
-
-    Returns
-    -------
-    Array
-        In J/m^3, (cells).
+    """The energy W that back-stresses store, summed over them, in J/m^3, (cells). modulus: C_k in Pa, (N,
+    ...), which broadcasts with (N, cells); strains: a_k, (N, n, cells), normal components first, then shears
+    of the tensor.
     """
     return cast(Array, (modulus * _contraction(strains, strains)).sum(axis=0) / 3)
 
@@ -322,23 +299,10 @@ def stored_energy(modulus: Array, strains: Array) -> Array:
 def step_energies(
     modulus: Array, recovery: Array, start: Array, strain: Array, *, length: Array
 ) -> StepEnergies:
-    """Energies of back-stresses over a step.
-
-    Parameters
-    ----------
-    modulus, recovery
-        C_k in Pa and g_k, (N, ...), which broadcast with (N, cells).
-    start
-        a_k at the beginning, (N, n, cells), components as of `stored_energy`.
-    strain
-        Increment x of the plastic strain, (n, cells), a tensor.
-    length
-        Its accumulated length dp, (cells).
-
-    Returns
-    -------
-    StepEnergies
-        In J/m^3, (cells); zero where dp is.
+    """Energies of back-stresses over a step, (cells), zero where dp is. modulus, recovery: C_k in Pa and g_k,
+    (N, ...), which broadcast with (N, cells); start: a_k at the beginning, (N, n, cells), as of
+    `stored_energy`; strain: increment x of the plastic strain, (n, cells), a tensor; length: its accumulated
+    length dp, (cells).
     """
     u = recovery * length
     b = np.exp(-u)
