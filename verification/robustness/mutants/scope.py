@@ -111,6 +111,7 @@ FILES = (
     *("test_pointwise.py", "test_preconditioner.py"),
     *("test_back_stress.py", "test_dissipation.py"),
     *("test_yield_curve.py", "test_layer.py", "test_counter_surface.py", "test_plastic_scene.py"),
+    "test_refused.py",
     "test_rounded_punch.py",
     *("test_moving.py", "test_moving_film.py", "test_moving_rough.py"),
     *("test_fem3d_contact.py", "test_fem3d_coating.py"),
