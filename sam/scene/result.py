@@ -297,11 +297,6 @@ class Attempt:
     residuals: tuple[float, ...]
     goal: float
 
-    @classmethod
-    def from_tree(cls, tree: dict[str, Any]) -> Attempt:
-        """The attempt in the tree of a checkpoint."""
-        return cls(**tree | {"residuals": tuple(tree["residuals"])})
-
 
 def residual_table(steps: Iterable[tuple[int, int, Sequence[Attempt]]]) -> dict[str, list[Any]]:
     """A row for each iteration. steps: (cycle, step, its attempts in their order)."""

@@ -133,16 +133,16 @@ class Given(dict[str, Any]):
         """The value at a dotted key of nested tables and sections, also where a key of one of these has dots;
         None without one.
         """
-        found: Any = self
-        while key and found is not None:
-            if isinstance(found, Mapping):
-                name = next((name for name in found if f"{key}.".startswith(f"{name}.")), key)
-                found = found.get(name)
+        value: Any = self
+        while key and value is not None:
+            if isinstance(value, Mapping):
+                name = next((name for name in value if f"{key}.".startswith(f"{name}.")), key)
+                value = value.get(name)
             else:
                 name = key.partition(".")[0]
-                found = getattr(found, name, None)
+                value = getattr(value, name, None)
             key = key[len(name) + 1 :]
-        return found
+        return value
 
     def text(self, key: str) -> str:
         """The text at a key; empty where there is none."""
@@ -298,12 +298,12 @@ def places_of(section: type[Section], above: str = "") -> dict[str, tuple[str, .
     """Key -> every place that has it in the tables of a section, as a scene file spells it: "[body.coating]",
     "body.young".
     """
-    found: dict[str, tuple[str, ...]] = {}
+    known: dict[str, tuple[str, ...]] = {}
     for key, field in section.model_fields.items():
         name, parts = field.alias or key, (field.annotation, *get_args(field.annotation))
         inner = next((part for part in parts if isinstance(part, type) and issubclass(part, Section)), None)
         place = {name: (f"[{above}{name}]" if inner else f"{above}{name}",)}
         for table in (place, places_of(inner, f"{above}{name}.") if inner else {}):
             for name_in, places in table.items():
-                found[name_in] = found.get(name_in, ()) + places
-    return found
+                known[name_in] = known.get(name_in, ()) + places
+    return known

@@ -75,16 +75,22 @@ ROUGH_PATH |= keys(
     ON,
 )
 SCENES = {
-    **{"SPHERE": SPHERE, "SWIFT": SWIFT, "LINEAR": LINEAR, "PERFECT": PERFECT, "KINEMATIC": KINEMATIC},
-    **{
-        "LAYER": LAYER,
-        "PATH": PATH,
-        "GIVEN": GIVEN,
-        "GIVEN_PATH": GIVEN_PATH,
-        "MISFIT": MISFIT,
-        "WAVES": WAVES,
-    },
-    **{"COUNTER": COUNTER, "WAVE": WAVE, "DISC": DISC, "MAP": MAP, "ROUGH_PATH": ROUGH_PATH},
+    "SPHERE": SPHERE,
+    "SWIFT": SWIFT,
+    "LINEAR": LINEAR,
+    "PERFECT": PERFECT,
+    "KINEMATIC": KINEMATIC,
+    "LAYER": LAYER,
+    "PATH": PATH,
+    "GIVEN": GIVEN,
+    "GIVEN_PATH": GIVEN_PATH,
+    "MISFIT": MISFIT,
+    "WAVES": WAVES,
+    "COUNTER": COUNTER,
+    "WAVE": WAVE,
+    "DISC": DISC,
+    "MAP": MAP,
+    "ROUGH_PATH": ROUGH_PATH,
 }
 AT, PRESSURE = "body.plasticity.", 'a pressure as a string with a unit, such as "210 GPa"'
 COLUMNS = "columns peeq and yield_stress_Pa, 1 to 10000 rows"

@@ -239,7 +239,6 @@ class TestHistories:
             and table["accepted"] == [0, 0, 1]
             and table["residual"] == [1.0, 2.0, 0.5]
         )
-        assert Attempt.from_tree({"accepted": True, "residuals": [0.5], "goal": 0.1}) == attempts[1]
 
     def test_words(self):
         falling, flat = list(0.5 ** np.arange(30.0)), [*0.5 ** np.arange(20.0), *[2e-6] * 12]

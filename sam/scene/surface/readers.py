@@ -242,9 +242,9 @@ def columns_of(names: Sequence[str], kind: type[HeightMap] = HeightMap) -> list[
         wanted = kind.columns()
         return [(names.index(name), "m") for name in wanted] if sorted(names) == sorted(wanted) else None
     matches = [(k, _COLUMN.fullmatch(name)) for k, name in enumerate(names) if name]
-    found = {(match[1] or "z").lower(): (k, match[2] or "") for k, match in matches if match}
-    whole = len(found) == len(matches) and sorted(found) == ["x", "y", "z"]
-    return [found[axis] for axis in "xyz"] if whole else None
+    columns = {(match[1] or "z").lower(): (k, match[2] or "") for k, match in matches if match}
+    whole = len(columns) == len(matches) and sorted(columns) == ["x", "y", "z"]
+    return [columns[axis] for axis in "xyz"] if whole else None
 
 
 def _metres(unit: str | None) -> float:
