@@ -36,24 +36,14 @@ class Status(StrEnum):
 
     @property
     def advice(self) -> str:
-        """What the user should change."""
-        return _ADVICE[self]
+        """What the user should change, where no model says it by the keys of the scene."""
+        return _BEYOND if self is Status.OUTSIDE_OF_MODEL else ""
 
 
-_ADVICE = {
-    Status.CONVERGED: "",
-    Status.NOT_CONVERGED: "the contact iteration stopped above its tolerance: refine grid.cells or "
-    "fem.cells_per_radius, or raise solver.tolerance",
-    Status.CONTACT_AT_GRID_EDGE: "the contact touches the edge of the grid: raise grid.extent (or fem.box), "
-    "or lower loading.force",
-    Status.UNDER_RESOLVED: "too few cells in the contact: raise grid.cells or lower grid.extent",
-    Status.PLASTIC_ZONE_AT_GRID_EDGE: "the plastic zone touches the edge of the grid: raise grid.extent and "
-    "the largest of grid.depths (or fem.box), or lower loading.force",
-    Status.STEP_CUT_LIMIT: "a load step did not converge however often it was halved: raise loading.steps or "
-    "solver.tolerance",
-    Status.OUTSIDE_OF_MODEL: "the contact is too large for small strains of a flat half-space: lower "
-    "loading.force (or loading.approach), or give [solver] beyond_model = true",
-}
+_BEYOND = (
+    "the contact is too large for small strains of a flat half-space: lower loading.force (or "
+    "loading.approach), or give [solver] beyond_model = true"
+)
 
 QUANTITIES = _names(
     "force_N approach_m contact_area_m2 contact_radius_m p_max_Pa p_center_Pa mises_max_Pa "
