@@ -23,16 +23,16 @@ from sam.scene.units import (
     Fraction,
     Length,
     MeshCells,
+    Number,
     Order,
-    Percent,
     SmoothingWindow,
     StrainLimit,
     refused,
 )
 
 MOST_DEPTHS = 1001  # entries of a list; the layers of a box cost 36 n^2 coefficients for each wave number
-ACCURACY = Percent("an accuracy", 1e-4, 0.5, example="1 %")
-TOLERANCE = Percent("tolerance", 1e-12, 10.0, example="2 %")
+ACCURACY = Number("an accuracy", 1e-4, 0.5, example="1 %", percent=True)
+TOLERANCE = Number("tolerance", 1e-12, 10.0, example="2 %", percent=True)
 if TYPE_CHECKING:
     QuantityName = str
 else:

@@ -51,7 +51,8 @@ def refused(text: str) -> PydanticCustomError:
 class Number:
     """A kind of number: its name in words; its closed range in SI; its SI unit as pint spells it, empty for a
     pure number; an example as a scene file would spell it; and whether 0 is allowed although `low` is above
-    it, whether it must be whole, and whether inf is allowed (also as the string "inf", which JSON can hold).
+    it, whether it must be whole, whether inf is allowed (also as the string "inf", which JSON can hold), and
+    whether it may be a text in percent, "2 %".
     """
 
     name: str
@@ -62,6 +63,7 @@ class Number:
     zero: bool = False
     whole: bool = False
     infinite: bool = False
+    percent: bool = False
 
     def allowed(self, file: bool) -> str:
         """What a value may be, in words, for a scene file or for Python."""
@@ -69,6 +71,8 @@ class Number:
         bounds += " or inf" if self.infinite else ""
         if file and self.unit:
             return f'{self.name} as a string with a unit, such as "{self.example}", {bounds}'
+        if self.percent:
+            return f'{self.name} {bounds}, or in percent, such as "{self.example}"'
         return f"{self.name} {bounds}" + (" (a float in SI, or a string with a unit)" if self.unit else "")
 
     def check(self, value: object, info: ValidationInfo | None) -> float | int:
@@ -76,6 +80,9 @@ class Number:
         file = in_file(info)
         if self.infinite and (value == "inf" or (isinstance(value, float) and value == math.inf)):
             return math.inf
+        if self.percent and isinstance(value, str) and value.rstrip().endswith("%"):
+            with suppress(ValueError):  # of a text that is no number, which is refused below
+                value = float(value.rstrip().removesuffix("%")) / 100.0
         if self.unit and (file or isinstance(value, str)):
             exact = in_unit(value, self.unit)
             number = None if exact is None else float(exact)
@@ -94,31 +101,13 @@ class Number:
         if self.unit:
             spelt = {"pattern": f"^{_QUANTITY.pattern}$", "examples": [self.example]}
             return {"type": "string", **spelt, **description}
+        if self.percent:
+            share = {"type": "number", "minimum": self.low, "maximum": self.high}
+            text = {"type": "string", "pattern": r"^\s*[0-9.eE+-]+\s*%\s*$", "examples": [self.example]}
+            return {"anyOf": [share, text], **description}
         number = {"type": "integer" if self.whole else "number", "maximum": self.high}
         number["minimum"] = 0 if self.zero else self.low
         return {"anyOf": [number, {"const": "inf"}]} if self.infinite else number | description
-
-
-@dataclass(frozen=True)
-class Percent(Number):
-    """A pure number that may also be a text in percent, "2 %"."""
-
-    def allowed(self, file: bool) -> str:
-        """What a value may be, in words."""
-        return f'{super().allowed(file)}, or in percent, such as "{self.example}"'
-
-    def check(self, value: object, info: ValidationInfo | None) -> float | int:
-        """The value as a float; an error of type "allowed" for anything else."""
-        if isinstance(value, str) and value.rstrip().endswith("%"):
-            with suppress(ValueError):  # of a text that is no number, which is refused below
-                value = float(value.rstrip().removesuffix("%")) / 100.0
-        return super().check(value, info)
-
-    def __get_pydantic_json_schema__(self, _core: Any, _handler: Any) -> dict[str, Any]:
-        """JSON schema of the number as a scene file spells it."""
-        number = {"type": "number", "minimum": self.low, "maximum": self.high}
-        text = {"type": "string", "pattern": r"^\s*[0-9.eE+-]+\s*%\s*$", "examples": [self.example]}
-        return {"anyOf": [number, text], "description": self.allowed(file=True)}
 
 
 def _real(value: object, whole: bool) -> float | int | None:

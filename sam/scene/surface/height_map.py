@@ -48,7 +48,9 @@ class HeightMap:
         heights: Array = np.array(values, dtype="<f8", order="C")
         if heights.ndim != 2:
             raise InputError(f"heights of shape {heights.shape}: two dimensions are needed")
-        self.cells, self.extent = _sizes(heights.shape, tuple(extent))
+        cells, sides = _sizes(heights.shape, tuple(extent))
+        self.cells = cells
+        self.extent = sides
         absent = np.isnan(heights)
         heights[absent] = np.nan  # of the many ways to write it the same
         if not (absent | (np.abs(heights) <= HIGHEST)).all():
