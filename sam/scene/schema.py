@@ -88,7 +88,7 @@ class Scene(Section):
         stays, removed = wears and at("loading.unload") is not True, "material is removed"
         needs = f"only together with [body.plasticity]: {removed} by its plastic strain"
         moves, slip = has("loading.path") and other, at("counterbody.slip")
-        returns, unstepped = at("loading.path.return") == TO_AND_FRO, not has("loading.path.steps")
+        returns, steps = at("loading.path.return") == TO_AND_FRO, "loading.path.steps"
         plane, along = moves and flat, moves and at("friction.direction") == "alternating"
         still, rolls = plane and not rough_counter, plane and rough_counter and slip == 0
         renewed = moves and at("counterbody.surface.renew") is True and returns and not wears
@@ -103,11 +103,7 @@ class Scene(Section):
             (moves and coated, "body.coating", f"with loading.path {NOT_YET}"),
             (still, "loading.path", "nothing moves: a plane needs [counterbody.surface], or leave it out"),
             (rolls, "counterbody.slip", "above 0: nothing moves on a plane that rolls"),
-            (
-                plane and unstepped,
-                "loading.path.steps",
-                f"required with {shape}, which has no contact radius",
-            ),
+            (plane and not has(steps), steps, f"required with {shape}, which has no contact radius"),
             (renewed, "counterbody.surface.renew", 'false with return = "to-and-fro": the load stays on'),
             (uncertain, key, f"false with [counterbody.surface] and loading.path: {cells}"),
             (along, "friction.direction", '"constant" with loading.path: the traction is along the motion'),
@@ -193,9 +189,8 @@ class Scene(Section):
             yield "grid.depths", "with plasticity the faces of the layers: two or more, the first 0"
         radius, refused = contact_radius(self) if path is not None else inf, list[Conflict]()
         if path is not None and radius == 0:
-            refused = [
-                ("loading.force", "above 0 with loading.path: nothing else says how long its steps may be")
-            ]
+            words = "above 0 with loading.path: nothing else says how long its steps may be"
+            refused = [("loading.force", words)]
         elif path is not None and path.step_per_radius is not None:
             most = COUNT.high * radius / path.length
             words = f"at most {most:.4g}: this path may have {COUNT.high:g} steps"
@@ -214,9 +209,8 @@ class Scene(Section):
             # 2/3 mu p0. An upper bound of the limit load, of slip along the surface: at most
             # (sigma_y + sum C_k/g_k)/sqrt(3) times the area is borne
             strength, mu = plasticity.strength(), self.coefficient
-            most = (
-                float(strength.stress(0.0, STRAIN.high) + strength.back_saturation(0.0)) / sqrt(3) * 1.5 / mu
-            )
+            borne = float(strength.stress(0.0, STRAIN.high) + strength.back_saturation(0.0)) / sqrt(3)
+            most = borne * 1.5 / mu
             if stated(self.loading.p0) > most:
                 words = f"with friction.coefficient = {mu:g}: the body bears no larger traction"
                 yield "loading.p0", f"at most {most:.4g} Pa {words}"
@@ -265,12 +259,12 @@ class Scene(Section):
             cells, extent = self.patch
         if cells != coefficients.cells:
             yield "grid.cells", f"{list(coefficients.cells)}, the grid of friction.path"
-        wanted = coefficients.extent
+        sides = coefficients.extent
         if extent is None or not all(
-            isclose(*sides, rel_tol=1e-6) for sides in zip(extent, wanted, strict=True)
+            isclose(*both, rel_tol=1e-6) for both in zip(extent, sides, strict=True)
         ):
-            sides = " and ".join(f"{side:.9g} m" for side in wanted)
-            yield "grid.extent", f"{sides}, the grid of friction.path"
+            words = " and ".join(f"{side:.9g} m" for side in sides)
+            yield "grid.extent", f"{words}, the grid of friction.path"
 
     def _excesses_of_solver(self) -> Iterator[Conflict]:
         """What has no other cells for [solver]: what belongs to its grid, says its cells, or has a threshold,
@@ -295,16 +289,17 @@ class Scene(Section):
                 path = f'{surface.table}.path without resample = "fourier"'
                 yield "solver.uncertainty", alone.format(path)
         cells = exact and grid is not None and bool(grid.cells or grid.extent or grid.depths or grid.layers)
-        own, moved = (
-            exact and not cells and rough,
-            exact and not (cells or rough) and self.loading.path is not None,
-        )
+        own, moved = exact and not cells and rough, exact and self.loading.path is not None
         jumps = exact and (self.wear is not None or (friction is not None and friction.film))
         idle = exact and self.loading.force == 0
         yield from broken(
             (cells, accuracy, "not together with [grid]: the cells are chosen"),
             (own, accuracy, "only for smooth bodies: the cells of a rough one are those of its surface"),
-            (moved, accuracy, "not together with loading.path: no error over its steps was measured"),
+            (
+                moved and not (cells or rough),
+                accuracy,
+                "not together with loading.path: no error over its steps was measured",
+            ),
             (idle, accuracy, "only with loading.force above 0: without contact there is no error"),
             (jumps, accuracy, "not together with [wear] or a film: what is lost or breaks has a threshold"),
         )

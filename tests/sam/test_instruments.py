@@ -8,14 +8,14 @@ import struct
 
 import numpy as np
 import pytest
+from builders import measured_scene as rough
 
-from sam.scene import HeightMap, Scene, SceneError, inputs, load_scene
+from sam.scene import HeightMap, SceneError, inputs
 from sam.scene.inputs import InputError
 from sam.scene.surface import processed, readers
 from sam.scene.surface.instrument_child import RefusedError, heights_in
 from sam.scene.surface.readers import read_named
 from verification.robustness.bad_files import npz
-from verification.robustness.hostile import ROUGH
 
 ROWS = [
     [1.0, 2.0, 4.0, 8.0, -3.0],
@@ -123,12 +123,6 @@ def test_files_that_the_library_writes_come_back(library, tmp_path, ending):
 def test_a_file_without_a_size_a_unit_or_sense_is_refused(library, formats, content, message):
     with pytest.raises((RefusedError, library.Exceptions.CorruptFile), match=message):
         heights_in(content, formats, 4097)
-
-
-def rough(folder, name: str, content: bytes, keys: str = "", more: str = "") -> Scene:
-    (folder / name).write_bytes(content)
-    (folder / "s.toml").write_text(ROUGH.replace('"heights.npz"\n', f'"{name}"\n{keys}') + more)
-    return load_scene(folder / "s.toml")
 
 
 def test_a_scene_reads_an_instrument_in_a_process_of_its_own(library, tmp_path):

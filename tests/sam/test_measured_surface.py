@@ -5,6 +5,7 @@ pin.
 
 import numpy as np
 import pytest
+from builders import measured_scene as rough
 
 import sam
 from sam.grid.rough import RoughPatch
@@ -13,7 +14,6 @@ from sam.scene.surface import heights, mean_deviation, patch_of, processed, roug
 from sam.scene.surface.measured import fitted_form, harmonic, resampled
 from sam.scene.surface.readers import read_named
 from verification.robustness.bad_files import npz
-from verification.robustness.hostile import ROUGH
 from verification.runs.store import identity
 from verification.scenes.pin import DATA, RECIPE, pin_heights, pin_table
 
@@ -35,12 +35,6 @@ def places(shape, cell=CELL):
 
 def waves(shape, seed=0):
     return np.random.default_rng(seed).normal(size=shape)
-
-
-def rough(folder, name: str, content: bytes, keys: str = "", more: str = "") -> Scene:
-    (folder / name).write_bytes(content)
-    (folder / "s.toml").write_text(ROUGH.replace('"heights.npz"\n', f'"{name}"\n{keys}') + more)
-    return load_scene(folder / "s.toml")
 
 
 # --- form ---------------------------------------------------------------------------------------------------

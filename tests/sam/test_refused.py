@@ -156,12 +156,16 @@ unload_steps = 2 -> = & unload = true
 prescribed = 'hertz'; p0 = '4 GPa'; radius = '6 um' -> @force = "0.65 N" & not both & counterbody = { \
  & nothing presses
 p0 = '4 GPa' -> = & only as part of prescribed = "h
+approach = '0.1 um' -> = & either force or approach, not both
+-force; approach = '-1 nm' | '0 nm' | '0.65 N' | 1e-07 | 'nan m' | 'inf m' | true | ['1 nm'] \
+    -> = & a length as a string with a unit
 path.start = ['-9 m', '0 um']; path.end = ['9 m', '0 um']; path.step_per_radius = 1 -> = \
  & at most 0.0003363 & 1000 steps
 ## GIVEN
 loading = {} -> loading.force is missing & required: force, approach, or prescribed
 -loading.p0; -loading.radius -> loading.p0 is missing & loading.radius is missing & required: prescribed
 loading.prescribed = 'flat' -> = & "hertz"
+loading.approach = '0.1 um' -> = & either approach, or prescribed
 ## GIVEN_PATH loading.path.
 end = ['-9 um', '0 um'] -> = & another place than start
 end = [9e-06, '0 um'] -> @end[0] = 9e-06 & such as "-10 um"

@@ -9,6 +9,7 @@ import zipfile
 import numpy as np
 import pandas as pd
 import pytest
+from builders import measured_scene as rough
 
 import sam
 from sam.scene import HeightMap, Scene, SceneError, load_scene, resolved
@@ -20,15 +21,6 @@ from verification.robustness.hostile import ROUGH
 from verification.runs.store import identity
 
 # --- height maps and their files ----------------------------------------------------------------------------
-
-
-def rough(
-    folder, name: str = "heights.npz", content: bytes | None = None, more: str = "", keys: str = ""
-) -> Scene:
-    """The scene with this file; keys: further ones of [surface]; more: at the end of the scene."""
-    (folder / name).write_bytes(good_heights() if content is None else content)
-    (folder / "s.toml").write_text(ROUGH.replace('"heights.npz"\n', f'"{name}"\n{keys}') + more)
-    return load_scene(folder / "s.toml")
 
 
 def test_a_map_is_its_content_wherever_it_comes_from(tmp_path):
