@@ -86,10 +86,6 @@ class Kinematic(Section):
         if len(set(counts)) > 1:
             yield "recovery", f"as many numbers as modulus has: {counts[0]}"
 
-    def back_stress(self) -> BackStress:
-        """The constants."""
-        return BackStress(self.modulus, self.recovery or (0.0,) * len(self.modulus))
-
 
 class Hardening(Section):
     """A hardening law with its constants.
@@ -136,7 +132,9 @@ class Hardening(Section):
 
     def back_stress(self) -> BackStress | None:
         """The constants of the back-stresses where the factor over depth is 1; None without them."""
-        return None if self.kinematic is None else self.kinematic.back_stress()
+        if (table := self.kinematic) is None:
+            return None
+        return BackStress(table.modulus, table.recovery or (0.0,) * len(table.modulus))
 
 
 class Plasticity(Hardening):

@@ -21,7 +21,6 @@ from sam.scene import Scene, Status
 from sam.schedule import Approach, Load
 from verification.energy.of_sam import balance_of
 
-FORCE = 'force = "0.65 N"'
 COARSE = {"cells": (33, 33), "extent": (24e-6, 24e-6)}
 CYCLES = {"force": 0.65, "steps": 3, "unload": True, "cycles": 2}
 ROUGH = {
