@@ -23,9 +23,10 @@ from sam.scene import Compare, HeightMap, Scene, SceneError, Status, resolved
 from sam.scene.section import OTHER_NAMES, Section, places_of
 from samfem import comparing
 from samfem.cli import CLAIMS
-from verification.compare.rows import Comparison
+from verification.compare.rows import judged
 from verification.cost import estimates, plan as plan_module
 from verification.cost.plan import check_needs
+from verification.judging import Measured
 from verification.runs import checkpoints, models
 from verification.runs.store import identity
 from verification.runs.study import read_study
@@ -373,7 +374,7 @@ class TestAdviceOfWhatCanBeChanged:
 
 
 class TestJudgement:
-    row = Comparison("p_max_Pa", 1.0, 2.0, "relative", 0.5, 0.01, False, "")
+    row = judged("p_max_Pa", "relative", Measured(1.0, 2.0), (0.01, ""))
 
     @staticmethod
     def result(converged: bool):

@@ -5,19 +5,31 @@ both models (`verification.quantities.Solved`). Titles and captions follow from 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import cycle
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from verification.cases.case import Plot
-from verification.figures.maps import FieldPair, pressure_maps
-from verification.figures.plastic import axis_profiles, compared_peeq, residual_surface
-from verification.figures.profiles import Profile, profiles
+from verification.cases.case import Plot, View
+from verification.cases.sweep import BOTH, fitted, spelt, words_of
+from verification.compare.sliding_measures import SHALLOWEST
+from verification.figures.friction import CYCLES, LOOKS, Curve, compared_planes, curves, profile_of
+from verification.figures.maps import FieldPair, maps_over_axes, pressure_maps
+from verification.figures.moving import grooves, new_strains
+from verification.figures.plastic import PERCENT, axis_profiles, compared_peeq, residual_surface
+from verification.figures.profiles import Profile, convergence, profiles
+from verification.figures.refinement import refinement
 from verification.figures.style import Drawing
 from verification.figures.views import SURFACE_AXES, VON_MISES, compared_mises, compared_pressure
-from verification.quantities import Solved
+from verification.quantities import OF_TRACKS, Solved, ladders, of_passes, planes, refined
+from verification.reference.convergence import extrapolate
 from verification.references import contact_of
+from verification.rows import CaseFile
 from verification.runs.sampling import peak, pressure_map
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 COLUMNS = {
     ("line", "p_Pa"): ("Pressure", "$p/p_0$", "p0"),
@@ -37,8 +49,12 @@ def _maps(what: str, name: str, draw: Callable[[Solved], Drawing]) -> Callable[[
     return lambda found: Plot(draw(found), name, what[0].upper() + what[1:], alt, alt)
 
 
-def _along(*columns: tuple[str, str], name: str, title: str, until: float) -> Callable[[Solved], Plot]:
-    """Columns of tables on the curves of the reference to `until` times a, with the errors underneath."""
+def _along(
+    *columns: tuple[str, str], name: str, title: str, until: float, pressed: float = np.inf
+) -> Callable[[Solved], Plot]:
+    """Columns of tables on the curves of the reference to `until` times a, the pressure to `pressed` or to
+    where it is compared, with the errors underneath.
+    """
 
     def plot(found: Solved) -> Plot:
         units, curves = found.reference.units, found.reference.curves
@@ -51,7 +67,8 @@ def _along(*columns: tuple[str, str], name: str, title: str, until: float) -> Ca
                 run.upper(): peak(each.tables[table], place, column) for run, each in found.results.items()
             }
             series = {run: (at / a, values / units[unit]) for run, (at, values) in read.items()}
-            end = min(until, found.reference.inside / a) if column == "p_Pa" else until
+            compared = min(until, found.reference.inside / a)
+            end = until if column != "p_Pa" else compared if pressed == np.inf else pressed
 
             def exact(at: np.ndarray) -> np.ndarray:
                 return curves[table, column](at * a) / units[unit]
@@ -176,6 +193,107 @@ def _mises_maps(found: Solved) -> Drawing:
     return compared_mises(*found.results.values(), found.reference.units["a"], found.reference.units["p0"])
 
 
+TOO_NEAR = "too near the surface to be compared, where the strain depends on the mesh."
+
+
+def _strain_planes(found: Solved) -> Plot:
+    """Plastic strain in y = 0 of SAM and the three-dimensional elements, to the depth that is compared."""
+    both = planes(found)
+    a, fem = found.reference.units["a"], found.results["fem"]
+    edge = fem.quantities["contact_radius_m"] / a if found.scene.counterbody else 1.0
+    drawing = compared_planes(both["sam"], both["fem"], ("SAM", "FEM"), edge, strip=SHALLOWEST)
+    alt = "Three maps of the plastic strain over x/a and z/a: SAM, FEM and their difference."
+    caption = f"{alt} Iso-lines in %. The body is pulled along +x. Hatched: {TOO_NEAR}"
+    return Plot(drawing, "plane", "Plastic strain in the plane y = 0", alt, caption)
+
+
+DEEP = 1.4  # radii to which profiles are drawn
+
+
+def _strain_profiles(found: Mapping[str, Solved], words: Mapping[str, str]) -> Iterator[Plot]:
+    """Plastic strain over depth of every run, a panel a variant."""
+    fields = {name: planes(each) for name, each in found.items()}
+    for name, place in (("axis", "on the axis"), ("column", "where it is largest")):
+        panels = {}
+        for variant, runs in fields.items():
+            x = runs["fem"].place_of_maximum() if name == "column" else 0.0
+            order = ("fem", *(run for run in runs if run != "fem"))
+            panels[f"{words[variant]}, x = {x:.2f} a"] = {
+                run.upper() if run in ("sam", "fem") else f"SAM, {run}": profile_of(runs[run], x, DEEP)
+                for run in order
+                if run in ("sam", "fem") or f"SAM, {run}" in LOOKS
+            }
+        drawing = curves(panels, "$z/a$", "plastic strain [%]", (0.0, SHALLOWEST))
+        alt = "Curves of the plastic strain over depth: FEM, SAM on it, other forms of SAM beside it."
+        caption = f"In y = 0 at the peak. Grey: {TOO_NEAR}"
+        yield Plot(drawing, name, f"Plastic strain over depth {place}", alt, caption)
+
+
+def _strain_of_cycles(found: Mapping[str, Solved], words: Mapping[str, str]) -> Iterator[Plot]:
+    """The largest plastic strain over the cycles, of the runs with most of them, a panel a variant."""
+    panels = {}
+    for name, solved in found.items():
+        strains = {run: np.asarray(each.tables["cycles"]["peeq_max"]) for run, each in solved.results.items()}
+        most = max(map(len, strains.values()))
+        panels[words[name]] = {
+            run: Curve(np.arange(1, most + 1), PERCENT * each)
+            for run, each in strains.items()
+            if len(each) == most
+        }
+    series = dict.fromkeys(run for panel in panels.values() for run in panel)
+    looks = dict(zip(series, CYCLES, strict=False))
+    alt = "Curves of the largest plastic strain over the cycles of every run."
+    drawing = curves(panels, "cycle", "largest plastic strain [%]", looks=looks, count=True)
+    yield Plot(drawing, "strain", "Plastic strain over the cycles", alt, alt)
+
+
+def _grooves(found: Solved) -> Plot:
+    """The groove along the track of the finest runs that are compared."""
+    a, path = found.reference.units["a"], found.scene.loading.path
+    length, lines = (path.end[0] - path.start[0]) / a, {}
+    for runs in ladders(found):
+        n = max(runs)
+        x, depth = (np.asarray(runs[n].tables["track"][column]) / a for column in ("x_m", "uz_m"))
+        near = np.abs(x) <= length / 2 + 2.0
+        lines[f"{runs[n].model}, {n} in a"] = x[near] + length / 2, depth[near]
+    words = "Depth of the unloaded surface over the distance from the start, both models; a: radius of Hertz."
+    return Plot(grooves(lines, length), "groove", "Groove of one pass in both models", words, words)
+
+
+def _cost_of_errors(found: Solved) -> Plot:
+    """The largest error of each run against the limit of the two finest of its model, over its time."""
+    series = {}
+    for run in ("sam", "fem"):
+        named = {int(name.rpartition("-")[2]): r for name, r in found.results.items() if f"{run}-" in name}
+        limits = [(of, refined(named, of)) for of in OF_TRACKS.values()]
+        error = [100 * max(abs(of(named[n]) / limit - 1) for of, limit in limits) for n in sorted(named)]
+        series[run.upper()] = Curve(
+            np.array([named[n].cost["cpu_s"] for n in sorted(named)]), np.array(error)
+        )
+    looks = dict(zip(series, CYCLES, strict=False))
+    drawing = curves(
+        {"Cost of an error": series}, "processor time [s]", "error [%]", looks=looks, logarithmic=True
+    )
+    drawing.figure.axes[0].set_xscale("log")
+    words = (
+        "The largest error of groove, depth and strain over the processor time, against the limit of the two "
+        "finest runs of each model in second order; in the same steps along the path."
+    )
+    return Plot(drawing, "cost", "Error and processor time", words, words)
+
+
+def _new_strains(found: Mapping[str, Solved], words: Mapping[str, str]) -> Iterator[Plot]:
+    """What each pass adds, a figure a variant."""
+    for variant, solved in found.items():
+        runs = {name: of_passes(each, "strain") for name, each in solved.results.items()}
+        floors = sorted({float(each.verdict["floor"]) for each in solved.results.values()})
+        text = (
+            f"Largest plastic strain that a pass adds to a cell or element of the steady part of the track, "
+            f"{words[variant]}; below its floor the verdict counts none."
+        )
+        yield Plot(new_strains(runs, floors), f"new-strain-{variant}", "What each pass adds", text, text)
+
+
 _PUNCH = (("line", "p_Pa"), ("line", "uz_m"), ("axis", "mises_Pa"))
 KINDS: Mapping[str, Callable[[Solved], Plot]] = {
     "pressure-maps": _maps("contact pressure over x/a and y/a", "pressure-maps", _pressure_maps),
@@ -196,10 +314,112 @@ KINDS: Mapping[str, Callable[[Solved], Plot]] = {
     "punch": _along(
         *_PUNCH, name="profiles", title="Pressure, surface and stress under the centre", until=1.5
     ),
+    "rounded-punch": _along(
+        *_PUNCH,
+        name="profiles",
+        title="Pressure, surface and stress under the centre",
+        until=1.5,
+        pressed=1.2,
+    ),
     "loading": _loading,
     "exact-maps": _exact_maps,
     "across": _across,
     "plastic-axis": _plastic_axis,
     "residual-surface": _residual_surface,
+    "strain-planes": _strain_planes,
+    "grooves": _grooves,
+    "cost-of-errors": _cost_of_errors,
 }
 """Name in a case file -> how it is drawn."""
+
+
+def _orders(file: CaseFile, frame: DataFrame) -> Plot:
+    """The errors of each sweep over the size of the cells, with the orders that rows take of them."""
+    panels, fits = {}, []
+    for (name, model), rows in frame[frame["model"] != BOTH].groupby(["sweep", "model"], sort=False):
+        sweep, title = file.sweeps[name], model.upper() if name == model else f"{model.upper()}, {name}"
+        errors = [column for column, how in sweep.columns.items() if how not in ("value", "between")]
+        curves = {
+            words_of(file, c): (rows["h"].to_numpy(), rows[c].to_numpy(), fitted(file, rows, c))
+            for c in errors
+        }
+        panels[title] = curves
+        fits += [f"{title} {words} {order.order:.2f}" for words, (*_, order) in curves.items() if order]
+    said = f"Observed orders: {', '.join(fits)}."
+    alt = f"Log-log plot of the errors against the cell size with fitted straight lines. {said}"
+    caption = f"Lines: least-squares fits error ~ hᵐ. {said}"
+    return Plot(convergence(panels), "orders", "Error against cell size", alt, caption)
+
+
+def _limits(file: CaseFile, frame: DataFrame, column: str) -> Plot:
+    """A strain over the size of what each sweep refines, with the limit of each model."""
+    panels, labels, off = {}, {}, []
+    for name, rows in frame[frame["model"] != BOTH].groupby("sweep", sort=False):
+        models = rows.groupby("model", sort=False)
+        points = {model.upper(): (own["h"].to_numpy(), own[column].to_numpy()) for model, own in models}
+        panels[name] = {model: (h, v, extrapolate(h, v)) for model, (h, v) in points.items()}
+        labels[name] = "1 / load steps" if file.sweeps[name].size == "step" else "cell or element size / a"
+        sam, fem = (limit.limit for *_, limit in panels[name].values())
+        off.append(f"{name} {1e2 * (sam / fem - 1.0):+.2f} %")
+    words, said = words_of(file, column), f"SAM minus FEM, extrapolated: {', '.join(off)}."
+    alt = f"The {words} of SAM and FEM under refinement with fitted power laws that meet at zero. {said}"
+    caption = f"Lines: limit + c hᵐ fitted to all points. {said}"
+    title = f"{words[0].upper()}{words[1:]} under refinement"
+    return Plot(refinement(panels, labels, f"{words} [%]"), "refinement", title, alt, caption)
+
+
+def _lines(file: CaseFile, frame: DataFrame, y: str, *words: str) -> Plot:
+    """`lines Y over X by SERIES in PANEL`: a column over an axis or a column, each a number or an array; what
+    is expected is dotted.
+    """
+    said = dict(zip(words[::2], words[1::2], strict=True))
+    x, by, panel = said["over"], said.get("by", "model"), said.get("in", "sweep")
+    panels: dict[str, dict[str, Curve]] = {}
+    for (title, name), rows in frame.dropna(subset=[y]).groupby([panel, by], sort=False):
+        for column, series in ((y, spelt(name)), (f"{y} expected", f"{spelt(name)}, expected")):
+            if rows[column].notna().all() if column in rows else False:
+                values = (np.concatenate([np.atleast_1d(each) for each in rows[c]]) for c in (x, column))
+                panels.setdefault(spelt(title), {})[series] = Curve(*values)
+    names = dict.fromkeys(name for series in panels.values() for name in series)
+    plain, dashed = ([n for n in names if n.endswith(", expected") is ends] for ends in (False, True))
+    looks = dict(zip(plain, cycle(CYCLES)))
+    looks |= {n: {"color": looks[n.removesuffix(", expected")]["color"], "linestyle": ":"} for n in dashed}
+    what = words_of(file, y)
+    title = f"{what[0].upper()}{what[1:]}"
+    text = f"Curves of the {what} over {x.replace('.', ' ')}, by {by}; dotted: what is expected."
+    return Plot(curves(panels, x.replace(".", " "), what, looks=looks), y, title, text, text)
+
+
+def _maps(file: CaseFile, frame: DataFrame, z: str, *words: str) -> Plot:
+    """`maps Z over X Y in PANEL`: a column over two axes, with lines of equal values."""
+    (_, x, y, *rest), said = words, words_of(file, z)
+    panels = {}
+    for name, rows in frame.dropna(subset=[z]).groupby(rest[1] if rest else "model", sort=False):
+        table = rows.pivot(index=y, columns=x, values=z)
+        panels[spelt(name)] = (table.columns.to_numpy(), table.index.to_numpy(), table.to_numpy(dtype=float))
+    text = f"Maps of the {said} over {x} and {y}."
+    return Plot(maps_over_axes(panels, (x, y), said), z, f"{said[0].upper()}{said[1:]}", text, text)
+
+
+SWEPT: Mapping[str, Callable[..., Plot]] = {
+    "orders": _orders,
+    "limits": _limits,
+    "lines": _lines,
+    "maps": _maps,
+}
+"""First word of a figure in a case file -> how the frame of its sweeps is drawn; the others are handed on."""
+VIEWS: Mapping[str, View] = {
+    "plastic-zone": View(
+        *("sam", "plastic-zone", "zone", "The plastic zone in space"),
+        "The plastic zone of SAM below the sphere, cut open at y = 0: a bowl that is strained most below the "
+        "centre of the contact.",
+        "Plastic strain of SAM at the peak load on the cut and, where the zone reaches it, on the surface.",
+    ),
+}
+"""Name in a case file -> the picture in space."""
+OVER_VARIANTS: Mapping[str, Callable[[Mapping[str, Solved], Mapping[str, str]], Iterator[Plot]]] = {
+    "strain-profiles": _strain_profiles,
+    "strain-of-cycles": _strain_of_cycles,
+    "new-strains": _new_strains,
+}
+"""The same of all variants of a scene, with the words of each."""

@@ -5,19 +5,24 @@ scene and the value.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Mapping, Sequence
+from importlib import import_module
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from sam.scene import Scene
-from verification.cases.case import with_grid, with_loading, with_mesh
+from sam.scene import Coating, CounterBody, Friction, Grid, Loading, Path, Plasticity, Scene
+from verification.cases.case import with_body, with_grid, with_keys, with_loading, with_mesh
+from verification.reference.coated_sphere import CoatedContact
 from verification.reference.hertz import CircularContact
-from verification.references import contact_of
+from verification.references import coated_contact, contact_of, rounded_contact
+from verification.rows import CaseFile
 
 REACH = 2.2  # half of the extent: the plastic zone reaches 1.6 a in the surface at 6.2 times the yield stress
 EVEN, DEEPEST = 1.0, 2.2  # layers are even to 1 a; at "even depth" 2.2 they have reached 3.3 a
 GROWTH = 0.75
+ROOM = 1.06  # half a side of the grid over the larger of the contact radii with and without film
 
 
 class Resolution(NamedTuple):
@@ -59,5 +64,185 @@ def layer_faces(cells: int) -> np.ndarray:
     return even + GROWTH * np.maximum(even - EVEN, 0.0) ** 2
 
 
-RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {"p0-over-yield": at_ratio, "resolution": resolved_at}
-"""Name in a case file -> what it does to the scene."""
+def with_layer(scene: Scene, law: Mapping[str, str | float]) -> Scene:
+    """The scene with another law of its layer."""
+    content = scene.body.plasticity.model_dump() | {"layer": dict(law)}
+    return with_body(scene, plasticity=Plasticity(**content))
+
+
+def cells_a_side(scene: Scene, n: int) -> Scene:
+    """A grid of n by n cells over the extent of the scene."""
+    return with_grid(scene, cells=(n, n))
+
+
+def depths_over_radius(scene: Scene, depths: Sequence[float]) -> Scene:
+    """Output depths, given over the radius of the elastic contact."""
+    a = contact_of(scene).contact_radius
+    return with_grid(scene, depths=tuple(a * z for z in depths))
+
+
+def grid_over_rounded_punch(scene: Scene, grid: tuple[int, float]) -> Scene:
+    """n by n cells over so many radii of the contact of a punch with a rounded edge; the depths of SAM."""
+    cells, sides = grid
+    side = sides * rounded_contact(scene).contact_radius
+    return scene.model_copy(update={"grid": Grid(cells=(cells, cells), extent=(side, side))})
+
+
+COUNTERBODIES = {"rigid": {}, "steel": {"young": 210e9, "poisson": 0.3}}
+
+
+def coated_scene(base: Scene, ratio: float, thickness: float, counterbody: str) -> Scene:
+    """The sphere of `base` on another film. ratio: E1/E2; thickness: over the contact radius without film."""
+    other = CounterBody(shape="sphere", radius=base.counterbody.radius, **COUNTERBODIES[counterbody])
+    bare = base.model_copy(update={"counterbody": other})
+    coating = Coating(
+        young=ratio * base.body.young,
+        poisson=base.body.coating.poisson,
+        thickness=thickness * contact_of(bare).contact_radius,
+    )
+    return with_body(bare, coating=coating)
+
+
+def resolved_grid(scene: Scene, contact: CoatedContact, cells: int = 48) -> Scene:
+    """The scene on square cells, so many in the contact radius; a contact without film has room as well."""
+    cell = contact.contact_radius / cells
+    count = 2 * math.ceil(ROOM * max(contact.contact_radius, contact.bare.contact_radius) / cell) + 1
+    return with_grid(scene, cells=(count, count), extent=(count * cell, count * cell))
+
+
+def cells_in_coated_contact(scene: Scene, cells: int) -> Scene:
+    """So many cells in the contact radius, and a few depths: nothing is looked at there."""
+    contact, h = coated_contact(scene), scene.body.coating.thickness
+    return with_grid(resolved_grid(scene, contact, cells), depths=(0.0, h, h + 0.5 * contact.contact_radius))
+
+
+BOX = 6.0  # elastic contact radii: the far field of the point forces is prescribed there
+
+
+def sliding_scene(base: Scene, ratio: float, friction: float, resolution: Resolution) -> Scene:
+    """Loading to p0 = ratio times the initial yield stress with friction, on these grids."""
+    scene = resolved_at(with_loading(at_ratio(base, ratio), unload=False), resolution)
+    scene = with_keys(scene, "fem", box=BOX)
+    return rubbed(scene, {"coefficient": friction}) if friction else scene
+
+
+def rubbed(scene: Scene, keys: Mapping[str, Any]) -> Scene:
+    """The scene with friction of these keys."""
+    return scene.model_copy(update={"friction": Friction(**keys)})
+
+
+def given_tractions(scene: Scene, friction: float) -> Scene:
+    """The scene with the Hertz pressure of its elastic contact in place of the counter-body, and traction."""
+    elastic, steps = contact_of(scene), scene.loading.steps
+    size = {"p0": elastic.peak_pressure, "radius": elastic.contact_radius}
+    loading = Loading(prescribed="hertz", **size, steps=steps)
+    changed = {"counterbody": None, "loading": loading, "friction": Friction(coefficient=friction)}
+    return scene.model_copy(update=changed)
+
+
+def even_depths(scene: Scene, deepest: float, count: int = 81) -> Scene:
+    """Output depths from 0 to `deepest` radii of a given pressure."""
+    return with_grid(
+        scene, depths=tuple(float(z) * scene.loading.radius for z in np.linspace(0, deepest, count))
+    )
+
+
+WAY, PASS_STEPS, PASS_CELLS = 2.0, 20, 6  # half of the way in radii, its steps, cells in the radius
+BESIDE = (2.0, 1.8, 2.0)  # grid beyond the way of the centre along x, to its sides and in depth, in radii
+
+
+def travelling(scene: Scene, keys: Mapping[str, float]) -> Scene:
+    """A given Hertz pressure of radius 10 um that travels along x in so many passes; over_shear: p0 over the
+    shear yield stress.
+    """
+    radius, (ahead, beside, below) = 1e-5, BESIDE
+    h = radius / PASS_CELLS
+    nx, ny = (2 * round(half * PASS_CELLS) + 1 for half in (WAY + ahead, beside))
+    path = Path(start=(-WAY * radius, 0.0), end=(WAY * radius, 0.0), steps=PASS_STEPS)
+    size = {"p0": keys["over_shear"] * initial_yield(scene) / np.sqrt(3.0), "radius": radius}
+    loading = Loading(prescribed="hertz", **size, path=path, steps=2, unload=True, cycles=int(keys["passes"]))
+    depths = tuple(h * np.arange(round(below * PASS_CELLS) + 1))
+    grid = Grid(cells=(nx, ny), extent=(nx * h, ny * h), depths=depths)
+    return scene.model_copy(update={"counterbody": None, "loading": loading, "grid": grid})
+
+
+BESIDE_TRACK, BEHIND, DEEP = 1.8, 2.2, 3.0  # radii of the grid beside a track, at its ends, and below
+EVEN_TO, LAYER_GROWTH = 1.2, 1.2  # radii down to which layers are as thick as a cell; ratio of deeper ones
+TRACK = 6.0  # radii of a track: three to be steady, one and a half before its end
+TRACK_RATIO = 4.0  # p0 over the initial yield stress
+
+
+def radius_at(scene: Scene, ratio: float = TRACK_RATIO) -> float:
+    """Hertz radius in m of a rigid sphere at p0 = ratio times the initial yield stress."""
+    modulus = scene.body.young / (1 - scene.body.poisson**2)
+    return float(np.pi * ratio * initial_yield(scene) * scene.counterbody.radius / (2 * modulus))
+
+
+def on_track(scene: Scene, keys: Mapping[str, Any]) -> Scene:
+    """The scene with a track along x on a grid of its own. cells, per_radius: cells and steps in a radius;
+    length in radii; ratio: p0 over the yield stress; shift: of the track in cells; back: from its other end;
+    cycles: passes; to_and_fro, or one way.
+    """
+    cells, length, shift = keys["cells"], keys.get("length", TRACK), keys.get("shift", 0.0)
+    ratio = keys.get("ratio", TRACK_RATIO)
+    a = radius_at(scene, ratio)
+    h, faces = a / cells, [0.0]
+    while faces[-1] < DEEP * a:
+        even = len(faces) <= round(EVEN_TO * cells)
+        faces.append(faces[-1] + (h if even else (faces[-1] - faces[-2]) * LAYER_GROWTH))
+    half = length / 2 + BEHIND + abs(shift) / cells
+    count = 2 * int(np.ceil(half * cells)) + 1, 2 * round(BESIDE_TRACK * cells) + 1
+    ends = [(x * a + shift * h, 0.0) for x in (-length / 2, length / 2)]
+    start, end = ends[::-1] if keys.get("back") else ends
+    comes_back = {"return": "to-and-fro" if keys.get("to_and_fro") else "lifted"}
+    path = Path(start=start, end=end, steps=round(length * keys.get("per_radius", 4.0)), **comes_back)
+    force = float(2 / 3 * np.pi * ratio * initial_yield(scene) * a**2)
+    scene = with_loading(scene, force=force, path=path, cycles=keys.get("cycles", 1))
+    return with_grid(scene, cells=count, extent=(count[0] * h, count[1] * h), depths=tuple(faces))
+
+
+KINEMATIC = {"law": "perfect", "yield_stress": 1e9, "kinematic": {"modulus": (20e9,), "recovery": (0.0,)}}
+"""Steel of Prager's law."""
+
+
+RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {
+    "layer": with_layer,
+    "p0-over-yield": at_ratio,
+    "resolution": resolved_at,
+    "cells": cells_a_side,
+    "depths-over-radius": depths_over_radius,
+    "elements": with_mesh,
+    "grid-over-rounded-punch": grid_over_rounded_punch,
+    "film": lambda scene, film: coated_scene(scene, *film),
+    "cells-in-coated-contact": cells_in_coated_contact,
+    "elastic": lambda scene, on: with_body(scene, plasticity=None) if on else scene,
+    "friction": rubbed,
+    "coupling": lambda scene, on: with_keys(scene, "friction", coupling=on) if scene.friction else scene,
+    "given": given_tractions,
+    "depths": even_depths,
+    "travelling": travelling,
+    "kinematic": lambda scene, _: with_body(scene, plasticity=Plasticity(**KINEMATIC)),
+    "track": on_track,
+}
+"""Name in a case file -> what it does to the scene, in the order in which those of a case are applied."""
+
+
+def beside(file: CaseFile, name: str, known: Mapping[str, Any]) -> Any:
+    """What a name in a case file stands for: of a registry, or a function of the module beside the file."""
+    if name in known:
+        return known[name]
+    if not file.path.with_suffix(".py").exists():
+        raise KeyError(f"{file.path.name}: {name} is none of {', '.join(known)}")
+    module = import_module(f"verification.cases.{file.path.parent.name}.{file.path.stem}")
+    return getattr(module, name.replace("-", "_"))
+
+
+def changed(scene: Scene, changes: Mapping[str, Any], file: CaseFile) -> Scene:
+    """The scene with keys set and recipes applied, in their order."""
+    for key, value in changes.items():
+        section, _, name = key.rpartition(".")
+        if section:
+            scene = with_keys(scene, section, **{name: tuple(value) if isinstance(value, list) else value})
+        else:
+            scene = beside(file, name, RECIPES)(scene, value)
+    return scene
