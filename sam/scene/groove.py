@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import nan
-from typing import cast
 
 import numpy as np
 
@@ -27,7 +26,7 @@ def steady_part(way: Array, radius: float, length: float) -> Mask:
     """Whether places at these distances from the start lie in the steady part of a path; radius: of the
     contact along x.
     """
-    return cast(Mask, (way >= RUN_IN * radius) & (way <= length - RUN_OUT * radius))
+    return (way >= RUN_IN * radius) & (way <= length - RUN_OUT * radius)
 
 
 def passes_to_steady(strains: Sequence[float]) -> int | None:
