@@ -36,8 +36,7 @@ from sam.results.snapshots import Snapshot
 from sam.results.tables import state_tables
 from sam.scene import Result, Scene, Status
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
-from sam.scene.residuals import Attempt, residual_table
-from sam.scene.result import DISSIPATED, FRICTION_SIGN, ROOFED, Progress, of_load
+from sam.scene.result import DISSIPATED, FRICTION_SIGN, ROOFED, Attempt, Progress, of_load, residual_table
 from sam.scene.verdict import UNSTRAINED, Verdict, summary, verdict_columns
 
 if TYPE_CHECKING:

@@ -5,9 +5,12 @@ changed.
 
 import math
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
-from sam.scene import Scene, parse_scene
+from sam.scene import Scene, load_scene, parse_scene
+from verification.robustness.bad_surfaces import good_heights
+from verification.robustness.hostile import ROUGH
 
 STEEL = {"young": 210e9, "poisson": 0.3}
 MODULUS = 210e9 / (1 - 0.3**2)
@@ -167,3 +170,12 @@ def friction_text(lines: str) -> str:
 def given_pressure(lines: str) -> str:
     """SPHERE_TEXT without counter-body and force, with these lines in [loading]."""
     return SPHERE_TEXT[: SPHERE_TEXT.index("[counterbody]")] + "[loading]\n" + lines
+
+
+def measured_scene(
+    folder: Path, name: str = "heights.npz", content: bytes | None = None, keys: str = "", more: str = ""
+) -> Scene:
+    """A scene whose surface is a file with this content; keys: more of [surface]; more: at the end."""
+    (folder / name).write_bytes(good_heights() if content is None else content)
+    (folder / "s.toml").write_text(ROUGH.replace('"heights.npz"\n', f'"{name}"\n{keys}') + more)
+    return load_scene(folder / "s.toml")

@@ -24,9 +24,9 @@ from fem_reference.common.refusals import (
     shape_problems,
 )
 from fem_reference.common.rounded import ROUNDED
-from sam.scene.errors import Problem, spelling
 from sam.scene.result import LeftOut, Stage
 from sam.scene.schema import Scene
+from sam.scene.section import Problem, spelling
 
 MODEL = "fem-axisymmetric"
 SHAPES = ("sphere", "punch", ROUNDED)

@@ -26,8 +26,7 @@ from fem_reference.common.arrays import Array, Bools
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.elasticity import deviator, mises
 from fem_reference.common.plasticity import J2, History, Returned, deviatoric
-from sam.scene.dissipation import step_energies
-from sam.scene.yield_curve import YieldCurve
+from sam.scene.yield_curve import YieldCurve, step_energies
 
 MAX_ITERATIONS = 100
 """Limit of the return map: bisection alone has the last digit after 53."""

@@ -20,7 +20,7 @@ from fem_reference.common.arrays import Array, Bools
 from fem_reference.common.linear import NO_WORK, Kept, Work
 from fem_reference.common.plasticity import History, Material
 from fem_reference.common.schedule import Load
-from sam.scene.residuals import unfinished
+from sam.scene.result import unfinished
 
 EQUILIBRIUM = 1e-9
 """Largest residual force on a free degree of freedom, over the contact force; rounding leaves 1e-14."""

@@ -18,8 +18,7 @@ from fem_reference.common.linear import NO_WORK, Work
 from fem_reference.common.messages import MOST_CUTS
 from fem_reference.common.model import ContactModel
 from fem_reference.common.schedule import Load, Schedule, Target
-from sam.scene.residuals import Attempt
-from sam.scene.result import Progress
+from sam.scene.result import Attempt, Progress
 
 ELASTIC_UNLOADING = "elastic: unloading in one step"
 ELASTIC_CYCLE = "elastic: equal to cycle 1"

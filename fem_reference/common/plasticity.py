@@ -26,8 +26,7 @@ import numpy as np
 from fem_reference.common.arrays import Array, Bools, Integers
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.elasticity import deviator, mises, stiffness_tensor
-from sam.scene.dissipation import plastic_work
-from sam.scene.yield_curve import YieldCurve
+from sam.scene.yield_curve import YieldCurve, plastic_work
 
 ON_SURFACE = 1e-11
 """A trial stress beyond yield by up to this, relatively, is rounding: elastic."""

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 from fem_reference.common.coating import expected_radius
 from fem_reference.common.hertz import scales
-from sam.scene.errors import Problem, spelling
 from sam.scene.remedies import either, larger_box, less_load
 from sam.scene.schema import Scene
+from sam.scene.section import Problem, spelling
 
 THINNEST = 1e-4
 """Smallest thickness of a coating in Hertz radii: with 16 cells in the radius its elements are 1250 times

@@ -11,8 +11,7 @@ import numpy as np
 from fem_reference.common.loading import Step, Strained
 from fem_reference.common.model import ContactModel
 from fem_reference.common.periods import loops_of, verdict_columns_of
-from sam.scene.residuals import residual_table
-from sam.scene.result import CYCLES, DISSIPATED, FRICTION_SIGN, HISTORY, Table
+from sam.scene.result import CYCLES, DISSIPATED, FRICTION_SIGN, HISTORY, Table, residual_table
 
 
 def columns(names: Sequence[str], values: Sequence[Any]) -> dict[str, Any]:

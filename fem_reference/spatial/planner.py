@@ -24,9 +24,9 @@ from fem_reference.common.refusals import (
 )
 from fem_reference.spatial.lines import GROWTH, Lines, two_sided
 from fem_reference.spatial.patch import Patch, choose_patch, rough_lines, rough_scales
-from sam.scene.errors import Problem, spelling
 from sam.scene.result import LeftOut, Stage
 from sam.scene.schema import Scene
+from sam.scene.section import Problem, spelling
 
 MODEL = "fem-3d"
 ALLOWS = "the three-dimensional finite-element model allows"

@@ -31,7 +31,7 @@ from sam.contact.control import ApproachControl, Control, ForceControl
 from sam.contact.convolution import Counters
 from sam.contact.operators import SurfaceOperators
 from sam.grid.cells import Window
-from sam.scene.residuals import unfinished
+from sam.scene.result import unfinished
 from sam.schedule import Approach
 
 # Iterations on all grids together, to 1e-8 for a sphere on 129 x 129 cells: 35, of them most on coarse ones.

@@ -18,8 +18,7 @@ from sam.elastic.stress import stress_at, stresses_of
 from sam.results.advice import Remedies
 from sam.results.history import Effort, Row, counted, row_of
 from sam.results.snapshots import Cut, Snapshot, row_of_largest
-from sam.scene.residuals import Attempt
-from sam.scene.result import Progress
+from sam.scene.result import Attempt, Progress
 from sam.schedule import UNLOADED, Load, Schedule
 from sam.surface_state import Tribofilm, TribofilmState
 

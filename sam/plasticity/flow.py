@@ -17,8 +17,7 @@ import numpy as np
 from sam.arrays import Array, Mask
 from sam.plasticity.return_map import equivalent_strain, mises, plastic_multiplier
 from sam.plasticity.state import MaterialFields
-from sam.scene.dissipation import plastic_work
-from sam.scene.yield_curve import YieldCurve
+from sam.scene.yield_curve import YieldCurve, plastic_work
 
 
 @dataclass(frozen=True)

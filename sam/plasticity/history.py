@@ -35,7 +35,7 @@ from sam.plasticity.progress import CycleStart, Parts, Peak, Progressed
 from sam.plasticity.state import Extent, MaterialFields, State, Trial, on_larger_box
 from sam.results.history import Effort, row_of
 from sam.scene import Status
-from sam.scene.residuals import unfinished
+from sam.scene.result import unfinished
 from sam.schedule import Load, Target
 from sam.surface_state import TribofilmState
 

@@ -35,8 +35,7 @@ from sam.arrays import Array, Mask
 from sam.plasticity.flow import Flow, Material
 from sam.plasticity.return_map import SHEAR, equivalent_strain, mises
 from sam.plasticity.state import MaterialFields
-from sam.scene.dissipation import step_energies
-from sam.scene.yield_curve import YieldCurve
+from sam.scene.yield_curve import YieldCurve, step_energies
 
 ITERATIONS = 60  # bisection alone has the last digit after 53
 ROUNDING = 1e-15  # of the sum of what is added in (c): four to five units in the last place

@@ -27,8 +27,7 @@ from sam.plasticity.state import Extent, Trial
 from sam.plasticity.step import Problem
 from sam.results.history import CycleEnd, CycleStrain, Moved, PassEnd, counted
 from sam.results.snapshots import Box, Cut, Snapshot, row_of_largest
-from sam.scene.residuals import unfinished
-from sam.scene.result import BACK_STRESS
+from sam.scene.result import BACK_STRESS, unfinished
 from sam.schedule import Load
 
 if TYPE_CHECKING:

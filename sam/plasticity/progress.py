@@ -21,7 +21,7 @@ from sam.results.history import CycleEnd, PassEnd, Row
 from sam.results.loops import LoopRow
 from sam.results.snapshots import Snapshot
 from sam.scene import Status
-from sam.scene.residuals import Attempt
+from sam.scene.result import Attempt
 from sam.schedule import Load, Target
 from sam.surface_state import TribofilmState, WearState
 

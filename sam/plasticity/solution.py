@@ -23,8 +23,7 @@ from sam.plasticity.step import ITERATIONS, LONG_ITERATIONS
 from sam.results.history import CycleEnd, Row
 from sam.results.snapshots import Snapshot
 from sam.scene import Status
-from sam.scene.residuals import Attempt
-from sam.scene.result import LAST, PEAK, UNLOADED, Progress
+from sam.scene.result import LAST, PEAK, UNLOADED, Attempt, Progress
 from sam.scene.verdict import Verdict
 from sam.schedule import Target
 from sam.surface_state import WearState

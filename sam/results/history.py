@@ -13,8 +13,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from sam.arrays import Array
 from sam.contact.normal import Contact
 from sam.grid.cells import CellGrid, Window
-from sam.scene.residuals import Attempt
-from sam.scene.result import CYCLES, HISTORY, PATH_HISTORY
+from sam.scene.result import CYCLES, HISTORY, PATH_HISTORY, Attempt
 from sam.scene.surface import Roughness
 from sam.schedule import Target
 from sam.slip import Coefficient

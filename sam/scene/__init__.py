@@ -3,26 +3,20 @@
 physics.
 
 Checkpoints and their codec are loaded when one of their names is asked for, so that to read a scene does not
-load cattrs; so are the energies of plastic strain.
+load cattrs.
 """
 
 from importlib import import_module
 from typing import Any
 
-from sam.scene.apart import read_apart
 from sam.scene.body import LAWS, Body, Coating, Hardening, Plasticity
-from sam.scene.compare import Compare
 from sam.scene.counterbody import SHAPES, CounterBody
-from sam.scene.errors import Problem, SceneError, printable, spelling
 from sam.scene.friction import Friction
-from sam.scene.grid import Grid
-from sam.scene.inputs import InputError, Inputs, below, open_file, read_limited
+from sam.scene.inputs import InputError, Inputs, below, open_file, read_apart, read_limited
 from sam.scene.load import load_scene, parse_scene, parse_toml, problems, read_scene, scene_of
-from sam.scene.loading import Loading
-from sam.scene.numerics import Fem, Solver
-from sam.scene.path import Pass, Path, Strokes
+from sam.scene.loading import Loading, Pass, Path, Strokes
+from sam.scene.numerics import Compare, Fem, Grid, Solver, Wear
 from sam.scene.remedies import either, finer_cells, finer_mesh
-from sam.scene.residuals import Attempt
 from sam.scene.result import (
     COLUMNS,
     COST,
@@ -34,6 +28,7 @@ from sam.scene.result import (
     PLASTIC_STRAINS,
     QUANTITIES,
     UNLOADED,
+    Attempt,
     FieldMesh,
     GridFields,
     LeftOut,
@@ -44,22 +39,10 @@ from sam.scene.result import (
     Table,
 )
 from sam.scene.schema import Scene, resolved, solved_part
-from sam.scene.section import Conflict, Section
+from sam.scene.section import Conflict, Problem, SceneError, Section, printable, spelling
 from sam.scene.surface import CounterSurface, FrictionMap, HeightMap, Surface
 from sam.scene.units import Number, in_unit, number_and_unit
-from sam.scene.wear import Wear
-from sam.scene.yield_curve import YieldCurve
-
-_WHERE = {
-    "Checkpoint": "sam.scene.checkpoint",
-    "CodecError": "sam.scene.codec",
-    "Keep": "sam.scene.checkpoint",
-    "decode": "sam.scene.codec",
-    "encode": "sam.scene.codec",
-    "plastic_work": "sam.scene.dissipation",
-    "step_energies": "sam.scene.dissipation",
-    "stored_energy": "sam.scene.dissipation",
-}
+from sam.scene.yield_curve import YieldCurve, plastic_work, step_energies, stored_energy
 
 __all__ = [
     "COLUMNS",
@@ -142,6 +125,6 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    if name in _WHERE:
-        return getattr(import_module(_WHERE[name]), name)
+    if name in ("Checkpoint", "CodecError", "Keep", "decode", "encode"):
+        return getattr(import_module("sam.scene.checkpoint"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The table [body] of a scene: elastic constants, plasticity and a coating."""
+"""The table [body] of a scene: elastic constants, plasticity with its hardening laws, and a coating."""
 
 from __future__ import annotations
 
@@ -8,9 +8,8 @@ from dataclasses import dataclass, field
 from math import isinf
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from sam.scene.back_stress import BackStress, Kinematic
-from sam.scene.inputs import Rows, TwoColumns
-from sam.scene.section import MISSING_INPUT, Conflict, Section, stated, value_at
+from sam.scene.inputs import Rows, TwoColumns, list_of
+from sam.scene.section import Conflict, Given, Section, broken, of_choice, stated
 from sam.scene.units import (
     DEPTH,
     FACTOR,
@@ -22,9 +21,11 @@ from sam.scene.units import (
     Poisson,
     Positive,
     Pressure,
+    Recovery,
 )
 from sam.scene.yield_curve import (
     OFFSET,
+    BackStress,
     DepthProfile,
     Linear,
     Strength,
@@ -36,6 +37,7 @@ from sam.scene.yield_curve import (
 
 YIELD_TABLE = TwoColumns(("peeq", "yield_stress_Pa"), (STRAIN, PRESSURE), from_zero=True, falling="softening")
 PROFILE = TwoColumns(("depth_m", "factor"), (DEPTH, FACTOR))
+MOST_BACK_STRESSES = 8  # each adds six numbers a cell to the state
 MICROSTRAIN = 1e6  # alpha of Swift's law in the paper, Eq. 18: the strain in microstrain
 
 
@@ -68,6 +70,23 @@ else:
     LawName = Literal[tuple(LAWS)]
 
 
+class Kinematic(Section):
+    """Kinematic hardening beside the isotropic law. modulus: of each back-stress in Pa; recovery: of each, 0
+    (Prager's law) if not given.
+    """
+
+    modulus: Annotated[tuple[Pressure, ...], list_of(1, MOST_BACK_STRESSES)]
+    recovery: Annotated[tuple[Recovery, ...], list_of(1, MOST_BACK_STRESSES)] | None = None
+
+    @classmethod
+    def conflicts(cls, given: Given) -> Iterator[Conflict]:
+        """A recovery for each modulus, or for none."""
+        lists = [given[key] for key in ("modulus", "recovery") if isinstance(given.get(key), list | tuple)]
+        counts = list(map(len, lists))
+        if len(set(counts)) > 1:
+            yield "recovery", f"as many numbers as modulus has: {counts[0]}"
+
+
 class Hardening(Section):
     """A hardening law with its constants.
 
@@ -88,23 +107,21 @@ class Hardening(Section):
     kinematic: Kinematic | None = None
 
     @classmethod
-    def implied(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
+    def implied(cls, given: Given) -> Mapping[str, Any]:
         """The defaults of the law, as alpha of Swift's."""
-        law = _law_of(given)
+        law = LAWS.get(given.text("law"))
         return {} if law is None else law.defaults
 
     @classmethod
-    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
+    def conflicts(cls, given: Given) -> Iterator[Conflict]:
         """Keys that the law needs, or has no use for."""
-        law = _law_of(given)
-        if law is None:
+        name = given.text("law")
+        if (law := LAWS.get(name)) is None:
             return
-        of_some_law = {key for each in LAWS.values() for key in each.keys}
-        for key in (key for key in cls.model_fields if key in of_some_law):
-            if key in law.needed and key not in given:
-                yield key, f'law = "{given["law"]}" takes {", ".join(law.needed)}'
-            if key not in law.keys and key in given:
-                yield key, f'law = "{given["law"]}" takes {", ".join(law.keys)}: remove it'
+        of_some_law = {key for other in LAWS.values() for key in other.keys}
+        needed, taken = (f'law = "{name}" takes {", ".join(keys)}' for keys in (law.needed, law.keys))
+        keys = [key for key in cls.model_fields if key in of_some_law]
+        yield from of_choice(given, keys, (law.needed, law.keys), (needed, f"{taken}: remove it"))
 
     def curve(self) -> YieldCurve:
         """The yield stress in Pa as a function of the accumulated plastic strain, where the factor over depth
@@ -115,7 +132,9 @@ class Hardening(Section):
 
     def back_stress(self) -> BackStress | None:
         """The constants of the back-stresses where the factor over depth is 1; None without them."""
-        return None if self.kinematic is None else self.kinematic.back_stress()
+        if (table := self.kinematic) is None:
+            return None
+        return BackStress(table.modulus, table.recovery or (0.0,) * len(table.modulus))
 
 
 class Plasticity(Hardening):
@@ -132,14 +151,12 @@ class Plasticity(Hardening):
     layer: Hardening | None = None
 
     @classmethod
-    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
+    def conflicts(cls, given: Given) -> Iterator[Conflict]:
         """Also a layer without thickness."""
         yield from super().conflicts(given)
         if "layer" in given and "layer_thickness" not in given:
-            yield (
-                "layer_thickness",
-                "required: the thickness of the layer that [body.plasticity.layer] is about",
-            )
+            words = "required: the thickness of the layer that [body.plasticity.layer] is about"
+            yield "layer_thickness", words
 
     def depth_profile(self) -> DepthProfile:
         """The factor on the yield stress as a function of depth in m; 1 everywhere without profile."""
@@ -185,12 +202,6 @@ class Plasticity(Hardening):
         return Strength(curve, profile, layer.curve(), thickness, back=back, layer_back=layer.back_stress())
 
 
-def _law_of(given: Mapping[str, Any]) -> Law | None:
-    """The law that is named; None if there is none of this name."""
-    name = given.get("law")
-    return LAWS.get(name) if isinstance(name, str) else None
-
-
 class Coating(Section):
     """An elastic coating bonded on the body, 0 <= z < thickness; thickness in m, young in Pa.
 
@@ -203,16 +214,16 @@ class Coating(Section):
     yield_stress: Pressure | None = None
 
     @classmethod
-    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
+    def conflicts(cls, given: Given) -> Iterator[Conflict]:
         """An incompressible coating cannot yield."""
-        if "yield_stress" in given and given.get("poisson") == 0.5:
-            yield "poisson", "less than 0.5 with yield_stress"
+        yields = "yield_stress" in given and given.get("poisson") == 0.5
+        return broken((yields, "poisson", "less than 0.5 with yield_stress"))
 
     def excesses(self) -> Iterator[Conflict]:
         """A yield stress in another unit than Young's modulus."""
         limit = self.yield_stress
-        if limit is not None and (words := off_unit(limit, self.young, "young")):
-            yield "yield_stress", words
+        words = "" if limit is None else off_unit(limit, self.young, "young")
+        return broken((words, "yield_stress", words))
 
 
 class Body(Section):
@@ -226,12 +237,13 @@ class Body(Section):
     coating: Coating | None = None
 
     @classmethod
-    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
+    def conflicts(cls, given: Given) -> Iterator[Conflict]:
         """An incompressible body cannot yield; a layer lies at the surface, as a coating does."""
-        if value_at(given, "plasticity.layer") is not MISSING_INPUT and "coating" in given:
-            yield "plasticity.layer", "not together with [body.coating]"
-        if "plasticity" in given and given.get("poisson") == 0.5:
-            yield "poisson", "less than 0.5 with plasticity"
+        layer, yields = given.has("plasticity.layer"), "plasticity" in given
+        return broken(
+            (layer and "coating" in given, "plasticity.layer", "not together with [body.coating]"),
+            (yields and given.get("poisson") == 0.5, "poisson", "less than 0.5 with plasticity"),
+        )
 
     def excesses(self) -> Iterator[Conflict]:
         """A yield stress in another unit than Young's modulus, by the law of the body or of a layer, or by

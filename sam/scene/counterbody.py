@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Literal
 
-from sam.scene.section import Conflict, Section, stated
+from sam.scene.section import Conflict, Given, Section, of_choice, stated
 from sam.scene.surface.counter import CounterSurface
 from sam.scene.units import Length, Poisson, Pressure, Share
 
@@ -57,15 +57,13 @@ class CounterBody(Section):
         return values[0], values[-1]
 
     @classmethod
-    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
+    def conflicts(cls, given: Given) -> Iterator[Conflict]:
         """Radii that the shape needs, or has no use for; one elastic constant without the other."""
-        shape = given.get("shape")
-        needed = SHAPES.get(shape) if isinstance(shape, str) else None
-        of_some_shape = {key for keys in SHAPES.values() for key in keys}
-        for key in (key for key in cls.model_fields if key in of_some_shape):
-            if needed is not None and (key in needed) != (key in given):
-                words = " and ".join(needed) or "no radius"
-                yield key, f'shape = "{shape}" takes {words}' + ("" if key in needed else ": remove it")
+        shape, of_some_shape = given.text("shape"), {key for keys in SHAPES.values() for key in keys}
+        if (needed := SHAPES.get(shape)) is not None:
+            keys = [key for key in cls.model_fields if key in of_some_shape]
+            words = f'shape = "{shape}" takes {" and ".join(needed) or "no radius"}'
+            yield from of_choice(given, keys, (needed, needed), (words, f"{words}: remove it"))
         if ("young" in given) != ("poisson" in given):
             missing = "poisson" if "young" in given else "young"
             yield missing, "required: young and poisson together (elastic counter-body), or neither (rigid)"

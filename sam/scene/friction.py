@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The table [friction] of a scene: one coefficient, a map of them, or a chemical film that decides between
-two.
-"""
+"""The table [friction] of a scene: one coefficient, a map of them, or a film that decides between two."""
 
 from __future__ import annotations
 
@@ -10,8 +8,8 @@ from itertools import pairwise
 from math import sqrt
 from typing import Any, Literal
 
-from sam.scene.section import Conflict, Section, stated
-from sam.scene.surface.map_files import FrictionField
+from sam.scene.section import Conflict, Given, Section, of_choice, stated
+from sam.scene.surface.readers import FrictionField
 from sam.scene.units import Coefficient, Growth, Length, Poisson, Pressure, Speed, StrainLimit, Temperature
 from sam.scene.yield_curve import off_unit
 
@@ -76,29 +74,38 @@ class Friction(Section):
     form: Literal["consistent", "printed"] | None = None
 
     @classmethod
-    def implied(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
+    def implied(cls, given: Given) -> Mapping[str, Any]:
         """The form of the film's law, unless it is given."""
         return {"form": "consistent"} if given.get("law") == "chemical-film" else {}
 
     @classmethod
-    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
-        """Keys that the law needs, or has no use for."""
-        law = given.get("law", "constant")
-        needed, optional = LAWS.get(law, (None, ())) if isinstance(law, str) else (None, ())
-        if needed is None:
+    def conflicts(cls, given: Given) -> Iterator[Conflict]:
+        """Keys that the law needs, or has no use for; of a film either a strain limit, or all that the growth
+        needs.
+        """
+        law = given.text("law") if "law" in given else "constant"
+        if law not in LAWS:
             return
-        for key in cls.model_fields:
-            if key in needed and key not in given:
-                words = (
-                    f'law = "{law}" takes {", ".join(needed)}' if "law" in given else "a number from 0 to 10"
-                )
-                yield key, f"required: {words}"
-            if key not in ("law", "coupling", "direction", *needed, *optional) and key in given:
-                yield key, f'law = "{law}" takes {", ".join((*needed, *optional))}: remove it'
-        if law == "chemical-film":
-            yield from _conflicts_of_growth(given)
-            if given.get("film_poisson") == 0.5:
-                yield "film_poisson", "less than 0.5"
+        needed, optional = LAWS[law]
+        keys = [key for key in cls.model_fields if key not in ("law", "coupling", "direction")]
+        missing = f'law = "{law}" takes {", ".join(needed)}' if "law" in given else "a number from 0 to 10"
+        surplus = f'law = "{law}" takes {", ".join((*needed, *optional))}: remove it'
+        words = f"required: {missing}", surplus
+        yield from of_choice(given, keys, (needed, (*needed, *optional)), words)
+        if law != "chemical-film":
+            return
+        either = "growth_coefficient (or bath_temperature), track, contact_width and speed"
+        limit, growth = "strain_limit" in given, [key for key in _GROWTH if key in given]
+        if limit:
+            yield from ((key, f"either strain_limit, or {either}, not both") for key in growth)
+        elif not growth:
+            yield "strain_limit", f"required: strain_limit, or {either}"
+        else:
+            if ("growth_coefficient" in given) == ("bath_temperature" in given):
+                yield "growth_coefficient", "required: growth_coefficient or bath_temperature, and not both"
+            yield from ((key, f"required: {either}") for key in _GROWTH[2:] if key not in given)
+        if given.get("film_poisson") == 0.5:
+            yield "film_poisson", "less than 0.5"
 
     def excesses(self) -> Iterator[Conflict]:
         """A high coefficient below the low one, a contact that is wider than the track, or a yield stress in
@@ -154,19 +161,3 @@ class Friction(Section):
         if self.strain_limit is not None:
             return self.strain_limit
         return stated(self.growth) / stated(self.film_thickness)  # paper Eq. 17
-
-
-def _conflicts_of_growth(given: Mapping[str, Any]) -> Iterator[Conflict]:
-    """Either a strain limit, or all that the growth needs."""
-    words = "growth_coefficient (or bath_temperature), track, contact_width and speed"
-    if "strain_limit" in given:
-        yield from ((key, f"either strain_limit, or {words}, not both") for key in _GROWTH if key in given)
-        return
-    if not set(_GROWTH) & set(given):
-        yield "strain_limit", f"required: strain_limit, or {words}"
-        return
-    if ("growth_coefficient" in given) == ("bath_temperature" in given):
-        yield "growth_coefficient", "required: growth_coefficient or bath_temperature, and not both"
-    yield from (
-        (key, f"required: {words}") for key in ("track", "contact_width", "speed") if key not in given
-    )

@@ -26,8 +26,7 @@ def steady_part(way: Array, radius: float, length: float) -> Mask:
     """Whether places at these distances from the start lie in the steady part of a path; radius: of the
     contact along x.
     """
-    found: Mask = (way >= RUN_IN * radius) & (way <= length - RUN_OUT * radius)
-    return found
+    return (way >= RUN_IN * radius) & (way <= length - RUN_OUT * radius)
 
 
 def passes_to_steady(strains: Sequence[float]) -> int | None:

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Files that a scene names: read once, when the scene is read, and kept in it. Small tables of two columns.
+"""Files that a scene names: read once, when the scene is read, and part of it from then on. Those of other
+programs are read in a process of their own with limits on time and memory: whatever the bytes are and
+whatever a library makes of them, the answer is arrays or a refusal.
 
-In a scene file such a key holds the name of a CSV file with a header line; in Python it holds the rows
-themselves. One validator serves both, so that solvers see rows and never a file.
+A key of a small table holds the name of a CSV file with a header line, in Python the rows themselves. One
+validator serves both, so that solvers see rows and never a file.
 """
 
 from __future__ import annotations
@@ -10,26 +12,31 @@ from __future__ import annotations
 import csv
 import errno
 import io
+import json
 import os
 import stat
+import subprocess
+import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, BinaryIO
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import BeforeValidator, ValidationInfo
 from pydantic_core import PydanticCustomError, core_schema
 
-from sam.scene.errors import spelling
-from sam.scene.units import Number, in_file
+from sam.scene.section import printable, spelling
+from sam.scene.units import Number, in_file, refused
 
 LARGEST_FILE = 1 << 20  # bytes: a scene, or a table of MOST_ROWS with 100 characters each
 MOST_ROWS = 10_000  # of a table
-_MOST_FAULTS = 4  # named in one message
+SECONDS = 120.0  # by the clock, for a start of 2 s on a busy machine and the largest file
+CHILD = Path(__file__).with_name("apart_child.py")
+_MOST_FAULTS = 4  # of a table, named in one message
 Rows = tuple[tuple[float, float], ...]
-Fault = tuple[int, str]
-"""Position of a row, from 0, and what is wrong with it."""
 
 
 class InputError(ValueError):
@@ -37,54 +44,22 @@ class InputError(ValueError):
 
 
 def open_file(path: str | Path) -> BinaryIO:
-    """An ordinary file, open for reading bytes.
-
-    Parameters
-    ----------
-    path
-        Of the file.
-
-    Returns
-    -------
-    BinaryIO
-        To be closed by the caller.
-
-    Raises
-    ------
-    OSError
-        For any other: a pipe or a device could block, or never end.
+    """An ordinary file, open for reading bytes, to be closed by the caller. OSError for any other: a pipe or
+    a device could block, or never end.
     """
-    stream = open(path, "rb", opener=_without_waiting)
+
+    def without_waiting(name: str, flags: int) -> int:
+        return os.open(name, flags | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0))
+
+    stream = open(path, "rb", opener=without_waiting)
     if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
         stream.close()
         raise OSError(errno.EINVAL, "not an ordinary file", str(path))
     return stream
 
 
-def _without_waiting(path: str, flags: int) -> int:
-    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0))
-
-
 def read_limited(path: str | Path, largest: int = LARGEST_FILE) -> bytes:
-    """The content of a file.
-
-    Parameters
-    ----------
-    path
-        Of the file.
-    largest
-        Bytes that it may have.
-
-    Returns
-    -------
-    bytes
-        All of it.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read or is larger.
-    """
+    """The content of a file of at most `largest` bytes. InputError if it cannot be read or is larger."""
     try:
         with open_file(path) as stream:
             content = stream.read(largest + 1)
@@ -96,26 +71,8 @@ def read_limited(path: str | Path, largest: int = LARGEST_FILE) -> bytes:
 
 
 def below(folder: Path, name: str, what: str) -> Path:
-    """The path of a file that another one names.
-
-    Parameters
-    ----------
-    folder
-        Of the file that names it.
-    name
-        As it is spelt there.
-    what
-        That file is.
-
-    Returns
-    -------
-    Path
-        In the folder or below it, links followed.
-
-    Raises
-    ------
-    InputError
-        If it is elsewhere.
+    """The path of a file that another one names, in the folder of that one or below it, links followed.
+    InputError if it is elsewhere; what: the file is that names it.
     """
     try:
         home = folder.resolve()
@@ -129,14 +86,8 @@ def below(folder: Path, name: str, what: str) -> Path:
 
 @dataclass
 class Inputs:
-    """The folder of a scene, and what has been read from it.
-
-    Parameters
-    ----------
-    folder
-        That of the scene file.
-    contents
-        Name as the scene spells it -> content.
+    """The folder of a scene file, and the contents that have been read from it, by name as the scene spells
+    it.
     """
 
     folder: Path
@@ -146,6 +97,42 @@ class Inputs:
         """The content of a file in the folder or below it, of at most `largest` bytes. Raises InputError."""
         self.contents[name] = read_limited(below(self.folder, name, "scene"), largest)
         return self.contents[name]
+
+
+def read_apart(
+    reader: Path, *arguments: str, content: bytes = b"", memory: int
+) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+    """What a reader makes of a file in a process of its own that takes at most `memory` bytes of address
+    space.
+
+    reader: a script that defines `answer(content, *arguments)`, which returns what JSON holds and arrays by
+    name; its process imports nothing of this package. InputError if it raised, did not end in time, ended
+    without an answer or answered nonsense.
+    """
+    command = [sys.executable, "-P", str(CHILD), str(reader), str(memory), str(SECONDS / 2), *arguments]
+    # the library of instruments loads matplotlib, which else makes a folder in that of the user
+    alone = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MPLCONFIGDIR": os.devnull}
+    how: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
+    how["env"] = {**os.environ, **alone}
+    try:
+        said = subprocess.run(command, input=content, timeout=SECONDS, check=False, **how).stdout
+        head = json.loads(said[: said.index(b"\n")])
+    except subprocess.TimeoutExpired:
+        raise InputError(f"its reader did not end in {SECONDS:g} s") from None
+    except (OSError, ValueError):
+        raise InputError("its reader ended without an answer") from None
+    try:
+        if "refused" in head:
+            raise InputError(printable(str(head["refused"])))
+        arrays, start, raw = {}, said.index(b"\n") + 1, memoryview(said)
+        for name, (kind, shape) in head["arrays"].items():
+            if np.dtype(kind).kind not in "fiu":
+                raise TypeError(kind)
+            arrays[name] = np.ndarray(shape, kind, raw, start)
+            start += arrays[name].nbytes
+        return head["said"], arrays
+    except (KeyError, OverflowError, TypeError, ValueError) as error:
+        raise error if isinstance(error, InputError) else InputError("its reader answered nonsense") from None
 
 
 def content_of(value: object, info: ValidationInfo, kind: str, largest: int = LARGEST_FILE) -> bytes:
@@ -185,15 +172,27 @@ class TwoColumns:
         """The rows of the file that a scene file names, or in Python of the rows given; an error "allowed"
         for others.
         """
-        places, rows = self._from_file(value, info) if in_file(info) else self._from_python(value)
+        if file := in_file(info):
+            content = content_of(value, info, f"a CSV file: {self.allowed}")
+            try:
+                places, rows = self._parsed(content.decode("utf-8-sig"))
+            except UnicodeDecodeError:
+                raise refused("not UTF-8") from None
+            except (csv.Error, InputError) as error:
+                raise refused(f"{'not CSV: ' * isinstance(error, csv.Error)}{error}") from None
+        else:
+            value = value.tolist() if hasattr(value, "tolist") else value  # a numpy array
+            if not isinstance(value, list | tuple) or len(value) > MOST_ROWS:
+                raise refused(f"rows: {self.allowed}")
+            places, rows = [f"row {k + 1}" for k in range(len(value))], list(value)
         if not rows:
             raise refused(self.allowed)
         faults = [f"{places[k]}: {text}" for k, text in sorted(self._faults(rows))]
         if faults:
-            rest = f"; and {len(faults) - _MOST_FAULTS} more" if len(faults) > _MOST_FAULTS else ""
-            noisy = in_file(info) and all(self.falling and self.falling in fault for fault in faults)
-            advice = self._rising(str(value)) if noisy else ""
-            raise refused("; ".join(faults[:_MOST_FAULTS]) + rest + advice)
+            words = "; ".join(faults[:_MOST_FAULTS])
+            words += f"; and {len(faults) - _MOST_FAULTS} more" if len(faults) > _MOST_FAULTS else ""
+            noisy = file and all(self.falling and self.falling in fault for fault in faults)
+            raise refused(words + (self._rising(str(value)) if noisy else ""))
         return tuple((float(first), float(second)) for first, second in rows)
 
     def _rising(self, name: str) -> str:
@@ -205,32 +204,13 @@ class TwoColumns:
             f'so.isotonic_regression(c[{column!r}]).x; c.to_csv("rising.csv", index=False)'
         )
 
-    def _from_python(self, value: object) -> tuple[list[str], list[Any]]:
-        value = value.tolist() if hasattr(value, "tolist") else value  # a numpy array
-        if not isinstance(value, list | tuple) or len(value) > MOST_ROWS:
-            raise refused(f"rows: {self.allowed}")
-        return [f"row {k + 1}" for k in range(len(value))], list(value)
-
-    def _from_file(self, value: object, info: ValidationInfo) -> tuple[list[str], list[Any]]:
-        content = content_of(value, info, f"a CSV file: {self.allowed}")
-        try:
-            return self._parsed(content.decode("utf-8-sig"))
-        except UnicodeDecodeError:
-            raise refused("not UTF-8") from None
-        except csv.Error as error:
-            raise refused(f"not CSV: {error}") from None
-        except InputError as error:
-            raise refused(str(error)) from None
-
     def _parsed(self, text: str) -> tuple[list[str], list[Any]]:
         """The lines of a file that are not blank, as places and rows in the order of `columns`."""
         reader = csv.reader(io.StringIO(text, newline=""), strict=True)
         header = [name.strip() for name in next(reader, [])]
         if sorted(header) != sorted(self.columns):
             raise InputError(f"its first line is {spelling(','.join(header))}: {self.allowed}")
-        order = [header.index(name) for name in self.columns]
-        places: list[str] = []
-        rows: list[Any] = []
+        order, places, rows = [header.index(name) for name in self.columns], list[str](), list[Any]()
         for cells in reader:
             if not any(cell.strip() for cell in cells):
                 continue
@@ -241,31 +221,29 @@ class TwoColumns:
             rows.append([numbers[k] for k in order] if len(cells) == 2 else cells)
         return places, rows
 
-    def _faults(self, rows: Sequence[Any]) -> Iterator[Fault]:
-        bad = set()
+    def _faults(self, rows: Sequence[Any]) -> Iterator[tuple[int, str]]:
+        """Positions of rows, from 0, and what is wrong with them."""
+        bad, (first, second) = set(), self.columns
         for k, row in enumerate(rows):
-            for text in self._faults_of_row(row):
+            if not isinstance(row, list | tuple) or len(row) != 2:
                 bad.add(k)
-                yield k, text
+                yield k, f"{spelling(row)} is not two numbers"
+                continue
+            for name, number, value in zip(self.columns, self.numbers, row, strict=True):
+                try:
+                    number.check(None if isinstance(value, str) else value, None)
+                except PydanticCustomError:
+                    bad.add(k)
+                    yield k, f"{name} = {spelling(value)}, allowed: {number.allowed(False)}"
         if self.from_zero and 0 not in bad and rows[0][0] != 0:
-            yield 0, f"{self.columns[0]} = {rows[0][0]:g}, allowed: 0 in the first row"
+            yield 0, f"{first} = {rows[0][0]:g}, allowed: 0 in the first row"
         for k, (above, row) in enumerate(pairwise(rows), start=1):
             if {k - 1, k} & bad:
                 continue
             if row[0] <= above[0]:
-                yield k, f"{self.columns[0]} = {row[0]:g} after {above[0]:g}, allowed: strictly ascending"
+                yield k, f"{first} = {row[0]:g} after {above[0]:g}, allowed: strictly ascending"
             if self.falling and row[1] < above[1]:
-                yield k, f"{self.columns[1]} = {row[1]:g} after {above[1]:g}: {self.falling} is not available"
-
-    def _faults_of_row(self, row: object) -> Iterator[str]:
-        if not isinstance(row, list | tuple) or len(row) != 2:
-            yield f"{spelling(row)} is not two numbers"
-            return
-        for name, number, value in zip(self.columns, self.numbers, row, strict=True):
-            try:
-                number.check(None if isinstance(value, str) else value, None)
-            except PydanticCustomError:
-                yield f"{name} = {spelling(value)}, allowed: {number.allowed(False)}"
+                yield k, f"{second} = {row[1]:g} after {above[1]:g}: {self.falling} is not available"
 
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> core_schema.CoreSchema:
         return core_schema.with_info_plain_validator_function(self.check)
@@ -292,8 +270,3 @@ def _number(text: str) -> float | str:
         return float(text)
     except ValueError:
         return text
-
-
-def refused(text: str) -> PydanticCustomError:
-    """The error of a validator, with what is allowed."""
-    return PydanticCustomError("allowed", "allowed: {allowed}", {"allowed": text})

@@ -11,10 +11,9 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from sam.scene.errors import MISSING, Problem, SceneError, spelling
 from sam.scene.inputs import InputError, Inputs, read_limited
 from sam.scene.schema import Scene
-from sam.scene.section import MISSING_INPUT
+from sam.scene.section import MISSING, MISSING_INPUT, Problem, SceneError, spelling
 from sam.scene.units import IN_FILE
 
 _BETWEEN = re.compile(rb"([\n,={}\[\]#])")
@@ -38,23 +37,7 @@ def load_scene(path: str | Path) -> Scene:
 
 
 def read_scene(path: str | Path) -> tuple[Scene, dict[str, bytes]]:
-    """The scene in a TOML file, and the content of every file that was read for it.
-
-    Parameters
-    ----------
-    path
-        Of the file; files that it names are read from its folder.
-
-    Returns
-    -------
-    scene, contents
-        The scene; name of a file -> its bytes, the scene file among them.
-
-    Raises
-    ------
-    SceneError
-        With every problem of the file: key, value and what is allowed.
-    """
+    """As `load_scene`, with the content of every file that was read, the scene file among them, by name."""
     path = Path(path)
     try:
         content = read_limited(path)
@@ -66,21 +49,8 @@ def read_scene(path: str | Path) -> tuple[Scene, dict[str, bytes]]:
 
 
 def parse_scene(content: bytes, source: str, inputs: Inputs | None = None) -> Scene:
-    """The scene in the bytes of a TOML file.
-
-    Parameters
-    ----------
-    content
-        Bytes of the file, UTF-8.
-    source
-        Names the file in errors.
-    inputs
-        What reads the files that the scene names; without it they are refused.
-
-    Raises
-    ------
-    SceneError
-        With every problem of the file: key, value and what is allowed.
+    """The scene in the bytes of a TOML file, UTF-8, whose name in errors is `source`. inputs: what reads the
+    files that the scene names; without it they are refused. SceneError as of `load_scene`.
     """
     table = parse_toml(content, source)
     if not table:
@@ -89,24 +59,8 @@ def parse_scene(content: bytes, source: str, inputs: Inputs | None = None) -> Sc
 
 
 def parse_toml(content: bytes, source: str) -> dict[str, Any]:
-    """The tables in the bytes of a TOML file.
-
-    Parameters
-    ----------
-    content
-        Bytes of the file, UTF-8.
-    source
-        Names the file in errors.
-
-    Returns
-    -------
-    dict
-        Key -> value, as tomllib has them.
-
-    Raises
-    ------
-    SceneError
-        For bytes that are not UTF-8 or not TOML, or tables in too many others.
+    """The tables in the bytes of a TOML file, as tomllib has them. SceneError for bytes that are not UTF-8 or
+    not TOML, or tables in too many others; source: the name of the file in it.
     """
     pieces = _BETWEEN.split(content)  # every second one is a separator
     if any(
@@ -126,25 +80,7 @@ def parse_toml(content: bytes, source: str) -> dict[str, Any]:
 
 
 def scene_of(table: Mapping[str, Any], source: str, inputs: Inputs | None = None) -> Scene:
-    """The scene in the tables of a scene file.
-
-    Parameters
-    ----------
-    table
-        Key -> value, as `parse_toml` returns them.
-    source, inputs
-        As of `parse_scene`.
-
-    Returns
-    -------
-    Scene
-        With all defaults.
-
-    Raises
-    ------
-    SceneError
-        With every problem of the tables: key, value and what is allowed.
-    """
+    """The scene, with all defaults, in the tables that `parse_toml` returns; the rest as of `parse_scene`."""
     try:
         return Scene.model_validate(table, context={**IN_FILE, "inputs": inputs})
     except ValidationError as error:
@@ -152,29 +88,13 @@ def scene_of(table: Mapping[str, Any], source: str, inputs: Inputs | None = None
 
 
 def problems(error: ValidationError) -> list[Problem]:
-    """Every problem of a validation error.
-
-    Parameters
-    ----------
-    error
-        Of the tables of a `Section`.
-
-    Returns
-    -------
-    list of Problem
-        In the order of the file's keys.
-    """
-    found = []
+    """Every problem of the validation error of a `Section`, in the order of the file's keys."""
+    listed = []
     for item in error.errors(include_url=False):
-        missing = item["input"] is MISSING_INPUT
-        value = MISSING if missing else spelling(item["input"])
-        found.append(Problem(_key(item["loc"]), value, item["ctx"]["allowed"]))
-    return found
-
-
-def _key(loc: tuple[int | str, ...]) -> str:
-    parts = [f"[{part}]" if isinstance(part, int) else f".{part}" for part in loc]
-    return "".join(parts).removeprefix(".")
+        key = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in item["loc"])
+        value = MISSING if item["input"] is MISSING_INPUT else spelling(item["input"])
+        listed.append(Problem(key.removeprefix("."), value, item["ctx"]["allowed"]))
+    return listed
 
 
 def _whole_file(message: str, source: str | Path) -> SceneError:

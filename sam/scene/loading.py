@@ -1,16 +1,25 @@
 # SPDX-License-Identifier: MIT
-"""The table [loading] of a scene: a force, an approach or a given pressure, its steps and its path."""
+"""The table [loading] of a scene: a force, an approach or a given pressure, its steps and its path, with the
+passes over it, the schedule that all models share.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from math import ceil, copysign, hypot
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from sam.scene.path import Path
-from sam.scene.section import Conflict, Section, stated
-from sam.scene.units import Count, Force, Length, Misfit, Pressure
+from pydantic import ConfigDict, Field
 
+from sam.scene.inputs import list_of
+from sam.scene.section import Conflict, Given, Section, broken, stated
+from sam.scene.units import COUNT, Coordinate, Count, Force, Length, Misfit, PerRadius, Pressure
+
+Place = Annotated[tuple[Coordinate, Coordinate], list_of(2, 2)]
+"""(x, y) on the surface in m."""
+TO_AND_FRO = "to-and-fro"
+ROUNDING = 1e-9  # of a number of steps: a path of exactly so many takes no further one
 HERTZ, MISFIT_SPHERE = "hertz", "misfit-sphere"
 
 
@@ -46,6 +55,117 @@ if TYPE_CHECKING:
     ProfileName = str
 else:
     PrescribedName, ProfileName = Literal[tuple(PRESCRIBED)], Literal[tuple(DEEPER)]
+
+
+class Path(Section):
+    """The way of the load over the surface, from start to end in equal steps at full size; a cycle is one
+    pass over it.
+
+    Either `steps` of them, or `step_per_radius` in each contact radius of Hertz, see
+    `sam.scene.schema.contact_radius`. return "lifted": in every cycle the load is put on at start and taken
+    off at end; "to-and-fro": odd cycles go forth and even ones back, and the load stays on between them
+    unless the body wears.
+    """
+
+    model_config = ConfigDict(serialize_by_alias=True)
+    start: Place
+    end: Place
+    steps: Count | None = None
+    step_per_radius: PerRadius | None = None
+    return_: Literal["lifted", "to-and-fro"] = Field("lifted", alias="return")
+
+    @classmethod
+    def conflicts(cls, given: Given) -> Iterator[Conflict]:
+        """Neither a number of steps nor their size, or both."""
+        number, size = "steps" in given, "step_per_radius" in given
+        required = f"required: steps, {COUNT.allowed(True)}, or step_per_radius"
+        return broken(
+            (not (number or size), "steps", required),
+            (number and size, "step_per_radius", "either steps or step_per_radius, not both"),
+        )
+
+    def excesses(self) -> Iterator[Conflict]:
+        """A path without length."""
+        return broken((self.start == self.end, "end", "another place than start"))
+
+    @property
+    def to_and_fro(self) -> bool:
+        """Whether even cycles go back."""
+        return self.return_ == TO_AND_FRO
+
+    @property
+    def length(self) -> float:
+        """From start to end in m."""
+        return hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
+
+    def count(self, radius: float) -> int:
+        """Steps from start to end; radius: of the contact in m, for a path that gives their size."""
+        if self.steps is not None:
+            return self.steps
+        return max(1, ceil(self.length * stated(self.step_per_radius) / radius - ROUNDING))
+
+
+@dataclass(frozen=True)
+class Pass:
+    """What the load does in one cycle.
+
+    places: (x, y) in m at full size, in their order, the first where the cycle begins; pressed: whether it is
+    put on there in `loading.steps` steps, else it is on; unloads: whether it is taken off at the last place;
+    sign: of the traction on the body along x.
+    """
+
+    places: tuple[tuple[float, float], ...]
+    pressed: bool = True
+    unloads: bool = True
+    sign: float = 1.0
+
+
+@dataclass(frozen=True)
+class Strokes:
+    """The passes of a scene.
+
+    path: None without; count: steps along it; cycles: how many passes; unload: whether the last one ends
+    unloaded; alternates: whether the sign of the traction changes from cycle to cycle; with_motion: whether
+    the traction is along the motion, as of a counter-body that slides; in_passes: whether the load is taken
+    off at the end of every pass, as for wear.
+    """
+
+    path: Path | None
+    count: int
+    cycles: int
+    unload: bool
+    alternates: bool = False
+    with_motion: bool = False
+    in_passes: bool = False
+
+    def places(self) -> tuple[tuple[float, float], ...]:
+        """Places of the load on its way forth after each step, the start first; the origin alone without
+        path.
+        """
+        if self.path is None:
+            return ((0.0, 0.0),)
+        (x0, y0), (x1, y1) = self.path.start, self.path.end
+        shares = [k / self.count for k in range(self.count + 1)]
+        return tuple((x0 + share * (x1 - x0), y0 + share * (y1 - y0)) for share in shares)
+
+    def goes_back(self, cycle: int) -> bool:
+        """Whether the pass of a cycle, counted from 1, begins at the end of the path."""
+        return cycle % 2 == 0 and self.with_motion and self.path is not None and self.path.to_and_fro
+
+    def of_cycle(self, cycle: int) -> Pass:
+        """The pass of a cycle, counted from 1."""
+        places, last, even = self.places(), cycle == self.cycles, cycle % 2 == 0
+        unloads = self.unload if last else True
+        if self.path is None or not self.with_motion:
+            return Pass(places, unloads=unloads, sign=-1.0 if self.alternates and even else 1.0)
+        back, stays = self.goes_back(cycle), self.path.to_and_fro and not self.in_passes
+        along_x = (self.path.end[0] - self.path.start[0]) * (-1.0 if back else 1.0)
+        return Pass(
+            places[::-1] if back else places,
+            pressed=cycle == 1 or not stays,
+            unloads=unloads and (last or not stays),
+            sign=copysign(1.0, along_x),
+        )
 
 
 class Loading(Section):
@@ -89,22 +209,33 @@ class Loading(Section):
         return self.prescribed == MISFIT_SPHERE
 
     @classmethod
-    def implied(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
+    def implied(cls, given: Given) -> Mapping[str, Any]:
         """The defaults of the load that is given in place of a force."""
-        own = _prescribed_of(given)
-        return {} if own is None else {key: value for key, value in own.further.items() if value is not None}
+        load = PRESCRIBED.get(given.text("prescribed"))
+        further = {} if load is None else load.further
+        return {key: value for key, value in further.items() if value is not None}
 
     @classmethod
-    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
+    def conflicts(cls, given: Given) -> Iterator[Conflict]:
         """None of force, approach and what is given in their place, or more than one; keys without the one
         that they need.
         """
-        own = _prescribed_of(given)
-        if "prescribed" not in given or own is not None:
-            foreign = dict.fromkeys(key for each in PRESCRIBED.values() for key in each.keys)
-            own_keys = ("path",) if own is None else own.keys
-            yield from ((key, _only_with(key)) for key in foreign if key in given and key not in own_keys)
-        yield from _conflicts_of_force(given) if own is None else _conflicts_of_prescribed(given, own)
+        named, load = "prescribed" in given, PRESCRIBED.get(given.text("prescribed"))
+        force, approach = "force" in given, "approach" in given
+        if not named or load is not None:
+            taken = ("path",) if load is None else load.keys
+            for key in dict.fromkeys(key for other in PRESCRIBED.values() for key in other.keys):
+                if key in given and key not in taken:
+                    yield key, _only_with(key)
+        if load is not None:
+            yield from ((key, f"required: {load.words}") for key in load.needed if key not in given)
+            both = ((key, f"either {key}, or {load.words}, not both") for key in ("force", "approach"))
+            yield from (conflict for conflict in both if conflict[0] in given)
+        required = f"required: force, approach, or {PRESCRIBED[HERTZ].words}"
+        yield from broken(
+            (not named and force and approach, "approach", "either force or approach, not both"),
+            (not (named or force or approach), "force", required),
+        )
         if "unload_steps" in given and given.get("unload", False) is False:
             yield "unload_steps", "only together with unload = true"
 
@@ -117,32 +248,10 @@ class Loading(Section):
                 yield "depth", f"more than {words}, {least * stated(self.radius):g} m"
 
 
-def _prescribed_of(given: Mapping[str, Any]) -> Prescribed | None:
-    """What is given in place of a force; None if that is nothing, or has no name of these."""
-    name = given.get("prescribed")
-    return PRESCRIBED.get(name) if isinstance(name, str) else None
-
-
 def _only_with(key: str) -> str:
     """Of what a key is a part."""
-    needed = [each.words for each in PRESCRIBED.values() if key in each.needed]
+    needed = [load.words for load in PRESCRIBED.values() if key in load.needed]
     if needed:
         return f"only as part of {', or of '.join(needed)}"
-    named = [f'prescribed = "{name}"' for name, each in PRESCRIBED.items() if key in each.further]
+    named = [f'prescribed = "{name}"' for name, load in PRESCRIBED.items() if key in load.further]
     return f"only together with {' or '.join(named)}"
-
-
-def _conflicts_of_prescribed(given: Mapping[str, Any], own: Prescribed) -> Iterator[Conflict]:
-    yield from ((key, f"required: {own.words}") for key in own.needed if key not in given)
-    for key in ("force", "approach"):
-        if key in given:
-            yield key, f"either {key}, or {own.words}, not both"
-
-
-def _conflicts_of_force(given: Mapping[str, Any]) -> Iterator[Conflict]:
-    if "prescribed" in given:
-        return
-    if "force" in given and "approach" in given:
-        yield "approach", "either force or approach, not both"
-    if "force" not in given and "approach" not in given:
-        yield "force", f"required: force, approach, or {PRESCRIBED[HERTZ].words}"

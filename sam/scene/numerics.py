@@ -1,22 +1,75 @@
 # SPDX-License-Identifier: MIT
-"""The tables [solver] and [fem] of a scene: how it is solved, and the mesh of the finite-element models."""
+"""The tables [grid], [solver], [fem], [wear] and [compare] of a scene: cells, how it is solved, which strain
+removes material, and how results are judged.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
+from math import isfinite
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
-from sam.scene.compare import Share
+from pydantic import AfterValidator
+
 from sam.scene.inputs import list_of
 from sam.scene.result import QUANTITIES
-from sam.scene.section import Conflict, Section
-from sam.scene.units import Box, Fraction, MeshCells
+from sam.scene.section import Conflict, Given, Section, broken
+from sam.scene.units import (
+    Box,
+    Cells,
+    Count,
+    Depth,
+    Fraction,
+    Length,
+    MeshCells,
+    Number,
+    Order,
+    SmoothingWindow,
+    StrainLimit,
+    refused,
+)
 
-ACCURACY = Share("an accuracy", 1e-4, 0.5, example="1 %")
+MOST_DEPTHS = 1001  # entries of a list; the layers of a box cost 36 n^2 coefficients for each wave number
+ACCURACY = Number("an accuracy", 1e-4, 0.5, example="1 %", percent=True)
+TOLERANCE = Number("tolerance", 1e-12, 10.0, example="2 %", percent=True)
 if TYPE_CHECKING:
     QuantityName = str
 else:
     QuantityName = Literal[QUANTITIES]
+
+
+def _ascending(depths: tuple[float, ...]) -> tuple[float, ...]:
+    if any(lower >= upper for lower, upper in pairwise(depths)):
+        raise refused("depths in strictly ascending order")
+    return depths
+
+
+class Grid(Section):
+    """The cells and output depths of the semi-analytical model. cells: (nx, ny); extent: (Lx, Ly) in m.
+
+    Cells alone take the default extent, an extent alone the default number of cells. depths: z in m where
+    stresses are returned, with plasticity the faces of the layers, the first at 0; or `layers` equal layers
+    down to `depth`. border: of a rough patch; "relief": its heights fall off there, so that the contact ends
+    before the patch does.
+    """
+
+    cells: Annotated[tuple[Cells, Cells], list_of(2, 2)] | None = None
+    extent: Annotated[tuple[Length, Length], list_of(2, 2)] | None = None
+    depths: Annotated[tuple[Depth, ...], AfterValidator(_ascending), list_of(1, MOST_DEPTHS)] | None = None
+    layers: Count | None = None
+    depth: Length | None = None
+    border: Literal["free", "relief"] = "free"
+
+    @classmethod
+    def conflicts(cls, given: Given) -> Iterator[Conflict]:
+        """Depths together with layers, or layers without a depth."""
+        both, layers, depth = "depths" in given, "layers" in given, "depth" in given
+        missing = "depth" if layers else "layers"
+        return broken(
+            (both and (layers or depth), "depths", "either depths, or layers with depth, not both"),
+            (not both and layers != depth, missing, "required: layers and depth together"),
+        )
 
 
 class Solver(Section):
@@ -45,21 +98,23 @@ class Solver(Section):
     unwritten: ClassVar[tuple[str, ...]] = ("beyond_model",)
 
     @classmethod
-    def implied(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
+    def implied(cls, given: Given) -> Mapping[str, Any]:
         """What the loop of the paper stops on, unless it is given."""
         return {"stop": "stress"} if given.get("method") == "paper" else {}
 
     @classmethod
-    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
+    def conflicts(cls, given: Given) -> Iterator[Conflict]:
         """A stop without the loop of the paper; the uncertainty of what is extrapolated."""
-        if "stop" in given and given.get("method") != "paper":
-            yield "stop", 'only together with method = "paper"'
-        if given.get("uncertainty") is True and given.get("extrapolate") is True:
-            yield "uncertainty", "false with extrapolate: the change by extrapolation is no uncertainty"
-        if "accuracy" in given and given.get("extrapolate") is True:
-            yield "accuracy", "not together with extrapolate: the change by extrapolation is no uncertainty"
-        if "accuracy_of" in given and "accuracy" not in given:
-            yield "accuracy_of", "only together with accuracy"
+        none, more = "the change by extrapolation is no uncertainty", given.get("extrapolate") is True
+        stops = "stop" in given and given.get("method") != "paper"
+        uncertain, accurate = given.get("uncertainty") is True, "accuracy" in given
+        alone = "accuracy_of" in given and not accurate
+        return broken(
+            (stops, "stop", 'only together with method = "paper"'),
+            (uncertain and more, "uncertainty", f"false with extrapolate: {none}"),
+            (accurate and more, "accuracy", f"not together with extrapolate: {none}"),
+            (alone, "accuracy_of", "only together with accuracy"),
+        )
 
 
 class Fem(Section):
@@ -70,3 +125,48 @@ class Fem(Section):
 
     cells_per_radius: MeshCells = 16
     box: Box = 10.0
+
+
+class Wear(Section):
+    """Wear removes material after each cycle where its plastic strain, from the surface downwards, is above a
+    limit.
+
+    strain_limit: accumulated plastic strain beyond which it is removed (inf: never); strain_limit_layer:
+    another one inside of body.plasticity.layer_thickness. smoothing_window: odd number of cells of a
+    Savitzky-Golay filter of the worn depth, 0: none; smoothing_order: of its polynomials. interpolate: depths
+    between the layers by linear interpolation of the strain; else whole layers are removed. Bosman & Schipper
+    2011, section 5.
+    """
+
+    strain_limit: StrainLimit
+    strain_limit_layer: StrainLimit | None = None
+    smoothing_window: SmoothingWindow = 5
+    smoothing_order: Order = 2
+    interpolate: bool = True
+
+    @property
+    def removes(self) -> bool:
+        """Whether any strain removes material."""
+        limits = self.strain_limit, self.strain_limit_layer
+        return any(limit is not None and isfinite(limit) for limit in limits)
+
+    @classmethod
+    def conflicts(cls, given: Given) -> Iterator[Conflict]:
+        """A smoothing window without a middle."""
+        window = given.get("smoothing_window")
+        even = isinstance(window, int) and window > 0 and window % 2 == 0
+        return broken((even, "smoothing_window", "an odd number of cells, or 0 for none"))
+
+    def excesses(self) -> Iterator[Conflict]:
+        """A polynomial that the window does not determine."""
+        window, words = self.smoothing_window, f"less than smoothing_window, {self.smoothing_window}"
+        return broken((window and not self.smoothing_order < window, "smoothing_order", words))
+
+
+class Compare(Section):
+    """claim "negligible-film": a comparison fails if the film changes pressure or stress of the body by more
+    than its limit; tolerances: row of a comparison -> its tolerance, in place of that of samfem.
+    """
+
+    claim: Literal["negligible-film"] | None = None
+    tolerances: dict[str, Annotated[float, TOLERANCE]] | None = None

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What a user should change when a solve ends badly: keys that the scene can still change, with the values
-that they have.
+that they have; empty words where there is nothing left to change.
 """
 
 from __future__ import annotations
@@ -10,20 +10,8 @@ from sam.scene.units import BOX, CELLS, COUNT, FRACTION, MESH_CELLS
 
 
 def either(*remedies: str) -> str:
-    """The remedies that apply, as alternatives.
+    """The remedies that apply, as alternatives; empty words do not, and empty if none applies.
 
-    Parameters
-    ----------
-    *remedies
-        Words of each, empty if it does not apply.
-
-    Returns
-    -------
-    str
-        Empty if none applies.
-
-    Examples
-    --------
     >>> either("raise grid.cells", "", "lower loading.force")
     'raise grid.cells, or lower loading.force'
     """
@@ -31,18 +19,7 @@ def either(*remedies: str) -> str:
 
 
 def finer_cells(scene: Scene) -> str:
-    """More cells of the grid. A measured surface has those of its file, unless it is resampled.
-
-    Parameters
-    ----------
-    scene
-        The scene to be changed.
-
-    Returns
-    -------
-    str
-        What to change, with the value that it has; empty if there are as many as allowed.
-    """
+    """More cells of the grid. A measured surface has those of its file, unless it is resampled."""
     given = scene.grid.cells if scene.grid is not None else None
     surface = scene.patch_surface
     if surface is not None and surface.kind == "file" and surface.resample is None:
@@ -104,18 +81,7 @@ def looser(scene: Scene) -> str:
 
 
 def finer_mesh(scene: Scene) -> str:
-    """More elements of a smooth scene.
-
-    Parameters
-    ----------
-    scene
-        The scene to be changed.
-
-    Returns
-    -------
-    str
-        What to change, with the value that it has; empty if there are as many as allowed.
-    """
+    """More elements of a smooth scene."""
     count = scene.fem.cells_per_radius
     return f"raise fem.cells_per_radius = {count}" if count < MESH_CELLS.high else ""
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The result record that both solvers return.
+"""The result record that both solvers return, the residual histories of their load steps among it.
 
 Nothing here knows how a result is computed. Arrays are SI, tension positive, p > 0 compressive, z into the
 body; a table is a mapping from column name to a one-dimensional sequence, all of one length, in file order.
@@ -19,6 +19,10 @@ Progress = Callable[[str, int, int], None]
 """Called by a solver as ``progress(stage, done, total)``; a solver itself prints nothing."""
 
 
+def _names(text: str) -> tuple[str, ...]:
+    return tuple(text.split())
+
+
 class Status(StrEnum):
     """How a solve ended. Only CONVERGED is a result that may be used without reading on."""
 
@@ -32,51 +36,21 @@ class Status(StrEnum):
 
     @property
     def advice(self) -> str:
-        """What the user should change."""
-        return _ADVICE[self]
+        """What the user should change, where no model says it by the keys of the scene."""
+        return _BEYOND if self is Status.OUTSIDE_OF_MODEL else ""
 
 
-_ADVICE = {
-    Status.CONVERGED: "",
-    Status.NOT_CONVERGED: "the contact iteration stopped above its tolerance: refine grid.cells or "
-    "fem.cells_per_radius, or raise solver.tolerance",
-    Status.CONTACT_AT_GRID_EDGE: "the contact touches the edge of the grid: raise grid.extent (or fem.box), "
-    "or lower loading.force",
-    Status.UNDER_RESOLVED: "too few cells in the contact: raise grid.cells or lower grid.extent",
-    Status.PLASTIC_ZONE_AT_GRID_EDGE: "the plastic zone touches the edge of the grid: raise grid.extent and "
-    "the largest of grid.depths (or fem.box), or lower loading.force",
-    Status.STEP_CUT_LIMIT: "a load step did not converge however often it was halved: raise loading.steps or "
-    "solver.tolerance",
-    Status.OUTSIDE_OF_MODEL: "the contact is too large for small strains of a flat half-space: lower "
-    "loading.force (or loading.approach), or give [solver] beyond_model = true",
-}
+_BEYOND = (
+    "the contact is too large for small strains of a flat half-space: lower loading.force (or "
+    "loading.approach), or give [solver] beyond_model = true"
+)
 
-QUANTITIES = (
-    "force_N",
-    "approach_m",
-    "contact_area_m2",
-    "contact_radius_m",
-    "p_max_Pa",
-    "p_center_Pa",
-    "mises_max_Pa",
-    "mises_max_depth_m",
-    "peeq_max",
-    "peeq_max_depth_m",
-    "residual_uz_center_m",
-    "residual_mises_max_Pa",
-    "p_max_bare_Pa",
-    "mises_max_substrate_Pa",
-    "mises_max_bare_Pa",
-    "mises_max_film_Pa",
-    "p_max_change",
-    "mises_max_change",
-    "friction_coefficient",
-    "pressure_centroid_x_m",
-    "tangential_displacement_center_m",
-    "residual_ux_center_m",
-    "plastic_shear_center_m",
-    "wear_volume_m3",
-    "peeq_p95",
+QUANTITIES = _names(
+    "force_N approach_m contact_area_m2 contact_radius_m p_max_Pa p_center_Pa mises_max_Pa "
+    "mises_max_depth_m peeq_max peeq_max_depth_m residual_uz_center_m residual_mises_max_Pa p_max_bare_Pa "
+    "mises_max_substrate_Pa mises_max_bare_Pa mises_max_film_Pa p_max_change mises_max_change "
+    "friction_coefficient pressure_centroid_x_m tangential_displacement_center_m residual_ux_center_m "
+    "plastic_shear_center_m wear_volume_m3 peeq_p95"
 )
 """Names of the scalar results, unit in the name; a quantity that does not apply to a scene is None."""
 STRAINED = 0.01
@@ -85,34 +59,18 @@ EXCEEDING = 0.05
 """Of the plastic volume: peeq_p95 is the accumulated plastic strain that this share exceeds. Unlike peeq_max
 it does not live in one row of cells or elements.
 """
-PATH_QUANTITIES = (
-    "groove_depth_m",
-    "groove_deepest_m",
-    "groove_deepest_x_m",
-    "shoulder_start_m",
-    "shoulder_end_m",
-    "shoulder_side_m",
-    "transient_length_m",
-    "rolling_coefficient",
-    "passes_to_steady",
+PATH_QUANTITIES = _names(
+    "groove_depth_m groove_deepest_m groove_deepest_x_m shoulder_start_m shoulder_end_m shoulder_side_m "
+    "transient_length_m rolling_coefficient passes_to_steady"
 )
 """Further ones of a scene whose counter-body moves."""
 
 PEAK, UNLOADED, LAST = "peak", "unloaded", "last"
 """States of the tables; LAST in place of both: the last load that was reached, where the peak was not."""
 
-HISTORY = (
-    "cycle",
-    "step",
-    "force_N",
-    "approach_m",
-    "contact_area_m2",
-    "p_max_Pa",
-    "peeq_max",
-    "friction_coefficient",
-    "iterations",
-    "residual",
-    "note",
+HISTORY = _names(
+    "cycle step force_N approach_m contact_area_m2 p_max_Pa peeq_max friction_coefficient iterations "
+    "residual note"
 )
 PATH_HISTORY = ("s_m", "fx_N", "pressure_offset_m")
 """Last columns of the table history of a scene whose counter-body moves."""
@@ -129,33 +87,14 @@ SURFACE = ("state", "x_m", "y_m", "height_m", "p_Pa", "worn_m", "friction")
 PLASTIC_STRAINS = ("epxx", "epyy", "epzz", "epyz", "epxz", "epxy")
 LOOPS = ("point", "x_m", "y_m", "z_m", "cycle", "step", "peeq", *STRESSES, *PLASTIC_STRAINS)
 """Stress and plastic strain of three points over the last period of a scene that is judged."""
-CYCLES = (
-    "cycle",
-    "wear_volume_m3",
-    "friction_coefficient",
-    "sa_m",
-    "sq_m",
-    "ssk",
-    "protected_fraction",
-    "peeq_max",
-    "p_max_Pa",
-    "operator_applications",
-    "new_strain_max",
-    "yielding_cells",
-    "margin_to_limit",
-    "wear_of_cycle_m3",
+CYCLES = _names(
+    "cycle wear_volume_m3 friction_coefficient sa_m sq_m ssk protected_fraction peeq_max p_max_Pa "
+    "operator_applications new_strain_max yielding_cells margin_to_limit wear_of_cycle_m3"
 )
 PERIODS_TO_DECIDE = "periods_to_decide"
 VERDICT_COLUMNS = (
-    "period",
-    "peeq_step_max",
-    "strain_step_max",
-    "peeq_step_ratio",
-    "closure",
-    "flowing_volume_m3",
-    "ratchetting_volume_m3",
-    "verdict",
-    PERIODS_TO_DECIDE,
+    *_names("period peeq_step_max strain_step_max peeq_step_ratio closure flowing_volume_m3"),
+    *("ratchetting_volume_m3", "verdict", PERIODS_TO_DECIDE),
 )
 """Last columns of the table cycles of a scene that is judged, see `sam.scene.verdict`."""
 BACK_STRESS = "back_stress_Pa"
@@ -174,41 +113,17 @@ TRACK = (
     *(f"{place}_{name}" for place in ("top", "deep") for name in ("z_m", "sxx_Pa", "syy_Pa", "sxz_Pa")),
 )
 CROSS = ("y_m", "z_m", "uz_m", "peeq", "mises_Pa", *STRESSES)
-PASSES = (
-    "pass",
-    "direction",
-    "groove_m",
-    "shoulder_start_m",
-    "shoulder_end_m",
-    "shoulder_side_m",
-    "new_strain_max",
-    "fx_mean_N",
-    "rolling",
+PASSES = _names(
+    "pass direction groove_m shoulder_start_m shoulder_end_m shoulder_side_m new_strain_max fx_mean_N rolling"
 )
-OF_PASSES = (
-    "work_J",
-    "friction_mean",
-    "protected_mean",
-    "wear_of_pass_m3",
-    "wear_per_length_m2",
-)
+OF_PASSES = _names("work_J friction_mean protected_mean wear_of_pass_m3 wear_per_length_m2")
 """Last columns of the table passes of a scene with [wear] or a chemical film."""
 TRACK_WORN = "worn_m"
 """Last column of the table track of a scene with [wear]."""
 VISITS = ("way_m", "time_s", "thinning_limit", "visits")
 """Visits of a counter-body that moves to the cells of a body with a film, by the way between two of them."""
 RESIDUALS = ("cycle", "step", "attempt", "accepted", "iteration", "residual", "goal")
-UNCERTAIN = (
-    "quantity",
-    "value",
-    "u_num",
-    "relative",
-    "u_cells",
-    "u_steps",
-    "u_box",
-    "order_seen",
-    "flag",
-)
+UNCERTAIN = _names("quantity value u_num relative u_cells u_steps u_box order_seen flag")
 """Columns of the quantities with their numerical uncertainty, which no solver returns by itself."""
 COLUMNS = {
     "history": HISTORY,
@@ -236,18 +151,9 @@ EXTRA_COLUMNS = {
 }
 """Last columns of a table that only some scenes have."""
 
-COST = (
-    "setup_s",
-    "solve_s",
-    "cpu_s",
-    "peak_memory_bytes",
-    "contact_iterations",
-    "plastic_iterations",
-    "operator_applications",
-    "displacement_applications",
-    "ffts",
-    "newton_iterations",
-    "step_cuts",
+COST = _names(
+    "setup_s solve_s cpu_s peak_memory_bytes contact_iterations plastic_iterations operator_applications "
+    "displacement_applications ffts newton_iterations step_cuts"
 )
 """Names of the counters and times. A solver fills those it has; the others are None."""
 
@@ -282,7 +188,8 @@ def left_out_of(stages: Iterable[Stage]) -> list[LeftOut]:
     """The stages that the scene does not need, as a result has them; those without force are needed, and
     idle.
     """
-    return [LeftOut(each.stage, each.reason) for each in stages if not each.runs and each.reason != NO_FORCE]
+    idle = [stage for stage in stages if not stage.runs]
+    return [LeftOut(stage.stage, stage.reason) for stage in idle if stage.reason != NO_FORCE]
 
 
 @dataclass(frozen=True)
@@ -356,10 +263,60 @@ class Result:
         return self.status is Status.CONVERGED
 
 
-def of_load(state: str, found: Mapping[str, float | None]) -> dict[str, Mapping[str, float | None]]:
+def of_load(state: str, quantities: Mapping[str, float | None]) -> dict[str, Mapping[str, float | None]]:
     """The fields quantities and last_fitting of a Result, from the quantities of the first state of its
     tables.
     """
     if state == PEAK:
-        return {"quantities": found}
-    return {"quantities": dict.fromkeys(found), "last_fitting": found}
+        return {"quantities": quantities}
+    return {"quantities": dict.fromkeys(quantities), "last_fitting": quantities}
+
+
+RECENT = 10  # iterations that are asked whether the residual still falls
+FALLS = 0.5  # it does if they bring its smallest value below this share of that before them
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """An attempt at a load, a whole step or a part of it. accepted: False if it was discarded, and the way to
+    it halved; residuals: after each iteration, in the measure by which the solver stops (zero: nothing to
+    do); goal: the residual at which it may stop.
+    """
+
+    accepted: bool
+    residuals: tuple[float, ...]
+    goal: float
+
+
+def residual_table(steps: Iterable[tuple[int, int, Sequence[Attempt]]]) -> dict[str, list[Any]]:
+    """A row for each iteration. steps: (cycle, step, its attempts in their order)."""
+    rows = [
+        (cycle, step, k, int(attempt.accepted), n, residual, attempt.goal)
+        for cycle, step, attempts in steps
+        for k, attempt in enumerate(attempts, start=1)
+        for n, residual in enumerate(attempt.residuals, start=1)
+    ]
+    return {name: [row[k] for row in rows] for k, name in enumerate(RESIDUALS)}
+
+
+def stagnates(residuals: Sequence[float]) -> bool:
+    """Whether the last iterations hardly lowered the smallest residual before them."""
+    before, recent = residuals[:-RECENT], residuals[-RECENT:]
+    return bool(before) and not min(recent) < FALLS * min(before)
+
+
+def unfinished(what: str, residuals: Sequence[float], goal: float, stalled: bool | None = None) -> str:
+    """Why an iteration ended above its goal: it diverged, it stagnates, or it ran out of iterations while it
+    still fell.
+
+    stalled: whether it gave up before its limit because the residual no longer fell; None: judged by the
+    history.
+    """
+    finite = [value for value in residuals if np.isfinite(value)]
+    if not finite or len(finite) < len(residuals) or finite[-1] > max(10.0 * finite[0], 1.0):
+        return f"{what} diverged"
+    best = min(finite)
+    if stagnates(finite) if stalled is None else stalled:
+        return f"{what} stagnated: its residual no longer falls below {best:.1e}, and {goal:.1e} is wanted"
+    left = f"{best:.1e} is left, {goal:.1e} is wanted"
+    return f"{what} ran out of iterations, {len(finite)}, while its residual still fell: {left}"

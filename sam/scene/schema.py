@@ -13,34 +13,18 @@ pydantic.ValidationError, all at once.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import isclose, sqrt
+from math import ceil, inf, isclose, sqrt
 from typing import Any
 
 from sam.scene.body import Body
-from sam.scene.compare import Compare
 from sam.scene.counterbody import CounterBody
 from sam.scene.friction import Friction
-from sam.scene.grid import Grid
-from sam.scene.loading import MISFIT_SPHERE, Loading
-from sam.scene.numerics import Fem, Solver
-from sam.scene.passes import (
-    conflicts_of_path,
-    contact_radius,
-    excesses_of_grid,
-    excesses_of_path,
-    excesses_of_steps,
-)
-from sam.scene.path import Strokes
-from sam.scene.places import Places
-from sam.scene.section import MISSING_INPUT, NOT_YET, Conflict, Section, stated, value_at
-from sam.scene.surface import CounterSurface, Strip, Surface, leading, patch_of
-from sam.scene.surface.height_map import FrictionMap
+from sam.scene.loading import MISFIT_SPHERE, ROUNDING, TO_AND_FRO, Loading, Strokes
+from sam.scene.numerics import Compare, Fem, Grid, Solver, Wear
+from sam.scene.section import NOT_YET, Conflict, Given, Section, broken, stated
+from sam.scene.surface import CounterSurface, FrictionMap, Strip, Surface, leading, patch_of
 from sam.scene.surface.section import GENERATED, grid_excesses, patch_excesses
-from sam.scene.units import STRAIN
-from sam.scene.wear import Wear
-
-OF_BACK_STRESSES = ("kinematic", "layer.kinematic")
-"""Tables of [body.plasticity]."""
+from sam.scene.units import COUNT, STRAIN
 
 
 class Scene(Section):
@@ -59,27 +43,73 @@ class Scene(Section):
     compare: Compare | None = None
 
     @classmethod
-    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
+    def conflicts(cls, given: Given) -> Iterator[Conflict]:
         """Tables and keys that need or exclude each other."""
-        elastic = value_at(given, "body.plasticity") is MISSING_INPUT
-        if elastic and value_at(given, "solver.method") == "paper":
-            yield "solver.method", '"backward-euler": the loop of the paper needs [body.plasticity]'
-        if value_at(given, "solver.method") == "paper" and any(
-            value_at(given, f"body.plasticity.{table}") is not MISSING_INPUT for table in OF_BACK_STRESSES
-        ):
-            yield "solver.method", '"backward-euler": the loop of the paper knows no back-stress'
-        free = value_at(given, "loading.prescribed") is MISSING_INPUT
-        if free and "counterbody" not in given:
-            yield "counterbody", 'required: a table [counterbody], or loading.prescribed = "hertz"'
-        if not free:
-            yield from _conflicts_of_prescribed(given)
-        rough = "surface" in given or value_at(given, "counterbody.surface") is not MISSING_INPUT
-        yield from (_conflicts_of_rough if rough else _conflicts_of_smooth)(given)
-        yield from _conflicts_of_wear(given)
-        yield from conflicts_of_path(given)
-        claims = value_at(given, "compare.claim") is not MISSING_INPUT
-        if claims and value_at(given, "body.coating") is MISSING_INPUT:
-            yield "compare.claim", "only together with [body.coating]"
+        at, has = given.at, given.has
+        load, other, coated = at("loading.prescribed"), has("counterbody"), has("body.coating")
+        plastic, wears, film = has("body.plasticity"), has("wear"), at("friction.law") == "chemical-film"
+        misfit, pressure = load == MISFIT_SPHERE, load is not None
+        pressed = "on the body" if misfit else "where the pressure is given"
+        instead, shape = f'loading.prescribed = "{load}"', 'counterbody.shape = "flat"'
+        flat, rough_counter = at("counterbody.shape") == "flat", has("counterbody.surface")
+        smooth, either = not (has("surface") or rough_counter), "[surface] or [counterbody.surface]"
+        paper, method = at("solver.method") == "paper", "solver.method"
+        euler, loop = '"backward-euler"', "the loop of the paper"
+        backs = has("body.plasticity.kinematic") or has("body.plasticity.layer.kinematic")
+        bare, table = not (pressure or other), 'a table [counterbody], or loading.prescribed = "hertz"'
+        anywhere = f"as {shape} touches a plane everywhere at once"
+        yield from broken(
+            (paper and not plastic, method, f"{euler}: {loop} needs [body.plasticity]"),
+            (paper and backs, method, f"{euler}: {loop} knows no back-stress"),
+            (bare, "counterbody", f"required: {table}"),
+            (pressure and other, "counterbody", f"nothing presses {pressed}, {instead}: remove it"),
+            (pressure and has("surface"), "surface", f"with {instead} {NOT_YET}"),
+            (misfit and has("friction"), "friction", f"not together with {instead}: remove it"),
+            (misfit and coated, "body.coating", f"not together with {instead}: remove it"),
+            (misfit and paper, method, f"{euler} with {instead}: {loop} solves a contact"),
+            (smooth and flat, "surface", f"required: a table {either}, {anywhere}"),
+            (smooth and at("grid.border") == "relief", "grid.border", f"only together with {either}"),
+        )
+        kinds = [at("surface.kind"), at("counterbody.surface.kind")]
+        large = "nothing else says how large the generated surface is"
+        if longer := kinds[1] == "file" and has("loading.path"):
+            kinds, large = kinds[:1], "a counter-surface that moves is longer than the patch"
+        if "file" not in kinds and (longer or any(kind in GENERATED for kind in kinds)):
+            required = f"required: grid.cells and grid.extent, as {large}"
+            yield from broken(*((not has(key), key, required) for key in ("grid.cells", "grid.extent")))
+        for there, words in ((wears, "[wear]"), (film, 'friction.law = "chemical-film"')):
+            contact = f"{words} needs a contact: remove it, and give force and [counterbody]"
+            yield from broken(
+                (there and pressure, "loading.prescribed", contact),
+                (there and paper, method, f"{euler} with {words}"),
+                (there and coated, "body.coating", f"not together with {words}"),
+            )
+        layered = has("wear.strain_limit_layer") and not has("body.plasticity.layer_thickness")
+        stays, removed = wears and at("loading.unload") is not True, "material is removed"
+        needs = f"only together with [body.plasticity]: {removed} by its plastic strain"
+        moves, slip = has("loading.path") and other, at("counterbody.slip")
+        returns, steps = at("loading.path.return") == TO_AND_FRO, "loading.path.steps"
+        plane, along = moves and flat, moves and at("friction.direction") == "alternating"
+        still, rolls = plane and not rough_counter, plane and rough_counter and slip == 0
+        renewed = moves and at("counterbody.surface.renew") is True and returns and not wears
+        uncertain, key = moves and rough_counter and at("solver.uncertainty") is True, "solver.uncertainty"
+        cells = "its steps are whole cells, on others they would not be"
+        yield from broken(
+            (wears and not plastic, "wear", needs),
+            (stays, "loading.unload", f"true with [wear]: {removed} after unloading"),
+            (layered, "wear.strain_limit_layer", "only together with body.plasticity.layer_thickness"),
+            (not moves and slip is not None, "counterbody.slip", "only together with loading.path"),
+            (not moves and returns, "loading.path.return", '"lifted" where the pressure is given'),
+            (moves and coated, "body.coating", f"with loading.path {NOT_YET}"),
+            (still, "loading.path", "nothing moves: a plane needs [counterbody.surface], or leave it out"),
+            (rolls, "counterbody.slip", "above 0: nothing moves on a plane that rolls"),
+            (plane and not has(steps), steps, f"required with {shape}, which has no contact radius"),
+            (renewed, "counterbody.surface.renew", 'false with return = "to-and-fro": the load stays on'),
+            (uncertain, key, f"false with [counterbody.surface] and loading.path: {cells}"),
+            (along, "friction.direction", '"constant" with loading.path: the traction is along the motion'),
+            (moves and paper, method, f"{euler} with loading.path: {loop} knows no motion"),
+            (has("compare.claim") and not coated, "compare.claim", "only together with [body.coating]"),
+        )
 
     @property
     def coefficient(self) -> float:
@@ -145,7 +175,7 @@ class Scene(Section):
         """The passes of the load over its path, one in each cycle; all at the origin without path."""
         loading, count = self.loading, 0
         if loading.path is not None:
-            count = loading.path.count(contact_radius(self.body, self.counterbody, loading))
+            count = loading.path.count(contact_radius(self))
         alternates = self.friction is not None and self.friction.direction == "alternating"
         moves = self.counterbody is not None
         worn = self.wear is not None
@@ -153,200 +183,151 @@ class Scene(Section):
 
     def excesses(self) -> Iterator[Conflict]:
         """Good values that do not go together."""
-        depths = self.grid.depths if self.grid else None
-        if self.body.plasticity and depths and (depths[0] != 0 or len(depths) < 2):
+        grid, path, friction = self.grid, self.loading.path, self.friction
+        depths, plasticity = grid.depths if grid else None, self.body.plasticity
+        if plasticity and depths and (depths[0] != 0 or len(depths) < 2):
             yield "grid.depths", "with plasticity the faces of the layers: two or more, the first 0"
-        steps = []
-        if self.loading.path is not None:
-            radius = contact_radius(self.body, self.counterbody, self.loading)
-            steps = list(excesses_of_steps(self.loading.path, radius))
-            yield from steps
-        if not steps:  # else the path has no places
-            yield from _bad_patch(self)
+        radius, refused = contact_radius(self) if path is not None else inf, list[Conflict]()
+        if path is not None and radius == 0:
+            words = "above 0 with loading.path: nothing else says how long its steps may be"
+            refused = [("loading.force", words)]
+        elif path is not None and path.step_per_radius is not None:
+            most = COUNT.high * radius / path.length
+            words = f"at most {most:.4g}: this path may have {COUNT.high:g} steps"
+            if path.step_per_radius * path.length > COUNT.high * radius:
+                refused = [("loading.path.step_per_radius", words)]
+        yield from refused
+        if not refused:  # else the path has no places
+            yield from self._excesses_of_patch()
             if self.moves:
-                yield from _bad_path(self)
-        if self.friction is not None and self.friction.path is not None:
-            yield from _other_cells(self.friction.path, self)
-        if self.solver.extrapolate:
-            yield from _not_extrapolated(self)
-        if self.solver.uncertainty:
-            yield from _without_uncertainty(self)
-        if self.solver.accuracy is not None:
-            yield from _without_accuracy(self)
-        yield from _beyond_shear_strength(self)
+                yield from self._excesses_of_path(radius)
+        if friction is not None and friction.path is not None:
+            yield from self._other_cells(friction.path)
+        yield from self._excesses_of_solver()
+        if self.loading.hertz and plasticity is not None and self.body.coating is None and self.coefficient:
+            # a traction under which the loaded circle slides off, however far the body hardens: its mean is
+            # 2/3 mu p0. An upper bound of the limit load, of slip along the surface: at most
+            # (sigma_y + sum C_k/g_k)/sqrt(3) times the area is borne
+            strength, mu = plasticity.strength(), self.coefficient
+            borne = float(strength.stress(0.0, STRAIN.high) + strength.back_saturation(0.0)) / sqrt(3)
+            most = borne * 1.5 / mu
+            if stated(self.loading.p0) > most:
+                words = f"with friction.coefficient = {mu:g}: the body bears no larger traction"
+                yield "loading.p0", f"at most {most:.4g} Pa {words}"
 
-
-Section.places = Places(Scene)
-
-
-def _bad_path(scene: Scene) -> Iterator[Conflict]:
-    """A path that the counter-body or the grid is not fit for."""
-    other, path = stated(scene.counterbody), stated(scene.loading.path)
-    yield from excesses_of_path(scene.body, other, scene.loading, scene.coefficient)
-    if scene.grid is not None and other.shape != "flat":
-        radius = contact_radius(scene.body, other, scene.loading)
-        yield from excesses_of_grid(scene.grid.extent, (path.start, path.end), radius)
-
-
-def _bad_patch(scene: Scene) -> Iterator[Conflict]:
-    """A grid that does not suit the surfaces, or surfaces that do not suit each other."""
-    first, strip = scene.patch_surface, scene.counter_strip
-    if first is None:
-        return
-    if strip is not None:
-        found = [] if scene.surface is None else list(grid_excesses(scene.surface, scene.grid))
-        yield from found or strip.excesses(scene.strokes.count)
-        return
-    found = list(grid_excesses(first, scene.grid))
-    yield from found
-    for other in (scene.surface, scene.counter_surface):
-        if other is not None and other is not first and not found:
-            yield from patch_excesses(other, *scene.patch)
-
-
-def _conflicts_of_prescribed(given: Mapping[str, Any]) -> Iterator[Conflict]:
-    """What a load in place of a force leaves no room for."""
-    name = value_at(given, "loading.prescribed")
-    misfit = name == MISFIT_SPHERE
-    words, why = f'loading.prescribed = "{name}"', "the body" if misfit else "where the pressure is given"
-    if "counterbody" in given:
-        yield "counterbody", f"nothing presses {'on ' * misfit}{why}, {words}: remove it"
-    if "surface" in given:
-        yield "surface", f"with {words} {NOT_YET}"
-    if not misfit:
-        return
-    for key in ("friction", "body.coating"):
-        if value_at(given, key) is not MISSING_INPUT:
-            yield key, f"not together with {words}: remove it"
-    if value_at(given, "solver.method") == "paper":
-        yield "solver.method", f'"backward-euler" with {words}: the loop of the paper solves a contact'
-
-
-def _conflicts_of_smooth(given: Mapping[str, Any]) -> Iterator[Conflict]:
-    """What only a rough body makes sense of."""
-    if value_at(given, "counterbody.shape") == "flat":
-        yield (
-            "surface",
-            'required: a table [surface] or [counterbody.surface], as counterbody.shape = "flat" touches a '
-            "plane everywhere at once",
+    def _excesses_of_path(self, radius: float) -> Iterator[Conflict]:
+        """A path that the counter-body or the grid is not fit for; radius: of the contact in m."""
+        path, other, mu = stated(self.loading.path), stated(self.counterbody), self.coefficient
+        step, least = path.length / path.count(radius), ceil(path.length / radius - ROUNDING)
+        long = f"{least} or more: a step of {step:.4g} m is longer than the contact radius, {radius:.4g} m"
+        turns, rolls = mu > 0 and path.start[1] != path.end[1], mu > 0 and other.slip == 0
+        sticks = "rolls (slip = 0) with friction sticks in a part of the contact (stick-slip)"
+        slides = f"above 0 with friction.coefficient = {mu:g}: a counter-body that {sticks}"
+        yield from broken(
+            (step > radius * (1 + ROUNDING), "loading.path.steps", long),
+            (turns, "loading.path.end", "the y of start with [friction]: the traction acts along x"),
+            (rolls, "counterbody.slip", slides),
         )
-    if value_at(given, "grid.border") == "relief":
-        yield "grid.border", "only together with [surface] or [counterbody.surface]"
+        extent = None if self.grid is None or other.shape == "flat" else self.grid.extent
+        if extent is not None:
+            far = [2 * (max(map(abs, ends)) + radius) for ends in zip(path.start, path.end, strict=True)]
+            if any(side < least for side, least in zip(extent, far, strict=True)):
+                words = " and ".join(f"{least:.4g} m" for least in far)
+                yield "grid.extent", f"at least {words}, to hold the contact at both ends of loading.path"
+
+    def _excesses_of_patch(self) -> Iterator[Conflict]:
+        """A grid that does not suit the surfaces, or surfaces that do not suit each other."""
+        first, strip = self.patch_surface, self.counter_strip
+        if first is None:
+            return
+        rough = self.surface if strip is not None else first
+        unfit = [] if rough is None else list(grid_excesses(rough, self.grid))
+        yield from unfit
+        if unfit:
+            return
+        if strip is not None:
+            yield from strip.excesses(self.strokes.count)
+            return
+        for other in (self.surface, self.counter_surface):
+            if other is not None and other is not first:
+                yield from patch_excesses(other, *self.patch)
+
+    def _other_cells(self, coefficients: FrictionMap) -> Iterator[Conflict]:
+        """A grid that is not the one of the friction map."""
+        cells, extent = (self.grid.cells, self.grid.extent) if self.grid is not None else (None, None)
+        if self.patch_surface is not None:
+            cells, extent = self.patch
+        if cells != coefficients.cells:
+            yield "grid.cells", f"{list(coefficients.cells)}, the grid of friction.path"
+        sides = coefficients.extent
+        if extent is None or not all(
+            isclose(*both, rel_tol=1e-6) for both in zip(extent, sides, strict=True)
+        ):
+            words = " and ".join(f"{side:.9g} m" for side in sides)
+            yield "grid.extent", f"{words}, the grid of friction.path"
+
+    def _excesses_of_solver(self) -> Iterator[Conflict]:
+        """What has no other cells for [solver]: what belongs to its grid, says its cells, or has a threshold,
+        as wear and film breakdown, which jump with the cells.
+        """
+        solver, grid, friction = self.solver, self.grid, self.friction
+        rough, mapped = self.patch_surface is not None, friction is not None and friction.path is not None
+        layers, key = None, "grid.layers"
+        if grid is not None and self.body.plasticity is not None:
+            layers, key = (len(grid.depths) - 1, "grid.depths") if grid.depths else (grid.layers, key)
+        odd = layers is not None and (layers % 2 or layers < 4)
+        more, sure, accuracy = solver.extrapolate, solver.uncertainty, "solver.accuracy"
+        exact, alone = solver.accuracy is not None, "false with {}: it belongs to its grid"
+        measured = "[surface], [counterbody.surface] or friction.path: they belong to their grid"
+        yield from broken(
+            (more and (rough or mapped), "solver.extrapolate", f"false with {measured}"),
+            (more and odd, key, "an even number of layers, four or more, with solver.extrapolate"),
+            (sure and mapped, "solver.uncertainty", alone.format("friction.path")),
+        )
+        for surface in (self.surface, self.counter_surface):
+            if sure and surface is not None and surface.kind == "file" and surface.resample is None:
+                path = f'{surface.table}.path without resample = "fourier"'
+                yield "solver.uncertainty", alone.format(path)
+        cells = exact and grid is not None and bool(grid.cells or grid.extent or grid.depths or grid.layers)
+        own, moved = exact and not cells and rough, exact and self.loading.path is not None
+        jumps = exact and (self.wear is not None or (friction is not None and friction.film))
+        idle = exact and self.loading.force == 0
+        yield from broken(
+            (cells, accuracy, "not together with [grid]: the cells are chosen"),
+            (own, accuracy, "only for smooth bodies: the cells of a rough one are those of its surface"),
+            (
+                moved and not (cells or rough),
+                accuracy,
+                "not together with loading.path: no error over its steps was measured",
+            ),
+            (idle, accuracy, "only with loading.force above 0: without contact there is no error"),
+            (jumps, accuracy, "not together with [wear] or a film: what is lost or breaks has a threshold"),
+        )
 
 
-def _conflicts_of_rough(given: Mapping[str, Any]) -> Iterator[Conflict]:
-    """What rough bodies need, and what they cannot be put together with yet."""
-    kinds = [value_at(given, f"{table}.kind") for table in ("surface", "counterbody.surface")]
-    words = "as nothing else says how large the generated surface is"
-    longer = kinds[1] == "file" and value_at(given, "loading.path") is not MISSING_INPUT
-    if longer:
-        kinds, words = [kinds[0]], "as a counter-surface that moves is longer than the patch"
-    if "file" not in kinds and (longer or any(kind in GENERATED for kind in kinds)):
-        for key in ("grid.cells", "grid.extent"):
-            if value_at(given, key) is MISSING_INPUT:
-                yield key, f"required: grid.cells and grid.extent, {words}"
+Section.whole = Scene
 
 
-def _conflicts_of_wear(given: Mapping[str, Any]) -> Iterator[Conflict]:
-    """What wear and a chemical film need, and what they cannot be put together with."""
-    wears, film = "wear" in given, value_at(given, "friction.law") == "chemical-film"
-    for there, words in ((wears, "[wear]"), (film, 'friction.law = "chemical-film"')):
-        if not there:
-            continue
-        if value_at(given, "loading.prescribed") is not MISSING_INPUT:
-            yield (
-                "loading.prescribed",
-                f"{words} needs a contact: remove it, and give force and [counterbody]",
-            )
-        if value_at(given, "solver.method") == "paper":
-            yield "solver.method", f'"backward-euler" with {words}'
-        if value_at(given, "body.coating") is not MISSING_INPUT:
-            yield "body.coating", f"not together with {words}"
-    if not wears:
-        return
-    if value_at(given, "body.plasticity") is MISSING_INPUT:
-        yield "wear", "only together with [body.plasticity]: material is removed by its plastic strain"
-    if value_at(given, "loading.unload") is not True:
-        yield "loading.unload", "true with [wear]: material is removed after unloading"
-    if value_at(given, "wear.strain_limit_layer") is not MISSING_INPUT and (
-        value_at(given, "body.plasticity.layer_thickness") is MISSING_INPUT
-    ):
-        yield "wear.strain_limit_layer", "only together with body.plasticity.layer_thickness"
-
-
-def _beyond_shear_strength(scene: Scene) -> Iterator[Conflict]:
-    """A given traction under which the loaded circle slides off, however far the body hardens: its mean is
-    2/3 mu p0.
-
-    An upper bound of the limit load, of slip along the surface: at most (sigma_y + sum C_k/g_k)/sqrt(3) times
-    the area is borne.
+def contact_radius(scene: Scene) -> float:
+    """Radius in m of the contact by Hertz, in which steps along a path are counted: (3 F R/(4 E*))^(1/3), of
+    an ellipsoid with the geometric mean R of its radii (Johnson 1985, Eq. 4.22); under an approach d
+    sqrt(R d). That of the flat end of a punch, and of a load that is given. 0 without force, infinite below
+    a plane.
     """
-    plasticity, mu = scene.body.plasticity, scene.coefficient
-    if not scene.loading.hertz or plasticity is None or scene.body.coating is not None or mu == 0:
-        return
-    strength = plasticity.strength()
-    most = float(strength.stress(0.0, STRAIN.high) + strength.back_saturation(0.0)) / sqrt(3) * 1.5 / mu
-    if stated(scene.loading.p0) > most:
-        yield (
-            "loading.p0",
-            f"at most {most:.4g} Pa with friction.coefficient = {mu:g}: the body bears no larger traction",
-        )
-
-
-def _not_extrapolated(scene: Scene) -> Iterator[Conflict]:
-    """What cannot be put on half as many cells."""
-    if scene.patch_surface is not None or (scene.friction is not None and scene.friction.path is not None):
-        yield (
-            "solver.extrapolate",
-            "false with [surface], [counterbody.surface] or friction.path: they belong to their grid",
-        )
-    layers = None
-    if scene.grid is not None and scene.body.plasticity is not None:
-        layers = len(scene.grid.depths) - 1 if scene.grid.depths else scene.grid.layers
-    if layers is not None and (layers % 2 or layers < 4):
-        key = "grid.depths" if stated(scene.grid).depths else "grid.layers"
-        yield key, "an even number of layers, four or more, with solver.extrapolate"
-
-
-def _without_uncertainty(scene: Scene) -> Iterator[Conflict]:
-    """What belongs to its grid, so that there is none that is coarser."""
-    words = "false with {}: it belongs to its grid"
-    if scene.friction is not None and scene.friction.path is not None:
-        yield "solver.uncertainty", words.format("friction.path")
-    for surface in (scene.surface, scene.counter_surface):
-        if surface is not None and surface.kind == "file" and surface.resample is None:
-            yield "solver.uncertainty", words.format(f'{surface.table}.path without resample = "fourier"')
-
-
-def _without_accuracy(scene: Scene) -> Iterator[Conflict]:
-    """What gives its cells, and what has a threshold: wear and film breakdown jump with the cells."""
-    given = scene.grid
-    if given is not None and (given.cells or given.extent or given.depths or given.layers):
-        yield "solver.accuracy", "not together with [grid]: the cells are chosen"
-    elif scene.patch_surface is not None:
-        yield "solver.accuracy", "only for smooth bodies: the cells of a rough one are those of its surface"
-    elif scene.loading.path is not None:
-        yield "solver.accuracy", "not together with loading.path: no error over its steps was measured"
-    if scene.loading.force == 0:
-        yield "solver.accuracy", "only with loading.force above 0: without contact there is no error"
-    if scene.wear is not None or (scene.friction is not None and scene.friction.film):
-        yield "solver.accuracy", "not together with [wear] or a film: what is lost or breaks has a threshold"
-
-
-def _other_cells(found: FrictionMap, scene: Scene) -> Iterator[Conflict]:
-    """A grid that is not the one of the friction map."""
-    cells, extent = (scene.grid.cells, scene.grid.extent) if scene.grid is not None else (None, None)
-    if scene.patch_surface is not None:
-        cells, extent = scene.patch
-    if cells != found.cells:
-        yield "grid.cells", f"{list(found.cells)}, the grid of friction.path"
-    if extent is None or not all(
-        isclose(*sides, rel_tol=1e-6) for sides in zip(extent, found.extent, strict=True)
-    ):
-        yield (
-            "grid.extent",
-            f"{' and '.join(f'{side:.9g} m' for side in found.extent)}, the grid of friction.path",
-        )
+    other, loading, body = scene.counterbody, scene.loading, scene.body
+    if other is None:
+        return stated(loading.radius)
+    if other.shape == "flat":
+        return inf
+    if other.radii is None:
+        return stated(other.flat_radius or other.radius)
+    radius = sqrt(other.radii[0] * other.radii[1])
+    if loading.approach is not None:
+        return sqrt(radius * loading.approach)
+    compliance = (1 - body.poisson**2) / body.young
+    if other.young is not None:
+        compliance += (1 - stated(other.poisson) ** 2) / other.young
+    return float((0.75 * stated(loading.force) * radius * compliance) ** (1 / 3))
 
 
 def resolved(scene: Scene) -> dict[str, Any]:

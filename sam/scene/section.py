@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""The base of every table of a scene: exact types, no unknown keys, no change afterwards,
-all errors at once.
+"""The base of every table of a scene: exact types, no unknown keys, no change afterwards, and what is wrong
+with it all at once: key, value and what is allowed.
 """
 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, ClassVar, Protocol, Self, TypeVar, get_args, get_origin
+import json
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, ClassVar, Self, TypeVar, get_args, get_origin
 
 from pydantic import (
     BaseModel,
@@ -19,24 +22,102 @@ from pydantic import (
     model_serializer,
     model_validator,
 )
-from pydantic_core import InitErrorDetails, PydanticCustomError
+from pydantic_core import InitErrorDetails
 
-from sam.scene.errors import MOST_SHOWN
-from sam.scene.units import Number, in_file
+from sam.scene.units import Number, in_file, refused
 
 NOT_YET = "not available in this version of samfem: remove it"
 Conflict = tuple[str, str]
 """A key of the section, dotted for one of a section inside it, and what is allowed instead."""
+MISSING = "missing"
+MISSING_INPUT = object()
+"""Stands for the value of a key that should be there."""
 
-MOST_ALIKE = 3  # keys in a hint
-ALIKE = 0.6  # of difflib, its default: keys of the same table that look alike
-CLOSE = 0.8  # of difflib: nearer than the keys of other tables that look alike
-T = TypeVar("T")
-_WORDS = {
-    "string_type": "a string",
-    "bool_type": "true or false",
-    "model_type": "a table",
+MOST_SHOWN = 100  # problems of a file: more is no scene file
+_LONGEST = 60  # characters of a value in a message
+_MOST_ALIKE, _MOST_PLACES = 3, 4  # keys in a hint, of the same table and of others
+# of difflib: keys of the same table that look alike, its default; a slip of one or two letters in a key of
+# any table; and nearer than that
+_ALIKE, _SLIP, _CLOSE = 0.6, 0.75, 0.8
+OTHER_NAMES = {
+    "film": ("[body.coating]", '[friction] with law = "chemical-film"'),
+    "layer": ("[body.coating]",),
+    "hardening": ("[body.plasticity]",),
+    "substrate": ("[body]",),
+    "halfspace": ("[body]",),
+    "indenter": ("[counterbody]",),
+    "ball": ("[counterbody]",),
+    "sphere": ("[counterbody]",),
+    "punch": ("[counterbody]",),
+    "roughness": ("[surface]",),
+    "mesh": ("[fem]", "[grid]"),
 }
+"""What others call a table -> where it is here."""
+_WORDS = {"string_type": "a string", "bool_type": "true or false", "model_type": "a table"}
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Problem:
+    """An error of a scene: the dotted key, empty for the file as a whole; the value as TOML would spell it,
+    "missing" if it is; and what is allowed, in words.
+    """
+
+    key: str
+    value: str
+    allowed: str
+
+    def __str__(self) -> str:
+        if not self.key:
+            return self.allowed
+        between = " is " if self.value == MISSING else " = "
+        return f"{printable(self.key)}{between}{self.value}: {self.allowed}"
+
+
+class SceneError(ValueError):
+    """A scene that cannot be used.
+
+    Parameters
+    ----------
+    problems
+        Every error of it.
+    source
+        The name of the file.
+    """
+
+    def __init__(self, problems: Sequence[Problem], source: str):
+        self.problems = tuple(problems)
+        self.source = source
+        super().__init__(str(self))
+
+    def __str__(self) -> str:
+        source = printable(self.source)
+        if len(self.problems) == 1:
+            return f"{source}: {self.problems[0]}"
+        shown = list(map(str, self.problems[:MOST_SHOWN]))
+        if len(self.problems) > MOST_SHOWN:
+            shown.append(f"and {len(self.problems) - MOST_SHOWN} more")
+        return "\n  ".join([f"{source}: {len(self.problems)} errors", *shown])
+
+
+def spelling(value: object) -> str:
+    """A value as a scene file spells it, on one line of at most 60 characters; what JSON cannot hold is named
+    by its type.
+
+    >>> spelling([1, "m"])
+    '[1, "m"]'
+    """
+    try:
+        text = json.dumps(value, ensure_ascii=False, default=str)
+    except (ValueError, RecursionError):
+        text = repr(type(value))
+    text = printable(text)
+    return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
+
+
+def printable(text: str) -> str:
+    """The text with "?" for control characters and line ends, which act on terminals or break files."""
+    return "".join(character if character.isprintable() else "?" for character in text)
 
 
 def stated(value: T | None) -> T:
@@ -45,46 +126,78 @@ def stated(value: T | None) -> T:
     return value
 
 
-class KnownPlaces(Protocol):
-    """Where the keys of a scene are; `sam.scene.places.Places`."""
+class Given(dict[str, Any]):
+    """The keys of a section that are given, with their values."""
 
-    def of(self, name: str, is_table: bool) -> tuple[str, ...]:
-        """Where a key of this name belongs; or nothing."""
+    def at(self, key: str) -> Any:
+        """The value at a dotted key of nested tables and sections, also where a key of one of these has dots;
+        None without one.
+        """
+        value: Any = self
+        while key and value is not None:
+            if isinstance(value, Mapping):
+                name = next((name for name in value if f"{key}.".startswith(f"{name}.")), key)
+                value = value.get(name)
+            else:
+                name = key.partition(".")[0]
+                value = getattr(value, name, None)
+            key = key[len(name) + 1 :]
+        return value
 
-    def nearest(self, name: str) -> tuple[str, ...]:
-        """Where a key of nearly this name belongs; or nothing."""
+    def text(self, key: str) -> str:
+        """The text at a key; empty where there is none."""
+        return value if isinstance(value := self.get(key), str) else ""
+
+    def has(self, key: str) -> bool:
+        """Whether there is a value at a dotted key."""
+        return self.at(key) is not None
+
+
+def broken(*rules: tuple[object, str, str]) -> Iterator[Conflict]:
+    """The conflicts of a table of rules: whether one is broken, the key, and what is allowed."""
+    return ((key, allowed) for holds, key, allowed in rules if holds)
+
+
+def of_choice(
+    given: Mapping[str, Any],
+    keys: Iterable[str],
+    choice: tuple[Collection[str], Collection[str]],
+    words: Conflict,
+) -> Iterator[Conflict]:
+    """The conflicts of a section whose keys depend on the value of one of them, such as a law.
+
+    keys: those that depend on it; choice: the ones that its value needs, and all that it takes; words: of one
+    that is needed and not given, and of one that is given and not taken.
+    """
+    needed, taken = choice
+    for key in keys:
+        if key in needed and key not in given:
+            yield key, words[0]
+        if key not in taken and key in given:
+            yield key, words[1]
 
 
 class Section(BaseModel):
     """A table of the scene file.
 
-    Attributes
-    ----------
-    later
-        Keys of the scene format that this version cannot compute, refused by name; each with the values it
-        refuses, or None for all of them.
-    of_scene
-        Whether its keys are those of a scene, so that one may belong into another table.
-    unwritten
-        Optional keys that are not written at their default, so that a scene has the identity, the digests and
-        the files that it had before there was such a key: every key that is added from now on.
-    places
-        Where each key of a scene is; the scene itself says so (`sam.scene.schema`).
+    of_scene: whether its keys are those of a scene, so that one may belong into another table; whole: the
+    table of all others, the scene, which says so itself (`sam.scene.schema`). unwritten: optional keys that
+    are not written at their default, so that a scene has the identity, the digests and the files that it had
+    before there was such a key: every key that is added from now on.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
-    later: ClassVar[Mapping[str, tuple[str, ...] | None]] = {}
     of_scene: ClassVar[bool] = True
     unwritten: ClassVar[tuple[str, ...]] = ()
-    places: ClassVar[KnownPlaces | None] = None
+    whole: ClassVar[type[Section] | None] = None
 
     @classmethod
-    def implied(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
+    def implied(cls, given: Given) -> Mapping[str, Any]:
         """Defaults that depend on other keys of `given`."""
         return {}
 
     @classmethod
-    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
+    def conflicts(cls, given: Given) -> Iterator[Conflict]:
         """Keys of `given` that contradict each other. Called whether or not the values are good."""
         return iter(())
 
@@ -107,20 +220,21 @@ class Section(BaseModel):
         """Field errors and conflicts together: pydantic alone would stop at the fields."""
         section: Self | None = None
         lines: list[InitErrorDetails] = []
-        given: dict[str, Any] = {}
+        given = Given()
         if isinstance(raw, Mapping):
-            given = {key: value for key, value in raw.items() if value is not None}
+            given.update({key: value for key, value in raw.items() if value is not None})
             raw = {**raw, **{key: value for key, value in cls.implied(given).items() if key not in given}}
         try:
             section = handler(raw)
         except ValidationError as error:
-            lines = [
-                _line(item["loc"], _input(item), cls._allowed(item, info, hints=k < MOST_SHOWN))
-                for k, item in enumerate(error.errors())
-            ]
+            for k, item in enumerate(error.errors()):
+                value = MISSING_INPUT if item["type"] == "missing" else item["input"]
+                lines.append(_line(item["loc"], value, cls._allowed(item, info, hints=k < MOST_SHOWN)))
         if isinstance(raw, Mapping):
-            found = list(cls.conflicts(given)) or ([] if section is None else list(section.excesses()))
-            lines += [_line(tuple(key.split(".")), value_at(given, key), allowed) for key, allowed in found]
+            conflicts = list(cls.conflicts(given)) or ([] if section is None else list(section.excesses()))
+            for key, allowed in conflicts:
+                value = given.at(key) if given.has(key) else MISSING_INPUT
+                lines.append(_line(tuple(key.split(".")), value, allowed))
         if lines or section is None:
             raise ValidationError.from_exception_data(cls.__name__, lines)
         return section
@@ -128,11 +242,8 @@ class Section(BaseModel):
     @classmethod
     def _allowed(cls, item: Mapping[str, Any], info: ValidationInfo, hints: bool) -> str:
         """What is allowed where pydantic reports `item`; hints: with keys that look like an unknown one."""
-        kind, context, loc = item["type"], item.get("ctx", {}), item["loc"]
-        name = str(loc[0]) if loc else ""
-        refused = cls.later.get(name, ())
-        if refused is None or (isinstance(item["input"], str) and item["input"] in refused):
-            return NOT_YET
+        kind, context = item["type"], item.get("ctx", {})
+        name = str(item["loc"][0]) if item["loc"] else ""
         if kind == "extra_forbidden":
             return cls._unknown(name, isinstance(item["input"], Mapping)) if hints else "unknown key"
         if kind == "missing":
@@ -143,62 +254,56 @@ class Section(BaseModel):
 
     @classmethod
     def _unknown(cls, name: str, is_table: bool) -> str:
-        """What is allowed in place of an unknown key; with the place where it belongs, or keys that look
-        alike.
+        """What is allowed in place of an unknown key; with the place where it belongs, tables before values
+        if it is one, or keys that look alike.
         """
         known = [field.alias or key for key, field in cls.model_fields.items()]
-
-        near: Sequence[str] = difflib.get_close_matches(name, known, n=MOST_ALIKE, cutoff=ALIKE)
-        if cls.of_scene and cls.places is not None:
-            close = difflib.get_close_matches(name, near, n=MOST_ALIKE, cutoff=CLOSE)
-            near = cls.places.of(name, is_table) or close or cls.places.nearest(name) or near
+        near: Sequence[str] = difflib.get_close_matches(name, known, n=_MOST_ALIKE, cutoff=_ALIKE)
+        if cls.of_scene and cls.whole is not None:
+            places = places_of(cls.whole)
+            there, others = places.get(name, ()), OTHER_NAMES.get(name.lower(), ()) if is_table else ()
+            alike = [place for place in there if place.startswith("[") == is_table]
+            near = (
+                (*others, *(alike or there))[:_MOST_PLACES]
+                or difflib.get_close_matches(name, near, n=_MOST_ALIKE, cutoff=_CLOSE)
+                or [p for key in difflib.get_close_matches(name, places, 1, _SLIP) for p in places[key]][
+                    :_MOST_PLACES
+                ]
+                or near
+            )
         hint = f"did you mean {' or '.join(near)}? " if near else ""
         return f"unknown key, {hint}allowed here: {', '.join(known)}"
 
     @classmethod
     def _field_in_words(cls, name: str, file: bool) -> str:
+        def numbers(metadata: Sequence[Any]) -> list[str]:
+            return [entry.allowed(file) for entry in metadata if isinstance(entry, Number)]
+
         field = cls.model_fields[name]
         if isinstance(field.annotation, type) and issubclass(field.annotation, Section):
             return f"a table [{name}]"
         if get_origin(field.annotation) is tuple:
             entries = get_args(field.annotation)
-            each = cls._numbers_in_words(get_args(entries[0]), file)
-            return f"a list of {len(entries)}, each {each[0]}"
-        numbers = cls._numbers_in_words(field.metadata, file)
-        return numbers[0] if numbers else " or ".join(f'"{value}"' for value in get_args(field.annotation))
-
-    @staticmethod
-    def _numbers_in_words(metadata: Sequence[Any], file: bool) -> list[str]:
-        return [entry.allowed(file) for entry in metadata if isinstance(entry, Number)]
-
-
-class _Missing:
-    """Stands for the value of a key that should be there."""
-
-
-MISSING_INPUT = _Missing()
-
-
-def value_at(given: object, key: str) -> object:
-    """The value at a dotted key of nested mappings and sections, also where a key of one of these has dots;
-    MISSING_INPUT if there is none.
-    """
-    if isinstance(given, Mapping):
-        whole = next((name for name in given if f"{key}.".startswith(f"{name}.")), None)
-        part, value = whole or key, given.get(whole)
-    else:
-        part = key.partition(".")[0]
-        value = getattr(given, part, None)
-    rest = key[len(part) + 1 :]
-    if value is None:
-        return MISSING_INPUT
-    return value_at(value, rest) if rest else value
-
-
-def _input(item: Mapping[str, Any]) -> object:
-    return MISSING_INPUT if item["type"] == "missing" else item["input"]
+            return f"a list of {len(entries)}, each {numbers(get_args(entries[0]))[0]}"
+        words = numbers(field.metadata)
+        return words[0] if words else " or ".join(f'"{value}"' for value in get_args(field.annotation))
 
 
 def _line(loc: tuple[int | str, ...], value: object, allowed: str) -> InitErrorDetails:
-    error = PydanticCustomError("allowed", "allowed: {allowed}", {"allowed": allowed})
-    return InitErrorDetails(type=error, loc=loc, input=value)
+    return InitErrorDetails(type=refused(allowed), loc=loc, input=value)
+
+
+@cache
+def places_of(section: type[Section], above: str = "") -> dict[str, tuple[str, ...]]:
+    """Key -> every place that has it in the tables of a section, as a scene file spells it: "[body.coating]",
+    "body.young".
+    """
+    known: dict[str, tuple[str, ...]] = {}
+    for key, field in section.model_fields.items():
+        name, parts = field.alias or key, (field.annotation, *get_args(field.annotation))
+        inner = next((part for part in parts if isinstance(part, type) and issubclass(part, Section)), None)
+        place = {name: (f"[{above}{name}]" if inner else f"{above}{name}",)}
+        for table in (place, places_of(inner, f"{above}{name}.") if inner else {}):
+            for name_in, places in table.items():
+                known[name_in] = known.get(name_in, ()) + places
+    return known

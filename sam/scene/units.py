@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 import re
 import sys
+from contextlib import suppress
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache, lru_cache
@@ -38,31 +39,20 @@ _LONGEST = 80  # characters of a number with its unit
 
 def in_file(info: ValidationInfo | None) -> bool:
     """Whether the value comes from a scene file."""
-    if info is None or not info.context:
-        return False
-    return bool(info.context.get("spelling") == IN_FILE["spelling"])
+    return bool(info and info.context and info.context.get("spelling") == IN_FILE["spelling"])
+
+
+def refused(text: str) -> PydanticCustomError:
+    """The error of a validator, with what is allowed."""
+    return PydanticCustomError("allowed", "allowed: {allowed}", {"allowed": text})
 
 
 @dataclass(frozen=True)
 class Number:
-    """A kind of number: its closed range in SI, and whether it is whole or a single further value is allowed.
-
-    Parameters
-    ----------
-    name
-        In words, for messages.
-    low, high
-        The range in SI.
-    unit
-        SI unit as pint spells it, empty for a pure number.
-    example
-        As a scene file would spell it.
-    zero
-        Whether 0 is allowed although `low` is above it.
-    whole
-        Whether it must be whole.
-    infinite
-        Whether inf is allowed (also as the string "inf", which JSON can hold).
+    """A kind of number: its name in words; its closed range in SI; its SI unit as pint spells it, empty for a
+    pure number; an example as a scene file would spell it; and whether 0 is allowed although `low` is above
+    it, whether it must be whole, whether inf is allowed (also as the string "inf", which JSON can hold), and
+    whether it may be a text in percent, "2 %".
     """
 
     name: str
@@ -73,6 +63,7 @@ class Number:
     zero: bool = False
     whole: bool = False
     infinite: bool = False
+    percent: bool = False
 
     def allowed(self, file: bool) -> str:
         """What a value may be, in words, for a scene file or for Python."""
@@ -80,6 +71,8 @@ class Number:
         bounds += " or inf" if self.infinite else ""
         if file and self.unit:
             return f'{self.name} as a string with a unit, such as "{self.example}", {bounds}'
+        if self.percent:
+            return f'{self.name} {bounds}, or in percent, such as "{self.example}"'
         return f"{self.name} {bounds}" + (" (a float in SI, or a string with a unit)" if self.unit else "")
 
     def check(self, value: object, info: ValidationInfo | None) -> float | int:
@@ -87,10 +80,16 @@ class Number:
         file = in_file(info)
         if self.infinite and (value == "inf" or (isinstance(value, float) and value == math.inf)):
             return math.inf
-        text = self.unit and (file or isinstance(value, str))
-        number = _from_text(value, self.unit) if text else _from_number(value, self.whole)
+        if self.percent and isinstance(value, str) and value.rstrip().endswith("%"):
+            with suppress(ValueError):  # of a text that is no number, which is refused below
+                value = float(value.rstrip().removesuffix("%")) / 100.0
+        if self.unit and (file or isinstance(value, str)):
+            exact = in_unit(value, self.unit)
+            number = None if exact is None else float(exact)
+        else:
+            number = _real(value, self.whole)
         if number is None or not (self.low <= number <= self.high or (self.zero and number == 0)):
-            raise PydanticCustomError("allowed", "allowed: {allowed}", {"allowed": self.allowed(file)})
+            raise refused(self.allowed(file))
         return number
 
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> core_schema.CoreSchema:
@@ -98,23 +97,20 @@ class Number:
 
     def __get_pydantic_json_schema__(self, _core: Any, _handler: Any) -> dict[str, Any]:
         """JSON schema of the number as a scene file spells it."""
-        description = self.allowed(file=True)
+        description = {"description": self.allowed(file=True)}
         if self.unit:
-            pattern = f"^{_QUANTITY.pattern}$"
-            return {
-                "type": "string",
-                "pattern": pattern,
-                "examples": [self.example],
-                "description": description,
-            }
+            spelt = {"pattern": f"^{_QUANTITY.pattern}$", "examples": [self.example]}
+            return {"type": "string", **spelt, **description}
+        if self.percent:
+            share = {"type": "number", "minimum": self.low, "maximum": self.high}
+            text = {"type": "string", "pattern": r"^\s*[0-9.eE+-]+\s*%\s*$", "examples": [self.example]}
+            return {"anyOf": [share, text], **description}
         number = {"type": "integer" if self.whole else "number", "maximum": self.high}
-        number |= {"minimum": 0 if self.zero else self.low}
-        return (
-            {"anyOf": [number, {"const": "inf"}]} if self.infinite else number | {"description": description}
-        )
+        number["minimum"] = 0 if self.zero else self.low
+        return {"anyOf": [number, {"const": "inf"}]} if self.infinite else number | description
 
 
-def _from_number(value: object, whole: bool) -> float | int | None:
+def _real(value: object, whole: bool) -> float | int | None:
     """A finite real number as float, or int when whole; None for anything else (a bool is no number)."""
     if isinstance(value, bool) or not isinstance(value, Real):
         return None
@@ -127,26 +123,9 @@ def _from_number(value: object, whole: bool) -> float | int | None:
     return number if math.isfinite(number) else None
 
 
-def _from_text(value: object, unit: str) -> float | None:
-    """The SI value of a string NUMBER UNIT, None if it is not one or has another dimension."""
-    number = in_unit(value, unit)
-    return None if number is None else float(number)
-
-
 def in_unit(value: object, unit: str) -> Decimal | None:
-    """How many units a string NUMBER UNIT is, exactly.
-
-    Parameters
-    ----------
-    value
-        The string.
-    unit
-        As pint spells it.
-
-    Returns
-    -------
-    Decimal or None
-        None if it is no such string or has another dimension.
+    """How many units, as pint spells them, a string NUMBER UNIT is, exactly; None if it is no such string or
+    has another dimension.
     """
     parts = number_and_unit(value)
     if parts is None:
@@ -156,20 +135,9 @@ def in_unit(value: object, unit: str) -> Decimal | None:
 
 
 def number_and_unit(value: object) -> tuple[str, str] | None:
-    """The two parts of a string NUMBER UNIT.
+    """The two parts of a string NUMBER UNIT, whose unit need not be a known one; None if it is no such
+    string.
 
-    Parameters
-    ----------
-    value
-        The string; its unit need not be a known one.
-
-    Returns
-    -------
-    tuple of str or None
-        None if it is no such string.
-
-    Examples
-    --------
     >>> number_and_unit("2.5 GPa")
     ('2.5', 'GPa')
     """
@@ -187,23 +155,20 @@ def metres_in(unit: object) -> float | None:
 
 @cache
 def _registry() -> Any:
-    return _pint().UnitRegistry(non_int_type=Decimal, cache_folder=None)
-
-
-def _pint() -> ModuleType:
-    """pint: 0.3 s, needed by scene files only. It loads dask where that is installed; dask asks psutil for
-    the cores, which fails where there is no /proc, and then pint has to do without.
+    """The units of pint: 0.3 s, needed by scene files only. It loads dask where that is installed; dask asks
+    psutil for the cores, which fails where there is no /proc, and then pint has to do without.
     """
     try:
-        return import_module("pint")
+        pint = import_module("pint")
     except Exception:
         if "dask" in sys.modules:  # loaded: something else is wrong
             raise
         sys.modules["dask"] = cast(ModuleType, None)  # as if it were not installed
         try:
-            return import_module("pint")
+            pint = import_module("pint")
         finally:
             del sys.modules["dask"]
+    return pint.UnitRegistry(non_int_type=Decimal, cache_folder=None)
 
 
 @lru_cache(maxsize=1000)
@@ -219,64 +184,45 @@ def _factor(text: str, unit: str) -> Decimal | None:
 
 PRESSURE = Number("a pressure", 1e-30, 1e30, "Pa", "210 GPa")
 LENGTH = Number("a length", 1e-30, 1e30, "m", "10 um")
-COORDINATE = Number("a coordinate", -1e30, 1e30, "m", "-10 um")
 DEPTH = Number("a depth", 1e-30, 1e30, "m", "0.5 um", zero=True)
-FORCE = Number("a force", 1e-30, 1e30, "N", "0.6 N", zero=True)
-POISSON = Number("a number", 0.0, 0.5)
 COEFFICIENT = Number("a number", 0.0, 10.0)
-MODULUS = Number("a pressure", 1e-30, 1e30, "Pa", "10 GPa", zero=True)
-EXPONENT = Number("a number", 1e-6, 0.999999)
-POSITIVE = Number("a number", 1e-15, 1e15)
 FACTOR = Number("a number", 1e-6, 1e6)
 STRAIN = Number("a number", 0.0, 1000.0)
-MISFIT = Number("a strain", 1e-12, 1.0)
-RECOVERY = Number("a number", 0.0, 1e7)
-STRAIN_LIMIT = Number("a number", 1e-9, 1000.0, infinite=True)
-SPEED = Number("a speed", 1e-30, 1e30, "m/s", "1 m/s")
-GROWTH = Number("a growth coefficient", 1e-30, 1e30, "m/s**0.5", "3.644 nm/s**0.5")
-TEMPERATURE = Number("an absolute temperature", 323.15, 473.15, "K", "373.15 K")
-ORDER = Number("a whole number", 0, 9, whole=True)
-WINDOW = Number("an odd number of cells", 3, 99, zero=True, whole=True)
 FRACTION = Number("a number", 1e-14, 0.1)
-SHARE = Number("a number", 0.0, 1.0)
-HURST = Number("a number", 0.0, 1.0)
-ANISOTROPY = Number("a number", 0.01, 100.0)
 BOX = Number("a number (in Hertz radii)", 3.0, 1000.0)
 COUNT = Number("a whole number", 1, 1000, whole=True)
-PER_RADIUS = Number("a number of steps in a contact radius", 1.0, 1000.0)
 CELLS = Number("a whole number", 3, 4097, whole=True)
-SEED = Number("a whole number", 0, 2**63 - 1, whole=True)
 MESH_CELLS = Number("a whole number", 2, 256, whole=True)
 
 Pressure = Annotated[float, PRESSURE]
 Length = Annotated[float, LENGTH]
-Coordinate = Annotated[float, COORDINATE]
+Coordinate = Annotated[float, Number("a coordinate", -1e30, 1e30, "m", "-10 um")]
 Depth = Annotated[float, DEPTH]
-Force = Annotated[float, FORCE]
-Poisson = Annotated[float, POISSON]
+Force = Annotated[float, Number("a force", 1e-30, 1e30, "N", "0.6 N", zero=True)]
+Poisson = Annotated[float, Number("a number", 0.0, 0.5)]
 Coefficient = Annotated[float, COEFFICIENT]
-Modulus = Annotated[float, MODULUS]
-Exponent = Annotated[float, EXPONENT]
-Positive = Annotated[float, POSITIVE]
-Misfit = Annotated[float, MISFIT]
-Recovery = Annotated[float, RECOVERY]
-StrainLimit = Annotated[
-    float,
-    STRAIN_LIMIT,
-    PlainSerializer(lambda value: value if math.isfinite(value) else "inf", when_used="json"),
-]
-Speed = Annotated[float, SPEED]
-Growth = Annotated[float, GROWTH]
-Temperature = Annotated[float, TEMPERATURE]
-Order = Annotated[int, ORDER]
-SmoothingWindow = Annotated[int, WINDOW]
+Modulus = Annotated[float, Number("a pressure", 1e-30, 1e30, "Pa", "10 GPa", zero=True)]
+Exponent = Annotated[float, Number("a number", 1e-6, 0.999999)]
+Positive = Annotated[float, Number("a number", 1e-15, 1e15)]
+Misfit = Annotated[float, Number("a strain", 1e-12, 1.0)]
+Recovery = Annotated[float, Number("a number", 0.0, 1e7)]
+Speed = Annotated[float, Number("a speed", 1e-30, 1e30, "m/s", "1 m/s")]
+Growth = Annotated[float, Number("a growth coefficient", 1e-30, 1e30, "m/s**0.5", "3.644 nm/s**0.5")]
+Temperature = Annotated[float, Number("an absolute temperature", 323.15, 473.15, "K", "373.15 K")]
+Order = Annotated[int, Number("a whole number", 0, 9, whole=True)]
+SmoothingWindow = Annotated[int, Number("an odd number of cells", 3, 99, zero=True, whole=True)]
 Fraction = Annotated[float, FRACTION]
-Share = Annotated[float, SHARE]
-Hurst = Annotated[float, HURST]
-Anisotropy = Annotated[float, ANISOTROPY]
+Share = Annotated[float, Number("a number", 0.0, 1.0)]
+Hurst = Annotated[float, Number("a number", 0.0, 1.0)]
+Anisotropy = Annotated[float, Number("a number", 0.01, 100.0)]
 Box = Annotated[float, BOX]
 Count = Annotated[int, COUNT]
-PerRadius = Annotated[float, PER_RADIUS]
+PerRadius = Annotated[float, Number("a number of steps in a contact radius", 1.0, 1000.0)]
 Cells = Annotated[int, CELLS]
-Seed = Annotated[int, SEED]
+Seed = Annotated[int, Number("a whole number", 0, 2**63 - 1, whole=True)]
 MeshCells = Annotated[int, MESH_CELLS]
+StrainLimit = Annotated[
+    float,
+    Number("a number", 1e-9, 1000.0, infinite=True),
+    PlainSerializer(lambda value: value if math.isfinite(value) else "inf", when_used="json"),
+]

@@ -13,12 +13,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from sam.arrays import Array, Mask
-from sam.scene.body import Plasticity
 from sam.scene.result import VERDICT_COLUMNS
 from sam.scene.schema import Scene
 from sam.scene.section import stated
@@ -54,6 +53,7 @@ class Behaviour(StrEnum):
 
 ORDER = tuple(Behaviour)
 """The classes of cells by number."""
+PLACE = {behaviour: number for number, behaviour in enumerate(ORDER)}
 
 
 @dataclass(frozen=True)
@@ -71,8 +71,7 @@ class Period:
 def norm_of(strain: Array) -> Array:
     """The norm sqrt(2/3 dE : dE), (...), of components 11 22 33 23 13 12, (6, ...)."""
     square = (strain[:3] ** 2).sum(axis=0) + 2 * (strain[3:] ** 2).sum(axis=0)
-    found: Array = np.sqrt(2 / 3 * square)
-    return found
+    return cast(Array, np.sqrt(2 / 3 * square))
 
 
 @dataclass(frozen=True)
@@ -104,45 +103,32 @@ def classes(
     energy bounds the plastic strain: no step of the strain lasts, however slowly it falls, and nothing
     ratchets. Where the yield stress grows for ever everything settles.
 
-    Parameters
-    ----------
-    periods
-        All of them.
-    total
-        Accumulated plastic strain of each cell, (n,).
-    yield_strain
-        Initial yield stress over Young's modulus, (n,).
-    judging
-        Floor, noise, and what can happen at worst.
-
-    Returns
-    -------
-    found, further
-        Places in `ORDER`, (n,), and periods after which an undecided cell will be decided if it goes on like
-        this, (n,), infinite where noise never lets it.
+    total: accumulated plastic strain of each cell; yield_strain: initial yield stress over Young's modulus,
+    both (n,). Returns places in `ORDER`, (n,), and periods after which an undecided cell will be decided if
+    it goes on like this, (n,), infinite where noise never lets it.
     """
-    found, further = np.full(total.shape, ORDER.index(Behaviour.UNDECIDED)), np.zeros(total.shape)
-    found[total == 0] = ORDER.index(Behaviour.ELASTIC)
+    place, further = np.full(total.shape, PLACE[Behaviour.UNDECIDED]), np.zeros(total.shape)
+    place[total == 0] = PLACE[Behaviour.ELASTIC]
     if len(periods) < NEEDED:
-        return found, further + LEAST - len(periods)
+        return place, further + LEAST - len(periods)
     floor, last = judging.floor * yield_strain, periods[-NEEDED:]
-    p = np.array([one.accumulated for one in last])
+    p = np.array([period.accumulated for period in last])
     quiet = (total > 0) & (p[1:] <= floor).all(axis=0)
     if len(periods) > NEEDED:
         flows, rho = p[-1] > floor, _ratio(p)
         change = np.abs(rho - 1).max(axis=0)
         slower, steady = flows & (rho < 1).all(axis=0), flows & (change <= STEADY)
         closes, lasts, further = _open_strain(periods, p[-1], yield_strain, judging)
-        found[steady & closes] = ORDER.index(Behaviour.ALTERNATING)
-        found[steady & lasts] = ORDER.index(Behaviour.RATCHETTING)
+        place[steady & closes] = PLACE[Behaviour.ALTERNATING]
+        place[steady & lasts] = PLACE[Behaviour.RATCHETTING]
         settles = slower if judging.worst is Behaviour.SETTLING else flows & (rho <= SETTLES).all(axis=0)
-        found[settles] = ORDER.index(Behaviour.SETTLING)
+        place[settles] = PLACE[Behaviour.SETTLING]
         further = np.where(steady, further, np.maximum(further, len(periods) * (change / STEADY - 1)))
-    found[quiet] = ORDER.index(Behaviour.SHAKEDOWN)
-    for one in last:
-        if one.restarted is not None:
-            found[one.restarted] = ORDER.index(Behaviour.UNDECIDED)
-    return found, np.maximum(np.ceil(further), 1.0)
+    place[quiet] = PLACE[Behaviour.SHAKEDOWN]
+    for period in last:
+        if period.restarted is not None:
+            place[period.restarted] = PLACE[Behaviour.UNDECIDED]
+    return place, np.maximum(np.ceil(further), 1.0)
 
 
 def _open_strain(
@@ -151,14 +137,14 @@ def _open_strain(
     """Of cells with steady dp: whether the strain of a period closes; whether it lasts; else how many further
     periods will tell.
     """
-    e, first = np.array([one.norm for one in periods]), np.ones(dp.shape, dtype=int)
-    for number, one in enumerate(periods):
-        if one.restarted is not None:
-            first[one.restarted] = number + 1
+    e, first = np.array([period.norm for period in periods]), np.ones(dp.shape, dtype=int)
+    for number, period in enumerate(periods, start=1):
+        if period.restarted is not None:
+            first[period.restarted] = number
     end, noise, small = len(periods) - 1, judging.noise * yield_strain, OPEN * dp
     apart, back = np.maximum((end - first) // 2, 0), np.maximum((end - first) // 2, 2)
     a, b, begin = (
-        np.take_along_axis(e, np.maximum(end - each, 0)[None], axis=0)[0] for each in (2 * apart, apart, back)
+        np.take_along_axis(e, np.maximum(end - ago, 0)[None], axis=0)[0] for ago in (2 * apart, apart, back)
     )
     c, turn, falls = e[-1], _ratio(e[-NEEDED:]), a - e[-1] > noise
     # the geometric series through a, b, c ends below `small` if (a - small)(c - small) <= (b - small)^2
@@ -187,44 +173,26 @@ def _open_strain(
 def cell_fields(
     periods: Sequence[Period], total: Array, yield_strain: Array, judging: Judging
 ) -> dict[str, Array]:
-    """Fields of the last of some periods, as the meshes have them.
-
-    Parameters
-    ----------
-    periods, total, yield_strain, judging
-        See `classes`.
-
-    Returns
-    -------
-    dict
-        Name -> (n,): peeq_step, dp; strain_step, de; class, the place in `ORDER`.
+    """Fields of the last of some periods, as the meshes have them, name -> (n,): peeq_step, dp; strain_step,
+    de; class, the place in `ORDER`. Arguments as of `classes`.
     """
     last = periods[-1]
-    found = classes(periods, total, yield_strain, judging)[0].astype(float)
-    return {"peeq_step": last.accumulated, "strain_step": last.norm, "class": found}
+    places = classes(periods, total, yield_strain, judging)[0].astype(float)
+    return {"peeq_step": last.accumulated, "strain_step": last.norm, "class": places}
 
 
 def loop_places(accumulated: Array, total: Array) -> list[int]:
-    """Choose the points whose loops over the last period are recorded: the one that strained most in the
-    period before, and those nearest to a half and to a tenth of that.
-
-    Parameters
-    ----------
-    accumulated, total
-        dp of that period and the accumulated plastic strain of all, (n,); by the latter if nothing flowed.
-
-    Returns
-    -------
-    list of int
-        Three different places, or as many as there are points.
+    """Three different places, or as many as there are points, whose loops over the last period are recorded:
+    where dp of the period before, (n,), was largest, and those nearest to a half and to a tenth of that; by
+    the accumulated plastic strain of all, (n,), if nothing flowed.
     """
     values = accumulated if accumulated.any() else total
-    share, found = values / (values.max() or 1.0), list[int]()
+    share, chosen = values / (values.max() or 1.0), list[int]()
     for wanted in SHARES[: share.size]:
         distance = np.abs(share - wanted)
-        distance[found] = np.inf
-        found.append(int(distance.argmin()))
-    return found
+        distance[chosen] = np.inf
+        chosen.append(int(distance.argmin()))
+    return chosen
 
 
 def last_period(judging: Judging, cycles: int) -> range:
@@ -237,24 +205,15 @@ def last_period(judging: Judging, cycles: int) -> range:
 class Verdict:
     """Of the body after a period.
 
-    Parameters
-    ----------
-    behaviour
-        The worst class that carries a hundredth of the plastic strain of the period. Undecided where cells
-        may ratchet, and de of undecided ones is more than OPEN of that strain. Cells that ratchet count as
-        undecided where de of both together falls: then strain moves from cell to cell.
-    accumulated, strain
-        Largest dp of a cell, and largest de.
-    ratio, closure
-        In the cell of the largest dp: dp over that of the period before, None in the first; de over dp.
-    remaining, periods_to_floor
-        Where the cell of the largest dp settles: accumulated strain still to come, and periods until dp is
-        below the floor; else None.
-    flowing, volumes
-        Volume in m^3 of the cells whose dp is beyond the floor, and of the cells of each class.
-    periods_to_decide
-        Further periods after which an undecided body will be decided if it goes on like this; None if it is
-        decided, or noise never lets it be.
+    behaviour: the worst class that carries a hundredth of the plastic strain of the period; undecided where
+    cells may ratchet, and de of undecided ones is more than OPEN of that strain; cells that ratchet count as
+    undecided where de of both together falls: then strain moves from cell to cell. accumulated, strain:
+    largest dp of a cell, and largest de. ratio, closure: in the cell of the largest dp, dp over that of the
+    period before, None in the first; de over dp. remaining, periods_to_floor: where the cell of the largest
+    dp settles, accumulated strain still to come, and periods until dp is below the floor; else None. flowing,
+    volumes: in m^3, of the cells whose dp is beyond the floor, and of the cells of each class.
+    periods_to_decide: further periods after which an undecided body will be decided if it goes on like this;
+    None if it is decided, or noise never lets it be.
     """
 
     behaviour: Behaviour
@@ -285,36 +244,25 @@ UNSTRAINED = Verdict(
 def verdict_on(
     periods: Sequence[Period], total: Array, yield_strain: Array, judging: Judging, *, volume: Array
 ) -> Verdict:
-    """Sum up the cells of a body after the last of some periods.
-
-    Parameters
-    ----------
-    periods, total, yield_strain, judging
-        See `classes`.
-    volume
-        Of each cell in m^3, (n,).
-
-    Returns
-    -------
-    Verdict
-        Of the body.
+    """Sum up the cells of a body after the last of some periods; volume: of each in m^3, (n,), the others as
+    of `classes`.
     """
-    (found, further), last = classes(periods, total, yield_strain, judging), periods[-1]
+    (place, further), last = classes(periods, total, yield_strain, judging), periods[-1]
     floor = judging.floor * yield_strain
     flow = np.where(last.accumulated > floor, last.accumulated * volume, 0.0)
     at = int(last.accumulated.argmax())
     top = float(last.accumulated[at])
     before = float(periods[-2].accumulated[at]) if len(periods) > 1 else 0.0
     ratio = top / before if before else None
-    settles = ORDER[found[at]] is Behaviour.SETTLING and ratio is not None
-    behaviour, class_of = _worst(found, flow, total), found
+    settles = ORDER[place[at]] is Behaviour.SETTLING and ratio is not None
+    behaviour, class_of = _worst(place, flow, total), place
     if behaviour is Behaviour.RATCHETTING:
-        lasts = (flow > 0) & (found >= ORDER.index(behaviour))
+        lasts = (flow > 0) & (place >= PLACE[behaviour])
         fall = periods[-1 - max((len(periods) - 2) // 2, 2)].norm - last.norm - judging.noise * yield_strain
         if (fall * volume)[lasts].sum() > 0:
-            class_of = np.where(found == ORDER.index(behaviour), ORDER.index(Behaviour.UNDECIDED), found)
+            class_of = np.where(place == PLACE[behaviour], PLACE[Behaviour.UNDECIDED], place)
             behaviour = _worst(class_of, flow, total)
-    waits = (class_of == ORDER.index(Behaviour.UNDECIDED)) & (flow > 0)
+    waits = (class_of == PLACE[Behaviour.UNDECIDED]) & (flow > 0)
     undecided = np.where(waits, last.norm * volume, 0.0)
     may_ratchet = judging.worst is Behaviour.RATCHETTING and behaviour is not Behaviour.RATCHETTING
     if may_ratchet and undecided.sum() > OPEN * flow.sum():
@@ -328,7 +276,7 @@ def verdict_on(
         top * ratio / (1 - ratio) if settles and ratio is not None else None,
         float(np.log(floor[at] / top) / np.log(ratio)) if settles and ratio is not None else None,
         float(volume[flow > 0].sum()),
-        {str(each): float(volume[found == k].sum()) for k, each in enumerate(ORDER)},
+        {str(name): float(volume[place == k].sum()) for k, name in enumerate(ORDER)},
         _until(further, undecided, OPEN * flow.sum()) if behaviour is Behaviour.UNDECIDED else None,
     )
 
@@ -340,31 +288,19 @@ def _until(further: Array, undecided: Array, small: float) -> int | None:
         return 1
     order = waiting[np.argsort(further[waiting])[::-1]]
     left = np.cumsum(undecided[order]) > small
-    found = further[order[int(left.argmax()) if left.any() else -1]]
-    return int(found) if np.isfinite(found) else None
+    after = further[order[int(left.argmax()) if left.any() else -1]]
+    return int(after) if np.isfinite(after) else None
 
 
 def verdict_columns(
     cycles: Sequence[int], verdicts: Sequence[Verdict], cycles_in_period: int
 ) -> dict[str, list[Any]]:
-    """VERDICT_COLUMNS of the table cycles: a period in the row of its last cycle, other rows empty.
-
-    Parameters
-    ----------
-    cycles
-        Numbers of the rows.
-    verdicts
-        After each period.
-    cycles_in_period
-        1 or 2.
-
-    Returns
-    -------
-    dict
-        Column -> values, None where there is nothing to say.
+    """VERDICT_COLUMNS of the table cycles with the rows of these cycles: a period in that of its last cycle,
+    the others None.
     """
     rows: dict[int, tuple[Any, ...]] = {
-        number * cycles_in_period: (number, *each.columns) for number, each in enumerate(verdicts, start=1)
+        number * cycles_in_period: (number, *verdict.columns)
+        for number, verdict in enumerate(verdicts, start=1)
     }
     empty = (None,) * len(VERDICT_COLUMNS)
     return {name: [rows.get(cycle, empty)[k] for cycle in cycles] for k, name in enumerate(VERDICT_COLUMNS)}
@@ -372,24 +308,12 @@ def verdict_columns(
 
 def summary(verdicts: Sequence[Verdict], cycles_in_period: int, floor: float) -> dict[str, Any]:
     """What summary.json says of the last of some verdicts; decided_at_cycle: since when the class is the
-    same.
-
-    Parameters
-    ----------
-    verdicts, cycles_in_period
-        See `verdict_columns`.
-    floor
-        The smallest floor of a cell.
-
-    Returns
-    -------
-    dict
-        Numbers by name.
+    same; floor: the smallest of a cell.
     """
     last, first = verdicts[-1], len(verdicts)
     while first > 1 and verdicts[first - 2].behaviour is last.behaviour:
         first -= 1
-    trend = _trend([each.accumulated for each in verdicts]) if last.flowing else None
+    trend = _trend([verdict.accumulated for verdict in verdicts]) if last.flowing else None
     settles = trend == "geometric"
     return {
         "class": str(last.behaviour),
@@ -410,16 +334,16 @@ def _trend(largest: Sequence[float]) -> str | None:
     """How the largest dp goes on: "steady"; falling, "geometric" or as a "power" of the number of periods,
     slower than any geometric series; None where it grows, or nothing is seen yet.
     """
-    found = np.array(largest[-max(NEEDED, len(largest) // 2) :])
-    if len(largest) <= NEEDED or found.min() <= 0:
+    values = np.array(largest[-max(NEEDED, len(largest) // 2) :])
+    if len(largest) <= NEEDED or values.min() <= 0:
         return None
-    ratio = found[1:] / found[:-1]
+    ratio = values[1:] / values[:-1]
     if np.abs(ratio[-2:] - 1).max() <= STEADY:
         return "steady"
     if ratio.max() >= 1:
         return None
-    number = np.arange(len(largest) - len(found), len(largest)) + 1.0
-    slope = np.polyfit(np.log(number), np.log(found), 1)[0]
+    number = np.arange(len(largest) - len(values), len(largest)) + 1.0
+    slope = np.polyfit(np.log(number), np.log(values), 1)[0]
     return "power" if -slope > POWER and (np.diff(ratio) > 0).all() else "geometric"
 
 
@@ -442,23 +366,14 @@ def judging_of(scene: Scene) -> Judging | None:
     """How a scene is judged; None where it has no verdict."""
     if reason_without(scene):
         return None
-    loading, length = scene.loading, cycles_in_period(scene)
+    loading, length, plasticity = scene.loading, cycles_in_period(scene), stated(scene.body.plasticity)
     steps = length * (loading.steps + scene.strokes.count + (loading.unload_steps or loading.steps))
-    noise = FLOOR[1] * scene.solver.tolerance * steps
-    return Judging(
-        length,
-        max(FLOOR[0], noise),
-        noise,
-        _worst_of(stated(scene.body.plasticity)),
-        scene.strokes.goes_back(2),
-    )
-
-
-def _worst_of(plasticity: Plasticity) -> Behaviour:
-    """What a hardening law lets happen at worst."""
+    noise, worst = FLOOR[1] * scene.solver.tolerance * steps, Behaviour.RATCHETTING
     if plasticity.grows_for_ever:
-        return Behaviour.SETTLING
-    return Behaviour.ALTERNATING if plasticity.bounds_strain else Behaviour.RATCHETTING
+        worst = Behaviour.SETTLING
+    elif plasticity.bounds_strain:
+        worst = Behaviour.ALTERNATING
+    return Judging(length, max(FLOOR[0], noise), noise, worst, scene.strokes.goes_back(2))
 
 
 def counts_dissipation(scene: Scene) -> bool:
@@ -481,15 +396,14 @@ def cycles_in_period(scene: Scene) -> int:
     return 2 if alternates or scene.strokes.goes_back(2) else 1
 
 
-def _worst(found: Array, flow: Array, total: Array) -> Behaviour:
+def _worst(place: Array, flow: Array, total: Array) -> Behaviour:
     """The class of the body: of what flows the worst that carries its share."""
     if not total.any():
         return Behaviour.ELASTIC
     if not flow.any():
-        at_rest = found[total > 0] != ORDER.index(Behaviour.UNDECIDED)
+        at_rest = place[total > 0] != PLACE[Behaviour.UNDECIDED]
         return Behaviour.SHAKEDOWN if at_rest.any() else Behaviour.UNDECIDED
-    shares = {each: flow[found == k].sum() / flow.sum() for k, each in enumerate(ORDER)}
-    carrying = [each for each in ORDER[:-1] if shares[each] >= CARRIES]
+    carrying = [name for k, name in enumerate(ORDER[:-1]) if flow[place == k].sum() / flow.sum() >= CARRIES]
     return carrying[-1] if carrying else Behaviour.UNDECIDED
 
 
@@ -504,5 +418,4 @@ def _cosine(a: Period, b: Period) -> Array:
         return np.zeros_like(a.norm)
     weights = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])[:, None]
     along, norms = (weights * a.strain * b.strain).sum(axis=0), 1.5 * a.norm * b.norm
-    found: Array = np.divide(along, norms, out=np.zeros_like(along), where=norms > 0)
-    return found
+    return cast(Array, np.divide(along, norms, out=np.zeros_like(along), where=norms > 0))

@@ -7,24 +7,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from builders import (
-    GIVEN,
     PERFECT,
     RADIUS,
     STEEL,
     SWIFT,
-    given_pressure,
     running_in,
     scene,
-    scene_text,
 )
 
 import sam
 from sam.contact.normal import solve_contact
-from sam.scene import Scene, SceneError, Status, parse_scene
+from sam.scene import Scene, Status
 from sam.schedule import Approach, Load
 from verification.energy.of_sam import balance_of
 
-FORCE = 'force = "0.65 N"'
 COARSE = {"cells": (33, 33), "extent": (24e-6, 24e-6)}
 CYCLES = {"force": 0.65, "steps": 3, "unload": True, "cycles": 2}
 ROUGH = {
@@ -159,25 +155,6 @@ def test_a_sphere_takes_the_force_of_hertz():
     assert result.status is Status.CONVERGED
     assert result.quantities["force_N"] == pytest.approx(exact, rel=1e-3)
     assert result.quantities["approach_m"] == 0.3e-6
-
-
-REFUSED = {
-    "with force": (scene_text(add='approach = "0.1 um"\n'), "either force or approach, not both"),
-    "with pressure": (given_pressure(GIVEN + 'approach = "0.1 um"\n'), "either approach, or prescribed"),
-    **{
-        f"of {value}": (scene_text((FORCE, f"approach = {value}")), "a length as a string with a unit")
-        for value in ('"-1 nm"', '"0 nm"', '"0.65 N"', "1e-7", '"nan m"', '"inf m"', "true", '["1 nm"]')
-    },
-}
-
-
-@pytest.mark.parametrize("text, allowed", REFUSED.values(), ids=REFUSED.keys())
-def test_an_approach_is_refused_by_name(text, allowed):
-    with pytest.raises(SceneError) as caught:
-        parse_scene(text.encode(), "bad.toml")
-    (problem,) = [each for each in caught.value.problems if "counterbody" not in each.key]
-    assert problem.key == "loading.approach"
-    assert allowed in problem.allowed
 
 
 def test_an_approach_that_leaves_the_bodies_apart_has_no_force():

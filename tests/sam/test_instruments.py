@@ -8,14 +8,14 @@ import struct
 
 import numpy as np
 import pytest
+from builders import measured_scene as rough
 
-from sam.scene import HeightMap, Scene, SceneError, apart, load_scene
+from sam.scene import HeightMap, SceneError, inputs
 from sam.scene.inputs import InputError
-from sam.scene.surface import instrument_formats, instruments, processed
+from sam.scene.surface import processed, readers
 from sam.scene.surface.instrument_child import RefusedError, heights_in
-from sam.scene.surface.map_files import read_named
+from sam.scene.surface.readers import read_named
 from verification.robustness.bad_files import npz
-from verification.robustness.hostile import ROUGH
 
 ROWS = [
     [1.0, 2.0, 4.0, 8.0, -3.0],
@@ -125,12 +125,6 @@ def test_a_file_without_a_size_a_unit_or_sense_is_refused(library, formats, cont
         heights_in(content, formats, 4097)
 
 
-def rough(folder, name: str, content: bytes, keys: str = "", more: str = "") -> Scene:
-    (folder / name).write_bytes(content)
-    (folder / "s.toml").write_text(ROUGH.replace('"heights.npz"\n', f'"{name}"\n{keys}') + more)
-    return load_scene(folder / "s.toml")
-
-
 def test_a_scene_reads_an_instrument_in_a_process_of_its_own(library, tmp_path):
     """One hole, filled by the mean of its neighbours, weighted by 1/distance^2: 2 um along x, 1 um
     along y.
@@ -174,15 +168,15 @@ def said(name: str, shape: list[int], kind: str = "<f8") -> str:
 )
 def test_a_reader_that_hangs_or_dies_is_a_refusal(monkeypatch, tmp_path, script, message):
     (tmp_path / "child.py").write_text(script)
-    monkeypatch.setattr(apart, "CHILD", tmp_path / "child.py")
-    monkeypatch.setattr(apart, "SECONDS", 0.5 if "sleep" in script else 30.0)
-    monkeypatch.setattr(instruments, "find_spec", lambda _: True)
+    monkeypatch.setattr(inputs, "CHILD", tmp_path / "child.py")
+    monkeypatch.setattr(inputs, "SECONDS", 0.5 if "sleep" in script else 30.0)
+    monkeypatch.setattr(readers, "find_spec", lambda _: True)
     with pytest.raises(InputError, match=message):
-        instruments.read("h.sdf", b"")
+        readers.read_instrument("h.sdf", b"")
 
 
 def test_without_the_extra_only_our_own_files_are_read(monkeypatch, tmp_path):
-    monkeypatch.setattr(instruments, "find_spec", lambda _: None)
+    monkeypatch.setattr(readers, "find_spec", lambda _: None)
     with pytest.raises(
         SceneError,
         match=r"surface.path = .h.al3d.: .*SurfaceTopography, the extra .instruments., not installed",
@@ -202,17 +196,14 @@ def test_without_the_extra_only_our_own_files_are_read(monkeypatch, tmp_path):
         ("h.csv", table.encode()),
     ):
         assert np.array_equal(read_named(name, content).values, plain.values)
-    assert (
-        instrument_formats.formats_of("a/b.DAT") == ("asc", "metropro")
-        and instrument_formats.formats_of("scene.toml") == ()
-    )
+    assert readers.formats_of("a/b.DAT") == ("asc", "metropro") and readers.formats_of("scene.toml") == ()
 
 
 def test_every_ending_is_one_of_the_library(library):
     """Format by format; those without lengths (npy, h5, mat, hgt) and our own two endings are left out on
     purpose.
     """
-    readers = pytest.importorskip("SurfaceTopography.IO").readers
-    known = {reader.format(): set(reader.file_extensions()) for reader in readers}
-    for name, endings in instrument_formats.ENDINGS.items():
+    formats = pytest.importorskip("SurfaceTopography.IO").readers
+    known = {reader.format(): set(reader.file_extensions()) for reader in formats}
+    for name, endings in readers.ENDINGS.items():
         assert set(endings.split()) <= known[name]

@@ -15,7 +15,7 @@ from fem_reference.spatial.planner import plan as spatial_plan
 from sam.plasticity.return_map import plastic_multiplier
 from sam.scene import Plasticity, load_scene, parse_scene
 from sam.scene.body import LAWS
-from sam.scene.errors import SceneError
+from sam.scene.section import SceneError
 from sam.scene.yield_curve import DepthProfile, Kinks, Linear, Strength, Swift
 from verification.checks.material import yield_stress
 from verification.cost.advice import advice_of
@@ -28,92 +28,6 @@ DEPTHS = np.array([0.0, 0.4e-6, 1.1999e-6, 1.2e-6, 3e-6])
 
 def layered(law: str, body: str = BODY, more: str = "") -> str:
     return scene_text(add=f"[body.plasticity]\n{body}[body.plasticity.layer]\n{law}{more}")
-
-
-SWIFT_LAYER, LINEAR_LAYER, TABLE_LAYER = (HARDENING[law] for law in ("swift", "linear", "table"))
-AT = "body.plasticity.layer."
-# name -> scene, fragments of the message
-MALFORMED = {
-    "no thickness": (
-        layered(SWIFT_LAYER, HARDENING["swift"]),
-        ["body.plasticity.layer_thickness is missing", "[body.plasticity.layer]"],
-    ),
-    "thickness of a bare number": (
-        layered(SWIFT_LAYER, HARDENING["swift"] + "layer_thickness = 1e-6\n"),
-        ["body.plasticity.layer_thickness = 1e-06", "a length as a string"],
-    ),
-    "thickness of zero": (
-        layered(SWIFT_LAYER, HARDENING["swift"] + 'layer_thickness = "0 um"\n'),
-        ['body.plasticity.layer_thickness = "0 um"'],
-    ),
-    "no table": (
-        scene_text(add=f"[body.plasticity]\n{BODY}layer = 3\n"),
-        ["body.plasticity.layer = 3", "a table"],
-    ),
-    "a name": (
-        scene_text(add=f'[body.plasticity]\n{BODY}layer = "swift"\n'),
-        ['body.plasticity.layer = "swift"', "a table"],
-    ),
-    "an empty table": (layered(""), [f"{AT}law is missing", '"swift" or "linear"']),
-    "law missing": (layered("alpha = 1e3\n"), [f"{AT}law is missing"]),
-    "unknown law": (layered('law = "voce"\n'), [f'{AT}law = "voce"', '"swift", "linear"']),
-    "law a number": (layered("law = 1\n"), [f"{AT}law = 1"]),
-    "B missing": (layered('law = "swift"\nC = 20\nn = 0.1\n'), [f"{AT}B is missing", "takes B, C, n"]),
-    "B negative": (
-        layered(SWIFT_LAYER.replace('"945 MPa"', '"-945 MPa"')),
-        [f'{AT}B = "-945 MPa"', "from 1e-30"],
-    ),
-    "B bare": (layered(SWIFT_LAYER.replace('"945 MPa"', "945e6")), [f"{AT}B = 945000000.0", "with a unit"]),
-    "n softens": (layered(SWIFT_LAYER.replace("0.121", "-0.1")), [f"{AT}n = -0.1", "from 1e-06"]),
-    "alpha zero": (layered(SWIFT_LAYER, more="alpha = 0\n"), [f"{AT}alpha = 0", "from 1e-15"]),
-    "alpha of a linear law": (layered(LINEAR_LAYER, more="alpha = 1.0\n"), [f"{AT}alpha = 1.0", "remove it"]),
-    "modulus of a Swift law": (
-        layered(SWIFT_LAYER, more='modulus = "1 GPa"\n'),
-        [f'{AT}modulus = "1 GPa"', "takes B, C, n, alpha: remove it"],
-    ),
-    "modulus softens": (
-        layered(LINEAR_LAYER.replace('"10.5 GPa"', '"-1 GPa"')),
-        [f'{AT}modulus = "-1 GPa"'],
-    ),
-    "yield stress zero": (
-        layered('law = "perfect"\nyield_stress = "0 GPa"\n'),
-        [f'{AT}yield_stress = "0 GPa"'],
-    ),
-    "file missing": (layered('law = "table"\n'), [f"{AT}file is missing"]),
-    "no such file": (
-        layered(TABLE_LAYER.replace("curve", "other")),
-        [f'{AT}file = "other.csv"', "No such file"],
-    ),
-    "table softens": (
-        layered(TABLE_LAYER),
-        [f'{AT}file = "curve.csv"', "line 3", "softening is not available"],
-    ),
-    "a profile of its own": (
-        layered(SWIFT_LAYER, more='profile = "p.csv"\n'),
-        [f"{AT}profile", "unknown key"],
-    ),
-    "a thickness of its own": (
-        layered(SWIFT_LAYER, more='layer_thickness = "1 um"\n'),
-        [f"{AT}layer_thickness", "unknown key, did you mean body.plasticity.layer_thickness"],
-    ),
-    "a layer in the layer": (
-        layered(SWIFT_LAYER, more='[body.plasticity.layer.layer]\nlaw = "perfect"\n'),
-        [f"{AT}layer", "unknown key"],
-    ),
-    "below a coating": (
-        layered(SWIFT_LAYER, more='[body.coating]\nthickness = "1 um"\nyoung = "80 GPa"\npoisson = 0.3\n'),
-        ["body.plasticity.layer", "not together with [body.coating]"],
-    ),
-}
-
-
-@pytest.mark.parametrize("text, fragments", MALFORMED.values(), ids=MALFORMED.keys())
-def test_a_malformed_layer_is_refused_by_name(tmp_path, text, fragments):
-    (tmp_path / "curve.csv").write_text("peeq,yield_stress_Pa\n0,1e9\n0.1,9e8\n")
-    (tmp_path / "bad.toml").write_text(text)
-    with pytest.raises(SceneError) as caught:
-        load_scene(tmp_path / "bad.toml")
-    assert [each for each in fragments if each not in str(caught.value)] == []
 
 
 def test_a_layer_elsewhere_is_told_its_place():

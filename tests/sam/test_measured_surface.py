@@ -5,17 +5,15 @@ pin.
 
 import numpy as np
 import pytest
+from builders import measured_scene as rough
 
 import sam
 from sam.grid.rough import RoughPatch
 from sam.scene import Grid, HeightMap, Scene, SceneError, Surface, load_scene, resolved
 from sam.scene.surface import heights, mean_deviation, patch_of, processed, roughness, roughness_as_read
-from sam.scene.surface.filling import harmonic
-from sam.scene.surface.map_files import read_named
-from sam.scene.surface.measured import fitted_form
-from sam.scene.surface.resampling import resampled
+from sam.scene.surface.measured import fitted_form, harmonic, resampled
+from sam.scene.surface.readers import read_named
 from verification.robustness.bad_files import npz
-from verification.robustness.hostile import ROUGH
 from verification.runs.store import identity
 from verification.scenes.pin import DATA, RECIPE, pin_heights, pin_table
 
@@ -37,12 +35,6 @@ def places(shape, cell=CELL):
 
 def waves(shape, seed=0):
     return np.random.default_rng(seed).normal(size=shape)
-
-
-def rough(folder, name: str, content: bytes, keys: str = "", more: str = "") -> Scene:
-    (folder / name).write_bytes(content)
-    (folder / "s.toml").write_text(ROUGH.replace('"heights.npz"\n', f'"{name}"\n{keys}') + more)
-    return load_scene(folder / "s.toml")
 
 
 # --- form ---------------------------------------------------------------------------------------------------

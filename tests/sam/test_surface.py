@@ -10,7 +10,7 @@ import pytest
 from pydantic import ValidationError
 
 import fem_reference
-from sam.scene import Scene, SceneError, Surface, parse_scene
+from sam.scene import Scene, Surface, parse_scene
 from sam.scene.surface import BORDER, border_cells, heights, mean_deviation, roughness, with_relief
 from verification.robustness.hostile import SMALL, WAVES
 
@@ -203,56 +203,6 @@ def waves(*changes: tuple[str, str]) -> Scene:
         text, count = re.subn(pattern, replacement, text, flags=re.MULTILINE)
         assert count == 1, pattern
     return parse_scene(text.encode(), "s")
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ([("^seed = 7\n", "")], r"surface.seed is missing: required: kind = .hard-turned. takes ra, feed"),
-        ([("^seed = 7", "seed = -1")], "surface.seed = -1: a whole number from 0"),
-        ([("^hurst = 0.8", "hurst = 1.2")], "surface.hurst = 1.2: a number from 0 to 1"),
-        ([("^seed = 7", 'seed = 7\npath = "x"')], r"surface.path = .x.: "),
-        (
-            [('"hard-turned"', '"self-affine"')],
-            "surface.feed = .20 um.: kind = .self-affine. takes .*: remove it",
-        ),
-        (
-            [('"hard-turned"', '"wood"')],
-            "surface.kind = .wood.: one of .file., .hard-turned., .self-affine. or",
-        ),
-        (
-            [("^cutoff_long.*", 'cutoff_long = "6 um"')],
-            "surface.cutoff_short = .6 um.: less than cutoff_long, 6e-06 m",
-        ),
-        ([("^feed = .*", 'feed = "5 um"')], "surface.feed = .5 um.: at least cutoff_short, 6e-06 m"),
-        (
-            [("^cells = .*", "cells = [7, 20]")],
-            r"grid.cells = \[7, 20\]: at least \[8, 6\]: 2 cells in the shortest",
-        ),
-        ([("^cells = .*\n", "")], "grid.cells is missing: required: grid.cells and grid.extent"),
-        ([("^extent = .*", 'extent = ["24 um", "8 um"]')], "grid.extent = .*: at least 6e-06 m and 9e-06 m"),
-        (
-            [("^shape = .*", 'shape = "flat"\nradius = "1 um"')],
-            "counterbody.radius = .1 um.: .* takes no radius: remove",
-        ),
-        (
-            [(r"(?s)^\[surface\].*?(?=\[loading)", "")],
-            "surface is missing: required: a table .surface. or .counterbody.surface., as .*flat",
-        ),
-        ([(r"(?s)^\[surface\].*?(?=\[loading)", "")], "grid.border = .relief.: only together with .surface."),
-        ([('^border = "relief"', 'border = "round"')], "grid.border = .round.: one of .free. or .relief."),
-        (
-            [
-                (r'(?s)^\[counterbody\]\nshape = "flat"\n', ""),
-                ("^force.*", 'prescribed = "hertz"\np0 = "1 GPa"\nradius = "5 um"'),
-            ],
-            r"surface = .*: with loading.prescribed = .hertz. not available in this version",
-        ),
-    ],
-)
-def test_what_does_not_go_together_is_refused_by_name(changes, message):
-    with pytest.raises(SceneError, match=message):
-        waves(*changes)
 
 
 def test_a_surface_goes_with_every_counter_body():

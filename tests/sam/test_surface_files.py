@@ -9,26 +9,18 @@ import zipfile
 import numpy as np
 import pandas as pd
 import pytest
+from builders import measured_scene as rough
 
 import sam
 from sam.scene import HeightMap, Scene, SceneError, load_scene, resolved
 from sam.scene.inputs import InputError
-from sam.scene.surface.map_files import read_named
+from sam.scene.surface.readers import read_named
 from verification.robustness.bad_files import npz, with_pickle
 from verification.robustness.bad_surfaces import good_heights, table
 from verification.robustness.hostile import ROUGH
 from verification.runs.store import identity
 
 # --- height maps and their files ----------------------------------------------------------------------------
-
-
-def rough(
-    folder, name: str = "heights.npz", content: bytes | None = None, more: str = "", keys: str = ""
-) -> Scene:
-    """The scene with this file; keys: further ones of [surface]; more: at the end of the scene."""
-    (folder / name).write_bytes(good_heights() if content is None else content)
-    (folder / "s.toml").write_text(ROUGH.replace('"heights.npz"\n', f'"{name}"\n{keys}') + more)
-    return load_scene(folder / "s.toml")
 
 
 def test_a_map_is_its_content_wherever_it_comes_from(tmp_path):

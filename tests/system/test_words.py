@@ -20,8 +20,7 @@ from fem_reference.common.messages import advice_of, message_of
 from sam.planner.bodies import remedies_of
 from sam.results.advice import advice as words_of
 from sam.scene import Compare, HeightMap, Scene, SceneError, Status, resolved
-from sam.scene.places import OTHER_NAMES
-from sam.scene.section import Section
+from sam.scene.section import OTHER_NAMES, Section, places_of
 from samfem import comparing
 from samfem.cli import CLAIMS
 from verification.compare.rows import judged
@@ -191,7 +190,7 @@ class TestMisplacedKeys:
             parsed(add="[zzz]\na = 1\n")
 
     def test_other_names_lead_to_places_that_exist(self):
-        known = {place for found in Section.places.known.values() for place in found}
+        known = {place for places in places_of(Section.whole).values() for place in places}
         assert {place.split(" with ")[0] for found in OTHER_NAMES.values() for place in found} <= known
 
     def test_a_study_is_not_told_the_places_of_a_scene(self, tmp_path):

@@ -12,7 +12,7 @@ from hypothesis.extra.numpy import array_shapes, arrays
 from stored import same
 
 from sam.scene import FieldMesh, LeftOut, Result, Status
-from sam.scene.codec import CodecError, decode, encode
+from sam.scene.checkpoint import CodecError, decode, encode
 from verification.runs import models
 
 ARRAYS = arrays(

@@ -7,7 +7,7 @@ The surface tractions t do the work W = integral of t . du on a body. It is stor
 
 and a material of von Mises dissipates the work of its yield stress, whatever the path: D = int Phi(peeq) dV
 with Phi the integral of sigma_y from 0 to peeq (b). Back-stresses store a part W_X of the plastic work, which
-then is W_X + D, and dissipate by their recovery, see `sam.scene.dissipation`. With sigma = sigma_t + sigma_r
+then is W_X + D, and dissipate by their recovery, see `sam.scene.yield_curve`. With sigma = sigma_t + sigma_r
 of the tractions on the elastic body and of the plastic strain, whose product has no energy (sigma_r balances
 no load), E = 1/2 int t . u_t dA - 1/2 int sigma_r : eps_p dV (c).
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A mesh read by VTK, in a process of its own: see `sam.scene.apart`.
+"""A mesh read by VTK, in a process of its own: see `sam.scene.inputs`.
 
 The files of a run need a part of VTK that loads in a third of the time of pyvista.
 """

@@ -1,16 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""Rough surfaces: the table [surface] of a scene, heights from a file or a generator, and numbers that
-describe them.
+"""Rough surfaces: the tables [surface] and [counterbody.surface] of a scene, heights from a file or a
+generator, and numbers that describe them.
 """
 
-from sam.scene.surface.counter import CounterSurface, leading
-from sam.scene.surface.generators import heights, mean_deviation
+from sam.scene.surface.counter import CounterSurface, Strip, leading
+from sam.scene.surface.generators import BORDER, border_cells, heights, mean_deviation, with_relief
 from sam.scene.surface.height_map import FrictionMap, HeightMap
-from sam.scene.surface.measured import processed, roughness_as_read
-from sam.scene.surface.relief import BORDER, border_cells, with_relief
-from sam.scene.surface.roughness import Roughness, roughness
+from sam.scene.surface.measured import Roughness, processed, roughness, roughness_as_read
 from sam.scene.surface.section import Surface, patch_of
-from sam.scene.surface.strip import Strip
 
 __all__ = [
     "BORDER",

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Heights of generated surfaces: sums of waves, so that the same surface can be evaluated on any grid.
+"""Heights of a surface on a patch. Generated ones are sums of waves, so that the same surface can be had on
+any grid.
 
 Self-affine: waves that are periodic over the extent, wave vectors q = 2 pi (m/Lx, n/Ly), with random phases;
 the power of each is 1 for wavelengths above cutoff_long, falls like q^(-2-2H) below (H: Hurst exponent;
@@ -15,13 +16,18 @@ that the ridges between the marks are inside of the patch; a feed longer than th
 are rounded: the arcs are Fourier series up to cutoff_short.
 
 Means are taken off and the heights scaled (to Ra or Sq) on a sampling of the surface that does not depend on
-the grid. Where the border falls off, it does so afterwards (sam.scene.surface.relief).
+the grid.
+
+The border of a rough patch may fall off afterwards, so that the contact ends before the patch does: a patch
+cut out of a surface ends in ridges that go on in reality. On a half-space they carry what the end of a punch
+carries, a pressure without bound at finer and finer cells.
 """
 
 from __future__ import annotations
 
 from functools import lru_cache
-from math import floor, pi, sqrt
+from math import ceil, floor, pi, sqrt
+from typing import cast
 
 import numpy as np
 
@@ -32,31 +38,15 @@ from sam.scene.surface.section import Surface
 
 FEWEST_SAMPLES = 256  # of a side; between both limits four in the shortest wavelength
 MOST_SAMPLES = 4096  # of a side: 134 MB a field
+BORDER = 3 / 32  # of a side: 6 of 64 cells
+DROP = 4.0  # of the heights at the edge, in mean deviations: lower than most of the valleys
 _ON_THE_LIMIT = 1 + 1e-9  # a wavelength that is equal to a cut-off belongs to the waves that stay
 
 
 def heights(surface: Surface, x: Array, y: Array, extent: tuple[float, float]) -> Array:
-    """Heights of a surface on a patch about the origin.
-
-    Parameters
-    ----------
-    surface
-        The table [surface] of a scene.
-    x, y
-        (nx,) and (ny,) coordinates in m. Those of a file are taken at the centres of cells of the patch: only
-        their number counts.
-    extent
-        (Lx, Ly), sides of the patch in m.
-
-    Returns
-    -------
-    Array
-        (nx, ny) in m, positive out of the body.
-
-    Raises
-    ------
-    ValueError
-        For a number of cells that a file does not have, and if only the digest of the file is at hand.
+    """Heights (nx, ny) in m, positive out of the body, at x (nx,) and y (ny,) in m on a patch with sides (Lx,
+    Ly) in m about the origin. ValueError for a number of cells that a file does not have, and if only the
+    digest of the file is at hand; its heights are those at the centres of cells, of which the number counts.
     """
     if surface.kind == "file":
         return processed(surface, (len(x), len(y)))
@@ -68,14 +58,8 @@ def heights(surface: Surface, x: Array, y: Array, extent: tuple[float, float]) -
 
 @lru_cache(maxsize=4)
 def mean_deviation(surface: Surface, extent: tuple[float, float]) -> float:
-    """Ra in m: the mean of |height - mean height|, on a sampling that does not depend on the grid.
-
-    Parameters
-    ----------
-    surface
-        The table [surface] of a scene; of a file its own points are taken.
-    extent
-        (Lx, Ly), sides of the patch in m.
+    """Ra in m, the mean of |height - mean height|, on a sampling that does not depend on the grid: of a file
+    on its own points, else on a patch with sides (Lx, Ly) in m.
     """
     if surface.kind == "file":
         h = prepared(surface)
@@ -96,13 +80,10 @@ def _sinusoid(surface: Surface, x: Array, y: Array) -> Array:
 def _sampling(surface: Surface, extent: tuple[float, float]) -> tuple[Array, Array]:
     """Points along x and y in m at the centres of equal cells."""
 
-    def centres(side: float, shortest: float) -> Array:
-        n = min(max(FEWEST_SAMPLES, 4 * round(side / shortest)), MOST_SAMPLES)
-        found: Array = ((np.arange(n) + 0.5) / n - 0.5) * side
-        return found
+    def sampled(side: float, shortest: float) -> Array:
+        return centres(min(max(FEWEST_SAMPLES, 4 * round(side / shortest)), MOST_SAMPLES)) * side
 
-    (lx, ly), (along_x, along_y) = extent, surface.shortest
-    return centres(lx, along_x), centres(ly, along_y)
+    return sampled(extent[0], surface.shortest[0]), sampled(extent[1], surface.shortest[1])
 
 
 @lru_cache(maxsize=4)
@@ -123,14 +104,9 @@ def _unscaled(surface: Surface, x: Array, y: Array, extent: tuple[float, float])
     if share > 0:
         total += sqrt(share) * _marks(surface, x)[:, None]
     if share < 1:
-        roughness = Surface(
-            kind="self-affine",
-            **{
-                key: getattr(surface, key)
-                for key in ("ra", "cutoff_long", "cutoff_short", "hurst", "anisotropy", "seed")
-            },
-        )
-        total += sqrt(1 - share) * heights(roughness, x, y, extent)
+        keys = ("ra", "cutoff_long", "cutoff_short", "hurst", "anisotropy", "seed")
+        other = Surface(kind="self-affine", **{key: getattr(surface, key) for key in keys})
+        total += sqrt(1 - share) * heights(other, x, y, extent)
     return total
 
 
@@ -143,8 +119,7 @@ def _marks(surface: Surface, x: Array) -> Array:
     """
     k = np.arange(1, floor(stated(surface.feed) / stated(surface.cutoff_short) * _ON_THE_LIMIT) + 1)
     waves = np.cos(2 * pi * np.outer(x, k) / stated(surface.feed))
-    found: Array = waves @ ((stated(surface.feed) / (pi * k)) ** 2 / (2 * stated(surface.nose_radius)))
-    return found
+    return cast(Array, waves @ ((stated(surface.feed) / (pi * k)) ** 2 / (2 * stated(surface.nose_radius))))
 
 
 def _self_affine(surface: Surface, x: Array, y: Array, extent: tuple[float, float]) -> Array:
@@ -153,8 +128,7 @@ def _self_affine(surface: Surface, x: Array, y: Array, extent: tuple[float, floa
     m, n = np.arange(amplitudes.shape[0]), np.arange(amplitudes.shape[1]) - amplitudes.shape[1] // 2
     along_x = np.exp(2j * pi * np.outer(x / extent[0], m))
     along_y = np.exp(2j * pi * np.outer(n, y / extent[1]))
-    found: Array = (along_x @ amplitudes @ along_y).real
-    return found
+    return cast(Array, (along_x @ amplitudes @ along_y).real)
 
 
 @lru_cache(maxsize=1)
@@ -162,17 +136,13 @@ def _amplitudes(surface: Surface, extent: tuple[float, float]) -> Array:
     """Complex amplitudes of the waves m = 0 .. M, n = -N .. N, in arbitrary units; one of each pair (m, n),
     (-m, -n).
     """
-    most = [
-        floor(side / shortest * _ON_THE_LIMIT)
-        for side, shortest in zip(extent, surface.shortest, strict=True)
-    ]
+    most = [floor(L / wave * _ON_THE_LIMIT) for L, wave in zip(extent, surface.shortest, strict=True)]
     m, n = np.arange(most[0] + 1)[:, None], np.arange(-most[1], most[1] + 1)[None, :]
     inverse = np.hypot(m / extent[0], stated(surface.anisotropy) * n / extent[1])  # 1/wavelength
     long, short = 1 / stated(surface.cutoff_long), _ON_THE_LIMIT / stated(surface.cutoff_short)
     power = np.maximum(inverse / long, 1.0) ** (-2 - 2 * stated(surface.hurst))
     power[(inverse > short) | ((m == 0) & (n <= 0))] = 0.0
-    found: Array = np.sqrt(power) * np.exp(2j * pi * _phases(stated(surface.seed), *most))
-    return found
+    return cast(Array, np.sqrt(power) * np.exp(2j * pi * _phases(stated(surface.seed), *most)))
 
 
 def _phases(seed: int, most_x: int, most_y: int) -> Array:
@@ -183,3 +153,35 @@ def _phases(seed: int, most_x: int, most_y: int) -> Array:
     drawn = np.empty(m.size)
     drawn[order] = np.random.Generator(np.random.PCG64(seed)).random(m.size)
     return drawn.reshape(k + 1, 2 * k + 1)[: most_x + 1, k - most_y : k + most_y + 1]
+
+
+def centres(n: int) -> Array:
+    """The centres of n equal cells between -1/2 and 1/2."""
+    return (np.arange(n) + 0.5) / n - 0.5
+
+
+def border_cells(cells: tuple[int, int]) -> tuple[int, int]:
+    """Cells along x and y that the border takes at each end."""
+    return ceil(BORDER * cells[0]), ceil(BORDER * cells[1])
+
+
+def with_relief(
+    heights: Array, points: tuple[Array, Array], extent: tuple[float, float], mean_deviation: float
+) -> Array:
+    """Heights (nx, ny) in m at points x (nx,), y (ny,) in m, lowered in the outer BORDER of each side (Lx,
+    Ly) of the patch, at the edge by DROP mean deviations, Ra in m. The fall is s^3 (10 - 15 s + 6 s^2) of the
+    way s from the inner end of the border to the edge, twice smooth at both.
+    """
+
+    def stays(c: Array, side: float) -> Array:
+        s = np.clip((np.abs(c) / side - (0.5 - BORDER)) / BORDER, 0.0, 1.0)
+        return 1 - s**3 * (10 - 15 * s + 6 * s**2)
+
+    stays_x, stays_y = (stays(c, side) for c, side in zip(points, extent, strict=True))
+    return heights - DROP * mean_deviation * (1 - stays_x[:, None] * stays_y[None, :])
+
+
+def fall(cells: tuple[int, int], mean_deviation: float) -> Array:
+    """By how much `with_relief` lowers heights at the centres of (nx, ny) cells, in m."""
+    points = centres(cells[0]), centres(cells[1])
+    return -with_relief(np.zeros(cells), points, (1.0, 1.0), mean_deviation)

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Measured heights as a value of a scene: known by the digest of their content, wherever
-they were read from.
-"""
+"""Measured heights as a value of a scene, known by the digest of their content wherever they come from."""
 
 from __future__ import annotations
 
@@ -12,8 +10,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from sam.arrays import Array
-from sam.scene.inputs import InputError, refused
-from sam.scene.units import CELLS, COEFFICIENT, LENGTH
+from sam.scene.inputs import InputError
+from sam.scene.units import CELLS, COEFFICIENT, LENGTH, refused
 
 HIGHEST = 1e30  # m; as for every length of a scene
 PLACES = ("x_m", "y_m")
@@ -47,29 +45,28 @@ class HeightMap:
         """Raises InputError for what is no map: too few or too many cells, values or sides that are not
         finite.
         """
-        own: Array = np.array(values, dtype="<f8", order="C")
-        if own.ndim != 2:
-            raise InputError(f"heights of shape {own.shape}: two dimensions are needed")
-        _check_sizes(tuple(int(n) for n in own.shape), tuple(float(side) for side in extent))
-        self.cells = int(own.shape[0]), int(own.shape[1])
-        self.extent = float(extent[0]), float(extent[1])
-        absent = np.isnan(own)
-        own[absent] = np.nan  # of the many ways to write it, one
-        if not (absent | (np.abs(own) <= HIGHEST)).all():
+        heights: Array = np.array(values, dtype="<f8", order="C")
+        if heights.ndim != 2:
+            raise InputError(f"heights of shape {heights.shape}: two dimensions are needed")
+        cells, sides = _sizes(heights.shape, tuple(extent))
+        self.cells = cells
+        self.extent = sides
+        absent = np.isnan(heights)
+        heights[absent] = np.nan  # of the many ways to write it the same
+        if not (absent | (np.abs(heights) <= HIGHEST)).all():
             raise InputError(f"heights from {-HIGHEST:g} to {HIGHEST:g} m are allowed")
-        own.flags.writeable = False
+        heights.flags.writeable = False
         content = hashlib.sha256(np.array([*self.cells, *self.extent], dtype="<f8").tobytes())
-        content.update(own.tobytes())
+        content.update(heights.tobytes())
         self.sha256 = content.hexdigest()
-        self.values: Array | None = own
+        self.values: Array | None = heights
 
     @classmethod
     def known_by(cls, sha256: str, cells: tuple[int, int], extent: tuple[float, float]) -> HeightMap:
         """A map of which only the digest is at hand."""
-        found = object.__new__(cls)
-        found.values, found.sha256 = None, sha256
-        found.cells, found.extent = (cells[0], cells[1]), (float(extent[0]), float(extent[1]))
-        return found
+        known = object.__new__(cls)
+        known.values, known.sha256, known.cells, known.extent = None, sha256, cells, extent
+        return known
 
     @property
     def cell(self) -> tuple[float, float]:
@@ -101,15 +98,16 @@ class HeightMap:
         return f"{type(self).__name__}({self.cells[0]} x {self.cells[1]} cells, {self.sha256[:8]})"
 
 
-def _check_sizes(cells: tuple[Any, ...], extent: tuple[float, ...]) -> None:
-    """Raise InputError unless the cells and sides are those of a grid."""
+def _sizes(cells: tuple[Any, ...], extent: tuple[Any, ...]) -> tuple[tuple[int, int], tuple[float, float]]:
+    """The cells and sides in m. Raises InputError unless they are those of a grid."""
     if len(cells) != 2 or not all(isinstance(n, int) and CELLS.low <= n <= CELLS.high for n in cells):
-        raise InputError(
-            f"{' x '.join(map(str, cells))} heights: {CELLS.low:g} to {CELLS.high:g} each way are allowed"
-        )
-    if len(extent) != 2 or not all(LENGTH.low <= side <= LENGTH.high for side in extent):
-        found = " and ".join(f"{side:g}" for side in extent)
-        raise InputError(f"sides of {found} m: {LENGTH.low:g} to {LENGTH.high:g} are allowed")
+        words = f"{' x '.join(map(str, cells))} heights"
+        raise InputError(f"{words}: {CELLS.low:g} to {CELLS.high:g} each way are allowed")
+    sides = tuple(map(float, extent))
+    if len(sides) != 2 or not all(LENGTH.low <= side <= LENGTH.high for side in sides):
+        words = " and ".join(f"{side:g}" for side in sides)
+        raise InputError(f"sides of {words} m: {LENGTH.low:g} to {LENGTH.high:g} are allowed")
+    return (cells[0], cells[1]), (sides[0], sides[1])
 
 
 class FrictionMap(HeightMap):
@@ -123,8 +121,8 @@ class FrictionMap(HeightMap):
     def __init__(self, values: Array, extent: tuple[float, float]):
         """Raises InputError also for coefficients out of range."""
         super().__init__(values, extent)
-        own = np.asarray(self.values)
-        if not ((own >= COEFFICIENT.low) & (own <= COEFFICIENT.high)).all():
+        coefficients = np.asarray(self.values)
+        if not ((coefficients >= COEFFICIENT.low) & (coefficients <= COEFFICIENT.high)).all():
             raise InputError(f"coefficients from {COEFFICIENT.low:g} to {COEFFICIENT.high:g} are allowed")
 
 
@@ -134,16 +132,11 @@ def from_python(value: object, kind: type[HeightMap]) -> HeightMap:
     """
     if type(value) is kind:
         return value
-    if isinstance(value, Mapping) and set(value) == set(KEYS):
-        return _known(value, kind)
-    raise refused(f"a {kind.__name__}")
-
-
-def _known(value: Mapping[str, Any], kind: type[HeightMap]) -> HeightMap:
-    """A map known by its digest. An error "allowed" for a mapping that is none."""
+    if not isinstance(value, Mapping) or set(value) != set(KEYS):
+        raise refused(f"a {kind.__name__}")
     try:
         sha256, cells, extent = (value[key] for key in KEYS)
-        _check_sizes(tuple(cells), tuple(map(float, extent)))
+        cells, extent = _sizes(tuple(cells), tuple(extent))
         if len(bytes.fromhex(sha256)) != hashlib.sha256().digest_size:
             raise ValueError(sha256)
     except (InputError, TypeError, ValueError):

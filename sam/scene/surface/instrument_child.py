@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""An instrument's file read by SurfaceTopography, in a process of its own: see `sam.scene.apart`."""
+"""An instrument's file read by SurfaceTopography, in a process of its own: see `sam.scene.inputs`."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ def heights_in(content: bytes, formats: list[str], most: int) -> tuple[dict[str,
 
 def _heights_of(reader: Any, name: str, most: int) -> tuple[dict[str, Any], NDArray[np.float64]]:
     """The heights of the channel that is the default of the format, or else of the first with heights."""
-    usable = [found for found in reader.channels if found.is_height_channel and found.dim == 2]
-    default = [found for found in usable if found.index == reader.default_channel.index]
+    usable = [channel for channel in reader.channels if channel.is_height_channel and channel.dim == 2]
+    default = [channel for channel in usable if channel.index == reader.default_channel.index]
     channel = next(iter(default + usable), None)
     if channel is None or channel.is_uniform is False:
         raise RefusedError("no map of heights on a regular grid")

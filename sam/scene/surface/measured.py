@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Preparation of the heights in a file: form off, missing points filled, cropped, resampled,
-in this order.
+"""Measured heights: their roughness (ISO 25178-2), and their preparation: form off, missing points filled,
+cropped, resampled, in this order. scipy is loaded for the scenes that ask to fill or resample.
 
 Form: the least-squares polynomial through the measured points of the whole map, which know it best, is taken
 off (the F-operation of ISO 25178-2). "tilt": 1, x, y; "sphere": also x^2 + y^2, the cap of a sphere to second
@@ -19,6 +19,7 @@ of the mirrored slope at the sides.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 from importlib import import_module
 
@@ -26,11 +27,8 @@ import numpy as np
 
 from sam.arrays import Array
 from sam.scene.section import stated
-from sam.scene.surface.roughness import Roughness, roughness
 from sam.scene.surface.section import Surface
 
-STEPS = {"missing": "sam.scene.surface.filling", "resample": "sam.scene.surface.resampling"}
-"""Key of a surface -> the module of what it asks for, loaded for the scenes that give it: both need scipy."""
 _TERMS = {
     "tilt": ([(0, 0)], [(1, 0)], [(0, 1)]),
     "sphere": ([(0, 0)], [(1, 0)], [(0, 1)], [(2, 0), (0, 2)]),
@@ -39,29 +37,56 @@ _TERMS = {
 """Form -> its terms, each a sum of x^p y^q."""
 
 
-def processed(surface: Surface, cells: tuple[int, int]) -> Array:
-    """Heights of a surface from a file on cells of its patch, prepared as the scene says.
-
-    Parameters
-    ----------
-    surface
-        The table [surface] of a scene, of the kind "file".
-    cells
-        (nx, ny), see `Surface.patch`.
-
-    Returns
-    -------
-    Array
-        (nx, ny) in m, read-only.
-
-    Raises
-    ------
-    ValueError
-        For cells that the file does not have, and if only its digest is at hand.
+@dataclass(frozen=True)
+class Roughness:
+    """About the mean height. sa: mean |h|, sq: root mean square, in m; ssk: skewness; sdq: root mean square
+    slope.
     """
-    found = prepared(surface)
-    if found.shape == tuple(cells):
-        return found
+
+    sa: float
+    sq: float
+    ssk: float
+    sdq: float
+
+
+def roughness(heights: Array, hx: float, hy: float) -> Roughness:
+    """Areal parameters of heights (nx, ny) in m on cells with sides in m; slopes by central differences,
+    one-sided at the edge.
+
+    The skewness of a plane is 0. A form or a tilt is not removed. Points that are nan, and the slopes next to
+    them, do not count. Five points on a line of slope 1 deviate from their mean by 2, 1, 0, 1, 2:
+
+    >>> line = roughness(np.arange(5.0)[:, None] * np.ones(3), 1.0, 1.0)
+    >>> round(line.sa, 3), round(line.sdq, 3)
+    (1.2, 1.0)
+    """
+    mean = np.nanmean if np.isnan(heights).any() else np.mean
+    h = heights - mean(heights)
+    sq = float(np.sqrt(mean(h**2)))
+    slope_x, slope_y = np.gradient(h, hx, hy)
+    return Roughness(
+        sa=float(mean(np.abs(h))),
+        sq=sq,
+        ssk=float(mean((h / sq) ** 3)) if sq > 0 else 0.0,
+        sdq=float(np.sqrt(mean(slope_x**2 + slope_y**2))),
+    )
+
+
+def roughness_as_read(surface: Surface) -> Roughness:
+    """Roughness of the whole map in the file, of its measured points, before anything is done to it.
+    ValueError if only the digest of the file is at hand.
+    """
+    _check_at_hand(surface)
+    return roughness(stated(surface.measured.values), *surface.measured.cell)
+
+
+def processed(surface: Surface, cells: tuple[int, int]) -> Array:
+    """Heights (nx, ny) in m of a surface from a file on cells of its patch, prepared as the scene says;
+    read-only. ValueError for cells that the file does not have, and if only its digest is at hand.
+    """
+    heights = prepared(surface)
+    if heights.shape == tuple(cells):
+        return heights
     if surface.resample is None:
         raise ValueError(f"{surface.path!r} has no heights at {cells[0]} x {cells[1]} points")
     return _resampled_surface(surface, tuple(cells))
@@ -69,9 +94,9 @@ def processed(surface: Surface, cells: tuple[int, int]) -> Array:
 
 @lru_cache(maxsize=2)
 def _resampled_surface(surface: Surface, cells: tuple[int, int]) -> Array:
-    found: Array = import_module(STEPS["resample"]).resampled(prepared(surface), cells)
-    found.flags.writeable = False
-    return found
+    heights = resampled(prepared(surface), cells)
+    heights.flags.writeable = False
+    return heights
 
 
 def prepared(surface: Surface) -> Array:
@@ -86,23 +111,11 @@ def _prepared(surface: Surface) -> Array:
     if surface.form != "none":
         values = values - fitted_form(values, surface.measured.cell, stated(surface.form))
     if surface.missing == "harmonic":
-        values = import_module(STEPS["missing"]).harmonic(values, surface.measured.cell)
+        values = harmonic(values, surface.measured.cell)
     if surface.crop is not None:
         values = values[surface.window]
     values.flags.writeable = False
     return values
-
-
-def roughness_as_read(surface: Surface) -> Roughness:
-    """Roughness of the whole map in the file, of its measured points, before anything is done to it.
-
-    Raises
-    ------
-    ValueError
-        If only the digest of the file is at hand.
-    """
-    _check_at_hand(surface)
-    return roughness(stated(surface.measured.values), *surface.measured.cell)
 
 
 def _check_at_hand(surface: Surface) -> None:
@@ -129,9 +142,51 @@ def fitted_form(values: Array, cell: tuple[float, float], form: str) -> Array:
     for _ in range(2):
         left = np.where(measured, values - total, 0.0)
         loads = of_x[:, :3].T @ left @ of_y[:, :3]
-        found = np.linalg.lstsq(matrix, [sum(loads[p, q] for p, q in a) for a in terms])[0]
+        solved = np.linalg.lstsq(matrix, [sum(loads[p, q] for p, q in a) for a in terms])[0]
         powers = np.zeros((3, 3))
-        for coefficient, term in zip(found, terms, strict=True):
+        for coefficient, term in zip(solved, terms, strict=True):
             powers[tuple(zip(*term, strict=True))] += coefficient
         total += of_x[:, :3] @ powers @ of_y[:, :3].T
     return total
+
+
+def harmonic(values: Array, cell: tuple[float, float]) -> Array:
+    """Heights (nx, ny) in m on cells in m, those that are nan replaced: sum of (h_neighbour - h)/distance^2 =
+    0 at each, an equation for each unknown, of which the entries of a pair appear twice and add up.
+    """
+    unknown = np.isnan(values)
+    if not unknown.any():
+        return values
+    sparse, linear = import_module("scipy.sparse"), import_module("scipy.sparse.linalg")
+    count = int(np.count_nonzero(unknown))
+    number = np.where(unknown, np.cumsum(unknown).reshape(unknown.shape) - 1, -1)
+    right, entries = np.zeros(count), []
+    for axis, weight in enumerate((1.0, (cell[0] / cell[1]) ** 2)):
+        ends = (slice(None, -1), slice(1, None))
+        for mine, other in (ends, ends[::-1]):
+            here, there = (number.swapaxes(0, axis)[part] for part in (mine, other))
+            heights = values.swapaxes(0, axis)[other]
+            rows, known, both = here[here >= 0], (here >= 0) & (there < 0), (here >= 0) & (there >= 0)
+            right += np.bincount(here[known], weights=weight * heights[known], minlength=count)
+            entries += [(weight, rows, rows), (-weight, here[both], there[both])]
+    data = np.concatenate([np.full(rows.size, weight) for weight, rows, _ in entries])
+    places = tuple(np.concatenate([entry[k] for entry in entries]) for k in (1, 2))
+    matrix = sparse.coo_matrix((data, places), shape=(count, count)).tocsc()
+    factors = linear.splu(matrix, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+    filled = values.copy()
+    filled[unknown] = factors.solve(right)
+    return filled
+
+
+def resampled(heights: Array, cells: tuple[int, int]) -> Array:
+    """Heights (nx, ny) at the centres of the cells of a patch on other cells of the same patch; any unit."""
+    fft = import_module("scipy.fft")
+    for axis, n in enumerate(cells):
+        had = heights.shape[axis]
+        if n == had:
+            continue
+        waves = np.moveaxis(fft.dct(heights, type=2, axis=axis), axis, 0)
+        other = np.zeros((n, *waves.shape[1:]))
+        other[: min(n, had)] = waves[:n]
+        heights = np.moveaxis(fft.idct(other, type=2, axis=0), 0, axis) * (n / had)
+    return heights

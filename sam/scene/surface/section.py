@@ -1,20 +1,30 @@
 # SPDX-License-Identifier: MIT
-"""The table [surface] of a scene."""
+"""The table [surface] of a scene: rough heights, from a file or made, and the cells that they need."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from math import ceil, inf, isclose
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
-from sam.scene.grid import Grid
-from sam.scene.inputs import refused
-from sam.scene.section import Conflict, Section, stated
+from sam.scene.numerics import Grid
+from sam.scene.section import Conflict, Given, Section, broken, of_choice, stated
 from sam.scene.surface.height_map import HeightMap
-from sam.scene.surface.map_files import HeightField
-from sam.scene.units import CELLS, LENGTH, Anisotropy, Coordinate, Hurst, Length, Seed, Share, metres_in
+from sam.scene.surface.readers import HeightField
+from sam.scene.units import (
+    CELLS,
+    LENGTH,
+    Anisotropy,
+    Coordinate,
+    Hurst,
+    Length,
+    Seed,
+    Share,
+    metres_in,
+    refused,
+)
 
 _SELF_AFFINE = ("cutoff_long", "cutoff_short", "hurst", "seed")
 KINDS = {
@@ -40,10 +50,10 @@ def _two_or_four(value: object) -> tuple[Any, ...]:
 
 def _one_or_two(value: object) -> tuple[Any, ...]:
     """One length, or two of them in a TOML array (or tuple, or list), as a tuple."""
-    found = tuple(value) if isinstance(value, list | tuple) else (value,)
-    if len(found) not in (1, 2):
+    sides = tuple(value) if isinstance(value, list | tuple) else (value,)
+    if len(sides) not in (1, 2):
         raise refused("[lx, ly], the sides of the map, or one length for a square one")
-    return found
+    return sides
 
 
 def _unit(value: object) -> object:
@@ -140,37 +150,41 @@ class Surface(Section):
         """(nx, ny) and (Lx, Ly) in m of what is solved. cells: those that the scene asks for, if it does.
         Only for a file.
         """
-        if self.crop is None:
-            own, extent = self.measured.cells, self.measured.extent
-        else:
+        measured, extent = self.measured.cells, self.measured.extent
+        if self.crop is not None:
             (x, y), (hx, hy) = self.window, self.measured.cell
-            own = x.stop - x.start, y.stop - y.start
-            extent = own[0] * hx, own[1] * hy
-        return (own if cells is None or self.resample is None else cells), extent
+            measured = x.stop - x.start, y.stop - y.start
+            extent = measured[0] * hx, measured[1] * hy
+        return (measured if cells is None or self.resample is None else cells), extent
 
     @classmethod
-    def implied(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
+    def implied(cls, given: Given) -> Mapping[str, Any]:
         """What is done to a file, and the anisotropy of a generated surface, unless they are given."""
         if given.get("kind") == "file":
             return {"missing": "refuse", "form": "none"}
         return {"anisotropy": 1.0} if given.get("kind") in ("hard-turned", "self-affine") else {}
 
     @classmethod
-    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
+    def conflicts(cls, given: Given) -> Iterator[Conflict]:
         """Keys that the kind of surface needs, or has no use for."""
-        kind = given.get("kind")
-        needed, optional = KINDS.get(kind, (None, ())) if isinstance(kind, str) else (None, ())
-        if needed is None:
+        kind = given.text("kind")
+        if kind not in KINDS:
             return
-        for key in cls.model_fields:
-            if key in needed and key not in given:
-                yield key, f'required: kind = "{kind}" takes {", ".join(needed)}'
-            if key not in (*cls.common, *needed, *optional) and key in given:
-                yield key, f'kind = "{kind}" takes {", ".join((*needed, *optional))}: remove it'
-        if kind == "self-affine" and ("ra" in given) == ("sq" in given):
-            yield ("sq", "either ra or sq, not both") if "ra" in given else ("ra", "required: ra or sq")
-        if kind == "sinusoid" and not {"wavelength_x", "wavelength_y"} & set(given):
-            yield "wavelength_x", "required: wavelength_x, wavelength_y, or both"
+        needed, optional = KINDS[kind]
+        keys = [key for key in cls.model_fields if key not in cls.common]
+        missing, surplus = (
+            f'kind = "{kind}" takes {", ".join(some)}' for some in (needed, needed + optional)
+        )
+        words = f"required: {missing}", f"{surplus}: remove it"
+        yield from of_choice(given, keys, (needed, needed + optional), words)
+        affine, wave = kind == "self-affine", kind == "sinusoid"
+        ra, sq = "ra" in given, "sq" in given
+        waves = "wavelength_x" in given or "wavelength_y" in given
+        yield from broken(
+            (affine and ra and sq, "sq", "either ra or sq, not both"),
+            (affine and not (ra or sq), "ra", "required: ra or sq"),
+            (wave and not waves, "wavelength_x", "required: wavelength_x, wavelength_y, or both"),
+        )
 
     def excesses(self) -> Iterator[Conflict]:
         """Wavelengths, crops and missing heights that do not fit each other."""
@@ -178,72 +192,56 @@ class Surface(Section):
             yield "cutoff_short", f"less than cutoff_long, {self.cutoff_long:g} m"
         if self.feed is not None and not self.feed >= stated(self.cutoff_short):
             yield "feed", f"at least cutoff_short, {self.cutoff_short:g} m: shorter waves are left out"
-        if self.kind == "file":
-            yield from self._bad_crop()
-            yield from self._bad_missing()
-
-    def _bad_crop(self) -> Iterator[Conflict]:
-        if self.crop is None:
+        if self.kind != "file":
             return
-        sides = " x ".join(f"{side:.6g} m" for side in self.measured.extent)
-        if not all(
-            0 < side <= whole * (1 + CLOSE)
-            for side, whole in zip(self.crop[-2:], self.measured.extent, strict=True)
-        ):
-            yield "crop", f"{CROP}, sides above 0, at most those of the map, {sides}"
-        elif not all(
-            0 <= part.start and part.stop <= n
-            for part, n in zip(self.window, self.measured.cells, strict=True)
-        ):
-            yield "crop", f"{CROP} from the middle of the map, inside of it: {sides}"
-        elif min(self.patch()[0]) < CELLS.low:
-            cell = " x ".join(f"{side:.6g} m" for side in self.measured.cell)
-            yield "crop", f"{CROP}, at least {CELLS.low:g} cells each way, of {cell}"
-
-    def _bad_missing(self) -> Iterator[Conflict]:
-        missing, (nx, ny) = self.measured.missing, self.measured.cells
-        words = f"{missing} of {nx * ny} heights are missing"
-        most = min(MOST_FILLED, nx * ny // 2)
-        if missing and self.missing == "refuse":
-            yield "path", f'{words}: fill them, or give {self.table}.missing = "harmonic"'
-        elif missing > most:
-            yield "missing", f"{words}: at most {most} of them can be filled"
+        (nx, ny), extent = self.measured.cells, self.measured.extent
+        if self.crop is not None:
+            sides, (x, y) = " x ".join(f"{side:.6g} m" for side in extent), self.window
+            inside = 0 <= x.start and x.stop <= nx and 0 <= y.start and y.stop <= ny
+            if not all(0 < a <= b * (1 + CLOSE) for a, b in zip(self.crop[-2:], extent, strict=True)):
+                yield "crop", f"{CROP}, sides above 0, at most those of the map, {sides}"
+            elif not inside:
+                yield "crop", f"{CROP} from the middle of the map, inside of it: {sides}"
+            elif min(self.patch()[0]) < CELLS.low:
+                cell = " x ".join(f"{side:.6g} m" for side in self.measured.cell)
+                yield "crop", f"{CROP}, at least {CELLS.low:g} cells each way, of {cell}"
+        missing, most = self.measured.missing, min(MOST_FILLED, nx * ny // 2)
+        words, refuses = f"{missing} of {nx * ny} heights are missing", self.missing == "refuse"
+        fill = f'fill them, or give {self.table}.missing = "harmonic"'
+        yield from broken(
+            (missing and refuses, "path", f"{words}: {fill}"),
+            (missing > most and not refuses, "missing", f"{words}: at most {most} of them can be filled"),
+        )
 
 
 def _part(middle: float, side: float, n: int, cell: float) -> slice:
     """The cells, of n, that fit best a part of that side about its middle; the origin is in the middle of
     all.
     """
-    kept = round(side / cell)
-    first = ceil(round(middle / cell + (n - kept) / 2, 6) - 0.5)  # rounded twice: of two as near the first
-    return slice(first, first + kept)
+    count = round(side / cell)
+    first = ceil(round(middle / cell + (n - count) / 2, 6) - 0.5)  # rounded twice: of two as near the first
+    return slice(first, first + count)
 
 
 def grid_excesses(surface: Surface, grid: Grid | None) -> Iterator[Conflict]:
-    """Keys of a scene whose grid does not suit its surface."""
-    if surface.kind == "file":
-        yield from _other_grid(surface, grid)
-    else:
+    """Keys of a scene whose grid does not suit its surface: not that of the file, or too coarse."""
+    if surface.kind != "file":
         grid = stated(grid)
         yield from coarse_grid(surface, stated(grid.cells), stated(grid.extent))
-
-
-def _other_grid(surface: Surface, grid: Grid | None) -> Iterator[Conflict]:
-    """A grid that is not the one of the file."""
-    if grid is None:
-        return
-    words = f"the grid of {surface.table}.path"
-    words += f" after {surface.table}.crop" if surface.crop else ""
-    cells, extent = surface.patch(grid.cells)
-    if grid.cells is not None and grid.cells != cells:
-        yield (
-            "grid.cells",
-            f'{list(cells)}, {words}: leave it out, or give {surface.table}.resample = "fourier"',
+    elif grid is not None:
+        words = f"the grid of {surface.table}.path" + f" after {surface.table}.crop" * (
+            surface.crop is not None
         )
-    if grid.extent is not None and not all(
-        isclose(*sides, rel_tol=CLOSE) for sides in zip(grid.extent, extent, strict=True)
-    ):
-        yield "grid.extent", f"{' and '.join(f'{side:.9g} m' for side in extent)}, {words}: leave it out"
+        (cells, extent), leave = surface.patch(grid.cells), "leave it out"
+        resample = f'{surface.table}.resample = "fourier"'
+        if grid.cells is not None and grid.cells != cells:
+            yield "grid.cells", f"{list(cells)}, {words}: {leave}, or give {resample}"
+        if grid.extent is not None and not _alike(grid.extent, extent):
+            yield "grid.extent", f"{' and '.join(f'{side:.9g} m' for side in extent)}, {words}: {leave}"
+
+
+def _alike(sides: Iterable[float], others: Iterable[float]) -> bool:
+    return all(isclose(*pair, rel_tol=CLOSE) for pair in zip(sides, others, strict=True))
 
 
 def patch_excesses(
@@ -253,37 +251,28 @@ def patch_excesses(
     if surface.kind != "file":
         yield from coarse_grid(surface, cells, extent)
         return
-    own, sides = surface.patch(cells)
-    if own != cells or not all(isclose(*pair, rel_tol=CLOSE) for pair in zip(sides, extent, strict=True)):
-        asked, found = (" x ".join(f"{side:.9g} m" for side in size) for size in (extent, sides))
-        words = f"it has {list(own)} on {found} after {surface.table}.crop and {surface.table}.resample"
-        yield (
-            f"{surface.table}.path",
-            f"{list(cells)} heights on {asked}, as the surface of the body; {words}",
-        )
+    (measured, sides), table = surface.patch(cells), surface.table
+    if measured != cells or not _alike(sides, extent):
+        asked, there = (" x ".join(f"{side:.9g} m" for side in size) for size in (extent, sides))
+        words = f"it has {list(measured)} on {there} after {table}.crop and {table}.resample"
+        yield f"{table}.path", f"{list(cells)} heights on {asked}, as the surface of the body; {words}"
 
 
 def coarse_grid(surface: Surface, cells: tuple[int, int], extent: tuple[float, float]) -> Iterator[Conflict]:
     """Cells that are too few for the shortest waves, or a patch that is too small for one of them."""
     sides = list(zip(extent, surface.shortest, strict=True))
     fewest = [max(1, ceil(FEWEST_CELLS * side / short * (1 - CLOSE))) for side, short in sides]
-    if any(n < least for n, least in zip(cells, fewest, strict=True)):
-        yield (
-            "grid.cells",
-            f"at least {fewest}: {FEWEST_CELLS} cells in the shortest wavelength of the surface",
-        )
-    if surface.random and any(side * (1 + CLOSE) < short for side, short in sides):
-        shortest = " and ".join(f"{short:g} m" for short in surface.shortest)
-        yield "grid.extent", f"at least {shortest}, the shortest wavelengths of the surface along x and y"
+    coarse = any(n < least for n, least in zip(cells, fewest, strict=True))
+    small = surface.random and any(side * (1 + CLOSE) < short for side, short in sides)
+    shortest = " and ".join(f"{short:g} m" for short in surface.shortest)
+    waves = f"{FEWEST_CELLS} cells in the shortest wavelength of the surface"
+    lengths = f"at least {shortest}, the shortest wavelengths of the surface along x and y"
+    return broken((coarse, "grid.cells", f"at least {fewest}: {waves}"), (small, "grid.extent", lengths))
 
 
 def patch_of(surface: Surface, grid: Grid | None) -> tuple[tuple[int, int], tuple[float, float]]:
-    """The cells and the sides of the patch of a rough scene: what is left of its file, or what its grid says.
-
-    Returns
-    -------
-    cells, extent
-        (nx, ny) and (Lx, Ly) in m.
+    """(nx, ny) cells and sides (Lx, Ly) in m of the patch of a rough scene: what is left of its file, or what
+    its grid says.
     """
     if surface.kind == "file":
         return surface.patch(grid.cells if grid is not None else None)
