@@ -4,6 +4,8 @@ traction.
 
 Equal steps to the peak, along the path of a travelling load if there is one, then to zero. In full slip the
 traction on the body is q = coefficient * p along x, at every step; its sign may change from cycle to cycle.
+
+Friction in full slip: the coefficient at the cells of a grid, and how its traction enters the gap.
 """
 
 from __future__ import annotations
@@ -12,6 +14,10 @@ from collections import Counter
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import nan
+
+import numpy as np
+
+from sam.arrays import Array
 
 
 @dataclass(frozen=True)
@@ -213,3 +219,31 @@ class Schedule:
         loads = [replace(target.load, force=peak.force * part, misfit=peak.misfit * part) for part in left]
         steps = [Target(target.cycle, target.step + k, load, False) for k, load in enumerate(loads)]
         return [*steps[:-1], replace(steps[-1], snapshot=target.snapshot)]
+
+
+Coefficient = float | Array
+"""A number, or one for each cell, (nx, ny)."""
+
+
+@dataclass(frozen=True)
+class FullSlip:
+    """The traction q = coefficient * p along x, at every step.
+
+    slides: whether there is a traction anywhere; coefficient: at the cells, with a tribofilm the low one, as
+    long as it is whole; highest: where a tribofilm has failed everywhere, else the same; coupled: whether the
+    traction moves the surfaces normally; coupling: 2 beta, the factor of the coefficient in the gap (1 with a
+    coating, where 2 beta is a function of the wave number, see `sam.contact.operators`); whole: coefficient
+    under a whole tribofilm, None without one.
+    """
+
+    slides: bool = False
+    coefficient: Coefficient = 0.0
+    highest: Coefficient = 0.0
+    coupled: bool = False
+    coupling: float = 0.0
+    whole: float | None = None
+
+    @property
+    def uniform(self) -> bool:
+        """Whether one coefficient holds everywhere and always."""
+        return self.whole is None and np.ndim(self.coefficient) == 0

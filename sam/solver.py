@@ -13,27 +13,29 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sam.contact.convolution import Counters
-from sam.contact.fit import fit_of
-from sam.contact.normal import Contact
+from sam.contact.normal import Contact, fit_of
 from sam.elastic.history import solve_elastic
-from sam.elastic.onset import elastic_peak, yields
 from sam.elastic.problem import ElasticProblem
-from sam.grid.cells import CellGrid, Room
-from sam.grid.enlargement import Sides, enlarged, enlargement, how_to_enlarge
+from sam.elastic.stress import elastic_peak, yields
+from sam.grid.cells import CellGrid, Room, Sides, enlarged, enlargement, how_to_enlarge
 from sam.planner import parts
-from sam.planner.make import plan
+from sam.planner.make import check, plan
 from sam.planner.plan import Plan
-from sam.planner.refusals import check
 from sam.planner.stages import left_out_of_unyielding
-from sam.results.advice import advice
-from sam.results.extrapolation import with_extrapolation
-from sam.results.history import CycleEnd, PassEnd, Row, cycles_table, history_table, of_ends
-from sam.results.loops import LoopRow, loops_table
+from sam.results.history import (
+    CycleEnd,
+    LoopRow,
+    PassEnd,
+    Row,
+    cycles_table,
+    history_table,
+    loops_table,
+    of_ends,
+)
 from sam.results.mesh import cycle_grids, field_mesh, state_grids
-from sam.results.peaks import EVEN
-from sam.results.quantities import quantities
+from sam.results.quantities import EVEN, quantities, with_extrapolation
 from sam.results.snapshots import Snapshot
-from sam.results.tables import state_tables
+from sam.results.tables import advice, state_tables
 from sam.scene import Result, Scene, Status
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.residuals import Attempt, residual_table
@@ -92,7 +94,7 @@ def solve(
 @dataclass(frozen=True)
 class _Outcome:
     """A load history on one grid. yields: whether the plastic loop ran; others as in
-    `sam.plasticity.solution.Found`.
+    `sam.plasticity.history.Found`.
     """
 
     rows: Sequence[Row]

@@ -118,7 +118,7 @@ class WearState:
     cell_area: hx hy in m2; depth: (nx, ny) in m, sum over the cycles of what was removed. For each cycle:
     volumes, in m3, removed; raw_volumes: what tore, before smoothing; roofed_volumes: above the limit under a
     sound roof, which stays; bottom_columns: how many tore down to the deepest face; residuals: of the remap,
-    see `sam.wear.remap.closing_residual`.
+    see `sam.wear.closing_residual`.
     """
 
     cell_area: float
@@ -156,7 +156,7 @@ class WearState:
 
 
 class Wear(Protocol):
-    """The law by which strained material is removed at the end of a cycle; see `sam.wear.removal`."""
+    """The law by which strained material is removed at the end of a cycle; see `sam.wear`."""
 
     def fresh(self) -> WearState:
         """The surface before the first cycle."""

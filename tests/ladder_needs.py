@@ -53,7 +53,7 @@ NEEDS: dict[str, dict[str, Part]] = {
     SAM: {
         "grid, not volume grid": part("grid"),
         "grid": part(libraries=CODEC),
-        "grid, rounded edge": part("gap of a rounded edge", "sam.grid.rounded"),
+        "grid, rounded edge": part("gap of a rounded edge", "sam.grid.gap"),
         "volume grid": part("volume grid"),
         "surface heights": part("heights", "sam.grid.rough sam.results.rough", libraries="scipy _ni_label"),
         "counter-surface heights": part(
@@ -62,7 +62,7 @@ NEEDS: dict[str, dict[str, Part]] = {
         "surface coefficients": part("u3 under F3", may="layered u3 under F3"),
         "layered coefficients": part(
             "layered u3 under F3, layered stress under F3",
-            "sam.grid.coated sam.elastic.coated sam.layered.*",
+            "sam.grid.smooth sam.elastic.coated sam.layered.*",
         ),
         "layered coefficients, tangential kernels": part(
             "layered u3 under F1, layered stress under F1, layered u1 under F3, layered u1 under F1"
@@ -71,7 +71,7 @@ NEEDS: dict[str, dict[str, Part]] = {
         "contact search": part("contact search, surface displacement"),
         "given pressure": part("given pressure", may="surface displacement"),
         "moving counter-body": part("motion of the counter-body", "sam.moving.*"),
-        "misfit strain": part("displacement by a misfit strain", "sam.elastic.misfit sam.grid.misfit"),
+        "misfit strain": part("displacement by a misfit strain", "sam.elastic.misfit sam.grid.smooth"),
         "misfit strain, stresses at the output depths": part("stress of a misfit strain"),
         "elastic peak": part("yield stress"),
         "eigenstrain kernels": part(IN_BOX, FLOW, may="u3 beside the box, shear across y"),
@@ -81,14 +81,13 @@ NEEDS: dict[str, dict[str, Part]] = {
         ),
         "plastic loop": part("plastic step"),
         "plastic loop, loops of the paper": part(modules="sam.plasticity.paper"),
-        "back-stresses": part(modules="sam.plasticity.kinematic"),
+        "back-stresses": part(modules="sam.plasticity.flow"),
         "verdict on repeated loading": part("verdict"),
         "chemical film": part(
             "film law",
-            "sam.tribofilm.state sam.tribofilm sam.tribofilm.law sam.tribofilm.material "
-            "sam.tribofilm.return_map",
+            "sam.tribofilm.state sam.tribofilm sam.tribofilm.law sam.tribofilm.law sam.tribofilm.law",
         ),
-        "chemical film, moving counter-body": part(modules="sam.tribofilm.visits"),
+        "chemical film, moving counter-body": part(modules="sam.tribofilm.state"),
         "worn geometry": part("removal, remap", "sam.wear.*"),
         "stresses at the output depths, not misfit strain": part(
             "stress under F3", may="layered stress under F3"
@@ -168,9 +167,9 @@ RUNGS: dict[str, list[str]] = {
 """The scenes that each model solves."""
 LADDER: list[tuple[str, str]] = [(model, rung) for model, rungs in RUNGS.items() for rung in rungs]
 OPTIONAL = tuple(
-    "sam.tribofilm sam.tribofilm.state sam.wear sam.plasticity sam.layered sam.grid.rough sam.grid.rounded "
+    "sam.tribofilm sam.tribofilm.state sam.wear sam.plasticity sam.layered sam.grid.rough sam.grid.gap "
     "sam.results.rough sam.kernels.eigenstrain sam.planner.yielding "
-    "sam.kernels.layer_stress sam.elastic.coated sam.elastic.misfit sam.grid.coated sam.grid.misfit "
+    "sam.kernels.layer_stress sam.elastic.coated sam.elastic.misfit sam.grid.smooth sam.grid.smooth "
     "sam.moving fem_reference.common.layered_force "
     "fem_reference.spatial.rough fem_reference.spatial.area fem_reference.spatial.track".split()
 )

@@ -5,22 +5,167 @@ Transform convention: scipy.fft.rfft2 over the last two axes (x, y), no normalis
 backward. A field given on a source window is convolved exactly (no wrap-around, no periodic image): the
 transform length is at least n_source + n_observed - 1 in each direction, and the lag l = observed - source
 sits at index (l - first) mod m, where `first` is the lag between the first cells of both windows.
+
+Transforms of what is even or odd about a point, from the half of it that is kept: cosine and sine sums.
+
+Kept are the n values at j = 0 .. n - 1 from the point outward, or, `between`, at j + 1/2 (a row of an even
+number of cells). The transform over the 2 half values about the point, those not given zero, is (-i)^odd
+times half + 1 real numbers. With the angle a = pi m/half of wave number m, m = 0 .. half, they are f_0 + 2
+sum_j f_j cos(j a) for even f and 2 sum_j f_j sin(j a) for odd, or with j + 1/2 in place of j 2 sum_j f_j cos
+and sin.
+
+Up to SHORT products a row, values times wave numbers, they are products with matrices, which take less time
+than fast transforms.
+
+Transforms of fields on a box, with as many numbers for each wave number >= 0 as the symmetry of the scene
+leaves.
+
+Fields are (n, ..., nx, ny), each of the n even or odd under x -> -x and under y -> -y as a kind of quantity
+(a shear stress 13 is odd in x). A mirrored scene has mirrored fields: of them only the half from the middle
+outward is kept, and sine and cosine sums take the place of complex transforms. The transform over the lags -N
+.. N-1 of a kept field is (-i)^odd times a real number.
+
+`columns` gives (N_x + 1, N_y + 1, n, ..., r) real numbers, times (-i)^(odd_x + odd_y): r = 4 without a mirror
+(real and imaginary part at (k_x, k_y) and (-k_x, k_y)), 2 with one in y, 1 with both. `fields` takes such
+columns back, (-i)^(odd_x + odd_y) less.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
+from functools import cache, cached_property, lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
 from sam.arrays import Array
-from sam.contact.real_transforms import Real, forward, half_length, real_spectrum
 from sam.grid.cells import Window
+
+# products a row, 64 values times 128 wave numbers, up to which they take less time than a fast transform
+Real = NDArray[np.floating[Any]]
+"""Real numbers in single or double precision."""
+SHORT = 8500  # products a row, 64 values times 128 wave numbers: up to here they beat a fast transform
+
+
+class _Sum(NamedTuple):
+    """Which of the sums of the module's text, or of their inverses."""
+
+    odd: bool
+    between: bool
+    inverse: bool
+
+
+def half_length(n: int) -> int:
+    """Half the length of an even transform of n cells with lags -n .. n: at least n, a product of small
+    primes.
+
+    >>> half_length(65)
+    72
+    """
+    return int(fft.next_fast_len(n, real=True))
+
+
+def forward(kept: Real, half: int, odd: bool, axis: int, *, between: bool = False) -> Real:
+    """Transform the kept values along an axis.
+
+    Parameters
+    ----------
+    kept
+        (..., n) or (..., n, m), see `axis`; values beyond those that the transform takes are left out.
+    half
+        Half the length of the transform.
+    odd
+        Whether the field is odd about the point.
+    axis
+        -1 or -2.
+    between
+        Whether the values stand at j + 1/2.
+
+    Returns
+    -------
+    Real
+        The half + 1 numbers along the axis.
+    """
+    n = min(kept.shape[axis], half if between else half + 1)
+    if n < kept.shape[axis]:
+        kept = kept[..., :n] if axis == -1 else kept[..., :n, :]
+    if n * half > SHORT:
+        return _fast_forward(kept, half, axis, _Sum(odd, between, False))
+    return _product(kept, _matrix(n, half, _Sum(odd, between, False), kept.dtype), axis)
+
+
+def back(spectrum: Real, n: int, odd: bool, axis: int, *, between: bool = False) -> Real:
+    """The inverse of `forward`: n values from half + 1 numbers along axis -1 or -2."""
+    half = spectrum.shape[axis] - 1
+    if n * half > SHORT:
+        return _fast_back(spectrum, n, axis, _Sum(odd, between, True))
+    return _product(spectrum, _matrix(n, half, _Sum(odd, between, True), spectrum.dtype), axis)
+
+
+def real_spectrum(kernel: Real, half: tuple[int, int], odd: Sequence[bool | int]) -> Real:
+    """Transform of (..., nx, ny) lags >= 0 without its phase, (..., N_x + 1, N_y + 1); odd: whether odd in x,
+    in y.
+
+    Over the lags -N .. N-1 it is (-i)^(o_x + o_y) times this, o = 1 for odd, which is even or odd in the wave
+    number.
+    """
+    for axis, (length, is_odd) in enumerate(zip(half, odd, strict=True), start=-2):
+        kernel = forward(kernel, length, bool(is_odd), axis)
+    return kernel
+
+
+def _product(field: Real, matrix: Real, axis: int) -> Real:
+    """The matrix applied to the rows or to the columns of a field."""
+    return field @ matrix if axis == -1 else matrix.T @ field
+
+
+@lru_cache(maxsize=64)
+def _matrix(n: int, half: int, kind: _Sum, real: np.dtype[np.floating[Any]]) -> Real:
+    """The matrix by which a row of numbers is multiplied from the left in `forward` or `back`."""
+    twice = 2 * np.arange(n) + kind.between  # twice the place
+    turns = np.outer(twice, np.arange(half + 1)) % (4 * half)  # of the angle, in pi/(2 half)
+    angle = np.pi / (2 * half) * turns
+    waves = np.where(turns % (2 * half) == 0, 0.0, np.sin(angle)) if kind.odd else np.cos(angle)
+    if kind.inverse:
+        ends = np.isin(np.arange(half + 1), (0, half))
+        return (np.where(ends, 1, 2) * waves / (2 * half)).T.astype(real)
+    own = np.isin(twice, (0, 2 * half))  # its own mirror image
+    return (np.where(own, 1, 2)[:, None] * waves).astype(real)
+
+
+def _fast_forward(kept: Real, half: int, axis: int, kind: _Sum) -> Real:
+    """`forward` by fast sine and cosine transforms."""
+    zero: Real = np.zeros_like(np.take(kept, [0], axis=axis))
+    if kind.between:
+        sums = (fft.dst if kind.odd else fft.dct)(kept, type=2, n=half, axis=axis)
+        parts = [zero, sums] if kind.odd else [sums, zero]
+    elif kind.odd:
+        inner = np.take(kept, range(1, min(kept.shape[axis], half)), axis=axis)
+        parts = [zero, fft.dst(inner, type=1, n=half - 1, axis=axis), zero]
+    else:
+        even: Real = fft.dct(kept, type=1, n=half + 1, axis=axis)
+        return even
+    return np.concatenate(parts, axis=axis)
+
+
+def _fast_back(spectrum: Real, n: int, axis: int, kind: _Sum) -> Real:
+    """`back` by fast sine and cosine transforms."""
+    half = spectrum.shape[axis] - 1
+    values: Real
+    if kind.between:
+        part = np.take(spectrum, range(kind.odd, half + kind.odd), axis=axis)
+        values = (fft.dst if kind.odd else fft.dct)(part, type=3, axis=axis)
+    elif kind.odd:
+        inner = fft.dst(np.take(spectrum, range(1, half), axis=axis), type=1, axis=axis)
+        values = np.concatenate([np.zeros_like(np.take(inner, [0], axis=axis)), inner], axis=axis)
+    else:
+        values = fft.dct(spectrum, type=1, axis=axis)
+    found: Real = np.take(values, range(n), axis=axis) / (2 * half)
+    return found
+
 
 Parities = Iterable[tuple[int, int]]
 """Of each kernel its sign under x -> -x and under y -> -y."""
@@ -333,3 +478,149 @@ class BoxConvolution:
         product = transformed(field, self.lengths)
         product *= spectrum
         return cropped(product, self.lengths, self.shape)
+
+
+Complex = NDArray[np.complexfloating[Any, Any]]
+"""Complex numbers in single or double precision."""
+
+
+def mirror_half(n: int) -> slice:
+    """The cells from the middle outward, of n in a row."""
+    return slice(n // 2, n)
+
+
+@cache
+def unfolded(n: int) -> NDArray[np.intp]:
+    """The cell of `mirror_half` that each of n cells in a row is equal to."""
+    cell = np.arange(n) - n // 2
+    return np.where(cell < 0, n % 2 - 1 - cell, cell)
+
+
+def filtered(kept: Real, cells: tuple[int, int], spectrum: Real) -> Real:
+    """The kept quarter of a mirrored field on the cells, its transform multiplied by a real one, (N_x + 1,
+    N_y + 1).
+    """
+    between, sizes = [n % 2 == 0 for n in cells], kept.shape
+    for axis in (-1, -2):
+        kept = forward(kept, spectrum.shape[axis] - 1, False, axis, between=between[axis])
+    kept *= spectrum
+    for axis in (-2, -1):
+        kept = back(kept, sizes[axis], False, axis, between=between[axis])
+    return kept
+
+
+class MirroredConvolution(BoxConvolution):
+    """The same for fields that are mirrored in x and in y, given on the quarter from the middle outward that
+    is kept of them.
+    """
+
+    def _spectrum(self, kernel: Real, half: tuple[int, int]) -> Real:
+        return real_spectrum(kernel, half, (0, 0))
+
+    def _apply(self, field: Real, spectrum: Real) -> NDArray[Any]:
+        self.counters.ffts += 2
+        return filtered(field, self.shape, spectrum)
+
+
+def _by_parity(field: Real, odd: Parity, *, n: int, half: int, axis: int, inverse: bool = False) -> Real:
+    """Transform each field along an axis by its parity, with `forward` or `back`.
+
+    odd: of each entry of the first axis; n: cells along the axis, of which half are kept.
+    """
+    shape = list(field.shape)
+    shape[axis] = n - n // 2 if inverse else half + 1
+    out = np.empty(shape, dtype=field.dtype)
+    for which in (False, True):
+        if (chosen := odd == which).any():
+            part, between = field[chosen], n % 2 == 0
+            if inverse:
+                out[chosen] = back(part, shape[axis], which, axis, between=between)
+            else:
+                out[chosen] = forward(part, half, which, axis, between=between)
+    return out
+
+
+class Transforms:
+    """Transforms of fields on a box of nx x ny cells.
+
+    mirror: whether the fields are mirrored in x and in y (x only
+    together with y).
+
+    shape: of a kept field; half: the N of the module's text; single: whether in single precision.
+    """
+
+    def __init__(
+        self, cells: tuple[int, int], mirror: tuple[bool, bool], *, single: bool, counters: Counters
+    ):
+        self.cells, self.mirror, self.counters = cells, mirror, counters
+        self.half = half_length(cells[0]), half_length(cells[1])
+        self.lengths = 2 * self.half[0], 2 * self.half[1]
+        self.real: type[np.floating[Any]] = np.float32 if single else np.float64
+        self.complex: type[np.complexfloating[Any, Any]] = np.complex64 if single else np.complex128
+        self.kept = tuple(mirror_half(n) if m else slice(n) for n, m in zip(self.cells, mirror, strict=True))
+        self.shape = len(range(cells[0])[self.kept[0]]), len(range(cells[1])[self.kept[1]])
+        self._flip = -np.arange(self.half[0] + 1) % self.lengths[0]
+
+    def keep(self, field: Real) -> Real:
+        """The kept part of (..., nx, ny)."""
+        return field[(..., *self.kept)]
+
+    def whole(self, kept: Real, odd_x: Parity, odd_y: Parity) -> Real:
+        """(n, ..., nx, ny) from its kept part."""
+        for axis, odd in ((-2, odd_x), (-1, odd_y)):
+            if self.mirror[axis]:
+                n = self.cells[axis]
+                kept = np.take(kept, unfolded(n), axis=axis)
+                np.moveaxis(kept, axis, 1)[odd == 1, : n // 2] *= -1
+        return kept
+
+    def columns(self, field: Real, odd_x: Parity, odd_y: Parity) -> Real:
+        """(n, ..., nx, ny), kept, to (N_x + 1, N_y + 1, n, ..., r)."""
+        self.counters.ffts += int(np.prod(field.shape[:-2], dtype=int))
+        field = field.astype(self.real, copy=False)
+        if not self.mirror[1]:
+            rows = fft.rfft(field, n=self.lengths[1], axis=-1)  # rows of zeros need none
+            spectrum = fft.fft(rows, n=self.lengths[0], axis=-2)
+            both = np.stack([spectrum[..., : self.half[0] + 1, :], spectrum[..., self._flip, :]], axis=-1)
+            columns = np.ascontiguousarray(np.moveaxis(both, (-3, -2), (0, 1)))
+            columns *= self._phases(odd_x, odd_y, field.ndim - 3)
+            return columns.view(self.real)
+        rows = _by_parity(field, odd_y, n=self.cells[1], half=self.half[1], axis=-1)
+        sign = np.where(odd_y, -1, 1).reshape(-1, *[1] * (field.ndim - 1)).astype(self.real)  # (-i)(-i)
+        if self.mirror[0]:
+            sign = sign * np.where(odd_x, -1, 1).reshape(sign.shape).astype(self.real)
+            spectrum = sign * _by_parity(rows, odd_x, n=self.cells[0], half=self.half[0], axis=-2)
+            return np.ascontiguousarray(np.moveaxis(spectrum, (-2, -1), (0, 1)))[..., None]
+        spectrum = fft.rfft(rows, n=self.lengths[0], axis=-2) * (sign * self._phase_x(odd_x, field.ndim))
+        return np.ascontiguousarray(np.moveaxis(spectrum, (-2, -1), (0, 1)))[..., None].view(self.real)
+
+    def fields(self, columns: Real, odd_x: Parity, odd_y: Parity) -> Real:
+        """(N_x + 1, N_y + 1, n, ..., r) to (n, ..., nx, ny), kept."""
+        self.counters.ffts += int(np.prod(columns.shape[2:-1], dtype=int))
+        if not self.mirror[1]:
+            phased = columns.view(self.complex) * self._phases(odd_x, odd_y, columns.ndim - 4)
+            spectrum = np.empty((*phased.shape[2:-1], self.lengths[0], phased.shape[1]), dtype=self.complex)
+            both = np.moveaxis(phased, (0, 1), (-3, -2))
+            spectrum[..., self._flip, :] = both[..., 1]
+            spectrum[..., : self.half[0] + 1, :] = both[..., 0]
+            # no other rows are wanted
+            rows = fft.ifft(spectrum, axis=-2, overwrite_x=True)[..., : self.cells[0], :]
+            found: Real = fft.irfft(rows, n=self.lengths[1], axis=-1)[..., : self.cells[1]]
+            return found
+        if self.mirror[0]:
+            spectrum = np.ascontiguousarray(np.moveaxis(columns[..., 0], (0, 1), (-2, -1)))
+            rows = _by_parity(spectrum, odd_x, n=self.cells[0], half=self.half[0], axis=-2, inverse=True)
+        else:
+            spectrum = np.moveaxis(columns.view(self.complex)[..., 0], (0, 1), (-2, -1))
+            spectrum = spectrum * self._phase_x(odd_x, spectrum.ndim)
+            rows = fft.irfft(spectrum, n=self.lengths[0], axis=-2)[..., : self.cells[0], :]
+        return _by_parity(rows, odd_y, n=self.cells[1], half=self.half[1], axis=-1, inverse=True)
+
+    def _phase_x(self, odd_x: Parity, ndim: int) -> Complex:
+        return np.where(odd_x, -1j, 1).reshape(-1, *[1] * (ndim - 1)).astype(self.complex)
+
+    def _phases(self, odd_x: Parity, odd_y: Parity, between: int) -> Complex:
+        """(-i)^(odd_x + odd_y) at k_x and at -k_x, (n, ..., 2)."""
+        phase = (-1j) ** (np.asarray(odd_x) + np.asarray(odd_y))
+        both = np.stack([phase, phase * (-1.0) ** np.asarray(odd_x)], axis=-1)
+        return both.reshape(len(both), *[1] * between, 2).astype(self.complex)

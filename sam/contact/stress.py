@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Elastic stresses under surface tractions, at chosen depths, in a window of the grid. Paper Eq. 7, first
 sum.
+
+Total strains at the surface of a body, which a tribofilm that is bonded to it shares.
 """
 
 from __future__ import annotations
@@ -11,11 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sam.arrays import Array
-from sam.contact.bodies import CoatedBody
 from sam.contact.convolution import Convolution, Counters, convolution_onto
+from sam.contact.operators import CoatedBody
 from sam.grid.cells import Window
-from sam.kernels.lags import Lags
-from sam.kernels.patches import STRESS, parity, stress_coefficients
+from sam.kernels.patches import STRESS, Lags, parity, stress_coefficients
 
 DEPTHS_AT_ONCE = 16  # bounds the memory of the spectra
 MIRRORED = 1e-9  # of the largest traction: within the tolerance of a contact
@@ -120,3 +121,30 @@ def von_mises(stress: Array) -> Array:
     normal = (s11 - s22) ** 2 + (s22 - s33) ** 2 + (s33 - s11) ** 2
     found: Array = np.sqrt(normal / 2 + 3 * (s23**2 + s13**2 + s12**2))
     return found
+
+
+def elastic_strain(stress: Array, young: float, poisson: float) -> Array:
+    """Elastic strains xx, yy, xy, zz of stresses (6, ...) in Pa, order 11 22 33 23 13 12."""
+    sxx, syy, szz, sxy = stress[0], stress[1], stress[2], stress[5]
+    parts = (
+        sxx - poisson * (syy + szz),
+        syy - poisson * (sxx + szz),
+        (1 + poisson) * sxy,
+        szz - poisson * (sxx + syy),
+    )
+    return np.stack(parts) / young
+
+
+def surface_strain(stress: Array, plastic: Array, depths: Array, *, young: float, poisson: float) -> Array:
+    """Total strains xx, yy, xy, zz of the surface, (4, nx, ny), from the mean strains of the two uppermost
+    layers of cells.
+
+    stress in Pa and plastic strain, (6, n_layers, nx, ny); depths: of the layer centres in m. In the plane
+    total strains are continuous across the layers; they are extrapolated linearly to z = 0. With one layer
+    its mean is taken.
+    """
+    total = elastic_strain(stress[:, :2], young, poisson) + plastic[[0, 1, 5, 2], :2]
+    if total.shape[1] < 2:
+        return total[:, 0]
+    up: Array = (total[:, 0] - total[:, 1]) * depths[0] / (depths[1] - depths[0])
+    return total[:, 0] + up

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from sam.arrays import Array
-from sam.contact.bodies import CoatedBodies
 from sam.contact.convolution import Counters
-from sam.elastic.sliding import half_space_kernel, moved_rows
+from sam.contact.operators import CoatedBodies
+from sam.elastic.stress import half_space_kernel, moved_rows
 from sam.grid.cells import CellGrid
 from sam.half_space import ElasticConstants, ElasticPair
 from sam.layered.patches import LayeredPatches

@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-from sam.contact.fit import fit_of
+from sam.contact.normal import fit_of
 from sam.elastic.problem import CoatedSurfaces, Loaded
 from sam.elastic.stress import stresses_of
-from sam.results.advice import Remedies, advice
 from sam.results.history import largest_pressure
 from sam.results.snapshots import Coated, Comparison
+from sam.results.tables import Remedies, advice
 from sam.scene import Status
 
 UNFIT = "bare body, for comparison: {}: its largest pressure and stress and their changes are not given"

@@ -10,21 +10,20 @@ import numpy as np
 
 from sam.arrays import Array
 from sam.contact.normal import Contact
-from sam.contact.surface_strain import elastic_strain
+from sam.contact.stress import elastic_strain
 from sam.elastic.comparison import coated_state
 from sam.elastic.problem import ElasticProblem, Loaded
-from sam.elastic.sliding import sliding_of
-from sam.elastic.stress import stress_at, stresses_of
-from sam.results.advice import Remedies
+from sam.elastic.stress import sliding_of, stress_at, stresses_of
 from sam.results.history import Effort, Row, counted, row_of
 from sam.results.snapshots import Cut, Snapshot, row_of_largest
+from sam.results.tables import Remedies
 from sam.scene.residuals import Attempt
 from sam.scene.result import Progress
 from sam.schedule import UNLOADED, Load, Schedule
 from sam.surface_state import Tribofilm, TribofilmState
 
 if TYPE_CHECKING:
-    from sam.moving.track import Track
+    from sam.moving import Track
 
 UNLOADING = "elastic: unloading in one step"
 CYCLE = "elastic: equal to cycle 1"

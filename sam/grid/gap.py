@@ -1,11 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""The gap between unloaded bodies: of a paraboloid, a punch or a plane, less the heights of rough bodies."""
+"""The gap between unloaded bodies: of a paraboloid, a punch or a plane, less the heights of rough bodies.
+
+A punch with a flat end and a rounded edge. Loaded for such a counter-body only.
+
+Contact ellipse of Hertz. Loaded for unequal radii only: a sphere needs neither elliptic integrals nor a
+root.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from math import pi
+from math import acos, cos, inf, pi, sin, sqrt
 from typing import Protocol
 
 import numpy as np
@@ -125,3 +131,92 @@ def _cells_of_circle(distance: Array, radius: float, cell_area: float) -> Mask:
     last = np.abs(np.cumsum(counts) - pi * radius**2 / cell_area).argmin()
     inside: Mask = np.round(distance / radius, 9) <= rings[last]
     return inside
+
+
+FEWEST = 3  # cells in the contact beyond the flat end: the largest pressure errs by 1 %, with 1.5 by 5 %
+HALVINGS = 60  # of a bracket: to the last digit
+
+
+@dataclass(frozen=True)
+class RoundedPunch:
+    """The gap (r - flat)^2/(2 radius) beyond the flat end, zero below it; flat, radius (of the edge) in m.
+
+    Contact of a rigid one with an elastic half-space: Ciavarella, Hills & Monno, Proc. Inst. Mech. Eng. C 212
+    (1998) 319; here from the Abel transform of the gap. With cos t = flat/a the contact radius is a.
+    """
+
+    flat: float
+    radius: float
+
+    def gap(self, grid: CellGrid, at: Place = ORIGIN) -> Array:
+        """At the cell centres, (nx, ny) in m."""
+        beyond = np.maximum(np.hypot(grid.x[:, None] - at[0], grid.y[None, :] - at[1]) - self.flat, 0.0)
+        found: Array = beyond**2 / (2 * self.radius)
+        return found
+
+    def largest_cell(self, a: float) -> float:
+        """In m, at a contact radius in m; infinite without contact beyond the flat end."""
+        return (a - self.flat) / FEWEST if a > self.flat else inf
+
+    def force(self, a: float, modulus: float) -> float:
+        """In N at a contact radius in m; modulus: E* in Pa."""
+        t = acos(min(1.0, self.flat / a))
+        return modulus * a**3 / self.radius * (4 / 3 * sin(t) ** 3 - cos(t) * (t - sin(t) * cos(t)))
+
+    def approach(self, a: float) -> float:
+        """In m at a contact radius in m."""
+        return a / self.radius * (sqrt(a**2 - self.flat**2) - self.flat * acos(min(1.0, self.flat / a)))
+
+    def contact_radius(self, force: float, modulus: float) -> float:
+        """In m under a force in N: at most that of Hertz beyond the flat end."""
+        hertz = (3 * force * self.radius / (4 * modulus)) ** (1 / 3)
+        return self._radius(lambda a: self.force(a, modulus) < force, hertz)
+
+    def radius_at(self, approach: float) -> float:
+        """The contact radius in m at an approach in m: at most twice that of Hertz beyond the flat end."""
+        return self._radius(lambda a: self.approach(a) < approach, 2 * sqrt(self.radius * approach))
+
+    def _radius(self, smaller: Callable[[float], bool], beyond: float) -> float:
+        low, high = self.flat, self.flat + beyond
+        for _ in range(HALVINGS):
+            middle = (low + high) / 2
+            low, high = (middle, high) if smaller(middle) else (low, middle)
+        return high
+
+
+EQUAL = 1e-4  # relative difference of the radii below which the ellipse is a circle to that accuracy
+
+
+def elliptic_contact(force: float, radii: tuple[float, float], modulus: float) -> tuple[float, float]:
+    """Contact semi-axes (a along x, b along y) in m under a force in N, radii (Rx, Ry) in m, E* in Pa.
+    Johnson 1985, Eq. 4.26.
+
+    Solved for the ratio of the axes, with the complete elliptic integrals K and E of m = e^2 = 1 - ratio^2.
+    """
+    from scipy.optimize import brentq  # noqa: PLC0415 - a tenth of a second, for ellipses alone
+    from scipy.special import ellipe, ellipk  # noqa: PLC0415
+
+    rx, ry = radii
+    small, large = sorted((rx, ry))
+
+    def curvatures(ratio: float) -> tuple[float, float]:
+        """(K - E, E/ratio^2 - K)/e^2: proportional to the curvatures 1/(2 R) along the major and the minor
+        axis.
+        """
+        m = 1 - ratio**2
+        k, e = ellipk(m), ellipe(m)
+        return (k - e) / m, (e / ratio**2 - k) / m
+
+    def mismatch(log_ratio: float) -> float:
+        along_major, along_minor = curvatures(np.exp(log_ratio))
+        return along_minor / along_major * small / large - 1
+
+    # the ratio of the axes lies between the ratio of the radii and 1 (Johnson: about its power 2/3)
+    ratio = (
+        float(np.exp(brentq(mismatch, np.log(small / large), -1e-6)))
+        if small / large < 1 - EQUAL
+        else 1 - 1e-6
+    )
+    major = (3 * force * small * curvatures(ratio)[1] / (pi * modulus)) ** (1 / 3)
+    axes = major * ratio, major  # the contact is longer along the larger radius
+    return axes if rx < ry else (major, major * ratio)

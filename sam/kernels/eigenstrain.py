@@ -27,8 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sam.arrays import Array
-from sam.kernels.lags import Cuboids
-from sam.kernels.patches import STRESS
+from sam.kernels.patches import STRESS, Cuboids
 from sam.kernels.primitives import Corners, primitive
 
 PAIRS = tuple((int(name[0]) - 1, int(name[1]) - 1) for name in STRESS)
@@ -176,7 +175,7 @@ def surface_displacement_coefficients(cuboids: Cuboids, *, component: int = 3) -
     --------
     A wide, thin layer that expands by 1 across itself raises the surface by its thickness:
 
-    >>> from sam.kernels.lags import Lags
+    >>> from sam.kernels.patches import Lags
     >>> plate = Cuboids(Lags(1, 1, 1000.0, 1000.0), (0.0, 1.0), nu=0.5)
     >>> round(float(surface_displacement_coefficients(plate)[2, 0, 0, 0]), 3)
     -1.0

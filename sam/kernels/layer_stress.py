@@ -25,7 +25,7 @@ from sam.kernels.eigenstrain import (
     image_orders,
     own_stress,
 )
-from sam.kernels.lags import Cuboids, Lags
+from sam.kernels.patches import Cuboids, Lags
 
 Numbers = NDArray[np.intp]
 """Numbers of pairs of layers."""

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 from sam.arrays import Array
 from sam.grid.cells import CellGrid
 from sam.half_space import ElasticConstants, ElasticPair
-from sam.results.advice import Remedies
 from sam.results.history import CycleEnd, PassEnd, Row
 from sam.results.snapshots import Snapshot
+from sam.results.tables import Remedies
 from sam.scene import Coating, CounterBody, Friction, Grid, Plasticity, Scene, Wear as WearSection
 from sam.scene.checkpoint import Checkpoint
 from sam.scene.section import stated
@@ -24,28 +24,28 @@ from sam.surface_state import Tribofilm, TribofilmState, Wear
 if TYPE_CHECKING:
     from sam.elastic.coated import CoatedPair
     from sam.elastic.misfit import MisfitSphere
-    from sam.grid.misfit import MisfitDemand
+    from sam.grid.gap import RoundedPunch
     from sam.grid.rough import RoughDemand, RoughPatch
-    from sam.grid.rounded import RoundedPunch
-    from sam.moving.track import Track
+    from sam.grid.smooth import MisfitDemand
+    from sam.moving import Track
     from sam.plasticity.flow import Material
+    from sam.plasticity.history import Found
+    from sam.plasticity.load_step import Problem
     from sam.plasticity.progress import Progressed
-    from sam.plasticity.solution import Found
-    from sam.plasticity.step import Problem
     from sam.results.rough import RoughRecord
-    from sam.tribofilm.visits import VisitLaw
+    from sam.tribofilm.state import VisitLaw
 
 
 def ellipse(force: float, radii: tuple[float, float], modulus: float) -> tuple[float, float]:
     """An elliptic contact: its semi-axes in m."""
-    from sam.grid.ellipse import elliptic_contact
+    from sam.grid.gap import elliptic_contact
 
     return elliptic_contact(force, radii, modulus)
 
 
 def rounded_punch(other: CounterBody) -> RoundedPunch:
     """A punch with a rounded edge."""
-    from sam.grid.rounded import RoundedPunch
+    from sam.grid.gap import RoundedPunch
 
     return RoundedPunch(stated(other.flat_radius), stated(other.radius))
 
@@ -80,7 +80,7 @@ def rough_record(patch: RoughPatch, remedies: Remedies) -> RoughRecord:
 
 def coated_depths(thickness: float) -> Callable[[Array], Array]:
     """A coating, its thickness in m: output depths of a bare body -> of the coated one."""
-    from sam.grid.coated import depths_with_film
+    from sam.grid.smooth import depths_with_film
 
     return partial(depths_with_film, thickness=thickness)
 
@@ -97,21 +97,21 @@ def coated_scale(coated: CoatedPair, force: float, radius: float, bare: tuple[fl
 
     bare: Hertz radii in m of the body below the coating, and of one that is all of its material.
     """
-    from sam.grid.coated import contact_radius
+    from sam.grid.smooth import contact_radius
 
     return contact_radius(coated.response, force, radius, bare) / bare[0]
 
 
 def coated_compliance(coated: CoatedPair, radius: float) -> float:
     """A coating: mean compliance 1/E* in 1/Pa of both bodies in a contact of a radius in m."""
-    from sam.grid.coated import mean_compliance
+    from sam.grid.smooth import mean_compliance
 
     return mean_compliance(coated.response, radius)
 
 
 def room_for_bare(scale: float) -> float:
     """A coating: factor on the sides of the grid, so that it holds the contact of the bare body too."""
-    from sam.grid.coated import room_for_bare
+    from sam.grid.smooth import room_for_bare
 
     return room_for_bare(scale)
 
@@ -126,15 +126,14 @@ def tribofilm(friction: Friction, track: Track | None, grid: CellGrid) -> Tribof
 
 def _visits(track: Track) -> VisitLaw:
     """A tribofilm below a counter-body that moves: how it begins each visit."""
-    from sam.tribofilm.visits import VisitLaw
+    from sam.tribofilm.state import VisitLaw
 
     return VisitLaw(None if track.growth is None else track.growth.rate, track.period)
 
 
 def wear(section: WearSection, layer_thickness: float | None, grid: CellGrid) -> Wear:
     """Wear: its law on the cells of a grid; layer_thickness: in m, of a layer with its own limit."""
-    from sam.wear.depth import limit_by_depth
-    from sam.wear.removal import WearLaw
+    from sam.wear import WearLaw, limit_by_depth
 
     limits = limit_by_depth(section, layer_thickness)
     return WearLaw(
@@ -165,14 +164,14 @@ def misfit_sphere(scene: Scene, body: ElasticConstants) -> MisfitSphere:
 
 def misfit_demand(given: Grid | None, depth: float, radius: float, zone: float | None) -> MisfitDemand:
     """A misfit sphere: what its grid is chosen from; zone: radius of the plastic zone in m."""
-    from sam.grid.misfit import MisfitDemand
+    from sam.grid.smooth import MisfitDemand
 
     return MisfitDemand(given, depth, radius, zone)
 
 
 def track(scene: Scene, axes: tuple[float, float]) -> Track:
     """A counter-body that moves: its track; axes: of the contact in m."""
-    from sam.moving.track import Growth, Track
+    from sam.moving import Growth, Track
 
     path, other, strip = stated(scene.loading.path), stated(scene.counterbody), scene.counter_strip
     plane = other.shape == "flat"
@@ -213,8 +212,8 @@ def path_results(
     ends: Sequence[CycleEnd],
     film: TribofilmState | None,
 ) -> tuple[dict[str, dict[str, Any]], dict[str, float | None]]:
-    """A counter-body that moves: the tables and the quantities that it adds; see `sam.moving.tables`."""
-    from sam.moving.tables import Solved, path_quantities, path_tables
+    """A counter-body that moves: the tables and the quantities that it adds; see `sam.moving`."""
+    from sam.moving import Solved, path_quantities, path_tables
 
     found = Solved(last, rows, passes, ends, film)
     return path_tables(track, grid, found), path_quantities(track, grid, found)
@@ -229,7 +228,7 @@ def paper_problem() -> type[Problem]:
 
 def material_with_back_stresses() -> Callable[..., Material]:
     """Kinematic hardening: makes the material of a box."""
-    from sam.plasticity.kinematic import KinematicMaterial
+    from sam.plasticity.flow import KinematicMaterial
 
     return KinematicMaterial.of
 
@@ -243,7 +242,7 @@ def progressed(start: Checkpoint) -> Progressed:
 
 def on_larger_grid(so_far: Progressed, grid: CellGrid, larger: CellGrid) -> Progressed | None:
     """Plasticity: the record on a larger grid; None if the history begins anew there."""
-    from sam.plasticity.solution import on_larger_grid
+    from sam.plasticity.history import on_larger_grid
 
     return on_larger_grid(so_far, grid, larger)
 

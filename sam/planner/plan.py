@@ -13,29 +13,33 @@ from sam.arrays import Array
 from sam.contact.convolution import Counters
 from sam.contact.normal import Contact
 from sam.contact.stress import DEPTHS_AT_ONCE
-from sam.elastic.given import GivenHertz
-from sam.elastic.problem import CoatedSurfaces, ElasticProblem, Looked, MisfitLoad, contact_tolerance
+from sam.elastic.problem import (
+    CoatedSurfaces,
+    ElasticProblem,
+    GivenHertz,
+    Looked,
+    MisfitLoad,
+    contact_tolerance,
+)
 from sam.elastic.stress import depths_at_once
-from sam.grid.cells import CellGrid, Room
-from sam.grid.enlargement import Sides
+from sam.grid.cells import CellGrid, Room, Sides
 from sam.grid.gap import InitialGap, Place, Shape
 from sam.half_space import ElasticPair
-from sam.results.advice import Remedies
 from sam.results.snapshots import Snapshot
+from sam.results.tables import Remedies
 from sam.scene import LeftOut, Plasticity, Solver, Stage
 from sam.scene.result import left_out_of
 from sam.scene.surface import Roughness
 from sam.scene.verdict import Judging
-from sam.schedule import Schedule
-from sam.slip import FullSlip
+from sam.schedule import FullSlip, Schedule
 from sam.surface_state import Tribofilm, Wear
 
 if TYPE_CHECKING:
-    from sam.moving.track import Track
+    from sam.moving import Track
 
 
 class Demand(Protocol):
-    """What the grid of a smooth scene is chosen from; see `sam.grid.smooth` and `sam.grid.misfit`."""
+    """What the grid of a smooth scene is chosen from; see `sam.grid.smooth` and `sam.grid.smooth`."""
 
     def grid(self, room: Room) -> CellGrid:
         """The grid, larger by the factors of a room than the one chosen first."""

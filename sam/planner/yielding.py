@@ -8,13 +8,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from sam.elastic.onset import ElasticPeak
 from sam.elastic.problem import ElasticProblem
+from sam.elastic.stress import ElasticPeak
 from sam.planner.plan import Plan
+from sam.plasticity.history import Found, begun, continued, first_box, solve_plastic
+from sam.plasticity.load_step import CONTACT_SHARE, Problem
 from sam.plasticity.model import Model, YieldingBody
 from sam.plasticity.progress import Progressed
-from sam.plasticity.solution import Found, begun, continued, first_box, solve_plastic
-from sam.plasticity.step import CONTACT_SHARE, Problem
 from sam.scene.result import Progress
 
 # residual of a contact over the tolerance: the last move of the surface in the paper's loops leaves it

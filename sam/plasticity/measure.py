@@ -3,36 +3,55 @@
 make.
 
 Nothing here changes a step. Fields outside of the box are computed once for a strain, and kept in the record.
+
+Stress and plastic strain of three cells over the last period of a repeated load.
+
+Stress and surface displacement of plastic strain anywhere on the grid: what the box of the solution does
+not cover.
+
+From means over cells to values at points: the plastic strain at the centres of the cells, and its largest
+value.
+
+The plastic strain of a cell stands for its mean over the cell. Where it is smooth the value at the centre is
+the mean less h^2/24 times the second derivative in each direction, to fourth order, and the largest value
+lies between centres. It is not smooth where the yield stress has a kink over depth: just there a soft layer
+strains most, and a curve across it overshoots. Three points do not do: where the maximum lies between two
+layers, a parabola through the higher one and its neighbours is up to .5 % too high.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.polynomial import Polynomial
+from numpy.typing import NDArray
 
 from sam.arrays import Array, Mask
+from sam.contact.convolution import FEW_ROWS, Convolution, Counters, row_sums
 from sam.contact.normal import Contact, Found, Units, around, measured, no_contact
 from sam.contact.stress import von_mises
-from sam.elastic.sliding import sliding_of
-from sam.elastic.stress import plane_stress
+from sam.elastic.stress import plane_stress, sliding_of
 from sam.grid.cells import Window
+from sam.kernels.eigenstrain import surface_displacement_coefficients
+from sam.kernels.layer_stress import residual_stress_coefficients
+from sam.kernels.patches import STRESS, Cuboids, Lags, parity
+from sam.plasticity.load_step import ContactPressure, Problem
 from sam.plasticity.model import Model
-from sam.plasticity.outside import Strained, residual_stress, surface_displacement
-from sam.plasticity.pointwise import at_centres, largest
-from sam.plasticity.pressure import ContactPressure
 from sam.plasticity.progress import Outside, Progressed
-from sam.plasticity.state import Extent, Trial
-from sam.plasticity.step import Problem
-from sam.results.history import CycleEnd, CycleStrain, Moved, PassEnd, counted
+from sam.plasticity.spectra import ODD_X, ODD_Y
+from sam.plasticity.state import Extent, Trial, surrounded
+from sam.results.history import CycleEnd, CycleStrain, LoopRow, Moved, PassEnd, counted
 from sam.results.snapshots import Box, Cut, Snapshot, row_of_largest
 from sam.scene.residuals import unfinished
 from sam.scene.result import BACK_STRESS
-from sam.schedule import Load
+from sam.scene.verdict import last_period, loop_places
+from sam.schedule import Load, Target
 
 if TYPE_CHECKING:
-    from sam.moving.track import Track
+    from sam.moving import Track
+
 
 ROUNDING = 1e-9  # of a pressure: the transforms of another window round differently
 
@@ -330,3 +349,225 @@ def cycle_end(model: Model, now: Progressed, cycle: int, strained: CycleStrain) 
     if len(now.wear.volumes) == cycle:
         worn_now, roofed = now.wear.volumes[-1], now.wear.roofed_volumes[-1]
     return replace(end, moved=moved, worn=worn, margin=margin, wear_of_cycle=worn_now, roofed=roofed)
+
+
+def with_loops(model: Model, now: Progressed, target: Target, trial: Trial) -> Progressed:
+    """The record with the cells at the end of a step, if it belongs to the last period or ends the one
+    before.
+    """
+    if model.judging is None or not now.periods.last:
+        return now
+    period, ends = last_period(model.judging, model.schedule.cycles), now.periods.begun is None
+    if not (target.cycle in period or (target.cycle == period.start - 1 and ends)):
+        return now
+    rows = now.measured.loops
+    places = [row.place for row in rows[:3]] if rows else _chosen(now)
+    own = now.extent.window
+    at = [(layer, i - own.i0, j - own.j0) for layer, i, j in places]
+    material = now.state.material
+    found = [
+        LoopRow(
+            place,
+            target.cycle,
+            target.step,
+            float(material.peeq[cell]),
+            tuple(trial.stress[(slice(None), *cell)].tolist()),
+            tuple(material.strain[(slice(None), *cell)].tolist()),
+        )
+        for place, cell in zip(places, at, strict=True)
+    ]
+    return replace(now, measured=replace(now.measured, loops=(*rows, *found)))
+
+
+def _chosen(now: Progressed) -> list[tuple[int, int, int]]:
+    """Layer and cells of the grid of the cells, see `loop_places`."""
+    extent, own, last = now.extent, now.extent.window, now.periods.last[-1]
+    accumulated = surrounded(last.accumulated, last.extent.inside(extent), extent.shape)
+    places = loop_places(accumulated.ravel(), now.state.material.peeq.ravel())
+    found = [np.unravel_index(place, extent.shape) for place in places]
+    return [(int(layer), int(i) + own.i0, int(j) + own.j0) for layer, i, j in found]
+
+
+ODD = np.array([ODD_X, ODD_Y])
+AT_ONCE = 1e6  # coefficients, 8 MB of them; ten times as many are no faster
+
+
+@dataclass(frozen=True)
+class Strained:
+    """Plastic strain in a box of cells.
+
+    Parameters
+    ----------
+    strain
+        (6, n_layers, nx, ny).
+    window
+        The box on the grid.
+    cuboids
+        Its cells, in m.
+    """
+
+    strain: Array
+    window: Window
+    cuboids: Cuboids
+
+    def part(self) -> Strained | None:
+        """The smallest box that holds all of the strain; None without any."""
+        where = np.nonzero(self.strain.any(axis=0))
+        if not where[0].size:
+            return None
+        (k0, i0, j0), (k1, i1, j1) = ([int(each(axis)) for axis in where] for each in (np.min, np.max))
+        window = Window(int(self.window.i0 + i0), int(self.window.j0 + j0), i1 - i0 + 1, j1 - j0 + 1)
+        lags = replace(self.cuboids.lags, nx=window.nx, ny=window.ny)
+        cuboids = replace(self.cuboids, lags=lags, faces=self.cuboids.faces[k0 : k1 + 2])
+        return Strained(self.strain[:, k0 : k1 + 1, i0 : i1 + 1, j0 : j1 + 1], window, cuboids)
+
+    def seen_from(self, observed: Window) -> Cuboids:
+        """Its cuboids with the lags to another window of the grid, in the unit of hx."""
+        lags, cells = Convolution.lags_needed(self.window, observed), self.cuboids.lags
+        faces = tuple(float(z / cells.hx) for z in self.cuboids.faces)
+        return replace(self.cuboids, lags=Lags(*lags, 1.0, cells.hy / cells.hx), faces=faces)
+
+
+def residual_stress(source: Strained, depths: Array, observed: Window, *, mu: float) -> Array:
+    """Stress of the plastic strain in a box at any depths and cells, (6, n_depths, nx, ny) in Pa. Paper Eq.
+    7.
+
+    depths in m, none of them on a face of the box; observed: cells of the grid; mu in Pa.
+    """
+    out = np.zeros((6, len(depths), *observed.shape))
+    part = source.part()
+    if part is None:
+        return out
+    cuboids, hx = part.seen_from(observed), part.cuboids.lags.hx
+    at_once = max(1, int(AT_ONCE // (36 * cuboids.layers * cuboids.lags.nx * cuboids.lags.ny)))
+    for first in range(0, len(depths), at_once):
+        some = slice(first, first + at_once)
+        kernels = residual_stress_coefficients(cuboids, depths[some] / hx)
+        # paper Eq. 7, second sum
+        out[:, some] = mu * row_sums(kernels, part.strain, part.window, observed, odd_out=ODD, odd_in=ODD)
+    return out
+
+
+def surface_displacement(
+    source: Strained, observed: Window, *, counters: Counters, component: int = 3
+) -> Array:
+    """Displacement of the surface due to the plastic strain in a box. Paper Eq. 6.
+
+    Parameters
+    ----------
+    source
+        The plastic strain, and where its box is on the grid.
+    observed
+        Cells of the surface.
+    counters
+        Where the transforms are counted.
+    component
+        3 for u_z (> 0 into the body), 1 for u_x.
+
+    Returns
+    -------
+    Array
+        (nx, ny) in m on the observed cells.
+    """
+    part = source.part()
+    if part is None:
+        return np.zeros(observed.shape)
+    hx = part.cuboids.lags.hx
+    kernels = surface_displacement_coefficients(part.seen_from(observed), component=component)[None]
+    if observed.ny <= FEW_ROWS:
+        odd, kernels = np.array([[component == 1], [component == 2]], dtype=int), kernels[:, :, None]
+        rows = row_sums(kernels, part.strain, part.window, observed, odd_out=odd, odd_in=ODD)
+        return np.asarray(hx * rows[0, 0])
+    signs = [parity(name, component) for name in STRESS for _ in range(part.cuboids.layers)]
+    # paper Eq. 6
+    convolution = Convolution(kernels, signs, part.window, observed, counters=counters)
+    return np.asarray(hx * convolution.summed(part.strain)[0])
+
+
+def at_centres(means: Array, faces: Array, interval: NDArray[np.intp] | None = None) -> Array:
+    """Give values at the centres of cells from the means over them.
+
+    A direction counts where both neighbours are strained too: beyond the border of the plastic zone, a kink,
+    nothing is known.
+
+    Parameters
+    ----------
+    means
+        (n_layers, nx, ny) >= 0.
+    faces
+        Depths of the faces of the layers, (n_layers + 1,), in any unit.
+    interval
+        (n_layers,) numbers: depth counts between layers of the same one; without them all are.
+
+    Returns
+    -------
+    Array
+        (n_layers, nx, ny) >= 0, in the unit of the means.
+    """
+    out = means.copy()
+    for axis, edges in enumerate((faces, np.arange(means.shape[1] + 1.0), np.arange(means.shape[2] + 1.0))):
+        if len(edges) > 3:
+            v = np.moveaxis(means, axis, 0)
+            smooth = (v[:-2] > 0) & (v[1:-1] > 0) & (v[2:] > 0)
+            if axis == 0 and interval is not None:
+                smooth &= (interval[:-2] == interval[2:])[:, None, None]
+            np.moveaxis(out, axis, 0)[1:-1] -= np.where(smooth, _bend(v, edges) / 24, 0.0)
+    np.maximum(out, 0.0, out=out)
+    return out
+
+
+def _bend(means: Array, edges: Array) -> Array:
+    """h^2 v'' of the parabola that has the means of a cell and its neighbours along the first axis, (n - 2,
+    ...).
+    """
+    width, centre = (
+        part.reshape(-1, *[1] * (means.ndim - 1)) for part in (np.diff(edges), (edges[1:] + edges[:-1]) / 2)
+    )
+
+    def second(v: Array) -> Array:
+        slope = np.diff(v, axis=0) / np.diff(centre, axis=0)
+        twice: Array = 2 * np.diff(slope, axis=0) / (centre[2:] - centre[:-2])
+        return twice
+
+    bend: Array = width[1:-1] ** 2 * second(means) / (1 + second(width**2) / 24)
+    return bend
+
+
+def largest(values: Array, depths: Array, interval: NDArray[np.intp] | None = None) -> tuple[float, float]:
+    """(depth, value) of the largest of (n_layers, nx, ny), from a cubic in each direction through it, its
+    neighbours and the next value beside the larger of these, between which the maximum lies.
+
+    interval: as of `at_centres`.
+    """
+    at = tuple(map(int, np.unravel_index(int(values.argmax()), values.shape)))
+    depth, height = float(depths[at[0]]), float(values[at])
+    for axis, k in enumerate(at):
+        line = values[tuple(slice(None) if a == axis else i for a, i in enumerate(at))]
+        place, same = depths, np.ones(len(line), bool)
+        if axis > 0:
+            place = np.arange(float(len(line)))
+        elif interval is not None:
+            same = interval == interval[k]
+        shift, rise = _summit(place, line, k, same)
+        height += rise
+        depth += shift if axis == 0 else 0.0
+    return depth, height
+
+
+def _summit(x: Array, y: Array, k: int, same: NDArray[np.bool_]) -> tuple[float, float]:
+    """How far the maximum lies from the k-th point, the highest, and how much higher: of the curve through
+    three points, or four where the fourth is strained too. Without both neighbours nothing is known.
+    """
+    if not 0 < k < len(y) - 1 or not (same[k - 1] and same[k + 1]):
+        return 0.0, 0.0
+    ends = [k - 1, k + 1]
+    side = 1 if y[k + 1] > y[k - 1] else -1
+    fourth = k + 2 * side
+    if 0 <= fourth < len(y) and same[fourth] and y[fourth] > 0:
+        ends[(side + 1) // 2] = fourth
+    near = slice(ends[0], ends[1] + 1)
+    curve = Polynomial.fit(x[near] - x[k], y[near] - y[k], deg=ends[1] - ends[0]).convert()
+    _, slope, bend, third = (*curve.coef, 0.0, 0.0, 0.0)[:4]
+    root = float(np.sqrt(max(bend**2 - 3 * slope * third, 0.0))) - bend
+    place = float(slope / root) if root > 0 else 0.0  # the zero of the slope where the curve bends down
+    return place, float(curve(place) - curve(0.0))

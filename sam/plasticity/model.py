@@ -18,25 +18,30 @@ from sam.arrays import Array, Mask
 from sam.contact.box import BoxContact
 from sam.contact.convolution import Counters
 from sam.contact.operators import SurfaceOperators
-from sam.contact.surface_strain import surface_strain
+from sam.contact.stress import surface_strain
 from sam.elastic.problem import ElasticProblem
 from sam.grid.cells import CellGrid, Window
 from sam.half_space import ElasticConstants
-from sam.kernels.lags import Cuboids, Lags
+from sam.kernels.patches import Cuboids, Lags
 from sam.plasticity.flow import Material
-from sam.plasticity.pressure import ContactPressure, GivenPressure, NoPressure, PressureSource
+from sam.plasticity.load_step import (
+    CONTACT_SHARE,
+    ContactPressure,
+    GivenPressure,
+    NoPressure,
+    PressureSource,
+    Problem,
+)
 from sam.plasticity.spectra import SINGLE, BoxOperator
 from sam.plasticity.state import Extent
-from sam.plasticity.step import CONTACT_SHARE, Problem
 from sam.scene.surface import Roughness
 from sam.scene.verdict import Judging
 from sam.scene.yield_curve import Strength
-from sam.schedule import UNLOADED, Load, Schedule
-from sam.slip import Coefficient, FullSlip
+from sam.schedule import UNLOADED, Coefficient, FullSlip, Load, Schedule
 from sam.surface_state import Tribofilm, TribofilmState, Wear, WearState
 
 if TYPE_CHECKING:
-    from sam.moving.track import Track
+    from sam.moving import Track
 
 
 @dataclass(frozen=True)

@@ -17,10 +17,10 @@ import numpy as np
 
 from sam.arrays import Array
 from sam.contact.stress import von_mises
+from sam.plasticity.flow import contraction, deviator, equivalent_strain
+from sam.plasticity.load_step import CONTACT_SHARE, Problem
 from sam.plasticity.points import POINTS
-from sam.plasticity.return_map import contraction, deviator, equivalent_strain
 from sam.plasticity.state import Change, MaterialFields, Residual, State, Trial
-from sam.plasticity.step import CONTACT_SHARE, Problem
 from sam.schedule import Load
 
 OUTER = 60  # alternations of contact and displacement; they end by their criterion, or the step is halved

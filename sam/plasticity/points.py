@@ -30,9 +30,8 @@ from math import sqrt
 import numpy as np
 
 from sam.arrays import Array, Mask
-from sam.contact.transforms import Transforms
-from sam.plasticity.flow import Flow, Material
-from sam.plasticity.return_map import contraction, equivalent_strain, mises
+from sam.contact.convolution import Transforms
+from sam.plasticity.flow import Flow, Material, contraction, equivalent_strain, mises
 from sam.plasticity.spectra import EVEN, ODD_X, ODD_Y
 from sam.plasticity.state import MaterialFields
 

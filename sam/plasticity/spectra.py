@@ -24,13 +24,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sam.arrays import Array
-from sam.contact.convolution import Counters
-from sam.contact.real_transforms import real_spectrum
-from sam.contact.transforms import Transforms
+from sam.contact.convolution import Counters, Transforms, real_spectrum
 from sam.kernels.eigenstrain import surface_displacement_coefficients
-from sam.kernels.lags import Cuboids, Lags
 from sam.kernels.layer_stress import CornerFunctions, LayerStress, four_points, mesh
-from sam.kernels.patches import STRESS, stress_coefficients
+from sam.kernels.patches import STRESS, Cuboids, Lags, stress_coefficients
 
 Reals = NDArray[Any]
 """Real numbers in the precision of the operator, single or double."""

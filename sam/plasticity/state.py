@@ -38,7 +38,7 @@ class MaterialFields:
     peeq
         Accumulated plastic strain, (4, n_layers, nx, ny).
     back
-        Strains a_k of the back-stresses, (N, 6, 4, n_layers, nx, ny), see `sam.plasticity.kinematic`; None
+        Strains a_k of the back-stresses, (N, 6, 4, n_layers, nx, ny), see `sam.plasticity.flow`; None
         without them.
     """
 

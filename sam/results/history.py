@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Load steps and cycles: a record of each, and their tables."""
+"""Load steps and cycles: a record of each, and their tables.
+
+Stress and plastic strain of some cells over the last period of a repeated load, and their table.
+"""
 
 from __future__ import annotations
 
@@ -14,10 +17,9 @@ from sam.arrays import Array
 from sam.contact.normal import Contact
 from sam.grid.cells import CellGrid, Window
 from sam.scene.residuals import Attempt
-from sam.scene.result import CYCLES, HISTORY, PATH_HISTORY
+from sam.scene.result import CYCLES, HISTORY, LOOPS, PATH_HISTORY
 from sam.scene.surface import Roughness
-from sam.schedule import Target
-from sam.slip import Coefficient
+from sam.schedule import Coefficient, Target
 
 OUTERMOST, HALFWAY = 0.785, 1.866
 """Of `contact_area`. Fitted to the areas of 42 contacts of Hertz of 4 to 28 cells in the radius, the apex
@@ -313,3 +315,29 @@ def of_ends(cycles: Sequence[int], ends: Sequence[CycleEnd], name: str) -> list[
 
 def _heights_of(found: Roughness | None) -> Mapping[str, float | None]:
     return {"sa_m": found.sa, "sq_m": found.sq, "ssk": found.ssk} if found is not None else {}
+
+
+@dataclass(frozen=True)
+class LoopRow:
+    """A cell at the end of a load step. place: its layer, and its cell of the grid; stress in Pa and plastic
+    strain, six components each.
+    """
+
+    place: tuple[int, int, int]
+    cycle: int
+    step: int
+    peeq: float
+    stress: tuple[float, ...]
+    strain: tuple[float, ...]
+
+
+def loops_table(grid: CellGrid, rows: Sequence[LoopRow]) -> dict[str, list[Any]]:
+    """The table loops; points are numbered from 1, the one that strains most first."""
+    places = list(dict.fromkeys(row.place for row in rows))
+    values = []
+    for row in sorted(rows, key=lambda row: places.index(row.place)):
+        layer, i, j = row.place
+        where = float(grid.x[i]), float(grid.y[j]), float(grid.depths[layer])
+        number = places.index(row.place) + 1
+        values.append((number, *where, row.cycle, row.step, row.peeq, *row.stress, *row.strain))
+    return {name: [value[k] for value in values] for k, name in enumerate(LOOPS)}

@@ -13,13 +13,12 @@ import numpy as np
 from scipy import ndimage
 
 from sam.arrays import Array
-from sam.contact.fit import FEWEST_IN_SPOT
-from sam.contact.normal import Contact
+from sam.contact.normal import FEWEST_IN_SPOT, Contact
 from sam.grid.cells import CellGrid
 from sam.grid.gap import Place
 from sam.grid.rough import RoughPatch
-from sam.results.advice import Remedies
 from sam.results.snapshots import Snapshot
+from sam.results.tables import Remedies
 from sam.scene.remedies import either
 from sam.scene.result import COUNTER_HEIGHT, SURFACE
 from sam.scene.surface import Roughness, roughness_as_read

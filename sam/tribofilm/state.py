@@ -6,20 +6,73 @@ Within a load step the film is tested with the pressure and the surface strain o
 fails, friction becomes high, which changes both; so the step is solved again, from where it began, until no
 further cell fails. Failures only add up, hence this ends. A failure lasts until the end of the cycle; the
 next one begins with a new film. Bosman & Schipper 2011, section 4. Below a counter-body that moves a visit of
-it takes the place of a cycle, see `sam.tribofilm.visits`.
+it takes the place of a cycle, see `sam.tribofilm.state`.
+
+The tribofilm below a counter-body that moves: each visit of it to a cell begins with a whole film, which
+may thin by what grew while the cell was out of contact.
+
+A cell enters when it bears pressure after it bore none while the counter-body moved on; then its film is
+whole, and its strain is counted from that of the surface before the step. It leaves when it bears none; a
+failure lasts until then. The film that may be lost in a visit is what grew since the last one, K_0 sqrt(t)
+over its thickness (Bosman & Schipper 2011, Eq. 11, 16 and 17), t = way of the counter-body between the two
+over its speed; in the first visit it is that of the scene. The clock is the way: it stands still while the
+load is put on or taken off, so that a cell that is unloaded and loaded again at one place goes on with the
+film that it had.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from sam.arrays import Array
-from sam.surface_state import FilmState, TribofilmState
+from sam.surface_state import BINS, FilmState, TribofilmState, Visits, bins_of_visits
 from sam.tribofilm.law import FilmLaw
 
-if TYPE_CHECKING:
-    from sam.tribofilm.visits import VisitLaw
+ROUNDING = 1e-9  # of a way that is as long as a bin, and of a pass: a clock that stands still
+
+
+@dataclass(frozen=True)
+class VisitLaw:
+    """How a film begins each visit.
+
+    rate: of the thinning that may be lost, in 1/sqrt(m) of the way out of contact, None: the same in every
+    visit; period: way in m from the beginning of one pass to that of the next.
+    """
+
+    rate: float | None
+    period: float
+
+    def never(self, strain: Array, limit: float) -> Visits:
+        """Before the first contact; strain: of the surface, (4, nx, ny)."""
+        shape = strain.shape[1:]
+        nothing = np.zeros(shape, dtype=bool)
+        left, limits = np.full(shape, np.nan), np.full(shape, limit)
+        return Visits(0.0, nothing, left, limits, strain, np.zeros(BINS))
+
+    def entered(self, state: TribofilmState, visits: Visits, clock: float) -> TribofilmState:
+        """The film at the beginning of a step to a clock in m."""
+        new = ~visits.inside & ~(clock <= visits.left + ROUNDING * self.period)
+        limit, failed = visits.limit, state.film.failed
+        if self.rate is not None:
+            again = new & np.isfinite(visits.left)
+            limit = np.where(again, self.rate * np.sqrt(np.where(again, clock - visits.left, 0.0)), limit)
+        if (failed & new).any():  # else the same array: nothing is solved anew for it
+            failed = failed & ~new
+        film = FilmState(np.where(new, 0.0, state.film.plastic), failed)
+        reference = np.where(new, visits.strain, state.reference)
+        return TribofilmState(film, reference, replace(visits, clock=clock, limit=limit))
+
+    def after(self, visits: Visits, pressure: Array, strain: Array) -> Visits:
+        """The visits at the end of a step with this pressure, (nx, ny)."""
+        inside, bins = pressure > 0, bins_of_visits(self.period)
+        came = inside & ~visits.inside & (visits.clock > visits.left + ROUNDING * self.period)
+        ways = (visits.clock - visits.left)[came]
+        which = np.minimum(np.searchsorted(bins, ways * (1 - ROUNDING)), BINS - 1)
+        counts = visits.counts + np.bincount(which, minlength=BINS)
+        left = np.where(visits.inside & ~inside, visits.clock, visits.left)
+        return replace(visits, inside=inside, left=left, strain=strain, counts=counts)
 
 
 @dataclass(frozen=True)

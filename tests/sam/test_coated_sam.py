@@ -9,18 +9,15 @@ from rounding import FAR_SCENE, close
 
 import sam
 from sam import choose_grid
-from sam.contact.bodies import CoatedBodies
 from sam.contact.convolution import Counters
 from sam.contact.normal import solve_contact
-from sam.contact.operators import SurfaceOperators
+from sam.contact.operators import CoatedBodies, SurfaceOperators
 from sam.grid.cells import Window
-from sam.grid.coated import contact_radius, depths_with_film
-from sam.kernels.lags import Lags
-from sam.kernels.patches import displacement_coefficients
+from sam.grid.smooth import contact_radius, depths_with_film
+from sam.kernels.patches import Lags, displacement_coefficients
 from sam.layered.patches import LayeredPatches
 from sam.layered.response import Layers
-from sam.planner.bodies import pair_of
-from sam.planner.grids import contact_scale
+from sam.planner.bodies import contact_scale, pair_of
 from sam.scene import Body, CounterBody, Grid, Loading, Plasticity, Scene, Solver, Status
 from sam.schedule import Load
 from verification.cost.plan import plan

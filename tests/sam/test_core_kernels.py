@@ -14,11 +14,10 @@ from fem_reference.common.bodies import Coating, Elastic
 from fem_reference.common.layered_force import _across
 from fem_reference.spatial.lines import Lines
 from sam.contact.convolution import Counters
-from sam.contact.fit import fit_of
+from sam.contact.normal import fit_of
 from sam.elastic.coated import CoatedPair
 from sam.half_space import ElasticConstants, ElasticPair
-from sam.kernels.lags import Cuboids, Lags
-from sam.kernels.patches import stress_coefficients
+from sam.kernels.patches import Cuboids, Lags, stress_coefficients
 from sam.layered.patches import normal_compliance
 from sam.layered.response import Layers
 from sam.plasticity.spectra import NEAR, mean_stress_of_load

@@ -12,7 +12,7 @@ import pytest
 
 from sam.scene.friction import GROWTH_ROWS, Friction, growth_coefficient
 from sam.tribofilm import FilmLaw, FilmState
-from sam.tribofilm.return_map import multiplier
+from sam.tribofilm.law import multiplier
 from verification.reference.bonded_film import (
     in_plane_strain,
     overall_coefficient,

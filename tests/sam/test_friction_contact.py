@@ -16,11 +16,9 @@ from sam import choose_grid
 from sam.contact.convolution import Counters
 from sam.contact.normal import Search, solve_contact
 from sam.contact.operators import SurfaceOperators
-from sam.elastic.sliding import sliding_of
-from sam.elastic.stress import plane_stress
+from sam.elastic.stress import plane_stress, sliding_of
 from sam.grid.cells import Window
-from sam.kernels.lags import Lags
-from sam.kernels.patches import displacement_coefficients, parity
+from sam.kernels.patches import Lags, displacement_coefficients, parity
 from sam.planner.bodies import pair_of
 from sam.scene import Scene, Solver, Status
 from sam.schedule import Load

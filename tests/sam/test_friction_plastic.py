@@ -17,8 +17,7 @@ from sam.contact.convolution import Counters
 from sam.contact.stress import Window
 from sam.grid.cells import CellGrid
 from sam.kernels.eigenstrain import displacement_parity, surface_displacement_coefficients
-from sam.kernels.lags import Cuboids, Lags
-from sam.kernels.patches import STRESS, parity, stress_coefficients
+from sam.kernels.patches import STRESS, Cuboids, Lags, parity, stress_coefficients
 from sam.plasticity import Extent, Strained, surface_displacement
 from sam.plasticity.spectra import BoxOperator, mean_stress_of_load
 from sam.results.snapshots import SHEAR

@@ -9,13 +9,13 @@ import pytest
 from plastic_start import begin
 
 import sam
-from sam.elastic.given import GivenHertz
+from sam.elastic.problem import GivenHertz
 from sam.grid.cells import CellGrid, Window
-from sam.moving.track import Track
+from sam.moving import Track
 from sam.plasticity import Model, onward
 from sam.plasticity.model import Built
 from sam.plasticity.progress import Progressed
-from sam.results.peaks import refined_peak
+from sam.results.quantities import refined_peak
 from sam.scene import Checkpoint, Plasticity, Scene, Status
 from sam.scene.groove import Groove
 from sam.schedule import Load

@@ -18,12 +18,12 @@ from sam import choose_grid
 from sam.contact.convolution import Counters
 from sam.elastic.history import solve_elastic
 from sam.grid.smooth import LAYERS_IN_PROFILE
-from sam.kernels.lags import Lags
 from sam.kernels.layer_stress import CornerFunctions, LayerStress, mesh
-from sam.planner.schedules import schedule_of
-from sam.plasticity import step as plastic_step
+from sam.kernels.patches import Lags
+from sam.planner.bodies import schedule_of
+from sam.plasticity import load_step as plastic_step
+from sam.plasticity.flow import contraction, deviator, equivalent_strain, plastic_multiplier
 from sam.plasticity.history import committed
-from sam.plasticity.return_map import contraction, deviator, equivalent_strain, plastic_multiplier
 from sam.scene import Scene, Solver, Status
 from sam.scene.yield_curve import Linear, Swift, Tabulated
 from sam.schedule import Load

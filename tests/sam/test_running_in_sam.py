@@ -15,10 +15,9 @@ import sam
 from sam.contact.box import BoxContact
 from sam.contact.convolution import Counters
 from sam.contact.operators import SurfaceOperators
-from sam.contact.stress import von_mises
-from sam.contact.surface_strain import surface_strain
-from sam.grid.enlargement import Sides
-from sam.plasticity import history, solution
+from sam.contact.stress import surface_strain, von_mises
+from sam.grid.cells import Sides
+from sam.plasticity import history
 from sam.scene import Body, CounterBody, Friction, FrictionMap, Grid, Loading, Plasticity, Scene, Status
 from sam.scene.result import STRESSES
 from sam.scene.surface import border_cells, heights, mean_deviation, with_relief
@@ -318,7 +317,7 @@ def test_the_box_grows_after_wear_and_removal_strains_nothing_at_its_bottom(monk
     """
     worn, seen = [], []
     first, grown, edge, removed, committed = (
-        solution.first_extent, history.grown, history.edge_reached, history._worn, history.committed
+        history.first_extent, history.grown, history.edge_reached, history._worn, history.committed
     )  # fmt: skip
 
     def after_removal(model, now, trial):
@@ -329,7 +328,7 @@ def test_the_box_grows_after_wear_and_removal_strains_nothing_at_its_bottom(monk
         seen.append((now.extent.layers, bool(trial.increment.strain[:, -1].any())))
         return committed(model, now, trial, film)
 
-    monkeypatch.setattr(solution, "first_extent", lambda *a, **k: replace(first(*a, **k), layers=3))
+    monkeypatch.setattr(history, "first_extent", lambda *a, **k: replace(first(*a, **k), layers=3))
     monkeypatch.setattr(history, "grown", lambda extent, *a: grown(extent, *a) if worn else extent)
     monkeypatch.setattr(history, "edge_reached", lambda *a, **k: edge(*a, **k) if worn else Sides())
     monkeypatch.setattr(history, "_worn", after_removal)

@@ -17,7 +17,7 @@ import sam
 from sam.grid.cells import CellGrid
 from sam.planner import bodies
 from sam.planner.bodies import Opposite
-from sam.planner.refusals import UnsupportedScene, check
+from sam.planner.make import UnsupportedScene, check
 from sam.scene import load_scene
 from sam.scene.body import LAWS
 from sam.scene.counterbody import SHAPES as SHAPES_OF_SCENES

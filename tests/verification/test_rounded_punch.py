@@ -11,8 +11,8 @@ from made_results import red, with_quantities
 
 import fem_reference
 import sam
-from sam.grid.rounded import RoundedPunch as SamPunch
-from sam.planner.refusals import UnsupportedScene
+from sam.grid.gap import RoundedPunch as SamPunch
+from sam.planner.make import UnsupportedScene
 from verification.compare.comparison import compare_scene
 from verification.reference.convergence import Order
 from verification.reference.rounded_punch import RoundedPunch

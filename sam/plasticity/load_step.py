@@ -6,26 +6,146 @@ over the step. One evaluation solves the contact on the surface that x has displ
 (Eq. 7) and returns it to the yield surface; its fixed point is the backward-Euler solution, found by Anderson
 acceleration of preconditioned changes. In full slip the traction is q = coefficient * p everywhere in the
 iteration: in the gap and in the stress.
+
+Where the pressure on a box comes from: the contact with the counter-body, or a pressure that is given.
+
+Both know the load by a function of it, so a gap or a pressure may move from step to step.
+
+Anderson acceleration of a fixed point x = g(x) (Walker & Ni 2011, type II).
+
+How far one iteration moves the plastic strain of a cell, by the stiffness of each part of it.
+
+The return map moves all parts of the strain of a cell by the stiffness 2 m. How much a part lowers the stress
+of its own cell depends on the cell: in a flat one at the surface, a tenth of its width thick, a shear across
+the layer by 0.1 mu for a unit strain, one in the plane by 1.6 mu. A soft layer that a traction shears flows
+most by the first. Where the strain grows by x, the yield stress sigma_y resists a turn of x by
+
+    T = 2 sigma_y/(3 dgamma),     dgamma = sqrt(2/3 x : x),                                               (a)
+
+so that a change of the stress changes the return map by 1/(2 m + T), and the solution, as far as the cell
+alone makes it, by 1/(a + T) with the stiffness a of the part in its own cell. The change of a part of x by
+the return map is therefore multiplied by
+
+    (2 m + T)/(a + T).                                                                                    (b)
+
+The fixed point is the same for every factor.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from typing import Protocol
 
 import numpy as np
 
 from sam.arrays import Array
+from sam.contact.box import BoxContact
 from sam.contact.convolution import Counters
-from sam.plasticity.anderson import Anderson
-from sam.plasticity.flow import Material
+from sam.contact.normal import control_of
+from sam.plasticity.flow import SHEAR, Material, deviator, equivalent_strain
 from sam.plasticity.points import POINTS, CellFlow, Returned, whole
-from sam.plasticity.preconditioner import preconditioned, stiffness_of_parts
-from sam.plasticity.pressure import PressureSource
-from sam.plasticity.return_map import SHEAR, deviator
 from sam.plasticity.spectra import BoxOperator
 from sam.plasticity.state import Change, MaterialFields, Residual, State, Trial
 from sam.schedule import UNLOADED, Load
+
+CONTACT_LIMIT = 400  # iterations of a contact solve, ten times what a step takes; more halve the step
+
+
+class PressureSource(Protocol):
+    """What a plastic step asks for the pressure on its box."""
+
+    def start(self, load: Load) -> Array:
+        """p_hat to start from where nothing is known, (nx, ny)."""
+
+    def __call__(self, displacement: Array, load: Load, start: Array, tolerance: float) -> Array:
+        """p_hat under a load on the surface that plastic strain has displaced, (nx, ny) in m; zero without
+        force.
+        """
+
+    def found(self, load: Load, pressure: Array) -> Load:
+        """A load that p_hat is solved for, with its force."""
+
+
+@dataclass(frozen=True)
+class ContactPressure:
+    """The contact solve on a surface that plastic strain has displaced.
+
+    gap: of a load, (nx, ny) in m on the box, of the surfaces without displacement; hx: cell in m; force_unit:
+    N per sum of p_hat.
+    """
+
+    contact: BoxContact
+    gap: Callable[[Load], Array]
+    hx: float
+    force_unit: float
+
+    def start(self, load: Load) -> Array:
+        """A uniform pressure where there is a counter-body."""
+        return np.isfinite(self.gap(load)).astype(float)
+
+    def __call__(self, displacement: Array, load: Load, start: Array, tolerance: float) -> Array:
+        """p_hat to a tolerance on the residual of the contact, from `start`, or a uniform one where that is
+        zero.
+        """
+        if load.force == 0:
+            return np.zeros(displacement.shape)
+        gap = (self.gap(load) + displacement) / self.hx
+        start = start if start.any() else self.start(load)
+        lowest, control = float(gap.min()), control_of(load.given, self.hx, self.force_unit)
+        return self.contact.solve(
+            gap - lowest,
+            control.less(lowest),
+            start,
+            tolerance=tolerance,
+            limit=CONTACT_LIMIT,
+            sign=load.sign,
+        ).p
+
+    def found(self, load: Load, pressure: Array) -> Load:
+        """The load with the sum of the pressure as its force."""
+        return load.found(float(pressure.sum()) * self.force_unit)
+
+
+@dataclass(frozen=True)
+class NoPressure:
+    """Nothing touches a box of (nx, ny) cells."""
+
+    shape: tuple[int, int]
+
+    def start(self, load: Load) -> Array:
+        """Nothing."""
+        return np.zeros(self.shape)
+
+    def __call__(self, displacement: Array, load: Load, start: Array, tolerance: float) -> Array:
+        """Nothing."""
+        return np.zeros(self.shape)
+
+    def found(self, load: Load, pressure: Array) -> Load:
+        """The load itself."""
+        return load
+
+
+@dataclass(frozen=True)
+class GivenPressure:
+    """A pressure that acts whatever the surface does. pressure: of a load, p_hat on the box, (nx, ny)."""
+
+    pressure: Callable[[Load], Array]
+    shape: tuple[int, int]
+
+    def start(self, load: Load) -> Array:
+        """Nothing."""
+        return np.zeros(self.shape)
+
+    def __call__(self, displacement: Array, load: Load, start: Array, tolerance: float) -> Array:
+        """p_hat of the load; nothing else counts."""
+        return self.pressure(load)
+
+    def found(self, load: Load, pressure: Array) -> Load:
+        """The load itself, whose force is given."""
+        return load
+
 
 # Measured: operator applications (and contact iterations, ci) on a sphere of perfect plasticity at p0 = 3
 # yield stresses, 25 x 25 cells, 4 steps and back at 1e-6: 40 applications and 150 ci with the values below.
@@ -235,3 +355,86 @@ class Problem:
         """The residual fields of an iterate: the stress is what the load does not make."""
         stress = found.stress - self.stress(found.pressure, load)  # paper Eq. 4
         return Residual(self.operator.whole(stress), now.displacement)
+
+
+class Anderson:
+    """Combines the last `window` iterates so that their residuals g(x) - x cancel best.
+
+    weight: of each entry in the least-squares sense, broadcast against x. The normal equations are scaled to
+    a unit diagonal, and their singular values below `cutoff` dropped: directions the window already holds.
+    """
+
+    def __init__(self, window: int, weight: Array, cutoff: float = 1e-12):
+        self.window, self.weight, self.cutoff = window, weight, cutoff
+        self.count = 0  # differences so far; they take turns in the rows of
+        self.steps = self.changes = np.empty((window, 0))  # g(x), and of the weighted residual
+        self.gram = np.zeros((window, window))
+        self.last: tuple[Array, Array] | None = None
+
+    def next(self, x: Array, image: Array) -> Array:
+        """The next iterate after g(x) = image."""
+        flat, residual = image.ravel(), ((image - x) * self.weight).ravel()
+        if self.last is not None:
+            self._add(flat - self.last[0], residual - self.last[1])
+        self.last = (flat, residual)
+        n = min(self.count, self.window)
+        if not n:
+            return image
+        gram = self.gram[:n, :n]
+        size = np.sqrt(np.maximum(gram.diagonal(), np.finfo(float).tiny))
+        right = self.changes[:n] @ residual / size
+        coefficients = np.linalg.lstsq(gram / np.outer(size, size), right, rcond=self.cutoff)[0] / size
+        following: Array = (flat - coefficients @ self.steps[:n]).reshape(image.shape)
+        return following
+
+    def _add(self, step: Array, change: Array) -> None:
+        """The newest differences, in place of the oldest, and the products of the change with those in the
+        window.
+        """
+        if not self.count:
+            self.steps, self.changes = np.empty((2, self.window, step.size))
+        row, self.count = self.count % self.window, self.count + 1
+        self.steps[row], self.changes[row] = step, change
+        n = min(self.count, self.window)
+        self.gram[row, :n] = self.gram[:n, row] = self.changes[:n] @ change
+
+
+ROOT = np.sqrt(SHEAR)
+# Parts of a deviator, each of unit length in components times ROOT: 11 - 22, 11 + 22 - 2 33, 23, 13 and 12.
+PARTS = np.zeros((5, 6))
+PARTS[0, :3] = np.array([1.0, -1.0, 0.0]) / np.sqrt(2)
+PARTS[1, :3] = np.array([1.0, 1.0, -2.0]) / np.sqrt(6)
+PARTS[2:, 3:] = np.eye(3)
+ACROSS = slice(2, 4)  # the shears across the layer: one stiffness for both
+
+
+def stiffness_of_parts(own_stress: Array) -> Array:
+    """Stiffness a of (b) in Pa, (5, n_layers), from the stress of unit strains in their own cell, (6, 6,
+    n_layers) in Pa.
+    """
+    found: Array = -np.einsum("ai,ijk,aj->ak", PARTS * ROOT, own_stress, PARTS / ROOT)
+    found[ACROSS] = found[ACROSS].mean(axis=0)
+    return found
+
+
+def preconditioned(x: Array, image: Array, limit: Array, *, m: float, own: Array) -> Array:
+    """The image of an increment with its change by (b) where it flows.
+
+    Parameters
+    ----------
+    x, image
+        Increment of the plastic strain and what the return map makes of it, (6, n_layers, nx, ny).
+    limit
+        Yield stress in Pa, (n_layers, nx, ny).
+    m
+        Stiffness of the return map in Pa.
+    own
+        That of the parts of the strain, see `stiffness_of_parts`.
+    """
+    found, flowing = image.copy(), image.any(axis=0)
+    start, end = x[:, flowing], image[:, flowing]
+    turn = limit[flowing] / (1.5 * equivalent_strain(end))
+    factor = (2 * m + turn) / (own[:, np.nonzero(flowing)[0]] + turn)
+    parts = factor * (PARTS @ (ROOT[:, None] * (end - start)))
+    found[:, flowing] = start + PARTS.T @ parts / ROOT[:, None]
+    return found
