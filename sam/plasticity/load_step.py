@@ -45,7 +45,7 @@ from sam.contact.box import BoxContact
 from sam.contact.convolution import Counters
 from sam.contact.normal import control_of
 from sam.plasticity.flow import SHEAR, Material, deviator, equivalent_strain
-from sam.plasticity.points import POINTS, CellFlow, Returned, whole
+from sam.plasticity.points import POINTS, CellFlow, whole
 from sam.plasticity.spectra import BoxOperator
 from sam.plasticity.state import Change, MaterialFields, Residual, State, Trial
 from sam.schedule import UNLOADED, Load
@@ -64,7 +64,7 @@ class PressureSource(Protocol):
         force.
         """
 
-    def found(self, load: Load, pressure: Array) -> Load:
+    def loaded(self, load: Load, pressure: Array) -> Load:
         """A load that p_hat is solved for, with its force."""
 
 
@@ -103,7 +103,7 @@ class ContactPressure:
             sign=load.sign,
         ).p
 
-    def found(self, load: Load, pressure: Array) -> Load:
+    def loaded(self, load: Load, pressure: Array) -> Load:
         """The load with the sum of the pressure as its force."""
         return load.found(float(pressure.sum()) * self.force_unit)
 
@@ -122,7 +122,7 @@ class NoPressure:
         """Nothing."""
         return np.zeros(self.shape)
 
-    def found(self, load: Load, pressure: Array) -> Load:
+    def loaded(self, load: Load, pressure: Array) -> Load:
         """The load itself."""
         return load
 
@@ -142,7 +142,7 @@ class GivenPressure:
         """p_hat of the load; nothing else counts."""
         return self.pressure(load)
 
-    def found(self, load: Load, pressure: Array) -> Load:
+    def loaded(self, load: Load, pressure: Array) -> Load:
         """The load itself, whose force is given."""
         return load
 
@@ -171,30 +171,6 @@ CONTACT_SHARE = 1e-2
 AHEAD = 0.1
 # Tolerance of the first contact of a step: 154 ci with 1e-4, 147 with 1e-2.
 FIRST_CONTACT = 1e-3
-
-
-@dataclass(frozen=True)
-class Iterate:
-    """One iterate of a step, on the cells that the operator keeps of the box.
-
-    x: increment of the plastic strain; displacement: of the whole surface by the plastic strain, in m; base:
-    the part of the residual stress that is known, in Pa; response: transform of the rest of it, None if there
-    is none.
-    """
-
-    x: Array
-    displacement: Array
-    base: Array
-    response: Array | None = None
-
-
-@dataclass(frozen=True)
-class Evaluated:
-    """What the contact and the return map make of an iterate: p_hat, and the stress in Pa."""
-
-    pressure: Array
-    stress: Array
-    returned: Returned
 
 
 @dataclass(frozen=True)
@@ -272,31 +248,26 @@ class Problem:
         start: Array | None = None,
         tolerance: float | None = None,
     ) -> Trial:
-        """Make a load step, plastic strain, stress and contact together: its end, converged or not.
+        """The end of a load step from a committed state, converged or not: a fixed point of the increment x.
 
-        Parameters
-        ----------
-        state
-            The committed state at its beginning.
-        load
-            The load at its end.
-        guess
-            A change of the plastic strain to start from, say that of the last step.
-        start
-            p_hat to start from, (nx, ny); that of the state if it is not given.
-        tolerance
-            Another one than that of the problem.
+        x: (6, n_layers, nx, ny) on the cells that the symmetry keeps. guess: change of the plastic strain to
+        start from; start: p_hat to start from, (nx, ny); tolerance: in place of that of the problem.
         """
-        goal = self.tolerance if tolerance is None else tolerance
-        finest, flow = CONTACT_SHARE * goal, self.flow(state)
-        now, residual = self._first(state, guess)
+        K, goal = self.operator, self.tolerance if tolerance is None else tolerance
         window, most = (LONG_WINDOW, LONG_ITERATIONS) if self.longer else (WINDOW, ITERATIONS)
         anderson = Anderson(window, np.sqrt(SHEAR)[:, None, None, None])
+        flow, history, finest = self.flow(state), list[float](), CONTACT_SHARE * goal
+
+        residual = state.residual if guess is None else state.residual.plus(guess.residual)
+        x = np.zeros_like(K.keep(state.material.strain)) if guess is None else K.keep(guess.strain)
+        # of the plastic strain so far: u_3 (Eq. 6), and its stress (Eq. 7) as base plus response
+        displacement, base, response = residual.displacement, K.keep(residual.stress), None
         pressure, accuracy = state.pressure if start is None else start, FIRST_CONTACT
-        history: list[float] = []
         while True:
-            found = self._evaluated(now, flow, load, start=pressure, accuracy=accuracy)
-            pressure, worst = found.pressure, found.returned.worst(goal)
+            pressure = self.pressure(displacement, load, pressure, accuracy)  # paper Eq. 9 and 10
+            stress = base + self.stress(pressure, load, response)  # paper Eq. 4 and 7
+            returned = flow.returned(x, deviator(stress))  # paper Eq. 8, at the points of each cell
+            worst = returned.worst(goal)
             history.append(worst)
             if (worst <= goal and accuracy <= finest) or len(history) > most:
                 break
@@ -304,57 +275,28 @@ class Problem:
             if worst <= goal:
                 accuracy = finest  # once more, with the contact as good as promised
                 continue
-            now = self._iterate(anderson.next(now.x, self._image(now, found, flow)), state.residual)
+            own = stiffness_of_parts(K.own_stress)
+            image = preconditioned(x, returned.image, flow.limit, m=self.stiffness, own=own)
+            x = anderson.next(x, image)
+            strain = K.transformed(x)
+            displacement = state.residual.displacement + K.whole(K.displacement(strain))  # paper Eq. 6
+            base, response = K.keep(state.residual.stress), K.response(strain)  # paper Eq. 7, second sum
             self.counters.plastic_iterations += 1
-        if now.response is not None:
-            residual = self._residual(now, found, load)
+        if response is not None:  # of the stress, what the load does not make: paper Eq. 4
+            residual = Residual(K.whole(stress - self.stress(pressure, load)), displacement)
         return Trial(
-            load=self.pressure.found(load, pressure),
-            points=flow.increment(found.returned).each(partial(whole, self.operator.transforms)),
-            stress=self.operator.whole(found.stress),
+            load=self.pressure.loaded(load, pressure),
+            points=flow.increment(returned).each(partial(whole, K.transforms)),
+            stress=K.whole(stress),
             residual=residual,
             pressure=pressure,
-            yield_excess=found.returned.yield_excess,
-            flow_residual=found.returned.flow_residual,
+            yield_excess=returned.yield_excess,
+            flow_residual=returned.flow_residual,
             history=tuple(history),
             converged=bool(worst <= goal and np.isfinite(worst)),
             rise=load.rise(state.load),
             goal=goal,
         )
-
-    def _first(self, state: State, guess: Change | None) -> tuple[Iterate, Residual]:
-        """The iterate that a step begins from, and its residual fields."""
-        keep = self.operator.keep
-        if guess is None:
-            x, residual = np.zeros_like(keep(state.material.strain)), state.residual
-        else:
-            x, residual = keep(guess.strain), state.residual.plus(guess.residual)
-        return Iterate(x, residual.displacement, keep(residual.stress)), residual
-
-    def _iterate(self, x: Array, before: Residual) -> Iterate:
-        """The iterate with the increment x of the plastic strain, after the residual fields `before`."""
-        operator = self.operator
-        transformed = operator.transformed(x)
-        displacement = before.displacement + operator.whole(operator.displacement(transformed))
-        return Iterate(x, displacement, operator.keep(before.stress), operator.response(transformed))
-
-    def _evaluated(
-        self, now: Iterate, flow: CellFlow, load: Load, *, start: Array, accuracy: float
-    ) -> Evaluated:
-        """The contact of an iterate, solved from `start` to this accuracy, and its residuals."""
-        pressure = self.pressure(now.displacement, load, start, accuracy)
-        stress = now.base + self.stress(pressure, load, now.response)  # paper Eq. 4 and 7
-        return Evaluated(pressure, stress, flow.returned(now.x, deviator(stress)))
-
-    def _image(self, now: Iterate, found: Evaluated, flow: CellFlow) -> Array:
-        """The increment that the fixed-point map makes of an iterate, preconditioned."""
-        own = stiffness_of_parts(self.operator.own_stress)
-        return preconditioned(now.x, found.returned.image, flow.limit, m=self.stiffness, own=own)
-
-    def _residual(self, now: Iterate, found: Evaluated, load: Load) -> Residual:
-        """The residual fields of an iterate: the stress is what the load does not make."""
-        stress = found.stress - self.stress(found.pressure, load)  # paper Eq. 4
-        return Residual(self.operator.whole(stress), now.displacement)
 
 
 class Anderson:

@@ -78,7 +78,7 @@ class PaperProblem(Problem):
         increment = step.increment(found.x, found.length)
         limit = self.material.yield_stress(state.material.peeq + found.length)
         return Trial(
-            load=self.pressure.found(load, pressure),
+            load=self.pressure.loaded(load, pressure),
             points=increment.each(lambda values: np.repeat(values[..., None, :, :, :], POINTS, axis=-4)),
             stress=stress,
             residual=found.residual,
