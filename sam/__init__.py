@@ -6,7 +6,7 @@ from typing import Any
 
 _WHERE = {
     "Load": "sam.schedule",
-    "Plan": "sam.planner.plan",
+    "Plan": "sam.elastic.problem",
     "Search": "sam.contact.normal",
     "UnsupportedScene": "sam.planner.make",
     "check": "sam.planner.make",
@@ -15,7 +15,7 @@ _WHERE = {
     "hertz_semi_axes": "sam.planner.bodies",
     "left_out": "sam.planner.make",
     "misfit_zone": "sam.planner.bodies",
-    "model_of": "sam.planner.yielding",
+    "model_of": "sam.plasticity.model",
     "plan": "sam.planner.make",
     "solve": "sam.solver",
     "solve_contact": "sam.contact.normal",

@@ -21,7 +21,7 @@ import numpy as np
 from sam.arrays import Array, Mask
 from sam.contact.stress import von_mises
 from sam.grid.cells import CellGrid, Window
-from sam.results.history import CycleEnd, Moved, PassEnd, Row
+from sam.results.history import History, Moved, PassEnd, Row
 from sam.results.quantities import refined_peak
 from sam.results.snapshots import Snapshot
 from sam.scene.groove import RUN_IN, RUN_OUT, Groove, passes_to_steady, steady_part
@@ -245,39 +245,26 @@ XX, YY, XZ = 0, 1, 4  # of the order 11 22 33 23 13 12
 Tables = dict[str, dict[str, Any]]
 
 
-@dataclass(frozen=True)
-class Solved:
-    """What the tables are made of: rows of the history, what the passes and the cycles leave, the last state,
-    and the visits of a film.
-    """
-
-    last: Snapshot
-    rows: Sequence[Row]
-    passes: Sequence[PassEnd] = ()
-    ends: Sequence[CycleEnd] = ()
-    film: TribofilmState | None = None
-
-
-def path_tables(track: Track, grid: CellGrid, found: Solved) -> Tables:
+def path_tables(track: Track, grid: CellGrid, history: History, film: TribofilmState | None) -> Tables:
     """The tables track and cross of a body that has yielded below a path along x, passes, and visits of a
     film; none of an elastic body.
     """
-    last, passes = found.last, found.passes
+    last, passes = list(history.snapshots.values())[-1], history.passes
     tables: Tables = {"passes": _passes(passes)} if passes else {}
     worn = last.worn is not None
-    if passes and (worn or found.film is not None):
-        tables["passes"] |= _surface_of_passes(track, found)
-    if found.film is not None and found.film.visits is not None:
-        tables["visits"] = _visits(track, found.film.visits)
+    if passes and (worn or film is not None):
+        tables["passes"] |= _surface_of_passes(track, history)
+    if film is not None and film.visits is not None:
+        tables["visits"] = _visits(track, film.visits)
     if track.along_x and last.box is not None:
         tables |= {"track": _track(track, grid, last), "cross": _cross(track, grid, last)}
     return tables
 
 
-def path_quantities(track: Track, grid: CellGrid, found: Solved) -> dict[str, float | None]:
+def path_quantities(track: Track, grid: CellGrid, history: History) -> dict[str, float | None]:
     """Every name of PATH_QUANTITIES: of the track that the last pass leaves."""
-    last, passes = found.last, found.passes
-    values: dict[str, float | None] = {"rolling_coefficient": track.rolling(found.rows)}
+    last, passes = list(history.snapshots.values())[-1], history.passes
+    values: dict[str, float | None] = {"rolling_coefficient": track.rolling(history.rows)}
     if track.along_x and last.box is not None:
         groove = track.groove(grid, last.residual_displacement)
         values |= {
@@ -314,12 +301,12 @@ def _passes(passes: Sequence[PassEnd]) -> dict[str, Any]:
     return {name: [value[k] for value in values] for k, name in enumerate(PASSES)}
 
 
-def _surface_of_passes(track: Track, found: Solved) -> dict[str, Any]:
+def _surface_of_passes(track: Track, history: History) -> dict[str, Any]:
     """What friction and wear did in each pass: work of the driving force, means over the way at full load."""
-    ends = {end.cycle: end.wear_of_cycle for end in found.ends if end.worn is not None}
+    ends = {end.cycle: end.wear_of_cycle for end in history.ends if end.worn is not None}
     table: dict[str, list[float | None]] = {name: [] for name in OF_PASSES}
-    for each in found.passes:
-        loaded = [row for row in found.rows if row.cycle == each.cycle and row.force > 0]
+    for each in history.passes:
+        loaded = [row for row in history.rows if row.cycle == each.cycle and row.force > 0]
         at_full = {
             row.moved.way: row for row in loaded if row.moved is not None
         }  # the last one at each place

@@ -12,13 +12,13 @@ coarser grid has another one.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from copy import copy
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy import fft
 
 from sam.arrays import Array
@@ -27,33 +27,19 @@ from sam.contact.convolution import (
     Convolution,
     Counters,
     MirroredConvolution,
+    convolution_onto,
     cropped,
     filtered,
     half_length,
     transformed,
 )
-from sam.grid.cells import Window
-from sam.kernels.patches import STRESS, Lags, displacement_coefficients, parity
+from sam.grid.cells import CellGrid, Window
+from sam.half_space import ElasticConstants, ElasticPair
+from sam.kernels.patches import Lags, displacement_coefficients, parity
+from sam.layered.patches import LayeredPatches
+from sam.layered.response import Layers
 
 WAVES = 64  # wave numbers of a bound: 1024 give one larger by less than 0.02 %, 8 one smaller by 0.8 %
-
-
-class CoatedBody(Protocol):
-    """The coefficients of a coated body that a contact needs;
-    `sam.layered.patches.LayeredPatches` has them.
-    """
-
-    def displacement(self, lags: Lags, *, component: int = 3, load: int = 3) -> Array:
-        """Surface displacement per unit traction on a cell, (nx, ny) in m/Pa; lags in m."""
-
-    def stress(self, lags: Lags, z: ArrayLike, *, load: int = 3, names: Sequence[str] = STRESS) -> Array:
-        """Stress at depths z in m per unit traction on a cell, (len(names), nz, nx, ny)."""
-
-    def response(self, k: Array) -> Array:
-        """u_z over p in m/Pa of waves with k > 0 in rad/m."""
-
-    def surface_response(self, k: Array) -> Array:
-        """k times (c_zz, c_zL, c_LL, c_TT) in 1/Pa of waves with k > 0 in rad/m, (4, ...)."""
 
 
 class HalfSpaces:
@@ -124,7 +110,7 @@ class CoatedBodies(HalfSpaces):
 
     def __init__(
         self,
-        layered: CoatedBody,
+        layered: LayeredPatches,
         hx: float,
         modulus: float,
         *,
@@ -320,3 +306,100 @@ class SurfaceOperators:
             return found
 
         return apply
+
+
+class Kernel(Protocol):
+    """Displacement by a unit load on the cell at the origin, (nx, ny) lags >= 0."""
+
+    def __call__(self, nx: int, ny: int, *, component: int, load: int) -> Array:
+        """Of a component by a load in a direction, both 1 to 3."""
+
+
+def half_space_kernel(grid: CellGrid, nu: float) -> Kernel:
+    """mu times the displacement of the surface of a half-space, lengths in hx. Paper Eq. 5."""
+
+    def kernel(nx: int, ny: int, *, component: int, load: int) -> Array:
+        lags = Lags(nx, ny, 1.0, grid.hy / grid.hx)
+        return displacement_coefficients(lags, nu, component=component, load=load)
+
+    return kernel
+
+
+def moved_rows(
+    grid: CellGrid, field: Array, kernel: Kernel, moved_by: tuple[int, int], *, counters: Counters
+) -> Array:
+    """Displacement of the rows that touch y = 0 by a load on the surface, (nx, rows).
+
+    moved_by: component of the displacement and direction of the load, 1 to 3.
+    """
+    component, load = moved_by
+    source, observed = grid.whole, grid.axis_rows
+    coefficients = kernel(*Convolution.lags_needed(source, observed), component=component, load=load)
+    counters.tangential_kernels += moved_by != (3, 3)
+    signs = [parity(str(component), load)]
+    found: Array = convolution_onto(coefficients[None], signs, source, observed, counters=counters)(field)[0]
+    return found
+
+
+@dataclass(frozen=True)
+class CoatedPair:
+    """The coated body and its counter-body; one object serves all load steps.
+
+    layered: coefficients of the coated body; pair: the body below the coating, and the counter-body;
+    thickness in m.
+    """
+
+    layered: LayeredPatches
+    pair: ElasticPair
+    thickness: float
+    _known: dict[float, CoatedBodies] = field(default_factory=dict, compare=False, repr=False)
+
+    @classmethod
+    def of(cls, coating: ElasticConstants, thickness: float, pair: ElasticPair) -> CoatedPair:
+        """A coating of a thickness in m on the body of a pair."""
+        layers = Layers(coating.young, coating.poisson, thickness, pair.body.young, pair.body.poisson)
+        return cls(LayeredPatches(layers), pair, thickness)
+
+    @property
+    def compliance(self) -> float:
+        """(1 - nu^2)/E of the counter-body in 1/Pa; 0 if it is rigid or absent."""
+        return self.pair.other.compliance if self.pair.other is not None else 0.0
+
+    @property
+    def tangential_compliance(self) -> float:
+        """(1 - 2 nu)/mu of the counter-body in 1/Pa; 0 if it is rigid or absent."""
+        return self.pair.other.tangential_compliance if self.pair.other is not None else 0.0
+
+    def response(self, k: Array) -> Array:
+        """c_zz(k) of both bodies together in m/Pa, k > 0 in 1/m."""
+        return self.layered.response(k) + 2 * self.compliance / k
+
+    def bodies(self, grid: CellGrid) -> CoatedBodies:
+        """Their coefficients on a grid; those of the last one are kept."""
+        if grid.hx not in self._known:
+            self._known.clear()
+            self._known[grid.hx] = CoatedBodies(
+                self.layered,
+                grid.hx,
+                self.pair.contact_modulus,
+                compliance=self.compliance,
+                tangential=self.tangential_compliance,
+            )
+        return self._known[grid.hx]
+
+    def counter_uz(
+        self, grid: CellGrid, pressure: Array, traction: Array | None, counters: Counters
+    ) -> Array:
+        """Displacement of the counter-body's surface away from the body, (nx, rows) in m, in the rows at y =
+        0.
+
+        traction: on the body, None where it does not count; the counter-body carries the opposite one.
+        """
+        if not (self.compliance and pressure.any()):
+            return np.zeros(grid.axis_rows.shape)
+        kernel = half_space_kernel(grid, 0.0)
+        out = 2 * self.compliance * grid.hx * moved_rows(grid, pressure, kernel, (3, 3), counters=counters)
+        if traction is None:
+            return out
+        moved = moved_rows(grid, traction, kernel, (3, 1), counters=counters)
+        return out - self.tangential_compliance * grid.hx * moved

@@ -14,9 +14,9 @@ from numpy.typing import ArrayLike
 
 from sam.arrays import Array
 from sam.contact.convolution import Convolution, Counters, convolution_onto
-from sam.contact.operators import CoatedBody
 from sam.grid.cells import Window
 from sam.kernels.patches import STRESS, Lags, parity, stress_coefficients
+from sam.layered.patches import LayeredPatches
 
 DEPTHS_AT_ONCE = 16  # bounds the memory of the spectra
 MIRRORED = 1e-9  # of the largest traction: within the tolerance of a contact
@@ -29,7 +29,7 @@ def stresses(
     observed: Window,
     *,
     nu: float,
-    layered: CoatedBody | None = None,
+    layered: LayeredPatches | None = None,
     counters: Counters | None = None,
 ) -> Array:
     """Stress under tractions on the surface, at the centres of the observed cells. Paper Eq. 7, first sum.

@@ -12,22 +12,19 @@ yields anywhere.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from sam.arrays import Array
-from sam.contact.convolution import Convolution, Counters, convolution_onto
 from sam.contact.normal import Contact
+from sam.contact.operators import half_space_kernel, moved_rows
 from sam.contact.stress import stresses, von_mises
-from sam.elastic.problem import ElasticProblem, Loaded
-from sam.grid.cells import CellGrid, Window
-from sam.kernels.patches import Lags, displacement_coefficients, parity
+from sam.elastic.problem import ElasticProblem, Loaded, depths_at_once
+from sam.grid.cells import Window
+from sam.kernels.patches import Lags
 from sam.results.history import counted
 from sam.results.snapshots import Sliding
 from sam.schedule import Load
-
-BYTES_AT_ONCE = 2e8  # of the spectra of a block of depths, which bounds the memory
 
 
 def stress_at(state: Loaded, depths: Array, window: Window) -> Array:
@@ -37,23 +34,23 @@ def stress_at(state: Loaded, depths: Array, window: Window) -> Array:
         tractions[1] = traction
     found = stresses(
         tractions,
-        (problem.grid.hx, problem.grid.hy),
+        (problem.plan.grid.hx, problem.plan.grid.hy),
         depths,
         window,
-        nu=problem.pair.body.poisson,
-        layered=None if problem.coated is None else problem.coated.layered,
+        nu=problem.plan.pair.body.poisson,
+        layered=None if problem.plan.coated is None else problem.plan.coated.layered,
         counters=problem.counters,
     )
-    if problem.misfit is None or not state.load.misfit:
+    if problem.plan.misfit is None or not state.load.misfit:
         return found
-    (i, j), grid = window.slices, problem.grid
+    (i, j), grid = window.slices, problem.plan.grid
     at = grid.x[i, None], grid.y[j], np.asarray(depths)[:, None, None]
-    return found + state.load.misfit * problem.misfit.stress(*at)
+    return found + state.load.misfit * problem.plan.misfit.stress(*at)
 
 
 def plane_stress(state: Loaded) -> Array:
     """Stress in the rows of cells that touch y = 0, (6, nz, nx, rows) in Pa."""
-    grid = state.problem.grid
+    grid = state.problem.plan.grid
     return stress_at(state, grid.depths, grid.axis_rows)
 
 
@@ -79,16 +76,16 @@ def stresses_of(state: Loaded, row: int | None = None) -> Stresses:
     eight to twenty times as long.
     """
     problem = state.problem
-    if problem.looked.anywhere:
-        return _stresses_anywhere(state, counted(state.contact, problem.grid), row)
-    plane, rows = plane_stress(state), problem.grid.axis_rows
+    if problem.plan.places.anywhere:
+        return _stresses_anywhere(state, counted(state.contact, problem.plan.grid), row)
+    plane, rows = plane_stress(state), problem.plan.grid.axis_rows
     if row is None:
         return Stresses(plane, _in_cells(plane))
     if rows.j0 <= row < rows.j0 + rows.ny:
         in_row = plane[..., row - rows.j0]
     else:
-        in_row = stress_at(state, problem.grid.depths, Window(0, row, problem.grid.nx, 1))[..., 0]
-    return Stresses(plane, _in_cells(in_row[..., None] if problem.looked.beside else plane), in_row)
+        in_row = stress_at(state, problem.plan.grid.depths, Window(0, row, problem.plan.grid.nx, 1))[..., 0]
+    return Stresses(plane, _in_cells(in_row[..., None] if problem.plan.places.beside else plane), in_row)
 
 
 def _in_cells(rows: Array) -> Array:
@@ -97,16 +94,11 @@ def _in_cells(rows: Array) -> Array:
     return found
 
 
-def depths_at_once(grid: CellGrid) -> int:
-    """How many depths a block has: six spectra each, of complex numbers on a grid twice as long each way."""
-    return int(max(1, BYTES_AT_ONCE // (6 * 16 * 2 * grid.nx * (grid.ny + 1))))
-
-
 def _stresses_anywhere(state: Loaded, window: Window, row: int | None) -> Stresses:
     """The largest von Mises stress in a window of the grid, for blocks of depths, so that the memory is
     bounded.
     """
-    grid = state.problem.grid
+    grid = state.problem.plan.grid
     block, rows = depths_at_once(grid), grid.axis_rows.slices[1]
     largest, plane, cut = [], [], []
     for k in range(0, len(grid.depths), block):
@@ -119,23 +111,16 @@ def _stresses_anywhere(state: Loaded, window: Window, row: int | None) -> Stress
     return Stresses(np.concatenate(plane, axis=1), np.concatenate(largest)[:, None], in_row)
 
 
-class Kernel(Protocol):
-    """Displacement by a unit load on the cell at the origin, (nx, ny) lags >= 0."""
-
-    def __call__(self, nx: int, ny: int, *, component: int, load: int) -> Array:
-        """Of a component by a load in a direction, both 1 to 3."""
-
-
 def sliding_of(state: Loaded) -> Sliding | None:
     """What friction adds to an elastic state; None without friction, then nothing is computed."""
     problem, pressure, traction = state.problem, state.contact.pressure, state.traction
     if traction is None:
         return None
-    grid, counters, coated = problem.grid, problem.counters, problem.coated
+    grid, counters, coated = problem.plan.grid, problem.counters, problem.plan.coated
     zero = np.zeros(grid.axis_rows.shape)
     if not traction.any():
         return Sliding(traction, zero, zero, zero, zero)
-    if coated is not None:  # u_z: the contact's less that of the counter-body, see sam.elastic.coated
+    if coated is not None:  # u_z: the contact's less that of the counter-body, see `CoatedPair`
 
         def layered(nx: int, ny: int, *, component: int, load: int) -> Array:
             lags = Lags(nx, ny, grid.hx, grid.hy)
@@ -144,13 +129,13 @@ def sliding_of(state: Loaded) -> Sliding | None:
         ux = moved_rows(grid, pressure, layered, (1, 3), counters=counters)
         ux = ux + moved_rows(grid, traction, layered, (1, 1), counters=counters)
         return Sliding(traction, ux, zero, zero, zero)
-    pair = problem.pair
+    pair = problem.plan.pair
     kernel = half_space_kernel(grid, pair.body.poisson)
     ux = grid.hx * moved_rows(grid, pressure, kernel, (1, 3), counters=counters) / pair.body.shear
     ux = ux + grid.hx * moved_rows(grid, traction, kernel, (1, 1), counters=counters) / pair.body.shear
     # nu = 0 leaves out the factor 1 - 2 nu of D_31, which is a difference where the contact has it
     extra = 0.0
-    if problem.slip.coupled and pair.other is not None:
+    if problem.plan.slip.coupled and pair.other is not None:
         share = pair.body.compliance  # times E*: of the body in the displacement of both
         extra = pair.body.tangential_compliance - 2 * share * pair.tangential_mismatch
     uz = zero
@@ -158,32 +143,6 @@ def sliding_of(state: Loaded) -> Sliding | None:
         kernel = half_space_kernel(grid, 0.0)
         uz = extra * (grid.hx * moved_rows(grid, traction, kernel, (3, 1), counters=counters))
     return Sliding(traction, ux, zero, uz, zero)
-
-
-def half_space_kernel(grid: CellGrid, nu: float) -> Kernel:
-    """mu times the displacement of the surface of a half-space, lengths in hx. Paper Eq. 5."""
-
-    def kernel(nx: int, ny: int, *, component: int, load: int) -> Array:
-        lags = Lags(nx, ny, 1.0, grid.hy / grid.hx)
-        return displacement_coefficients(lags, nu, component=component, load=load)
-
-    return kernel
-
-
-def moved_rows(
-    grid: CellGrid, field: Array, kernel: Kernel, moved_by: tuple[int, int], *, counters: Counters
-) -> Array:
-    """Displacement of the rows that touch y = 0 by a load on the surface, (nx, rows).
-
-    moved_by: component of the displacement and direction of the load, 1 to 3.
-    """
-    component, load = moved_by
-    source, observed = grid.whole, grid.axis_rows
-    coefficients = kernel(*Convolution.lags_needed(source, observed), component=component, load=load)
-    counters.tangential_kernels += moved_by != (3, 3)
-    signs = [parity(str(component), load)]
-    found: Array = convolution_onto(coefficients[None], signs, source, observed, counters=counters)(field)[0]
-    return found
 
 
 @dataclass(frozen=True)
@@ -202,9 +161,9 @@ def elastic_peak(problem: ElasticProblem, load: Load) -> ElasticPeak | None:
     """The elastic state under the largest load; None without any."""
     if load.rests:
         return None
-    high = problem.slip.highest
+    high = problem.plan.slip.highest
     state = problem.state(load, problem.contact(load, high), high)
-    if problem.looked.anywhere:
+    if problem.plan.places.anywhere:
         return ElasticPeak(state.contact, stresses_of(state).mises)
     return ElasticPeak(state.contact, von_mises(plane_stress(state)).max(axis=-1))
 

@@ -5,7 +5,6 @@ grid may come into contact.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -13,7 +12,7 @@ import numpy as np
 
 from sam.arrays import Array
 from sam.grid.cells import CellGrid, Room
-from sam.grid.smooth import LAYERS_IN_PROFILE, given_depths, unchanged
+from sam.grid.smooth import LAYERS_IN_PROFILE, depths_with_film, given_depths
 from sam.scene import Grid, Plasticity
 from sam.scene.section import stated
 from sam.scene.surface import (
@@ -114,14 +113,14 @@ def _heights(surface: Surface, cells: tuple[int, int], extent: tuple[float, floa
 class RoughDemand:
     """What the grid of a rough scene is chosen from.
 
-    given: the table [grid], or None; with_coating: see `sam.grid.smooth.GridDemand`; reach: depth in m to
+    given: the table [grid], or None; film: thickness of a coating in m; reach: depth in m to
     which a plastic zone may go, if all summits in contact act like one (`sam.grid.smooth.point_load_reach`).
     """
 
     patch: RoughPatch
     given: Grid | None
     plasticity: Plasticity | None
-    with_coating: Callable[[Array], Array] = unchanged
+    film: float | None = None
     reach: float = 0.0
 
     def grid(self, room: Room) -> CellGrid:
@@ -139,7 +138,7 @@ class RoughDemand:
                 if plasticity is None
                 else _faces(plasticity, cell, deepest * room.below, self.reach * room.below)
             )
-            depths = self.with_coating(chosen)
+            depths = chosen if self.film is None else depths_with_film(chosen, self.film)
         border = (0, 0) if patch.relief else border_cells((nx, ny))
         if plasticity is not None:
             return CellGrid(nx, ny, hx, hy, (depths[1:] + depths[:-1]) / 2, depths, border, room)

@@ -69,14 +69,6 @@ class PlasticDemand:
     kinks: Sequence[float] = ()
 
 
-FIRST_CHOICE = Room()  # no larger than the estimate
-
-
-def unchanged(depths: Array) -> Array:
-    """The output depths of a body without coating."""
-    return depths
-
-
 @dataclass(frozen=True)
 class GridDemand:
     """What the grid of a smooth scene is chosen from.
@@ -84,7 +76,7 @@ class GridDemand:
     given: the table [grid], or None; axes: estimated semi-axes of the contact along x and y in m; extent:
     sides of the grid in contact radii; wider: factor on them, for a second contact that has to fit; farthest:
     largest |x| and |y| in m of the centre of a travelling load; plastic: None for an elastic body;
-    with_coating: output depths of a bare body -> of a coated one; moves: whether a counter-body travels;
+    film: thickness of a coating in m; moves: whether a counter-body travels;
     largest_cell: in m, that resolves the contact.
     """
 
@@ -94,7 +86,7 @@ class GridDemand:
     wider: float = 1.0
     farthest: tuple[float, float] = (0.0, 0.0)
     plastic: PlasticDemand | None = None
-    with_coating: Callable[[Array], Array] = unchanged
+    film: float | None = None
     moves: bool = False
     largest_cell: float = inf
 
@@ -118,30 +110,37 @@ class GridDemand:
         return a, b
 
     def grid(self, room: Room) -> CellGrid:
-        """The grid, larger by the factors of a room than the one chosen first."""
-        return smooth_grid(self, room)
+        """The grid, larger by the factors of a room. What [grid] leaves out is chosen: 129 x 129 cells over
+        four contact radii each way.
 
+        With plasticity 65 x 65 cells, and layers as thick as a cell where most of the plastic strain is.
+        Cells of the same size and further layers are added where the plastic zone goes further, and along the
+        path of a travelling load.
+        """
+        given, plastic = self.given, self.plastic
+        zone, longer = plastic.reach if plastic else 0.0, []
+        for far, radius in zip(self.farthest, self.axes, strict=True):
+            stretch = max(1.0, ZONE_BESIDE * zone / (self.extent * radius / 2)) * room.beside
+            stretch += 2 * far / (self.extent * radius)
+            longer.append(self.usual if stretch == 1 else 2 * int(np.ceil(stretch * self.usual / 2)) + 1)
+        nx, ny = (given.cells if given and given.cells else None) or longer
+        lx, ly = self.sides((longer[0], longer[1]))
+        hx, hy = lx / nx, ly / ny
+        depths = given_depths(given)
+        if plastic is None:
+            return CellGrid(nx, ny, hx, hy, self._output_depths() if depths is None else depths, room=room)
+        if depths is None:
+            depths = _layer_faces(min(hx, hy), min(self.axes), plastic, room.below)
+        return CellGrid(nx, ny, hx, hy, (depths[1:] + depths[:-1]) / 2, depths, room=room)
 
-def smooth_grid(demand: GridDemand, room: Room = FIRST_CHOICE) -> CellGrid:
-    """The grid of a smooth scene. What [grid] leaves out is chosen: 129 x 129 cells over four contact radii
-    each way.
-
-    With plasticity 65 x 65 cells, and layers as thick as a cell where most of the plastic strain is. Cells of
-    the same size and further layers are added where the plastic zone goes further, and along the path of a
-    travelling load. room: see `sam.grid.cells`.
-    """
-    given = demand.given
-    longer = _longer(demand, room, demand.usual)
-    nx, ny = (given.cells if given and given.cells else None) or longer
-    a, b = demand.axes
-    lx, ly = demand.sides(longer)
-    hx, hy = lx / nx, ly / ny
-    depths = given_depths(given)
-    if demand.plastic is None:
-        return CellGrid(nx, ny, hx, hy, _output_depths(demand) if depths is None else depths, room=room)
-    if depths is None:
-        depths = _layer_faces(min(hx, hy), min(a, b), demand.plastic, room.below)
-    return CellGrid(nx, ny, hx, hy, (depths[1:] + depths[:-1]) / 2, depths, room=room)
+    def _output_depths(self) -> Array:
+        """Depths in m at which the stress of an elastic body is returned."""
+        count = round(DEPTH_RANGE / DEPTH_SPACING)
+        levels: Array = np.arange(count + 1, dtype=np.float64) * (DEPTH_SPACING * min(self.axes))
+        if self.largest_cell < inf:
+            fine = np.arange(EDGE_DEPTHS + 1) * min(self.largest_cell / EDGE_SPACING, levels[1])
+            levels = np.concatenate([fine, levels[levels > fine[-1]]])
+        return levels if self.film is None else depths_with_film(levels, self.film)
 
 
 def given_depths(given: Grid | None) -> Array | None:
@@ -151,28 +150,6 @@ def given_depths(given: Grid | None) -> Array | None:
     if given and given.layers and given.depth:
         return np.linspace(0.0, given.depth, given.layers + 1)
     return None
-
-
-def _longer(demand: GridDemand, room: Room, usual: int) -> tuple[int, int]:
-    """Number of cells each way, with those that a plastic zone, a path or more room add."""
-    zone = demand.plastic.reach if demand.plastic else 0.0
-    stretch = [
-        max(1.0, ZONE_BESIDE * zone / (demand.extent * radius / 2)) * room.beside
-        + 2 * far / (demand.extent * radius)
-        for far, radius in zip(demand.farthest, demand.axes, strict=True)
-    ]
-    nx, ny = (usual if s == 1 else 2 * int(np.ceil(s * usual / 2)) + 1 for s in stretch)
-    return nx, ny
-
-
-def _output_depths(demand: GridDemand) -> Array:
-    """Depths in m at which the stress of an elastic body is returned."""
-    count = round(DEPTH_RANGE / DEPTH_SPACING)
-    levels: Array = np.arange(count + 1, dtype=np.float64) * (DEPTH_SPACING * min(demand.axes))
-    if demand.largest_cell < inf:
-        fine = np.arange(EDGE_DEPTHS + 1) * min(demand.largest_cell / EDGE_SPACING, levels[1])
-        levels = np.concatenate([fine, levels[levels > fine[-1]]])
-    return demand.with_coating(levels)
 
 
 def point_load_reach(force: float, poisson: float, bulk_yield: float, radius: float) -> float:
@@ -186,11 +163,6 @@ def point_load_reach(force: float, poisson: float, bulk_yield: float, radius: fl
     """
     reach = sqrt((3.5 - poisson) * force / (2 * pi * bulk_yield))
     return min(reach, FARTHEST * radius)
-
-
-def layers_as_thick_as_a_cell(axes: tuple[float, float], cell: float) -> float:
-    """How many layers as thick as a cell in m a contact of these semi-axes in m asks for."""
-    return EVEN_DEPTH * min(axes) / cell
 
 
 def _layer_faces(thickness: float, radius: float, plastic: PlasticDemand, room: float) -> Array:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import ceil
 
-from sam.planner.plan import Plan
+from sam.elastic.problem import Plan
 from sam.scene import LeftOut, Path, Plasticity, Scene, Stage
 from sam.scene.result import NO_FORCE
 from sam.scene.verdict import VERDICT, periods_of, reason_without
@@ -309,10 +309,10 @@ def _output(scene: Scene, plan: Plan) -> Iterator[Stage]:
 def _outside(plan: Plan, depths: int) -> Stage:
     """Where the largest von Mises stress is looked for."""
     stage, grid = "stress outside the plane y = 0", plan.grid
-    if plan.looked.anywhere:
+    if plan.places.anywhere:
         reason = "rough: the largest von Mises stress lies anywhere below the patch"
         return Stage(stage, True, reason, {"cells": [grid.nx, grid.ny], "depths": depths})
-    if plan.looked.beside:
+    if plan.places.beside:
         reason = "the load ends beside y = 0: the largest von Mises stress lies below it"
         return Stage(stage, True, reason, {"cells": [grid.nx, 1], "depths": depths})
     return _not(stage, "smooth, sliding along x: the largest von Mises stress lies in y = 0")
@@ -342,7 +342,7 @@ def stress_coefficients(plan: Plan) -> int:
     in it the four components that are not zero by symmetry; below a rough patch all of them.
     """
     grid = plan.grid
-    if plan.looked.anywhere:
+    if plan.places.anywhere:
         return 6 * len(grid.depths) * grid.nx * grid.ny
     a, b = plan.axes
     lags = min(ceil(grid.nx / 2 + a / grid.hx), grid.nx) * min(ceil(b / grid.hy), grid.ny)

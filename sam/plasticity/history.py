@@ -12,12 +12,13 @@ An elasto-plastic scene: its load history solved, and what is found of it.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from sam.contact.stress import von_mises
 from sam.elastic.history import UNLOADING
+from sam.elastic.problem import ElasticProblem
 from sam.elastic.stress import ElasticPeak
 from sam.grid.cells import CellGrid, Sides, Window
 from sam.plasticity.box import edge_reached, first_extent, grown
@@ -37,16 +38,14 @@ from sam.plasticity.measure import (
     with_outside,
 )
 from sam.plasticity.model import Model
-from sam.plasticity.progress import Begun, CycleStart, Parts, Peak, Progressed, floor
+from sam.plasticity.progress import Begun, CycleStart, Parts, Progressed, floor
 from sam.plasticity.state import Extent, MaterialFields, State, Trial, on_larger_box
-from sam.results.history import CycleEnd, Effort, Row, row_of
-from sam.results.snapshots import Snapshot
+from sam.results.history import Effort, History, Row, row_of
 from sam.scene import Status
-from sam.scene.residuals import Attempt, unfinished
+from sam.scene.residuals import unfinished
 from sam.scene.result import LAST, PEAK, UNLOADED, Progress
-from sam.scene.verdict import Verdict
 from sam.schedule import Load, Target
-from sam.surface_state import TribofilmState, WearState
+from sam.surface_state import TribofilmState
 
 MOST_CUTS = 6  # halvings of a load step: a part is then 1/64 of it
 # Tolerance of a step after which the tribofilm is tested first, before that of the solved step: a small
@@ -91,13 +90,24 @@ def _towards(model: Model, now: Progressed, target: Target) -> Progressed:
     return now if now.cuts else _reached(model, now, target, trial)
 
 
+def _ended(record: Progressed, status: Status, words: str, reached: Sides) -> Progressed:
+    """The record of a history that ends before its last load."""
+    history = replace(record.history, status=status, reached=reached, ending=words)
+    return replace(record, history=history)
+
+
+def _residuals(trial: Trial) -> dict[str, float]:
+    """What a load step leaves of the yield condition and of the flow rule."""
+    return {"yield_excess": trial.yield_excess, "flow_residual": trial.flow_residual}
+
+
 def _cut(model: Model, now: Progressed, trial: Trial) -> Progressed:
     """Half of the way to the next load comes first, after an attempt at all of it; if it was halved too
     often, the longer iteration, or the end.
     """
     now = replace(now, parts=now.parts.tried(trial))
     if len(now.cuts) > MOST_CUTS:
-        if now.longer or not model.lengthens:
+        if now.longer or model.plan.paper:
             return _given_up(now, trial)
         return replace(now, longer=True, cuts=now.cuts[-1:])
     model.counters.step_cuts += 1
@@ -108,7 +118,7 @@ def _given_up(now: Progressed, trial: Trial) -> Progressed:
     """The record of a history that ends with an attempt that did not converge."""
     words = f"the plastic iteration of the last attempt, to {trial.load.force:.6g} N,"
     ending = unfinished(words, trial.history, trial.goal)
-    return replace(now, status=Status.STEP_CUT_LIMIT, ending=ending)
+    return _ended(now, Status.STEP_CUT_LIMIT, ending, Sides())
 
 
 def _unloaded_elastically(model: Model, now: Progressed, target: Target) -> Progressed:
@@ -147,15 +157,11 @@ def attempt(model: Model, now: Progressed, load: Load) -> tuple[Progressed, Tria
             now = _on_larger_box(model, now, extent, film)
             guess, start = now.guess(load), start_of(model, now, load)
             continue  # on the larger box
-        reached = edge_reached(trial, cut_beside=model.elastic.looked.anywhere)
+        reached = edge_reached(trial, cut_beside=model.plan.places.anywhere)
         if reached.beside or reached.below:
-            words = "" if model.track is None else model.track.place(load)
-            status = Status.PLASTIC_ZONE_AT_GRID_EDGE
-            return replace(now, status=status, reached=reached, ending=words), None
+            return _ended(now, Status.PLASTIC_ZONE_AT_GRID_EDGE, model.place(load), reached), None
         if model.leaves_grid(now.extent.window, trial.pressure):
-            status, reached = Status.CONTACT_AT_GRID_EDGE, Sides(beside=True)
-            words = "" if model.track is None else model.track.place(load)
-            return replace(now, status=status, reached=reached, ending=words), None
+            return _ended(now, Status.CONTACT_AT_GRID_EDGE, model.place(load), Sides(beside=True)), None
         tested = _tested(model, now, trial, before=before, film=film)
         film_unchanged = tested is None or film is None or tested.film.failed is film.film.failed
         film = tested
@@ -252,12 +258,12 @@ def _reached(model: Model, now: Progressed, target: Target, trial: Trial, *, not
         contact_in_box(model, now, trial),
         effort,
         coefficient=problem_now(model, now).coefficient,
-        whole=model.slip.whole,
+        whole=model.plan.slip.whole,
     )
     if model.track is not None:
         row = replace(row, moved=moved(model, now, trial))
-    found = replace(now.measured, rows=(*now.measured.rows, row))
-    now = replace(now, targets=now.targets[1:], parts=Parts(), measured=found)
+    history = replace(now.history, rows=(*now.history.rows, row))
+    now = replace(now, targets=now.targets[1:], parts=Parts(), history=history)
     following = now.targets[0] if now.targets else None
     if _ends_period(model, target, following):
         now = replace(now, periods=now.periods.ended(model, now.state, now.extent))
@@ -267,11 +273,11 @@ def _reached(model: Model, now: Progressed, target: Target, trial: Trial, *, not
     if not target.snapshot:
         return now
     now = with_outside(model, now, stress=True)
-    found = now.measured
-    if target.snapshot == "peak":
-        found = replace(found, peak=Peak(trial.yield_excess, trial.flow_residual))
+    history = now.history
+    if target.snapshot == PEAK:
+        history = replace(history, certificate=_residuals(trial))
     state = snapshot(model, now, target.snapshot, trial)
-    return replace(now, measured=replace(found, snapshots={**found.snapshots, target.snapshot: state}))
+    return replace(now, history=replace(history, snapshots={**history.snapshots, target.snapshot: state}))
 
 
 def _ends_period(model: Model, target: Target, following: Target | None) -> bool:
@@ -290,35 +296,35 @@ def _cycle_ended(model: Model, now: Progressed, cycle: int, trial: Trial) -> tup
     if trial.load.force == 0 and now.wear is not None:
         now, trial = _worn(model, now, trial)
     now = with_outside(model, now)
-    found = now.measured
-    found = replace(found, ends=(*found.ends, cycle_end(model, now, cycle, strained)))
+    history = replace(now.history, ends=(*now.history.ends, cycle_end(model, now, cycle, strained)))
     if model.track is not None:
-        found = replace(found, passes=(*found.passes, pass_end(model, now, model.track, cycle)))
-    return replace(now, measured=found, dissipated=0.0), trial
+        passes = (*history.passes, pass_end(model, now, model.track, cycle))
+        history = replace(history, passes=passes)
+    return replace(now, history=history, dissipated=0.0), trial
 
 
 def _worn(model: Model, now: Progressed, trial: Trial) -> tuple[Progressed, Trial]:
     """Material that is strained too much is removed, and equilibrium found again; the same trial if nothing
     is removed.
     """
-    if model.wear is None or now.wear is None:
+    if model.plan.wear is None or now.wear is None:
         return now, trial
     peeq, points, faces = now.state.material.peeq, now.state.points.by_name(), model.faces(now.extent)
-    wear, below = model.wear.removed(now.wear, points, faces, now.extent.window, peeq=peeq)
+    wear, below = model.plan.wear.removed(now.wear, points, faces, now.extent.window, peeq=peeq)
     now = replace(now, wear=wear)
     if not wear.volumes[-1]:
         return now, trial
-    rows = now.measured.rows
+    rows = now.history.rows
     problem, left = problem_now(model, now), MaterialFields(**below)
     state = State(left, problem.residual_of(left.means()), trial.pressure, trial.load)
     now = replace(now, state=state, outside=None)
     after = replace(problem, longer=now.longer).step(state, trial.load)
     note = f"{wear.volumes[-1]:.6g} m3 removed"
-    if not after.converged and model.lengthens and not now.longer:  # there is no load to halve
+    if not after.converged and not model.plan.paper and not now.longer:  # there is no load to halve
         now, note = replace(now, longer=True), _joined(note, LONGER)
         after = replace(problem, longer=True).step(state, trial.load)
     worn = replace(rows[-1], note=_joined(rows[-1].note, note))
-    now = replace(now, measured=replace(now.measured, rows=(*rows[:-1], worn)))
+    now = replace(now, history=replace(now.history, rows=(*rows[:-1], worn)))
     if not after.converged:
         return _given_up(now, after), trial
     return committed(model, now, after, now.tribofilm), after
@@ -328,54 +334,36 @@ def _joined(*notes: str) -> str:
     return "; ".join(filter(None, notes))
 
 
-@dataclass(frozen=True)
-class Found:
-    """The solved history. status: CONVERGED, or why not; ending: of the last iteration, in words.
-
-    verdicts: after each period of a repeated load, with the floor of strain, of a scene that is judged;
-    unfinished: the step that was not reached, see `residual_table`; reached: the sides of the grid at which
-    the plastic zone ended the history; so_far: its record.
-    """
-
-    rows: Sequence[Row]
-    snapshots: list[Snapshot]
-    certificate: dict[str, float]
-    discretisation: dict[str, object]
-    status: Status
-    reached: Sides
-    so_far: Progressed
-    warnings: tuple[str, ...] = ()
-    ends: tuple[CycleEnd, ...] = ()
-    wear: WearState | None = None
-    ending: str = ""
-    unfinished: tuple[tuple[int, int, Sequence[Attempt]], ...] = ()
-    verdicts: tuple[Verdict, ...] = ()
-    floor: float = 0.0
-
-
 def solve_plastic(
-    model: Model,
-    now: Progressed,
+    problem: ElasticProblem,
     report: Progress,
     *,
     keep: Callable[[Progressed, int, int], None] | None = None,
-    stop: str | None = None,
-) -> Found:
-    """History and states of a body that yields, from a record on: see `begun` and `continued`.
+    start: Progressed | None = None,
+    peak: ElasticPeak | None = None,
+) -> tuple[History, Progressed]:
+    """The load history of a body that yields, from its beginning or from a record on, and the last record.
 
-    keep: called as keep(progressed, done, total) after each committed step, or part of one, with the number
-    of load steps; stop: of the paper's loops, None without them.
+    keep: called as keep(record, done, total) after each committed step, or part of one, with the number of
+    load steps; peak: of the body if it stayed elastic, which the first box is chosen from.
     """
-    schedule = model.schedule
-    total = len(schedule.targets)
+    model = Model(problem)
+    if start is not None:
+        now = continued(model, start)
+    elif peak is not None:
+        now = begun(model, model.schedule.targets, first_box(model, peak))
+    else:
+        raise ValueError("either a record or the elastic peak is needed")
+    total = len(model.schedule.targets)
     while not now.ended:
         before, now = now, onward(model, now)
-        done = len(now.measured.rows)
+        done = len(now.history.rows)
         if keep is not None and now.last is not before.last:
             keep(now, done, done + len(now.targets))
-        if before.targets[0].rises and done > len(before.measured.rows):
+        if before.targets[0].rises and done > len(before.history.rows):
             report("load steps", done, total)
-    return found_of(model, now, stop)
+    history = finished(model, now)
+    return history, replace(now, counters=replace(model.counters))
 
 
 def begun(model: Model, targets: Sequence[Target], extent: Extent) -> Progressed:
@@ -383,7 +371,7 @@ def begun(model: Model, targets: Sequence[Target], extent: Extent) -> Progressed
     film = None
     if model.tribofilm is not None:
         film = model.tribofilm.fresh(model.nothing_strained())
-    wear = model.wear.fresh() if model.wear is not None else None
+    wear = model.plan.wear.fresh() if model.plan.wear is not None else None
     state = model.problem(extent, film, wear).virgin()
     return Progressed(state, extent, model.grid.room, tuple(targets), replace(model.counters), film, wear)
 
@@ -400,97 +388,91 @@ def first_box(model: Model, peak: ElasticPeak) -> Extent:
     return first_extent(
         model.grid,
         peak,
-        model.body.initial_yield(model.grid.depths),
-        anywhere=model.elastic.looked.anywhere,
+        model.plan.initial_yield,
+        anywhere=model.plan.places.anywhere,
         both_ways=model.schedule.alternates,
         path=model.schedule.path,
     )
 
 
-def on_larger_grid(so_far: Progressed, grid: CellGrid, larger: CellGrid) -> Progressed | None:
+def on_larger_grid(record: Progressed, grid: CellGrid, larger: CellGrid) -> Progressed | None:
     """The same record in the middle of a grid with further cells of the same size, or above further layers;
     None if it has fields of the whole grid, or layers that the other has not.
     """
     wider, faces = grid.shape != larger.shape, grid.layer_faces
-    of_whole_grid = wider and (so_far.wear is not None or so_far.tribofilm is not None)
+    of_whole_grid = wider and (record.wear is not None or record.tribofilm is not None)
     same_layers = np.array_equal(faces, larger.layer_faces[: len(faces)])
-    if so_far.measured.snapshots or of_whole_grid or not same_layers:
+    if record.history.snapshots or of_whole_grid or not same_layers:
         return None
     i, j = (larger.nx - grid.nx) // 2, (larger.ny - grid.ny) // 2
 
     def there(extent: Extent) -> Extent:
         """A box of the grid on the larger one."""
-        own = extent.window
-        return replace(extent, window=Window(own.i0 + i, own.j0 + j, own.nx, own.ny))
+        inside = extent.window
+        return replace(extent, window=Window(inside.i0 + i, inside.j0 + j, inside.nx, inside.ny))
 
-    start = so_far.cycle_start
-    measured = so_far.measured
+    start, ends = record.cycle_start, record.history.ends
     if wider:
-        ends = tuple(replace(end, moved=None, worn=None) for end in measured.ends)
-        measured = replace(measured, ends=ends)
-    moved = replace(
-        so_far,
-        extent=there(so_far.extent),
+        ends = tuple(replace(end, moved=None, worn=None) for end in ends)
+    history = replace(record.history, ends=ends, status=Status.CONVERGED, reached=Sides(), ending="")
+    return replace(
+        record,
+        extent=there(record.extent),
         outside=None,
         room=larger.room,
-        measured=measured,
+        history=history,
         cycle_start=start and replace(start, extent=there(start.extent)),
-        periods=so_far.periods.at(there),
+        periods=record.periods.at(there),
     )
-    return replace(moved, status=Status.CONVERGED, reached=Sides(), ending="")
 
 
-def found_of(model: Model, now: Progressed, stop: str | None) -> Found:
-    """What is found of a history; of one that broke off the last state that it reached, as LAST.
-
-    stop: of the paper's loops, None without them.
+def finished(model: Model, now: Progressed) -> History:
+    """The history of a record that has ended, with what is measured at its end; of one that broke off before
+    the peak with the last state that it reached, as LAST.
     """
-    snapshots, peak = dict(now.measured.snapshots), now.measured.peak
-    if peak is None:
+    history = now.history
+    snapshots, residuals, plan = dict(history.snapshots), history.certificate, model.plan
+    if not residuals:
         last = now.last
-        material = now.state.material
-        if last is None or last.increment.strain.shape != material.strain.shape:  # the box has grown since
+        if (
+            last is None or last.increment.strain.shape != now.state.material.strain.shape
+        ):  # the box has grown
             last = problem_now(model, now).step(now.state, now.state.load)
         now = with_outside(model, now, stress=True)
-        snapshots[LAST] = snapshot(model, now, LAST, last)
-        peak = Peak(last.yield_excess, last.flow_residual)
-    found = (snapshots[name] for name in (PEAK, LAST, UNLOADED) if name in snapshots)
-    states = [with_last_period(model, now, each) for each in found]
-    certificate = {
-        "yield_excess": peak.yield_excess,
-        "flow_residual": peak.flow_residual,
-        "yield_excess_outside_box": _excess_outside(model, now.extent, states[0]),
-        "plastic_tolerance": model.tolerance,
+        snapshots[LAST], residuals = snapshot(model, now, LAST, last), _residuals(last)
+    states = {
+        name: with_last_period(model, now, snapshots[name])
+        for name in (PEAK, LAST, UNLOADED)
+        if name in snapshots
     }
-    discretisation = {
-        "plastic_box_cells": [now.extent.window.nx, now.extent.window.ny],
-        "plastic_box_layers": now.extent.layers,
-        "layers": len(model.grid.depths),
-        "operator_bytes": problem_now(model, now).operator.memory,
-    }
-    return Found(
-        now.measured.rows,
-        states,
-        certificate,
-        discretisation,
-        now.status,
-        now.reached,
-        replace(now, counters=replace(model.counters)),
-        warnings=(*_lengthened(now.measured.rows), *(() if stop is None else (_warning(stop, peak),))),
-        ends=now.measured.ends,
-        wear=now.wear,
-        ending=now.ending,
+    first, window = next(iter(states.values())), now.extent.window
+    # of the stress in y = 0 outside the box, where no plastic strain was allowed
+    excess = von_mises(first.in_plane) / plan.initial_yield[:, None] - 1
+    excess[: now.extent.layers, window.i0 : window.i0 + window.nx] = 0.0
+    warnings = _lengthened(history.rows)
+    if plan.paper:
+        warnings += (
+            f'solver.method = "paper", stop = "{plan.solver.stop}": the last step leaves a yield excess of '
+            f"{residuals['yield_excess']:.1e} and a flow-rule residual of {residuals['flow_residual']:.1e} "
+            "of the yield stress",
+        )
+    return replace(
+        history,
+        snapshots=states,
+        certificate={
+            **residuals,
+            "yield_excess_outside_box": float(max(excess.max(), 0.0)),
+            "plastic_tolerance": model.tolerance,
+        },
+        discretisation={
+            "plastic_box_cells": [window.nx, window.ny],
+            "plastic_box_layers": now.extent.layers,
+            "layers": len(model.grid.depths),
+            "operator_bytes": problem_now(model, now).operator.memory,
+        },
+        warnings=warnings,
         unfinished=tuple((target.cycle, target.step, now.parts.attempts) for target in now.targets[:1]),
-        verdicts=now.periods.verdicts,
         floor=float(floor(model, now.extent).min()) if model.judging is not None else 0.0,
-    )
-
-
-def _warning(stop: str, peak: Peak) -> str:
-    """The paper's loops stop by their own criterion: what they leave is said."""
-    return (
-        f'solver.method = "paper", stop = "{stop}": the last step leaves a yield excess of '
-        f"{peak.yield_excess:.1e} and a flow-rule residual of {peak.flow_residual:.1e} of the yield stress"
     )
 
 
@@ -505,13 +487,3 @@ def _lengthened(rows: Sequence[Row]) -> tuple[str, ...]:
         f"a load step did not converge however often it was halved; {len(steps)} of {len(rows)} load steps, "
         f"from {first} on, were made by a {LONGER}, of up to {words}",
     )
-
-
-def _excess_outside(model: Model, extent: Extent, state: Snapshot) -> float:
-    """max((mises - sigma_y)/sigma_y, 0) in the plane y = 0 outside the box, where no plastic strain was
-    allowed.
-    """
-    window, limit = extent.window, model.body.initial_yield(model.grid.depths)
-    excess = von_mises(state.in_plane) / limit[:, None] - 1
-    excess[: extent.layers, window.i0 : window.i0 + window.nx] = 0.0
-    return float(max(excess.max(), 0.0))

@@ -90,7 +90,7 @@ def contact_on_grid(model: Model, now: Progressed, trial: Trial) -> Contact:
     found = _measured(model, source, load, gap, p=p, u=u)
     if found.converged:
         return found
-    goal = model.contact_share * model.tolerance
+    goal = model.contact_tolerance
     p, u = _on_grid(model, window, source(moved[window.slices], load, trial.pressure, goal), load.sign)
     again = _measured(model, source, load, gap, p=p, u=u)
     return again if again.converged else found
@@ -105,7 +105,7 @@ def _on_grid(model: Model, window: Window, pressure: Array, sign: float) -> tupl
 
 
 def _given(model: Model, load: Load, p: Array, u: Array) -> Contact:
-    given = model.elastic.given
+    given = model.plan.given
     if given is None:
         raise ValueError("the pressure is not given")
     return given.contact(model.grid, load, p * model.unit, u * model.grid.hx)
@@ -115,7 +115,7 @@ def _measured(
     model: Model, source: ContactPressure, load: Load, gap: Array, *, p: Array, u: Array
 ) -> Contact:
     """The contact of p_hat and u_hat, on the box or on the grid."""
-    grid, tolerance = model.grid, model.contact_share * model.tolerance + ROUNDING
+    grid, tolerance = model.grid, model.contact_tolerance + ROUNDING
     units, fields = Units(grid.hx, grid.hy, 2 * model.unit), Found(p, u, around(p > 0))
     found = measured(model.surface, gap, fields, units, given=load.given, tolerance=tolerance)
     if found.converged:
@@ -151,7 +151,7 @@ def _residual_stress(model: Model, now: Progressed) -> Array:
     grid, window, rows = model.grid, now.extent.window, model.grid.axis_rows
     across = window.j0 <= rows.j0 and rows.j0 + rows.ny <= window.j0 + window.ny
     covered = now.extent.layers if across and window.nx == grid.nx else 0
-    below = residual_stress(_strained(model, now), grid.depths[covered:], rows, mu=model.body.mu)
+    below = residual_stress(_strained(model, now), grid.depths[covered:], rows, mu=model.plan.pair.body.shear)
     return np.concatenate([np.zeros((6, covered, *below.shape[2:])), below], axis=1)
 
 
@@ -188,7 +188,7 @@ def pass_end(model: Model, now: Progressed, track: Track, cycle: int) -> PassEnd
     """What a pass over a path leaves; the record has the fields outside of the box."""
     start, uz = now.cycle_start, known_outside(now).displacement
     added = now.state.material.peeq if start is None else start.new_strain(now.state, now.extent)
-    rows = now.measured.rows
+    rows = now.history.rows
     return track.pass_end(model.grid, cycle, uz=uz, added=added, window=now.extent.window, rows=rows)
 
 
@@ -279,7 +279,7 @@ def _cut(model: Model, now: Progressed, trial: Trial, contact: Contact) -> Cut |
     """The cells of the box in the row of the largest pressure; None without contact, or where that is around
     the origin.
     """
-    if not model.elastic.looked.off_origin or trial.load.force == 0:
+    if not model.plan.places.off_origin or trial.load.force == 0:
         return None
     window, layers, grid = now.extent.window, now.extent.layers, model.grid
     row = row_of_largest(contact, counted(contact, grid))
@@ -295,7 +295,7 @@ def _top(model: Model, now: Progressed) -> tuple[float, float] | None:
     peeq, depths = now.state.material.peeq, model.grid.depths[: now.extent.layers]
     if not peeq.any():
         return None
-    interval = model.body.strength.kinks.interval(depths)
+    interval = model.strength.kinks.interval(depths)
     return largest(at_centres(peeq, model.faces(now.extent), interval), depths, interval)
 
 
@@ -325,7 +325,7 @@ def strained_in_cycle(now: Progressed) -> CycleStrain:
 
 def dissipated_by(model: Model, now: Progressed, trial: Trial) -> float:
     """The energy in J that a step from a record dissipates; 0 where nobody asks for it."""
-    if not (model.dissipates and trial.plastic):
+    if not (model.plan.dissipates and trial.plastic):
         return 0.0
     flow = model.material(now.extent).flow(now.state.points)
     return float((model.volumes(now.extent) * flow.dissipated(trial.points).mean(axis=0)).sum())
@@ -335,16 +335,16 @@ def cycle_end(model: Model, now: Progressed, cycle: int, strained: CycleStrain) 
     """The surface at the end of a cycle, and how much is worn so far; the record has the fields outside of
     the box.
     """
-    moved, roughness = known_outside(now).displacement, model.roughness
+    moved, rough = known_outside(now).displacement, model.plan.rough
     worn = now.wear.depth if now.wear is not None else None
     lowered = moved if worn is None else moved + worn
     volume = now.wear.volume if now.wear is not None else 0.0
-    found = roughness(lowered) if roughness is not None else None
+    found = rough.roughness(lowered) if rough is not None else None
     work, spent = model.counters.operator_applications, now.dissipated
     end = CycleEnd(cycle, volume, found, work, strained=strained, dissipated=spent)
-    if model.wear is None or now.wear is None:
+    if model.plan.wear is None or now.wear is None:
         return end
-    margin = model.wear.margin(now.state.material.peeq, model.faces(now.extent))
+    margin = model.plan.wear.margin(now.state.material.peeq, model.faces(now.extent))
     worn_now, roofed = 0.0, 0.0
     if len(now.wear.volumes) == cycle:
         worn_now, roofed = now.wear.volumes[-1], now.wear.roofed_volumes[-1]
@@ -360,7 +360,7 @@ def with_loops(model: Model, now: Progressed, target: Target, trial: Trial) -> P
     period, ends = last_period(model.judging, model.schedule.cycles), now.periods.begun is None
     if not (target.cycle in period or (target.cycle == period.start - 1 and ends)):
         return now
-    rows = now.measured.loops
+    rows = now.history.loops
     places = [row.place for row in rows[:3]] if rows else _chosen(now)
     own = now.extent.window
     at = [(layer, i - own.i0, j - own.j0) for layer, i, j in places]
@@ -376,7 +376,7 @@ def with_loops(model: Model, now: Progressed, target: Target, trial: Trial) -> P
         )
         for place, cell in zip(places, at, strict=True)
     ]
-    return replace(now, measured=replace(now.measured, loops=(*rows, *found)))
+    return replace(now, history=replace(now.history, loops=(*rows, *found)))
 
 
 def _chosen(now: Progressed) -> list[tuple[int, int, int]]:

@@ -18,11 +18,10 @@ import numpy as np
 
 from sam.arrays import Array
 from sam.contact.convolution import Counters
-from sam.grid.cells import Room, Sides
+from sam.grid.cells import Room
 from sam.plasticity.model import Model
 from sam.plasticity.state import Change, Extent, State, Trial, surrounded
-from sam.results.history import CycleEnd, LoopRow, PassEnd, Row
-from sam.results.snapshots import Snapshot
+from sam.results.history import History
 from sam.scene import Status
 from sam.scene.residuals import Attempt
 from sam.scene.verdict import Period, Verdict, cell_fields, norm_of, verdict_on
@@ -119,7 +118,7 @@ def _compared(added: Sequence[Added], extent: Extent) -> list[Period]:
 
 def _yield_strain(model: Model, extent: Extent) -> Array:
     """Initial yield stress over Young's modulus in each cell of a box, (n,)."""
-    strain = model.body.initial_yield(model.grid.depths[: extent.layers]) / model.body.elastic.young
+    strain = model.plan.initial_yield[: extent.layers] / model.plan.pair.body.young
     return np.broadcast_to(strain[:, None, None], extent.shape).ravel()
 
 
@@ -131,14 +130,6 @@ def floor(model: Model, extent: Extent) -> Array:
 
 
 ROUNDING = 1e-9  # of a ratio of equal load steps
-
-
-@dataclass(frozen=True)
-class Peak:
-    """What is recorded of the largest load besides its snapshot: residuals of the step."""
-
-    yield_excess: float
-    flow_residual: float
 
 
 @dataclass(frozen=True)
@@ -191,20 +182,6 @@ class CycleStart:
 
 
 @dataclass(frozen=True)
-class Measured:
-    """What is recorded of the steps so far. peak: None before it is reached; ends: of the cycles; passes: of
-    those over a path; loops: of three cells over the last period.
-    """
-
-    rows: tuple[Row, ...] = ()
-    snapshots: Mapping[str, Snapshot] = field(default_factory=dict)
-    peak: Peak | None = None
-    ends: tuple[CycleEnd, ...] = ()
-    passes: tuple[PassEnd, ...] = ()
-    loops: tuple[LoopRow, ...] = ()
-
-
-@dataclass(frozen=True)
 class Progressed:
     """A history after a committed step, or part of one.
 
@@ -226,8 +203,8 @@ class Progressed:
         Loads on the way to the first target, itself the last; empty before its step begins.
     parts
         What is already committed of that step.
-    measured
-        What is recorded of the steps so far.
+    history
+        What is recorded of the steps so far, and how they ended.
     recalled
         p_hat at the end of earlier steps, by their force or approach.
     outside
@@ -240,9 +217,6 @@ class Progressed:
         Strain of the periods of a repeated load that is judged.
     dissipated
         Energy in J that the cycle has dissipated so far, where that is asked for.
-    status, reached, ending
-        CONVERGED, or why the history ended; the sides of the grid that were reached; in words how the last
-        iteration ended.
     """
 
     state: State
@@ -256,21 +230,18 @@ class Progressed:
     change: Change | None = None
     cuts: tuple[Load, ...] = ()
     parts: Parts = Parts()
-    measured: Measured = Measured()
+    history: History = field(default_factory=History)
     recalled: Mapping[str, Array] = field(default_factory=dict)
     outside: Outside | None = None
     longer: bool = False
     cycle_start: CycleStart | None = None
     periods: Periods = field(default_factory=Periods)
     dissipated: float = 0.0
-    status: Status = Status.CONVERGED
-    reached: Sides = field(default_factory=Sides)
-    ending: str = ""
 
     @property
     def ended(self) -> bool:
         """Whether all targets are reached, or one was not."""
-        return not self.targets or self.status is not Status.CONVERGED
+        return not self.targets or self.history.status is not Status.CONVERGED
 
     def guess(self, load: Load) -> Change | None:
         """What the last step changed, scaled with the load, while the load rises on the same box."""

@@ -7,7 +7,7 @@ Stress and plastic strain of some cells over the last period of a repeated load,
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,9 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from sam.arrays import Array
 from sam.contact.normal import Contact
-from sam.grid.cells import CellGrid, Window
+from sam.grid.cells import CellGrid, Sides, Window
+from sam.results.snapshots import Snapshot
+from sam.scene import Status
 from sam.scene.residuals import Attempt
 from sam.scene.result import CYCLES, HISTORY, LOOPS, PATH_HISTORY
 from sam.scene.surface import Roughness
@@ -341,3 +343,30 @@ def loops_table(grid: CellGrid, rows: Sequence[LoopRow]) -> dict[str, list[Any]]
         number = places.index(row.place) + 1
         values.append((number, *where, row.cycle, row.step, row.peeq, *row.stress, *row.strain))
     return {name: [value[k] for value in values] for k, name in enumerate(LOOPS)}
+
+
+@dataclass(frozen=True)
+class History:
+    """What is recorded of a load history, elastic or plastic, while it is solved and at its end.
+
+    rows: of the load steps; snapshots: name of the state -> it, in the order of the tables; ends: of the
+    cycles; passes: of those over a path; loops: of three cells over the last period; status: CONVERGED, or
+    why the history ended; reached: sides of the grid that plastic zone or contact reached; ending: of the
+    last iteration, in words; certificate: residuals of the load step to the peak, and what is measured at
+    the end; unfinished: cycle, step and attempts of the step that was not reached; floor: strain below which
+    a period counts as without plastic strain.
+    """
+
+    rows: tuple[Row, ...] = ()
+    snapshots: Mapping[str, Snapshot] = field(default_factory=dict)
+    ends: tuple[CycleEnd, ...] = ()
+    passes: tuple[PassEnd, ...] = ()
+    loops: tuple[LoopRow, ...] = ()
+    status: Status = Status.CONVERGED
+    reached: Sides = field(default_factory=Sides)
+    ending: str = ""
+    certificate: Mapping[str, float] = field(default_factory=dict)
+    discretisation: Mapping[str, Any] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+    unfinished: tuple[tuple[int, int, tuple[Attempt, ...]], ...] = ()
+    floor: float = 0.0

@@ -10,7 +10,6 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-from scipy import ndimage
 
 from sam.arrays import Array
 from sam.contact.normal import FEWEST_IN_SPOT, Contact
@@ -117,6 +116,8 @@ def too_few_cells(pressure: Array) -> str:
     pressure: of the cells, (nx, ny) in Pa. A spot is what hangs together over sides of its cells: two that
     touch at a corner have a saddle between them, and as one they would pass for resolved.
     """
+    from scipy import ndimage  # noqa: PLC0415 - for rough scenes alone
+
     spots, _ = ndimage.label(pressure > 0)
     if not spots.any():
         return ""

@@ -15,7 +15,7 @@ from fem_reference.common.layered_force import _across
 from fem_reference.spatial.lines import Lines
 from sam.contact.convolution import Counters
 from sam.contact.normal import fit_of
-from sam.elastic.coated import CoatedPair
+from sam.contact.operators import CoatedPair
 from sam.half_space import ElasticConstants, ElasticPair
 from sam.kernels.patches import Cuboids, Lags, stress_coefficients
 from sam.layered.patches import normal_compliance

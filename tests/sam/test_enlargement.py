@@ -131,7 +131,7 @@ def test_enlarged_during_the_solve_it_is_the_answer_of_the_larger_grid(coarse, m
     assert any("enlarged" in warning for warning in small.warnings)
     assert list(small.tables["history"]["step"]) == list(range(1, len(small.tables["history"]["step"]) + 1))
     whole = sam.plan(scene(9)).on(Room(**grown)).grid
-    monkeypatch.setattr(sam.solver, "plan", lambda scene: replace(sam.plan(scene), grid=whole))
+    monkeypatch.setattr(sam.solver, "plan_of", lambda bodies: replace(sam.plan(bodies.scene), grid=whole))
     large = sam.solve(scene(9))
     assert large.discretisation["cells"] == small.discretisation["cells"]
     for name in ("approach_m", "p_max_Pa", "peeq_max", "mises_max_Pa"):

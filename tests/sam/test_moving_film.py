@@ -9,7 +9,7 @@ from builders import CHEMICAL_FILM, RUN_IN_STEEL, STEEL
 
 import sam
 from sam.moving import Track
-from sam.planner.bodies import schedule_of
+from sam.planner.make import schedule_of
 from sam.plasticity.progress import Progressed
 from sam.scene import Checkpoint, Scene
 from sam.schedule import Load

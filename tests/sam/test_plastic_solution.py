@@ -20,7 +20,7 @@ from sam.elastic.history import solve_elastic
 from sam.grid.smooth import LAYERS_IN_PROFILE
 from sam.kernels.layer_stress import CornerFunctions, LayerStress, mesh
 from sam.kernels.patches import Lags
-from sam.planner.bodies import schedule_of
+from sam.planner.make import schedule_of
 from sam.plasticity import load_step as plastic_step
 from sam.plasticity.flow import contraction, deviator, equivalent_strain, plastic_multiplier
 from sam.plasticity.history import committed
@@ -146,7 +146,7 @@ def test_one_and_a_half_times_the_yield_stress_is_elastic():
     assert result.quantities["peeq_max"] == 0.0 and result.cost["operator_applications"] == 0
     assert any(entry.stage == "eigenstrain kernels" for entry in result.left_out)
     plan = sam.plan(a_scene)
-    rows, _ = solve_elastic(plan.problem(Counters()), plan.schedule, plan.remedies, lambda *_: None)
+    rows = solve_elastic(plan.problem(Counters()), lambda *_: None).rows
     assert result.tables["history"]["p_max_Pa"][3] == rows[3].p_max
 
 

@@ -285,7 +285,7 @@ def test_a_new_film_without_friction_forgets_the_traction_of_the_cycle_before(mo
     new = pressure(model.problem(extent, model.tribofilm.fresh(model.nothing_strained()), None).pressure)
     grid = model.grid
     bare = SurfaceOperators((grid.nx, grid.ny), grid.hy / grid.hx, Counters())
-    alone = pressure(replace(model.built.pressure, contact=BoxContact(bare, extent.window)))
+    alone = pressure(replace(model.built.problem.pressure, contact=BoxContact(bare, extent.window)))
     assert np.abs(new - alone).max() <= 1e-7 * alone.max()
     assert np.abs(with_failures - alone).max() > 0.01 * alone.max()
 
