@@ -3,19 +3,16 @@
 worn off.
 
 The records are frozen. The laws that make a new record from an old one stand in `sam.tribofilm` and in
-`sam.wear`; a solver knows them by the protocols below, and loads neither package for a scene without a
-tribofilm or without wear.
+`sam.wear`.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 
 from sam.arrays import Array, Mask
-from sam.grid.cells import Window
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,28 +86,6 @@ class TribofilmState:
     visits: Visits | None = None
 
 
-class Tribofilm(Protocol):
-    """The law by which a tribofilm decides on the coefficient of friction of each cell; see
-    `sam.tribofilm.state`.
-    """
-
-    def fresh(self, strain: Array) -> TribofilmState:
-        """A whole film on a surface with these total strains, (4, nx, ny)."""
-
-    def coefficient(self, state: TribofilmState) -> Array:
-        """Coefficient of friction of each cell, (nx, ny)."""
-
-    def entered(self, state: TribofilmState, clock: float) -> TribofilmState:
-        """The film at the beginning of a step to a clock: whole where a cell was out of contact."""
-
-    def tested(
-        self, committed: TribofilmState, tried: TribofilmState, strain: Array, *, pressure: Array, sign: float
-    ) -> TribofilmState:
-        """The film at the end of a load step. It has the same array `failed` as `tried` where no further cell
-        fails.
-        """
-
-
 @dataclass(frozen=True, eq=False)
 class WearState:
     """Wear so far on the whole grid.
@@ -153,24 +128,3 @@ class WearState:
         displacement.
         """
         return self.volume - self.volume_of(original - current)
-
-
-class Wear(Protocol):
-    """The law by which strained material is removed at the end of a cycle; see `sam.wear`."""
-
-    def fresh(self) -> WearState:
-        """The surface before the first cycle."""
-
-    def margin(self, peeq: Array, faces: Array) -> float:
-        """1 less the largest plastic strain over its limit, of (n_layers, nx, ny) cells with these faces in
-        m.
-        """
-
-    def removed(
-        self, state: WearState, fields: dict[str, Array], faces: Array, window: Window, *, peeq: Array
-    ) -> tuple[WearState, dict[str, Array]]:
-        """Wear after one more cycle, and the fields of the material below the new surface.
-
-        fields: by name, each (..., n_layers, nx, ny) on the cells of the window; faces: depths of the faces
-        of the layers, (n_layers + 1,) in m; peeq: accumulated plastic strain of the cells, which decides.
-        """

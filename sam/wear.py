@@ -319,14 +319,16 @@ class WearLaw:
         return WearState.empty(self.shape, self.hx, self.hy)
 
     def margin(self, peeq: Array, faces: Array) -> float:
-        """1 less the largest plastic strain over its limit, see `sam.surface_state.Wear`."""
+        """1 less the largest plastic strain of cells, (n_layers, nx, ny), over its limit; faces in m."""
         return 1.0 - float((peeq / self.limits((faces[:-1] + faces[1:]) / 2)[:, None, None]).max())
 
     def removed(
         self, state: WearState, fields: dict[str, Array], faces: Array, window: Window, *, peeq: Array
     ) -> tuple[WearState, dict[str, Array]]:
-        """Wear after one more cycle, and the fields of the material below the new surface; see
-        `sam.surface_state.Wear`.
+        """Wear after one more cycle, and the fields of the material below the new surface.
+
+        fields: by name, each (..., n_layers, nx, ny) on the cells of the window; faces: of the layers,
+        (n_layers + 1,) in m; peeq: accumulated plastic strain of the cells, which decides.
         """
         raw = worn_depth(peeq, faces, self.limits, self.interpolate)
         depth, roofed = (self._on_grid(each, window) for each in (raw.depth, raw.roofed))

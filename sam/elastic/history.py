@@ -20,7 +20,8 @@ from sam.scene import Status
 from sam.scene.residuals import Attempt
 from sam.scene.result import Progress
 from sam.schedule import UNLOADED, Load
-from sam.surface_state import Tribofilm, TribofilmState
+from sam.surface_state import TribofilmState
+from sam.tribofilm.state import FilmOnCells
 
 if TYPE_CHECKING:
     pass
@@ -81,7 +82,7 @@ def solve_elastic(problem: ElasticProblem, report: Progress) -> History:
 
 def step_with_tribofilm(
     problem: ElasticProblem,
-    tribofilm: Tribofilm,
+    tribofilm: FilmOnCells,
     film: TribofilmState,
     load: Load,
     *,

@@ -109,25 +109,6 @@ class ContactPressure:
 
 
 @dataclass(frozen=True)
-class NoPressure:
-    """Nothing touches a box of (nx, ny) cells."""
-
-    shape: tuple[int, int]
-
-    def start(self, load: Load) -> Array:
-        """Nothing."""
-        return np.zeros(self.shape)
-
-    def __call__(self, displacement: Array, load: Load, start: Array, tolerance: float) -> Array:
-        """Nothing."""
-        return np.zeros(self.shape)
-
-    def loaded(self, load: Load, pressure: Array) -> Load:
-        """The load itself."""
-        return load
-
-
-@dataclass(frozen=True)
 class GivenPressure:
     """A pressure that acts whatever the surface does. pressure: of a load, p_hat on the box, (nx, ny)."""
 

@@ -56,34 +56,34 @@ if TYPE_CHECKING:
 ROUNDING = 1e-9  # of a pressure: the transforms of another window round differently
 
 
-def problem_now(model: Model, now: Progressed) -> Problem:
+def problem_of(model: Model, record: Progressed) -> Problem:
     """The problem of a step from a record."""
-    return model.problem(now.extent, now.tribofilm, now.wear)
+    return model.problem(record.extent, record.tribofilm, record.wear)
 
 
-def contact_in_box(model: Model, now: Progressed, trial: Trial) -> Contact:
+def contact_in_box(model: Model, record: Progressed, trial: Trial) -> Contact:
     """The contact of a step in its box, with the residuals measured there."""
     load, p = trial.load, trial.pressure
-    gap = model.gap(load, now.wear)[now.extent.window.slices] + trial.residual.displacement
+    gap = model.gap(load, record.wear)[record.extent.window.slices] + trial.residual.displacement
     if load.force == 0:
         return no_contact(gap, load.given)  # the row of a step asks for no displacement
-    source = problem_now(model, now).pressure
+    source = problem_of(model, record).pressure
     if not isinstance(source, ContactPressure):
         return _given(model, load, p, np.zeros_like(p))
     return _measured(model, source, load, gap, p=p, u=source.contact.displacement(p, load.sign))
 
 
-def contact_on_grid(model: Model, now: Progressed, trial: Trial) -> Contact:
+def contact_on_grid(model: Model, record: Progressed, trial: Trial) -> Contact:
     """The contact on the full grid, its residuals measured there: pile-up outside the box counts.
 
     Where the displacement by plastic strain, a sum over the steps in single precision, misses the one of the
     full grid by more than the contact may, the pressure is found once more on that.
     """
-    window, load, moved = now.extent.window, trial.load, known_outside(now).displacement
-    gap = model.gap(load, now.wear) + moved
+    window, load, moved = record.extent.window, trial.load, known_outside(record).displacement
+    gap = model.gap(load, record.wear) + moved
     if load.force == 0:
         return model.elastic.untouched(load, gap)
-    source = problem_now(model, now).pressure
+    source = problem_of(model, record).pressure
     if not isinstance(source, ContactPressure):
         return _given(model, load, *_on_grid(model, window, trial.pressure, load.sign))
     p, u = _on_grid(model, window, trial.pressure, load.sign)
@@ -124,82 +124,82 @@ def _measured(
     return replace(found, ending=words)
 
 
-def with_outside(model: Model, now: Progressed, *, stress: bool = False) -> Progressed:
+def with_outside(model: Model, record: Progressed, *, stress: bool = False) -> Progressed:
     """The record with the fields of its plastic strain outside of the box; stress: also that."""
-    known = now.outside
+    known = record.outside
     if known is None:
         whole = Window(0, 0, model.grid.nx, model.grid.ny)
-        inside = now.state.residual.displacement
-        known = Outside(inside if now.extent.window == whole else _moved(model, now, 3, whole))
+        inside = record.state.residual.displacement
+        known = Outside(inside if record.extent.window == whole else _moved(model, record, 3, whole))
     if stress and known.stress is None:
-        known = replace(known, stress=_residual_stress(model, now))
-    return now if known is now.outside else replace(now, outside=known)
+        known = replace(known, stress=_residual_stress(model, record))
+    return record if known is record.outside else replace(record, outside=known)
 
 
-def known_outside(now: Progressed) -> Outside:
+def known_outside(record: Progressed) -> Outside:
     """The fields outside of the box; ValueError for a record without them, see `with_outside`."""
-    if now.outside is None:
+    if record.outside is None:
         raise ValueError("the record has no fields outside of its box")
-    return now.outside
+    return record.outside
 
 
-def _residual_stress(model: Model, now: Progressed) -> Array:
+def _residual_stress(model: Model, record: Progressed) -> Array:
     """Stress of the plastic strain in the rows that touch y = 0, at all depths.
 
     Where the box covers the rows its own stresses are taken, see `snapshot`: zero there.
     """
-    grid, window, rows = model.grid, now.extent.window, model.grid.axis_rows
+    grid, window, rows = model.grid, record.extent.window, model.grid.axis_rows
     across = window.j0 <= rows.j0 and rows.j0 + rows.ny <= window.j0 + window.ny
-    covered = now.extent.layers if across and window.nx == grid.nx else 0
-    below = residual_stress(_strained(model, now), grid.depths[covered:], rows, mu=model.plan.pair.body.shear)
+    covered = record.extent.layers if across and window.nx == grid.nx else 0
+    below = residual_stress(
+        _strained(model, record), grid.depths[covered:], rows, mu=model.plan.pair.body.shear
+    )
     return np.concatenate([np.zeros((6, covered, *below.shape[2:])), below], axis=1)
 
 
-def _strained(model: Model, now: Progressed) -> Strained:
+def _strained(model: Model, record: Progressed) -> Strained:
     """The plastic strain in its box."""
-    return Strained(now.state.material.strain, now.extent.window, model.cuboids(now.extent))
+    return Strained(record.state.material.strain, record.extent.window, model.cuboids(record.extent))
 
 
-def _moved(model: Model, now: Progressed, component: int, observed: Window) -> Array:
+def _moved(model: Model, record: Progressed, component: int, observed: Window) -> Array:
     """Displacement of a window of the surface by the plastic strain, (nx, ny) in m."""
-    source, counters = _strained(model, now), model.counters
+    source, counters = _strained(model, record), model.counters
     return surface_displacement(source, observed, counters=counters, component=component)
 
 
-def start_of(model: Model, now: Progressed, load: Load) -> Array | None:
+def start_of(model: Model, record: Progressed, load: Load) -> Array | None:
     """p_hat to start a step from: of the same load in the cycle before, or moved with the counter-body; None:
     that of the state.
     """
     if model.track is None:
-        return now.recall(load)
-    return model.track.carried(model.grid, now.state.pressure, now.state.load, load)
+        return record.recall(load)
+    return model.track.carried(model.grid, record.state.pressure, record.state.load, load)
 
 
-def moved(model: Model, now: Progressed, trial: Trial) -> Moved | None:
-    """What a step says of the motion of the counter-body; None of one in place."""
-    if model.track is None:
-        return None
-    pressure, window = trial.pressure * model.unit, now.extent.window
-    traction = trial.load.sign * problem_now(model, now).coefficient
-    return model.track.moved(model.grid, trial.load, pressure, window=window, traction=traction)
+def moved(model: Model, record: Progressed, track: Track, trial: Trial) -> Moved:
+    """What a step says of the motion of the counter-body."""
+    pressure, window = trial.pressure * model.unit, record.extent.window
+    traction = trial.load.sign * problem_of(model, record).coefficient
+    return track.moved(model.grid, trial.load, pressure, window=window, traction=traction)
 
 
-def pass_end(model: Model, now: Progressed, track: Track, cycle: int) -> PassEnd:
+def pass_end(model: Model, record: Progressed, track: Track, cycle: int) -> PassEnd:
     """What a pass over a path leaves; the record has the fields outside of the box."""
-    start, uz = now.cycle_start, known_outside(now).displacement
-    added = now.state.material.peeq if start is None else start.new_strain(now.state, now.extent)
-    rows = now.history.rows
-    return track.pass_end(model.grid, cycle, uz=uz, added=added, window=now.extent.window, rows=rows)
+    start, uz = record.cycle_start, known_outside(record).displacement
+    added = record.state.material.peeq if start is None else start.new_strain(record.state, record.extent)
+    rows = record.history.rows
+    return track.pass_end(model.grid, cycle, uz=uz, added=added, window=record.extent.window, rows=rows)
 
 
-def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot:
+def snapshot(model: Model, record: Progressed, name: str, trial: Trial) -> Snapshot:
     """Stress and strain in the plane y = 0: of the cells in the box, and at the cell centres outside it.
 
     The record has the fields outside of the box, see `with_outside`.
     """
-    outside, material, rows = known_outside(now), now.state.material, model.grid.axis_rows
-    extent = now.extent
-    contact, mu = contact_on_grid(model, now, trial), model.coefficient(now.tribofilm)
+    outside, material, rows = known_outside(record), record.state.material, model.grid.axis_rows
+    extent = record.extent
+    contact, mu = contact_on_grid(model, record, trial), model.coefficient(record.tribofilm)
     loaded = model.elastic.state(trial.load, contact, mu)
     stress = plane_stress(loaded)
     if outside.stress is not None:
@@ -209,10 +209,10 @@ def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot
     peeq = _filled(model, extent, np.zeros_like(stress[0]), material.peeq)
     sliding = sliding_of(loaded)
     if sliding is not None:
-        sliding = sliding.strained(_moved(model, now, 1, rows), strain, np.diff(model.grid.layer_faces))
-    back = model.material(extent).back_stress(now.state.points)
+        sliding = sliding.strained(_moved(model, record, 1, rows), strain, np.diff(model.grid.layer_faces))
+    back = model.material(extent).back_stress(record.state.points)
     kept = {} if back is None else {BACK_STRESS: back.mean(axis=1)}
-    mises, flowed = _largest(model, now, trial, contact, plane=stress)
+    mises, flowed = _largest(model, record, trial, contact, plane=stress)
     return Snapshot(
         name,
         contact,
@@ -223,10 +223,10 @@ def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot
         mises,
         flowed,
         sliding,
-        top=_top(model, now),
-        worn=None if now.wear is None else now.wear.depth,
-        cut=_cut(model, now, trial, contact),
-        box=replace(_box(model, now, trial), repeated=kept),
+        top=_top(model, record),
+        worn=None if record.wear is None else record.wear.depth,
+        cut=_cut(model, record, trial, contact),
+        box=replace(_box(model, record, trial), repeated=kept),
         stretch=trial.load.stretch,
         place=(trial.load.x, trial.load.y),
         repeated={
@@ -235,12 +235,12 @@ def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot
     )
 
 
-def with_last_period(model: Model, now: Progressed, state: Snapshot) -> Snapshot:
+def with_last_period(model: Model, record: Progressed, state: Snapshot) -> Snapshot:
     """A snapshot with the fields of the last period of the history, also if it is of an earlier state."""
-    fields, box = now.periods.fields(model, now.state, now.extent), state.box
+    fields, box = record.periods.fields(model, record.state, record.extent), state.box
     if box is None or not fields:
         return state
-    own, (layers, nx, ny) = now.extent.window, box.peeq.shape
+    own, (layers, nx, ny) = record.extent.window, box.peeq.shape
     i, j = (
         round(float(side[0] - lines[first]) / step + 0.5)
         for side, lines, first, step in (
@@ -250,7 +250,8 @@ def with_last_period(model: Model, now: Progressed, state: Snapshot) -> Snapshot
     )
     cells = {name: values[:layers, i : i + nx, j : j + ny] for name, values in fields.items()}
     plane = {
-        name: _filled(model, now.extent, np.zeros_like(state.peeq), values) for name, values in fields.items()
+        name: _filled(model, record.extent, np.zeros_like(state.peeq), values)
+        for name, values in fields.items()
     }
     plane["class"] = np.broadcast_to(plane["class"].max(axis=-1, keepdims=True), state.peeq.shape)
     box = replace(box, repeated={**box.repeated, **cells})
@@ -267,40 +268,40 @@ def _filled(model: Model, extent: Extent, plane: Array, field: Array) -> Array:
     return plane
 
 
-def _box(model: Model, now: Progressed, trial: Trial) -> Box:
+def _box(model: Model, record: Progressed, trial: Trial) -> Box:
     """The cells of the box."""
-    grid, window, material = model.grid, now.extent.window, now.state.material
+    grid, window, material = model.grid, record.extent.window, record.state.material
     x = (grid.x[window.i0] - grid.hx / 2) + grid.hx * np.arange(window.nx + 1)
     y = (grid.y[window.j0] - grid.hy / 2) + grid.hy * np.arange(window.ny + 1)
-    return Box(x, y, model.faces(now.extent), trial.stress, material.strain, material.peeq)
+    return Box(x, y, model.faces(record.extent), trial.stress, material.strain, material.peeq)
 
 
-def _cut(model: Model, now: Progressed, trial: Trial, contact: Contact) -> Cut | None:
+def _cut(model: Model, record: Progressed, trial: Trial, contact: Contact) -> Cut | None:
     """The cells of the box in the row of the largest pressure; None without contact, or where that is around
     the origin.
     """
     if not model.plan.places.off_origin or trial.load.force == 0:
         return None
-    window, layers, grid = now.extent.window, now.extent.layers, model.grid
+    window, layers, grid = record.extent.window, record.extent.layers, model.grid
     row = row_of_largest(contact, counted(contact, grid))
     if row is None or not window.j0 <= row < window.j0 + window.ny:
         return None
     x, j = grid.x[window.i0 : window.i0 + window.nx], row - window.j0
-    stress, peeq = trial.stress[..., j].copy(), now.state.material.peeq[..., j].copy()
+    stress, peeq = trial.stress[..., j].copy(), record.state.material.peeq[..., j].copy()
     return Cut(float(grid.y[row]), x, grid.depths[:layers], stress, peeq)
 
 
-def _top(model: Model, now: Progressed) -> tuple[float, float] | None:
+def _top(model: Model, record: Progressed) -> tuple[float, float] | None:
     """Depth in m and value of the largest plastic strain; cells hold means."""
-    peeq, depths = now.state.material.peeq, model.grid.depths[: now.extent.layers]
+    peeq, depths = record.state.material.peeq, model.grid.depths[: record.extent.layers]
     if not peeq.any():
         return None
     interval = model.strength.kinks.interval(depths)
-    return largest(at_centres(peeq, model.faces(now.extent), interval), depths, interval)
+    return largest(at_centres(peeq, model.faces(record.extent), interval), depths, interval)
 
 
 def _largest(
-    model: Model, now: Progressed, trial: Trial, contact: Contact, *, plane: Array
+    model: Model, record: Progressed, trial: Trial, contact: Contact, *, plane: Array
 ) -> tuple[Array, Mask]:
     """The largest von Mises stress at each depth in Pa, and whether its cell has plastic strain, both (nz,
     1): of all cells of the box, below it of those in y = 0.
@@ -311,60 +312,60 @@ def _largest(
     inside = von_mises(trial.stress)[(..., *window)].reshape(layers, -1)
     at = np.arange(layers), inside.argmax(axis=1)
     mises[:layers] = inside[at]
-    flowed[:layers] = now.state.material.peeq[(..., *window)].reshape(layers, -1)[at] > 0
+    flowed[:layers] = record.state.material.peeq[(..., *window)].reshape(layers, -1)[at] > 0
     return mises[:, None], flowed[:, None]
 
 
-def strained_in_cycle(now: Progressed) -> CycleStrain:
+def strained_in_cycle(record: Progressed) -> CycleStrain:
     """What the cycle has strained so far, before anything is removed; nothing where there is one cycle."""
-    if now.cycle_start is None:
+    if record.cycle_start is None:
         return CycleStrain()
-    added = now.cycle_start.new_strain(now.state, now.extent)
+    added = record.cycle_start.new_strain(record.state, record.extent)
     return CycleStrain(float(added.max()), int(np.count_nonzero(added > 0)))
 
 
-def dissipated_by(model: Model, now: Progressed, trial: Trial) -> float:
+def dissipated_by(model: Model, record: Progressed, trial: Trial) -> float:
     """The energy in J that a step from a record dissipates; 0 where nobody asks for it."""
     if not (model.plan.dissipates and trial.plastic):
         return 0.0
-    flow = model.material(now.extent).flow(now.state.points)
-    return float((model.volumes(now.extent) * flow.dissipated(trial.points).mean(axis=0)).sum())
+    flow = model.material(record.extent).flow(record.state.points)
+    return float((model.volumes(record.extent) * flow.dissipated(trial.points).mean(axis=0)).sum())
 
 
-def cycle_end(model: Model, now: Progressed, cycle: int, strained: CycleStrain) -> CycleEnd:
+def cycle_end(model: Model, record: Progressed, cycle: int, strained: CycleStrain) -> CycleEnd:
     """The surface at the end of a cycle, and how much is worn so far; the record has the fields outside of
     the box.
     """
-    moved, rough = known_outside(now).displacement, model.plan.rough
-    worn = now.wear.depth if now.wear is not None else None
+    moved, rough = known_outside(record).displacement, model.plan.rough
+    worn = record.wear.depth if record.wear is not None else None
     lowered = moved if worn is None else moved + worn
-    volume = now.wear.volume if now.wear is not None else 0.0
+    volume = record.wear.volume if record.wear is not None else 0.0
     found = rough.roughness(lowered) if rough is not None else None
-    work, spent = model.counters.operator_applications, now.dissipated
+    work, spent = model.counters.operator_applications, record.dissipated
     end = CycleEnd(cycle, volume, found, work, strained=strained, dissipated=spent)
-    if model.plan.wear is None or now.wear is None:
+    if model.plan.wear is None or record.wear is None:
         return end
-    margin = model.plan.wear.margin(now.state.material.peeq, model.faces(now.extent))
+    margin = model.plan.wear.margin(record.state.material.peeq, model.faces(record.extent))
     worn_now, roofed = 0.0, 0.0
-    if len(now.wear.volumes) == cycle:
-        worn_now, roofed = now.wear.volumes[-1], now.wear.roofed_volumes[-1]
+    if len(record.wear.volumes) == cycle:
+        worn_now, roofed = record.wear.volumes[-1], record.wear.roofed_volumes[-1]
     return replace(end, moved=moved, worn=worn, margin=margin, wear_of_cycle=worn_now, roofed=roofed)
 
 
-def with_loops(model: Model, now: Progressed, target: Target, trial: Trial) -> Progressed:
+def with_loops(model: Model, record: Progressed, target: Target, trial: Trial) -> Progressed:
     """The record with the cells at the end of a step, if it belongs to the last period or ends the one
     before.
     """
-    if model.judging is None or not now.periods.last:
-        return now
-    period, ends = last_period(model.judging, model.schedule.cycles), now.periods.begun is None
+    if model.judging is None or not record.periods.last:
+        return record
+    period, ends = last_period(model.judging, model.schedule.cycles), record.periods.begun is None
     if not (target.cycle in period or (target.cycle == period.start - 1 and ends)):
-        return now
-    rows = now.history.loops
-    places = [row.place for row in rows[:3]] if rows else _chosen(now)
-    own = now.extent.window
+        return record
+    rows = record.history.loops
+    places = [row.place for row in rows[:3]] if rows else _chosen(record)
+    own = record.extent.window
     at = [(layer, i - own.i0, j - own.j0) for layer, i, j in places]
-    material = now.state.material
+    material = record.state.material
     found = [
         LoopRow(
             place,
@@ -376,14 +377,14 @@ def with_loops(model: Model, now: Progressed, target: Target, trial: Trial) -> P
         )
         for place, cell in zip(places, at, strict=True)
     ]
-    return replace(now, history=replace(now.history, loops=(*rows, *found)))
+    return replace(record, history=replace(record.history, loops=(*rows, *found)))
 
 
-def _chosen(now: Progressed) -> list[tuple[int, int, int]]:
+def _chosen(record: Progressed) -> list[tuple[int, int, int]]:
     """Layer and cells of the grid of the cells, see `loop_places`."""
-    extent, own, last = now.extent, now.extent.window, now.periods.last[-1]
+    extent, own, last = record.extent, record.extent.window, record.periods.last[-1]
     accumulated = surrounded(last.accumulated, last.extent.inside(extent), extent.shape)
-    places = loop_places(accumulated.ravel(), now.state.material.peeq.ravel())
+    places = loop_places(accumulated.ravel(), record.state.material.peeq.ravel())
     found = [np.unravel_index(place, extent.shape) for place in places]
     return [(int(layer), int(i) + own.i0, int(j) + own.j0) for layer, i, j in found]
 

@@ -27,7 +27,6 @@ from sam.plasticity.load_step import (
     CONTACT_SHARE,
     ContactPressure,
     GivenPressure,
-    NoPressure,
     PressureSource,
     Problem,
 )
@@ -277,7 +276,7 @@ class Model:
         """Where the pressure on a window of the grid comes from; no surface coefficients: nothing touches."""
         grid = self.grid
         if surface is None:
-            return NoPressure(window.shape)
+            return GivenPressure(lambda load: np.zeros(window.shape), window.shape)
         if (given := self.plan.given) is not None:
             return GivenPressure(lambda load: given.pressure(grid, load, window) / self.unit, window.shape)
         return ContactPressure(
