@@ -5,8 +5,6 @@ The gap moves, the body stays: g(x, y; s) = P(x - s) - c(x - k s) of the profile
 counter-body and its slip k. With contact wherever g + u_z = delta, the work of the pressure over a small
 motion is F d(delta) + ds int p (dP/dx - k dc/dx): the second part is the force that drives the counter-body
 against the slope of the groove and of summits, to which friction adds int q.
-
-The tables and quantities of a counter-body that moves: along the track, across it, and of its passes.
 """
 
 from __future__ import annotations
@@ -55,14 +53,11 @@ class Growth:
 
 @dataclass(frozen=True)
 class Track:
-    """The track of a scene.
-
-    start, end: of the path in m; radius: semi-axis of the contact along x by Hertz in m; curvatures: (1/Rx,
-    1/Ry) in 1/m of the counter-body, None of one that has none; step: along the path in m; plane: whether the
-    counter-body is one, below which every place counts as steady; carries: share of the motion by which the
-    pressure moves; strip: of a rough counter-body; period: way in m from the start of a pass to that of the
-    next, that of a closed track if the scene gives one; returns: whether even passes go
-    back; growth: of a film.
+    """The track of a scene. start, end: of the path in m; radius: semi-axis of the contact along x by Hertz
+    in m; curvatures: (1/Rx, 1/Ry) in 1/m of the counter-body, if any; step: along the path in m; plane:
+    whether the counter-body is one, below which every place counts as steady; carries: share of the motion by
+    which the pressure moves; strip: of a rough counter-body; period: way in m from the start of a pass to the
+    next, of a closed track if there is one; returns: whether even passes go back; growth: of a film.
     """
 
     start: tuple[float, float]
@@ -133,9 +128,7 @@ class Track:
         return steady_part(way, self.radius, self.length)
 
     def carried(self, grid: CellGrid, pressure: Array, before: Load, after: Load) -> Array | None:
-        """A pressure (nx, ny) moved with the counter-body by the nearest number of cells; None where nothing
-        is left of it.
-        """
+        """A pressure (nx, ny) moved with the counter-body by whole cells; None where nothing is left."""
         i = round(self.carries * (after.x - before.x) / grid.hx)
         j = round(self.carries * (after.y - before.y) / grid.hy)
         if (i, j) == (0, 0):
@@ -189,8 +182,7 @@ class Track:
 
     def touched(self, y: Array, hy: float) -> Mask:
         """Whether rows of cells with these centres touch a path along x."""
-        found: Mask = np.abs(y - self.start[1]) <= hy / 2 * (1 + ROUNDING)
-        return found
+        return np.abs(y - self.start[1]) <= hy / 2 * (1 + ROUNDING)
 
     def middle_column(self, grid: CellGrid) -> int:
         """The column of cells in the middle of the steady part."""
@@ -200,8 +192,8 @@ class Track:
     def pass_end(
         self, grid: CellGrid, cycle: int, *, uz: Array, added: Array, window: Window, rows: Sequence[Row]
     ) -> PassEnd:
-        """What a pass leaves. uz: by plastic strain, (nx, ny) in m; added: accumulated plastic strain of the
-        pass on a box, (n_layers, nx, ny); rows: of the history so far.
+        """What a pass leaves. uz: by plastic strain, (nx, ny) in m; added: plastic strain of the pass on a
+        box, (n_layers, nx, ny).
         """
         of_pass = [row for row in rows if row.cycle == cycle and row.moved is not None]
         if not self.along_x:
@@ -220,9 +212,7 @@ class Track:
         return 1 if ways[-1] >= ways[0] else -1
 
     def rolling(self, rows: Sequence[Row]) -> float:
-        """The force of the pressure against the motion over the normal force in the steady part of the last
-        pass.
-        """
+        """Force of the pressure against the motion over the normal force in the last steady part."""
         of_pass = [row for row in rows if row.cycle == rows[-1].cycle and row.moved is not None]
         if not of_pass:
             return nan
@@ -246,8 +236,8 @@ Tables = dict[str, dict[str, Any]]
 
 
 def path_tables(track: Track, grid: CellGrid, history: History, film: TribofilmState | None) -> Tables:
-    """The tables track and cross of a body that has yielded below a path along x, passes, and visits of a
-    film; none of an elastic body.
+    """The tables of passes and visits of a film, and track and cross of a body that yielded below a path on
+    x.
     """
     last, passes = list(history.snapshots.values())[-1], history.passes
     tables: Tables = {"passes": _passes(passes)} if passes else {}
@@ -326,9 +316,7 @@ def _surface_of_passes(track: Track, history: History) -> dict[str, Any]:
 
 
 def _visits(track: Track, visits: Visits) -> dict[str, Any]:
-    """How many cells were out of contact for how long, up to each way; bins that nothing fell in before the
-    first are left out.
-    """
+    """How many cells were out of contact for how long, up to each way, from the first bin that is used."""
     ways, growth = bins_of_visits(track.period), track.growth
     first = int(np.flatnonzero(visits.counts)[0]) if visits.counts.any() else len(ways) - 1
     count = len(ways) - first
@@ -344,7 +332,7 @@ def _visits(track: Track, visits: Visits) -> dict[str, Any]:
 
 def _track(track: Track, grid: CellGrid, last: Snapshot) -> dict[str, Any]:
     """Along the path in the rows of cells that touch it; stresses of the unloaded body, in the uppermost
-    layer and in that of the largest strain of the steady part.
+    layer and in that of the largest steady strain.
     """
     box, x = last.box, grid.x
     assert box is not None, "asked for of bodies that have yielded"
@@ -394,8 +382,7 @@ def _cross(track: Track, grid: CellGrid, last: Snapshot) -> dict[str, Any]:
 
 
 def _centres(faces: Array) -> Array:
-    found: Array = (faces[1:] + faces[:-1]) / 2
-    return found
+    return (faces[1:] + faces[:-1]) / 2
 
 
 def _inside(centres: Array, faces: Array) -> Any:

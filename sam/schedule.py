@@ -4,8 +4,6 @@ traction.
 
 Equal steps to the peak, along the path of a travelling load if there is one, then to zero. In full slip the
 traction on the body is q = coefficient * p along x, at every step; its sign may change from cycle to cycle.
-
-Friction in full slip: the coefficient at the cells of a grid, and how its traction enters the gap.
 """
 
 from __future__ import annotations
@@ -91,8 +89,8 @@ class Load:
         return replace(self, force=self.force * k / count, approach=approach, misfit=self.misfit * k / count)
 
     def rise(self, start: Load) -> float:
-        """How much more is given than at another load, in N or in m; NaN if the one gives a force and the
-        other an approach, but for no force at all, which counts as no approach.
+        """How much more is given than at another load, in N or m; NaN where one gives a force and the other
+        an approach, but for no force, which counts as no approach.
         """
         if (self.approach is None) != (start.approach is None) and self.force and start.force:
             return nan
@@ -113,10 +111,8 @@ UNLOADED = Load(0.0)
 
 @dataclass(frozen=True)
 class Target:
-    """The end of a load step. cycle, step: as in the history.
-
-    snapshot: the state to be recorded there ("peak", "unloaded" or none); elastic_unloading: in a
-    single step, if that strains nothing; note: for the history.
+    """The end of a load step of a cycle. snapshot: the state to be recorded there ("peak", "unloaded" or
+    none); elastic_unloading: in a single step, if that strains nothing; note: for the history.
     """
 
     cycle: int
@@ -156,8 +152,8 @@ class Schedule:
 
     @property
     def peaks(self) -> list[Load]:
-        """The largest load on each stretch of the counter-body, but for the sign of its traction; at each
-        place where the surfaces differ along the path.
+        """The largest load on each stretch of the counter-body, but for the sign; at each place where
+        surfaces differ.
         """
         places = self.path if self.varies else ((self.peak.x, self.peak.y),)
         stretches = range(self.cycles if self.renews else 1)
@@ -165,9 +161,7 @@ class Schedule:
 
     @property
     def different(self) -> list[Target]:
-        """The steps that an elastic body needs: of all cycles where they have other stretches or go back,
-        else of the last.
-        """
+        """The steps that an elastic body needs: of all cycles where these differ, else of the last."""
         return self.last_cycle if self.all_alike else list(self.targets)
 
     @property
@@ -209,10 +203,8 @@ class Schedule:
         return not self.targets[-1].rises
 
     def in_steps(self, target: Target, peak: Load) -> list[Target]:
-        """Unloading in equal steps of the force, in place of the target that does it in a single one.
-
-        peak: the load from which, with its force; of a body that yields nobody knows at which approach it is
-        zero.
+        """Unloading in equal steps of the force from the peak, in place of the target that does it in one; of
+        a body that yields nobody knows at which approach the force is zero.
         """
         count = self.unload_steps
         left = [1 - k / count if k < count else 0.0 for k in range(1, count + 1)]

@@ -99,9 +99,7 @@ KeepRecord = Callable[[Progressed, int, int], None]
 
 
 def _executed(plan: Plan, report: Progress, checkpoint: Keep | None, start: Checkpoint | None) -> Result:
-    """The result of a plan. Where the plastic zone or the contact reaches the edge of a chosen grid, on a
-    larger one.
-    """
+    """The result of a plan, on a larger grid where plastic zone or contact reach the edge of a chosen one."""
     clock, counters, first = _Clock(start.cost if start else None), Counters(), plan.grid
     record = start.record(Progressed) if start is not None else None
     plan = plan if record is None else plan.on(record.room)
@@ -131,8 +129,8 @@ def _executed(plan: Plan, report: Progress, checkpoint: Keep | None, start: Chec
 def _on_grid(
     plan: Plan, counters: Counters, report: Progress, *, keep: KeepRecord | None, start: Progressed | None
 ) -> tuple[History, Progressed | None]:
-    """The load history on the grid of a plan, from its beginning or from a record on, and the last record of
-    a body that yields.
+    """The history on the grid of a plan, from its beginning or a record on, and a yielding body's last
+    record.
     """
     problem, peak = plan.problem(counters), None
     if plan.plasticity is None:
@@ -168,9 +166,7 @@ def _elastic(problem: ElasticProblem, report: Progress) -> History:
 
 
 def _status(rows: Sequence[Row], peak: Contact, plan: Plan) -> Status:
-    """All steps count for convergence, the contact at the peak (on the full grid) for the fit of the grid
-    too.
-    """
+    """All steps count for convergence, the contact at the peak (on the full grid) for the fit too."""
     if not all(row.converged for row in rows):
         return Status.NOT_CONVERGED
     return fit_of(peak, plan.rough is not None)

@@ -34,11 +34,8 @@ class FilmState:
 
     @property
     def thinning(self) -> Array:
-        """Share of its thickness that the film has lost by plastic flow, (nx, ny); negative where it is
-        thicker.
-        """
-        lost: Array = 0.0 - self.plastic[2]
-        return lost
+        """Share of the thickness that plastic flow took, (nx, ny); negative where it is thicker."""
+        return 0.0 - self.plastic[2]
 
 
 BINS = 40  # of the way between two visits, each sqrt(2) times as long as the one before
@@ -46,8 +43,7 @@ BINS = 40  # of the way between two visits, each sqrt(2) times as long as the on
 
 def bins_of_visits(period: float) -> Array:
     """Upper ends in m of the bins of the way between two visits, (BINS,); period: of a pass, the last one."""
-    found: Array = period * 2.0 ** (np.arange(1 - BINS, 1) / 2)
-    return found
+    return period * 2.0 ** (np.arange(1 - BINS, 1) / 2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +120,5 @@ class WearState:
         return float(self.cell_area * thickness.sum())
 
     def imbalance(self, original: Array, current: Array) -> float:
-        """Volume minus hx hy sum(original - current), in m3; heights (nx, ny) in m, both without
-        displacement.
-        """
+        """Volume minus hx hy sum(original - current), in m3; heights (nx, ny) in m, undisplaced."""
         return self.volume - self.volume_of(original - current)

@@ -1,21 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Wear at the end of a cycle: strained material is removed, and what was below it moves
-up. Paper section 5.
-
-How deep each column of cells is removed: from the surface down as far as the plastic strain is above its
-limit.
+"""Wear at the end of a cycle: of each column strained material is removed from the surface down, and what was
+below it moves up.
 
 Nelias, Boucly & Brunet 2006; Bosman & Schipper 2011, section 5: a crack runs along the border of the volume
 that both reaches the surface and is strained beyond the limit; what it encloses becomes a wear particle in
 the cycle that strained it. What is above the limit under a sound roof does not reach the surface: it stays,
 and is counted.
 
-Smoothing of the worn depth by local polynomials in two dimensions (Savitzky & Golay 1964; Bosman &
-Schipper 2011, section 5).
-
-In a window of n x n cells around each one, a polynomial of total degree <= m is fitted by least squares; its
-value in the middle is the smoothed value. With p_i, the polynomials of degree i = 0 ... m that are
-orthonormal over the n lags, it is
+The worn depth is smoothed by local polynomials (Savitzky & Golay 1964). In a window of n x n cells, a
+polynomial of total degree <= m is fitted by least squares; its value in the middle is the smoothed value.
+With p_i, the polynomials of degree i = 0 ... m that are orthonormal over the n lags, it is
 
     sum over lags k, l of w(k, l) f(k, l),    w(k, l) = sum_{i + j <= m} p_i(k) p_i(0) p_j(l) p_j(0).    (a)
 
@@ -23,14 +17,12 @@ The total degree is bounded, not the degree in each direction (the filter along 
 i, j <= m): those polynomials are the same in a turned frame, and the negative weights at the corners of the
 window are smaller.
 
-Layers are counted from the current surface: when it wears, the material of each column moves up through
-them.
+Layers are counted from the current surface: when it wears, the material moves up through them. New layer k of
+a column worn by w holds the mean of what was between z_k + w and z_{k+1} + w, the old layers being uniform;
+below the deepest face the material is fresh. With h the thicknesses of the layers and overlaps by interval
+arithmetic,
 
-New layer k of a column worn by w holds the mean of what was between z_k + w and z_{k+1} + w, the old layers
-being uniform; below the deepest face the material is fresh. With h the thicknesses of the layers and overlaps
-by interval arithmetic,
-
-    sum_k h_k new_k + integral over 0 ... w of old = sum_k h_k old_k                                       (a)
+    sum_k h_k new_k + integral over 0 ... w of old = sum_k h_k old_k                                       (b)
 
 for each column and component, to rounding. Means of plastic strains are free of volume change again, and the
 accumulated strain stays at least their norm. A shift by a fraction t of a uniform layer h smears like a
@@ -58,9 +50,7 @@ UNREACHED = 1e300  # a strain, in place of inf: differences stay numbers
 
 @dataclass(frozen=True)
 class StrainLimits:
-    """Accumulated plastic strain beyond which material is removed: `layer` at depths z < thickness (m),
-    `bulk` below; inf: nothing is.
-    """
+    """Plastic strain beyond which material is removed: `layer` at z < thickness (m), `bulk` below."""
 
     bulk: float
     layer: float
@@ -72,19 +62,15 @@ class StrainLimits:
 
 
 def limit_by_depth(wear: Wear, layer_thickness: float | None) -> StrainLimits:
-    """The limits of a scene. layer_thickness in m: of its plasticity; only a limit of the layer makes use of
-    it.
-    """
+    """The limits of a scene; layer_thickness in m, of its plasticity, for a limit of the layer."""
     if wear.strain_limit_layer is None or layer_thickness is None:
         return StrainLimits(wear.strain_limit, wear.strain_limit, 0.0)
     return StrainLimits(wear.strain_limit, wear.strain_limit_layer, layer_thickness)
 
 
 class Worn(NamedTuple):
-    """What is removed of each column before smoothing, all (nx, ny).
-
-    depth: in m, from the surface; roofed: thickness in m of what is above its limit further down, under a
-    sound roof; at_bottom: all layers are removed, so the true depth may be larger.
+    """What is removed of each column before smoothing, (nx, ny): depth in m from the surface; thickness in m
+    above its limit under a sound roof; whether all layers are, so that the true depth may be larger.
     """
 
     depth: Array
@@ -127,17 +113,12 @@ def _checked(alpha: Array, faces: Array) -> Array:
 
 
 def _finite(limit: Array) -> Array:
-    """The limit of each layer, with one that no strain reaches in place of inf, so that differences are
-    numbers.
-    """
-    finite: Array = np.minimum(limit, UNREACHED)[:, None, None]
-    return finite
+    """The limit of each layer, with UNREACHED in place of inf, so that differences are numbers."""
+    return np.minimum(limit, UNREACHED)[:, None, None]
 
 
 def _profile(alpha: Array, faces: Array, centres: Array) -> tuple[Array, Array]:
-    """Depths between which alpha is linear, and alpha there: at the surface, all centres and the deepest
-    face.
-    """
+    """Depths between which alpha is linear, and alpha there: surface, centres and the deepest face."""
     surface = alpha[0]
     if len(alpha) > 1:
         surface = np.maximum(alpha[0] - (alpha[1] - alpha[0]) * (centres[0] / (centres[1] - centres[0])), 0.0)
@@ -156,8 +137,7 @@ def _with_node(nodes: Array, values: Array, depth: float) -> tuple[Array, Array]
 
 def _from_surface(start: Array, end: Array, lengths: Array) -> Worn:
     """Columns of segments (n, nx, ny) in which the excess over the limit is linear, from `start` to `end`; it
-    may jump from one segment to the next. An excess of exactly 0 removes nothing; one that only touches 0 at
-    an end goes on.
+    may jump between them. An excess of exactly 0 removes nothing; one that only touches 0 at an end goes on.
     """
     open_top, full = start > 0, (start > 0) & (end >= 0)
     crossing = (open_top != (end > 0)) & ~full
@@ -192,16 +172,13 @@ def weights(window: int, order: int) -> Array:
     degrees = np.add.outer(np.arange(order + 1), np.arange(order + 1))
     found = (terms @ (degrees <= order) @ terms.T)[half:, half:]
     found.flags.writeable = False
-    out: Array = found
-    return out
+    return found
 
 
 def filtered(field: Array, window: int, order: int) -> Array:
-    """The smoothed field (nx, ny), of any sign. Over the border it is continued as in a mirror at the outer
-    faces of the border cells, so the sum over all cells stays.
-
-    Cells at lags of equal weight are added first, pairs in an order that no mirror changes: a field with the
-    symmetry of the square gives one with that symmetry bit by bit.
+    """The smoothed field (nx, ny), continued as in a mirror at the outer faces of the border cells, so the
+    sum stays. Cells at lags of equal weight are added first, in an order that no mirror changes: a field with
+    the symmetry of the square gives one with that symmetry bit by bit.
     """
     w, half = weights(window, order), window // 2
     padded = np.pad(field, half, mode="symmetric")
@@ -250,12 +227,10 @@ def check_depth(depth: Array) -> None:
 
 
 def remapped(field: Array, faces: Array, depth: Array) -> tuple[Array, Array]:
-    """Move each column of a field up by its depth (nx, ny) in m >= 0.
-
-    field: means of cells, (..., n_layers, nx, ny), a tensor of any shape in each; faces: (n_layers + 1,) in m
-    from 0 downwards. Returns the field of the layers below the worn surface, and its integral over the worn
-    depth, (..., nx, ny) in m. Columns that are not worn keep every bit, and without any the field that came
-    in is returned. Raises ValueError for a depth that is negative or not finite.
+    """A field (..., n_layers, nx, ny), means of cells, with each column moved up by its depth (nx, ny) in m
+    >= 0, and its integral over that depth, (..., nx, ny) in m; faces: (n_layers + 1,) in m. Columns that are
+    not worn keep every bit, and without any the field itself is returned. ValueError for a depth that is
+    negative or not finite.
     """
     check_depth(depth)
     worn, leading = depth > 0, field.shape[:-3]
@@ -271,10 +246,7 @@ def remapped(field: Array, faces: Array, depth: Array) -> tuple[Array, Array]:
 
 
 def _moved_up(state: Array, faces: Array, depth: Array) -> tuple[Array, Array]:
-    """The new columns of (a) and the integrals (n, m) of what is gone.
-
-    Columns are (n, n_layers, m), worn by depth (m,).
-    """
+    """The new columns (n, n_layers, m) of (b), worn by depth (m,), and integrals (n, m) of what is gone."""
     new = np.empty_like(state)
     above, below = faces[:-1, None], faces[1:, None]
     for k, (top, bottom) in enumerate(pairwise(faces)):
@@ -286,10 +258,7 @@ def _moved_up(state: Array, faces: Array, depth: Array) -> tuple[Array, Array]:
 
 
 def closing_residual(before: Array, after: Array, removed: Array, faces: Array) -> float:
-    """Largest difference of both sides of (a), over the largest integral of |before|; 0 without strain.
-
-    before, after: (..., n_layers, nx, ny); removed: (..., nx, ny).
-    """
+    """Largest difference of both sides of (b) over the largest integral of |before|; 0 without strain."""
     h = np.diff(faces)[:, None, None]
     scale = (np.abs(before) * h).sum(axis=-3).max()
     difference = (after * h).sum(axis=-3) + removed - (before * h).sum(axis=-3)
@@ -301,9 +270,8 @@ T = TypeVar("T", bound=np.generic)
 
 @dataclass(frozen=True)
 class WearLaw:
-    """Wear of a grid of `shape` (nx, ny) cells with sides hx, hy in m.
-
-    limits: of the accumulated plastic strain; interpolate: see `worn_depth`; window, order: of `smoothed`.
+    """Wear of a grid of `shape` (nx, ny) cells with sides hx, hy in m, at limits of the accumulated plastic
+    strain.
     """
 
     shape: tuple[int, int]
@@ -348,10 +316,8 @@ class WearLaw:
 
 
 def with_cycle(state: WearState, raw: Worn, depth: Array, residual: float) -> WearState:
-    """The wear state after one more cycle.
-
-    raw: what the strain removes, before smoothing; depth: (nx, ny) in m that was removed, both on the whole
-    grid; residual: of the remap, relative. The depth stays the same array where nothing is removed: what was
+    """The wear state after one more cycle. raw: before smoothing; depth: (nx, ny) in m that was removed;
+    residual: of the remap, relative. The depth stays the same array where nothing is removed: what was
     computed for the surface is still right.
     """
     return replace(

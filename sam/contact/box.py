@@ -8,12 +8,10 @@ pressure is projected onto p >= 0 once the residual of the cells in contact, sqr
 `HalfSpaces.restart_threshold` of what a sequence of directions started with, not in each iteration: each
 projection costs a displacement of its own and restarts the directions.
 
-What is given of a contact: its force, or how far the bodies approach; units as of `sam.contact.normal`.
-
-The conjugate gradients of `sam.contact.box` are the same for both. Under force control the rigid approach is
-the mean separation of the cells in contact, and each change of the pressure has no sum; under displacement
-control the approach is known, and the sum of the pressure follows (Polonsky & Keer 1999 with the force
-balance left out).
+Given is the force, or how far the bodies approach; the conjugate gradients are the same for both. Under force
+control the rigid approach is the mean separation of the cells in contact, and each change of the pressure has
+no sum; under displacement control the approach is known, and the sum of the pressure follows (Polonsky & Keer
+1999 with the force balance left out).
 """
 
 from __future__ import annotations
@@ -91,8 +89,7 @@ class ForceControl:
 
     def scaled(self, p: Array, count: Array | float = 1.0) -> Array:
         """The pressure with the given sum."""
-        found: Array = p * (self.total / (p * count).sum())
-        return found
+        return p * (self.total / (p * count).sum())
 
     def begun(self, p: Array, gap0: Array, count: Array | float, apply: Callable[[Array], Array]) -> Begun:
         """The start with the given sum."""
@@ -101,13 +98,11 @@ class ForceControl:
 
     def shares(self, counted: Counted) -> Array:
         """Equal ones: a change of the pressure has no sum."""
-        found: Array = counted / counted.sum()
-        return found
+        return counted / counted.sum()
 
     def level(self, separation: Array, counted: Counted) -> float:
         """Mean separation of the cells in contact."""
-        found: float = np.vdot(counted, separation) / counted.sum()
-        return found
+        return np.vdot(counted, separation) / counted.sum()
 
     def approach(self, contact: Mask, separation: Array) -> float:
         """Mean separation of the cells in contact."""
@@ -133,13 +128,10 @@ class ApproachControl:
         return bool(gap0.min() < self.distance)
 
     def start(self, gap0: Array) -> Array:
-        """In proportion to the overlap, as large as that of Hertz: half of the cells that overlap touch, and
-        p_hat = 4 a/(pi R) under an overlap a^2/R.
-        """
+        """In proportion to the overlap, of which half touches; as large as Hertz's, p_hat = 4 a/(pi R)."""
         overlap = np.maximum(self.distance - gap0, 0.0)
         radius = sqrt(max(int(np.count_nonzero(overlap)), 1) / (2 * pi))
-        found: Array = 4 / (pi * radius) * overlap
-        return found
+        return 4 / (pi * radius) * overlap
 
     def scaled(self, p: Array, count: Array | float = 1.0) -> Array:
         """The pressure itself: its sum is a result."""
@@ -178,9 +170,7 @@ NOTHING_OPPOSITE = 1e100  # gap, in cells, where the counter-body ends
 
 
 class Solution(NamedTuple):
-    """p_hat and u_hat on the cells of a window, u_hat with the part of the traction, and the iterations they
-    took.
-    """
+    """p_hat and u_hat on the cells of a window, u_hat with that of the traction, and the iterations."""
 
     p: Array
     u: Array
@@ -189,10 +179,7 @@ class Solution(NamedTuple):
 
 @dataclass
 class _State:
-    """The iterate: pressure, its displacement, the search direction and what belongs to it.
-
-    count: how many cells of the box each stands for, 1 or (nx, ny).
-    """
+    """The iterate: pressure, displacement, search direction; count: cells that each stands for."""
 
     p: Array
     u: Array
@@ -215,16 +202,12 @@ class _State:
     def projected(self, field: Array) -> Array:
         """The field on the free cells, less its mean over them where the force is given; zero elsewhere."""
         assert self.weight is not None and self.free is not None, "set_free comes first"
-        found: Array = (field - np.vdot(self.weight, field)) * self.free
-        return found
+        return (field - np.vdot(self.weight, field)) * self.free
 
 
 def gap_of_contact(p: Array, separation: Array, control: Control) -> Array:
-    """gap0 + u - delta, with delta given or from the mean over the cells in contact; inf where there is no
-    counter-body.
-    """
-    found: Array = separation - control.approach(p > 0, separation)  # paper Eq. 9: h = h0 + u_3 - delta
-    return found
+    """gap0 + u - delta, with delta given or of the cells in contact; inf without a counter-body."""
+    return separation - control.approach(p > 0, separation)  # paper Eq. 9: h = h0 + u_3 - delta
 
 
 def _mirrored(field: Array) -> bool:
@@ -330,11 +313,7 @@ class _Iteration:
         return self._back(self._apply(self._kept(p)))
 
     def solve(self, gap0: Array, control: Control, p: Array, *, tolerance: float, limit: int) -> Solution:
-        """Solve on the box, see `BoxContact.solve`.
-
-        The iteration gives up after `limit` iterations, or after many without a new smallest residual
-        (`HalfSpaces.stagnation_limit`): rounding, or a tolerance below it.
-        """
+        """See `BoxContact.solve`; given up after `limit` iterations, or many without a smaller residual."""
         if not control.touches(gap0):
             return Solution(np.zeros_like(p), np.zeros_like(p), 0)
         found = self._solve(self._kept(gap0), control, self._kept(p), tolerance=tolerance, limit=limit)
@@ -355,13 +334,9 @@ class _Iteration:
         return self.operator.single(change) if self.bodies.single else self.operator(change)
 
     def residual(self, p: Array, gap: Array) -> float:
-        """The larger of |gap| in contact and penetration elsewhere, as a relative pressure error.
-
-        See `Contact`. These are the conditions of paper Eq. 9; `_project` enforces p >= 0.
-        """
+        """The larger of |gap| in contact and penetration elsewhere, as a pressure error: paper Eq. 9."""
         inside = gap * (p > 0)
-        found: float = max(inside.max(), -gap.min()) / (self.self_influence * p.max() or 1.0)
-        return found
+        return max(inside.max(), -gap.min()) / (self.self_influence * p.max() or 1.0)
 
     def _solve(self, gap0: Array, control: Control, p: Array, *, tolerance: float, limit: int) -> Solution:
         """Iterate on the kept cells until the residual is below the tolerance in double precision."""
@@ -402,10 +377,8 @@ class _Iteration:
         return Solution(state.p, state.u, iteration)
 
     def _step(self, state: _State, separation: Array, control: Control) -> bool:
-        """Do one iteration of Eq. 10 on the free cells: a step, of zero sum where the force is given, and the
-        projection where it is due.
-
-        Returns False, and does nothing, when the residual is zero in double precision.
+        """One iteration of Eq. 10 on the free cells, and the projection where it is due; False, and nothing
+        done, when the residual is zero in double precision.
         """
         r = state.projected(separation)
         z = state.projected(self.precondition(r))

@@ -6,9 +6,8 @@ backward. A field given on a source window is convolved exactly (no wrap-around,
 transform length is at least n_source + n_observed - 1 in each direction, and the lag l = observed - source
 sits at index (l - first) mod m, where `first` is the lag between the first cells of both windows.
 
-Transforms of what is even or odd about a point, from the half of it that is kept: cosine and sine sums.
-
-Kept are the n values at j = 0 .. n - 1 from the point outward, or, `between`, at j + 1/2 (a row of an even
+Cosine and sine sums (`forward`, `back`) transform what is even or odd about a point from the half of it that
+is kept: the n values at j = 0 .. n - 1 from the point outward, or, `between`, at j + 1/2 (a row of an even
 number of cells). The transform over the 2 half values about the point, those not given zero, is (-i)^odd
 times half + 1 real numbers. With the angle a = pi m/half of wave number m, m = 0 .. half, they are f_0 + 2
 sum_j f_j cos(j a) for even f and 2 sum_j f_j sin(j a) for odd, or with j + 1/2 in place of j 2 sum_j f_j cos
@@ -17,13 +16,11 @@ and sin.
 Up to SHORT products a row, values times wave numbers, they are products with matrices, which take less time
 than fast transforms.
 
-Transforms of fields on a box, with as many numbers for each wave number >= 0 as the symmetry of the scene
-leaves.
-
-Fields are (n, ..., nx, ny), each of the n even or odd under x -> -x and under y -> -y as a kind of quantity
-(a shear stress 13 is odd in x). A mirrored scene has mirrored fields: of them only the half from the middle
-outward is kept, and sine and cosine sums take the place of complex transforms. The transform over the lags -N
-.. N-1 of a kept field is (-i)^odd times a real number.
+`Transforms` have as many numbers for each wave number >= 0 as the symmetry of the scene leaves. Fields are
+(n, ..., nx, ny), each of the n even or odd under x -> -x and under y -> -y as a kind of quantity (a shear
+stress 13 is odd in x). A mirrored scene has mirrored fields: of them only the half from the middle outward is
+kept, and sine and cosine sums take the place of complex transforms. The transform over the lags -N .. N-1 of
+a kept field is (-i)^odd times a real number.
 
 `columns` gives (N_x + 1, N_y + 1, n, ..., r) real numbers, times (-i)^(odd_x + odd_y): r = 4 without a mirror
 (real and imaginary part at (k_x, k_y) and (-k_x, k_y)), 2 with one in y, 1 with both. `fields` takes such
@@ -69,25 +66,8 @@ def half_length(n: int) -> int:
 
 
 def forward(kept: Real, half: int, odd: bool, axis: int, *, between: bool = False) -> Real:
-    """Transform the kept values along an axis.
-
-    Parameters
-    ----------
-    kept
-        (..., n) or (..., n, m), see `axis`; values beyond those that the transform takes are left out.
-    half
-        Half the length of the transform.
-    odd
-        Whether the field is odd about the point.
-    axis
-        -1 or -2.
-    between
-        Whether the values stand at j + 1/2.
-
-    Returns
-    -------
-    Real
-        The half + 1 numbers along the axis.
+    """Transform kept values (..., n) or (..., n, m) along axis -1 or -2 to half + 1 numbers. odd: about the
+    point; between: whether they stand at j + 1/2; values beyond those that the transform takes are left out.
     """
     n = min(kept.shape[axis], half if between else half + 1)
     if n < kept.shape[axis]:
@@ -106,11 +86,8 @@ def back(spectrum: Real, n: int, odd: bool, axis: int, *, between: bool = False)
 
 
 def real_spectrum(kernel: Real, half: tuple[int, int], odd: Sequence[bool | int]) -> Real:
-    """Transform of (..., nx, ny) lags >= 0 without its phase, (..., N_x + 1, N_y + 1); odd: whether odd in x,
-    in y.
-
-    Over the lags -N .. N-1 it is (-i)^(o_x + o_y) times this, o = 1 for odd, which is even or odd in the wave
-    number.
+    """Transform of (..., nx, ny) lags >= 0 without its phase, (..., N_x + 1, N_y + 1): over the lags -N ..
+    N-1 it is (-i)^(o_x + o_y) times this, o = 1 for odd, which is even or odd in the wave number.
     """
     for axis, (length, is_odd) in enumerate(zip(half, odd, strict=True), start=-2):
         kernel = forward(kernel, length, bool(is_odd), axis)
@@ -146,8 +123,7 @@ def _fast_forward(kept: Real, half: int, axis: int, kind: _Sum) -> Real:
         inner = np.take(kept, range(1, min(kept.shape[axis], half)), axis=axis)
         parts = [zero, fft.dst(inner, type=1, n=half - 1, axis=axis), zero]
     else:
-        even: Real = fft.dct(kept, type=1, n=half + 1, axis=axis)
-        return even
+        return fft.dct(kept, type=1, n=half + 1, axis=axis)
     return np.concatenate(parts, axis=axis)
 
 
@@ -163,8 +139,7 @@ def _fast_back(spectrum: Real, n: int, axis: int, kind: _Sum) -> Real:
         values = np.concatenate([np.zeros_like(np.take(inner, [0], axis=axis)), inner], axis=axis)
     else:
         values = fft.dct(spectrum, type=1, axis=axis)
-    found: Real = np.take(values, range(n), axis=axis) / (2 * half)
-    return found
+    return np.take(values, range(n), axis=axis) / (2 * half)
 
 
 Parities = Iterable[tuple[int, int]]
@@ -191,23 +166,17 @@ class Counters:
 
 def transformed(field: Real, lengths: tuple[int, int]) -> NDArray[Any]:
     """rfft2 of (..., nx, ny) padded to the lengths; rows of zeros are not transformed."""
-    found: NDArray[Any] = fft.fft(fft.rfft(field, n=lengths[1], axis=-1), n=lengths[0], axis=-2)
-    return found
+    return fft.fft(fft.rfft(field, n=lengths[1], axis=-1), n=lengths[0], axis=-2)
 
 
 def cropped(spectrum: NDArray[Any], lengths: tuple[int, int], shape: tuple[int, int]) -> NDArray[Any]:
-    """The first cells of irfft2, (..., *shape); other rows are not transformed back. The spectrum is
-    overwritten.
-    """
+    """The first cells of irfft2, (..., *shape), other rows are left out; the spectrum is overwritten."""
     rows = fft.ifft(spectrum, axis=-2, overwrite_x=True)[..., : shape[0], :]
-    found: NDArray[Any] = fft.irfft(rows, n=lengths[1], axis=-1)[..., : shape[1]]
-    return found
+    return fft.irfft(rows, n=lengths[1], axis=-1)[..., : shape[1]]
 
 
 def _lags(first: int, n_source: int, n_observed: int, m: int) -> NDArray[np.intp]:
-    """Lag at each index of a transform of length m; the indices that no pair of cells uses repeat a lag that
-    exists.
-    """
+    """Lag at each index of a transform of length m; indices that no pair of cells uses repeat a lag."""
     index = np.arange(m)
     index = np.where(index < n_observed, index, np.maximum(index - m, 1 - n_source))
     return first + index
@@ -287,9 +256,7 @@ class Convolution:
 
 
 def folded(field: Array, at: int, lags: int) -> Array:
-    """f(at - l) + f(at + l) and f(at - l) - f(at + l) of the last axis, 0 <= l < lags, each cell once: (2,
-    ..., lags).
-    """
+    """f(at - l) + f(at + l) and f(at - l) - f(at + l) of the last axis, each cell once: (2, ..., lags)."""
     n, lag = field.shape[-1], np.arange(lags)
     below, above = at - lag, at + lag
     before = np.where((below >= 0) & (below < n), field[..., below % n], 0.0)
@@ -338,9 +305,7 @@ class RowConvolution:
         return out
 
     def _folded(self, field: Array, row: int) -> tuple[Array, Array]:
-        """Transforms along x of the field folded about an observed row, for kernels even and odd in y, (...,
-        k, l).
-        """
+        """Transforms along x of the field folded about an observed row, even and odd in y, (..., k, l)."""
         lags = self.spectra.shape[-1]
         sums = folded(field, self.observed.j0 + row - self.source.j0, lags)
         framed = np.zeros((2, *field.shape[:-2], self.source.nx + self.source.i0 - self.first, lags))
@@ -352,8 +317,7 @@ class RowConvolution:
         """(..., k) -> (..., nx) of the observed window."""
         spectra = np.where(np.asarray(odd_x)[..., None], -1j, 1.0) * spectra
         start = self.observed.i0 - self.first
-        found: Array = fft.irfft(spectra, n=self.length, axis=-1)[..., start : start + self.observed.nx]
-        return found
+        return fft.irfft(spectra, n=self.length, axis=-1)[..., start : start + self.observed.nx]
 
 
 def _pairs(field: Array) -> Array:
@@ -392,27 +356,11 @@ def convolution_onto(
 def row_sums(
     kernels: Array, fields: Array, source: Window, observed: Window, *, odd_out: Parity, odd_in: Parity
 ) -> Array:
-    """Kernels times fields, summed over components, layers and cells, on an observed window of few rows.
-
-    No transform is needed: the fields are folded about a row, their products with the kernels taken for every
-    lag in x, and summed along x - x' = lag.
-
-    Parameters
-    ----------
-    kernels
-        (m, g, z, n, lags in x, lags in y).
-    fields
-        (g, n, nx, ny) on the source window.
-    source, observed
-        Windows of the fields and of the answer.
-    odd_out, odd_in
-        (2, m) and (2, g), whether each of m and of g is odd in x, in y; a kernel is odd where they differ.
-        Each kind is a run of neighbours.
-
-    Returns
-    -------
-    Array
-        (m, z, nx, rows).
+    """Kernels (m, g, z, n, lags in x, lags in y) times fields (g, n, nx, ny), summed over components, layers
+    and cells on an observed window of few rows: (m, z, nx, rows). No transform is needed: fields are folded
+    about a row, their products with the kernels taken for every lag in x, and summed along x - x' = lag.
+    odd_out, odd_in: (2, m) and (2, g), whether odd in x, in y, each kind a run of neighbours; a kernel is odd
+    where they differ.
     """
     (m, _, depths, *_, lags_x, lags_y), columns = kernels.shape, np.arange(source.nx)
     lag = np.subtract.outer(observed.i0 + np.arange(observed.nx), source.i0 + columns)
@@ -466,12 +414,9 @@ class BoxConvolution:
         return self._apply(field, self.spectrum)
 
     def single(self, field: Array) -> Array:
-        """The same, computed in single precision; the field is scaled first, so that its unit does not
-        matter.
-        """
+        """The same in single precision; the field is scaled first, so that its unit does not matter."""
         scale = max(field.max(), -field.min()) or 1.0
-        found: Array = scale * self._apply((field / scale).astype(np.float32), self._single)
-        return found
+        return scale * self._apply((field / scale).astype(np.float32), self._single)
 
     def _apply(self, field: Real, spectrum: Real) -> NDArray[Any]:
         self.counters.ffts += 2
@@ -497,9 +442,7 @@ def unfolded(n: int) -> NDArray[np.intp]:
 
 
 def filtered(kept: Real, cells: tuple[int, int], spectrum: Real) -> Real:
-    """The kept quarter of a mirrored field on the cells, its transform multiplied by a real one, (N_x + 1,
-    N_y + 1).
-    """
+    """The quarter of a mirrored field, its transform multiplied by a real one, (N_x + 1, N_y + 1)."""
     between, sizes = [n % 2 == 0 for n in cells], kept.shape
     for axis in (-1, -2):
         kept = forward(kept, spectrum.shape[axis] - 1, False, axis, between=between[axis])
@@ -510,9 +453,7 @@ def filtered(kept: Real, cells: tuple[int, int], spectrum: Real) -> Real:
 
 
 class MirroredConvolution(BoxConvolution):
-    """The same for fields that are mirrored in x and in y, given on the quarter from the middle outward that
-    is kept of them.
-    """
+    """The same for fields that are mirrored in x and in y, given on the quarter from the middle outward."""
 
     def _spectrum(self, kernel: Real, half: tuple[int, int]) -> Real:
         return real_spectrum(kernel, half, (0, 0))
@@ -523,10 +464,7 @@ class MirroredConvolution(BoxConvolution):
 
 
 def _by_parity(field: Real, odd: Parity, *, n: int, half: int, axis: int, inverse: bool = False) -> Real:
-    """Transform each field along an axis by its parity, with `forward` or `back`.
-
-    odd: of each entry of the first axis; n: cells along the axis, of which half are kept.
-    """
+    """Transform each field along an axis by its parity; odd: of each entry; n: cells, half are kept."""
     shape = list(field.shape)
     shape[axis] = n - n // 2 if inverse else half + 1
     out = np.empty(shape, dtype=field.dtype)
@@ -541,12 +479,8 @@ def _by_parity(field: Real, odd: Parity, *, n: int, half: int, axis: int, invers
 
 
 class Transforms:
-    """Transforms of fields on a box of nx x ny cells.
-
-    mirror: whether the fields are mirrored in x and in y (x only
-    together with y).
-
-    shape: of a kept field; half: the N of the module's text; single: whether in single precision.
+    """Transforms of fields on a box of cells, mirrored in x (only together with y) and in y. shape: of a kept
+    field; half: the N of the module's text; single: whether in single precision.
     """
 
     def __init__(
@@ -605,8 +539,7 @@ class Transforms:
             spectrum[..., : self.half[0] + 1, :] = both[..., 0]
             # no other rows are wanted
             rows = fft.ifft(spectrum, axis=-2, overwrite_x=True)[..., : self.cells[0], :]
-            found: Real = fft.irfft(rows, n=self.lengths[1], axis=-1)[..., : self.cells[1]]
-            return found
+            return fft.irfft(rows, n=self.lengths[1], axis=-1)[..., : self.cells[1]]
         if self.mirror[0]:
             spectrum = np.ascontiguousarray(np.moveaxis(columns[..., 0], (0, 1), (-2, -1)))
             rows = _by_parity(spectrum, odd_x, n=self.cells[0], half=self.half[0], axis=-2, inverse=True)

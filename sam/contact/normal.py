@@ -16,8 +16,6 @@ with a tangential part that lags behind, in passes, until the gap with the curre
 tangential part is antisymmetric and at most b = beta mu of the normal one (transforms i n_1 b and 1, times
 1/k): relaxed by 1/(1 + b^2), each pass leaves b/sqrt(1 + b^2) of the error. With a coating b depends on the
 wave number; its largest value counts.
-
-Whether a contact fits its grid: off the edge, and resolved.
 """
 
 from __future__ import annotations
@@ -45,15 +43,7 @@ MARGIN = 3  # cells around the estimated contact that may come into contact; 1 a
 
 @dataclass(frozen=True)
 class Units:
-    """What the dimensionless fields are multiplied by: u_hat by hx, p_hat by E*/2.
-
-    Parameters
-    ----------
-    hx, hy
-        Sides of a cell in m.
-    modulus
-        E* in Pa, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
-    """
+    """Units of the dimensionless fields: u_hat in hx (m), p_hat in E*/2, with the modulus E* in Pa."""
 
     hx: float
     hy: float
@@ -71,9 +61,7 @@ class Units:
 
 
 def control_of(given: float | Approach, hx: float, force_unit: float) -> Control:
-    """What is given of a contact, a force in N or an approach, in the units of the module; force_unit: N per
-    sum of p_hat.
-    """
+    """What is given, a force in N or an approach, in the units of the module; force_unit: N per p_hat."""
     if isinstance(given, Approach):
         return ApproachControl(given.distance / hx)
     return ForceControl(given / force_unit)
@@ -164,9 +152,7 @@ class Contact:
 
 
 def _coarse_start(operators: SurfaceOperators, gap0: Array, control: Control) -> Array:
-    """Pressure interpolated from the solution on every second cell (recursive); `Control.start` on the
-    coarsest grid.
-    """
+    """Pressure interpolated from every second cell (recursive); `Control.start` on the coarsest grid."""
     nx, ny = operators.shape
     # every second cell, among them the central one
     ox, oy = (nx // 2) % 2, (ny // 2) % 2
@@ -208,9 +194,7 @@ def around(cells: Mask) -> Window:
 
 @dataclass(frozen=True)
 class Found:
-    """p_hat and u_hat on the full grid, the box that was allowed into contact, and what
-    the iterations took.
-    """
+    """p_hat and u_hat on the full grid, the box that was allowed into contact, and the iterations."""
 
     p: Array
     u: Array
@@ -222,9 +206,7 @@ class Found:
 def _growing_box(
     operators: SurfaceOperators, gap0: Array, control: Control, start: Array, *, tolerance: float, limit: int
 ) -> Found:
-    """Solve in a box around the start, check on the full grid, and grow the box until nothing outside
-    penetrates.
-    """
+    """Solve in a box around the start, and grow it until nothing outside of it penetrates."""
     residuals: tuple[float, ...] = ()
     cells, total = start > 0, 0
     while True:
@@ -352,10 +334,8 @@ def measured(
     given: float | Approach,
     tolerance: float,
 ) -> Contact:
-    """The Contact of p_hat and u_hat on the full grid, with its residuals measured there.
-
-    gap0: (nx, ny) in m, with the residual displacement of the surface if it has any; given: force in N or
-    approach; converged if the residuals are within twice the tolerance (rounding of a sum over another
+    """The Contact of p_hat and u_hat on the full grid, with its residuals measured there. gap0: (nx, ny) in
+    m, with residual displacement; converged within twice the tolerance (rounding of a sum over another
     window).
     """
     p, hx = found.p, units.hx
@@ -388,9 +368,7 @@ def measured(
 
 
 def no_contact(gap0: Array, given: float | Approach = 0.0) -> Contact:
-    """The state without force: the surfaces as they first touch, or as far apart as the given approach leaves
-    them.
-    """
+    """The state without force: the surfaces as they first touch, or as a given approach leaves them."""
     zero, window = np.zeros(gap0.shape), Window(0, 0, *gap0.shape)
     approach = given.distance if isinstance(given, Approach) else float(gap0.min())
     return Contact(zero, zero, gap0 - approach, approach, 0.0, window, 0.0, 0.0, 0.0, 0.0, 0, True)
@@ -402,10 +380,8 @@ FEWEST_IN_SPOT = round(pi * FEWEST_CELLS**2)
 
 
 def fit_of(contact: Contact, rough: bool = False) -> Status:
-    """CONVERGED, or what is wrong with a contact on the full grid; no contact fits.
-
-    rough: the patch may be cut and single spots may be small, which costs warnings (sam.results.rough); all
-    cells in contact together must be as many as resolve one spot.
+    """CONVERGED, or what is wrong with a contact on the full grid; no contact fits. rough: single spots may
+    be small, which costs warnings; all cells in contact together must resolve one spot.
     """
     if not contact.converged:
         return Status.NOT_CONVERGED

@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The surface coefficients of a grid of cells, and operators between windows of it, in the units of
-`sam.contact.normal`.
-
-How far a loaded cell moves two surfaces, in the units of the contact: two homogeneous half-spaces, or one
-of them coated.
+"""How far a loaded cell moves two surfaces, of homogeneous half-spaces or of a coated one, and the operators
+between windows of a grid of cells.
 
 Units as in `sam.contact.normal`: lengths in cells hx, pressures as p_hat = 2 p/E*. A homogeneous pair then
 holds no material constant; a coated one depends on the thickness in cells, so it knows its cell, and a
@@ -43,9 +40,7 @@ WAVES = 64  # wave numbers of a bound: 1024 give one larger by less than 0.02 %,
 
 
 class HalfSpaces:
-    """Two homogeneous half-spaces; the coupling of a traction is then 2 beta mu (see
-    `sam.grid.coupling_of`).
-    """
+    """Two homogeneous half-spaces; the coupling of a traction is then 2 beta mu."""
 
     # Counted in displacements to 1e-8 for a sphere on 129 x 129 and a random surface on 64 x 64 cells.
     most_iterations = 1000  # limit of a contact; 35 and 31 are needed
@@ -68,10 +63,7 @@ class HalfSpaces:
         return wave_number
 
     def tangential_share(self, cells: int) -> float:
-        """The largest ratio of what a traction with coupling 1 moves a harmonic to what p moves it.
-
-        cells: across the grid, which bounds the wave numbers.
-        """
+        """Largest ratio of what a traction moves a harmonic to what p moves it; cells: across the grid."""
         return 0.5
 
     def coarser(self) -> HalfSpaces:
@@ -83,22 +75,11 @@ HALF_SPACES = HalfSpaces()
 
 
 class CoatedBodies(HalfSpaces):
-    """A coated body 1 and a homogeneous body 2; the coupling of a traction is then its coefficient mu.
-
-    A stiff coating bends like a plate, whose compliance falls like k^-4: the iteration then rests long and
-    moves on, and short waves are lost in the rounding of long ones.
-
-    Parameters
-    ----------
-    layered
-        Coefficients of body 1.
-    hx
-        Side of a cell in m.
-    modulus
-        E* in Pa, of the unit of p_hat.
-    compliance, tangential
-        (1 - nu2^2)/E2 and (1 - 2 nu2)/mu2 in 1/Pa of body 2, which carries the opposite traction; 0 if it is
-        rigid.
+    """A coated body 1 and a homogeneous body 2; the coupling of a traction is then its coefficient mu. A
+    stiff coating bends like a plate, whose compliance falls like k^-4: the iteration then rests long and
+    moves on, and short waves are lost in the rounding of long ones. hx: cell in m; modulus: E* in Pa, of the
+    unit of p_hat; compliance, tangential: (1 - nu2^2)/E2, (1 - 2 nu2)/mu2 in 1/Pa of body 2, which carries
+    the opposite traction; 0 if it is rigid.
     """
 
     most_iterations = 5000  # limit: a plate rests long before it moves on
@@ -123,9 +104,7 @@ class CoatedBodies(HalfSpaces):
         self._coarser: CoatedBodies | None = None
 
     def _coefficients(self, cells: Lags, load: int, counterpart: float) -> Array:
-        """u_hat_z by load 3 or 1: of body 1, and `counterpart` (in 1/p_hat) times that of a half-space;
-        cells: in hx.
-        """
+        """u_hat_z by load 3 or 1: of body 1, and `counterpart` (in 1/p_hat) times that of a half-space."""
         key = cells, load
         if key not in self._known:
             in_m = Lags(cells.nx, cells.ny, self.hx, cells.hy * self.hx)
@@ -175,22 +154,9 @@ Operator = Callable[[Array], Array]
 
 
 class SurfaceOperators:
-    """Makes the dimensionless operators between windows of a grid of cells, which share their coefficients.
-
-    self_influence is the displacement that p_hat = 1 causes in its own cell.
-
-    Parameters
-    ----------
-    shape
-        (nx, ny) cells.
-    aspect
-        hy/hx.
-    counters
-        Where the work is counted.
-    coupling
-        Of the traction, see `sam.grid.coupling_of`: a number or (nx, ny); with 0 nothing is built for it.
-    bodies
-        What is in contact.
+    """Makes the dimensionless operators between windows of a grid of (nx, ny) cells with aspect hy/hx, which
+    share their coefficients. coupling: of the traction, a number or (nx, ny), with 0 nothing is built for it;
+    self_influence: displacement that p_hat = 1 causes in its own cell.
     """
 
     def __init__(
@@ -209,9 +175,7 @@ class SurfaceOperators:
         self.self_influence = float(self.coefficients[0, 0])
 
     def with_coupling(self, coupling: float | Array) -> SurfaceOperators:
-        """The operators of the same cells with another coefficient of friction; both
-        share what is computed.
-        """
+        """The operators of the same cells with another coefficient of friction, which share the rest."""
         other = copy(self)
         other.coupling = np.broadcast_to(coupling, self.shape) if np.any(coupling) else None
         return other
@@ -224,8 +188,7 @@ class SurfaceOperators:
 
         def apply(p_hat: Array) -> Array:
             self.counters.displacement_applications += 1
-            found: Array = convolution(p_hat)[0]  # paper Eq. 5, D_33
-            return found
+            return convolution(p_hat)[0]  # paper Eq. 5, D_33
 
         return apply
 
@@ -236,10 +199,7 @@ class SurfaceOperators:
         )
 
     def tangential(self, source: Window, observed: Window) -> Operator | None:
-        """p_hat on `source` -> u_hat on `observed` of its traction: paper Eq. 5 with D_31.
-
-        None without coupling.
-        """
+        """p_hat on `source` -> u_hat on `observed` of its traction, paper Eq. 5 with D_31; None without."""
         if self.coupling is None:
             return None
         lx, ly = Convolution.lags_needed(source, observed)
@@ -249,8 +209,7 @@ class SurfaceOperators:
 
         def apply(p_hat: Array) -> Array:
             self.counters.displacement_applications += 1
-            found: Array = convolution(coupling * p_hat)[0]  # paper Eq. 5, D_31
-            return found
+            return convolution(coupling * p_hat)[0]  # paper Eq. 5, D_31
 
         return apply
 
@@ -264,10 +223,7 @@ class SurfaceOperators:
         """The relaxation factor of the passes of a contact with traction, 1/(1 + b^2)."""
         if self.coupling is None:
             return 1.0
-        found: float = 1 / (
-            1 + (self.bodies.tangential_share(max(self.shape)) * np.abs(self.coupling).max()) ** 2
-        )
-        return found
+        return 1 / (1 + (self.bodies.tangential_share(max(self.shape)) * np.abs(self.coupling).max()) ** 2)
 
     def displacement(self, p_hat: Array, source: Window, observed: Window, sign: float = 1.0) -> Array:
         """u_hat on `observed` of p_hat on `source` and of its traction, which acts along sign times x."""
@@ -275,11 +231,9 @@ class SurfaceOperators:
         return u if tangential is None else u + sign * tangential(p_hat)
 
     def preconditioner(self, box: Window, mirrored: bool) -> Operator:
-        """r -> F^-1 s(|k|) F r on the box: the inverse of the operator on the whole plane, p_k = s(|k|) u_k,
-        but for a factor.
-
-        In single precision where the bodies allow: it has to be near, not exact. mirrored: on a quarter of
-        the box.
+        """r -> F^-1 s(|k|) F r on the box or its mirrored quarter: the inverse of the operator on the whole
+        plane, p_k = s(|k|) u_k, but for a factor. In single precision where the bodies allow: it has to be
+        near, not exact.
         """
         real: type[np.floating[Any]] = np.float32 if self.bodies.single else np.float64
         if mirrored:
@@ -328,26 +282,18 @@ def half_space_kernel(grid: CellGrid, nu: float) -> Kernel:
 def moved_rows(
     grid: CellGrid, field: Array, kernel: Kernel, moved_by: tuple[int, int], *, counters: Counters
 ) -> Array:
-    """Displacement of the rows that touch y = 0 by a load on the surface, (nx, rows).
-
-    moved_by: component of the displacement and direction of the load, 1 to 3.
-    """
+    """Displacement of the rows that touch y = 0, (nx, rows); moved_by: its component and that of the load."""
     component, load = moved_by
     source, observed = grid.whole, grid.axis_rows
     coefficients = kernel(*Convolution.lags_needed(source, observed), component=component, load=load)
     counters.tangential_kernels += moved_by != (3, 3)
     signs = [parity(str(component), load)]
-    found: Array = convolution_onto(coefficients[None], signs, source, observed, counters=counters)(field)[0]
-    return found
+    return convolution_onto(coefficients[None], signs, source, observed, counters=counters)(field)[0]
 
 
 @dataclass(frozen=True)
 class CoatedPair:
-    """The coated body and its counter-body; one object serves all load steps.
-
-    layered: coefficients of the coated body; pair: the body below the coating, and the counter-body;
-    thickness in m.
-    """
+    """The coated body, the body below its coating (thickness in m), and the counter-body."""
 
     layered: LayeredPatches
     pair: ElasticPair
@@ -390,9 +336,7 @@ class CoatedPair:
     def counter_uz(
         self, grid: CellGrid, pressure: Array, traction: Array | None, counters: Counters
     ) -> Array:
-        """Displacement of the counter-body's surface away from the body, (nx, rows) in m, in the rows at y =
-        0.
-
+        """Displacement of the counter-body away from the body in the rows at y = 0, (nx, rows) in m.
         traction: on the body, None where it does not count; the counter-body carries the opposite one.
         """
         if not (self.compliance and pressure.any()):

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Elastic stresses under surface tractions, at chosen depths, in a window of the grid. Paper Eq. 7, first
-sum.
-
-Total strains at the surface of a body, which a tribofilm that is bonded to it shares.
+"""Elastic stresses under surface tractions in a window of the grid, paper Eq. 7, first sum; and the total
+strains at the surface of a body, which a tribofilm that is bonded to it shares.
 """
 
 from __future__ import annotations
@@ -93,9 +91,7 @@ def _loaded(field: Array) -> Window | None:
 
 
 def _needed(field: Array, load: int, observed: Window) -> list[int]:
-    """The components that symmetry does not make zero: in one row about which the field is mirrored, those
-    even in y.
-    """
+    """The components that are not zero by symmetry: in the row of a mirrored field those even in y."""
     everything = list(range(len(STRESS)))
     if observed.ny > 1 or 2 * observed.j0 + 1 != field.shape[1]:
         return everything
@@ -119,8 +115,7 @@ def von_mises(stress: Array) -> Array:
     """
     s11, s22, s33, s23, s13, s12 = stress
     normal = (s11 - s22) ** 2 + (s22 - s33) ** 2 + (s33 - s11) ** 2
-    found: Array = np.sqrt(normal / 2 + 3 * (s23**2 + s13**2 + s12**2))
-    return found
+    return np.sqrt(normal / 2 + 3 * (s23**2 + s13**2 + s12**2))
 
 
 def elastic_strain(stress: Array, young: float, poisson: float) -> Array:
@@ -136,12 +131,9 @@ def elastic_strain(stress: Array, young: float, poisson: float) -> Array:
 
 
 def surface_strain(stress: Array, plastic: Array, depths: Array, *, young: float, poisson: float) -> Array:
-    """Total strains xx, yy, xy, zz of the surface, (4, nx, ny), from the mean strains of the two uppermost
-    layers of cells.
-
-    stress in Pa and plastic strain, (6, n_layers, nx, ny); depths: of the layer centres in m. In the plane
-    total strains are continuous across the layers; they are extrapolated linearly to z = 0. With one layer
-    its mean is taken.
+    """Total strains xx, yy, xy, zz of the surface, (4, nx, ny), from stress in Pa and plastic strain, (6,
+    n_layers, nx, ny), of the two uppermost layers (centres in m). They are continuous across layers in the
+    plane, and extrapolated linearly to z = 0; of one layer its mean is taken.
     """
     total = elastic_strain(stress[:, :2], young, poisson) + plastic[[0, 1, 5, 2], :2]
     if total.shape[1] < 2:

@@ -33,10 +33,7 @@ CYCLE = "elastic: equal to cycle 1"
 
 def solve_elastic(problem: ElasticProblem, report: Progress) -> History:
     """The load history of a body that stays elastic: unloading in one step, the last cycle stands for all
-    unless the counter-surface is renewed.
-
-    Where the sign of the traction changes, the cycles are mirror images: what the history holds of them is
-    equal.
+    unless the counter-surface is renewed. Where the traction changes its sign the cycles are mirror images.
     """
     plan, grid = problem.plan, problem.plan.grid
     rows: list[Row] = []
@@ -88,9 +85,7 @@ def step_with_tribofilm(
     *,
     start: Array | None = None,
 ) -> tuple[Loaded, TribofilmState]:
-    """The state under a load and the tribofilm after the step, repeated until the film that breaks down in
-    the state is the one whose friction it was solved with.
-    """
+    """State and tribofilm after a step, repeated until the film is the one whose friction it had."""
     tried, grid, body = film, problem.plan.grid, problem.plan.pair.body
     while True:
         mu = tribofilm.coefficient(tried)
@@ -125,9 +120,7 @@ def snapshot_of(name: str, state: Loaded) -> Snapshot:
 
 
 def bare_body(state: Loaded) -> Comparison:
-    """Contact of the bare body, from the coated one's pressure on, and its stress; a warning where the grid
-    does not suit it.
-    """
+    """Contact of the bare body, from the coated pressure on, and its stress; a warning where it is unfit."""
     bare, load = state.problem.bare(), state.load.by_force()
     contact = bare.contact(load, start=state.contact.pressure)
     status = fit_of(contact, rough=bare.plan.places.anywhere)

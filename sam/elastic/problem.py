@@ -47,9 +47,7 @@ class GivenHertz:
         return 2 / 3 * pi * self.p0 * self.radius**2
 
     def pressure(self, grid: CellGrid, load: Load, window: Window | None = None) -> Array:
-        """The mean over each cell of a window (None: of the grid), centred at the place of the load, (nx, ny)
-        in Pa.
-        """
+        """The mean over each cell of a window or of the grid, about the place of the load, (nx, ny) in Pa."""
         i, j = (grid.whole if window is None else window).slices
         return self._mean((grid.x[i], grid.y[j]), (grid.hx, grid.hy), load)
 
@@ -70,10 +68,8 @@ class GivenHertz:
         return out
 
     def contact(self, grid: CellGrid, load: Load, pressure: Array, displacement: Array) -> Contact:
-        """The state under the pressure: nothing is opposite, so gap and approach are not numbers.
-
-        pressure in Pa, displacement in m, (nx, ny); load_error: of the means over the cells against the
-        force.
+        """The state under the pressure (Pa): nothing is opposite, so gap and approach are not numbers.
+        displacement in m, (nx, ny); load_error: of the means over the cells against the force.
         """
         error = abs(float(pressure.sum()) * (grid.hx * grid.hy) - load.force) / load.force
         nothing = np.full_like(pressure, np.nan)
@@ -229,9 +225,8 @@ class Plan:
 
     @property
     def held_depths(self) -> tuple[int, int]:
-        """Output depths that are in memory at the same time: with their coefficients, with their stresses.
-
-        Of a rough body the stresses are taken in blocks of depths, and the coefficients with them.
+        """Output depths in memory at the same time, with coefficients and with stresses: of a rough body both
+        are taken in blocks of depths.
         """
         depths = len(self.grid.depths)
         together = min(depths, depths_at_once(self.grid)) if self.places.anywhere else depths
@@ -287,9 +282,8 @@ class ElasticProblem:
     def contact(
         self, load: Load, coefficient: Coefficient | None = None, start: Array | None = None
     ) -> Contact:
-        """Contact of the bodies under a load, or under the pressure that is given.
-
-        coefficient: of friction, if it is not that of the slip; start: pressure of the step before, in Pa.
+        """Contact under a load, or under the pressure that is given; coefficient: of friction, if not that of
+        the slip; start: pressure of the step before, in Pa.
         """
         plan, grid, gap = self.plan, self.plan.grid, self.gap(load)
         slip, modulus = plan.slip, plan.pair.contact_modulus

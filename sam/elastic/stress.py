@@ -1,12 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Stresses of an elastic state at the output depths, and where the largest of them is looked for. Paper Eq.
-7, first sum.
-
-How the surface of an elastic body moves along x and in z under pressure and traction, in the rows at y =
-0.
-
-The onset of yield: the contact at the largest load if the body stayed elastic, and whether its stress
-yields anywhere.
+"""Stresses of an elastic state at the output depths (paper Eq. 7, first sum), how friction moves its surface,
+and the onset of yield: whether the stress of the largest load yields anywhere.
 """
 
 from __future__ import annotations
@@ -56,10 +50,8 @@ def plane_stress(state: Loaded) -> Array:
 
 @dataclass(frozen=True)
 class Stresses:
-    """Stresses of a state.
-
-    plane: in the rows that touch y = 0, (6, nz, nx, rows) in Pa; mises: the von Mises stress among which the
-    largest is, (nz, n) in Pa; in_row: in another row of cells, (6, nz, nx) in Pa, None if none is asked for.
+    """Stresses of a state in Pa: in the rows that touch y = 0, (6, nz, nx, rows); the von Mises stress among
+    which the largest is, (nz, n); in another row of cells, (6, nz, nx), or None.
     """
 
     plane: Array
@@ -68,12 +60,10 @@ class Stresses:
 
 
 def stresses_of(state: Loaded, row: int | None = None) -> Stresses:
-    """Stresses of a state, also in a row of cells.
-
-    The largest von Mises stress is looked for in the rows at y = 0, n = nx rows, or in the row if the load
-    ends beside it; under a rough body on the whole grid, n = 1. Without friction it lies below the middle
-    of the contact, with friction in the plane along x through it: the other cells of the grid would take
-    eight to twenty times as long.
+    """Stresses of a state, also in a row of cells. The largest von Mises stress is looked for in the rows at
+    y = 0, or in the row if the load ends beside it; under a rough body on the whole grid. Without friction it
+    lies below the middle of the contact, with friction in the plane along x through it: the other cells would
+    take eight to twenty times as long.
     """
     problem = state.problem
     if problem.plan.places.anywhere:
@@ -90,14 +80,11 @@ def stresses_of(state: Loaded, row: int | None = None) -> Stresses:
 
 def _in_cells(rows: Array) -> Array:
     """Von Mises stress of rows of cells, (nz, nx rows) in Pa, of their stress, (6, nz, nx, rows)."""
-    found: Array = von_mises(rows).reshape(rows.shape[1], -1)
-    return found
+    return von_mises(rows).reshape(rows.shape[1], -1)
 
 
 def _stresses_anywhere(state: Loaded, window: Window, row: int | None) -> Stresses:
-    """The largest von Mises stress in a window of the grid, for blocks of depths, so that the memory is
-    bounded.
-    """
+    """The largest von Mises stress in a window of the grid, in blocks of depths, which bounds the memory."""
     grid = state.problem.plan.grid
     block, rows = depths_at_once(grid), grid.axis_rows.slices[1]
     largest, plane, cut = [], [], []
@@ -147,10 +134,9 @@ def sliding_of(state: Loaded) -> Sliding | None:
 
 @dataclass(frozen=True)
 class ElasticPeak:
-    """The contact at the largest load if the body stayed elastic, and the von Mises stress, (nz, n) in Pa.
-
-    mises: below a smooth body in the plane y = 0, n = nx; below a rough one the largest of the whole grid, n
-    = 1. A tribofilm may fail and raise the traction: then with its high coefficient everywhere.
+    """The contact at the largest load if the body stayed elastic, and the von Mises stress, (nz, n) in Pa:
+    below a smooth body in y = 0, below a rough one the largest of the grid. A tribofilm may fail and raise
+    the traction: then with its high coefficient everywhere.
     """
 
     contact: Contact

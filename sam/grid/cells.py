@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A grid of cells with depths below it, and a window of it.
-
-A grid that turns out too small: a side that the program chose is enlarged, one that the user gave is
-named.
+"""A grid of cells with depths below it, and a window of it. Of a grid that turns out too small a side that
+the program chose is enlarged, one that the user gave is named.
 """
 
 from __future__ import annotations
@@ -129,8 +127,7 @@ class CellGrid:
 
 def _centres(n: int, h: float) -> Array:
     """Centres of n cells of length h about the origin."""
-    centres: Array = (np.arange(n, dtype=np.float64) - (n - 1) / 2) * h
-    return centres
+    return (np.arange(n, dtype=np.float64) - (n - 1) / 2) * h
 
 
 RATIO = 1.5  # by which a side grows that was reached
@@ -146,9 +143,7 @@ class Sides:
 
 
 def enlarged(given: Sides, room: Room, reached: Sides) -> Room | None:
-    """More room where the grid was too small; None if it was not, or where the user gave what would have to
-    grow.
-    """
+    """More room where the grid was too small; None if it was not, or where the user gave what must grow."""
     if (
         not (reached.beside or reached.below)
         or (reached.beside and given.beside)

@@ -1,11 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The gap between unloaded bodies: of a paraboloid, a punch or a plane, less the heights of rough bodies.
-
-A punch with a flat end and a rounded edge. Loaded for such a counter-body only.
-
-Contact ellipse of Hertz. Loaded for unequal radii only: a sphere needs neither elliptic integrals nor a
-root.
-"""
+"""The gap between unloaded bodies: of a paraboloid, a punch or a plane, less the heights of rough bodies."""
 
 from __future__ import annotations
 
@@ -48,9 +42,8 @@ class Paraboloid:
 
 @dataclass(frozen=True)
 class Punch:
-    """The flat end of a cylinder: no gap under it, an infinite one beside it. radius in m.
-
-    Its cells are those nearest to the axis that together have its area, as closely as whole rings allow.
+    """The flat end of a cylinder, radius in m: no gap under it, an infinite one beside it. Its cells are
+    those nearest to the axis with its area, as closely as whole rings allow.
     """
 
     radius: float
@@ -81,11 +74,9 @@ class NoCounterBody:
 
 @dataclass(frozen=True)
 class InitialGap:
-    """The gap before the first load, at the cell centres of a grid.
-
-    heights: of a rough body, (nx, ny) in m, positive out of it; opposite: of the counter-body, by the number
-    of the stretch and the place, positive out of that. With either the gap is zero where the unworn bodies
-    touch first, for each stretch by itself; on a path where they do so at its start.
+    """The gap before the first load at the cell centres. heights: of a rough body, (nx, ny) in m, positive
+    out of it; opposite: of the counter-body, by number of the stretch and place. With either the gap is zero
+    where the unworn bodies touch first, for each stretch by itself; on a path at its start.
     """
 
     shape: Shape
@@ -122,15 +113,12 @@ class InitialGap:
 
 
 def _cells_of_circle(distance: Array, radius: float, cell_area: float) -> Mask:
-    """The cells nearest to the centre whose number comes closest to the area of the circle: at least the
-    innermost.
-
-    Cells at one distance enter together, so the symmetry of the grid stays.
+    """The cells nearest to the centre with about the area of the circle, one at least; those at one distance
+    enter together, so the symmetry stays.
     """
     rings, counts = np.unique(np.round(distance / radius, 9), return_counts=True)
     last = np.abs(np.cumsum(counts) - pi * radius**2 / cell_area).argmin()
-    inside: Mask = np.round(distance / radius, 9) <= rings[last]
-    return inside
+    return np.round(distance / radius, 9) <= rings[last]
 
 
 FEWEST = 3  # cells in the contact beyond the flat end: the largest pressure errs by 1 %, with 1.5 by 5 %
@@ -151,8 +139,7 @@ class RoundedPunch:
     def gap(self, grid: CellGrid, at: Place = ORIGIN) -> Array:
         """At the cell centres, (nx, ny) in m."""
         beyond = np.maximum(np.hypot(grid.x[:, None] - at[0], grid.y[None, :] - at[1]) - self.flat, 0.0)
-        found: Array = beyond**2 / (2 * self.radius)
-        return found
+        return beyond**2 / (2 * self.radius)
 
     def largest_cell(self, a: float) -> float:
         """In m, at a contact radius in m; infinite without contact beyond the flat end."""
@@ -188,10 +175,9 @@ EQUAL = 1e-4  # relative difference of the radii below which the ellipse is a ci
 
 
 def elliptic_contact(force: float, radii: tuple[float, float], modulus: float) -> tuple[float, float]:
-    """Contact semi-axes (a along x, b along y) in m under a force in N, radii (Rx, Ry) in m, E* in Pa.
-    Johnson 1985, Eq. 4.26.
-
-    Solved for the ratio of the axes, with the complete elliptic integrals K and E of m = e^2 = 1 - ratio^2.
+    """Contact semi-axes (a along x, b along y) in m under a force in N, radii (Rx, Ry) in m, E* in Pa
+    (Johnson 1985, Eq. 4.26), by the ratio of the axes and complete elliptic integrals of m = e^2 = 1 -
+    ratio^2.
     """
     from scipy.optimize import brentq  # noqa: PLC0415 - a tenth of a second, for ellipses alone
     from scipy.special import ellipe, ellipk  # noqa: PLC0415
@@ -200,9 +186,7 @@ def elliptic_contact(force: float, radii: tuple[float, float], modulus: float) -
     small, large = sorted((rx, ry))
 
     def curvatures(ratio: float) -> tuple[float, float]:
-        """(K - E, E/ratio^2 - K)/e^2: proportional to the curvatures 1/(2 R) along the major and the minor
-        axis.
-        """
+        """(K - E, E/ratio^2 - K)/e^2, in proportion to the curvatures along major and minor axis."""
         m = 1 - ratio**2
         k, e = ellipk(m), ellipe(m)
         return (k - e) / m, (e / ratio**2 - k) / m

@@ -42,10 +42,8 @@ LAYER_GROWTH = 1.25  # ratio of the thicknesses of layers
 
 @dataclass(frozen=True)
 class RoughPatch:
-    """The rough surfaces on their cells: of the body, of the counter-body, or both.
-
-    cells: (nx, ny); extent: (Lx, Ly) in m; relief: whether the heights of both fall off at the border; strip:
-    of a rough counter-body that moves.
+    """The rough surfaces of body, counter-body or both on (nx, ny) cells over (Lx, Ly) in m. relief: whether
+    heights fall off at the border; strip: of a rough counter-body that moves.
     """
 
     surface: Surface | None
@@ -76,9 +74,7 @@ class RoughPatch:
         return _heights(stated(self.surface), self.cells, self.extent, self.relief)
 
     def counter_heights(self, number: int, place: tuple[float, float]) -> Array:
-        """Heights of a stretch of a rough counter-body at a place of its path in m, like `heights`, positive
-        out of it.
-        """
+        """Heights of a stretch of a rough counter-body at a place of its path in m, positive out of it."""
         if self.strip is not None:
             return self.strip.at(number, place)
         stretch = stated(self.counter).stretch(number)
@@ -90,9 +86,7 @@ class RoughPatch:
         return np.zeros(self.cells) if self.surface is None else self.heights()
 
     def roughness(self, lowered: Array | float = 0.0) -> Roughness:
-        """Of the heights less what wear and plastic strain have lowered, (nx, ny) in m, but for a border that
-        falls off.
-        """
+        """Of the heights less what is lowered, (nx, ny) in m, but for a border that falls off."""
         (nx, ny), (lx, ly) = self.cells, self.extent
         bx, by = border_cells((nx, ny)) if self.relief else (0, 0)
         inner = (self.of_body - lowered)[bx : nx - bx, by : ny - by]
@@ -111,10 +105,8 @@ def _heights(surface: Surface, cells: tuple[int, int], extent: tuple[float, floa
 
 @dataclass(frozen=True)
 class RoughDemand:
-    """What the grid of a rough scene is chosen from.
-
-    given: the table [grid], or None; film: thickness of a coating in m; reach: depth in m to
-    which a plastic zone may go, if all summits in contact act like one (`sam.grid.smooth.point_load_reach`).
+    """What the grid of a rough scene is chosen from: patch, [grid], thickness of a coating in m, and the
+    depth in m that a plastic zone may reach if all summits act like one (`point_load_reach`).
     """
 
     patch: RoughPatch
@@ -125,7 +117,7 @@ class RoughDemand:
 
     def grid(self, room: Room) -> CellGrid:
         """The cells of the patch; depths that [grid] does not give are fine near the surface, where small
-        contacts act. room: its factor on the depth; a body that yields has further layers there.
+        contacts act, and deeper by a factor of the room.
         """
         patch, plasticity = self.patch, self.plasticity
         (nx, ny), (lx, ly) = patch.cells, patch.extent
@@ -155,9 +147,8 @@ def _depths(cell: float, deepest: float) -> Array:
 
 
 def _faces(plasticity: Plasticity, cell: float, deepest: float, reach: float) -> Array:
-    """Faces of the layers of a body that yields: half a cell thick at the surface, thinner where the yield
-    stress varies. The face nearest to a kink of the yield stress is moved there, as a layer has the yield
-    stress at its centre; of kinks nearer to each other than faces are, the first counts.
+    """Faces of layers of a body that yields: half a cell thick at the surface, thinner where the yield stress
+    varies; the one nearest to a kink is moved there, as a layer has the yield stress at its centre.
     """
     thin = [cell / 2]
     if plasticity.profile is not None:

@@ -1,12 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The grid of a smooth scene: taken from [grid], or chosen from an estimate of the contact and of the plastic
-zone.
+"""The grid of a smooth scene: taken from [grid], or chosen from an estimate of the contact, or of a misfit
+sphere, and of the plastic zone.
 
-The grid about a misfit sphere: what [grid] leaves out is chosen from the sphere and its plastic zone.
-
-Cells and output depths of a coated scene: how wide its contact is, and depths in the coating and below it.
-
-Loaded for coated scenes only. The contact radius is that of the best Hertz pressure in the sense of the
+The contact radius of a coated body is that of the best Hertz pressure in the sense of the
 complementary energy. Under p = p0 sqrt(1 - r^2/a^2), of force F, the harmonics have the amplitudes F S(k a),
 S(t) = 3 j1(t)/t with the spherical Bessel function j1, and 1/E(k) = k c_zz(k)/2 is the compliance that each
 of them meets. The energy F^2/(2 pi) int S(k a)^2/E(k) dk of both bodies and F <r^2>/(2 R) = F a^2/(5 R) of
@@ -59,10 +55,8 @@ FARTHEST = 4.5  # Hertz radii: no grid is chosen for a larger reach (p0 = 19 yie
 
 @dataclass(frozen=True)
 class PlasticDemand:
-    """What plasticity asks of a grid.
-
-    reach: depth in m to which a plastic zone may go, see `point_load_reach`; kinks: depths in m of the rows
-    of a profile of the yield stress.
+    """What plasticity asks of a grid: the depth in m that a plastic zone may reach, see `point_load_reach`,
+    and the depths of kinks of the yield stress.
     """
 
     reach: float
@@ -71,13 +65,10 @@ class PlasticDemand:
 
 @dataclass(frozen=True)
 class GridDemand:
-    """What the grid of a smooth scene is chosen from.
-
-    given: the table [grid], or None; axes: estimated semi-axes of the contact along x and y in m; extent:
-    sides of the grid in contact radii; wider: factor on them, for a second contact that has to fit; farthest:
-    largest |x| and |y| in m of the centre of a travelling load; plastic: None for an elastic body;
-    film: thickness of a coating in m; moves: whether a counter-body travels;
-    largest_cell: in m, that resolves the contact.
+    """What the grid of a smooth scene is chosen from. given: the table [grid]; axes: estimated semi-axes in
+    m; extent: sides in contact radii; wider: factor on them, for a second contact that has to fit; farthest:
+    largest |x| and |y| in m of a travelling load; film: thickness of a coating in m; moves: whether a
+    counter-body travels; largest_cell: in m, that resolves the contact.
     """
 
     given: Grid | None
@@ -111,11 +102,9 @@ class GridDemand:
 
     def grid(self, room: Room) -> CellGrid:
         """The grid, larger by the factors of a room. What [grid] leaves out is chosen: 129 x 129 cells over
-        four contact radii each way.
-
-        With plasticity 65 x 65 cells, and layers as thick as a cell where most of the plastic strain is.
-        Cells of the same size and further layers are added where the plastic zone goes further, and along the
-        path of a travelling load.
+        four contact radii each way; with plasticity 65 x 65, and layers as thick as a cell where most of the
+        plastic strain is. Cells of the same size and further layers are added where the plastic zone goes
+        further, and along a path.
         """
         given, plastic = self.given, self.plastic
         zone, longer = plastic.reach if plastic else 0.0, []
@@ -153,25 +142,20 @@ def given_depths(given: Grid | None) -> Array | None:
 
 
 def point_load_reach(force: float, poisson: float, bulk_yield: float, radius: float) -> float:
-    """Depth in m at which a force in N, acting at a point, brings unstrained bulk material to yield.
-
-    On the axis of Boussinesq's point force F, szz = -3F/(2 pi z^2) and srr = (1 - 2 nu) F/(4 pi z^2) (Johnson
-    1985, Eq. 3.19), so the von Mises stress (7/2 - nu) F/(2 pi z^2) equals the yield stress at z = sqrt((7/2
-    - nu) F/(2 pi sigma_y)). By Saint-Venant's principle a plastic zone much larger than the contact ends
-    about there, whatever the hardening. bulk_yield in Pa; radius: of Hertz's contact in m, FARTHEST of them
-    at most, as a law may begin at a vanishing yield stress.
+    """Depth in m at which a point force in N brings unstrained bulk material to yield: on the axis of
+    Boussinesq's, szz = -3F/(2 pi z^2), srr = (1 - 2 nu) F/(4 pi z^2) (Johnson 1985, Eq. 3.19), von Mises
+    stress (7/2 - nu) F/(2 pi z^2). By Saint-Venant's principle a plastic zone much larger than the contact
+    ends about there, whatever the hardening. bulk_yield in Pa; radius: of contact in m, FARTHEST of them at
+    most.
     """
     reach = sqrt((3.5 - poisson) * force / (2 * pi * bulk_yield))
     return min(reach, FARTHEST * radius)
 
 
 def _layer_faces(thickness: float, radius: float, plastic: PlasticDemand, room: float) -> Array:
-    """Faces of equal layers down to EVEN_DEPTH radii, then of growing ones to LAYER_RANGE.
-
-    The lowest layer does not begin above the reach of the plastic zone, as that leaves it free; room: factor
-    on both depths. The kinks are faces too, as a layer has the yield stress at its centre: with none at its
-    lower side a soft layer would be thinner or thicker. LAYERS_IN_PROFILE or more down to the last of them,
-    none thinner than thickness/SLENDEST.
+    """Faces of equal layers down to EVEN_DEPTH radii, then of growing ones to LAYER_RANGE and beyond the
+    reach of the plastic zone; room: factor on both. Kinks are faces too, as a layer has the yield stress at
+    its centre, with LAYERS_IN_PROFILE or more down to the last, none thinner than thickness/SLENDEST.
     """
     faces, kinks = [0.0], [z for z in plastic.kinks if 0 < z < EVEN_DEPTH * radius]
     thin = max(min([thickness, *(z / LAYERS_IN_PROFILE for z in kinks[-1:])]), thickness / SLENDEST)
@@ -195,10 +179,8 @@ ELASTIC_SIDE = 2.0  # radii of the sphere, where nothing yields: the half side o
 
 @dataclass(frozen=True)
 class MisfitDemand:
-    """What the grid of a misfit sphere is chosen from.
-
-    given: the table [grid], or None; depth, radius: of the sphere in m; zone: radius of the plastic zone in
-    m, 0 where nothing yields, None of an elastic body.
+    """What the grid of a misfit sphere is chosen from. given: the table [grid]; depth, radius: of the sphere
+    in m; zone: radius of the plastic zone in m, 0 where nothing yields, None of an elastic body.
     """
 
     given: Grid | None
@@ -228,13 +210,10 @@ class MisfitDemand:
         """Output depths of an elastic body: one of them that of the centre."""
         spacing = DEPTH_SPACING * self.radius
         above = int(self.depth / spacing)
-        levels: Array = self.depth + spacing * np.arange(-above, ceil(half / spacing) + 1.0)
-        return levels
+        return self.depth + spacing * np.arange(-above, ceil(half / spacing) + 1.0)
 
     def _faces(self, thickness: float, half: float, room: float) -> Array:
-        """Faces of layers as thick as a cell about the centre, which is the middle of one of them; above
-        them, where nothing yields, layers that grow towards the surface.
-        """
+        """Faces of layers as thick as a cell about the centre, then of growing ones up to the surface."""
         count = ceil(half / thickness - 0.5)
         below = self.depth + thickness * (np.arange(ceil(count * room) + 1) + 0.5)
         above, upper = [self.depth - thickness / 2], thickness
@@ -264,18 +243,14 @@ WIDER = 30.0  # the bracket goes so far beyond the radii of the bare coating and
 
 
 def room_for_bare(scale: float) -> float:
-    """By how much a default grid is wider than for the coated contact alone, so that it holds the bare one to
-    compare with.
-    """
+    """Factor on a default grid for the coated contact, so that it holds the bare one to compare with."""
     return float(np.clip(1 / (BARE_ROOM * scale), 1.0, MOST_ROOM))
 
 
 def depths_with_film(depths: Array, thickness: float) -> Array:
-    """Output depths of a bare body, ascending from 0, made those of a coated one.
-
-    In the coating the given ones, at least LEVELS, and the coating's side of the interface; then the
-    interface, where values are those of the body below; then the given ones that are deeper, and some below a
-    coating that reaches as deep as they do. No interface and nothing below it where that is out of REACH.
+    """Output depths of a bare body, ascending from 0, made those of a coated one: in the coating the given
+    ones, at least LEVELS, and the coating's side of the interface; then the interface, with values of the
+    body below, and deeper ones; none of these where the interface is out of REACH.
     """
     deepest, spacing = depths[-1], depths[1] - depths[0]
     inside: Array = depths[depths < thickness - CLOSE * spacing]
@@ -314,10 +289,8 @@ def mean_compliance(response: Callable[[Array], Array], radius: float) -> float:
 def contact_radius(
     response: Callable[[Array], Array], force: float, radius: float, bare: tuple[float, float]
 ) -> float:
-    """Radius in m of the contact of a paraboloid with the radius of curvature in m under a force in N.
-
-    response: k in 1/m -> c_zz(k) of both bodies in m/Pa; bare: the Hertz radii that the bare coating and the
-    bare body have.
+    """Radius in m of the contact of a paraboloid (radius in m) under a force in N. response: k in 1/m ->
+    c_zz(k) of both bodies in m/Pa; bare: Hertz radii on the bare coating and on the bare body.
     """
     from scipy.optimize import brentq  # noqa: PLC0415 - a tenth of a second, for coatings alone
 

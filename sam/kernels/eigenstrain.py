@@ -57,9 +57,7 @@ Term = tuple[int, int, int, int, int]
 
 @cache
 def eigenstrain_table() -> dict[str, dict[str, dict[Term, tuple[float, ...]]]]:
-    """The derived table: kind -> name -> {(p, q, a, b, c): coefficients of 1, nu, nu^2}; see
-    tests/derivations.
-    """
+    """The derived table: kind -> name -> {(p, q, a, b, c): coefficients of 1, nu, nu^2}."""
     raw = json.loads(Path(__file__).with_name("eigenstrain_table.json").read_text(encoding="utf-8"))
     return {
         kind: {
@@ -71,27 +69,22 @@ def eigenstrain_table() -> dict[str, dict[str, dict[Term, tuple[float, ...]]]]:
 
 
 def parity(i: int, j: int) -> tuple[int, int]:
-    """Sign of stress coefficient [i, j] (0 .. 5) under x -> -x and under y -> -y: each index 1 (2) is odd in
-    x (y).
-    """
+    """Sign of stress coefficient [i, j] (0 .. 5) under x -> -x, y -> -y: each index 1 (2) is odd in x (y)."""
     name = STRESS[i] + STRESS[j]
     return (-1) ** name.count("1"), (-1) ** name.count("2")
 
 
 def displacement_parity(component: int, j: int) -> tuple[int, int]:
-    """Sign of the coefficient of u_component (1, 2, 3) by eigenstrain j (0 .. 5) under x -> -x and under y ->
-    -y.
-    """
+    """Sign of the coefficient of u_component (1 .. 3) by eigenstrain j (0 .. 5) under x -> -x, y -> -y."""
     name = str(component) + STRESS[j]
     return (-1) ** name.count("1"), (-1) ** name.count("2")
 
 
 @dataclass(frozen=True)
 class Block:
-    """The coefficients of one parity in x and y: rows 6 I + J as sums of functions of the same parity.
-
-    of_image, of_full: which of `image_orders` and of FOURTH; image: (4, rows, functions), factors of 1, face,
-    z and z face; full: (rows, functions).
+    """The coefficients of one parity in x and y: rows 6 I + J as sums of functions. of_image, of_full: which
+    of `image_orders` and of FOURTH; image: (4, rows, functions), factors of 1, face, z and z face; full:
+    (rows, functions).
     """
 
     odd: tuple[int, int]
@@ -104,9 +97,8 @@ class Block:
 
 @cache
 def blocks(nu: float) -> list[Block]:
-    """The four blocks, in the order of PARITIES. They take the place of paper Eq. 22 to 26.
-
-    A term z^p z'^q of the table is integrated over z' by parts: z' P[a,b,c] - P[a,b,c-1] for q = 1.
+    """The four blocks, in the order of PARITIES, in place of paper Eq. 22 to 26. A term z^p z'^q of the table
+    is integrated over z' by parts: z' P[a,b,c] - P[a,b,c-1] for q = 1.
     """
     terms, coefficients = _matrix("stress", ENTRIES, nu)
     orders, scale = image_orders(), 8 * pi * (1 - nu)
@@ -136,9 +128,8 @@ def _run(chosen: list[bool]) -> slice:
 
 @cache
 def image_orders() -> list[tuple[int, int, int]]:
-    """Orders of the primitives that the image part is made of, by parity.
-
-    Those that need x and y exchanged (a < b) last: they then find every shared function computed.
+    """Orders of the primitives of the image part, by parity; those that need x and y exchanged (a < b) last:
+    they then find every shared function computed.
     """
     terms, _ = _matrix("stress", ENTRIES, 0.0)
     wanted = {(a, b, c) for _, _, a, b, c in terms} | {(a, b, c - 1) for _, q, a, b, c in terms if q}
@@ -154,31 +145,9 @@ def image_functions(x: Array, y: Array, z: Array) -> Iterator[Array]:
 
 
 def surface_displacement_coefficients(cuboids: Cuboids, *, component: int = 3) -> Array:
-    """Displacement of the surface at (i hx, j hy, 0) by a unit eigenstrain in the cuboids at the origin.
-    Paper Eq. 19.
-
-    Eq. 19 is component 3, which is printed twice too large; components 1 and 2 are not printed.
-
-    Parameters
-    ----------
-    cuboids
-        Lags, faces of the layers and Poisson's ratio (negative lags: `displacement_parity`).
-    component
-        Direction of the displacement: 1, 2 or 3 (u_3 > 0 into the body).
-
-    Returns
-    -------
-    Array
-        (6, n, nx, ny) in the unit of the faces: eigenstrain J, layer, lags i, j >= 0.
-
-    Examples
-    --------
-    A wide, thin layer that expands by 1 across itself raises the surface by its thickness:
-
-    >>> from sam.kernels.patches import Lags
-    >>> plate = Cuboids(Lags(1, 1, 1000.0, 1000.0), (0.0, 1.0), nu=0.5)
-    >>> round(float(surface_displacement_coefficients(plate)[2, 0, 0, 0]), 3)
-    -1.0
+    """Displacement of the surface at (i hx, j hy, 0) by a unit eigenstrain in the cuboids at the origin, (6,
+    n, nx, ny) in the unit of the faces: eigenstrain J, layer, lags i, j >= 0. Paper Eq. 19 is component 3 (>
+    0 into the body), printed twice too large; 1 and 2 are not printed.
     """
     x, y = cuboids.lags.corners()
     source = cuboids.depths[:, None, None]
@@ -190,9 +159,7 @@ def surface_displacement_coefficients(cuboids: Cuboids, *, component: int = 3) -
 
 @cache
 def _matrix(kind: str, names: tuple[str, ...], nu: float) -> tuple[list[Term], Array]:
-    """The terms (p, q, a, b, c) that the named entries use and their coefficients,
-    (len(names), len(terms)).
-    """
+    """The terms (p, q, a, b, c) of the named entries and their coefficients, (len(names), len(terms))."""
     table = eigenstrain_table()[kind]
     # those that need x and y exchanged (a < b) last: they then find every shared function computed
     terms = sorted(
@@ -218,10 +185,8 @@ def _combine(coefficients: Array, basis: list[Array]) -> Array:
 
 
 def _table_basis(terms: list[Term], corners: Corners, source: Array) -> list[Array]:
-    """Integral over the cuboids of z'^q d_x^a d_y^b d_z^c (1/R), the terms of a table without z^p: each (n,
-    nx, ny).
-
-    By parts: z' P[a,b,c] - P[a,b,c-1] for q = 1.
+    """Integral over the cuboids of z'^q d_x^a d_y^b d_z^c (1/R), terms without z^p, each (n, nx, ny); by
+    parts: z' P[a,b,c] - P[a,b,c-1] for q = 1.
     """
     known: dict[tuple[int, int, int], Array] = {}
 
@@ -262,8 +227,7 @@ def full_space_functions(x: Array, y: Array, z: Array) -> Iterator[Array]:
         count = [indices.count(i) for i in range(3)]
         i = count.index(max(count))
         if max(count) == 4:
-            fourth: Array = saddle[i - 1] + saddle[i - 2] - 2 * angle[i]  # paper Eq. 26, R_,kkkk
-            return fourth
+            return saddle[i - 1] + saddle[i - 2] - 2 * angle[i]  # paper Eq. 26, R_,kkkk
         if max(count) == 3:
             k = count.index(0)
             return log[k] - squares[i] * slope[k]  # paper Eq. 26, R_,kkkl

@@ -11,9 +11,6 @@ printed x y^2 R/(R (x^2 + z^2)); right is z^2 y/(R (x^2 + z^2)). S_131 has x^2 +
 
 Coefficients are dimensionless: lengths in the caller's unit, stress per unit traction; displacement in units
 of (length x traction / mu). Loads: tractions on the body F = (q_x, q_y, p), p > 0 pressing into it.
-
-Where influence coefficients are wanted: the lags between cells of the surface, and the layers of cuboids
-below them.
 """
 
 from __future__ import annotations
@@ -127,9 +124,7 @@ nu^2.
 
 @cache
 def load_table() -> dict[str, dict[str, list[Row]]]:
-    """The derived table, with its coefficients as floats (see tests/derivations/load_table.py for the meaning
-    of a row).
-    """
+    """The derived table with coefficients as floats; for its rows see tests/derivations/load_table.py."""
     raw = json.loads(Path(__file__).with_name("load_table.json").read_text(encoding="utf-8"))
 
     def number(text: str) -> float:
@@ -255,5 +250,4 @@ def displacement_coefficients(
     """
     corners, depth = _corners(lags, z)
     rows = load_table()["displacement"][f"{component},F{load}"]
-    found: Array = _corner_sum(rows, nu, corners, depth)[0] / (2 * pi)  # paper Eq. 5, D_ij
-    return found
+    return _corner_sum(rows, nu, corners, depth)[0] / (2 * pi)  # paper Eq. 5, D_ij

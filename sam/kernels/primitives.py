@@ -165,8 +165,7 @@ _FORMS: dict[tuple[int, int, int], Callable[[Corners], Array]] = {
 def primitive(a: int, b: int, c: int, corners: Corners) -> Array:
     """P[a, b, c] at the corners (paper Eq. 26); KeyError for an order that no coefficient uses."""
     if (a, b, c) in _FORMS:
-        found: Array = _FORMS[a, b, c](corners)
-        return found
+        return _FORMS[a, b, c](corners)
     found = _FORMS[b, a, c](corners.swapped)
     return found
 

@@ -12,8 +12,7 @@ At a depth z the response decays like e^{-kz}. Where that is slow, at the surfac
 a cell deep, the closed forms of a half-space of coating (sam.kernels.patches) are taken out and added after:
 the rest decays like e^{-k (2h - z)}. Deeper they would only cost digits, since their corner sums cancel.
 
-Hankel transforms of smooth functions at all radii, and their integrals over the radius, by FFT in
-logarithms.
+Hankel transforms of smooth functions at all radii, and their integrals over the radius, are FFTs in ln k.
 
     g(r) = 1/(2 pi) int_0^inf f(k) J_m(k r) k dk,      G(R) = int_0^R g(r) r dr.
 
@@ -31,12 +30,9 @@ f has to be smooth in ln k, as e^{-k d} or 1/(k^3 + c) are: their series fall li
 to 1e-14 at the end of the spectrum with STEP = 0.1. Lengths: any unit; the range of e^{-100} to e^{100} of it
 is covered.
 
-Integrals over rectangular cells of radial functions times an angular one: g(r) cos(m theta) or g(r) sin(m
-theta).
-
-Near cells: F(X, Y), the integral over [0, X] x [0, Y], differenced over the corners (half-integers times the
-cell, never zero). Two triangles make it up; the one with its right angle at (X, 0) gives, with R = X cosh u
-at its far side,
+Integrals over cells of g(r) cos(m theta) or g(r) sin(m theta). Near cells: F(X, Y), the integral over [0, X]
+x [0, Y], differenced over the corners (half-integers times the cell, never zero). Two triangles make it up;
+the one with its right angle at (X, 0) gives, with R = X cosh u at its far side,
 
     int G(R) cos(m theta) d theta,   G(R) = int_0^R g r dr,   theta = atan sinh u,   d theta = du/cosh u,
 
@@ -73,16 +69,13 @@ SUPPORT = 6
 
 def wave_numbers() -> Array:
     """Where f is to be sampled: COUNT wave numbers, 1/length."""
-    found: Array = np.exp((np.arange(COUNT) - COUNT / 2) * STEP)
-    return found
+    return np.exp((np.arange(COUNT) - COUNT / 2) * STEP)
 
 
 class RadialTable:
-    """Splines of g and G for a set of functions f that share the order m.
-
-    samples: f at `wave_numbers`, (functions, COUNT). bias: q, between -m and 2 for a bounded f, between -m
-    and 1 for f ~ 1/k, so that f k^2 e^{-q x} and r^q g vanish at both ends. Rounding errors of g are 1e-16 of
-    the largest r^q g, over r^q.
+    """Splines of g and G for functions f of order m, sampled at `wave_numbers`, (functions, COUNT). bias: q,
+    between -m and 2 for a bounded f, between -m and 1 for f ~ 1/k, so that f k^2 e^{-q x} and r^q g vanish at
+    both ends. Rounding errors of g are 1e-16 of the largest r^q g, over r^q.
     """
 
     def __init__(self, samples: Array, order: int, bias: float):
@@ -100,9 +93,7 @@ class RadialTable:
         self.disc = _series(spectrum / np.conj(2 - s))
 
     def coefficients(self, kind: str) -> tuple[Array, float]:
-        """Spline coefficients (REFINE COUNT, functions) of g ("point") or G ("disc") over r^power, and the
-        power of r.
-        """
+        """Spline coefficients (REFINE COUNT, functions) of g ("point") or G ("disc"), and a power of r."""
         return (self.point, -self.bias) if kind == "point" else (self.disc, 2 - self.bias)
 
 
@@ -219,13 +210,10 @@ class CellIntegrals:
         weights = np.repeat(w, points) * np.tile(w, points) * (self.h[0] * self.h[1] / 4)
         coefficients, power = table.coefficients("point")
         matrix = spline_matrix(np.hypot(x, y), weights * angular(np.arctan2(y, x)), power, len(coefficients))
-        found: Array = matrix @ coefficients
-        return found
+        return matrix @ coefficients
 
     def _corners(self, table: RadialTable, angular: Angular) -> Array:
-        """Near cells by their corners, (near x, near y, functions); the corners at minus half a cell by
-        parity.
-        """
+        """Near cells by their corners, (near x, near y, functions); at minus half a cell by parity."""
         X, Y = ((np.arange(n) + 0.5) * h for n, h in zip(self.near, self.h, strict=True))
         X, Y = (a.ravel() for a in np.meshgrid(X, Y, indexing="ij"))
         coefficients, power = table.coefficients("disc")
@@ -242,9 +230,7 @@ class CellIntegrals:
 
 
 def _triangle(a: Array, b: Array) -> tuple[Array, Array, Array]:
-    """R, theta and weights (d theta) along the side of length b opposite the origin, a from it: each
-    (corners, NODES).
-    """
+    """R, theta and weights (d theta) along the far side of a triangle, of length b: (corners, NODES)."""
     t, w = np.polynomial.legendre.leggauss(NODES)
     top = np.arcsinh(b / a)[:, None]
     u = top * (t + 1) / 2
@@ -413,9 +399,7 @@ class LayeredPatches:
         return out
 
     def _stress_samples(self, depths: Array, bare: Mask, load: int) -> dict[str, Array]:
-        """The functions f of `STRESS_TABLES` at the sampled wave numbers, (nz, wave numbers); bare: less a
-        half-space of coating.
-        """
+        """The functions f of `STRESS_TABLES`, (nz, wave numbers); bare: less a half-space of coating."""
         rows: dict[str, list[Array]] = {key: [] for key in STRESS_TABLES[load]}
         for depth, without in zip(depths, bare, strict=True):
             (under_p, under_q), under_t = (
@@ -429,9 +413,7 @@ class LayeredPatches:
     def _radial_stress(
         cells: CellIntegrals, samples: dict[str, Array], load: int, names: Sequence[str]
     ) -> Array:
-        """Sum of `STRESS_ENTRIES`, each radial function and angular one integrated once: (len(names), nz, nx,
-        ny).
-        """
+        """Sum of `STRESS_ENTRIES`, each radial and angular function once: (len(names), nz, nx, ny)."""
         tables: dict[str, RadialTable] = {}
         known: dict[tuple[str, Angular], Array] = {}
         nz = len(samples["zz"])

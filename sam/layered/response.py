@@ -117,8 +117,7 @@ class Response:
 
     def _less(self, reflection: float, rest: float) -> Array:
         """1 - reflection th >= 0 as a sum of terms of one sign; rest = 1 - reflection."""
-        found: Array = rest + reflection * self.gap if reflection > 0 else 1 - reflection * self.th
-        return found
+        return rest + reflection * self.gap if reflection > 0 else 1 - reflection * self.th
 
     @cached_property
     def det(self) -> Array:
@@ -129,8 +128,7 @@ class Response:
         """
         kh, th, upper = self.kh, self.th, self._less(self.lam, self.not_lam)
         if self.kap <= 0:
-            found: Array = upper * (1 - self.kap * th) - 4 * self.kap * kh * kh * th
-            return found
+            return upper * (1 - self.kap * th) - 4 * self.kap * kh * kh * th
         excess = sinh_excess(kh)
         bending = 4 * excess * (excess + 2 * kh * np.exp(-kh))
         found = self.not_kap * upper + self.kap * (self.not_lam * self.gap * th + bending)
@@ -148,8 +146,7 @@ class Response:
         shear = 2 * sinh_excess(2 * kh)
         both = r * (1 + kappa1) * (1 + kappa2) / ((1 + r * kappa2) * (r + kappa1))  # 1 - lam kap
         if kap > 0 and sign < 0:
-            found: Array = self.not_kap + kap * (self.not_lam * th * th + shear)
-            return found
+            return self.not_kap + kap * (self.not_lam * th * th + shear)
         if lam < 0 and kap < 0 and sign > 0:
             beyond = (kappa1 - 1 - 2 * r * kappa2) / (1 + r * kappa2)  # |lam| - 1
             found = both - kap * (beyond * -np.expm1(-4 * kh) + shear)
@@ -188,8 +185,7 @@ class Response:
     def _arriving(self) -> Array:
         """(P', A') at the interface for the loads p and q_L: (load, 2, ...)."""
         P, A = self._down[:, 0], self._down[:, 1]
-        found: Array = np.stack([P + 2 * self.kh * A, A], axis=1) * np.exp(-self.kh)
-        return found
+        return np.stack([P + 2 * self.kh * A, A], axis=1) * np.exp(-self.kh)
 
     @cached_property
     def _up(self) -> Array:
@@ -198,9 +194,7 @@ class Response:
 
     @cached_property
     def _reflected(self) -> Array:
-        """(P, A) beyond those of a half-space of coating, (load, 2, ...): minus (D, Q) where they arrive at z
-        = 0.
-        """
+        """(P, A) beyond a half-space of coating, (load, 2, ...): minus (D, Q) where they come to z = 0."""
         first, D = self._up[:, 0] * np.exp(-self.kh), self._up[:, 1] * np.exp(-self.kh)
         return -np.stack([D, first + 2 * self.kh * D], axis=1)
 
@@ -211,9 +205,7 @@ class Response:
 
     @property
     def surface_excess(self) -> Array:
-        """`surface` less its value for a half-space of coating; decays like e^{-2 kh}. From the reflected
-        waves, no difference.
-        """
+        """`surface` less that of a half-space of coating, from the reflected waves; falls like e^{-2 kh}."""
         half = (1 + self.layers.kappa[0]) / 2
         under_p, under_q = self._reflected
         c_tt = 2 * self.rho * self.th * self._out_of_plane
@@ -222,10 +214,8 @@ class Response:
         )
 
     def stress(self, depth: float) -> tuple[Array, Array]:
-        """Stress at the depth z = depth (m): (load p or q_L, component zz LL TT zL, ...), and
-        under q_T (component zT LT, ...).
-
-        In the coating for depth < thickness, in the body from there on.
+        """Stress at a depth in m: (load p or q_L, component zz LL TT zL, ...), and under q_T (component zT
+        LT, ...); in the coating for depth < thickness, in the body from there on.
         """
         height = depth / self.layers.thickness
         if height < 1:
@@ -236,9 +226,7 @@ class Response:
         return wave_stress(below, s, kappa2), np.stack([-wave, wave])
 
     def coating_excess(self, depth: float) -> tuple[Array, Array]:
-        """Stress in the coating, depth < thickness, less that of a half-space of coating; decays like
-        e^{-k(2h - depth)}.
-        """
+        """Stress in the coating less that of a half-space of coating; falls like e^{-k(2h - depth)}."""
         return self._in_coating(
             depth / self.layers.thickness, self._reflected, self.rho * self.th * self._out_of_plane
         )
@@ -255,9 +243,7 @@ class Response:
 
 
 def wave_stress(amplitude: Array, s: Array, kappa: float) -> Array:
-    """Stresses zz, LL, TT, zL of the waves (P, A) = amplitude[load], s = k times the way
-    travelled: (load, 4, ...).
-    """
+    """Stresses zz, LL, TT, zL of waves (P, A) = amplitude[load], s = k times their way: (load, 4, ...)."""
     P, A = amplitude[:, 0], amplitude[:, 1]
     shape = [-P - (1 + 2 * s) * A, P + (2 * s - 3) * A, (kappa - 3) * A, -P + (1 - 2 * s) * A]
     return np.stack(shape, axis=1) * np.exp(-s)
@@ -295,5 +281,4 @@ def normal_compliance(layers: Layers, k: Array) -> Array:
     if np.any(~(k >= 0)):
         raise ValueError("wave numbers must be >= 0")
     with np.errstate(divide="ignore"):
-        found: Array = Response(layers, k * layers.thickness).surface[0] / (layers.shear * k)
-        return found
+        return Response(layers, k * layers.thickness).surface[0] / (layers.shear * k)

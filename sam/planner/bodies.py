@@ -127,9 +127,7 @@ class Bodies:
 
     @cached_property
     def demand(self) -> Demand:
-        """What the grid is chosen from: of a rough patch with the plastic zone that is to be expected under a
-        force, under a given approach alone.
-        """
+        """What the grid is chosen from; of a rough patch under a force with the plastic zone."""
         scene, sphere, patch = self.scene, self.misfit, self.patch
         film = None if scene.body.coating is None else scene.body.coating.thickness
         if sphere is not None:
@@ -169,11 +167,9 @@ class Bodies:
 
     @cached_property
     def scale(self) -> float:
-        """Estimated contact radius of the coated body over that of the bare one; 1 where the radius is given
-        (punch, given pressure) and without force.
-
-        An ellipse is scaled like the circle under a sphere with the geometric mean of its radii, and what has
-        no radii of curvature like the sphere of the same contact with the bare body.
+        """Estimated contact radius of the coated body over that of the bare one; 1 where it is given and
+        without force. An ellipse is scaled like the circle of the geometric mean of its radii, what has no
+        radii like the sphere of the same contact with the bare body.
         """
         other, pair, coated = self.scene.counterbody, self.pair, self.coated
         if other is None or SHAPES[other.shape].given or self.force == 0.0 or coated is None:
@@ -215,9 +211,7 @@ def _by_hertz(bodies: Bodies, other: CounterBody) -> tuple[float, float]:
 
 
 def _fully_plastic(bodies: Bodies, strain: float) -> float:
-    """The mean pressure in Pa that fully plastic material bears: 3 times the yield stress at a strain (Tabor
-    1951); infinite of an elastic body.
-    """
+    """Mean pressure in Pa that plastic material bears, 3 yield stresses at a strain (Tabor 1951), or inf."""
     plasticity = bodies.scene.body.plasticity
     if plasticity is None:
         return inf

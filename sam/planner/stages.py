@@ -336,10 +336,8 @@ def _coated(plan: Plan, thickness: float) -> Iterator[Stage]:
 
 
 def stress_coefficients(plan: Plan) -> int:
-    """Influence coefficients of the stresses at the output depths, of one load.
-
-    In the plane y = 0 those of the lags between it and the contact of Hertz, and where one row of cells lies
-    in it the four components that are not zero by symmetry; below a rough patch all of them.
+    """Influence coefficients of the stresses at the output depths, of one load: in y = 0 of the lags to the
+    contact of Hertz, four components if one row of cells lies in it; below a rough patch all.
     """
     grid = plan.grid
     if plan.places.anywhere:

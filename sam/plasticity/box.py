@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The box of cells on which plastic strain is solved: the first guess, and how it grows.
-
-The boxes of plastic strain that a solve will go through, before anything is solved.
-
-They follow from a guessed plastic zone by the rules of `sam.plasticity.box`.
+"""The box of cells on which plastic strain is solved: the first guess, and how it grows; and the boxes
+that a solve is expected to go through.
 """
 
 from __future__ import annotations
@@ -51,12 +48,10 @@ def first_extent(
     both_ways: bool = False,
     path: Sequence[tuple[float, float]] = ((0.0, 0.0),),
 ) -> Extent:
-    """Box around the contact and the cells that would yield if the body stayed elastic at the peak.
-
-    limit: yield stress at the depths of the grid, (nz,) in Pa; anywhere: islands of plasticity lie anywhere
-    below a rough surface, and flattened summits bring others into contact, so the box is as wide as the grid,
-    and grows in depth; both_ways: whether the traction changes its sign; path: places of the load in m, along
-    which the box of the origin is taken.
+    """Box around the contact and the cells that would yield if the body stayed elastic at the peak. limit:
+    yield stress at the depths of the grid, (nz,) in Pa; anywhere: islands of plasticity lie anywhere below a
+    rough surface, and flattened summits bring others into contact, so the box is as wide as the grid, and
+    grows in depth; both_ways: whether the traction changes its sign; path: places of the load in m.
     """
     exceeds = peak.mises > limit[:, None]
     if anywhere:
@@ -131,9 +126,8 @@ def widened(first: int, count: int, limit: int, reached: tuple[bool, bool]) -> t
 
 
 def edge_reached(trial: Trial, *, cut_beside: bool) -> Sides:
-    """The sides of the box at which plastic strain fills the outermost cells.
-
-    cut_beside: below a rough patch, which is cut there anyway and says so: then only its depth counts.
+    """The sides at which plastic strain fills the outermost cells; of a rough patch, which is cut beside
+    anyway and says so, only its depth counts.
     """
     strained = _strained(trial)
     beside = strained[:, [0, -1]].any() or strained[:, :, [0, -1]].any()

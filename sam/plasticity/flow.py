@@ -2,14 +2,9 @@
 """How the material of a point yields over a load step: the increment of its plastic strain for a trial
 stress, and how far a pair of both is from obeying the yield condition.
 
-A `Flow` belongs to a material and to its state at the beginning of a step; `sam.plasticity.flow` has
-that of a material with back-stresses.
-
 Backward-Euler radial return of the von Mises yield condition with isotropic hardening (Simo & Hughes 1998,
-box 3.1).
-
-With the trial stress s^tr (deviator) and q = sqrt(3/2 s^tr : s^tr), the increment of the accumulated plastic
-strain solves
+box 3.1): with the trial stress s^tr (deviator) and q = sqrt(3/2 s^tr : s^tr), the increment of the
+accumulated plastic strain solves
 
     q - 3 m dgamma = sigma_y(alpha + dgamma),        d eps_p = 3/2 dgamma s^tr/q,                      (a)
 
@@ -22,16 +17,16 @@ Back-stresses: nonlinear kinematic hardening of Armstrong & Frederick (1966), se
 
 Each back-stress X_k = 2/3 C_k a_k follows
 
-    d X_k = 2/3 C_k d eps_p - g_k X_k dp,      that is      d a_k = d eps_p - g_k a_k dp,                 (a)
+    d X_k = 2/3 C_k d eps_p - g_k X_k dp,      that is      d a_k = d eps_p - g_k a_k dp,                 (b)
 
 with g_k = 0 for Prager's linear law. While the plastic strain grows by dp N with N : N = 3/2 and N constant,
 
-    a_k1 = b_k a_k0 + i_k N,      b_k = exp(-g_k dp),      i_k = (1 - b_k)/g_k   (dp for g_k = 0).         (b)
+    a_k1 = b_k a_k0 + i_k N,      b_k = exp(-g_k dp),      i_k = (1 - b_k)/g_k   (dp for g_k = 0).         (c)
 
-Backward Euler of (a) has 1/(1 + g_k dp) in place of the exponential, an error of first order; (b) has none on
+Backward Euler of (b) has 1/(1 + g_k dp) in place of the exponential, an error of first order; (c) has none on
 a straight path of strain. The return along N = 3/2 eta/J(eta), eta = s_tr - sum b_k X_k0, solves
 
-    F(dp) = J(eta(dp)) - 3 m dp - sum C_k i_k(dp) - sigma_y(p0 + dp) = 0,                                 (c)
+    F(dp) = J(eta(dp)) - 3 m dp - sum C_k i_k(dp) - sigma_y(p0 + dp) = 0,                                 (d)
 
 one scalar equation in each cell (as Kobayashi & Ohno 2002 have it for backward Euler), with a single root in
 (0, F(0)/(3 m)], because J(X_k) <= C_k/g_k makes F fall everywhere.
@@ -84,8 +79,7 @@ def contraction(a: Array, b: Array) -> Array:
     >>> float(contraction(np.array([1.0, 0, 0, 0, 0, 1]), np.array([2.0, 0, 0, 0, 0, 3])))  # 1 2 + 2 (1 3)
     8.0
     """
-    found: Array = (SHEAR @ (a * b).reshape(6, -1)).reshape(a.shape[1:])
-    return found
+    return (SHEAR @ (a * b).reshape(6, -1)).reshape(a.shape[1:])
 
 
 def equivalent_strain(strain: Array) -> Array:
@@ -107,12 +101,9 @@ def plastic_multiplier(
     m3: float,
     near: Array | None = None,
 ) -> Array:
-    """dgamma of (a), (n,); q, alpha, factor, near: (n,); m3: 3 m in Pa.
-
-    Zero where paper Eq. 8 holds: q <= sigma_y.
-
-    Newton's method from `near`, or from zero, kept inside (0, q/m3): monotone from the left of the answer for
-    a concave curve, bracketed for any other that does not soften.
+    """dgamma of (a), (n,), zero where paper Eq. 8 holds: q <= sigma_y; q, alpha, factor, near: (n,); m3: 3 m
+    in Pa. Newton's method from `near`, or from zero, kept inside (0, q/m3): monotone from the left of the
+    answer for a concave curve, bracketed for any other that does not soften.
     """
     low, high = np.zeros_like(q), q / m3
     gamma = np.zeros_like(q) if near is None else np.minimum(near, high)
@@ -132,8 +123,8 @@ def plastic_multiplier(
 
 @dataclass(frozen=True)
 class Material:
-    """Elastic constants (mu in Pa), the yield curve of each point, and the factor of its yield stress, of a
-    shape that broadcasts with the points. hardens_back: whether there are back-stresses.
+    """Shear modulus in Pa, the yield curve of each point, and the factor of its yield stress, which
+    broadcasts with the points. hardens_back: whether there are back-stresses.
     """
 
     mu: float
@@ -143,8 +134,7 @@ class Material:
 
     def yield_stress(self, peeq: Array) -> Array:
         """In Pa, of the shape of the points."""
-        limit: Array = self.factor * self.curve.stress(peeq)  # phi of paper Eq. 8, with Eq. 18
-        return limit
+        return self.factor * self.curve.stress(peeq)  # phi of paper Eq. 8, with Eq. 18
 
     @cached_property
     def initial_yield(self) -> float:
@@ -183,8 +173,8 @@ class Flow:
         return self.material.yield_stress(self.before.peeq)
 
     def returned(self, trial: Array, m: float, *, near: Array) -> Array:
-        """The increment that the return map gives for a trial stress, (6, ...): zero where that does not
-        yield. near: about its length, which broadcasts.
+        """The increment by the return map for a trial stress, (6, ...), zero where that does not yield; near:
+        about its length.
         """
         q = mises(trial)
         yielding = q > self.limit  # paper Eq. 8 does not hold
@@ -194,9 +184,7 @@ class Flow:
         return scale * trial
 
     def multiplier(self, q: Array, yielding: Mask, *, m: float, near: Array | None = None) -> Array:
-        """Increment of the accumulated strain of the points that yield, for their trial stress q: (n,); near:
-        about the answer.
-        """
+        """Increment of the accumulated strain of points that yield, (n,), for their trial stress q."""
         material = self.material
         factor = np.broadcast_to(material.factor, q.shape)[yielding]
         near = None if near is None else near[yielding]
@@ -208,8 +196,8 @@ class Flow:
         return s
 
     def excess(self, x: Array, s: Array) -> float:
-        """How far the deviatoric stress s at the end of an increment x violates paper Eq. 8: the largest
-        (q - sigma_y)/sigma_y, zero where it holds.
+        """The largest (q - sigma_y)/sigma_y of the deviatoric stress s at the end of an increment x: how far
+        it violates paper Eq. 8, zero where it holds.
         """
         limit = self.material.yield_stress(self.before.peeq + equivalent_strain(x))
         excess = (mises(self.effective(x, s)) - limit) / limit  # paper Eq. 8
@@ -230,17 +218,15 @@ class Flow:
 
 
 KINEMATIC_ITERATIONS = 60  # bisection alone has the last digit after 53
-KINEMATIC_ROUNDING = 1e-15  # of the sum of what is added in (c): four to five units in the last place
+KINEMATIC_ROUNDING = 1e-15  # of the sum of what is added in (d): four to five units in the last place
 CurveOfIncrement = Callable[[Array], tuple[Array, Array]]
 """Increment of the accumulated strain -> yield stress, and its slope, in Pa."""
 
 
 @dataclass(frozen=True)
 class BackStressFields:
-    """Constants of the back-stresses of cells.
-
-    modulus: C_k in Pa, with the factor of the yield stress, and recovery: g_k, both (N, ...) of a shape that
-    broadcasts with (N, cells).
+    """Constants of the back-stresses: modulus C_k in Pa, with the factor of the yield stress, and recovery
+    g_k, both (N, ...) of a shape that broadcasts with (N, cells).
     """
 
     modulus: Array
@@ -261,23 +247,19 @@ class BackStressFields:
 
     def of_strains(self, strains: Array) -> Array:
         """X_k in Pa of the a_k, both (N, 6, cells)."""
-        found: Array = 2 / 3 * self.modulus[:, None] * strains
-        return found
+        return 2 / 3 * self.modulus[:, None] * strains
 
     def recovered(self, gamma: Array) -> tuple[Array, Array]:
-        """(1 - b_k, i_k) of (b) after an increment gamma of the accumulated strain, (N, cells) both."""
+        """(1 - b_k, i_k) of (c) after an increment gamma of the accumulated strain, (N, cells) both."""
         lost = -np.expm1(-self.recovery * gamma)
         steps = np.divide(lost, self.recovery, out=gamma + 0 * lost, where=self.recovery > 0)
         return lost, steps
 
     def change(self, start: Array, x: Array, length: Array) -> Array:
-        """a_k1 - a_k0 of (b), (N, 6, cells), for a plastic strain x (6, cells) of this length (cells); zero
-        where x is zero.
-        """
+        """a_k1 - a_k0 of (c), (N, 6, cells), for a plastic strain x (6, cells) of this length (cells)."""
         lost, steps = self.recovered(length)
         along = np.divide(steps, length, out=np.zeros_like(steps), where=length > 0)
-        found: Array = along[:, None] * x - lost[:, None] * start
-        return found
+        return along[:, None] * x - lost[:, None] * start
 
 
 def kinematic_multiplier(
@@ -289,29 +271,9 @@ def kinematic_multiplier(
     m3: float,
     near: Array,
 ) -> tuple[Array, Array]:
-    """(dp, eta) of (c) for cells that yield.
-
-    Newton's method from `near`, kept inside the bracket.
-
-    Parameters
-    ----------
-    trial
-        Deviatoric trial stress in Pa, (6, n).
-    start
-        The back-stresses at the beginning, of these cells.
-    back
-        Their constants, (N, n).
-    curve
-        The yield stress over the increment.
-    m3
-        3 m in Pa.
-    near
-        About the answer, (n,).
-
-    Returns
-    -------
-    tuple of Array
-        The increment of the accumulated strain, (n,), and eta in Pa, (6, n).
+    """(dp, (n,), and eta in Pa, (6, n)) of (d) for n cells that yield: Newton's method from `near`, kept
+    inside the bracket. trial: deviatoric, in Pa, (6, n); start, back: their back-stresses at the beginning
+    and the constants; curve: yield stress over the increment; m3: 3 m in Pa.
     """
     turns = _Turns.of(trial, start)
     low, high = np.zeros(trial.shape[1]), (turns.own**0.5 - curve(np.zeros(trial.shape[1]))[0]) / m3
@@ -334,10 +296,7 @@ def kinematic_multiplier(
 
 @dataclass(frozen=True)
 class BackStresses:
-    """The back-stresses X_k0 at the beginning of a step and what the return map needs of them.
-
-    each: X_k0 in Pa, (N, 6, ...); mutual: 3/2 X_j0 : X_k0, (N, N, ...).
-    """
+    """The back-stresses X_k0 at the beginning of a step in Pa, (N, 6, ...), and 3/2 X_j0 : X_k0."""
 
     each: Array
     mutual: Array
@@ -364,11 +323,9 @@ class BackStresses:
 
 @dataclass(frozen=True)
 class _Turns:
-    """How eta of (c) turns with dp: eta = xi + sum (1 - b_k) X_k0; 3/2 eta : eta is a quadratic form of
-    1 - b_k, which is zero for Prager's law.
-
-    xi: trial stress less all X_k0, (6, n); start: these; own: 3/2 xi : xi, (n,); cross: 3/2 xi : X_k0, (N,
-    n).
+    """How eta of (d) turns with dp: eta = xi + sum (1 - b_k) X_k0; 3/2 eta : eta is a quadratic form of 1 -
+    b_k, which is zero for Prager's law. xi: trial stress less all X_k0, (6, n); own: 3/2 xi : xi, (n,);
+    cross: 3/2 xi : X_k0, (N, n).
     """
 
     xi: Array
@@ -412,8 +369,7 @@ class KinematicMaterial(Material):
         """The sum of the back-stresses in Pa, (6, ...)."""
         if fields.back is None:
             raise ValueError("the fields have no back-stress")
-        total: Array = self.back.of_strains(fields.back).sum(axis=0)
-        return total
+        return self.back.of_strains(fields.back).sum(axis=0)
 
     def at(self, cells: Mask) -> KinematicMaterial:
         """The material of some cells, (n_layers, nx, ny), in a row: for points (..., n)."""
@@ -479,8 +435,7 @@ class KinematicFlow(Flow):
     def effective(self, x: Array, s: Array) -> Array:
         """The deviatoric stress less the back-stresses at the end of an increment x."""
         end = self.start + self._change(x, equivalent_strain(x))
-        found: Array = s - self.back.of_strains(end).sum(axis=0)
-        return found
+        return s - self.back.of_strains(end).sum(axis=0)
 
     def _change(self, x: Array, length: Array) -> Array:
         """What an increment adds to the strains of the back-stresses; exactly zero where it is zero."""
@@ -491,9 +446,7 @@ class KinematicFlow(Flow):
         return MaterialFields(strain=x, peeq=length, back=self._change(x, length))
 
     def dissipated(self, increment: MaterialFields) -> Array:
-        """Energy that an increment dissipates, of the shape of the points, in J/m^3: not what the
-        back-stresses store.
-        """
+        """Energy that an increment dissipates in J/m^3, without what the back-stresses store."""
         modulus, recovery = self.back.modulus, self.back.recovery
         back = step_energies(modulus, recovery, self.start, increment.strain, length=increment.peeq)
         return super().dissipated(increment) + back.dissipated

@@ -227,8 +227,8 @@ def _given_up(record: Progressed, trial: Trial) -> Progressed:
 
 
 def _cut(model: Model, record: Progressed, trial: Trial) -> Progressed:
-    """After an attempt that did not converge half of the way comes first; if it was halved too often, the
-    longer iteration, or the end.
+    """After an attempt that did not converge half of the way comes first; after MOST_CUTS halvings the longer
+    iteration, or the end.
     """
     record = replace(record, parts=record.parts.tried(trial))
     if len(record.cuts) > MOST_CUTS:
@@ -308,7 +308,7 @@ def _cycle_ended(model: Model, record: Progressed, cycle: int, trial: Trial) -> 
 
 
 def _worn(model: Model, record: Progressed, trial: Trial) -> tuple[Progressed, Trial]:
-    """Material that is strained too much is removed, and equilibrium found again, if there is any."""
+    """What is strained too much is removed, and equilibrium found again; the same trial if nothing is."""
     if model.plan.wear is None or record.wear is None:
         return record, trial
     peeq, points, faces = (
@@ -346,7 +346,7 @@ def _residuals(trial: Trial) -> dict[str, float]:
 
 def on_larger_grid(record: Progressed, grid: CellGrid, larger: CellGrid) -> Progressed | None:
     """The same record in the middle of a grid with further cells of the same size, or above further layers;
-    None if it has fields of the whole grid, or layers that the other has not.
+    None if it has fields of the whole grid, or other layers.
     """
     wider, faces = grid.shape != larger.shape, grid.layer_faces
     of_whole_grid = wider and (record.wear is not None or record.tribofilm is not None)
@@ -377,7 +377,7 @@ def on_larger_grid(record: Progressed, grid: CellGrid, larger: CellGrid) -> Prog
 
 def finished(model: Model, record: Progressed) -> History:
     """The history of a record that has ended, with what is measured at its end; of one that broke off before
-    the peak with the last state that it reached, as LAST.
+    the peak with its last state, as LAST.
     """
     history = record.history
     snapshots, residuals, plan = dict(history.snapshots), history.certificate, model.plan

@@ -7,14 +7,6 @@ over the step. One evaluation solves the contact on the surface that x has displ
 acceleration of preconditioned changes. In full slip the traction is q = coefficient * p everywhere in the
 iteration: in the gap and in the stress.
 
-Where the pressure on a box comes from: the contact with the counter-body, or a pressure that is given.
-
-Both know the load by a function of it, so a gap or a pressure may move from step to step.
-
-Anderson acceleration of a fixed point x = g(x) (Walker & Ni 2011, type II).
-
-How far one iteration moves the plastic strain of a cell, by the stiffness of each part of it.
-
 The return map moves all parts of the strain of a cell by the stiffness 2 m. How much a part lowers the stress
 of its own cell depends on the cell: in a flat one at the surface, a tenth of its width thick, a shear across
 the layer by 0.1 mu for a unit strain, one in the plane by 1.6 mu. A soft layer that a traction shears flows
@@ -60,9 +52,7 @@ class PressureSource(Protocol):
         """p_hat to start from where nothing is known, (nx, ny)."""
 
     def __call__(self, displacement: Array, load: Load, start: Array, tolerance: float) -> Array:
-        """p_hat under a load on the surface that plastic strain has displaced, (nx, ny) in m; zero without
-        force.
-        """
+        """p_hat under a load on the surface that plastic strain has displaced, (nx, ny) in m."""
 
     def loaded(self, load: Load, pressure: Array) -> Load:
         """A load that p_hat is solved for, with its force."""
@@ -70,10 +60,8 @@ class PressureSource(Protocol):
 
 @dataclass(frozen=True)
 class ContactPressure:
-    """The contact solve on a surface that plastic strain has displaced.
-
-    gap: of a load, (nx, ny) in m on the box, of the surfaces without displacement; hx: cell in m; force_unit:
-    N per sum of p_hat.
+    """The contact solve on a surface that plastic strain has displaced. gap: of a load, (nx, ny) in m on the
+    box, undisplaced; hx: cell in m; force_unit: N per sum of p_hat.
     """
 
     contact: BoxContact
@@ -86,9 +74,7 @@ class ContactPressure:
         return np.isfinite(self.gap(load)).astype(float)
 
     def __call__(self, displacement: Array, load: Load, start: Array, tolerance: float) -> Array:
-        """p_hat to a tolerance on the residual of the contact, from `start`, or a uniform one where that is
-        zero.
-        """
+        """p_hat to a tolerance on its residual, from `start`, or a uniform one where that is zero."""
         if load.force == 0:
             return np.zeros(displacement.shape)
         gap = (self.gap(load) + displacement) / self.hx
@@ -184,9 +170,7 @@ class Problem:
         return load.sign * self.coefficient * pressure if np.any(self.coefficient) else None
 
     def stress(self, pressure: Array, load: Load, response: Array | None = None) -> Array:
-        """Stress in Pa of p_hat (on the box), its traction and a misfit strain, and of plastic strain, see
-        `BoxOperator.stress`.
-        """
+        """Stress in Pa of p_hat, its traction, a misfit strain and plastic strain (`BoxOperator.stress`)."""
         keep, pressure = self.operator.keep, pressure * self.unit
         traction = self.traction(pressure, load)
         found = self.operator.stress(keep(pressure), response, None if traction is None else keep(traction))
@@ -281,10 +265,10 @@ class Problem:
 
 
 class Anderson:
-    """Combines the last `window` iterates so that their residuals g(x) - x cancel best.
-
-    weight: of each entry in the least-squares sense, broadcast against x. The normal equations are scaled to
-    a unit diagonal, and their singular values below `cutoff` dropped: directions the window already holds.
+    """Anderson acceleration of x = g(x) (Walker & Ni 2011, type II): combines the last `window` iterates so
+    that their residuals g(x) - x cancel best. weight: of each entry in the least-squares sense. The normal
+    equations are scaled to a unit diagonal, and singular values below `cutoff` dropped: directions the window
+    already holds.
     """
 
     def __init__(self, window: int, weight: Array, cutoff: float = 1e-12):
@@ -307,13 +291,10 @@ class Anderson:
         size = np.sqrt(np.maximum(gram.diagonal(), np.finfo(float).tiny))
         right = self.changes[:n] @ residual / size
         coefficients = np.linalg.lstsq(gram / np.outer(size, size), right, rcond=self.cutoff)[0] / size
-        following: Array = (flat - coefficients @ self.steps[:n]).reshape(image.shape)
-        return following
+        return (flat - coefficients @ self.steps[:n]).reshape(image.shape)
 
     def _add(self, step: Array, change: Array) -> None:
-        """The newest differences, in place of the oldest, and the products of the change with those in the
-        window.
-        """
+        """The newest differences, in place of the oldest, and their products with those in the window."""
         if not self.count:
             self.steps, self.changes = np.empty((2, self.window, step.size))
         row, self.count = self.count % self.window, self.count + 1
@@ -332,27 +313,16 @@ ACROSS = slice(2, 4)  # the shears across the layer: one stiffness for both
 
 
 def stiffness_of_parts(own_stress: Array) -> Array:
-    """Stiffness a of (b) in Pa, (5, n_layers), from the stress of unit strains in their own cell, (6, 6,
-    n_layers) in Pa.
-    """
+    """Stiffness a of (b) in Pa, (5, n_layers), from `BoxOperator.own_stress`, (6, 6, n_layers) in Pa."""
     found: Array = -np.einsum("ai,ijk,aj->ak", PARTS * ROOT, own_stress, PARTS / ROOT)
     found[ACROSS] = found[ACROSS].mean(axis=0)
     return found
 
 
 def preconditioned(x: Array, image: Array, limit: Array, *, m: float, own: Array) -> Array:
-    """The image of an increment with its change by (b) where it flows.
-
-    Parameters
-    ----------
-    x, image
-        Increment of the plastic strain and what the return map makes of it, (6, n_layers, nx, ny).
-    limit
-        Yield stress in Pa, (n_layers, nx, ny).
-    m
-        Stiffness of the return map in Pa.
-    own
-        That of the parts of the strain, see `stiffness_of_parts`.
+    """The image (6, n_layers, nx, ny) of an increment x by the return map, its change multiplied by (b) where
+    it flows. limit: yield stress in Pa, (n_layers, nx, ny); m: stiffness of the return map in Pa; own: of the
+    parts of the strain, see `stiffness_of_parts`.
     """
     found, flowing = image.copy(), image.any(axis=0)
     start, end = x[:, flowing], image[:, flowing]

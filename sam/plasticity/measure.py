@@ -4,14 +4,6 @@ make.
 
 Nothing here changes a step. Fields outside of the box are computed once for a strain, and kept in the record.
 
-Stress and plastic strain of three cells over the last period of a repeated load.
-
-Stress and surface displacement of plastic strain anywhere on the grid: what the box of the solution does
-not cover.
-
-From means over cells to values at points: the plastic strain at the centres of the cells, and its largest
-value.
-
 The plastic strain of a cell stands for its mean over the cell. Where it is smooth the value at the centre is
 the mean less h^2/24 times the second derivative in each direction, to fourth order, and the largest value
 lies between centres. It is not smooth where the yield stress has a kink over depth: just there a soft layer
@@ -74,10 +66,9 @@ def contact_in_box(model: Model, record: Progressed, trial: Trial) -> Contact:
 
 
 def contact_on_grid(model: Model, record: Progressed, trial: Trial) -> Contact:
-    """The contact on the full grid, its residuals measured there: pile-up outside the box counts.
-
-    Where the displacement by plastic strain, a sum over the steps in single precision, misses the one of the
-    full grid by more than the contact may, the pressure is found once more on that.
+    """The contact on the full grid, its residuals measured there: pile-up outside the box counts. Where the
+    displacement by plastic strain, a sum over the steps in single precision, misses that of the full grid by
+    more than the contact may, the pressure is found once more on that.
     """
     window, load, moved = record.extent.window, trial.load, known_outside(record).displacement
     gap = model.gap(load, record.wear) + moved
@@ -144,9 +135,8 @@ def known_outside(record: Progressed) -> Outside:
 
 
 def _residual_stress(model: Model, record: Progressed) -> Array:
-    """Stress of the plastic strain in the rows that touch y = 0, at all depths.
-
-    Where the box covers the rows its own stresses are taken, see `snapshot`: zero there.
+    """Stress of the plastic strain in the rows that touch y = 0, at all depths; zero where the box covers
+    them and its own is taken, see `snapshot`.
     """
     grid, window, rows = model.grid, record.extent.window, model.grid.axis_rows
     across = window.j0 <= rows.j0 and rows.j0 + rows.ny <= window.j0 + window.ny
@@ -169,9 +159,7 @@ def _moved(model: Model, record: Progressed, component: int, observed: Window) -
 
 
 def start_of(model: Model, record: Progressed, load: Load) -> Array | None:
-    """p_hat to start a step from: of the same load in the cycle before, or moved with the counter-body; None:
-    that of the state.
-    """
+    """p_hat to start from: of the cycle before, or moved with the counter-body; None: the state's."""
     if model.track is None:
         return record.recall(load)
     return model.track.carried(model.grid, record.state.pressure, record.state.load, load)
@@ -193,10 +181,7 @@ def pass_end(model: Model, record: Progressed, track: Track, cycle: int) -> Pass
 
 
 def snapshot(model: Model, record: Progressed, name: str, trial: Trial) -> Snapshot:
-    """Stress and strain in the plane y = 0: of the cells in the box, and at the cell centres outside it.
-
-    The record has the fields outside of the box, see `with_outside`.
-    """
+    """A state in y = 0: of the cells in the box, and at the cell centres outside of it."""
     outside, material, rows = known_outside(record), record.state.material, model.grid.axis_rows
     extent = record.extent
     contact, mu = contact_on_grid(model, record, trial), model.coefficient(record.tribofilm)
@@ -277,9 +262,7 @@ def _box(model: Model, record: Progressed, trial: Trial) -> Box:
 
 
 def _cut(model: Model, record: Progressed, trial: Trial, contact: Contact) -> Cut | None:
-    """The cells of the box in the row of the largest pressure; None without contact, or where that is around
-    the origin.
-    """
+    """The cells of the box in the row of the largest pressure; None where that is around the origin."""
     if not model.plan.places.off_origin or trial.load.force == 0:
         return None
     window, layers, grid = record.extent.window, record.extent.layers, model.grid
@@ -333,9 +316,7 @@ def dissipated_by(model: Model, record: Progressed, trial: Trial) -> float:
 
 
 def cycle_end(model: Model, record: Progressed, cycle: int, strained: CycleStrain) -> CycleEnd:
-    """The surface at the end of a cycle, and how much is worn so far; the record has the fields outside of
-    the box.
-    """
+    """The surface at the end of a cycle, and how much is worn so far."""
     moved, rough = known_outside(record).displacement, model.plan.rough
     worn = record.wear.depth if record.wear is not None else None
     lowered = moved if worn is None else moved + worn
@@ -353,9 +334,7 @@ def cycle_end(model: Model, record: Progressed, cycle: int, strained: CycleStrai
 
 
 def with_loops(model: Model, record: Progressed, target: Target, trial: Trial) -> Progressed:
-    """The record with the cells at the end of a step, if it belongs to the last period or ends the one
-    before.
-    """
+    """The record with the cells at the end of a step of the last period, or at its beginning."""
     if model.judging is None or not record.periods.last:
         return record
     period, ends = last_period(model.judging, model.schedule.cycles), record.periods.begun is None
@@ -430,10 +409,8 @@ class Strained:
 
 
 def residual_stress(source: Strained, depths: Array, observed: Window, *, mu: float) -> Array:
-    """Stress of the plastic strain in a box at any depths and cells, (6, n_depths, nx, ny) in Pa. Paper Eq.
-    7.
-
-    depths in m, none of them on a face of the box; observed: cells of the grid; mu in Pa.
+    """Stress of the plastic strain in a box at depths in m, none on a face of it, and cells of the grid, (6,
+    n_depths, nx, ny) in Pa; mu in Pa. Paper Eq. 7.
     """
     out = np.zeros((6, len(depths), *observed.shape))
     part = source.part()
@@ -518,27 +495,21 @@ def at_centres(means: Array, faces: Array, interval: NDArray[np.intp] | None = N
 
 
 def _bend(means: Array, edges: Array) -> Array:
-    """h^2 v'' of the parabola that has the means of a cell and its neighbours along the first axis, (n - 2,
-    ...).
-    """
+    """h^2 v'' of the parabola with the means of a cell and its neighbours on the first axis, (n - 2, ...)."""
     width, centre = (
         part.reshape(-1, *[1] * (means.ndim - 1)) for part in (np.diff(edges), (edges[1:] + edges[:-1]) / 2)
     )
 
     def second(v: Array) -> Array:
         slope = np.diff(v, axis=0) / np.diff(centre, axis=0)
-        twice: Array = 2 * np.diff(slope, axis=0) / (centre[2:] - centre[:-2])
-        return twice
+        return 2 * np.diff(slope, axis=0) / (centre[2:] - centre[:-2])
 
-    bend: Array = width[1:-1] ** 2 * second(means) / (1 + second(width**2) / 24)
-    return bend
+    return width[1:-1] ** 2 * second(means) / (1 + second(width**2) / 24)
 
 
 def largest(values: Array, depths: Array, interval: NDArray[np.intp] | None = None) -> tuple[float, float]:
     """(depth, value) of the largest of (n_layers, nx, ny), from a cubic in each direction through it, its
-    neighbours and the next value beside the larger of these, between which the maximum lies.
-
-    interval: as of `at_centres`.
+    neighbours and the next value beside the larger of these; interval: as of `at_centres`.
     """
     at = tuple(map(int, np.unravel_index(int(values.argmax()), values.shape)))
     depth, height = float(depths[at[0]]), float(values[at])
@@ -556,8 +527,8 @@ def largest(values: Array, depths: Array, interval: NDArray[np.intp] | None = No
 
 
 def _summit(x: Array, y: Array, k: int, same: NDArray[np.bool_]) -> tuple[float, float]:
-    """How far the maximum lies from the k-th point, the highest, and how much higher: of the curve through
-    three points, or four where the fourth is strained too. Without both neighbours nothing is known.
+    """How far the maximum lies from the k-th point, the highest, and how much higher, by the curve through
+    three points, or four where the fourth is strained too; 0 without both neighbours.
     """
     if not 0 < k < len(y) - 1 or not (same[k - 1] and same[k + 1]):
         return 0.0, 0.0

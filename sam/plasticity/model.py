@@ -138,9 +138,7 @@ class Model:
         return self.plan.pair.contact_modulus / 2
 
     def leaves_grid(self, window: Window, pressure: Array) -> bool:
-        """Whether a counter-body that moves over a smooth body touches the edge of the grid; pressure: on a
-        window.
-        """
+        """Whether a moving counter-body on a smooth body touches the edge; pressure: on a window."""
         if self.track is None or self.plan.places.anywhere:
             return False
         return self.track.at_edge(self.grid, pressure, window)
@@ -162,8 +160,7 @@ class Model:
 
     def volumes(self, extent: Extent) -> Array:
         """Volume of a cell of each layer of a box, (n_layers, 1, 1) in m^3."""
-        found: Array = self.grid.hx * self.grid.hy * np.diff(self.faces(extent))[:, None, None]
-        return found
+        return self.grid.hx * self.grid.hy * np.diff(self.faces(extent))[:, None, None]
 
     def problem(
         self, extent: Extent, film: TribofilmState | None = None, wear: WearState | None = None
@@ -248,9 +245,7 @@ class Model:
         )
 
     def _mirror(self, window: Window) -> tuple[bool, bool]:
-        """Whether all fields are mirrored in x and in y: on a box about the middle; in x only without
-        friction.
-        """
+        """Whether fields are mirrored in x and in y: on a box about the middle, x without friction."""
         plan, path = self.plan, self.plan.schedule.path
         # gap and loads are: below a smooth body whose load does not leave the apex
         even = plan.rough is None and not plan.paper and plan.slip.uniform

@@ -29,9 +29,7 @@ INNER = 400  # returns at frozen pressure; likewise
 
 @dataclass(frozen=True)
 class Sum:
-    """The sum of the returns so far: plastic strain, its accumulated length, the residual fields, whether the
-    loop stopped.
-    """
+    """The sum of the returns so far, its accumulated length, residual fields, whether the loop stopped."""
 
     x: Array
     length: Array
@@ -54,9 +52,7 @@ class PaperProblem(Problem):
         start: Array | None = None,
         tolerance: float | None = None,
     ) -> Trial:
-        """Make a step from a committed state to a load. The loops start from the state: guess, start and
-        tolerance are not used.
-        """
+        """A step from a committed state, where the loops start; guess, start, tolerance are not used."""
         zero = np.zeros_like(state.material.strain), np.zeros_like(state.material.peeq)
         found, pressure, history = Sum(*zero, state.residual), state.pressure, []
         converged = False

@@ -42,9 +42,7 @@ OPPOSITE = {-2: np.array([2, 3, 0, 1]), -1: np.array([1, 0, 3, 2])}  # after x -
 
 
 def whole(transforms: Transforms, kept: Array) -> Array:
-    """A kept field at the points on all of the box: tensors (6, 4, n_layers, nx, ny) or (N, 6, 4, ...), or
-    numbers (4, n_layers, nx, ny).
-    """
+    """A kept field at the points on all of the box, tensors (..., 6, 4, n_layers, nx, ny) or numbers."""
     *lead, points = kept.shape[:-3]
     flat = kept.reshape(-1, *kept.shape[-3:])
     parities = (ODD_X, ODD_Y) if lead else EVEN
@@ -60,10 +58,8 @@ def whole(transforms: Transforms, kept: Array) -> Array:
 
 @dataclass(frozen=True)
 class Linear:
-    """Fields that are linear in each cell of a box, by differences between its neighbours.
-
-    cells: of the box, (nx, ny); mirror: whether fields are mirrored in x and in y, and kept from the middle
-    outward, see `Transforms`.
+    """Fields that are linear in each cell of a box of (nx, ny) cells, by differences between neighbours;
+    mirror: as of `Transforms`.
     """
 
     cells: tuple[int, int]
@@ -81,9 +77,7 @@ class Linear:
         return q + OFFSET * (self._reach(q, -2) + self._reach(q, -1))
 
     def difference(self, values: Array, axis: int) -> Array:
-        """v(i + 1) - v(i - 1) along an axis, -2 or -1; at a side of the box twice the difference from the one
-        neighbour.
-        """
+        """v(i + 1) - v(i - 1) along axis -2 or -1; at a side of the box twice the one difference."""
         found = np.zeros_like(values)
         v, out = np.moveaxis(values, axis, -1), np.moveaxis(found, axis, -1)
         count = v.shape[-1]
@@ -122,8 +116,7 @@ def stress_at_points(stress: Array, strain: Array, m: float) -> Array:
     smooth = Linear((stress.shape[-2], stress.shape[-1])).at_points(
         stress + 2 * m * strain.mean(axis=1), every
     )
-    found: Array = smooth.reshape(strain.shape) - 2 * m * strain
-    return found
+    return smooth.reshape(strain.shape) - 2 * m * strain
 
 
 @dataclass(frozen=True)
@@ -154,18 +147,9 @@ class Returned:
 
 
 class CellFlow:
-    """How cells yield over a step: the return map of their material at the points.
-
-    Parameters
-    ----------
-    material
-        The yield stress of the layers.
-    before
-        The fields at the points at the beginning of the step, on the cells that the transforms keep.
-    transforms
-        They know which fields are mirrored.
-    m
-        Stiffness in Pa with which a part of a cell relaxes, see (a).
+    """How cells yield over a step: the return map of their material at the points. before: the fields at the
+    points at its beginning, on the cells that the transforms keep; m: stiffness in Pa with which a part of a
+    cell relaxes, see (a).
     """
 
     def __init__(self, material: Material, before: MaterialFields, transforms: Transforms, m: float):
@@ -208,9 +192,7 @@ class CellFlow:
         return Returned(image, self.cells, points, stress, self.flow, relative)
 
     def near(self, own: Array) -> Array:
-        """Lengths that the increments at the points are expected to have: those of the return map before, or
-        of the cells.
-        """
+        """Lengths that the increments at the points about have: of the last return, or of the cells."""
         cells, lengths = self.last
         return lengths if cells is self.cells else equivalent_strain(own)
 

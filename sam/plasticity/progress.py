@@ -4,9 +4,6 @@ steps, bit for bit.
 
 A checkpoint holds this record and nothing else. It is frozen; `sam.plasticity.history.onward` makes the next
 one of it.
-
-The plastic strain that each period of a repeated load adds to the cells of the box, and the verdict on it;
-see `sam.scene.verdict`.
 """
 
 from __future__ import annotations
@@ -32,8 +29,8 @@ from sam.surface_state import TribofilmState, WearState
 @dataclass(frozen=True)
 class Added:
     """What a period added on a box: accumulated and the norm of the strain, (n_layers, nx, ny), and the
-    strain, (6, n_layers, nx, ny), None of all but the last two periods; worn: depth in m at its beginning on
-    the grid, (nx, ny), None if nothing wears.
+    strain, (6, n_layers, nx, ny), of the last two periods; worn: depth in m at its beginning, (nx, ny), or
+    None.
     """
 
     extent: Extent
@@ -134,11 +131,7 @@ ROUNDING = 1e-9  # of a ratio of equal load steps
 
 @dataclass(frozen=True)
 class Parts:
-    """What is already committed of the step to the first target: number of parts, iterations, largest
-    residual.
-
-    attempts: also those that were discarded.
-    """
+    """What is committed of the step to the first target: parts, iterations, largest residual, attempts."""
 
     count: int = 0
     iterations: int = 0
@@ -158,10 +151,8 @@ class Parts:
 
 @dataclass(frozen=True)
 class Outside:
-    """Fields of the plastic strain outside of the box.
-
-    displacement: of the whole surface, (nx, ny) in m; stress: in the rows of cells that touch y = 0, at all
-    depths, (6, nz, nx, rows) in Pa, None as long as nobody asked for it.
+    """Fields of the plastic strain outside of the box: u_z of the surface, (nx, ny) in m, and, where it is
+    asked for, stress in the rows that touch y = 0, (6, nz, nx, rows) in Pa.
     """
 
     displacement: Array

@@ -77,9 +77,8 @@ class MaterialFields:
 
 @dataclass(frozen=True)
 class Residual:
-    """What plastic strain alone makes, without any load; all of it is linear in the strain.
-
-    stress: (6, n_layers, nx, ny) in Pa; displacement: of the surface, (nx, ny) in m, > 0 into the body.
+    """What plastic strain makes without load, linear in it: stress (6, n_layers, nx, ny) in Pa, u_z (nx, ny)
+    in m.
     """
 
     stress: Array
@@ -100,8 +99,8 @@ class Residual:
 
 @dataclass(frozen=True)
 class State:
-    """A committed state of the box; a load step makes the next one by `after`. points: the material at the
-    points of the cells; pressure: p_hat, (nx, ny).
+    """A committed state of the box: material at the points of the cells, residual fields, p_hat (nx, ny),
+    load.
     """
 
     points: MaterialFields

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Load steps and cycles: a record of each, and their tables.
-
-Stress and plastic strain of some cells over the last period of a repeated load, and their table.
-"""
+"""Load steps and cycles: a record of each, and their tables."""
 
 from __future__ import annotations
 
@@ -33,10 +30,8 @@ OF_CYCLE = ("new_strain_max", "yielding_cells", "wear_of_cycle_m3")  # zero of a
 
 @dataclass(frozen=True)
 class Effort:
-    """How a load step was solved.
-
-    iterations, residual: of its last attempt; note: for the history; peeq_max: largest accumulated plastic
-    strain after it; attempts: all of them.
+    """How a load step was solved: iterations and residual of its last attempt, largest plastic strain after
+    it, all attempts.
     """
 
     iterations: int
@@ -81,9 +76,7 @@ class PassEnd:
 
 @dataclass(frozen=True)
 class Row:
-    """One load step in the history. ending: of its contact, in words, if that did not converge; moved: of a
-    counter-body on a path.
-    """
+    """One load step. ending: of its contact, if that did not converge; moved: of a moving counter-body."""
 
     cycle: int
     step: int
@@ -112,10 +105,8 @@ def row_of(
     coefficient: Coefficient,
     whole: float | None = None,
 ) -> Row:
-    """The row of a contact on the full grid, or on a box of it.
-
-    coefficient: of friction, whatever the sign of the traction; whole: that under a whole tribofilm, None
-    without one.
+    """The row of a contact on the full grid, or on a box of it. coefficient: of friction, whatever the sign
+    of the traction; whole: that under a whole tribofilm.
     """
     friction, protected, p = 0.0, None, contact.pressure
     if contact.force:
@@ -144,9 +135,7 @@ def row_of(
 
 
 def counted(contact: Contact, grid: CellGrid) -> Window:
-    """The cells that count for maxima: all, but for the border of a grid that has one once the contact
-    touches the edge.
-    """
+    """The cells that count for maxima: all but a border, once the contact touches the edge."""
     touching, (bx, by) = contact.pressure > 0, grid.border
     if not (touching[[0, -1], :].any() or touching[:, [0, -1]].any()):
         bx = by = 0
@@ -202,7 +191,7 @@ def _shares(p: Array, gap: Array, unit: Array) -> Array:
 
 def _distances(normal: tuple[Array, Array], axis: int, cell: tuple[float, float]) -> Array:
     """In m, of lines of centres that follow the outline, at each line to a next cell. normal: of the outline
-    in squares of four centres, in cells, of any length; axis: along which two squares share such a line.
+    in squares of four centres, in cells; axis: along which two squares share such a line.
     """
     width = [(1, 1) if each == axis else (0, 0) for each in (0, 1)]
     u, v = (sliding_window_view(np.pad(part, width), 2, axis).sum(axis=-1) for part in normal)
@@ -238,9 +227,7 @@ def history_table(rows: Sequence[Row]) -> dict[str, list[Any]]:
 
 @dataclass(frozen=True)
 class CycleStrain:
-    """What a cycle has strained: the largest new plastic strain of a cell, and in how many cells there is
-    any.
-    """
+    """The largest new plastic strain of a cell in a cycle, and in how many cells there is any."""
 
     largest: float = 0.0
     cells: int = 0
@@ -279,10 +266,9 @@ def cycles_table(
     at_peak: Callable[[int, int], bool],
     roughness: Roughness | None = None,
 ) -> dict[str, list[Any]]:
-    """The table cycles: one row for each cycle that came to its peak; volume and roughness at its end.
-
-    at_peak: whether a cycle's step ends there; ends: of an elastic body none, as its surface stays the
-    same; roughness: of a rough surface before the first load. What there is not (skewness) is None.
+    """The table cycles: a row for each cycle that came to its peak, with volume and roughness at its end.
+    at_peak: whether a cycle's step ends there; roughness: before the first load. What there is not (skewness)
+    is None.
     """
     peaks: dict[int, Row] = {}
     for row in rows:
@@ -321,9 +307,7 @@ def _heights_of(found: Roughness | None) -> Mapping[str, float | None]:
 
 @dataclass(frozen=True)
 class LoopRow:
-    """A cell at the end of a load step. place: its layer, and its cell of the grid; stress in Pa and plastic
-    strain, six components each.
-    """
+    """A cell (layer, i, j) at the end of a load step; stress in Pa and plastic strain, both (6,)."""
 
     place: tuple[int, int, int]
     cycle: int

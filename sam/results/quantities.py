@@ -1,15 +1,12 @@
 # SPDX-License-Identifier: MIT
 """The scalar results of a scene, at the peak load and after it.
 
-The largest von Mises stress between the depths at which it is known, and a large plastic strain.
-
-Two grids, one with twice the cells of the other, and what they say together: Richardson's extrapolation.
-
-The errors of maxima, depths and displacements fall with the square of the cell once it is small: not smoothly
-where the edge of a contact or of a plastic zone falls between cells. Of two values q_c (coarse) and q_f
-(fine, r times as many cells) the extrapolated one is q_f + (q_f - q_c)/(r^2 - 1) (Richardson 1911). The
-coarse solution costs a tenth to a half of the fine one. Their difference, recorded with each quantity, tells
-how good the fine value is by itself.
+Richardson's extrapolation takes two grids, one with twice the cells of the other. The errors of maxima,
+depths and displacements fall with the square of the cell once it is small: not smoothly where the edge of a
+contact or of a plastic zone falls between cells. Of two values q_c (coarse) and q_f (fine, r times as many
+cells) the extrapolated one is q_f + (q_f - q_c)/(r^2 - 1) (Richardson 1911). The coarse solution costs a
+tenth to a half of the fine one. Their difference, recorded with each quantity, tells how good the fine value
+is by itself.
 """
 
 from __future__ import annotations
@@ -33,9 +30,8 @@ EVEN = Kinks()
 
 
 def refined_peak(z: Array, values: Array, kinks: Kinks = EVEN) -> tuple[float, float]:
-    """Depth and height of the maximum, refined by a parabola through three neighbours (any spacing).
-
-    kinks: of the yield stress of a body that yields; there the stress has one, and no parabola goes across.
+    """Depth and height of the maximum, refined by a parabola through three neighbours (any spacing), not
+    across kinks of the yield stress.
     """
     k = int(values.argmax())
     if k in (0, len(values) - 1) or np.ptp(kinks.interval(z[k - 1 : k + 2])):
@@ -47,10 +43,8 @@ def refined_peak(z: Array, values: Array, kinks: Kinks = EVEN) -> tuple[float, f
 
 def largest_mises(z: Array, peak: Snapshot, kinks: Kinks = EVEN) -> tuple[float, float]:
     """Depth and value of the largest von Mises stress, refined by a parabola over depth unless its cell has
-    yielded.
-
-    A cell that has is on the yield surface, which a parabola through it and its neighbours would pass; so
-    the value is the same whichever way the body is turned. kinks: as of `refined_peak`.
+    yielded: it is then on the yield surface, which a parabola would pass; so the value is the same whichever
+    way the body is turned.
     """
     mises = peak.mises
     k, column = np.unravel_index(mises.argmax(), mises.shape)
@@ -60,8 +54,8 @@ def largest_mises(z: Array, peak: Snapshot, kinks: Kinks = EVEN) -> tuple[float,
 
 
 def exceeded_strain(box: Box) -> float | None:
-    """The accumulated plastic strain that a share EXCEEDING of the plastic volume exceeds, see
-    `sam.scene.result`; None without any. A cell counts with half of its volume at its own strain.
+    """The plastic strain that a share EXCEEDING of the plastic volume exceeds, or None; a cell counts with
+    half of its volume at its own strain.
     """
     peeq = box.peeq.ravel()
     if not peeq.any():
@@ -73,9 +67,8 @@ def exceeded_strain(box: Box) -> float | None:
 
 
 def largest_in(depths: Array, mises: Array, part: Mask) -> tuple[float, float] | None:
-    """Depth and height of the largest value at some of the depths, (nz,); None where there are none.
-
-    mises: (nz, n). Refined between these depths only: the stress jumps at the interface of a coating.
+    """Depth and height of the largest value (nz, n) at some depths, (nz,), or None; refined between these
+    only, as the stress jumps at the interface of a coating.
     """
     if not part.any():
         return None
@@ -95,10 +88,8 @@ def quantities(
     kinks: Kinks = EVEN,
     centred: bool = True,
 ) -> Quantities:
-    """Every name of QUANTITIES.
-
-    wear_volume: of all cycles in m^3; kinks: see `refined_peak`; centred: whether the contact has a centre,
-    which that of a rough body has not.
+    """Every name of QUANTITIES. wear_volume: of all cycles in m^3; kinks: see `refined_peak`; centred:
+    whether the contact has a centre, which a rough one has not.
     """
     contact, rows = peak.contact, grid.axis_rows.slices[1]
     place, top = peak.top or (None, 0.0)
@@ -148,10 +139,8 @@ def _centroid(x: Array, weight: Array) -> float | None:
 
 
 def coated_quantities(depths: Array, mises: Array, p_max: float, coated: Coated) -> Quantities:
-    """The names of QUANTITIES that only a coated scene has, and the largest stress anywhere.
-
-    mises: von Mises stress of (nz, n) points in Pa; p_max in Pa. What the depths or the grid do not hold is
-    None.
+    """What only a coated scene has, and the largest stress anywhere; None what depths or grid do not hold.
+    mises: (nz, n) in Pa; p_max in Pa.
     """
     below, bare = depths >= coated.thickness, coated.comparison
     in_film, in_body = largest_in(depths, mises, ~below), largest_in(depths, mises, below)
@@ -194,12 +183,8 @@ SECOND_ORDER = (
 
 
 def with_extrapolation(before: Result, fine: Result, *, finds_force: bool) -> Result:
-    """The result on the finer grid, its quantities extrapolated from that on the coarser one.
-
-    finds_force: the approach is given, and the force is one of the quantities.
-
-    Where the coarser grid does not converge or does not resolve the contact, the result says so and is not
-    extrapolated.
+    """The result on the finer grid, extrapolated from the coarser one, or with the reason why not where that
+    does not converge or resolve the contact. finds_force: the force is one of the quantities.
     """
     cost = {name: (value or 0) + (before.cost[name] or 0) for name, value in fine.cost.items()}
     cells = before.discretisation["cells"]

@@ -56,8 +56,8 @@ class RoughRecord:
         return out
 
     def table(self, grid: CellGrid, snapshots: Sequence[Snapshot]) -> dict[str, Any]:
-        """The table surface: for each state a row a cell, y running first, with the original heights; those
-        of the counter-body as the last column, if it is rough.
+        """The table surface: for each state a row a cell, y running first, with original heights, those of a
+        rough counter-body last.
         """
         x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
         parts = [
@@ -111,10 +111,9 @@ class RoughRecord:
 
 
 def too_few_cells(pressure: Array) -> str:
-    """What a user should know about the spots of a contact; empty if those that matter are resolved.
-
-    pressure: of the cells, (nx, ny) in Pa. A spot is what hangs together over sides of its cells: two that
-    touch at a corner have a saddle between them, and as one they would pass for resolved.
+    """What a user should know about the spots of a contact (nx, ny) in Pa; empty if those that matter are
+    resolved. A spot hangs together over sides of its cells: two that touch at a corner have a saddle between
+    them, and as one they would pass for resolved.
     """
     from scipy import ndimage  # noqa: PLC0415 - for rough scenes alone
 

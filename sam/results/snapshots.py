@@ -40,11 +40,8 @@ class Sliding:
 
 @dataclass(frozen=True)
 class Cut:
-    """The plane y = const through the largest pressure at the peak, where the contact need not be in the
-    plane y = 0.
-
-    So it is below a rough body, and under a load that travels. y: of the centres of the cells in m; x: (nx,),
-    z: (nz,) in m; stress: (6, nz, nx) in Pa; peeq: (nz, nx).
+    """The plane y = const (m) through the largest pressure at the peak, of a rough body or below a load that
+    travels; x (nx,), z (nz,) in m; stress (6, nz, nx) in Pa; peeq (nz, nx).
     """
 
     y: float
@@ -67,10 +64,8 @@ def row_of_largest(contact: Contact, counts: Window) -> int | None:
 
 @dataclass(frozen=True)
 class Comparison:
-    """The bare body under the same load, on the same grid and at the same depths.
-
-    p_max in Pa; mises: von Mises stress of (nz, n) points in Pa, where that of the coated body is taken;
-    warning: why they are None where the grid does not suit the contact of the bare body.
+    """The bare body under the same load: p_max in Pa and von Mises stress of (nz, n) points in Pa, or a
+    warning where the grid does not suit its contact.
     """
 
     p_max: float | None = None
@@ -80,11 +75,9 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Coated:
-    """What a coating adds to a state.
-
-    thickness in m; counter_uz: displacement of the counter-body's surface away from the body, (nx, rows) in
-    m, which the contact counts and the body has not; comparison: with the bare body, at the peak of a scene
-    with force.
+    """What a coating adds to a state. thickness in m; counter_uz: of the counter-body away from the body,
+    (nx, rows) in m, which the contact counts and the body has not; comparison: with the bare body, under
+    force.
     """
 
     thickness: float
@@ -180,5 +173,4 @@ class Snapshot:
     @property
     def in_plane(self) -> Array:
         """Stress in y = 0, the mean of the rows, (6, nz, nx) in Pa."""
-        mean: Array = self.stress.mean(axis=-1)
-        return mean
+        return self.stress.mean(axis=-1)

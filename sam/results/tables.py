@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The tables axis, line and plane of the states, one state after the other, and the table cut.
-
-What to change when a solve ends badly: nothing that is set already, nothing that the scene has not.
-"""
+"""The tables axis, line, plane and cut of the states, and what to change when a solve ends badly."""
 
 from __future__ import annotations
 
@@ -22,9 +19,8 @@ from sam.scene.result import CUT, LINE, STRESSES
 
 @dataclass(frozen=True)
 class Remedies:
-    """What may be changed of a scene, in words; empty what may not. See `sam.scene.remedies`.
-
-    slower: less friction, where there is so much that a contact may not be found for it.
+    """What may be changed of a scene, in words; empty what may not. slower: less friction, where there is
+    much.
     """
 
     finer_cells: str
@@ -37,10 +33,7 @@ class Remedies:
 
 
 def advice(remedies: Remedies, status: Status, larger: str = "") -> str:
-    """What to change, in words; empty for a converged solve.
-
-    larger: how to enlarge the sides of the grid that were reached, see `sam.grid.cells`.
-    """
+    """What to change, in words; empty for a converged solve; larger: how to enlarge the sides of the grid."""
     can = remedies
     match status:
         case Status.NOT_CONVERGED:
@@ -63,10 +56,7 @@ Table = dict[str, Any]
 
 
 def state_tables(grid: CellGrid, snapshots: Sequence[Snapshot], share: float) -> dict[str, Table]:
-    """The tables axis, line and plane, and cut where a state has one.
-
-    share: of the body in the displacement of both surfaces, see `sam.half_space.ElasticPair.share`.
-    """
+    """The tables axis, line and plane, and cut where a state has one; share: see `ElasticPair.share`."""
     parts = [_tables_of(grid, snapshot, share) for snapshot in snapshots]
     merged: dict[str, Table] = {
         name: {column: np.concatenate([part[name][column] for part in parts]) for column in parts[0][name]}

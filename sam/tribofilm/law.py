@@ -7,14 +7,10 @@ tested with the low coefficient of friction. It fails where it thins by more tha
 becomes thicker loses nothing; the printed form, which only ever thickens under a pressure, is judged by the
 size of its strain. A failure lasts until the end of the cycle, and the next cycle starts with a fresh film.
 
-What a tribofilm is made of, and what acts on its cells in a load step.
-
-One backward-Euler step of a perfectly plastic film under mixed control (von Mises), every cell by itself.
-
-Known at the end of the step: the strains in the plane, those of the body below (xx, yy, xy), and the stresses
-on top, s_zz = -p, s_xz = tau, s_yz = 0. That is the plane-stress problem of Simo & Hughes (1998), section
-3.4, with other stresses than 0 off the plane. With S = s_xx + s_yy - 2 s_zz, D = s_xx - s_yy, T = s_xy and
-the flow rule d eps_p = lambda s',
+A step is backward Euler under mixed control, every cell by itself. Known at its end: the strains in the
+plane, those of the body below (xx, yy, xy), and the stresses on top, s_zz = -p, s_xz = tau, s_yz = 0. That is
+the plane-stress problem of Simo & Hughes (1998), section 3.4, with other stresses than 0 off the plane. With
+S = s_xx + s_yy - 2 s_zz, D = s_xx - s_yy, T = s_xy and the flow rule d eps_p = lambda s',
 
     S = S_tr/(1 + a lambda), (D, T) = (D_tr, T_tr)/(1 + b lambda), a = E/(3 (1 - nu)), b = E/(1 + nu),    (a)
     q(lambda) = sqrt(S^2/4 + 3 D^2/4 + 3 T^2) = k,   k^2 = sigma_y^2 - 3 tau^2.                            (b)
@@ -24,16 +20,13 @@ lambda (a power mean of exponent -2 of 1 + a lambda and 1 + b lambda), so Newton
 to the root from below, from lambda = 0, and never passes it: it needs no bracket. Where only S or only (D, T)
 is there it ends after one iteration.
 
-The stress of the film as Eqs. 12-14 of Bosman & Schipper (2011) print it, for comparison only.
-
-Printed: s_ii = E/(2 (1 + nu)) e_ii + nu E/((1 + nu)(1 - 2 nu)) (e_xx + e_yy + e_zz) with all three strains
-of the body (Eq. 12), then s_zz + P for s_zz (Eq. 13) and s_xz = mu P (Eq. 14). Used by default
-(return_map.py): the strains in the plane only, Hooke's law, s_zz = -P. Why: Hooke's law has E/(1 + nu)
-before e_ii; a bonded film shares only the strains in the surface with the body; and equilibrium fixes s_zz,
-so that Eq. 13 counts the pressure twice, and as a tension where compression is negative: under a pressure
-this film grows thicker. The plastic strain follows by the radial return of that stress at a given strain
-with Hooke's 2G (Simo & Hughes 1998, box 3.1), so it always exists, at a shear stress below the mu P
-prescribed.
+For comparison only, the printed form: s_ii = E/(2 (1 + nu)) e_ii + nu E/((1 + nu)(1 - 2 nu)) (e_xx + e_yy +
+e_zz) with all three strains of the body (Eq. 12), then s_zz + P for s_zz (Eq. 13) and s_xz = mu P (Eq. 14).
+Used by default: the strains in the plane only, Hooke's law, s_zz = -P. Why: Hooke's law has E/(1 + nu) before
+e_ii; a bonded film shares only the strains in the surface with the body; and equilibrium fixes s_zz, so that
+Eq. 13 counts the pressure twice, and as a tension where compression is negative: under a pressure this film
+grows thicker. The plastic strain follows by the radial return of that stress at a given strain with Hooke's
+2G (Simo & Hughes 1998, box 3.1), so it always exists, at a shear stress below the mu P prescribed.
 """
 
 from __future__ import annotations
@@ -85,8 +78,7 @@ ROUNDING = 1e-14  # of k: 45 roundings of a number
 
 def bearable_radius(shear: Array, yield_stress: float) -> Array:
     """k in Pa of (b), 0 where there is no equilibrium; shear: tau in Pa, any shape."""
-    found: Array = np.sqrt(np.maximum(yield_stress**2 - 3.0 * shear**2, 0.0))
-    return found
+    return np.sqrt(np.maximum(yield_stress**2 - 3.0 * shear**2, 0.0))
 
 
 def increment(loads: Loads, material: Material) -> Array:
@@ -96,9 +88,7 @@ def increment(loads: Loads, material: Material) -> Array:
 
 
 def trial_stress(loads: Loads, material: Material) -> Array:
-    """(S, D, T) of (a) in Pa, (3, n), with no further flow. Paper Eq. 12, by Hooke's law with s_zz given by
-    Eq. 13.
-    """
+    """(S, D, T) of (a) in Pa, (3, n), without further flow: paper Eq. 12 by Hooke's law, s_zz by Eq. 13."""
     young, poisson, normal = material.young, material.poisson, -loads.pressure  # paper Eq. 13: s_zz = -P
     xx, yy, xy = loads.strain - loads.plastic[[0, 1, 5]]
     # s_xx + s_yy of paper Eq. 12, with E/(1 + nu) where E/(2 (1 + nu)) is printed, and s_zz = normal
@@ -108,23 +98,18 @@ def trial_stress(loads: Loads, material: Material) -> Array:
 
 
 def flow(trial: Array, shear: Array, radius: Array, material: Material) -> Array:
-    """Increment of the plastic strain (6, n) that brings the trial stresses (3, n) to radius k > 0, (n,); 0
-    inside of it.
-    """
+    """Increment of plastic strain (6, n) that brings trial stresses (3, n) to radius k > 0, (n,), or 0."""
     a, b = material.young / (3.0 * (1.0 - material.poisson)), material.twice_shear
     along, across = trial[0] ** 2 / 4.0, 0.75 * trial[1] ** 2 + 3.0 * trial[2] ** 2
     factor = multiplier(along, across, radius, (a, b))
     S, D, T = trial[0] / (1.0 + a * factor), *(trial[1:] / (1.0 + b * factor))
     deviator = np.stack([S / 6.0 + D / 2.0, S / 6.0 - D / 2.0, -S / 3.0, np.zeros_like(S), shear, T])
-    found: Array = factor * deviator
-    return found
+    return factor * deviator
 
 
 def multiplier(along: Array, across: Array, radius: Array, moduli: tuple[float, float]) -> Array:
-    """lambda >= 0 in 1/Pa of (b) where along = S_tr^2/4 and across = 3 D_tr^2/4 + 3 T_tr^2 in Pa^2; all (n,).
-
-    radius: k in Pa; moduli: a and b of (a) in Pa. ArithmeticError if Newton's method does not settle, which
-    only numbers that are not finite can do.
+    """lambda >= 0 in 1/Pa of (b), (n,), where along = S_tr^2/4 and across = 3 D_tr^2/4 + 3 T_tr^2 in Pa^2;
+    radius: k in Pa; moduli: a and b of (a) in Pa. ArithmeticError for numbers that are not finite.
     """
     (a, b), factor = moduli, np.zeros_like(along)
     for _ in range(ITERATIONS):
@@ -165,8 +150,7 @@ def radial_flow(stress: Array, plastic: Array, material: Material) -> Array:
     deviator = stress - twice_shear * plastic
     deviator[:3] -= deviator[:3].mean(axis=0)
     q = np.sqrt(1.5 * np.einsum("i,i...,i...->...", SHEAR, deviator, deviator))
-    found: Array = np.maximum(q - yield_stress, 0.0) / (twice_shear * np.maximum(q, yield_stress)) * deviator
-    return found
+    return np.maximum(q - yield_stress, 0.0) / (twice_shear * np.maximum(q, yield_stress)) * deviator
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,8 @@ friction is low.
 Within a load step the film is tested with the pressure and the surface strain of a solved contact. Where it
 fails, friction becomes high, which changes both; so the step is solved again, from where it began, until no
 further cell fails. Failures only add up, hence this ends. A failure lasts until the end of the cycle; the
-next one begins with a new film. Bosman & Schipper 2011, section 4. Below a counter-body that moves a visit of
-it takes the place of a cycle, see `sam.tribofilm.state`.
-
-The tribofilm below a counter-body that moves: each visit of it to a cell begins with a whole film, which
-may thin by what grew while the cell was out of contact.
+next one begins with a new film. Bosman & Schipper 2011, section 4. Below a counter-body that moves each visit
+of it to a cell begins with a whole film, which may thin by what grew while the cell was out of contact.
 
 A cell enters when it bears pressure after it bore none while the counter-body moved on; then its film is
 whole, and its strain is counted from that of the surface before the step. It leaves when it bears none; a
@@ -35,10 +32,8 @@ ROUNDING = 1e-9  # of a way that is as long as a bin, and of a pass: a clock tha
 
 @dataclass(frozen=True)
 class VisitLaw:
-    """How a film begins each visit.
-
-    rate: of the thinning that may be lost, in 1/sqrt(m) of the way out of contact, None: the same in every
-    visit; period: way in m from the beginning of one pass to that of the next.
+    """How a film begins each visit. rate: of the thinning that may be lost, in 1/sqrt(m) of the way out of
+    contact, None: the same in every visit; period: way in m from one pass to the next.
     """
 
     rate: float | None
@@ -77,9 +72,7 @@ class VisitLaw:
 
 @dataclass(frozen=True)
 class FilmOnCells:
-    """The law of a tribofilm on `shape` (nx, ny) cells; what it makes is a new `TribofilmState` each time.
-    visited: below a counter-body that moves.
-    """
+    """The law of a tribofilm on `shape` (nx, ny) cells; visited: below a counter-body that moves."""
 
     law: FilmLaw
     shape: tuple[int, int]
@@ -103,12 +96,10 @@ class FilmOnCells:
     def tested(
         self, committed: TribofilmState, tried: TribofilmState, strain: Array, *, pressure: Array, sign: float
     ) -> TribofilmState:
-        """The film at the end of a load step that was solved with the friction of `tried`.
-
-        committed: at its beginning; strain: of the surface at its end, (4, nx, ny); pressure: in Pa, (nx,
-        ny); sign: of the traction along x. The film flows from where it was committed, and what failed in an
-        earlier pass of the step stays so. Where no further cell fails, `failed` is the array of `tried`:
-        friction is what the step was solved with.
+        """The film at the end of a load step that was solved with the friction of `tried`. committed: at its
+        beginning; strain: of the surface at its end, (4, nx, ny); pressure in Pa, (nx, ny); sign: of the
+        traction. The film flows from where it was committed, and what failed in an earlier pass of the step
+        stays so; where no further cell fails, `failed` is the array of `tried`.
         """
         before = FilmState(committed.film.plastic, tried.film.failed)
         since = strain - committed.reference
