@@ -11,19 +11,9 @@ from math import pi, sqrt
 
 @dataclass(frozen=True)
 class ElasticConstants:
-    """An isotropic elastic body.
+    """An isotropic elastic body: Young's modulus in Pa and Poisson's ratio.
 
-    Parameters
-    ----------
-    young : float
-        Young's modulus in Pa.
-    poisson : float
-        Poisson's ratio.
-
-    Examples
-    --------
-    >>> steel = ElasticConstants(210e9, 0.3)
-    >>> round(steel.shear / 1e9, 1)
+    >>> round(ElasticConstants(210e9, 0.3).shear / 1e9, 1)
     80.8
     """
 
@@ -48,17 +38,9 @@ class ElasticConstants:
 
 @dataclass(frozen=True)
 class ElasticPair:
-    """The body, and the counter-body that it is in contact with.
+    """The body, of a coated one the material below the coating, and the counter-body; None if it is rigid, or
+    if a scene gives the pressure in place of it.
 
-    Parameters
-    ----------
-    body : ElasticConstants
-        The half-space z >= 0. Of a coated body the material below the coating.
-    other : ElasticConstants, optional
-        The counter-body; None if it is rigid, or if a scene gives the pressure in place of it.
-
-    Examples
-    --------
     >>> steel = ElasticConstants(210e9, 0.3)
     >>> round(ElasticPair(steel).contact_modulus / 1e9, 1)  # on a rigid body: E/(1 - nu^2)
     230.8

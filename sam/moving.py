@@ -9,8 +9,8 @@ against the slope of the groove and of summits, to which friction adds int q.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from math import nan
 from typing import Any
 
@@ -36,7 +36,7 @@ from sam.scene.result import (
 )
 from sam.scene.surface import Strip
 from sam.schedule import Load
-from sam.surface_state import TribofilmState, Visits, bins_of_visits
+from sam.tribofilm.state import TribofilmState, Visits, bins_of_visits
 
 ROUNDING = 1e-6  # of a centre of cells, in cells
 FINE = 8  # steps in the shortest wave of a counter-surface; half as many at least, see `Strip`
@@ -100,22 +100,19 @@ class Track:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What a user should know about the steps of a body that yields."""
-        out, share = list(self._of_waves()), self.step / self.radius
+        out, share = [], self.step / self.radius
+        waves = 0.0 if self.strip is None else self.strip.share_of_wave(self.step / self.length)
+        if waves > (1 + ROUNDING) / FINE:
+            out.append(
+                f"loading.path: in a step the counter-surface slides {waves:.2g} of its shortest wave: above "
+                f"1/{FINE} summits jump over places"
+            )
         if not self.plane and share > LONG * (1 + ROUNDING):
             out.append(
                 f"loading.path: steps of {share:.2g} contact radii leave several percent of the groove and "
                 "more of the plastic strain: a quarter of the radius leaves 1 % of the groove"
             )
         return tuple(out)
-
-    def _of_waves(self) -> Iterator[str]:
-        """Steps that are long for the summits of the counter-surface."""
-        share = 0.0 if self.strip is None else self.strip.share_of_wave(self.step / self.length)
-        if share > (1 + ROUNDING) / FINE:
-            yield (
-                f"loading.path: in a step the counter-surface slides {share:.2g} of its shortest wave: above "
-                f"1/{FINE} summits jump over places"
-            )
 
     def place(self, load: Load) -> str:
         """Where a load is, in words."""
@@ -274,21 +271,8 @@ def path_quantities(track: Track, grid: CellGrid, history: History) -> dict[str,
 
 
 def _passes(passes: Sequence[PassEnd]) -> dict[str, Any]:
-    values = [
-        (
-            each.cycle,
-            each.direction,
-            each.depth,
-            each.at_start,
-            each.at_end,
-            each.beside,
-            each.strain,
-            each.drive,
-            each.rolling,
-        )
-        for each in passes
-    ]
-    return {name: [value[k] for value in values] for k, name in enumerate(PASSES)}
+    of_pass = zip(PASSES, fields(PassEnd), strict=True)
+    return {name: [getattr(each, field.name) for each in passes] for name, field in of_pass}
 
 
 def _surface_of_passes(track: Track, history: History) -> dict[str, Any]:

@@ -17,7 +17,7 @@ from sam.contact.normal import Contact, fit_of
 from sam.elastic.history import solve_elastic
 from sam.elastic.problem import ElasticProblem, Plan
 from sam.elastic.stress import elastic_peak, yields
-from sam.grid.cells import CellGrid, Room, Sides, enlarged, enlargement, how_to_enlarge
+from sam.grid.cells import Room, Sides, enlarged, enlargement, how_to_enlarge
 from sam.moving import path_quantities, path_tables
 from sam.planner.bodies import Bodies
 from sam.planner.make import check_bodies, plan_of
@@ -36,6 +36,14 @@ from sam.scene.result import DISSIPATED, FRICTION_SIGN, ROOFED, Progress, of_loa
 from sam.scene.verdict import UNSTRAINED, Verdict, summary, verdict_columns
 
 MODEL = "sam"
+COUNTED = (
+    "contact_iterations",
+    "plastic_iterations",
+    "operator_applications",
+    "displacement_applications",
+    "ffts",
+    "step_cuts",
+)
 AT_EDGE = (Status.CONVERGED, Status.CONTACT_AT_GRID_EDGE)  # of a contact that may have touched it on its way
 
 
@@ -117,7 +125,13 @@ def _executed(plan: Plan, report: Progress, checkpoint: Keep | None, start: Chec
         record = None if anew or record is None else on_larger_grid(record, plan.grid, larger.grid)
         plan = larger
         history, record = _on_grid(plan, counters, report, keep=keeper, start=record)
-    result = _result(plan, history, record, counters=counters, cost=clock.times() | _counts(counters))
+    result = _result(
+        plan,
+        history,
+        record,
+        counters=counters,
+        cost=clock.times() | {name: getattr(counters, name) for name in COUNTED},
+    )
     if plan.grid.room == Room():
         return result
     extra, words = enlargement(first, plan.grid)
@@ -220,12 +234,23 @@ def _result(
         | {each.state: state_grids(grid, each, plan.pair.share, heights) for each in states},
         left_out=left_out,
         discretisation={
-            **_discretisation(grid, peak.contact),
+            "cells": [grid.nx, grid.ny],
+            "cell_m": [grid.hx, grid.hy],
+            "depths": len(grid.depths),
+            "largest_depth_m": float(grid.depths[-1]),
+            "contact_box_cells": [peak.contact.box.nx, peak.contact.box.ny],
+            "contact_cells": int(np.count_nonzero(peak.contact.pressure)),
             **(rough.discretisation() if rough is not None else {}),
             "tangential_kernels": counters.tangential_kernels,
             **history.discretisation,
         },
-        certificate={**_certificate(peak.contact), **history.certificate},
+        certificate={
+            "gap_in_contact": peak.contact.gap_residual,
+            "penetration": peak.contact.penetration,
+            "tension": peak.contact.tension,
+            "load_error": peak.contact.load_error,
+            **history.certificate,
+        },
         cost=cost,
         message="; ".join(filter(None, (words, ending))),
         warnings=history.warnings,
@@ -260,35 +285,3 @@ def _tables(plan: Plan, history: History, verdicts: Sequence[Verdict]) -> dict[s
         if plan.wear is not None:
             tables["cycles"][ROOFED] = of_ends(cycles, ends, "roofed")
     return tables
-
-
-def _discretisation(grid: CellGrid, peak: Contact) -> dict[str, object]:
-    return {
-        "cells": [grid.nx, grid.ny],
-        "cell_m": [grid.hx, grid.hy],
-        "depths": len(grid.depths),
-        "largest_depth_m": float(grid.depths[-1]),
-        "contact_box_cells": [peak.box.nx, peak.box.ny],
-        "contact_cells": int(np.count_nonzero(peak.pressure)),
-    }
-
-
-def _certificate(peak: Contact) -> dict[str, float]:
-    """Residuals of the returned fields, see Contact."""
-    return {
-        "gap_in_contact": peak.gap_residual,
-        "penetration": peak.penetration,
-        "tension": peak.tension,
-        "load_error": peak.load_error,
-    }
-
-
-def _counts(counters: Counters) -> dict[str, int]:
-    return {
-        "contact_iterations": counters.contact_iterations,
-        "plastic_iterations": counters.plastic_iterations,
-        "operator_applications": counters.operator_applications,
-        "displacement_applications": counters.displacement_applications,
-        "ffts": counters.ffts,
-        "step_cuts": counters.step_cuts,
-    }

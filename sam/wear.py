@@ -43,7 +43,6 @@ from numpy.typing import NDArray
 from sam.arrays import Array, Mask
 from sam.grid.cells import Window
 from sam.scene import Wear
-from sam.surface_state import WearState
 
 UNREACHED = 1e300  # a strain, in place of inf: differences stay numbers
 
@@ -266,6 +265,48 @@ def closing_residual(before: Array, after: Array, removed: Array, faces: Array) 
 
 
 T = TypeVar("T", bound=np.generic)
+
+
+@dataclass(frozen=True, eq=False)
+class WearState:
+    """Wear so far on the whole grid.
+
+    cell_area: hx hy in m2; depth: (nx, ny) in m, sum over the cycles of what was removed. For each cycle:
+    volumes, in m3, removed; raw_volumes: what tore, before smoothing; roofed_volumes: above the limit under a
+    sound roof, which stays; bottom_columns: how many tore down to the deepest face; residuals: of the remap,
+    see `sam.wear.closing_residual`.
+    """
+
+    cell_area: float
+    depth: Array
+    volumes: tuple[float, ...] = ()
+    raw_volumes: tuple[float, ...] = ()
+    roofed_volumes: tuple[float, ...] = ()
+    bottom_columns: tuple[int, ...] = ()
+    residuals: tuple[float, ...] = ()
+
+    @classmethod
+    def empty(cls, shape: tuple[int, int], hx: float, hy: float) -> WearState:
+        """The surface before the first cycle; hx, hy: cell in m."""
+        return cls(hx * hy, np.zeros(shape))
+
+    @property
+    def volume(self) -> float:
+        """Removed so far, in m3."""
+        return sum(self.volumes)
+
+    @property
+    def raw_volume(self) -> float:
+        """Raw removal so far, in m3; what smoothing left counts again when it is removed again."""
+        return sum(self.raw_volumes)
+
+    def volume_of(self, thickness: Array) -> float:
+        """Volume in m3 of a layer of this thickness in m on the cells, (nx, ny)."""
+        return float(self.cell_area * thickness.sum())
+
+    def imbalance(self, original: Array, current: Array) -> float:
+        """Volume minus hx hy sum(original - current), in m3; heights (nx, ny) in m, undisplaced."""
+        return self.volume - self.volume_of(original - current)
 
 
 @dataclass(frozen=True)

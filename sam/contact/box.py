@@ -20,7 +20,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi, sqrt
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -34,40 +34,9 @@ Begun = tuple[Array, Array]
 """p_hat and its u_hat."""
 
 
-class Control(Protocol):
-    """What is given of a contact. p: p_hat; counted: how many cells each stands for, 0 out of contact."""
-
-    def coarser(self) -> Control:
-        """The same for cells twice as large."""
-
-    def less(self, offset: float) -> Control:
-        """The same for gaps that are smaller by an offset in cells hx."""
-
-    def touches(self, gap0: Array) -> bool:
-        """Whether there is any contact at this initial gap, in cells hx."""
-
-    def start(self, gap0: Array) -> Array:
-        """A pressure to start from where nothing is known."""
-
-    def scaled(self, p: Array, count: Array | float = 1.0) -> Array:
-        """The pressure with the sum that is given, if one is."""
-
-    def begun(self, p: Array, gap0: Array, count: Array | float, apply: Callable[[Array], Array]) -> Begun:
-        """The first iterate from a start; apply: p_hat -> u_hat."""
-
-    def shares(self, counted: Counted) -> Array:
-        """Share of each cell in what is taken off a change of the pressure."""
-
-    def level(self, separation: Array, counted: Counted) -> float:
-        """Rigid approach of an iterate with a separation gap0 + u_hat."""
-
-    def approach(self, contact: Mask, separation: Array) -> float:
-        """The same of a result; contact: the cells in contact."""
-
-
 @dataclass(frozen=True)
 class ForceControl:
-    """The force is given: total, the sum of p_hat. Methods as of `Control`."""
+    """The force is given: total, the sum of p_hat. counted: cells that each stands for, 0 out of contact."""
 
     total: float
 
@@ -92,16 +61,16 @@ class ForceControl:
         return p * (self.total / (p * count).sum())
 
     def begun(self, p: Array, gap0: Array, count: Array | float, apply: Callable[[Array], Array]) -> Begun:
-        """The start with the given sum."""
+        """The first iterate, with the given sum, and its u_hat by `apply`."""
         p = self.scaled(p, count)
         return p, apply(p)
 
     def shares(self, counted: Counted) -> Array:
-        """Equal ones: a change of the pressure has no sum."""
+        """Share of each cell in what is taken off a change of the pressure: equal, it has no sum."""
         return counted / counted.sum()
 
     def level(self, separation: Array, counted: Counted) -> float:
-        """Mean separation of the cells in contact."""
+        """Rigid approach of an iterate: the mean separation gap0 + u_hat of the cells in contact."""
         return np.vdot(counted, separation) / counted.sum()
 
     def approach(self, contact: Mask, separation: Array) -> float:
@@ -111,7 +80,7 @@ class ForceControl:
 
 @dataclass(frozen=True)
 class ApproachControl:
-    """The rigid approach is given: distance, in cells hx. Methods as of `Control`."""
+    """The rigid approach is given: distance, in cells hx. Methods as of `ForceControl`."""
 
     distance: float
 
@@ -167,6 +136,10 @@ ANEW = 1e-3  # fall of the residual until the displacement is computed anew in d
 LONGEST = 20  # iterations without a projection: 5 and 100 the same, as the residual falls before
 NEGLIGIBLE = 0.01  # share of the tolerance: cells that penetrate more join; 0 the same, 1 82 with a traction
 NOTHING_OPPOSITE = 1e100  # gap, in cells, where the counter-body ends
+
+
+Control = ForceControl | ApproachControl
+"""What is given of a contact."""
 
 
 class Solution(NamedTuple):
@@ -240,22 +213,10 @@ class BoxContact:
     def solve(
         self, gap0: Array, control: Control, start: Array, *, tolerance: float, limit: int, sign: float = 1.0
     ) -> Solution:
-        """Solve the contact on the box: all residuals below the tolerance, or the last iterate.
-
-        Parameters
-        ----------
-        gap0
-            (nx, ny) gap on the box in cells hx, inf where the counter-body ends.
-        control
-            Sum of p_hat, or approach in cells hx.
-        start
-            (nx, ny) p_hat to start from.
-        tolerance
-            On the dimensionless residuals, see `sam.contact.normal.Contact`.
-        limit
-            Most iterations.
-        sign
-            Direction of the traction along x.
+        """Solve the contact on the box, all residuals below the tolerance, or the last iterate. gap0: (nx,
+        ny) in cells hx, inf where the counter-body ends; control: sum of p_hat, or approach in cells hx;
+        start: (nx, ny) p_hat; tolerance: on the residuals of `Contact`; limit: most iterations; sign: of the
+        traction along x.
         """
         gap0, p, self.residuals = np.minimum(gap0, NOTHING_OPPOSITE), start, []
         if self.tangential is None:

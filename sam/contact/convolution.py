@@ -300,8 +300,11 @@ class RowConvolution:
         for row in range(self.observed.ny):
             for odd, folded in zip((False, True), self._folded(field, row), strict=True):
                 chosen = self.odd_y == odd
-                product = np.einsum("...kl,klc->...kc", self.spectra[chosen], _pairs(folded))
-                out[chosen, :, row] = self._back(_complex(product), self.odd_x[chosen])
+                # complex numbers as pairs: products with real coefficients then stay real
+                pairs = np.ascontiguousarray(folded).view(float).reshape(*folded.shape, 2)
+                product = np.einsum("...kl,klc->...kc", self.spectra[chosen], pairs)
+                product = np.ascontiguousarray(product).view(complex)[..., 0]
+                out[chosen, :, row] = self._back(product, self.odd_x[chosen])
         return out
 
     def _folded(self, field: Array, row: int) -> tuple[Array, Array]:
@@ -320,15 +323,6 @@ class RowConvolution:
         return fft.irfft(spectra, n=self.length, axis=-1)[..., start : start + self.observed.nx]
 
 
-def _pairs(field: Array) -> Array:
-    """Complex numbers as pairs in a last axis: products with real coefficients then stay real."""
-    return np.ascontiguousarray(field).view(float).reshape(*field.shape, 2)
-
-
-def _complex(pairs: Array) -> Array:
-    return np.ascontiguousarray(pairs).view(complex)[..., 0]
-
-
 def convolution_onto(
     kernels: Array,
     parities: Parities,
@@ -337,17 +331,8 @@ def convolution_onto(
     *,
     counters: Counters | None = None,
 ) -> RowConvolution | Convolution:
-    """The cheaper of `RowConvolution` and `Convolution`.
-
-    Parameters
-    ----------
-    kernels, parities, source, observed, counters
-        As of `Convolution`.
-
-    Returns
-    -------
-    RowConvolution or Convolution
-        A field on `source` -> the sums on `observed`.
+    """A field on `source` -> the sums on `observed`: the cheaper of `RowConvolution` and `Convolution`, with
+    its arguments.
     """
     kind = RowConvolution if observed.ny <= FEW_ROWS else Convolution
     return kind(kernels, parities, source, observed, counters=counters)

@@ -278,51 +278,30 @@ def solve_contact(
     >>> round(solve_contact((x[:, None] ** 2 + x**2) / 2, (0.05, 0.05), 1.0, Approach(1.0)).force, 2)
     1.33
     """
-    _check(gap0, given, hx=cell[0], hy=cell[1], modulus=modulus)
-    counters = search.counters if search.counters is not None else Counters()
-    limit = bodies.most_iterations if search.max_iterations is None else search.max_iterations
-    units, shape = Units(*cell, modulus), (gap0.shape[0], gap0.shape[1])
-    operators = SurfaceOperators(shape, cell[1] / cell[0], counters, coupling=coupling, bodies=bodies)
-    if not control_of(given, units.hx, units.force).touches(gap0 / units.hx):
-        return no_contact(gap0, given)
-    found = _found(operators, gap0, units, given, search=search, limit=limit)
-    contact = measured(operators, gap0, found, units, given=given, tolerance=search.tolerance)
-    return _ended(contact, found, search.tolerance, limit)
-
-
-def _found(
-    operators: SurfaceOperators,
-    gap0: Array,
-    units: Units,
-    given: float | Approach,
-    *,
-    search: Search,
-    limit: int,
-) -> Found:
-    """The pressure of a contact that touches, from the start of the search or from coarser grids."""
-    gap_hat, control, start = gap0 / units.hx, control_of(given, units.hx, units.force), search.start
-    start = start if start is not None and (start > 0).any() else _coarse_start(operators, gap_hat, control)
-    return _growing_box(operators, gap_hat, control, start, tolerance=search.tolerance, limit=limit)
-
-
-def _ended(contact: Contact, found: Found, tolerance: float, limit: int) -> Contact:
-    """The contact with its residuals, and with the words why its iteration ended if it did not converge."""
-    contact = replace(contact, residuals=(*found.residuals, contact.residual))
-    if contact.converged:
-        return contact
-    within = found.iterations < limit
-    ending = unfinished("the contact iteration", contact.residuals, tolerance, within)
-    return replace(contact, ending=ending)
-
-
-def _check(gap0: Array, given: float | Approach, **positive: float) -> None:
-    """Raise ValueError for numbers that are not positive, and for a gap without a finite cell or with NaN."""
+    positive = {"hx": cell[0], "hy": cell[1], "modulus": modulus}
     positive |= {"approach": given.distance} if isinstance(given, Approach) else {"force": given}
     for name, value in positive.items():
         if not (np.isfinite(value) and value > 0):
             raise ValueError(f"{name} = {value!r}: a finite number > 0 is needed")
     if np.isnan(gap0).any() or not np.isfinite(gap0).any():
         raise ValueError("gap0: at least one finite value and no NaN are needed")
+    counters = search.counters if search.counters is not None else Counters()
+    limit = bodies.most_iterations if search.max_iterations is None else search.max_iterations
+    units, shape = Units(*cell, modulus), (gap0.shape[0], gap0.shape[1])
+    operators = SurfaceOperators(shape, cell[1] / cell[0], counters, coupling=coupling, bodies=bodies)
+    gap_hat, control, start = gap0 / units.hx, control_of(given, units.hx, units.force), search.start
+    if not control.touches(gap_hat):
+        return no_contact(gap0, given)
+    if start is None or not (start > 0).any():
+        start = _coarse_start(operators, gap_hat, control)
+    found = _growing_box(operators, gap_hat, control, start, tolerance=search.tolerance, limit=limit)
+    contact = measured(operators, gap0, found, units, given=given, tolerance=search.tolerance)
+    contact = replace(contact, residuals=(*found.residuals, contact.residual))
+    if contact.converged:
+        return contact
+    within = found.iterations < limit
+    ending = unfinished("the contact iteration", contact.residuals, search.tolerance, within)
+    return replace(contact, ending=ending)
 
 
 def measured(

@@ -13,15 +13,14 @@ from sam.contact.normal import fit_of
 from sam.contact.stress import elastic_strain
 from sam.elastic.problem import ElasticProblem, Loaded, contact_tolerance
 from sam.elastic.stress import sliding_of, stress_at, stresses_of
-from sam.results.history import Effort, History, Row, counted, largest_pressure, row_of
+from sam.results.history import History, Row, counted, largest_pressure, row_of
 from sam.results.snapshots import Coated, Comparison, Cut, Snapshot, row_of_largest
 from sam.results.tables import advice
 from sam.scene import Status
 from sam.scene.residuals import Attempt
 from sam.scene.result import Progress
 from sam.schedule import UNLOADED, Load
-from sam.surface_state import TribofilmState
-from sam.tribofilm.state import FilmOnCells
+from sam.tribofilm.state import FilmOnCells, TribofilmState
 
 if TYPE_CHECKING:
     pass
@@ -54,13 +53,14 @@ def solve_elastic(problem: ElasticProblem, report: Progress) -> History:
             state, film = step_with_tribofilm(problem, tribofilm, film, target.load, start=previous)
         contact, note = state.contact, target.note if target.rises else UNLOADING
         attempts = (Attempt(True, contact.residuals, contact_tolerance(plan.solver.tolerance)),)
-        effort = Effort(contact.iterations, contact.residual, note, attempts=attempts)
         once = replace(target, cycle=1) if schedule.all_alike else target
-        row = row_of(grid, once, contact, effort, coefficient=state.coefficient, whole=plan.slip.whole)
+        row = row_of(grid, once, contact, coefficient=state.coefficient, whole=plan.slip.whole)
+        row = replace(row, iterations=contact.iterations, residual=contact.residual, note=note)
+        moved = None
         if track is not None:
             mu = target.load.sign * state.coefficient
             moved = track.moved(grid, target.load, contact.pressure, window=grid.whole, traction=mu)
-            row = replace(row, moved=moved)
+        row = replace(row, attempts=attempts, moved=moved)
         rows.append(row)
         previous, before = contact.pressure, target.load
         if target.rises:

@@ -55,21 +55,14 @@ class Punch:
 
 
 @dataclass(frozen=True)
-class Plane:
-    """A plane counter-body: no gap but for the heights of the bodies."""
+class Uniform:
+    """The same gap in m everywhere: 0 of a plane counter-body, not a number where nothing is opposite."""
+
+    value: float = 0.0
 
     def gap(self, grid: CellGrid, at: Place = ORIGIN) -> Array:
-        """Zero at the cell centres, (nx, ny)."""
-        return np.zeros((grid.nx, grid.ny))
-
-
-@dataclass(frozen=True)
-class NoCounterBody:
-    """Nothing is opposite where a scene gives the pressure."""
-
-    def gap(self, grid: CellGrid, at: Place = ORIGIN) -> Array:
-        """Not a number at the cell centres, (nx, ny)."""
-        return np.full((grid.nx, grid.ny), np.nan)
+        """At the cell centres, (nx, ny) in m."""
+        return np.full((grid.nx, grid.ny), self.value)
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from math import floor, log10, prod
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -110,17 +109,6 @@ class CornerFunctions:
             out /= cells.shape[1]
 
 
-class Functions(Protocol):
-    """Functions of corners, differenced over cells: `CornerFunctions`, or others in place of them."""
-
-    @property
-    def x(self) -> Array:
-        """Coordinates of the corners, as many as functions are computed for."""
-
-    def __call__(self, image: bool, offsets: Array) -> Array:
-        """The functions at depths `offsets`: (offsets, functions, nx, ny)."""
-
-
 class LayerStress:
     """Stress in observed layers by eigenstrains in layers of cuboids, both of any thickness, from functions
     of corners.
@@ -139,7 +127,7 @@ class LayerStress:
 
     def __init__(
         self,
-        functions: Functions,
+        functions: CornerFunctions,
         points: Array,
         faces: Array,
         nu: float,

@@ -96,15 +96,8 @@ def sinh_excess(x: Array) -> Array:
 
 
 class Response:
-    """Response of a coated half-space to tractions of one wave number; displacement in 1/(mu_1 k), stress
-    per traction.
-
-    Parameters
-    ----------
-    layers
-        Coating and half-space.
-    kh
-        Wave number times thickness, > 0, of any shape.
+    """Response of a coated half-space to tractions of one wave number, times the thickness kh > 0, of any
+    shape: displacement in 1/(mu_1 k), stress per traction.
     """
 
     def __init__(self, layers: Layers, kh: Array):

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf, pi, sqrt
+from math import inf, nan, pi, sqrt
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from sam.contact.operators import CoatedPair
 from sam.elastic.misfit import PROFILES, MisfitSphere
 from sam.elastic.problem import Demand, GivenHertz
 from sam.grid.cells import CellGrid, Sides
-from sam.grid.gap import NoCounterBody, Paraboloid, Plane, Punch, RoundedPunch, Shape, elliptic_contact
+from sam.grid.gap import Paraboloid, Punch, RoundedPunch, Shape, Uniform, elliptic_contact
 from sam.grid.rough import RoughDemand, RoughPatch
 from sam.grid.smooth import (
     DEFAULT_EXTENT,
@@ -85,7 +85,7 @@ class Bodies:
     def shape(self) -> Shape:
         """The shape of the counter-body."""
         other = self.scene.counterbody
-        return NoCounterBody() if other is None else SHAPES[other.shape].gap(other)
+        return Uniform(nan) if other is None else SHAPES[other.shape].gap(other)
 
     @cached_property
     def force(self) -> float:
@@ -283,7 +283,7 @@ SHAPES = {
         extent=ROUNDED_EXTENT,
         largest_cell=lambda bodies, other: _rounded_punch(other).largest_cell(bodies.axes[0]),
     ),
-    "flat": Opposite(lambda other: Plane(), _half_of_patch),
+    "flat": Opposite(lambda other: Uniform(), _half_of_patch),
 }
 """The shapes of a scene."""
 

@@ -136,16 +136,9 @@ def edge_reached(trial: Trial, *, cut_beside: bool) -> Sides:
 
 @dataclass(frozen=True)
 class ExpectedBox:
-    """A box of cells on which plastic strain is expected.
-
-    Parameters
-    ----------
-    nx, ny, layers
-        Cells in x and in y, and layers.
-    tolerance
-        That of the plastic iteration, on which the precision of the coefficients depends.
-    exchange
-        Whether x and y may be exchanged, so that half of the coefficients are stored.
+    """A box of nx x ny cells and layers on which plastic strain is expected. tolerance: of the plastic
+    iteration, on which the precision of the coefficients depends; exchange: whether x and y may be exchanged,
+    so that half of them are stored.
     """
 
     nx: int
@@ -181,20 +174,10 @@ class ExpectedBox:
 
 @dataclass(frozen=True)
 class Zone:
-    """What is guessed of a smooth contact and of the plastic zone below it.
-
-    Parameters
-    ----------
-    axes
-        Semi-axes of the contact along x and y, in m.
-    wide, deep
-        Radius and depth in which the elastic stress exceeds the yield stress, in semi-axes.
-    needed
-        Radius and depth of the plastic zone in semi-axes.
-    ratio
-        Largest elastic von Mises stress over the yield stress.
-    path
-        Cells that the load passes in x and in y.
+    """What is guessed of a smooth contact with semi-axes in m and of the plastic zone below it. wide, deep:
+    radius and depth in which the elastic stress exceeds the yield stress, needed: radius and depth of the
+    plastic zone, in semi-axes; ratio: largest elastic von Mises stress over the yield stress; path: cells
+    that the load passes in x and in y.
     """
 
     axes: tuple[float, float]
@@ -206,21 +189,8 @@ class Zone:
 
 
 def expected_sides(grid: CellGrid, depths: np.ndarray, zone: Zone) -> list[tuple[int, int, int]]:
-    """The sizes of the boxes below a smooth contact: the first guess, and what it grows to.
-
-    Parameters
-    ----------
-    grid
-        The cells.
-    depths
-        (nz,) centres of the layers in m.
-    zone
-        What the boxes have to hold.
-
-    Returns
-    -------
-    list of tuple of int
-        Cells in x, in y, and layers of each box.
+    """Cells in x, in y and layers of the boxes below a smooth contact: the first guess, and what it grows to.
+    depths: (nz,) centres of the layers in m.
     """
     box, needed = [], []
     for axis, h, n, path in zip(zone.axes, (grid.hx, grid.hy), (grid.nx, grid.ny), zone.path, strict=True):
@@ -246,16 +216,7 @@ def expected_sides(grid: CellGrid, depths: np.ndarray, zone: Zone) -> list[tuple
 
 
 def held(boxes: list[ExpectedBox]) -> list[ExpectedBox]:
-    """The boxes whose coefficients are in memory at the end of a solve.
-
-    Parameters
-    ----------
-    boxes
-        Of the whole history, in their order.
-
-    Returns
-    -------
-    list of ExpectedBox
-        The last ones: one that is outgrown stays until the next is there.
+    """The boxes, in order, whose coefficients are in memory at the end: one that is outgrown stays until the
+    next is there.
     """
     return boxes[-max(CACHED_BOXES, 2) :]

@@ -62,20 +62,8 @@ def deviator(stress: Array) -> Array:
 
 
 def contraction(a: Array, b: Array) -> Array:
-    """Double contraction of symmetric tensors, a : b.
+    """Double contraction a : b of symmetric tensors 11 22 33 23 13 12, (6, ...), in any units: (...).
 
-    Parameters
-    ----------
-    a, b
-        Components 11 22 33 23 13 12, (6, ...), in any units.
-
-    Returns
-    -------
-    Array
-        (...), in the product of the units.
-
-    Examples
-    --------
     >>> float(contraction(np.array([1.0, 0, 0, 0, 0, 1]), np.array([2.0, 0, 0, 0, 0, 3])))  # 1 2 + 2 (1 3)
     8.0
     """

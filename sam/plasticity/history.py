@@ -26,11 +26,11 @@ from sam.plasticity.measure import (
     cycle_end,
     dissipated_by,
     moved,
+    new_strain,
     pass_end,
     problem_of,
     snapshot,
     start_of,
-    strained_in_cycle,
     with_last_period,
     with_loops,
     with_outside,
@@ -38,12 +38,12 @@ from sam.plasticity.measure import (
 from sam.plasticity.model import Model
 from sam.plasticity.progress import Begun, CycleStart, Parts, Progressed, floor
 from sam.plasticity.state import Extent, MaterialFields, State, Trial, on_larger_box
-from sam.results.history import Effort, History, Row, row_of
+from sam.results.history import History, Row, row_of
 from sam.scene import Status
 from sam.scene.residuals import unfinished
 from sam.scene.result import LAST, PEAK, UNLOADED, Progress
 from sam.schedule import Load, Target
-from sam.surface_state import TribofilmState
+from sam.tribofilm.state import TribofilmState
 
 MOST_CUTS = 6  # halvings of a load step: a part is then 1/64 of it
 # Tolerance of a step after which the tribofilm is tested first, before that of the solved step: a small
@@ -72,10 +72,10 @@ def solve_plastic(
         problem_of(model, record)
         vars(model.counters).update(vars(record.counters))
     elif peak is not None:
-        record = begun(model, model.schedule.targets, first_box(model, peak))
+        record = begun(model, model.plan.schedule.targets, first_box(model, peak))
     else:
         raise ValueError("either a record or the elastic peak is needed")
-    total = len(model.schedule.targets)
+    total = len(model.plan.schedule.targets)
     while not record.ended:
         before, record = record, onward(model, record)
         done = len(record.history.rows)
@@ -89,7 +89,7 @@ def solve_plastic(
 
 def begun(model: Model, targets: Sequence[Target], extent: Extent) -> Progressed:
     """The record before the first step, on a first box."""
-    film = None if model.tribofilm is None else model.tribofilm.fresh(model.nothing_strained())
+    film = None if model.plan.tribofilm is None else model.plan.tribofilm.fresh(model.nothing_strained())
     wear = None if model.plan.wear is None else model.plan.wear.fresh()
     state = model.problem(extent, film, wear).virgin()
     return Progressed(state, extent, model.grid.room, tuple(targets), replace(model.counters), film, wear)
@@ -97,25 +97,14 @@ def begun(model: Model, targets: Sequence[Target], extent: Extent) -> Progressed
 
 def first_box(model: Model, peak: ElasticPeak) -> Extent:
     """The first box of a history."""
-    both_ways, path = model.schedule.alternates, model.schedule.path
+    both_ways, path = model.plan.schedule.alternates, model.plan.schedule.path
     anywhere, limit = model.plan.places.anywhere, model.plan.initial_yield
     return first_extent(model.grid, peak, limit, anywhere=anywhere, both_ways=both_ways, path=path)
 
 
 def onward(model: Model, record: Progressed) -> Progressed:
-    """Make one attempt further: a committed step or part of one, or the same state and smaller steps.
-
-    Parameters
-    ----------
-    model
-        What stays the same; only its counters change.
-    record
-        The record before, of a history that has not ended.
-
-    Returns
-    -------
-    Progressed
-        The record after.
+    """Make one attempt further, of a history that has not ended: a committed step or part of one, or the same
+    state and smaller steps; of the model only the counters change.
     """
     target = record.targets[0]
     if target.step == 1 and not record.cuts:
@@ -138,17 +127,19 @@ def _cycle_begun(model: Model, record: Progressed) -> Progressed:
     surface as it is; below a counter-body that moves a film is made anew in each visit.
     """
     material, state, film = record.state.material, record.state, record.tribofilm
-    if model.schedule.cycles > 1:
+    if model.plan.schedule.cycles > 1:
         record = replace(record, cycle_start=CycleStart(record.extent, material.peeq))
-        if model.judging is not None and record.periods.begun is None:
+        if model.plan.judging is not None and record.periods.begun is None:
             worn = None if record.wear is None else record.wear.depth
             period = Begun(record.extent, material.strain, material.peeq, worn)
             record = replace(record, periods=replace(record.periods, begun=period))
-    if model.tribofilm is None or (film is not None and film.visits is not None and state.load.force > 0):
+    if model.plan.tribofilm is None or (
+        film is not None and film.visits is not None and state.load.force > 0
+    ):
         return record
     strain = model.surface_strain(record.extent, state.residual.stress, material.strain)
     if film is None or film.visits is None:
-        return replace(record, tribofilm=model.tribofilm.fresh(strain))
+        return replace(record, tribofilm=model.plan.tribofilm.fresh(strain))
     return replace(record, tribofilm=replace(film, visits=film.visits.unloaded(strain)))
 
 
@@ -158,7 +149,7 @@ def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, T
     The box grows, and the tribofilm is tested, until neither changes any more; each time the step is made
     again from the committed state. None, and a record that has ended, if the grid cannot hold the step.
     """
-    law, track, film = model.tribofilm, model.track, record.tribofilm
+    law, track, film = model.plan.tribofilm, model.plan.track, record.tribofilm
     if law is not None and film is not None and track is not None:
         film = law.entered(film, track.clock(record.targets[0].cycle, load))
     before = film
@@ -199,7 +190,7 @@ def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, T
 def committed(model: Model, record: Progressed, trial: Trial, film: TribofilmState | None) -> Progressed:
     """The record after a converged step; fields outside of the box stay where nothing yields."""
     state, recalled = record.state.after(trial), record.recalled
-    if trial.load.force and model.schedule.cycles > 1 and model.track is None:
+    if trial.load.force and model.plan.schedule.cycles > 1 and model.plan.track is None:
         recalled = {**recalled, repr(trial.load.level): trial.pressure}
     return replace(
         record,
@@ -241,8 +232,8 @@ def _cut(model: Model, record: Progressed, trial: Trial) -> Progressed:
 
 def _unloaded_elastically(model: Model, record: Progressed, target: Target) -> Progressed:
     """Unloaded in one step if that strains nothing; else nothing but the steps of the scene is planned."""
-    problem, peak = problem_of(model, record), model.schedule.peak.found(record.state.load.force)
-    in_steps = replace(record, targets=(*model.schedule.in_steps(target, peak), *record.targets[1:]))
+    problem, peak = problem_of(model, record), model.plan.schedule.peak.found(record.state.load.force)
+    in_steps = replace(record, targets=(*model.plan.schedule.in_steps(target, peak), *record.targets[1:]))
     # with back-stresses the elastic range is twice the yield stress wide: a path may leave it and come back
     if problem.material.hardens_back or not problem.stays_elastic(record.state):
         return in_steps
@@ -256,22 +247,21 @@ def _unloaded_elastically(model: Model, record: Progressed, target: Target) -> P
 
 def _reached(model: Model, record: Progressed, target: Target, trial: Trial, *, note: str = "") -> Progressed:
     """The record with the step that `trial` ends, and with the period and the cycle that the step ends."""
-    parts, note, judging = record.parts, note or target.note, model.judging
+    parts, note, judging = record.parts, note or target.note, model.plan.judging
     if parts.count > 1:
         note = _joined(note, f"cut into {parts.count} steps")
     if record.longer and note != UNLOADING:
         note = _joined(note, LONGER)
-    peeq = float(record.state.material.peeq.max())
-    row = row_of(
-        model.grid,
-        target,
-        contact_in_box(model, record, trial),
-        Effort(parts.iterations, parts.worst, note, peeq, parts.attempts),
-        coefficient=problem_of(model, record).coefficient,
-        whole=model.plan.slip.whole,
+    mu, contact = problem_of(model, record).coefficient, contact_in_box(model, record, trial)
+    row = replace(
+        row_of(model.grid, target, contact, coefficient=mu, whole=model.plan.slip.whole),
+        iterations=parts.iterations,
+        residual=parts.worst,
+        note=note,
+        peeq_max=float(record.state.material.peeq.max()),
+        attempts=parts.attempts,
+        moved=None if model.plan.track is None else moved(model, record, model.plan.track, trial),
     )
-    if model.track is not None:
-        row = replace(row, moved=moved(model, record, model.track, trial))
     history = replace(record.history, rows=(*record.history.rows, row))
     record = replace(record, targets=record.targets[1:], parts=Parts(), history=history)
     following = record.targets[0] if record.targets else None
@@ -296,14 +286,14 @@ def _reached(model: Model, record: Progressed, target: Target, trial: Trial, *, 
 
 def _cycle_ended(model: Model, record: Progressed, cycle: int, trial: Trial) -> tuple[Progressed, Trial]:
     """The record at the end of a cycle, after wear if the body is unloaded, and the trial that ends it."""
-    strained = strained_in_cycle(record)
+    new = new_strain(record)  # before anything is removed
     if trial.load.force == 0 and record.wear is not None:
         record, trial = _worn(model, record, trial)
     record = with_outside(model, record)
     history = record.history
-    history = replace(history, ends=(*history.ends, cycle_end(model, record, cycle, strained)))
-    if model.track is not None:
-        history = replace(history, passes=(*history.passes, pass_end(model, record, model.track, cycle)))
+    history = replace(history, ends=(*history.ends, cycle_end(model, record, cycle, new)))
+    if model.plan.track is not None:
+        history = replace(history, passes=(*history.passes, pass_end(model, record, model.plan.track, cycle)))
     return replace(record, history=history, dissipated=0.0), trial
 
 
@@ -421,7 +411,7 @@ def finished(model: Model, record: Progressed) -> History:
         },
         warnings=warnings,
         unfinished=tuple((target.cycle, target.step, record.parts.attempts) for target in record.targets[:1]),
-        floor=float(floor(model, record.extent).min()) if model.judging is not None else 0.0,
+        floor=float(floor(model, record.extent).min()) if model.plan.judging is not None else 0.0,
     )
 
 

@@ -28,7 +28,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Protocol
 
 import numpy as np
 
@@ -45,19 +44,6 @@ from sam.schedule import UNLOADED, Load
 CONTACT_LIMIT = 400  # iterations of a contact solve, ten times what a step takes; more halve the step
 
 
-class PressureSource(Protocol):
-    """What a plastic step asks for the pressure on its box."""
-
-    def start(self, load: Load) -> Array:
-        """p_hat to start from where nothing is known, (nx, ny)."""
-
-    def __call__(self, displacement: Array, load: Load, start: Array, tolerance: float) -> Array:
-        """p_hat under a load on the surface that plastic strain has displaced, (nx, ny) in m."""
-
-    def loaded(self, load: Load, pressure: Array) -> Load:
-        """A load that p_hat is solved for, with its force."""
-
-
 @dataclass(frozen=True)
 class ContactPressure:
     """The contact solve on a surface that plastic strain has displaced. gap: of a load, (nx, ny) in m on the
@@ -70,7 +56,7 @@ class ContactPressure:
     force_unit: float
 
     def start(self, load: Load) -> Array:
-        """A uniform pressure where there is a counter-body."""
+        """p_hat to start from: uniform where there is a counter-body."""
         return np.isfinite(self.gap(load)).astype(float)
 
     def __call__(self, displacement: Array, load: Load, start: Array, tolerance: float) -> Array:
@@ -113,6 +99,8 @@ class GivenPressure:
         """The load itself, whose force is given."""
         return load
 
+
+PressureSource = ContactPressure | GivenPressure
 
 # Measured: operator applications (and contact iterations, ci) on a sphere of perfect plasticity at p0 = 3
 # yield stresses, 25 x 25 cells, 4 steps and back at 1e-6: 40 applications and 150 ci with the values below.

@@ -34,7 +34,7 @@ from sam.plasticity.model import Model
 from sam.plasticity.progress import Outside, Progressed
 from sam.plasticity.spectra import ODD_X, ODD_Y
 from sam.plasticity.state import Extent, Trial, surrounded
-from sam.results.history import CycleEnd, CycleStrain, LoopRow, Moved, PassEnd, counted
+from sam.results.history import CycleEnd, LoopRow, Moved, PassEnd, counted
 from sam.results.snapshots import Box, Cut, Snapshot, row_of_largest
 from sam.scene.residuals import unfinished
 from sam.scene.result import BACK_STRESS
@@ -160,9 +160,9 @@ def _moved(model: Model, record: Progressed, component: int, observed: Window) -
 
 def start_of(model: Model, record: Progressed, load: Load) -> Array | None:
     """p_hat to start from: of the cycle before, or moved with the counter-body; None: the state's."""
-    if model.track is None:
+    if model.plan.track is None:
         return record.recall(load)
-    return model.track.carried(model.grid, record.state.pressure, record.state.load, load)
+    return model.plan.track.carried(model.grid, record.state.pressure, record.state.load, load)
 
 
 def moved(model: Model, record: Progressed, track: Track, trial: Trial) -> Moved:
@@ -299,12 +299,11 @@ def _largest(
     return mises[:, None], flowed[:, None]
 
 
-def strained_in_cycle(record: Progressed) -> CycleStrain:
-    """What the cycle has strained so far, before anything is removed; nothing where there is one cycle."""
+def new_strain(record: Progressed) -> Array:
+    """What the cycle has strained so far, (n_layers, nx, ny); zero where there is one cycle."""
     if record.cycle_start is None:
-        return CycleStrain()
-    added = record.cycle_start.new_strain(record.state, record.extent)
-    return CycleStrain(float(added.max()), int(np.count_nonzero(added > 0)))
+        return np.zeros(record.extent.shape)
+    return record.cycle_start.new_strain(record.state, record.extent)
 
 
 def dissipated_by(model: Model, record: Progressed, trial: Trial) -> float:
@@ -315,29 +314,36 @@ def dissipated_by(model: Model, record: Progressed, trial: Trial) -> float:
     return float((model.volumes(record.extent) * flow.dissipated(trial.points).mean(axis=0)).sum())
 
 
-def cycle_end(model: Model, record: Progressed, cycle: int, strained: CycleStrain) -> CycleEnd:
+def cycle_end(model: Model, record: Progressed, cycle: int, new: Array) -> CycleEnd:
     """The surface at the end of a cycle, and how much is worn so far."""
-    moved, rough = known_outside(record).displacement, model.plan.rough
-    worn = record.wear.depth if record.wear is not None else None
-    lowered = moved if worn is None else moved + worn
-    volume = record.wear.volume if record.wear is not None else 0.0
-    found = rough.roughness(lowered) if rough is not None else None
-    work, spent = model.counters.operator_applications, record.dissipated
-    end = CycleEnd(cycle, volume, found, work, strained=strained, dissipated=spent)
-    if model.plan.wear is None or record.wear is None:
+    moved, rough, wear = known_outside(record).displacement, model.plan.rough, record.wear
+    lowered = moved if wear is None else moved + wear.depth
+    end = CycleEnd(
+        cycle,
+        wear.volume if wear is not None else 0.0,
+        rough.roughness(lowered) if rough is not None else None,
+        model.counters.operator_applications,
+        new_strain=float(new.max()),
+        yielding=int(np.count_nonzero(new > 0)),
+        dissipated=record.dissipated,
+    )
+    if model.plan.wear is None or wear is None:
         return end
-    margin = model.plan.wear.margin(record.state.material.peeq, model.faces(record.extent))
-    worn_now, roofed = 0.0, 0.0
-    if len(record.wear.volumes) == cycle:
-        worn_now, roofed = record.wear.volumes[-1], record.wear.roofed_volumes[-1]
-    return replace(end, moved=moved, worn=worn, margin=margin, wear_of_cycle=worn_now, roofed=roofed)
+    margin, of_cycle = (
+        model.plan.wear.margin(record.state.material.peeq, model.faces(record.extent)),
+        (0.0, 0.0),
+    )
+    if len(wear.volumes) == cycle:
+        of_cycle = wear.volumes[-1], wear.roofed_volumes[-1]
+    worn, roofed = of_cycle
+    return replace(end, moved=moved, worn=wear.depth, margin=margin, wear_of_cycle=worn, roofed=roofed)
 
 
 def with_loops(model: Model, record: Progressed, target: Target, trial: Trial) -> Progressed:
     """The record with the cells at the end of a step of the last period, or at its beginning."""
-    if model.judging is None or not record.periods.last:
+    if model.plan.judging is None or not record.periods.last:
         return record
-    period, ends = last_period(model.judging, model.schedule.cycles), record.periods.begun is None
+    period, ends = last_period(model.plan.judging, model.plan.schedule.cycles), record.periods.begun is None
     if not (target.cycle in period or (target.cycle == period.start - 1 and ends)):
         return record
     rows = record.history.loops
@@ -374,17 +380,7 @@ AT_ONCE = 1e6  # coefficients, 8 MB of them; ten times as many are no faster
 
 @dataclass(frozen=True)
 class Strained:
-    """Plastic strain in a box of cells.
-
-    Parameters
-    ----------
-    strain
-        (6, n_layers, nx, ny).
-    window
-        The box on the grid.
-    cuboids
-        Its cells, in m.
-    """
+    """Plastic strain (6, n_layers, nx, ny) in a box of cells, whose window is on the grid, in m."""
 
     strain: Array
     window: Window
@@ -429,23 +425,8 @@ def residual_stress(source: Strained, depths: Array, observed: Window, *, mu: fl
 def surface_displacement(
     source: Strained, observed: Window, *, counters: Counters, component: int = 3
 ) -> Array:
-    """Displacement of the surface due to the plastic strain in a box. Paper Eq. 6.
-
-    Parameters
-    ----------
-    source
-        The plastic strain, and where its box is on the grid.
-    observed
-        Cells of the surface.
-    counters
-        Where the transforms are counted.
-    component
-        3 for u_z (> 0 into the body), 1 for u_x.
-
-    Returns
-    -------
-    Array
-        (nx, ny) in m on the observed cells.
+    """Displacement of the observed cells of the surface by the plastic strain in a box, (nx, ny) in m. Paper
+    Eq. 6. component: 3 for u_z (> 0 into the body), 1 for u_x; counters: where transforms are counted.
     """
     part = source.part()
     if part is None:
@@ -463,24 +444,10 @@ def surface_displacement(
 
 
 def at_centres(means: Array, faces: Array, interval: NDArray[np.intp] | None = None) -> Array:
-    """Give values at the centres of cells from the means over them.
-
-    A direction counts where both neighbours are strained too: beyond the border of the plastic zone, a kink,
-    nothing is known.
-
-    Parameters
-    ----------
-    means
-        (n_layers, nx, ny) >= 0.
-    faces
-        Depths of the faces of the layers, (n_layers + 1,), in any unit.
-    interval
-        (n_layers,) numbers: depth counts between layers of the same one; without them all are.
-
-    Returns
-    -------
-    Array
-        (n_layers, nx, ny) >= 0, in the unit of the means.
+    """Values at the centres of cells from the means over them, (n_layers, nx, ny) >= 0. A direction counts
+    where both neighbours are strained too: beyond the border of the plastic zone, a kink, nothing is known.
+    faces: of the layers, (n_layers + 1,), in any unit; interval: (n_layers,) numbers, depth counts between
+    layers of the same one.
     """
     out = means.copy()
     for axis, edges in enumerate((faces, np.arange(means.shape[1] + 1.0), np.arange(means.shape[2] + 1.0))):

@@ -21,7 +21,6 @@ from sam.contact.stress import surface_strain
 from sam.elastic.problem import ElasticProblem, Plan
 from sam.grid.cells import CellGrid, Window
 from sam.kernels.patches import Cuboids, Lags
-from sam.moving import Track
 from sam.plasticity.flow import KinematicMaterial, Material
 from sam.plasticity.load_step import (
     CONTACT_SHARE,
@@ -34,11 +33,10 @@ from sam.plasticity.paper import PaperProblem
 from sam.plasticity.spectra import SINGLE, BoxOperator
 from sam.plasticity.state import Extent
 from sam.scene.section import stated
-from sam.scene.verdict import Judging
 from sam.scene.yield_curve import Strength
-from sam.schedule import UNLOADED, Coefficient, Load, Schedule
-from sam.surface_state import TribofilmState, WearState
-from sam.tribofilm.state import FilmOnCells
+from sam.schedule import UNLOADED, Coefficient, Load
+from sam.tribofilm.state import TribofilmState
+from sam.wear import WearState
 
 PAPER_SHARE = 1e2  # residual of a contact in the paper's loops, over the tolerance of the scene
 
@@ -56,19 +54,8 @@ class Built:
 
 @dataclass(frozen=True)
 class Model:
-    """A body that yields, on the cells of a grid: what stays the same over its load history.
-
-    Parameters
-    ----------
-    elastic
-        The elastic bodies of a plan with plasticity, and what is in contact.
-    built
-        The problem that was built last.
-
-    Raises
-    ------
-    ValueError
-        For the plan of an elastic body.
+    """A body that yields, on the cells of a grid: what stays the same over its load history. ValueError for
+    the plan of an elastic body. built: the problem that was built last.
     """
 
     elastic: ElasticProblem
@@ -94,11 +81,6 @@ class Model:
         return self.plan.grid
 
     @property
-    def schedule(self) -> Schedule:
-        """The load steps."""
-        return self.plan.schedule
-
-    @property
     def tolerance(self) -> float:
         """Of the plastic iteration, see `Problem`."""
         return self.plan.solver.tolerance
@@ -109,28 +91,13 @@ class Model:
         return (PAPER_SHARE if self.plan.paper else CONTACT_SHARE) * self.tolerance
 
     @property
-    def judging(self) -> Judging | None:
-        """How repeated loading is judged; None without a verdict."""
-        return self.plan.judging
-
-    @property
-    def track(self) -> Track | None:
-        """Of a counter-body that moves; None of one in place."""
-        return self.plan.track
-
-    @property
-    def tribofilm(self) -> FilmOnCells | None:
-        """The law of the tribofilm; None without one."""
-        return self.plan.tribofilm
-
-    @property
     def counters(self) -> Counters:
         """Where the work is counted."""
         return self.elastic.counters
 
     def place(self, load: Load) -> str:
         """Where a counter-body that moves is, in words; empty of one in place."""
-        return "" if self.track is None else self.track.place(load)
+        return "" if self.plan.track is None else self.plan.track.place(load)
 
     @property
     def unit(self) -> float:
@@ -139,15 +106,15 @@ class Model:
 
     def leaves_grid(self, window: Window, pressure: Array) -> bool:
         """Whether a moving counter-body on a smooth body touches the edge; pressure: on a window."""
-        if self.track is None or self.plan.places.anywhere:
+        if self.plan.track is None or self.plan.places.anywhere:
             return False
-        return self.track.at_edge(self.grid, pressure, window)
+        return self.plan.track.at_edge(self.grid, pressure, window)
 
     def coefficient(self, film: TribofilmState | None) -> Coefficient:
         """The coefficient of friction on the grid."""
-        if self.tribofilm is None or film is None:
+        if self.plan.tribofilm is None or film is None:
             return self.plan.slip.coefficient
-        return self.tribofilm.coefficient(film)
+        return self.plan.tribofilm.coefficient(film)
 
     def gap(self, load: Load, wear: WearState | None) -> Array:
         """Gap of the surfaces as they are worn, without displacement, (nx, ny) in m."""
@@ -187,6 +154,9 @@ class Model:
         if isinstance(coefficient, np.ndarray):
             coefficient = coefficient[extent.window.slices]
         plan, again = self.plan, old if same_box else None
+        misfit = None if again is None else again.misfit
+        if again is None and plan.misfit is not None:  # in the cells of the box, at its full size
+            misfit = plan.misfit.mean_stress(self.grid, extent.window, self.faces(extent))
         make = partial(PaperProblem, stop=stated(plan.solver.stop)) if plan.paper else Problem
         problem = make(
             again.operator if again is not None else self._operator(extent),
@@ -196,7 +166,7 @@ class Model:
             tolerance=self.tolerance,
             counters=self.counters,
             coefficient=coefficient,
-            misfit=again.misfit if again is not None else self._misfit(extent),
+            misfit=misfit,
         )
         last.extent, last.failed, last.depth = extent, failed, depth
         last.surface, last.problem = surface, problem
@@ -213,20 +183,11 @@ class Model:
 
     def _with_friction(self, surface: SurfaceOperators | None, coefficient: Coefficient) -> SurfaceOperators:
         """The surface coefficients of the grid with this friction; they share what is computed."""
-        grid = self.grid
+        grid, factor = self.grid, self.plan.slip.coupling
         if surface is None:
-            coupling = self.plan.slip.coupling * coefficient
-            return SurfaceOperators((grid.nx, grid.ny), grid.hy / grid.hx, self.counters, coupling=coupling)
-        return (
-            surface.with_coupling(self.plan.slip.coupling * coefficient)
-            if self.plan.slip.coupling
-            else surface
-        )
-
-    def _misfit(self, extent: Extent) -> Array | None:
-        """The stress of a misfit strain in the cells of a box, (6, n_layers, nx, ny) in Pa; None without."""
-        load = self.plan.misfit
-        return None if load is None else load.mean_stress(self.grid, extent.window, self.faces(extent))
+            aspect, coupling = grid.hy / grid.hx, factor * coefficient
+            return SurfaceOperators(grid.shape, aspect, self.counters, coupling=coupling)
+        return surface.with_coupling(factor * coefficient) if factor else surface
 
     def cuboids(self, extent: Extent) -> Cuboids:
         """The cells of a box, in m."""

@@ -101,16 +101,9 @@ class Linear:
 
 
 def stress_at_points(stress: Array, strain: Array, m: float) -> Array:
-    """The stress (a) at the points of all cells of a box, (6, 4, n_layers, nx, ny) in Pa.
-
-    Parameters
-    ----------
-    stress
-        Of the cells in Pa, (6, n_layers, nx, ny).
-    strain
-        Plastic strain at the points, (6, 4, n_layers, nx, ny).
-    m
-        Stiffness in Pa with which a part of a cell relaxes, `Problem.stiffness`.
+    """The stress (a) at the points of all cells of a box, (6, 4, n_layers, nx, ny) in Pa, of the stress of
+    the cells, (6, n_layers, nx, ny), and plastic strain at the points; m: stiffness in Pa with which a part
+    of a cell relaxes.
     """
     every = np.ones(stress.shape[1:], dtype=bool)
     smooth = Linear((stress.shape[-2], stress.shape[-1])).at_points(

@@ -23,7 +23,8 @@ from sam.scene import Status
 from sam.scene.residuals import Attempt
 from sam.scene.verdict import Period, Verdict, cell_fields, norm_of, verdict_on
 from sam.schedule import Load, Target
-from sam.surface_state import TribofilmState, WearState
+from sam.tribofilm.state import TribofilmState
+from sam.wear import WearState
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,7 @@ class Periods:
 
     def ended(self, model: Model, state: State, extent: Extent) -> Periods:
         """The same with the period that a state ends, before anything is removed from it."""
-        if self.begun is None or model.judging is None:
+        if self.begun is None or model.plan.judging is None:
             raise ValueError("no period has begun")
         earlier = (*(replace(each, strain=None) for each in self.last[:-1]), *self.last[-1:])
         added = (*earlier, self.begun.added(state, extent))
@@ -86,17 +87,17 @@ class Periods:
             _compared(added, extent),
             state.material.peeq.ravel(),
             _yield_strain(model, extent),
-            model.judging,
+            model.plan.judging,
             volume=np.broadcast_to(model.volumes(extent), extent.shape).ravel(),
         )
         return Periods(None, added, (*self.verdicts, found))
 
     def fields(self, model: Model, state: State, extent: Extent) -> dict[str, Array]:
         """Fields of the last period on a box, (n_layers, nx, ny) each; nothing before its end."""
-        if model.judging is None or not self.last:
+        if model.plan.judging is None or not self.last:
             return {}
         compared, total = _compared(self.last, extent), state.material.peeq.ravel()
-        found = cell_fields(compared, total, _yield_strain(model, extent), model.judging)
+        found = cell_fields(compared, total, _yield_strain(model, extent), model.plan.judging)
         return {name: values.reshape(extent.shape) for name, values in found.items()}
 
     def at(self, place: Callable[[Extent], Extent]) -> Periods:
@@ -121,9 +122,9 @@ def _yield_strain(model: Model, extent: Extent) -> Array:
 
 def floor(model: Model, extent: Extent) -> Array:
     """Strain of each cell of a box below which a period counts as without plastic strain, (n,)."""
-    if model.judging is None:
+    if model.plan.judging is None:
         raise ValueError("the scene is not judged")
-    return model.judging.floor * _yield_strain(model, extent)
+    return model.plan.judging.floor * _yield_strain(model, extent)
 
 
 ROUNDING = 1e-9  # of a ratio of equal load steps
@@ -174,40 +175,15 @@ class CycleStart:
 
 @dataclass(frozen=True)
 class Progressed:
-    """A history after a committed step, or part of one.
-
-    Parameters
-    ----------
-    state, extent
-        The plastic state, and the box that it is on.
-    room
-        Room of the grid.
-    targets
-        Ends of load steps to come.
-    counters
-        Work done so far.
-    tribofilm, wear
-        What the surface remembers; None without them.
-    last, change
-        The trial that was committed last, and what it changed.
-    cuts
-        Loads on the way to the first target, itself the last; empty before its step begins.
-    parts
-        What is already committed of that step.
-    history
-        What is recorded of the steps so far, and how they ended.
-    recalled
-        p_hat at the end of earlier steps, by their force or approach.
-    outside
-        Fields outside of the box; None where they are to be computed.
-    longer
-        Whether the load steps to come are made by the longer iteration.
-    cycle_start
-        What the strain of the cycle is counted from; None where there is only one cycle.
-    periods
-        Strain of the periods of a repeated load that is judged.
-    dissipated
-        Energy in J that the cycle has dissipated so far, where that is asked for.
+    """A history after a committed step, or part of one. state, extent: the plastic state, and the box that it
+    is on; room: of the grid; targets: ends of load steps to come; counters: work done so far; tribofilm,
+    wear: what the surface remembers; last, change: the trial that was committed last, and what it changed;
+    cuts: loads on the way to the first target, itself the last, empty before its step begins; parts: what is
+    committed of that step; history: what is recorded so far; recalled: p_hat at the end of earlier steps, by
+    their force or approach; outside: fields outside of the box, None where they are to be computed; longer:
+    whether steps to come are made by the longer iteration; cycle_start: what the strain of the cycle is
+    counted from, None where there is only one; periods: of a repeated load that is judged; dissipated: energy
+    in J of the cycle so far, where it is asked for.
     """
 
     state: State

@@ -193,28 +193,13 @@ def spectra_of(cuboids: Cuboids, single: bool, exchange: bool) -> BoxSpectra:
 
 
 class BoxOperator:
-    """Stress in the cells of a box and normal displacement of its surface, of plastic strain and of loads.
-
-    Fields are on the cells that `keep` leaves of the box, all of them without a mirror; `whole` goes back.
-
-    Parameters
-    ----------
-    box
-        The cells: as many as lags, with sides in m; layers from the surface, 0, downwards; Poisson's ratio.
-    mu
-        Shear modulus in Pa.
-    counters
-        Where the work is counted.
-    sliding
-        Whether tractions are to come.
-    single
-        Coefficients and transforms in single precision, 1e-7 of the largest stress, in half the time and
-        memory.
-    mirror
-        Whether all fields are mirrored in x and in y (x only with y).
-    exchange
-        Whether the fields stay the same when x and y are exchanged, on a mirrored box of n x n square cells:
-        the products for half of the wave numbers then give all.
+    """Stress in the cells of a box and normal displacement of its surface, of plastic strain and of loads, on
+    the cells that `keep` leaves of the box; `whole` goes back. box: as many cells as lags, with sides in m,
+    layers from the surface, 0, downwards; mu in Pa; sliding: whether tractions are to come; single:
+    coefficients and transforms in single precision, 1e-7 of the largest stress, in half the time and memory;
+    mirror: whether all fields are mirrored in x and in y (x only with y); exchange: whether they stay the
+    same when x and y are exchanged, on a mirrored box of n x n square cells: the products for half of the
+    wave numbers then give all.
     """
 
     def __init__(

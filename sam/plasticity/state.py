@@ -28,18 +28,10 @@ from sam.schedule import UNLOADED, Load
 
 @dataclass(frozen=True)
 class MaterialFields:
-    """What the material remembers at the points of the cells of a box, see `sam.plasticity.points`, or the
-    increment of it over a step; or the means of these over the points of each cell.
-
-    Parameters
-    ----------
-    strain
-        Plastic strain, (6, 4, n_layers, nx, ny); of means (6, n_layers, nx, ny), and so on.
-    peeq
-        Accumulated plastic strain, (4, n_layers, nx, ny).
-    back
-        Strains a_k of the back-stresses, (N, 6, 4, n_layers, nx, ny), see `sam.plasticity.flow`; None
-        without them.
+    """What the material remembers at the points of the cells of a box, see `sam.plasticity.points`, or its
+    increment over a step; or means over the points. strain: plastic, (6, 4, n_layers, nx, ny), of means (6,
+    n_layers, nx, ny), and so on; peeq: accumulated, (4, n_layers, nx, ny); back: strains a_k of the
+    back-stresses, (N, 6, 4, n_layers, nx, ny), or None.
     """
 
     strain: Array
@@ -175,15 +167,7 @@ class Trial:
 
 @dataclass(frozen=True)
 class Extent:
-    """A box of cells.
-
-    Parameters
-    ----------
-    window
-        Its cells of the grid.
-    layers
-        Number of its layers, the uppermost ones of the grid.
-    """
+    """A box of cells: a window of the grid, and so many of its uppermost layers."""
 
     window: Window
     layers: int
@@ -200,24 +184,9 @@ class Extent:
 
 
 def surrounded(values: Array, where: tuple[slice, ...], shape: tuple[int, ...]) -> Array:
-    """Put zeros around the values of a field, as a box does that grows; leading axes of a tensor stay.
+    """Zeros around the values (..., *cells) of a field, as a box does that grows: (..., *shape), with the
+    values at `where`, see `Extent.inside`.
 
-    Parameters
-    ----------
-    values
-        (..., *cells), a tensor of any shape in each cell.
-    where
-        The cells among those of the larger box, see `Extent.inside`.
-    shape
-        Cells of the larger box.
-
-    Returns
-    -------
-    Array
-        (..., *shape).
-
-    Examples
-    --------
     >>> surrounded(np.ones(2), (slice(1, 3),), (4,))
     array([0., 1., 1., 0.])
     """

@@ -25,20 +25,8 @@ OUTERMOST, HALFWAY = 0.785, 1.866
 anywhere in a cell; with a range and an exponent of its own the fit finds one cell, as it must be, and 1.07.
 """
 
+OF_ROW = "cycle step force approach area p_max peeq_max friction iterations residual note".split()
 OF_CYCLE = ("new_strain_max", "yielding_cells", "wear_of_cycle_m3")  # zero of a body that stays elastic
-
-
-@dataclass(frozen=True)
-class Effort:
-    """How a load step was solved: iterations and residual of its last attempt, largest plastic strain after
-    it, all attempts.
-    """
-
-    iterations: int
-    residual: float
-    note: str = ""
-    peeq_max: float = 0.0
-    attempts: tuple[Attempt, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -97,16 +85,10 @@ class Row:
 
 
 def row_of(
-    grid: CellGrid,
-    target: Target,
-    contact: Contact,
-    effort: Effort,
-    *,
-    coefficient: Coefficient,
-    whole: float | None = None,
+    grid: CellGrid, target: Target, contact: Contact, *, coefficient: Coefficient, whole: float | None = None
 ) -> Row:
-    """The row of a contact on the full grid, or on a box of it. coefficient: of friction, whatever the sign
-    of the traction; whole: that under a whole tribofilm.
+    """The row of a contact on the full grid, or on a box of it, without how it was solved. coefficient: of
+    friction, whatever the sign of the traction; whole: that under a whole tribofilm.
     """
     friction, protected, p = 0.0, None, contact.pressure
     if contact.force:
@@ -123,14 +105,9 @@ def row_of(
         contact_area(contact, grid),
         largest_pressure(contact, grid),
         contact.converged,
-        effort.iterations,
-        effort.residual,
-        effort.note,
-        friction,
-        protected,
-        effort.peeq_max,
-        effort.attempts,
-        contact.ending,
+        friction=friction,
+        protected=protected,
+        ending=contact.ending,
     )
 
 
@@ -202,35 +179,12 @@ def _distances(normal: tuple[Array, Array], axis: int, cell: tuple[float, float]
 
 def history_table(rows: Sequence[Row]) -> dict[str, list[Any]]:
     """The table history, one row a load step."""
-    values = [
-        (
-            row.cycle,
-            row.step,
-            row.force,
-            row.approach,
-            row.area,
-            row.p_max,
-            row.peeq_max,
-            row.friction,
-            row.iterations,
-            row.residual,
-            row.note,
-        )
-        for row in rows
-    ]
-    table = {name: [value[k] for value in values] for k, name in enumerate(HISTORY)}
-    moved = [(row.moved.way, row.moved.force, row.moved.offset) for row in rows if row.moved is not None]
+    table = {name: [getattr(row, each) for row in rows] for name, each in zip(HISTORY, OF_ROW, strict=True)}
+    moved = [row.moved for row in rows if row.moved is not None]
     if moved:
-        table |= {name: [value[k] for value in moved] for k, name in enumerate(PATH_HISTORY)}
+        of_path = zip(PATH_HISTORY, ("way", "force", "offset"), strict=True)
+        table |= {name: [getattr(each, field) for each in moved] for name, field in of_path}
     return table
-
-
-@dataclass(frozen=True)
-class CycleStrain:
-    """The largest new plastic strain of a cell in a cycle, and in how many cells there is any."""
-
-    largest: float = 0.0
-    cells: int = 0
 
 
 @dataclass(frozen=True)
@@ -238,7 +192,8 @@ class CycleEnd:
     """The surface after a cycle. wear_volume: of all cycles so far in m^3; roughness: without force, None if
     smooth.
 
-    strained, dissipated: in this cycle, the energy in J where it is asked for; wear_of_cycle: in m^3; margin:
+    new_strain, yielding: largest new plastic strain of a cell in this cycle, and in how many there is any;
+    dissipated: energy in J of the cycle, where it is asked for; wear_of_cycle: in m^3; margin:
     of the cell that is left nearest to its limit, 1 less strain over limit, None: nothing can wear; roofed:
     volume in m^3 beyond its limit that stays, as sound material lies above it.
 
@@ -252,7 +207,8 @@ class CycleEnd:
     applications: int
     moved: Array | None = None
     worn: Array | None = None
-    strained: CycleStrain = CycleStrain()
+    new_strain: float = 0.0
+    yielding: int = 0
     wear_of_cycle: float = 0.0
     margin: float | None = None
     roofed: float = 0.0
@@ -286,7 +242,7 @@ def cycles_table(
     for end in ends:
         table["operator_applications"][end.cycle - 1], before = end.applications - before, end.applications
         table["wear_volume_m3"][end.cycle - 1] = end.wear_volume
-        own = end.strained.largest, end.strained.cells, end.wear_of_cycle, end.margin
+        own = end.new_strain, end.yielding, end.wear_of_cycle, end.margin
         for name, value in zip((*OF_CYCLE, "margin_to_limit"), own, strict=True):
             table[name][end.cycle - 1] = value
         for name, value in _heights_of(end.roughness).items():

@@ -36,10 +36,32 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sam.arrays import Array
+from sam.arrays import Array, Mask
 from sam.scene.friction import Friction
 from sam.scene.section import stated
-from sam.surface_state import FilmState
+
+
+@dataclass(frozen=True, eq=False)
+class FilmState:
+    """The film since the start of the cycle.
+
+    plastic: plastic strain (6, nx, ny), tensor components in the order 11 22 33 23 13 12; failed: (nx, ny)
+    bool. A failed cell keeps the strain at which it failed; where no equilibrium exists, that of the step
+    before.
+    """
+
+    plastic: Array
+    failed: Mask
+
+    @classmethod
+    def fresh(cls, shape: tuple[int, int]) -> FilmState:
+        """A whole film without plastic strain on (nx, ny) cells."""
+        return cls(np.zeros((6, *shape)), np.zeros(shape, dtype=bool))
+
+    @property
+    def thinning(self) -> Array:
+        """Share of the thickness that plastic flow took, (nx, ny); negative where it is thicker."""
+        return 0.0 - self.plastic[2]
 
 
 @dataclass(frozen=True)

@@ -23,11 +23,54 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sam.arrays import Array
-from sam.surface_state import BINS, FilmState, TribofilmState, Visits, bins_of_visits
-from sam.tribofilm.law import FilmLaw
+from sam.arrays import Array, Mask
+from sam.tribofilm.law import FilmLaw, FilmState
 
 ROUNDING = 1e-9  # of a way that is as long as a bin, and of a pass: a clock that stands still
+
+
+BINS = 40  # of the way between two visits, each sqrt(2) times as long as the one before
+
+
+def bins_of_visits(period: float) -> Array:
+    """Upper ends in m of the bins of the way between two visits, (BINS,); period: of a pass, the last one."""
+    return period * 2.0 ** (np.arange(1 - BINS, 1) / 2)
+
+
+@dataclass(frozen=True, eq=False)
+class Visits:
+    """When the cells of a surface were in contact with a counter-body that moves.
+
+    clock: way of the counter-body at the end of the last step in m; inside: which cells were in contact then;
+    left: the clock when a cell left, NaN of one that never was inside; limit: largest thinning of the film in
+    the present visit; strain: as `reference` of `TribofilmState`, at the end of the last step, (4, nx, ny);
+    counts: of visits by the way between two of them, see `bins_of_visits`. All but that (nx, ny).
+    """
+
+    clock: float
+    inside: Mask
+    left: Array
+    limit: Array
+    strain: Array
+    counts: Array
+
+    def unloaded(self, strain: Array) -> Visits:
+        """The same without contact, on a surface with these strains."""
+        left = np.where(self.inside, self.clock, self.left)
+        return replace(self, inside=np.zeros_like(self.inside), left=left, strain=strain)
+
+
+@dataclass(frozen=True, eq=False)
+class TribofilmState:
+    """The tribofilm on the cells of a surface, and the strain of the surface at the start of the cycle.
+
+    film: on (nx, ny) cells; reference: total strains xx, yy, xy (tensor), zz of the surface when the film was
+    new, (4, nx, ny). The printed form of the law alone needs zz. visits: below a counter-body that moves.
+    """
+
+    film: FilmState
+    reference: Array
+    visits: Visits | None = None
 
 
 @dataclass(frozen=True)

@@ -330,7 +330,7 @@ def test_pressures_that_are_given_again_leave_the_same_strains():
     scene = moving(3, {"steps": 2}, track=1.5, loading={"steps": 1, "cycles": 2})
     scene = scene.model_copy(update={"solver": scene.solver.model_copy(update={"tolerance": 1e-8})})
     model, start = begin(scene)
-    start = replace(start, targets=model.schedule.targets)
+    start = replace(start, targets=model.plan.schedule.targets)
     end, found = all_steps(model, start)
     strain, off = end.state.material.strain, []
     for change in (1.0, 1.0001):

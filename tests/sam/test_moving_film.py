@@ -13,9 +13,8 @@ from sam.planner.make import schedule_of
 from sam.plasticity.progress import Progressed
 from sam.scene import Checkpoint, Scene
 from sam.schedule import Load
-from sam.surface_state import FilmState, bins_of_visits
-from sam.tribofilm.law import FilmLaw
-from sam.tribofilm.state import FilmOnCells, VisitLaw
+from sam.tribofilm.law import FilmLaw, FilmState
+from sam.tribofilm.state import FilmOnCells, VisitLaw, bins_of_visits
 
 LIMIT, RATE, TRACK = 0.02, 3.0, 10.0
 LAW = FilmLaw(80e9, 0.3, 2e9 / 3, 0.1, 0.4, LIMIT)

@@ -154,7 +154,7 @@ def test_every_failed_cell_fails_in_the_converged_contact(monkeypatch):
             pressure[now.extent.window.slices] = trial.pressure * model.unit
             plastic = now.state.material.strain + trial.increment.strain
             strain = model.surface_strain(now.extent, trial.stress, plastic)
-            again = model.tribofilm.tested(
+            again = model.plan.tribofilm.tested(
                 now.tribofilm, now.tribofilm, strain, pressure=pressure, sign=trial.load.sign
             ).film.failed
             seen.append((int(failed.sum()), int((failed & ~again).sum()), int((again & ~failed).sum())))
@@ -282,7 +282,7 @@ def test_a_new_film_without_friction_forgets_the_traction_of_the_cycle_before(mo
         return source(trial.residual.displacement, trial.load, trial.pressure, 1e-8)
 
     with_failures = pressure(model.problem(extent, film, None).pressure)
-    new = pressure(model.problem(extent, model.tribofilm.fresh(model.nothing_strained()), None).pressure)
+    new = pressure(model.problem(extent, model.plan.tribofilm.fresh(model.nothing_strained()), None).pressure)
     grid = model.grid
     bare = SurfaceOperators((grid.nx, grid.ny), grid.hy / grid.hx, Counters())
     alone = pressure(replace(model.built.problem.pressure, contact=BoxContact(bare, extent.window)))

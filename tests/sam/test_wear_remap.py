@@ -9,8 +9,16 @@ from hypothesis import given, settings, strategies as st
 from rounding import EPS, close
 from test_wear import GRADED, UM, column, paraboloid
 
-from sam.surface_state import WearState
-from sam.wear import StrainLimits, Worn, closing_residual, remapped, smoothed, with_cycle, worn_depth
+from sam.wear import (
+    StrainLimits,
+    WearState,
+    Worn,
+    closing_residual,
+    remapped,
+    smoothed,
+    with_cycle,
+    worn_depth,
+)
 
 # remap
 

@@ -41,7 +41,6 @@ EQUIVALENT: dict[tuple[str, str, str], str] = {
     ("sam.contact.normal", "", "COARSE_LIMIT = 60"): START,
     ("sam.contact.normal", "Search", "tolerance = 1e-10"): STOP,
     ("sam.contact.normal", "_coarse_start", "2"): START,
-    ("sam.contact.box", "Control", "1.0"): "of a declaration: nothing calls it",
     ("sam.contact.box", "ForceControl", "1.0"): START,
     ("sam.contact.box", "ApproachControl", "1.0"): "of a default that nothing uses",
     ("sam.contact.box", "ForceControl.coarser", "4"): START,

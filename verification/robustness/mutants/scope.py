@@ -52,7 +52,6 @@ GROUPS: dict[str, tuple[str, ...]] = {
         "sam.tribofilm.state",
         "sam.tribofilm.law",
         "sam.wear",
-        "sam.surface_state",
         "sam.contact.stress",
     ),
     "hardening laws, layers and counter-bodies": (
@@ -174,7 +173,7 @@ EXPLAINED: dict[tuple[str, str, str], str] = {
         "PaperProblem.step",
         "2",
     ): "of a residual that is reported, and judged by its power of ten",
-    ("sam.surface_state", "", "BINS = 40"): "how far down a histogram goes",
+    ("sam.tribofilm.state", "", "BINS = 40"): "how far down a histogram goes",
     ("sam.scene.verdict", "", "4.0"): "of a floor: ten times higher and lower the verdict is the same",
     ("sam.scene.verdict", "", "0.0001"): "of a floor: ten times higher and lower the verdict is the same",
     ("sam.moving", "", "ROUNDING = 1e-06"): "of rounding",
