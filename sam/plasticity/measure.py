@@ -20,7 +20,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
-from sam.arrays import Array, Mask
+from sam.arrays import Array
 from sam.contact.convolution import FEW_ROWS, Convolution, Counters, row_sums
 from sam.contact.normal import Contact, Found, Units, around, measured, no_contact
 from sam.contact.stress import von_mises
@@ -29,7 +29,7 @@ from sam.grid.cells import Window
 from sam.kernels.eigenstrain import surface_displacement_coefficients
 from sam.kernels.layer_stress import residual_stress_coefficients
 from sam.kernels.patches import STRESS, Cuboids, Lags, parity
-from sam.plasticity.load_step import ContactPressure, Problem
+from sam.plasticity.load_step import ContactPressure, PressureSource, Problem
 from sam.plasticity.model import Model
 from sam.plasticity.progress import Outside, Progressed
 from sam.plasticity.spectra import ODD_X, ODD_Y
@@ -38,6 +38,7 @@ from sam.results.history import CycleEnd, LoopRow, Moved, PassEnd, counted
 from sam.results.snapshots import Box, Cut, Snapshot, row_of_largest
 from sam.scene.residuals import unfinished
 from sam.scene.result import BACK_STRESS
+from sam.scene.section import stated
 from sam.scene.verdict import last_period, loop_places
 from sam.schedule import Load, Target
 
@@ -55,14 +56,12 @@ def problem_of(model: Model, record: Progressed) -> Problem:
 
 def contact_in_box(model: Model, record: Progressed, trial: Trial) -> Contact:
     """The contact of a step in its box, with the residuals measured there."""
-    load, p = trial.load, trial.pressure
+    load, p, source = trial.load, trial.pressure, problem_of(model, record).pressure
     gap = model.gap(load, record.wear)[record.extent.window.slices] + trial.residual.displacement
     if load.force == 0:
         return no_contact(gap, load.given)  # the row of a step asks for no displacement
-    source = problem_of(model, record).pressure
-    if not isinstance(source, ContactPressure):
-        return _given(model, load, p, np.zeros_like(p))
-    return _measured(model, source, load, gap, p=p, u=source.contact.displacement(p, load.sign))
+    u = source.contact.displacement(p, load.sign) if isinstance(source, ContactPressure) else np.zeros_like(p)
+    return _contact(model, source, load, gap, p=p, u=u)
 
 
 def contact_on_grid(model: Model, record: Progressed, trial: Trial) -> Contact:
@@ -71,48 +70,38 @@ def contact_on_grid(model: Model, record: Progressed, trial: Trial) -> Contact:
     more than the contact may, the pressure is found once more on that.
     """
     window, load, moved = record.extent.window, trial.load, known_outside(record).displacement
-    gap = model.gap(load, record.wear) + moved
+    gap, surface, source = (
+        model.gap(load, record.wear) + moved,
+        model.surface,
+        problem_of(model, record).pressure,
+    )
     if load.force == 0:
         return model.elastic.untouched(load, gap)
-    source = problem_of(model, record).pressure
-    if not isinstance(source, ContactPressure):
-        return _given(model, load, *_on_grid(model, window, trial.pressure, load.sign))
-    p, u = _on_grid(model, window, trial.pressure, load.sign)
-    found = _measured(model, source, load, gap, p=p, u=u)
-    if found.converged:
-        return found
-    goal = model.contact_tolerance
-    p, u = _on_grid(model, window, source(moved[window.slices], load, trial.pressure, goal), load.sign)
-    again = _measured(model, source, load, gap, p=p, u=u)
-    return again if again.converged else found
+
+    def of(pressure: Array) -> Contact:
+        p = np.zeros(surface.shape)
+        p[window.slices] = pressure
+        u = surface.displacement(pressure, window, surface.whole, load.sign)
+        return _contact(model, source, load, gap, p=p, u=u)
+
+    contact = of(trial.pressure)
+    if contact.converged:
+        return contact
+    again = of(source(moved[window.slices], load, trial.pressure, model.contact_tolerance))
+    return again if again.converged else contact
 
 
-def _on_grid(model: Model, window: Window, pressure: Array, sign: float) -> tuple[Array, Array]:
-    """p_hat and u_hat on the full grid of p_hat in a window."""
-    surface = model.surface
-    p = np.zeros(surface.shape)
-    p[window.slices] = pressure
-    return p, surface.displacement(pressure, window, surface.whole, sign)
-
-
-def _given(model: Model, load: Load, p: Array, u: Array) -> Contact:
-    given = model.plan.given
-    if given is None:
-        raise ValueError("the pressure is not given")
-    return given.contact(model.grid, load, p * model.unit, u * model.grid.hx)
-
-
-def _measured(
-    model: Model, source: ContactPressure, load: Load, gap: Array, *, p: Array, u: Array
-) -> Contact:
+def _contact(model: Model, source: PressureSource, load: Load, gap: Array, *, p: Array, u: Array) -> Contact:
     """The contact of p_hat and u_hat, on the box or on the grid."""
     grid, tolerance = model.grid, model.contact_tolerance + ROUNDING
+    if not isinstance(source, ContactPressure):
+        return stated(model.plan.given).contact(grid, load, p * model.unit, u * grid.hx)
     units, fields = Units(grid.hx, grid.hy, 2 * model.unit), Found(p, u, around(p > 0))
-    found = measured(model.surface, gap, fields, units, given=load.given, tolerance=tolerance)
-    if found.converged:
-        return found
+    contact = measured(model.surface, gap, fields, units, given=load.given, tolerance=tolerance)
+    if contact.converged:
+        return contact
     words = unfinished("the contact iteration of a load step", source.contact.residuals, tolerance)
-    return replace(found, ending=words)
+    return replace(contact, ending=words)
 
 
 def with_outside(model: Model, record: Progressed, *, stress: bool = False) -> Progressed:
@@ -183,7 +172,7 @@ def pass_end(model: Model, record: Progressed, track: Track, cycle: int) -> Pass
 def snapshot(model: Model, record: Progressed, name: str, trial: Trial) -> Snapshot:
     """A state in y = 0: of the cells in the box, and at the cell centres outside of it."""
     outside, material, rows = known_outside(record), record.state.material, model.grid.axis_rows
-    extent = record.extent
+    grid, extent, window, layers = model.grid, record.extent, record.extent.window, record.extent.layers
     contact, mu = contact_on_grid(model, record, trial), model.coefficient(record.tribofilm)
     loaded = model.elastic.state(trial.load, contact, mu)
     stress = plane_stress(loaded)
@@ -191,31 +180,54 @@ def snapshot(model: Model, record: Progressed, name: str, trial: Trial) -> Snaps
         stress = stress + outside.stress
     stress = _filled(model, extent, stress, trial.stress)
     strain = _filled(model, extent, np.zeros_like(stress), material.strain)
-    peeq = _filled(model, extent, np.zeros_like(stress[0]), material.peeq)
     sliding = sliding_of(loaded)
     if sliding is not None:
-        sliding = sliding.strained(_moved(model, record, 1, rows), strain, np.diff(model.grid.layer_faces))
+        sliding = sliding.strained(_moved(model, record, 1, rows), strain, np.diff(grid.layer_faces))
     back = model.material(extent).back_stress(record.state.points)
-    kept = {} if back is None else {BACK_STRESS: back.mean(axis=1)}
-    mises, flowed = _largest(model, record, trial, contact, plane=stress)
+    repeated = {} if back is None else {BACK_STRESS: back.mean(axis=1)}
+
+    # the largest von Mises stress at each depth of all cells of the box, below it of those in y = 0
+    counts, mises = counted(contact, grid), von_mises(stress).max(axis=(-2, -1))
+    flowed = np.zeros(mises.shape, dtype=bool)
+    inside = von_mises(trial.stress)[(..., *counts.slices)].reshape(layers, -1)
+    at = np.arange(layers), inside.argmax(axis=1)
+    mises[:layers] = inside[at]
+    flowed[:layers] = material.peeq[(..., *counts.slices)].reshape(layers, -1)[at] > 0
+
+    # the largest plastic strain; cells hold means
+    top, interval = None, model.strength.kinks.interval(grid.depths[:layers])
+    if material.peeq.any():
+        centres = at_centres(material.peeq, model.faces(extent), interval)
+        top = largest(centres, grid.depths[:layers], interval)
+
+    # the cells of the box in the row of the largest pressure, where that need not be at the origin
+    cut, row = None, None
+    if model.plan.places.off_origin and trial.load.force != 0:
+        row = row_of_largest(contact, counts)
+    if row is not None and window.j0 <= row < window.j0 + window.ny:
+        x, j = grid.x[window.i0 : window.i0 + window.nx], row - window.j0
+        in_row, peeq = trial.stress[..., j].copy(), material.peeq[..., j].copy()
+        cut = Cut(float(grid.y[row]), x, grid.depths[:layers], in_row, peeq)
+    x = (grid.x[window.i0] - grid.hx / 2) + grid.hx * np.arange(window.nx + 1)
+    y = (grid.y[window.j0] - grid.hy / 2) + grid.hy * np.arange(window.ny + 1)
     return Snapshot(
         name,
         contact,
         outside.displacement,
         stress,
         strain,
-        peeq,
-        mises,
-        flowed,
+        _filled(model, extent, np.zeros_like(stress[0]), material.peeq),
+        mises[:, None],
+        flowed[:, None],
         sliding,
-        top=_top(model, record),
+        top=top,
         worn=None if record.wear is None else record.wear.depth,
-        cut=_cut(model, record, trial, contact),
-        box=replace(_box(model, record, trial), repeated=kept),
+        cut=cut,
+        box=Box(x, y, model.faces(extent), trial.stress, material.strain, material.peeq, repeated),
         stretch=trial.load.stretch,
         place=(trial.load.x, trial.load.y),
         repeated={
-            each: _filled(model, extent, np.zeros_like(stress), values) for each, values in kept.items()
+            each: _filled(model, extent, np.zeros_like(stress), values) for each, values in repeated.items()
         },
     )
 
@@ -251,52 +263,6 @@ def _filled(model: Model, extent: Extent, plane: Array, field: Array) -> Array:
         if 0 <= j < window.ny:
             plane[..., : extent.layers, inside, row] = field[..., j]
     return plane
-
-
-def _box(model: Model, record: Progressed, trial: Trial) -> Box:
-    """The cells of the box."""
-    grid, window, material = model.grid, record.extent.window, record.state.material
-    x = (grid.x[window.i0] - grid.hx / 2) + grid.hx * np.arange(window.nx + 1)
-    y = (grid.y[window.j0] - grid.hy / 2) + grid.hy * np.arange(window.ny + 1)
-    return Box(x, y, model.faces(record.extent), trial.stress, material.strain, material.peeq)
-
-
-def _cut(model: Model, record: Progressed, trial: Trial, contact: Contact) -> Cut | None:
-    """The cells of the box in the row of the largest pressure; None where that is around the origin."""
-    if not model.plan.places.off_origin or trial.load.force == 0:
-        return None
-    window, layers, grid = record.extent.window, record.extent.layers, model.grid
-    row = row_of_largest(contact, counted(contact, grid))
-    if row is None or not window.j0 <= row < window.j0 + window.ny:
-        return None
-    x, j = grid.x[window.i0 : window.i0 + window.nx], row - window.j0
-    stress, peeq = trial.stress[..., j].copy(), record.state.material.peeq[..., j].copy()
-    return Cut(float(grid.y[row]), x, grid.depths[:layers], stress, peeq)
-
-
-def _top(model: Model, record: Progressed) -> tuple[float, float] | None:
-    """Depth in m and value of the largest plastic strain; cells hold means."""
-    peeq, depths = record.state.material.peeq, model.grid.depths[: record.extent.layers]
-    if not peeq.any():
-        return None
-    interval = model.strength.kinks.interval(depths)
-    return largest(at_centres(peeq, model.faces(record.extent), interval), depths, interval)
-
-
-def _largest(
-    model: Model, record: Progressed, trial: Trial, contact: Contact, *, plane: Array
-) -> tuple[Array, Mask]:
-    """The largest von Mises stress at each depth in Pa, and whether its cell has plastic strain, both (nz,
-    1): of all cells of the box, below it of those in y = 0.
-    """
-    window, layers = counted(contact, model.grid).slices, trial.stress.shape[1]
-    mises = von_mises(plane).max(axis=(-2, -1))
-    flowed = np.zeros(mises.shape, dtype=bool)
-    inside = von_mises(trial.stress)[(..., *window)].reshape(layers, -1)
-    at = np.arange(layers), inside.argmax(axis=1)
-    mises[:layers] = inside[at]
-    flowed[:layers] = record.state.material.peeq[(..., *window)].reshape(layers, -1)[at] > 0
-    return mises[:, None], flowed[:, None]
 
 
 def new_strain(record: Progressed) -> Array:

@@ -81,7 +81,8 @@ class RoughRecord:
 
     def warnings(self, grid: CellGrid, contact: Contact) -> tuple[str, ...]:
         """What a user should know about the peak, in words."""
-        out, touching, finer = [], contact.pressure > 0, _then(self.remedies.finer_cells)
+        out, touching, finer = [], contact.pressure > 0, self.remedies.finer_cells
+        finer = f": {finer}" if finer else ""
         for surface in (self.patch.surface, self.patch.counter):
             if surface is None or surface.kind == "file":
                 continue
@@ -94,20 +95,18 @@ class RoughRecord:
         if coarse := too_few_cells(contact.pressure):
             out.append(f"{coarse}{finer}")
         if touching[[0, -1], :].any() or touching[:, [0, -1]].any():
-            words = "the contact touches the edge of the grid, where the half-space is cut"
-            out.append(f"{words}{self._at_edge(grid)}")
+            words, (bx, by) = (
+                "the contact touches the edge of the grid, where the half-space is cut",
+                grid.border,
+            )
+            if any(grid.border):
+                words += f": the outer {bx} x {by} cells do not count for p_max_Pa and mises_max_Pa; "
+                words += 'grid.border = "relief" lets the heights fall off'
+            else:  # the heights fall off already, and all cells count
+                can = either(self.remedies.larger_patch, self.remedies.less_load)
+                words += f' although the heights fall off there (grid.border = "relief"): {can}'
+            out.append(words)
         return tuple(out)
-
-    def _at_edge(self, grid: CellGrid) -> str:
-        """What becomes of the edge, and what to change."""
-        if not any(grid.border):  # the heights fall off already, and all cells count
-            words = ' although the heights fall off there (grid.border = "relief")'
-            return f"{words}: {either(self.remedies.larger_patch, self.remedies.less_load)}"
-        bx, by = grid.border
-        return (
-            f": the outer {bx} x {by} cells do not count for p_max_Pa and mises_max_Pa; "
-            'grid.border = "relief" lets the heights fall off'
-        )
 
 
 def too_few_cells(pressure: Array) -> str:
@@ -133,8 +132,3 @@ def too_few_cells(pressure: Array) -> str:
         f"more, or with the largest pressure ({counts} cells; together {100 * share[few].sum():.3g} % of the "
         f"load): with fewer than {FEWEST_IN_SPOT} the largest pressure of a spot is off by some percent"
     )
-
-
-def _then(remedy: str) -> str:
-    """A remedy behind a warning, if there is one."""
-    return f": {remedy}" if remedy else ""
