@@ -10,7 +10,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sam.arrays import Array
+from sam.arrays import Array, Mask
 from sam.contact.convolution import Convolution, Counters, convolution_onto
 from sam.grid.cells import Window
 from sam.kernels.patches import STRESS, Lags, parity, stress_coefficients
@@ -116,6 +116,11 @@ def von_mises(stress: Array) -> Array:
     s11, s22, s33, s23, s13, s12 = stress
     normal = (s11 - s22) ** 2 + (s22 - s33) ** 2 + (s33 - s11) ** 2
     return np.sqrt(normal / 2 + 3 * (s23**2 + s13**2 + s12**2))
+
+
+def yielding(mises: Array, limit: Array) -> Mask:
+    """Where material yields: its von Mises stress is above the yield stress, which broadcasts with it."""
+    return np.asarray(mises > limit)  # paper Eq. 8 does not hold
 
 
 def elastic_strain(stress: Array, young: float, poisson: float) -> Array:

@@ -12,7 +12,7 @@ import numpy as np
 from sam.arrays import Array
 from sam.contact.normal import Contact
 from sam.contact.operators import half_space_kernel, moved_rows
-from sam.contact.stress import stresses, von_mises
+from sam.contact.stress import stresses, von_mises, yielding
 from sam.elastic.problem import ElasticProblem, Loaded, depths_at_once
 from sam.grid.cells import Window
 from sam.kernels.patches import Lags
@@ -156,4 +156,4 @@ def elastic_peak(problem: ElasticProblem, load: Load) -> ElasticPeak | None:
 
 def yields(peak: ElasticPeak | None, limit: Array) -> bool:
     """Whether the elastic stress at the peak exceeds the yield stress (nz,) in Pa anywhere. Paper Eq. 8."""
-    return peak is not None and bool((peak.mises > limit[:, None]).any())
+    return peak is not None and bool(yielding(peak.mises, limit[:, None]).any())

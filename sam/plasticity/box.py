@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from sam.arrays import Array, Mask
 from sam.contact.convolution import half_length
 from sam.contact.normal import around, margin_around
+from sam.contact.stress import yielding
 from sam.elastic.stress import ElasticPeak
 from sam.grid.cells import CellGrid, Sides, Window
 from sam.plasticity.points import OFFSET, POINTS
@@ -53,7 +54,7 @@ def first_extent(
     rough surface, and flattened summits bring others into contact, so the box is as wide as the grid, and
     grows in depth; both_ways: whether the traction changes its sign; path: places of the load in m.
     """
-    exceeds = peak.mises > limit[:, None]
+    exceeds = yielding(peak.mises, limit[:, None])
     if anywhere:
         return Extent(Window(0, 0, grid.nx, grid.ny), _layers(np.flatnonzero(exceeds.any(axis=1)), grid))
     if not peak.contact.pressure.any():

@@ -45,6 +45,7 @@ from typing import ClassVar, Self
 import numpy as np
 
 from sam.arrays import Array, Mask
+from sam.contact.stress import yielding
 from sam.plasticity.state import MaterialFields
 from sam.scene.dissipation import plastic_work, step_energies
 from sam.scene.yield_curve import YieldCurve
@@ -95,10 +96,10 @@ def plastic_multiplier(
     """
     low, high = np.zeros_like(q), q / m3
     gamma = np.zeros_like(q) if near is None else np.minimum(near, high)
-    yielding = q > factor * curve.stress(alpha)  # paper Eq. 8 does not hold
+    flowing = yielding(q, factor * curve.stress(alpha))
     for _ in range(ITERATIONS):
         yield_stress = factor * curve.stress(alpha + gamma)
-        excess = np.where(yielding, q - m3 * gamma - yield_stress, 0.0)
+        excess = np.where(flowing, q - m3 * gamma - yield_stress, 0.0)
         found = np.abs(excess) <= ROUNDING * yield_stress
         if found.all():
             break
@@ -106,7 +107,7 @@ def plastic_multiplier(
         newton = gamma + excess / (m3 + factor * curve.slope(alpha + gamma))
         inside = (newton > low) & (newton < high)
         gamma = np.where(found, gamma, np.where(inside, newton, (low + high) / 2))
-    return np.where(yielding, gamma, 0.0)
+    return np.where(flowing, gamma, 0.0)
 
 
 @dataclass(frozen=True)
@@ -165,19 +166,19 @@ class Flow:
         about its length.
         """
         q = mises(trial)
-        yielding = q > self.limit  # paper Eq. 8 does not hold
+        flowing = yielding(q, self.limit)
         scale = np.zeros_like(q)
         near = np.broadcast_to(near, q.shape)
-        scale[yielding] = 1.5 * self.multiplier(q, yielding, m=m, near=near) / q[yielding]
+        scale[flowing] = 1.5 * self.multiplier(q, flowing, m=m, near=near) / q[flowing]
         return scale * trial
 
-    def multiplier(self, q: Array, yielding: Mask, *, m: float, near: Array | None = None) -> Array:
+    def multiplier(self, q: Array, flowing: Mask, *, m: float, near: Array | None = None) -> Array:
         """Increment of the accumulated strain of points that yield, (n,), for their trial stress q."""
         material = self.material
-        factor = np.broadcast_to(material.factor, q.shape)[yielding]
-        near = None if near is None else near[yielding]
-        curve = material.curve.at(yielding)
-        return plastic_multiplier(q[yielding], self.before.peeq[yielding], curve, factor, m3=3 * m, near=near)
+        factor = np.broadcast_to(material.factor, q.shape)[flowing]
+        near = None if near is None else near[flowing]
+        curve = material.curve.at(flowing)
+        return plastic_multiplier(q[flowing], self.before.peeq[flowing], curve, factor, m3=3 * m, near=near)
 
     def effective(self, x: Array, s: Array) -> Array:
         """The stress that the yield stress limits at the end of an increment x, (6, ...)."""
@@ -405,19 +406,19 @@ class KinematicFlow(Flow):
 
     def returned(self, trial: Array, m: float, *, near: Array) -> Array:
         """As without back-stress, the return of the stress less what is left of the back-stresses."""
-        yielding = mises(trial - self.at_start.sum) > self.limit
+        flowing = yielding(mises(trial - self.at_start.sum), self.limit)
         found = np.zeros_like(trial)
-        if not yielding.any():
+        if not flowing.any():
             return found
         gamma, eta = kinematic_multiplier(
-            trial[:, yielding],
-            self.at_start.at(yielding),
-            self.back.at(yielding),
-            self.material.over_increment(self.before.peeq, yielding),
+            trial[:, flowing],
+            self.at_start.at(flowing),
+            self.back.at(flowing),
+            self.material.over_increment(self.before.peeq, flowing),
             m3=3 * m,
-            near=np.broadcast_to(near, yielding.shape)[yielding],
+            near=np.broadcast_to(near, flowing.shape)[flowing],
         )
-        found[:, yielding] = 1.5 * gamma / mises(eta) * eta
+        found[:, flowing] = 1.5 * gamma / mises(eta) * eta
         return found
 
     def effective(self, x: Array, s: Array) -> Array:

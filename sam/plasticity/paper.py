@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sam.arrays import Array
-from sam.contact.stress import von_mises
+from sam.contact.stress import von_mises, yielding
 from sam.plasticity.flow import contraction, deviator, equivalent_strain
 from sam.plasticity.load_step import CONTACT_SHARE, Problem
 from sam.plasticity.points import POINTS
@@ -97,15 +97,15 @@ class PaperProblem(Problem):
             # paper Eq. 8, as the stop of Fig. 7
             if self.stop == "stress" and np.max(q / limit - 1) <= self.tolerance:
                 return Sum(x, length, residual, True)
-            yielding = q > limit
-            if not yielding.any():
+            flowing = yielding(q, limit)
+            if not flowing.any():
                 return Sum(x, length, residual, True)
             flow = self.material.flow(MaterialFields(strain=x, peeq=peeq))
-            gamma = flow.multiplier(q, yielding, m=self.material.mu)
+            gamma = flow.multiplier(q, flowing, m=self.material.mu)
             change = np.zeros_like(x)
-            change[:, yielding] = 1.5 * gamma / q[yielding] * deviator(stress)[:, yielding]
+            change[:, flowing] = 1.5 * gamma / q[flowing] * deviator(stress)[:, flowing]
             x, length = x + change, length.copy()
-            length[yielding] += gamma
+            length[flowing] += gamma
             self.counters.plastic_iterations += 1
             residual = self.residual(state.residual, x)
             total = equivalent_strain(state.material.strain + x).max()

@@ -31,6 +31,7 @@ import numpy as np
 
 from sam.arrays import Array, Mask
 from sam.contact.convolution import Transforms
+from sam.contact.stress import yielding
 from sam.plasticity.flow import Flow, Material, contraction, equivalent_strain, mises
 from sam.plasticity.spectra import EVEN, ODD_X, ODD_Y
 from sam.plasticity.state import MaterialFields
@@ -162,7 +163,7 @@ class CellFlow:
     def trial(self, x: Array, s: Array) -> Array:
         """The trial stress (a) at the points of the cells that may yield, (6, 4, n)."""
         smooth = s + 2 * self.m * (self.strain + x)
-        may_yield: Mask = self.linear.farthest(mises(smooth)) > self.least
+        may_yield: Mask = yielding(self.linear.farthest(mises(smooth)), self.least)
         may_yield |= x.any(axis=0)
         if (may_yield & ~self.cells).any():
             self.cells = self.cells | may_yield
