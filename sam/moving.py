@@ -198,10 +198,10 @@ class Track:
             strain = float(added.max(initial=0.0))
             return PassEnd(cycle, self.sense(of_pass), strain=strain, drive=drive, rolling=rolling)
         way = (grid.x[window.slices[0]] - self.start[0]) * self.direction[0]
-        inside, found = self.steady(way), self.groove(grid, uz)
+        inside, groove = self.steady(way), self.groove(grid, uz)
         strain = float(added[:, inside].max(initial=0.0))
-        heights = found.at_start, found.at_end, found.beside
-        return PassEnd(cycle, self.sense(of_pass), found.middle, *heights, strain, *self._driven(of_pass))
+        heights = groove.at_start, groove.at_end, groove.beside
+        return PassEnd(cycle, self.sense(of_pass), groove.middle, *heights, strain, *self._driven(of_pass))
 
     def sense(self, rows: Sequence[Row]) -> int:
         """1 of the rows of a pass from start to end, -1 of one back."""
@@ -217,14 +217,14 @@ class Track:
 
     def _driven(self, rows: Sequence[Row]) -> tuple[float, float]:
         """(mean driving force in N, the part of the pressure over the normal force) over the steady part."""
-        found = [
+        drives = [
             (row.moved.force, row.moved.force / row.force - self.sense(rows) * row.friction)
             for row in rows
             if row.moved is not None and row.force > 0 and self.steady(np.array(row.moved.way))
         ]
-        if not found:
+        if not drives:
             return nan, nan
-        drive, ratio = np.mean(found, axis=0)
+        drive, ratio = np.mean(drives, axis=0)
         return float(drive), float(ratio)
 
 

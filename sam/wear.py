@@ -169,9 +169,9 @@ def weights(window: int, order: int) -> Array:
     orthonormal = np.linalg.qr(legvander(lags, order))[0]  # column i: p_i, up to its sign
     terms = orthonormal * orthonormal[half]  # p_i(k) p_i(0)
     degrees = np.add.outer(np.arange(order + 1), np.arange(order + 1))
-    found = (terms @ (degrees <= order) @ terms.T)[half:, half:]
-    found.flags.writeable = False
-    return found
+    w = (terms @ (degrees <= order) @ terms.T)[half:, half:]
+    w.flags.writeable = False
+    return w
 
 
 def filtered(field: Array, window: int, order: int) -> Array:

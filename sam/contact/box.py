@@ -247,9 +247,9 @@ class BoxContact:
         if mirrored and not (p > 0)[tuple(mirror_half(n) for n in p.shape)].any():
             p = np.ones_like(p)  # a start that the kept quarter does not see
         iteration = self._quarter if mirrored else self._whole
-        found = iteration.solve(gap0, control, p, tolerance=tolerance, limit=limit)
+        solution = iteration.solve(gap0, control, p, tolerance=tolerance, limit=limit)
         self.residuals = iteration.residuals
-        return found
+        return solution
 
 
 class _Iteration:
@@ -277,8 +277,8 @@ class _Iteration:
         """See `BoxContact.solve`; given up after `limit` iterations, or many without a smaller residual."""
         if not control.touches(gap0):
             return Solution(np.zeros_like(p), np.zeros_like(p), 0)
-        found = self._solve(self._kept(gap0), control, self._kept(p), tolerance=tolerance, limit=limit)
-        return Solution(self._back(found.p), self._back(found.u), found.iterations)
+        solution = self._solve(self._kept(gap0), control, self._kept(p), tolerance=tolerance, limit=limit)
+        return Solution(self._back(solution.p), self._back(solution.u), solution.iterations)
 
     def _kept(self, field: Array) -> Array:
         return field[self.kept] if self.mirrored else field

@@ -193,7 +193,7 @@ def around(cells: Mask) -> Window:
 
 
 @dataclass(frozen=True)
-class Found:
+class Solved:
     """p_hat and u_hat on the full grid, the box that was allowed into contact, and the iterations."""
 
     p: Array
@@ -205,7 +205,7 @@ class Found:
 
 def _growing_box(
     operators: SurfaceOperators, gap0: Array, control: Control, start: Array, *, tolerance: float, limit: int
-) -> Found:
+) -> Solved:
     """Solve in a box around the start, and grow it until nothing outside of it penetrates."""
     residuals: tuple[float, ...] = ()
     cells, total = start > 0, 0
@@ -217,14 +217,14 @@ def _growing_box(
         )
         total, residuals = total + iterations, (*residuals, *contact.residuals)
         if box == operators.whole:
-            return Found(p_box, u, box, total, residuals)
+            return Solved(p_box, u, box, total, residuals)
         p = np.zeros(operators.shape)
         p[box.slices] = p_box
         u = operators.displacement(p_box, box, operators.whole)
         outside = gap_of_contact(p, gap0 + u, control) < -tolerance * operators.self_influence * p.max()
         outside[box.slices] = False
         if not outside.any():
-            return Found(p, u, box, total, residuals)
+            return Solved(p, u, box, total, residuals)
         start, cells = p, (p > 0) | outside
 
 
@@ -294,12 +294,12 @@ def solve_contact(
         return no_contact(gap0, given)
     if start is None or not (start > 0).any():
         start = _coarse_start(operators, gap_hat, control)
-    found = _growing_box(operators, gap_hat, control, start, tolerance=search.tolerance, limit=limit)
-    contact = measured(operators, gap0, found, units, given=given, tolerance=search.tolerance)
-    contact = replace(contact, residuals=(*found.residuals, contact.residual))
+    solved = _growing_box(operators, gap_hat, control, start, tolerance=search.tolerance, limit=limit)
+    contact = measured(operators, gap0, solved, units, given=given, tolerance=search.tolerance)
+    contact = replace(contact, residuals=(*solved.residuals, contact.residual))
     if contact.converged:
         return contact
-    within = found.iterations < limit
+    within = solved.iterations < limit
     ending = unfinished("the contact iteration", contact.residuals, search.tolerance, within)
     return replace(contact, ending=ending)
 
@@ -307,7 +307,7 @@ def solve_contact(
 def measured(
     operators: SurfaceOperators,
     gap0: Array,
-    found: Found,
+    solved: Solved,
     units: Units,
     *,
     given: float | Approach,
@@ -317,8 +317,8 @@ def measured(
     m, with residual displacement; converged within twice the tolerance (rounding of a sum over another
     window).
     """
-    p, hx = found.p, units.hx
-    separation, control = gap0 / hx + found.u, control_of(given, hx, units.force)
+    p, hx = solved.p, units.hx
+    separation, control = gap0 / hx + solved.u, control_of(given, hx, units.force)
     gap, contact = gap_of_contact(p, separation, control), p > 0
     scale = operators.self_influence * p.max()
     gap_residual = float(np.abs(gap[contact]).max() / scale)
@@ -331,16 +331,16 @@ def measured(
         force, approach = given, control.approach(contact, separation) * hx
     return Contact(
         pressure=pressure,
-        displacement=found.u * hx,
+        displacement=solved.u * hx,
         gap=gap * hx,
         approach=approach,
         force=force,
-        box=found.box,
+        box=solved.box,
         gap_residual=gap_residual,
         penetration=penetration,
         tension=float(max(0.0, -pressure.min()) / pressure.max()),
         load_error=abs(total - force) / force,
-        iterations=found.iterations,
+        iterations=solved.iterations,
         converged=max(gap_residual, penetration) <= 2 * tolerance,
         compliance=operators.self_influence * hx / units.pressure,
     )

@@ -250,14 +250,14 @@ class SurfaceOperators:
             self.counters.ffts += 2
             scale = max(r.max(), -r.min()) or 1.0
             unit = (r / scale).astype(real)
-            found: Array
+            z: Array
             if mirrored:
-                found = scale * filtered(unit, box.shape, symbol)  # type: ignore[assignment]
+                z = scale * filtered(unit, box.shape, symbol)  # type: ignore[assignment]
             else:
                 spectrum = transformed(unit, box.shape)
                 spectrum *= symbol
-                found = scale * cropped(spectrum, box.shape, box.shape)
-            return found
+                z = scale * cropped(spectrum, box.shape, box.shape)
+            return z
 
         return apply
 

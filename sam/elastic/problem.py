@@ -306,10 +306,10 @@ class ElasticProblem:
 
     def untouched(self, load: Load, gap: Array) -> Contact:
         """The state without force, over a gap (nx, ny) in m; a misfit strain moves the surface."""
-        found = no_contact(gap, load.given)
+        contact = no_contact(gap, load.given)
         if self.plan.misfit is None or not load.misfit:
-            return found
-        return replace(found, displacement=load.misfit * self.plan.misfit.moved_surface(self.plan.grid))
+            return contact
+        return replace(contact, displacement=load.misfit * self.plan.misfit.moved_surface(self.plan.grid))
 
     def state(self, load: Load, contact: Contact, coefficient: Coefficient | None = None) -> Loaded:
         """The state of a solved contact."""

@@ -26,7 +26,7 @@ def stress_at(state: Loaded, depths: Array, window: Window) -> Array:
     problem, tractions = state.problem, {3: state.contact.pressure}
     if (traction := state.traction) is not None:
         tractions[1] = traction
-    found = stresses(
+    stress = stresses(
         tractions,
         (problem.plan.grid.hx, problem.plan.grid.hy),
         depths,
@@ -36,10 +36,10 @@ def stress_at(state: Loaded, depths: Array, window: Window) -> Array:
         counters=problem.counters,
     )
     if problem.plan.misfit is None or not state.load.misfit:
-        return found
+        return stress
     (i, j), grid = window.slices, problem.plan.grid
     at = grid.x[i, None], grid.y[j], np.asarray(depths)[:, None, None]
-    return found + state.load.misfit * problem.plan.misfit.stress(*at)
+    return stress + state.load.misfit * problem.plan.misfit.stress(*at)
 
 
 def plane_stress(state: Loaded) -> Array:

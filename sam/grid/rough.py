@@ -96,11 +96,11 @@ class RoughPatch:
 @lru_cache(maxsize=2)  # the body, and the stretch opposite
 def _heights(surface: Surface, cells: tuple[int, int], extent: tuple[float, float], relief: bool) -> Array:
     x, y = (((np.arange(n) + 0.5) / n - 0.5) * side for n, side in zip(cells, extent, strict=True))
-    found = heights(surface, x, y, extent)
+    values = heights(surface, x, y, extent)
     if relief:
-        found = with_relief(found, (x, y), extent, mean_deviation(surface, extent))
-    found.flags.writeable = False
-    return found
+        values = with_relief(values, (x, y), extent, mean_deviation(surface, extent))
+    values.flags.writeable = False
+    return values
 
 
 @dataclass(frozen=True)

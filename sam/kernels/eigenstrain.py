@@ -111,14 +111,14 @@ def blocks(nu: float) -> list[Block]:
     # paper Eq. 22, 23, 24 and 25, terms with a prime (the full space)
     full = -_full_space_matrix(nu) / scale  # minus: integrated over z', its antiderivative is one in z - z'
     signs = np.array([parity(*divmod(row, 6)) for row in range(36)])
-    found = []
+    out = []
     for odd in PARITIES:
         rows = np.flatnonzero((signs == (-1) ** np.array(odd)).all(axis=1))
         of_image = _run([(a % 2, b % 2) == odd for a, b, _ in orders])
         of_full = _run([(indices.count(0) % 2, indices.count(1) % 2) == odd for indices in FOURTH])
         weights = image.reshape(4, 36, -1)[:, rows, of_image]
-        found.append(Block(odd, rows, of_image, of_full, weights, full[rows, of_full]))
-    return found
+        out.append(Block(odd, rows, of_image, of_full, weights, full[rows, of_full]))
+    return out
 
 
 def _run(chosen: list[bool]) -> slice:

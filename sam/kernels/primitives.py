@@ -166,8 +166,7 @@ def primitive(a: int, b: int, c: int, corners: Corners) -> Array:
     """P[a, b, c] at the corners (paper Eq. 26); KeyError for an order that no coefficient uses."""
     if (a, b, c) in _FORMS:
         return _FORMS[a, b, c](corners)
-    found = _FORMS[b, a, c](corners.swapped)
-    return found
+    return _FORMS[b, a, c](corners.swapped)
 
 
 def orders() -> list[tuple[int, int, int]]:

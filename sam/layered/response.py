@@ -124,8 +124,7 @@ class Response:
             return upper * (1 - self.kap * th) - 4 * self.kap * kh * kh * th
         excess = sinh_excess(kh)
         bending = 4 * excess * (excess + 2 * kh * np.exp(-kh))
-        found = self.not_kap * upper + self.kap * (self.not_lam * self.gap * th + bending)
-        return found
+        return self.not_kap * upper + self.kap * (self.not_lam * self.gap * th + bending)
 
     def _numerator(self, sign: int) -> Array:
         """1 - lam kap th^2 + sign 4 kap kh th; a sum of positive terms wherever terms of both signs could
@@ -142,13 +141,10 @@ class Response:
             return self.not_kap + kap * (self.not_lam * th * th + shear)
         if lam < 0 and kap < 0 and sign > 0:
             beyond = (kappa1 - 1 - 2 * r * kappa2) / (1 + r * kappa2)  # |lam| - 1
-            found = both - kap * (beyond * -np.expm1(-4 * kh) + shear)
-            return found
+            return both - kap * (beyond * -np.expm1(-4 * kh) + shear)
         if lam * kap > 0:
-            found = both + lam * kap * -np.expm1(-4 * kh) + sign * 4 * kap * kh * th
-            return found
-        found = 1 - lam * kap * th * th + sign * 4 * kap * kh * th
-        return found
+            return both + lam * kap * -np.expm1(-4 * kh) + sign * 4 * kap * kh * th
+        return 1 - lam * kap * th * th + sign * 4 * kap * kh * th
 
     @cached_property
     def surface(self) -> Array:

@@ -100,13 +100,13 @@ def plastic_multiplier(
     for _ in range(ITERATIONS):
         yield_stress = factor * curve.stress(alpha + gamma)
         excess = np.where(flowing, q - m3 * gamma - yield_stress, 0.0)
-        found = np.abs(excess) <= ROUNDING * yield_stress
-        if found.all():
+        done = np.abs(excess) <= ROUNDING * yield_stress
+        if done.all():
             break
         low, high = np.where(excess > 0, gamma, low), np.where(excess < 0, gamma, high)
         newton = gamma + excess / (m3 + factor * curve.slope(alpha + gamma))
         inside = (newton > low) & (newton < high)
-        gamma = np.where(found, gamma, np.where(inside, newton, (low + high) / 2))
+        gamma = np.where(done, gamma, np.where(inside, newton, (low + high) / 2))
     return np.where(flowing, gamma, 0.0)
 
 
@@ -198,12 +198,12 @@ class Flow:
 
     def dissipated(self, increment: MaterialFields) -> Array:
         """Energy that an increment dissipates, of the shape of the points, in J/m^3."""
-        found, flowing = np.zeros_like(increment.peeq), increment.peeq > 0
+        energy, flowing = np.zeros_like(increment.peeq), increment.peeq > 0
         start = self.before.peeq[flowing]
         factor = np.broadcast_to(self.material.factor, flowing.shape)[flowing]
         curve = self.material.curve.at(flowing)
-        found[flowing] = factor * plastic_work(curve, start + increment.peeq[flowing], start)
-        return found
+        energy[flowing] = factor * plastic_work(curve, start + increment.peeq[flowing], start)
+        return energy
 
 
 KINEMATIC_ITERATIONS = 60  # bisection alone has the last digit after 53
@@ -407,9 +407,9 @@ class KinematicFlow(Flow):
     def returned(self, trial: Array, m: float, *, near: Array) -> Array:
         """As without back-stress, the return of the stress less what is left of the back-stresses."""
         flowing = yielding(mises(trial - self.at_start.sum), self.limit)
-        found = np.zeros_like(trial)
+        increment = np.zeros_like(trial)
         if not flowing.any():
-            return found
+            return increment
         gamma, eta = kinematic_multiplier(
             trial[:, flowing],
             self.at_start.at(flowing),
@@ -418,8 +418,8 @@ class KinematicFlow(Flow):
             m3=3 * m,
             near=np.broadcast_to(near, flowing.shape)[flowing],
         )
-        found[:, flowing] = 1.5 * gamma / mises(eta) * eta
-        return found
+        increment[:, flowing] = 1.5 * gamma / mises(eta) * eta
+        return increment
 
     def effective(self, x: Array, s: Array) -> Array:
         """The deviatoric stress less the back-stresses at the end of an increment x."""

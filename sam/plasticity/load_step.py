@@ -161,8 +161,8 @@ class Problem:
         """Stress in Pa of p_hat, its traction, a misfit strain and plastic strain (`BoxOperator.stress`)."""
         keep, pressure = self.operator.keep, pressure * self.unit
         traction = self.traction(pressure, load)
-        found = self.operator.stress(keep(pressure), response, None if traction is None else keep(traction))
-        return found if self.misfit is None else found + load.misfit * keep(self.misfit)
+        stress = self.operator.stress(keep(pressure), response, None if traction is None else keep(traction))
+        return stress if self.misfit is None else stress + load.misfit * keep(self.misfit)
 
     def residual(self, before: Residual, x: Array) -> Residual:
         """The residual fields `before` and those of a plastic strain x: one application of the operator."""
@@ -302,9 +302,9 @@ ACROSS = slice(2, 4)  # the shears across the layer: one stiffness for both
 
 def stiffness_of_parts(own_stress: Array) -> Array:
     """Stiffness a of (b) in Pa, (5, n_layers), from `BoxOperator.own_stress`, (6, 6, n_layers) in Pa."""
-    found: Array = -np.einsum("ai,ijk,aj->ak", PARTS * ROOT, own_stress, PARTS / ROOT)
-    found[ACROSS] = found[ACROSS].mean(axis=0)
-    return found
+    stiffness: Array = -np.einsum("ai,ijk,aj->ak", PARTS * ROOT, own_stress, PARTS / ROOT)
+    stiffness[ACROSS] = stiffness[ACROSS].mean(axis=0)
+    return stiffness
 
 
 def preconditioned(x: Array, image: Array, limit: Array, *, m: float, own: Array) -> Array:
@@ -312,10 +312,10 @@ def preconditioned(x: Array, image: Array, limit: Array, *, m: float, own: Array
     it flows. limit: yield stress in Pa, (n_layers, nx, ny); m: stiffness of the return map in Pa; own: of the
     parts of the strain, see `stiffness_of_parts`.
     """
-    found, flowing = image.copy(), image.any(axis=0)
+    out, flowing = image.copy(), image.any(axis=0)
     start, end = x[:, flowing], image[:, flowing]
     turn = limit[flowing] / (1.5 * equivalent_strain(end))
     factor = (2 * m + turn) / (own[:, np.nonzero(flowing)[0]] + turn)
     parts = factor * (PARTS @ (ROOT[:, None] * (end - start)))
-    found[:, flowing] = start + PARTS.T @ parts / ROOT[:, None]
-    return found
+    out[:, flowing] = start + PARTS.T @ parts / ROOT[:, None]
+    return out

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from sam.arrays import Array
 from sam.contact.convolution import FEW_ROWS, Convolution, Counters, row_sums
-from sam.contact.normal import Contact, Found, Units, around, measured, no_contact
+from sam.contact.normal import Contact, Solved, Units, around, measured, no_contact
 from sam.contact.stress import von_mises
 from sam.elastic.stress import plane_stress, sliding_of
 from sam.grid.cells import Window
@@ -70,13 +70,11 @@ def contact_on_grid(model: Model, record: Progressed, trial: Trial) -> Contact:
     more than the contact may, the pressure is found once more on that.
     """
     window, load, moved = record.extent.window, trial.load, known_outside(record).displacement
-    gap, surface, source = (
-        model.gap(load, record.wear) + moved,
-        model.surface,
-        problem_of(model, record).pressure,
-    )
+    gap, source = model.gap(load, record.wear) + moved, problem_of(model, record).pressure
     if load.force == 0:
         return model.elastic.untouched(load, gap)
+
+    surface = model.surface
 
     def of(pressure: Array) -> Contact:
         p = np.zeros(surface.shape)
@@ -96,7 +94,7 @@ def _contact(model: Model, source: PressureSource, load: Load, gap: Array, *, p:
     grid, tolerance = model.grid, model.contact_tolerance + ROUNDING
     if not isinstance(source, ContactPressure):
         return stated(model.plan.given).contact(grid, load, p * model.unit, u * grid.hx)
-    units, fields = Units(grid.hx, grid.hy, 2 * model.unit), Found(p, u, around(p > 0))
+    units, fields = Units(grid.hx, grid.hy, 2 * model.unit), Solved(p, u, around(p > 0))
     contact = measured(model.surface, gap, fields, units, given=load.given, tolerance=tolerance)
     if contact.converged:
         return contact
@@ -317,7 +315,7 @@ def with_loops(model: Model, record: Progressed, target: Target, trial: Trial) -
     own = record.extent.window
     at = [(layer, i - own.i0, j - own.j0) for layer, i, j in places]
     material = record.state.material
-    found = [
+    cells = [
         LoopRow(
             place,
             target.cycle,
@@ -328,7 +326,7 @@ def with_loops(model: Model, record: Progressed, target: Target, trial: Trial) -
         )
         for place, cell in zip(places, at, strict=True)
     ]
-    return replace(record, history=replace(record.history, loops=(*rows, *found)))
+    return replace(record, history=replace(record.history, loops=(*rows, *cells)))
 
 
 def _chosen(record: Progressed) -> list[tuple[int, int, int]]:
@@ -336,8 +334,8 @@ def _chosen(record: Progressed) -> list[tuple[int, int, int]]:
     extent, own, last = record.extent, record.extent.window, record.periods.last[-1]
     accumulated = surrounded(last.accumulated, last.extent.inside(extent), extent.shape)
     places = loop_places(accumulated.ravel(), record.state.material.peeq.ravel())
-    found = [np.unravel_index(place, extent.shape) for place in places]
-    return [(int(layer), int(i) + own.i0, int(j) + own.j0) for layer, i, j in found]
+    where = [np.unravel_index(place, extent.shape) for place in places]
+    return [(int(layer), int(i) + own.i0, int(j) + own.j0) for layer, i, j in where]
 
 
 ODD = np.array([ODD_X, ODD_Y])

@@ -54,30 +54,30 @@ class PaperProblem(Problem):
     ) -> Trial:
         """A step from a committed state, where the loops start; guess, start, tolerance are not used."""
         zero = np.zeros_like(state.material.strain), np.zeros_like(state.material.peeq)
-        found, pressure, history = Sum(*zero, state.residual), state.pressure, []
+        total, pressure, history = Sum(*zero, state.residual), state.pressure, []
         converged = False
         for _ in range(OUTER):
-            last = found.residual.displacement
+            last = total.residual.displacement
             pressure = self.pressure(last, load, pressure, CONTACT_SHARE * self.tolerance)
             elastic = self.stress(pressure, load)  # paper Eq. 7, first sum
-            found = self._relaxed(state, found, elastic)
-            displaced = found.residual.displacement
+            total = self._relaxed(state, total, elastic)
+            displaced = total.residual.displacement
             moved = np.abs(displaced - last).max() / max(np.abs(displaced).max(), np.finfo(float).tiny)
             history.append(float(moved))
-            converged = bool(found.stopped and moved <= self.tolerance)
-            if converged or not found.stopped:
+            converged = bool(total.stopped and moved <= self.tolerance)
+            if converged or not total.stopped:
                 break
-        stress = elastic + found.residual.stress
+        stress = elastic + total.residual.stress
         step, m = self.material.flow(state.material), self.material.mu
-        again = step.returned(deviator(stress) + 2 * m * found.x, m, near=equivalent_strain(found.x))
-        flow = 2 * m * np.sqrt(contraction(again - found.x, again - found.x).max())
-        increment = step.increment(found.x, found.length)
-        limit = self.material.yield_stress(state.material.peeq + found.length)
+        again = step.returned(deviator(stress) + 2 * m * total.x, m, near=equivalent_strain(total.x))
+        flow = 2 * m * np.sqrt(contraction(again - total.x, again - total.x).max())
+        increment = step.increment(total.x, total.length)
+        limit = self.material.yield_stress(state.material.peeq + total.length)
         return Trial(
             load=self.pressure.loaded(load, pressure),
             points=increment.each(lambda values: np.repeat(values[..., None, :, :, :], POINTS, axis=-4)),
             stress=stress,
-            residual=found.residual,
+            residual=total.residual,
             pressure=pressure,
             yield_excess=float(max(np.max(von_mises(stress) / limit - 1), 0.0)),
             flow_residual=float(flow / self.material.initial_yield),

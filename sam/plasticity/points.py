@@ -68,10 +68,10 @@ class Linear:
 
     def at_points(self, values: Array, cells: Mask) -> Array:
         """Of means of cells, kept tensors (6, n_layers, nx, ny): at the points of some of them, (6, 4, n)."""
-        found = np.repeat(values[:, None, cells], POINTS, axis=1)
+        at = np.repeat(values[:, None, cells], POINTS, axis=1)
         for axis, signs in zip((-2, -1), SIGNS, strict=True):
-            found += OFFSET * signs * self.difference(values, axis)[:, None, cells]
-        return found
+            at += OFFSET * signs * self.difference(values, axis)[:, None, cells]
+        return at
 
     def farthest(self, q: Array) -> Array:
         """What von Mises of the values at a point of each cell cannot exceed, of that of their means q."""
@@ -79,8 +79,8 @@ class Linear:
 
     def difference(self, values: Array, axis: int) -> Array:
         """v(i + 1) - v(i - 1) along axis -2 or -1; at a side of the box twice the one difference."""
-        found = np.zeros_like(values)
-        v, out = np.moveaxis(values, axis, -1), np.moveaxis(found, axis, -1)
+        differences = np.zeros_like(values)
+        v, out = np.moveaxis(values, axis, -1), np.moveaxis(differences, axis, -1)
         count = v.shape[-1]
         if count > 1:
             np.subtract(v[..., 2:], v[..., :-2], out=out[..., 1:-1])
@@ -89,16 +89,16 @@ class Linear:
             sign = np.where(ODD_X if axis == -2 else ODD_Y, -1.0, 1.0).reshape(6, *[1] * (v.ndim - 2))
             before = sign * v[..., min(self.cells[axis] % 2, count - 1)]
             out[..., 0] = v[..., 1] - before if count > 1 else 2 * (v[..., 0] - before)
-        return found
+        return differences
 
     def _reach(self, q: Array, axis: int) -> Array:
         """What von Mises of `difference` cannot exceed."""
-        found = np.zeros_like(q)
-        v, out = np.moveaxis(q, axis, -1), np.moveaxis(found, axis, -1)
+        reach = np.zeros_like(q)
+        v, out = np.moveaxis(q, axis, -1), np.moveaxis(reach, axis, -1)
         if v.shape[-1] > 1:
             np.add(v[..., 2:], v[..., :-2], out=out[..., 1:-1])
             out[..., 0], out[..., -1] = 2 * (v[..., 1] + v[..., 0]), 2 * (v[..., -1] + v[..., -2])
-        return found
+        return reach
 
 
 def stress_at_points(stress: Array, strain: Array, m: float) -> Array:
@@ -190,9 +190,9 @@ class CellFlow:
         cells, lengths = self.last
         return lengths if cells is self.cells else equivalent_strain(own)
 
-    def increment(self, found: Returned) -> MaterialFields:
+    def increment(self, returned: Returned) -> MaterialFields:
         """The increment of the fields at the points of all cells."""
-        small = self.flow.increment(found.points, equivalent_strain(found.points))
+        small = self.flow.increment(returned.points, equivalent_strain(returned.points))
 
         def everywhere(values: Array) -> Array:
             out = np.zeros((*values.shape[:-1], *self.cells.shape))

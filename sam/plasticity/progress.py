@@ -83,22 +83,22 @@ class Periods:
             raise ValueError("no period has begun")
         earlier = (*(replace(each, strain=None) for each in self.last[:-1]), *self.last[-1:])
         added = (*earlier, self.begun.added(state, extent))
-        found = verdict_on(
+        verdict = verdict_on(
             _compared(added, extent),
             state.material.peeq.ravel(),
             _yield_strain(model, extent),
             model.plan.judging,
             volume=np.broadcast_to(model.volumes(extent), extent.shape).ravel(),
         )
-        return Periods(None, added, (*self.verdicts, found))
+        return Periods(None, added, (*self.verdicts, verdict))
 
     def fields(self, model: Model, state: State, extent: Extent) -> dict[str, Array]:
         """Fields of the last period on a box, (n_layers, nx, ny) each; nothing before its end."""
         if model.plan.judging is None or not self.last:
             return {}
         compared, total = _compared(self.last, extent), state.material.peeq.ravel()
-        found = cell_fields(compared, total, _yield_strain(model, extent), model.plan.judging)
-        return {name: values.reshape(extent.shape) for name, values in found.items()}
+        of_cells = cell_fields(compared, total, _yield_strain(model, extent), model.plan.judging)
+        return {name: values.reshape(extent.shape) for name, values in of_cells.items()}
 
     def at(self, place: Callable[[Extent], Extent]) -> Periods:
         """The same on another grid. place: of a box on it."""
@@ -223,5 +223,5 @@ class Progressed:
 
     def recall(self, load: Load) -> Array | None:
         """p_hat under the same load in the cycle before, if the box is the same."""
-        found = self.recalled.get(repr(load.level))
-        return found if found is not None and found.shape == self.extent.window.shape else None
+        pressure = self.recalled.get(repr(load.level))
+        return pressure if pressure is not None and pressure.shape == self.extent.window.shape else None

@@ -159,10 +159,10 @@ class BoxSpectra:
             weight[np.not_equal(*np.divmod(self.stored, self.half[1] + 1))] *= 2
         layers = range(self.cuboids.layers)
         blocks = [self.strain_to_stress[i :: len(layers), :, i :: len(layers)] for i in layers]
-        found: Array = np.einsum("kipj,p->ijk", np.stack(blocks), weight).reshape(36, -1)
-        found[TWICE] *= -1
-        found[ODD] = 0.0
-        return found.reshape(6, 6, -1)
+        stress: Array = np.einsum("kipj,p->ijk", np.stack(blocks), weight).reshape(36, -1)
+        stress[TWICE] *= -1
+        stress[ODD] = 0.0
+        return stress.reshape(6, 6, -1)
 
     def _of_block(self, kernel: Array, odd: tuple[int, int]) -> Reals:
         """Spectra of coefficients (..., rows, nx, ny) of one parity: (..., rows, 1, stored)."""

@@ -172,9 +172,9 @@ def _distances(normal: tuple[Array, Array], axis: int, cell: tuple[float, float]
     """
     width = [(1, 1) if each == axis else (0, 0) for each in (0, 1)]
     u, v = (sliding_window_view(np.pad(part, width), 2, axis).sum(axis=-1) for part in normal)
-    reach, found = np.hypot(u / cell[0], v / cell[1]), np.full(u.shape, min(cell))
-    np.divide(np.hypot(u, v), reach, out=found, where=reach > 0)
-    return found
+    reach, distance = np.hypot(u / cell[0], v / cell[1]), np.full(u.shape, min(cell))
+    np.divide(np.hypot(u, v), reach, out=distance, where=reach > 0)
+    return distance
 
 
 def history_table(rows: Sequence[Row]) -> dict[str, list[Any]]:
@@ -253,12 +253,12 @@ def cycles_table(
 
 def of_ends(cycles: Sequence[int], ends: Sequence[CycleEnd], name: str) -> list[float | None]:
     """A number of CycleEnd for each cycle; zero of an elastic body, None of a cycle that did not end."""
-    found = {end.cycle: getattr(end, name) for end in ends}
-    return [found.get(cycle) if found else 0.0 for cycle in cycles]
+    values = {end.cycle: getattr(end, name) for end in ends}
+    return [values.get(cycle) if values else 0.0 for cycle in cycles]
 
 
-def _heights_of(found: Roughness | None) -> Mapping[str, float | None]:
-    return {"sa_m": found.sa, "sq_m": found.sq, "ssk": found.ssk} if found is not None else {}
+def _heights_of(roughness: Roughness | None) -> Mapping[str, float | None]:
+    return {"sa_m": roughness.sa, "sq_m": roughness.sq, "ssk": roughness.ssk} if roughness is not None else {}
 
 
 @dataclass(frozen=True)

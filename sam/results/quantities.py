@@ -144,7 +144,7 @@ def coated_quantities(depths: Array, mises: Array, p_max: float, coated: Coated)
     """
     below, bare = depths >= coated.thickness, coated.comparison
     in_film, in_body = largest_in(depths, mises, ~below), largest_in(depths, mises, below)
-    depth, largest = max((found for found in (in_film, in_body) if found), key=lambda found: found[1])
+    depth, largest = max((peak for peak in (in_film, in_body) if peak), key=lambda peak: peak[1])
     values: Quantities = {
         "mises_max_Pa": largest,
         "mises_max_depth_m": depth,
@@ -193,12 +193,12 @@ def with_extrapolation(before: Result, fine: Result, *, finds_force: bool) -> Re
         return replace(fine, cost=cost, left_out=[*fine.left_out, LeftOut("extrapolation", reason)])
     ratio = fine.discretisation["cells"][0] / cells[0]
     names = (*SECOND_ORDER, "force_N") if finds_force else SECOND_ORDER
-    found = extrapolated(before.quantities, fine.quantities, ratio, names)
-    changes = {name: found[name] / value - 1 for name in found if (value := fine.quantities[name])}
+    limits = extrapolated(before.quantities, fine.quantities, ratio, names)
+    changes = {name: limits[name] / value - 1 for name in limits if (value := fine.quantities[name])}
     extra = {"extrapolated_from_cells": cells, "extrapolation_change": changes}
     return replace(
         fine,
-        quantities={**fine.quantities, **found},
+        quantities={**fine.quantities, **limits},
         discretisation={**fine.discretisation, **extra},
         cost=cost,
     )
@@ -211,9 +211,9 @@ def extrapolated(
     names: Sequence[str] = SECOND_ORDER,
 ) -> dict[str, float]:
     """Those of the named quantities that both have."""
-    found = {}
+    out = {}
     for name in names:
         coarse, value = before.get(name), fine.get(name)
         if coarse is not None and value is not None:
-            found[name] = value + (value - coarse) / (ratio**2 - 1)
-    return found
+            out[name] = value + (value - coarse) / (ratio**2 - 1)
+    return out

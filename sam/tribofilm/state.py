@@ -148,9 +148,9 @@ class FilmOnCells:
         since = strain - committed.reference
         visits = committed.visits
         limit = None if visits is None else visits.limit
-        found = self.law.step(before, since[:3], pressure, sign=sign, bulk_normal=since[3], limit=limit)
-        if not (found.failed & ~before.failed).any():
-            found = replace(found, failed=before.failed)
+        film = self.law.step(before, since[:3], pressure, sign=sign, bulk_normal=since[3], limit=limit)
+        if not (film.failed & ~before.failed).any():
+            film = replace(film, failed=before.failed)
         if visits is not None and self.visited is not None:
             visits = self.visited.after(visits, pressure, strain)
-        return replace(committed, film=found, visits=visits)
+        return replace(committed, film=film, visits=visits)
