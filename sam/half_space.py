@@ -79,9 +79,7 @@ class ElasticPair:
 
 
 def circular_contact_radius(force: float, radius: float, modulus: float) -> float:
-    """Contact radius in m of Hertz, of a sphere (radius in m) under a force in N, E* in Pa: Johnson 1985, Eq.
-    4.22.
-    """
+    """Contact radius in m of Hertz of a sphere (radius in m), force in N, E* in Pa (Johnson 1985, 4.22)."""
     return float((3 * force * radius / (4 * modulus)) ** (1 / 3))
 
 

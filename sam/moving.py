@@ -189,9 +189,7 @@ class Track:
     def pass_end(
         self, grid: CellGrid, cycle: int, *, uz: Array, added: Array, window: Window, rows: Sequence[Row]
     ) -> PassEnd:
-        """What a pass leaves. uz: by plastic strain, (nx, ny) in m; added: plastic strain of the pass on a
-        box, (n_layers, nx, ny).
-        """
+        """What a pass leaves. uz: plastic, (nx, ny) in m; added: its strain, (n_layers, nx, ny) on a box."""
         of_pass = [row for row in rows if row.cycle == cycle and row.moved is not None]
         if not self.along_x:
             drive, rolling = self._driven(of_pass) if self.plane else (nan, nan)
@@ -233,9 +231,7 @@ Tables = dict[str, dict[str, Any]]
 
 
 def path_tables(track: Track, grid: CellGrid, history: History, film: TribofilmState | None) -> Tables:
-    """The tables of passes and visits of a film, and track and cross of a body that yielded below a path on
-    x.
-    """
+    """The tables of passes and visits of a film; track and cross of a body that yielded on a path in x."""
     last, passes = list(history.snapshots.values())[-1], history.passes
     tables: Tables = {"passes": _passes(passes)} if passes else {}
     worn = last.worn is not None
@@ -315,9 +311,7 @@ def _visits(track: Track, visits: Visits) -> dict[str, Any]:
 
 
 def _track(track: Track, grid: CellGrid, last: Snapshot) -> dict[str, Any]:
-    """Along the path in the rows of cells that touch it; stresses of the unloaded body, in the uppermost
-    layer and in that of the largest steady strain.
-    """
+    """Along the path, in the rows that touch it; unloaded stresses in the top and the most strained layer."""
     box, x = last.box, grid.x
     assert box is not None, "asked for of bodies that have yielded"
     own, rows = _inside(x, box.x), track.touched(grid.y, grid.hy)

@@ -27,22 +27,10 @@ class Approach:
 
 @dataclass(frozen=True)
 class Load:
-    """What acts on the body.
-
-    Parameters
-    ----------
-    force
-        Normal, in N; under a given approach that of the solved contact, NaN before.
-    sign
-        Of the traction along x.
-    x, y
-        Where it is centred in m, see `sam.grid.gap.InitialGap`.
-    stretch
-        Which stretch of a rough counter-body is opposite, from 0.
-    misfit
-        Share of the misfit strain that a scene gives, 0 to 1.
-    approach
-        Rigid approach of the bodies in m that is given in place of the force; None where the force is.
+    """What acts on the body. force: normal, in N, under a given approach that of the solved contact, NaN
+    before; sign: of the traction along x; x, y: where it is centred in m; stretch: which one of a rough
+    counter-body is opposite, from 0; misfit: share of the misfit strain, 0 to 1; approach: of the rigid
+    bodies in m, given in place of the force, or None.
     """
 
     force: float
@@ -146,15 +134,9 @@ class Schedule:
     varies: bool = False
     remembers: bool = False
 
-    def stretch_of(self, cycle: int) -> int:
-        """The stretch of the counter-body that is opposite in a cycle (from 1)."""
-        return cycle - 1 if self.renews else 0
-
     @property
     def peaks(self) -> list[Load]:
-        """The largest load on each stretch of the counter-body, but for the sign; at each place where
-        surfaces differ.
-        """
+        """The largest load on each stretch of the counter-body, and at each place where surfaces differ."""
         places = self.path if self.varies else ((self.peak.x, self.peak.y),)
         stretches = range(self.cycles if self.renews else 1)
         return [replace(self.peak, stretch=k, x=x, y=y) for k in stretches for x, y in places]
@@ -162,26 +144,12 @@ class Schedule:
     @property
     def different(self) -> list[Target]:
         """The steps that an elastic body needs: of all cycles where these differ, else of the last."""
-        return self.last_cycle if self.all_alike else list(self.targets)
+        return [target for target in self.targets if target.cycle == self.cycles or not self.all_alike]
 
     @property
     def all_alike(self) -> bool:
         """Whether the cycles of an elastic body differ in nothing but the sign of the traction."""
         return not (self.renews or self.returns or self.remembers)
-
-    def sign_of(self, cycle: int) -> float:
-        """Sign of the traction along x in a cycle (from 1)."""
-        return next(target.load.sign for target in self.targets if target.cycle == cycle)
-
-    @property
-    def peak_force(self) -> float:
-        """The largest force in N; NaN where the approach is given."""
-        return self.peak.force
-
-    @property
-    def last_cycle(self) -> list[Target]:
-        """The steps of the last cycle, which has the states that are recorded."""
-        return [target for target in self.targets if target.cycle == self.cycles]
 
     @property
     def rises(self) -> int:

@@ -143,9 +143,7 @@ def _executed(plan: Plan, report: Progress, checkpoint: Keep | None, start: Chec
 def _on_grid(
     plan: Plan, counters: Counters, report: Progress, *, keep: KeepRecord | None, start: Progressed | None
 ) -> tuple[History, Progressed | None]:
-    """The history on the grid of a plan, from its beginning or a record on, and a yielding body's last
-    record.
-    """
+    """The history on the grid of a plan, from its beginning or a record on, and the last plastic record."""
     problem, peak = plan.problem(counters), None
     if plan.plasticity is None:
         return _elastic(problem, report), None
@@ -277,7 +275,8 @@ def _tables(plan: Plan, history: History, verdicts: Sequence[Verdict]) -> dict[s
         tables["cycles"] = cycles_table(history.rows, ends, at_peak=steps.at_peak, roughness=original)
         cycles = tables["cycles"]["cycle"]
         if plan.slip.slides and any(target.load.sign < 0 for target in steps.targets):
-            tables["cycles"][FRICTION_SIGN] = [int(steps.sign_of(cycle)) for cycle in cycles]
+            signs = {target.cycle: int(target.load.sign) for target in reversed(steps.targets)}
+            tables["cycles"][FRICTION_SIGN] = [signs[cycle] for cycle in cycles]
         if plan.dissipates:
             tables["cycles"][DISSIPATED] = of_ends(cycles, ends, "dissipated")
         if plan.judging is not None:

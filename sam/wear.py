@@ -88,50 +88,26 @@ def worn_depth(alpha: Array, faces: Array, limits: StrainLimits, interpolate: bo
     is above the limit at their centre: error O(dz). Raises ValueError for faces that do not fit the layers or
     do not descend from 0, and for alpha that is not finite.
     """
-    faces = _checked(alpha, faces)
-    centres = (faces[:-1] + faces[1:]) / 2
-    if interpolate:
-        nodes, strain = _profile(alpha, faces, centres)
-        if 0 < limits.thickness < faces[-1]:
-            nodes, strain = _with_node(nodes, strain, limits.thickness)
-        limit = _finite(limits((nodes[:-1] + nodes[1:]) / 2))
-        start, end, lengths = strain[:-1] - limit, strain[1:] - limit, np.diff(nodes)
-    else:
-        start = end = alpha - _finite(limits(centres))
-        lengths = np.diff(faces)
-    return _from_surface(start, end, lengths)
-
-
-def _checked(alpha: Array, faces: Array) -> Array:
     faces = np.asarray(faces, dtype=float)
     if faces.shape != (len(alpha) + 1,) or faces[0] != 0 or not np.all(np.diff(faces) > 0):
         raise ValueError(f"faces = {faces.tolist()}: {len(alpha) + 1} depths, ascending from 0, are needed")
     if not np.isfinite(alpha).all():
         raise ValueError("alpha: all of it must be finite")
-    return faces
-
-
-def _finite(limit: Array) -> Array:
-    """The limit of each layer, with UNREACHED in place of inf, so that differences are numbers."""
-    return np.minimum(limit, UNREACHED)[:, None, None]
-
-
-def _profile(alpha: Array, faces: Array, centres: Array) -> tuple[Array, Array]:
-    """Depths between which alpha is linear, and alpha there: surface, centres and the deepest face."""
-    surface = alpha[0]
+    centres = (faces[:-1] + faces[1:]) / 2
+    if not interpolate:
+        start = alpha - np.minimum(limits(centres), UNREACHED)[:, None, None]
+        return _from_surface(start, start, np.diff(faces))
+    surface, thickness = alpha[0], limits.thickness
     if len(alpha) > 1:
         surface = np.maximum(alpha[0] - (alpha[1] - alpha[0]) * (centres[0] / (centres[1] - centres[0])), 0.0)
-    return np.concatenate([[0.0], centres, faces[-1:]]), np.concatenate([surface[None], alpha, alpha[-1:]])
-
-
-def _with_node(nodes: Array, values: Array, depth: float) -> tuple[Array, Array]:
-    """The same linear profile with one more node."""
-    k = int(np.searchsorted(nodes, depth))
-    if nodes[k] == depth:
-        return nodes, values
-    share = (depth - nodes[k - 1]) / (nodes[k] - nodes[k - 1])
-    there = values[k - 1] + share * (values[k] - values[k - 1])
-    return np.insert(nodes, k, depth), np.insert(values, k, there, axis=0)
+    nodes, strain = np.append(np.append(0.0, centres), faces[-1]), np.stack([surface, *alpha, alpha[-1]])
+    k = int(np.searchsorted(nodes, thickness))
+    if 0 < thickness < faces[-1] and nodes[k] != thickness:  # one more node where the limit steps
+        share = (thickness - nodes[k - 1]) / (nodes[k] - nodes[k - 1])
+        there = strain[k - 1] + share * (strain[k] - strain[k - 1])
+        nodes, strain = np.insert(nodes, k, thickness), np.insert(strain, k, there, axis=0)
+    limit = np.minimum(limits((nodes[:-1] + nodes[1:]) / 2), UNREACHED)[:, None, None]
+    return _from_surface(strain[:-1] - limit, strain[1:] - limit, np.diff(nodes))
 
 
 def _from_surface(start: Array, end: Array, lengths: Array) -> Worn:
@@ -311,9 +287,7 @@ class WearState:
 
 @dataclass(frozen=True)
 class WearLaw:
-    """Wear of a grid of `shape` (nx, ny) cells with sides hx, hy in m, at limits of the accumulated plastic
-    strain.
-    """
+    """Wear of a grid of `shape` (nx, ny) cells hx, hy in m, at limits of the plastic strain."""
 
     shape: tuple[int, int]
     hx: float

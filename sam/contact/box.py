@@ -338,9 +338,7 @@ class _Iteration:
         return Solution(state.p, state.u, iteration)
 
     def _step(self, state: _State, separation: Array, control: Control) -> bool:
-        """One iteration of Eq. 10 on the free cells, and the projection where it is due; False, and nothing
-        done, when the residual is zero in double precision.
-        """
+        """One iteration of Eq. 10 on the free cells, with a projection where due; False at no residual."""
         r = state.projected(separation)
         z = state.projected(self.precondition(r))
         r = r * self.count

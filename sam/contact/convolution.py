@@ -151,9 +151,7 @@ FEW_ROWS = 2  # of an observed window, up to which sums over y take less time th
 
 @dataclass
 class Counters:
-    """Work done, for `cost` in the results and for tests that gate it: a number of each kind, see
-    `sam.scene.COST`.
-    """
+    """Work done, for `cost` in the results: a number of each kind, see `sam.scene.COST`."""
 
     ffts: int = 0
     displacement_applications: int = 0
@@ -331,9 +329,7 @@ def convolution_onto(
     *,
     counters: Counters | None = None,
 ) -> RowConvolution | Convolution:
-    """A field on `source` -> the sums on `observed`: the cheaper of `RowConvolution` and `Convolution`, with
-    its arguments.
-    """
+    """A field on `source` -> the sums on `observed`: the cheaper of both convolutions above."""
     kind = RowConvolution if observed.ny <= FEW_ROWS else Convolution
     return kind(kernels, parities, source, observed, counters=counters)
 

@@ -69,18 +69,9 @@ def control_of(given: float | Approach, hx: float, force_unit: float) -> Control
 
 @dataclass(frozen=True)
 class Search:
-    """How a contact is solved.
-
-    Parameters
-    ----------
-    tolerance
-        On the dimensionless residuals, see `Contact`.
-    start
-        (nx, ny) pressure of a neighbouring problem, in any unit; without it coarser grids provide a start.
-    max_iterations
-        Limit; that of the bodies if it is not given.
-    counters
-        Where the work is counted.
+    """How a contact is solved. tolerance: on the dimensionless residuals, see `Contact`; start: (nx, ny)
+    pressure of a neighbouring problem, in any unit, else coarser grids provide one; max_iterations: that of
+    the bodies if it is not given; counters: where the work is counted.
     """
 
     tolerance: float = 1e-10
@@ -91,41 +82,17 @@ class Search:
 
 @dataclass(frozen=True)
 class Contact:
-    """Solution of a normal contact on the full grid.
-
-    Parameters
-    ----------
-    pressure
-        (nx, ny) in Pa.
-    displacement
-        (nx, ny) in m, of both bodies together, positive when they approach less.
-    gap
-        (nx, ny) in m.
-    approach
-        In m.
-    force
-        In N: the given one, or hx hy sum p.
-    box
-        The cells that were allowed into contact.
-    gap_residual, penetration
-        max |gap| over the cells in contact and max(-gap) over the others, on the returned fields, divided by
-        the displacement that the largest pressure causes in its own cell: they estimate a relative pressure
-        error.
-    tension, load_error
-        max(-p)/max p and |hx hy sum p - F|/F (0 where the approach is given), on the
-        returned fields.
-    iterations, converged
-        How many there were, and whether the residuals are within the tolerance.
-    area
-        In m^2, where the scene gives it.
-    residuals
-        The larger one of gap_residual and penetration in the iterations that leave no pressure below zero
-        (sliding: in the passes, each a contact with the traction of the last), at the end that of the
-        returned fields.
-    ending
-        In words, if not converged.
-    compliance
-        Displacement in m per Pa that the pressure of one cell causes at its centre; 0 without a search.
+    """Solution of a normal contact on the full grid: pressure in Pa, displacement in m of both bodies
+    together, positive when they approach less, and gap in m, all (nx, ny); approach in m; force in N, the
+    given one, or hx hy sum p; box: the cells that were allowed into contact. gap_residual, penetration: max
+    |gap| over the cells in contact and max(-gap) over the others, on the returned fields, divided by the
+    displacement that the largest pressure causes in its own cell: they estimate a relative pressure error;
+    tension, load_error: max(-p)/max p and |hx hy sum p - F|/F (0 where the approach is given); converged:
+    whether the residuals are within the tolerance; area: in m^2, where the scene gives it; residuals: the
+    larger one of both in the iterations that leave no pressure below zero (sliding: in the passes, each a
+    contact with the traction of the last), at the end that of the returned fields; ending: in words, if not
+    converged; compliance: displacement in m per Pa that the pressure of one cell causes at its centre; 0
+    without a search.
     """
 
     pressure: Array

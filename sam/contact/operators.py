@@ -13,7 +13,7 @@ from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from scipy import fft
@@ -262,11 +262,8 @@ class SurfaceOperators:
         return apply
 
 
-class Kernel(Protocol):
-    """Displacement by a unit load on the cell at the origin, (nx, ny) lags >= 0."""
-
-    def __call__(self, nx: int, ny: int, *, component: int, load: int) -> Array:
-        """Of a component by a load in a direction, both 1 to 3."""
+Kernel = Callable[..., Array]
+"""nx, ny lags >= 0, component, load (1 to 3) -> displacement by a unit load on the cell at the origin."""
 
 
 def half_space_kernel(grid: CellGrid, nu: float) -> Kernel:

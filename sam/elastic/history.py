@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,9 +20,6 @@ from sam.scene.residuals import Attempt
 from sam.scene.result import Progress
 from sam.schedule import UNLOADED, Load
 from sam.tribofilm.state import FilmOnCells, TribofilmState
-
-if TYPE_CHECKING:
-    pass
 
 UNFIT = "bare body, for comparison: {}: its largest pressure and stress and their changes are not given"
 UNLOADING = "elastic: unloading in one step"
@@ -106,16 +102,26 @@ def snapshot_of(name: str, state: Loaded) -> Snapshot:
     stresses = stresses_of(state, row)
     cut = None
     if row is not None and stresses.in_row is not None:
-        cut = Cut.elastic(plan.grid, row, stresses.in_row)
+        peeq = np.zeros(stresses.in_row.shape[1:])
+        cut = Cut(float(plan.grid.y[row]), plan.grid.x, plan.grid.depths, stresses.in_row, peeq)
     coated = None
     if plan.coated is not None:  # with the bare body to compare with, under force
         comparison = bare_body(state) if state.load.force else None
         traction = state.traction if plan.slip.coupled else None
         moved = plan.coated.counter_uz(plan.grid, contact.pressure, traction, problem.counters)
         coated = Coated(plan.coated.thickness, moved, comparison)
-    sliding = sliding_of(state)
-    return Snapshot.elastic(
-        name, contact, stresses.plane, stresses.mises, sliding=sliding, coated=coated, cut=cut
+    zero, unmoved = np.zeros_like(stresses.plane), np.zeros(contact.gap.shape)
+    return Snapshot(
+        name,
+        contact,
+        unmoved,
+        stresses.plane,
+        zero,
+        zero[0],
+        stresses.mises,
+        sliding=sliding_of(state),
+        coated=coated,
+        cut=cut,
     )
 
 

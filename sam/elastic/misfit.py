@@ -90,9 +90,7 @@ class MisfitSphere:
         return -2 / 3 * scale * self.profile.mean(x)
 
     def zone(self, limit: float) -> float:
-        """Radius in m of the plastic zone at a yield stress in Pa, whatever the hardening, as what yields
-        leaves no stress outside; FARTHEST radii at most, 0 where nothing yields.
-        """
+        """Radius in m of the plastic zone at a yield stress in Pa, FARTHEST radii at most, 0 for none."""
         scale = self.body.young * self.strain / (1 - self.body.poisson) * self.profile.strength
         x = np.linspace(0.0, min((scale / limit) ** (1 / 3), FARTHEST), ZONE_POINTS)
         reaching = x[self.deviator(x) >= limit * (1 - 1e-9)]

@@ -6,7 +6,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
-from typing import Protocol
 
 import numpy as np
 
@@ -18,6 +17,8 @@ from sam.contact.stress import DEPTHS_AT_ONCE
 from sam.elastic.misfit import MisfitSphere
 from sam.grid.cells import CellGrid, Room, Sides, Window
 from sam.grid.gap import InitialGap, Shape
+from sam.grid.rough import RoughDemand
+from sam.grid.smooth import GridDemand, MisfitDemand
 from sam.half_space import ElasticPair
 from sam.moving import Track
 from sam.results.rough import RoughRecord
@@ -68,9 +69,7 @@ class GivenHertz:
         return out
 
     def contact(self, grid: CellGrid, load: Load, pressure: Array, displacement: Array) -> Contact:
-        """The state under the pressure (Pa): nothing is opposite, so gap and approach are not numbers.
-        displacement in m, (nx, ny); load_error: of the means over the cells against the force.
-        """
+        """The state under the pressure, whose gap and approach are no numbers; fields (nx, ny) in Pa, m."""
         error = abs(float(pressure.sum()) * (grid.hx * grid.hy) - load.force) / load.force
         nothing = np.full_like(pressure, np.nan)
         area = pi * self.radius**2
@@ -100,11 +99,8 @@ def contact_tolerance(asked: float) -> float:
     return max(CONTACT_SHARE * asked, min(asked, REACHED))
 
 
-class Demand(Protocol):
-    """What the grid is chosen from; see `sam.grid.smooth` and `sam.grid.rough`."""
-
-    def grid(self, room: Room) -> CellGrid:
-        """The grid, larger by the factors of a room than the one chosen first."""
+Demand = GridDemand | MisfitDemand | RoughDemand
+"""What the grid is chosen from."""
 
 
 @dataclass(frozen=True)
@@ -122,56 +118,17 @@ class Places:
 
 @dataclass(frozen=True)
 class Plan:
-    """All that the solution of a scene needs; it is made once, and handed on.
-
-    Parameters
-    ----------
-    grid : CellGrid
-        Cells and depths, in m.
-    pair : ElasticPair
-        Elastic constants of both bodies.
-    shape : Shape
-        Shape of the counter-body, which makes the gap.
-    axes : tuple of float
-        Contact semi-axes (along x, along y) in m by Hertz, for the body without coating.
-    schedule : Schedule
-        The load steps.
-    slip : FullSlip
-        Friction.
-    places : Places
-        Where the largest stress and the contact may be.
-    solver : Solver
-        Tolerance and method.
-    remedies : Remedies
-        What may be changed of the scene, in words.
-    given_sides : Sides
-        Sides of the grid that the scene gives, which are not enlarged.
-    demand : Demand
-        What the grid and a larger one are chosen from.
-    given : GivenHertz or None
-        A pressure in place of the counter-body.
-    misfit : MisfitSphere or None
-        A misfit strain in place of the counter-body.
-    track : Track or None
-        Of a counter-body that moves; None of one in place.
-    coated : CoatedPair or None
-        Both bodies with a coating.
-    rough : RoughRecord or None
-        The heights of the body and of the counter-body; None if both are smooth.
-    plasticity : Plasticity or None
-        Yield curve and profile over depth; None for an elastic body.
-    tribofilm : FilmOnCells or None
-        The law of the tribofilm.
-    wear : WearLaw or None
-        The law of wear.
-    judging : Judging or None
-        How repeated loading is judged; None without a verdict.
-    dissipates : bool
-        Whether the energy that each cycle dissipates is asked for.
-    coarser : Plan or None
-        The plan on half as many cells, from which quantities are extrapolated.
-    stages : tuple of Stage
-        Stages that run, in the order in which they begin, with their sizes; then those that do not, and why.
+    """All that the solution of a scene needs; it is made once, and handed on. grid: cells and depths, in m;
+    pair: elastic constants of both bodies; shape: of the counter-body, which makes the gap; axes: contact
+    semi-axes (along x, along y) in m by Hertz, without coating; schedule: the load steps; slip: friction;
+    places: where the largest stress and the contact may be; solver: tolerance and method; remedies: what may
+    be changed of the scene, in words; given_sides: of the grid, which are not enlarged; demand: what a grid
+    is chosen from; given, misfit: a pressure, or a misfit strain, in place of the counter-body; track: of a
+    counter-body that moves; coated: both bodies with a coating; rough: heights of the bodies; plasticity:
+    yield curve and profile over depth; tribofilm, wear: the laws; judging: how repeated loading is judged;
+    dissipates: whether the energy that each cycle dissipates is asked for; coarser: the plan on half as many
+    cells, from which quantities are extrapolated; stages: those that run, in the order in which they begin,
+    with their sizes, then those that do not, and why. None of what a scene has not.
     """
 
     grid: CellGrid
@@ -225,9 +182,7 @@ class Plan:
 
     @property
     def held_depths(self) -> tuple[int, int]:
-        """Output depths in memory at the same time, with coefficients and with stresses: of a rough body both
-        are taken in blocks of depths.
-        """
+        """Output depths in memory together, with coefficients, with stresses: of a rough body in blocks."""
         depths = len(self.grid.depths)
         together = min(depths, depths_at_once(self.grid)) if self.places.anywhere else depths
         return min(depths, DEPTHS_AT_ONCE, together), together
@@ -282,9 +237,7 @@ class ElasticProblem:
     def contact(
         self, load: Load, coefficient: Coefficient | None = None, start: Array | None = None
     ) -> Contact:
-        """Contact under a load, or under the pressure that is given; coefficient: of friction, if not that of
-        the slip; start: pressure of the step before, in Pa.
-        """
+        """Contact under a load or a given pressure; start: pressure of the step before, in Pa."""
         plan, grid, gap = self.plan, self.plan.grid, self.gap(load)
         slip, modulus = plan.slip, plan.pair.contact_modulus
         if load.force == 0:

@@ -50,9 +50,7 @@ def plane_stress(state: Loaded) -> Array:
 
 @dataclass(frozen=True)
 class Stresses:
-    """Stresses of a state in Pa: in the rows that touch y = 0, (6, nz, nx, rows); the von Mises stress among
-    which the largest is, (nz, n); in another row of cells, (6, nz, nx), or None.
-    """
+    """In Pa: in the rows at y = 0, (6, nz, nx, rows); von Mises, (nz, n); in another row, (6, nz, nx)."""
 
     plane: Array
     mises: Array

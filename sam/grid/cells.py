@@ -14,15 +14,7 @@ from sam.arrays import Array
 
 @dataclass(frozen=True)
 class Window:
-    """Cells of a grid: i0 <= i < i0 + nx, j0 <= j < j0 + ny.
-
-    Parameters
-    ----------
-    i0, j0
-        The first cell in x and in y.
-    nx, ny
-        Number of cells.
-    """
+    """Cells of a grid, nx x ny of them from (i0, j0) on: i0 <= i < i0 + nx, j0 <= j < j0 + ny."""
 
     i0: int
     j0: int
@@ -50,24 +42,10 @@ class Room:
 
 @dataclass(frozen=True)
 class CellGrid:
-    """nx x ny cells of hx x hy in m, centres x_i = (i - (nx - 1)/2) hx.
-
-    Parameters
-    ----------
-    nx, ny
-        Number of cells.
-    hx, hy
-        Sides of a cell, in m.
-    depths
-        (nz,) output depths in m, ascending.
-    faces
-        (nz + 1,) in m, of the layers of the volume grid, whose centres are the depths; None for an elastic
-        body.
-    border
-        Cells at each end in x and y that do not count for maxima once the contact touches the edge (rough
-        bodies only).
-    room
-        With which it was chosen, see `sam.grid.cells`.
+    """nx x ny cells of hx x hy in m, centres x_i = (i - (nx - 1)/2) hx. depths: (nz,) for output in m,
+    ascending; faces: (nz + 1,) in m, of the layers of the volume grid, whose centres are the depths, None for
+    an elastic body; border: cells at each end in x and y that do not count for maxima once the contact
+    touches the edge (rough bodies only); room: with which it was chosen.
     """
 
     nx: int

@@ -116,9 +116,7 @@ class RoughDemand:
     reach: float = 0.0
 
     def grid(self, room: Room) -> CellGrid:
-        """The cells of the patch; depths that [grid] does not give are fine near the surface, where small
-        contacts act, and deeper by a factor of the room.
-        """
+        """The cells of the patch; depths that are not given are fine near the surface, for small contacts."""
         patch, plasticity = self.patch, self.plasticity
         (nx, ny), (lx, ly) = patch.cells, patch.extent
         hx, hy = lx / nx, ly / ny

@@ -55,9 +55,7 @@ FARTHEST = 4.5  # Hertz radii: no grid is chosen for a larger reach (p0 = 19 yie
 
 @dataclass(frozen=True)
 class PlasticDemand:
-    """What plasticity asks of a grid: the depth in m that a plastic zone may reach, see `point_load_reach`,
-    and the depths of kinks of the yield stress.
-    """
+    """What plasticity asks of a grid: depth in m of the plastic zone, and of kinks of the yield stress."""
 
     reach: float
     kinks: Sequence[float] = ()

@@ -128,9 +128,7 @@ def _run(chosen: list[bool]) -> slice:
 
 @cache
 def image_orders() -> list[tuple[int, int, int]]:
-    """Orders of the primitives of the image part, by parity; those that need x and y exchanged (a < b) last:
-    they then find every shared function computed.
-    """
+    """Orders of the image part by parity; a < b last, which finds every shared function computed."""
     terms, _ = _matrix("stress", ENTRIES, 0.0)
     wanted = {(a, b, c) for _, _, a, b, c in terms} | {(a, b, c - 1) for _, q, a, b, c in terms if q}
     return sorted(
@@ -154,7 +152,9 @@ def surface_displacement_coefficients(cuboids: Cuboids, *, component: int = 3) -
     terms, matrix = _matrix("displacement", tuple(f"{component},{j}" for j in STRESS), cuboids.nu)
     basis = _table_basis(terms, Corners(x[:, None], y[None, :], source), source)
     # paper Eq. 19, with 1/(2 pi) where 1/pi is printed
-    return _combine(matrix / (2 * pi), basis).reshape(6, cuboids.layers, *cuboids.lags.shape)
+    return (matrix / (2 * pi) @ np.stack([term.ravel() for term in basis])).reshape(
+        6, cuboids.layers, *cuboids.lags.shape
+    )
 
 
 @cache
@@ -179,15 +179,8 @@ def _cells(corners: Array) -> Array:
     return in_xy[1:] - in_xy[:-1]
 
 
-def _combine(coefficients: Array, basis: list[Array]) -> Array:
-    """Coefficients (rows, terms) times the terms: (rows, n * nx * ny)."""
-    return coefficients @ np.stack([term.ravel() for term in basis])
-
-
 def _table_basis(terms: list[Term], corners: Corners, source: Array) -> list[Array]:
-    """Integral over the cuboids of z'^q d_x^a d_y^b d_z^c (1/R), terms without z^p, each (n, nx, ny); by
-    parts: z' P[a,b,c] - P[a,b,c-1] for q = 1.
-    """
+    """Integral of z'^q d_x^a d_y^b d_z^c (1/R) over the cuboids, by parts for q = 1, each (n, nx, ny)."""
     known: dict[tuple[int, int, int], Array] = {}
 
     def value(a: int, b: int, c: int) -> Array:

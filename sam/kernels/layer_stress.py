@@ -83,9 +83,7 @@ class CornerFunctions:
         )
 
     def __call__(self, image: bool, offsets: Array) -> Array:
-        """The functions at depths z + face (image) or z - face (full space), in the order of `image_orders`
-        and of FOURTH: (offsets, functions, nx, ny).
-        """
+        """`image_orders` at depths z + face, or FOURTH at z - face: (offsets, functions, nx, ny)."""
         functions = image_functions if image else full_space_functions
         out = np.empty((len(offsets), len(image_orders() if image else FOURTH), *self.shape))
         for k, value in enumerate(functions(self.x, self.y, offsets[:, None])):

@@ -32,14 +32,7 @@ from sam.kernels.primitives import Corners, primitive
 @dataclass(frozen=True)
 class Lags:
     """The offsets (i hx, j hy), 0 <= i < nx and 0 <= j < ny, from the centre of a loaded cell to that of an
-    observed one.
-
-    Parameters
-    ----------
-    nx, ny
-        Number of lags in x and in y: as many as a box of cells has cells.
-    hx, hy
-        Sides of a cell, in any unit of length.
+    observed one: as many lags as a box has cells, with sides in any unit of length.
     """
 
     nx: int
@@ -76,22 +69,9 @@ class Lags:
 @dataclass(frozen=True)
 class Cuboids:
     """The half-space z >= 0 below cells of its surface, divided into layers: a cuboid hx x hy x thickness in
-    each.
-
-    Parameters
-    ----------
-    lags
-        Lags between the columns of cuboids.
-    faces
-        Depths of the n + 1 faces of n layers of any thicknesses, ascending from a depth >= 0, in the unit of
-        hx.
-    nu
-        Poisson's ratio of the half-space, 0 <= nu <= 1/2.
-
-    Raises
-    ------
-    ValueError
-        For faces that are fewer than two, negative or not ascending.
+    each. lags: between the columns of cuboids; faces: depths of the n + 1 faces of n layers of any
+    thicknesses, ascending from a depth >= 0, in the unit of hx, else ValueError; nu: Poisson's ratio, 0 <= nu
+    <= 1/2.
     """
 
     lags: Lags

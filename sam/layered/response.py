@@ -43,19 +43,8 @@ from sam.arrays import Array
 
 @dataclass(frozen=True)
 class Layers:
-    """A coating on a half-space.
-
-    Parameters
-    ----------
-    young, poisson, thickness
-        Of the coating: in Pa > 0, 0 to 0.5, in m > 0.
-    young_body, poisson_body
-        Of the half-space below it.
-
-    Raises
-    ------
-    ValueError
-        For a number outside of its range.
+    """A coating on a half-space. young, poisson, thickness: of the coating, in Pa > 0, 0 to 0.5, in m > 0;
+    young_body, poisson_body: of the half-space. ValueError for a number outside of its range.
     """
 
     young: float
@@ -96,9 +85,7 @@ def sinh_excess(x: Array) -> Array:
 
 
 class Response:
-    """Response of a coated half-space to tractions of one wave number, times the thickness kh > 0, of any
-    shape: displacement in 1/(mu_1 k), stress per traction.
-    """
+    """Response of a coated half-space at a wave number times thickness kh > 0: stress and k mu_1 u."""
 
     def __init__(self, layers: Layers, kh: Array):
         self.layers, self.kh = layers, np.asarray(kh, dtype=float)
@@ -148,9 +135,7 @@ class Response:
 
     @cached_property
     def surface(self) -> Array:
-        """mu_1 k times (c_zz, c_zL, c_LL, c_TT), (4, ...): u_z = c_zz p + c_zL q_L, u_L = c_zL p + c_LL q_L,
-        u_T = c_TT q_T.
-        """
+        """mu_1 k (c_zz, c_zL, c_LL, c_TT), (4, ...): u_z = c_zz p + c_zL q_L, u_L = c_zL p + c_LL q_L."""
         kappa1, kh, th = self.layers.kappa[0], self.kh, self.th
         cross = th * (self.not_lam - self.not_kap - 4 * kh * kh * self.kap) / self.det
         return np.stack(

@@ -124,7 +124,7 @@ def schedule_of(scene: Scene) -> Schedule:
 def _targets_of_cycle(scene: Scene, schedule: Schedule, cycle: int) -> list[Target]:
     """Loading, at the start of the path if there is one, the way along it, and unloading."""
     loading, stroke, last = scene.loading, scene.strokes.of_cycle(cycle), cycle == scene.loading.cycles
-    sign, stretch, places = stroke.sign, schedule.stretch_of(cycle), stroke.places
+    sign, stretch, places = stroke.sign, cycle - 1 if schedule.renews else 0, stroke.places
     start, *along = (replace(schedule.peak, sign=sign, x=x, y=y, stretch=stretch) for x, y in places)
     targets = []
     for k in range(1, loading.steps + 1) if stroke.pressed else ():

@@ -127,9 +127,7 @@ def widened(first: int, count: int, limit: int, reached: tuple[bool, bool]) -> t
 
 
 def edge_reached(trial: Trial, *, cut_beside: bool) -> Sides:
-    """The sides at which plastic strain fills the outermost cells; of a rough patch, which is cut beside
-    anyway and says so, only its depth counts.
-    """
+    """Sides at which plastic strain fills the outermost cells; a rough patch is cut beside anyway."""
     strained = _strained(trial)
     beside = strained[:, [0, -1]].any() or strained[:, :, [0, -1]].any()
     return Sides(bool(beside and not cut_beside), bool(strained[-1].any()))
@@ -190,9 +188,7 @@ class Zone:
 
 
 def expected_sides(grid: CellGrid, depths: np.ndarray, zone: Zone) -> list[tuple[int, int, int]]:
-    """Cells in x, in y and layers of the boxes below a smooth contact: the first guess, and what it grows to.
-    depths: (nz,) centres of the layers in m.
-    """
+    """Cells in x, in y, and layers of the expected boxes, from the first on; depths (nz,) in m."""
     box, needed = [], []
     for axis, h, n, path in zip(zone.axes, (grid.hx, grid.hy), (grid.nx, grid.ny), zone.path, strict=True):
         contact = 2 * floor(axis / h) + n % 2
@@ -217,7 +213,5 @@ def expected_sides(grid: CellGrid, depths: np.ndarray, zone: Zone) -> list[tuple
 
 
 def held(boxes: list[ExpectedBox]) -> list[ExpectedBox]:
-    """The boxes, in order, whose coefficients are in memory at the end: one that is outgrown stays until the
-    next is there.
-    """
+    """The boxes, in order, in memory at the end: one that is outgrown stays until the next is there."""
     return boxes[-max(CACHED_BOXES, 2) :]

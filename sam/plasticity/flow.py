@@ -112,9 +112,7 @@ def plastic_multiplier(
 
 @dataclass(frozen=True)
 class Material:
-    """Shear modulus in Pa, the yield curve of each point, and the factor of its yield stress, which
-    broadcasts with the points. hardens_back: whether there are back-stresses.
-    """
+    """Shear modulus in Pa, yield curve of each point, and factor of its yield stress, which broadcasts."""
 
     mu: float
     curve: YieldCurve
@@ -162,9 +160,7 @@ class Flow:
         return self.material.yield_stress(self.before.peeq)
 
     def returned(self, trial: Array, m: float, *, near: Array) -> Array:
-        """The increment by the return map for a trial stress, (6, ...), zero where that does not yield; near:
-        about its length.
-        """
+        """The increment for a trial stress, (6, ...), zero where that does not yield; near: its length."""
         q = mises(trial)
         flowing = yielding(q, self.limit)
         scale = np.zeros_like(q)
@@ -185,9 +181,7 @@ class Flow:
         return s
 
     def excess(self, x: Array, s: Array) -> float:
-        """The largest (q - sigma_y)/sigma_y of the deviatoric stress s at the end of an increment x: how far
-        it violates paper Eq. 8, zero where it holds.
-        """
+        """The largest (q - sigma_y)/sigma_y, paper Eq. 8, of the stress s at the end of an increment x."""
         limit = self.material.yield_stress(self.before.peeq + equivalent_strain(x))
         excess = (mises(self.effective(x, s)) - limit) / limit  # paper Eq. 8
         return float(excess.max(initial=0.0))
@@ -214,9 +208,7 @@ CurveOfIncrement = Callable[[Array], tuple[Array, Array]]
 
 @dataclass(frozen=True)
 class BackStressFields:
-    """Constants of the back-stresses: modulus C_k in Pa, with the factor of the yield stress, and recovery
-    g_k, both (N, ...) of a shape that broadcasts with (N, cells).
-    """
+    """Constants of the back-stresses: C_k in Pa, with the factor of the yield stress, and g_k, (N, ...)."""
 
     modulus: Array
     recovery: Array

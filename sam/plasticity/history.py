@@ -218,9 +218,7 @@ def _given_up(record: Progressed, trial: Trial) -> Progressed:
 
 
 def _cut(model: Model, record: Progressed, trial: Trial) -> Progressed:
-    """After an attempt that did not converge half of the way comes first; after MOST_CUTS halvings the longer
-    iteration, or the end.
-    """
+    """After a failed attempt half of the way comes first; after MOST_CUTS the longer iteration or the end."""
     record = replace(record, parts=record.parts.tried(trial))
     if len(record.cuts) > MOST_CUTS:
         if record.longer or model.plan.paper:

@@ -46,9 +46,7 @@ CONTACT_LIMIT = 400  # iterations of a contact solve, ten times what a step take
 
 @dataclass(frozen=True)
 class ContactPressure:
-    """The contact solve on a surface that plastic strain has displaced. gap: of a load, (nx, ny) in m on the
-    box, undisplaced; hx: cell in m; force_unit: N per sum of p_hat.
-    """
+    """The contact on a displaced surface; gap of a load in m, cell hx in m, force_unit in N per p_hat."""
 
     contact: BoxContact
     gap: Callable[[Load], Array]

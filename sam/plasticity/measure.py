@@ -14,7 +14,6 @@ layers, a parabola through the higher one and its neighbours is up to .5 % too h
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -29,6 +28,7 @@ from sam.grid.cells import Window
 from sam.kernels.eigenstrain import surface_displacement_coefficients
 from sam.kernels.layer_stress import residual_stress_coefficients
 from sam.kernels.patches import STRESS, Cuboids, Lags, parity
+from sam.moving import Track
 from sam.plasticity.load_step import ContactPressure, PressureSource, Problem
 from sam.plasticity.model import Model
 from sam.plasticity.progress import Outside, Progressed
@@ -41,10 +41,6 @@ from sam.scene.result import BACK_STRESS
 from sam.scene.section import stated
 from sam.scene.verdict import last_period, loop_places
 from sam.schedule import Load, Target
-
-if TYPE_CHECKING:
-    from sam.moving import Track
-
 
 ROUNDING = 1e-9  # of a pressure: the transforms of another window round differently
 
@@ -122,9 +118,7 @@ def known_outside(record: Progressed) -> Outside:
 
 
 def _residual_stress(model: Model, record: Progressed) -> Array:
-    """Stress of the plastic strain in the rows that touch y = 0, at all depths; zero where the box covers
-    them and its own is taken, see `snapshot`.
-    """
+    """Stress of plastic strain in the rows that touch y = 0; zero where the box covers them."""
     grid, window, rows = model.grid, record.extent.window, model.grid.axis_rows
     across = window.j0 <= rows.j0 and rows.j0 + rows.ny <= window.j0 + window.ny
     covered = record.extent.layers if across and window.nx == grid.nx else 0

@@ -54,9 +54,7 @@ class Built:
 
 @dataclass(frozen=True)
 class Model:
-    """A body that yields, on the cells of a grid: what stays the same over its load history. ValueError for
-    the plan of an elastic body. built: the problem that was built last.
-    """
+    """A body that yields on a grid, over its load history; built: the problem that was built last."""
 
     elastic: ElasticProblem
     built: Built = field(default_factory=Built, compare=False, repr=False)

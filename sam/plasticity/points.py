@@ -59,9 +59,7 @@ def whole(transforms: Transforms, kept: Array) -> Array:
 
 @dataclass(frozen=True)
 class Linear:
-    """Fields that are linear in each cell of a box of (nx, ny) cells, by differences between neighbours;
-    mirror: as of `Transforms`.
-    """
+    """Fields that are linear in each of (nx, ny) cells, by differences between neighbours."""
 
     cells: tuple[int, int]
     mirror: tuple[bool, bool] = (False, False)

@@ -152,9 +152,7 @@ class Parts:
 
 @dataclass(frozen=True)
 class Outside:
-    """Fields of the plastic strain outside of the box: u_z of the surface, (nx, ny) in m, and, where it is
-    asked for, stress in the rows that touch y = 0, (6, nz, nx, rows) in Pa.
-    """
+    """Plastic u_z of the surface (nx, ny) in m, and stress in the rows at y = 0, (6, nz, nx, rows) in Pa."""
 
     displacement: Array
     stress: Array | None = None

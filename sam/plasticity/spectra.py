@@ -79,9 +79,7 @@ def _first(lags: Lags, counts: tuple[int, int]) -> Lags:
 
 
 def mean_stress_of_load(cuboids: Cuboids, load: int = 3) -> Array:
-    """Stress/Pa in the cuboids, (6, n_layers, nx, ny), of a unit pressure (load 3) or traction along x (1) on
-    one cell, as means like `CellMeans`; lengths in hx.
-    """
+    """Mean stress/Pa in cuboids, (6, n_layers, nx, ny), of pressure (3) or traction (1) on one cell."""
     lags, nu = cuboids.lags, cuboids.nu
     points, (nx, ny) = _points(cuboids.depths), lags.shape
     depths, shape = points.ravel(), (6, *points.shape)
@@ -150,9 +148,7 @@ class BoxSpectra:
 
     @cached_property
     def own_stress(self) -> Array:
-        """Stress/mu of a unit plastic strain in its own cell, (6, 6, n_layers), summed over wave numbers;
-        with `exchange` only means over x and y exchanged are right.
-        """
+        """Stress/mu of plastic strain in its own cell, (6, 6, n_layers): sums over the wave numbers."""
         ends = [np.where(np.isin(np.arange(n + 1), (0, n)), 0.5, 1.0) / n for n in self.half]
         weight = np.outer(*ends).ravel()[self.stored]
         if not isinstance(self.stored, slice):
@@ -294,9 +290,7 @@ class BoxOperator:
         response: Reals | None = None,
         traction: Array | None = None,
     ) -> Reals:
-        """Stress of pressure, traction along x (Pa) and plastic strain (`response`), (6, n_layers, nx, ny) in
-        Pa: paper Eq. 7; Eq. 4 where both parts are there.
-        """
+        """Stress of pressure, traction (Pa) and plastic strain, (6, n_layers, nx, ny) in Pa: paper Eq. 7."""
         loads = [(p, k) for k, p in enumerate((pressure, traction)) if p is not None and p.any()]
         if loads:
             columns = self._of_loads(loads)

@@ -69,9 +69,7 @@ class MaterialFields:
 
 @dataclass(frozen=True)
 class Residual:
-    """What plastic strain makes without load, linear in it: stress (6, n_layers, nx, ny) in Pa, u_z (nx, ny)
-    in m.
-    """
+    """What plastic strain makes without load: stress (6, n_layers, nx, ny) in Pa, u_z (nx, ny) in m."""
 
     stress: Array
     displacement: Array
@@ -91,9 +89,7 @@ class Residual:
 
 @dataclass(frozen=True)
 class State:
-    """A committed state of the box: material at the points of the cells, residual fields, p_hat (nx, ny),
-    load.
-    """
+    """A committed state of the box: material at the points, residual fields, p_hat (nx, ny), load."""
 
     points: MaterialFields
     residual: Residual

@@ -87,9 +87,7 @@ class Row:
 def row_of(
     grid: CellGrid, target: Target, contact: Contact, *, coefficient: Coefficient, whole: float | None = None
 ) -> Row:
-    """The row of a contact on the full grid, or on a box of it, without how it was solved. coefficient: of
-    friction, whatever the sign of the traction; whole: that under a whole tribofilm.
-    """
+    """The row of a contact; coefficient: of friction, without sign; whole: that under a whole film."""
     friction, protected, p = 0.0, None, contact.pressure
     if contact.force:
         varies = np.ndim(coefficient) > 0

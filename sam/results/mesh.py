@@ -69,9 +69,7 @@ def field_mesh(grid: CellGrid, snapshot: Snapshot, height: Array | None = None) 
 def state_grids(
     grid: CellGrid, snapshot: Snapshot, share: float, height: Array | None = None
 ) -> dict[str, GridFields]:
-    """The fields of a state by the part of the body: "surface", "plane" and, of one that yields, "body";
-    share: see `ElasticPair.share`.
-    """
+    """The fields of a state: on the "surface", in the "plane" and, of one that yields, in the "body"."""
     strained = {"plastic_strain": snapshot.strain, "peeq": snapshot.peeq} if snapshot.box else {}
     means = {"stress_Pa": snapshot.stress, **strained, **snapshot.repeated}
     in_plane = {name: field.mean(axis=-1) for name, field in means.items()}

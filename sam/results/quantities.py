@@ -30,9 +30,7 @@ EVEN = Kinks()
 
 
 def refined_peak(z: Array, values: Array, kinks: Kinks = EVEN) -> tuple[float, float]:
-    """Depth and height of the maximum, refined by a parabola through three neighbours (any spacing), not
-    across kinks of the yield stress.
-    """
+    """Depth and height of the maximum of a parabola through three neighbours, not across kinks."""
     k = int(values.argmax())
     if k in (0, len(values) - 1) or np.ptp(kinks.interval(z[k - 1 : k + 2])):
         return float(z[k]), float(values[k])
@@ -54,9 +52,7 @@ def largest_mises(z: Array, peak: Snapshot, kinks: Kinks = EVEN) -> tuple[float,
 
 
 def exceeded_strain(box: Box) -> float | None:
-    """The plastic strain that a share EXCEEDING of the plastic volume exceeds, or None; a cell counts with
-    half of its volume at its own strain.
-    """
+    """Plastic strain that a share EXCEEDING of the plastic volume exceeds; cells count by half."""
     peeq = box.peeq.ravel()
     if not peeq.any():
         return None
@@ -67,9 +63,7 @@ def exceeded_strain(box: Box) -> float | None:
 
 
 def largest_in(depths: Array, mises: Array, part: Mask) -> tuple[float, float] | None:
-    """Depth and height of the largest value (nz, n) at some depths, (nz,), or None; refined between these
-    only, as the stress jumps at the interface of a coating.
-    """
+    """Depth and height of the largest value at some depths, refined between these only; else None."""
     if not part.any():
         return None
     some = mises[part]
@@ -88,9 +82,7 @@ def quantities(
     kinks: Kinks = EVEN,
     centred: bool = True,
 ) -> Quantities:
-    """Every name of QUANTITIES. wear_volume: of all cycles in m^3; kinks: see `refined_peak`; centred:
-    whether the contact has a centre, which a rough one has not.
-    """
+    """Every name of QUANTITIES; centred: whether the contact has a centre, which a rough one has not."""
     contact, rows = peak.contact, grid.axis_rows.slices[1]
     place, top = peak.top or (None, 0.0)
     depth, largest = largest_mises(grid.depths, peak, kinks)
@@ -139,9 +131,7 @@ def _centroid(x: Array, weight: Array) -> float | None:
 
 
 def coated_quantities(depths: Array, mises: Array, p_max: float, coated: Coated) -> Quantities:
-    """What only a coated scene has, and the largest stress anywhere; None what depths or grid do not hold.
-    mises: (nz, n) in Pa; p_max in Pa.
-    """
+    """What only a coated scene has, in Pa; None what depths or grid do not hold. mises: (nz, n)."""
     below, bare = depths >= coated.thickness, coated.comparison
     in_film, in_body = largest_in(depths, mises, ~below), largest_in(depths, mises, below)
     depth, largest = max((peak for peak in (in_film, in_body) if peak), key=lambda peak: peak[1])

@@ -56,9 +56,7 @@ class RoughRecord:
         return out
 
     def table(self, grid: CellGrid, snapshots: Sequence[Snapshot]) -> dict[str, Any]:
-        """The table surface: for each state a row a cell, y running first, with original heights, those of a
-        rough counter-body last.
-        """
+        """The table surface: a row a cell for each state, y running first; counter-body heights last."""
         x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
         parts = [
             {

@@ -10,7 +10,7 @@ import numpy as np
 
 from sam.arrays import Array, Mask
 from sam.contact.normal import Contact
-from sam.grid.cells import CellGrid, Window
+from sam.grid.cells import Window
 
 SHEAR = 4  # index of the component 13 in the order 11 22 33 23 13 12
 
@@ -40,20 +40,13 @@ class Sliding:
 
 @dataclass(frozen=True)
 class Cut:
-    """The plane y = const (m) through the largest pressure at the peak, of a rough body or below a load that
-    travels; x (nx,), z (nz,) in m; stress (6, nz, nx) in Pa; peeq (nz, nx).
-    """
+    """The plane y = const (m) through the largest pressure; x, z in m, stress (6, nz, nx) in Pa, peeq."""
 
     y: float
     x: Array
     z: Array
     stress: Array
     peeq: Array
-
-    @classmethod
-    def elastic(cls, grid: CellGrid, row: int, stress: Array) -> Cut:
-        """The plane in a body without plastic strain; row: of cells; stress: (6, nz, nx) in Pa."""
-        return cls(float(grid.y[row]), grid.x, grid.depths, stress, np.zeros(stress.shape[1:]))
 
 
 def row_of_largest(contact: Contact, counts: Window) -> int | None:
@@ -64,9 +57,7 @@ def row_of_largest(contact: Contact, counts: Window) -> int | None:
 
 @dataclass(frozen=True)
 class Comparison:
-    """The bare body under the same load: p_max in Pa and von Mises stress of (nz, n) points in Pa, or a
-    warning where the grid does not suit its contact.
-    """
+    """The bare body under the same load: p_max, von Mises stress (nz, n) in Pa, or a warning."""
 
     p_max: float | None = None
     mises: Array | None = None
@@ -133,25 +124,6 @@ class Snapshot:
     stretch: int = 0
     place: tuple[float, float] = (0.0, 0.0)
     repeated: Mapping[str, Array] = field(default_factory=dict)
-
-    @classmethod
-    def elastic(
-        cls,
-        state: str,
-        contact: Contact,
-        stress: Array,
-        mises: Array,
-        *,
-        sliding: Sliding | None = None,
-        coated: Coated | None = None,
-        cut: Cut | None = None,
-    ) -> Snapshot:
-        """A state without plastic strain."""
-        zero = np.zeros_like(stress)
-        unmoved = np.zeros(contact.gap.shape)
-        return cls(
-            state, contact, unmoved, stress, zero, zero[0], mises, sliding=sliding, coated=coated, cut=cut
-        )
 
     @property
     def friction(self) -> float:

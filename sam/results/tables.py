@@ -19,9 +19,7 @@ from sam.scene.result import CUT, LINE, STRESSES
 
 @dataclass(frozen=True)
 class Remedies:
-    """What may be changed of a scene, in words; empty what may not. slower: less friction, where there is
-    much.
-    """
+    """What may be changed of a scene, in words; empty what may not. slower: less friction."""
 
     finer_cells: str
     smaller_patch: str

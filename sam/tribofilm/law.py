@@ -178,19 +178,8 @@ def radial_flow(stress: Array, plastic: Array, material: Material) -> Array:
 @dataclass(frozen=True)
 class FilmLaw:
     """The law of a tribofilm, which decides where the coefficient of friction is low and where it is high.
-
-    Parameters
-    ----------
-    young, yield_stress
-        In Pa; the film is perfectly plastic.
-    poisson
-        Poisson's ratio, below 1/2.
-    low, high
-        Coefficients of friction of a whole film, and where it has broken down.
-    limit
-        Largest loss of thickness in a cycle, as a strain (paper Eq. 17).
-    printed
-        Whether Eq. 12 and 13 are taken as printed.
+    young, yield_stress: in Pa, perfectly plastic; poisson: below 1/2; limit: largest loss of thickness in a
+    cycle, as a strain (paper Eq. 17); printed: whether Eq. 12 and 13 are taken as printed.
     """
 
     young: float
@@ -280,9 +269,7 @@ class FilmLaw:
 
     @property
     def bearable_pressure(self) -> float:
-        """Pressure in Pa from which there is no equilibrium at the low coefficient; infinite without
-        friction.
-        """
+        """Pressure in Pa from which there is no equilibrium at the low coefficient; infinite at zero."""
         return float(self.yield_stress / (np.sqrt(3.0) * self.low)) if self.low > 0 else np.inf
 
     def _checked(

@@ -91,7 +91,7 @@ def test_given_pressure_lowers_the_surface_as_hertz_s():
         {"cells": (65, 65), "extent": (24e-6, 24e-6)},
     )
     plan = sam.plan(Scene(body={"young": 210e9, "poisson": 0.3}, loading=loading, grid=grid))
-    found = plan.problem(Counters()).contact(Load(plan.schedule.peak_force))
+    found = plan.problem(Counters()).contact(Load(plan.schedule.peak.force))
     expected = np.pi * 2e9 * 10e-6 / 2 * (1 - 0.3**2) / 210e9
     assert found.displacement.max() == pytest.approx(expected, rel=3e-4, abs=0.0)
 

@@ -219,7 +219,7 @@ def test_given_tractions_make_hamiltons_stresses():
     a_scene = scene(0.4, grid={"cells": (145, 145), "depths": tuple(depths)}, **HERTZ)
     grid, counters = choose_grid(a_scene), Counters()
     assert 6e-6 / grid.hx == pytest.approx(36.25)
-    problem, load = sam.plan(a_scene).problem(counters), Load(sam.plan(a_scene).schedule.peak_force)
+    problem, load = sam.plan(a_scene).problem(counters), Load(sam.plan(a_scene).schedule.peak.force)
     contact = problem.contact(load)
     stress = plane_stress(problem.state(load, contact))[..., 0]
     for friction, good in ((0.4, True), (-0.4, False)):

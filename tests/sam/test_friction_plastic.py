@@ -153,7 +153,7 @@ def test_converged_with_the_current_traction(sliding):
 
 def test_the_other_way_is_the_mirror_image():
     """One step with q along +x and one along -x: everything mirrored, to the tolerance of the step."""
-    force, found = sam.plan(scene()).schedule.peak_force, {}
+    force, found = sam.plan(scene()).schedule.peak.force, {}
     for sign in (1.0, -1.0):
         model, now = begin(scene())
         trial = model.problem(now.extent).step(now.state, Load(force, sign))
