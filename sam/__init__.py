@@ -21,22 +21,7 @@ _WHERE = {
     "solve_contact": "sam.contact.normal",
 }
 
-__all__ = [
-    "Load",
-    "Plan",
-    "Search",
-    "UnsupportedScene",
-    "check",
-    "choose_grid",
-    "expected_force",
-    "hertz_semi_axes",
-    "left_out",
-    "misfit_zone",
-    "model_of",
-    "plan",
-    "solve",
-    "solve_contact",
-]
+__all__ = list(_WHERE)
 
 
 def __getattr__(name: str) -> Any:

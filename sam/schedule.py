@@ -114,13 +114,12 @@ class Target:
 
 @dataclass(frozen=True)
 class Schedule:
-    """All load steps of a scene, unloading in one.
-
-    peak: the largest load; unload_steps: equal steps in which a body is unloaded that yields in it; path:
-    places of the load on its way forth after each step at full size, the start first, in m; alternates:
-    whether the traction changes its sign from cycle to cycle; renews: whether another stretch of the
-    counter-body is opposite in each cycle; returns: whether even cycles go the path back; varies: whether the
-    surfaces opposite each other differ along the path; remembers: whether a film remembers the pass before.
+    """All load steps of a scene, unloading in one. peak: the largest load; unload_steps: equal steps in which
+    a body is unloaded that yields in it; path: places of the load on its way forth after each step at full
+    size, the start first, in m; alternates: whether the traction changes its sign from cycle to cycle;
+    renews: whether another stretch of the counter-body is opposite in each cycle; returns: whether even
+    cycles go the path back; varies: whether the surfaces opposite each other differ along the path;
+    remembers: whether a film remembers the pass before.
     """
 
     targets: tuple[Target, ...]
@@ -187,13 +186,12 @@ Coefficient = float | Array
 
 @dataclass(frozen=True)
 class FullSlip:
-    """The traction q = coefficient * p along x, at every step.
-
-    slides: whether there is a traction anywhere; coefficient: at the cells, with a tribofilm the low one, as
-    long as it is whole; highest: where a tribofilm has failed everywhere, else the same; coupled: whether the
-    traction moves the surfaces normally; coupling: 2 beta, the factor of the coefficient in the gap (1 with a
-    coating, where 2 beta is a function of the wave number, see `sam.contact.operators`); whole: coefficient
-    under a whole tribofilm, None without one.
+    """The traction q = coefficient * p along x, at every step. slides: whether there is a traction anywhere;
+    coefficient: at the cells, with a tribofilm the low one, as long as it is whole; highest: where a
+    tribofilm has failed everywhere, else the same; coupled: whether the traction moves the surfaces normally;
+    coupling: 2 beta, the factor of the coefficient in the gap (1 with a coating, where 2 beta is a function
+    of the wave number, see `sam.contact.operators`); whole: coefficient under a whole tribofilm, None without
+    one.
     """
 
     slides: bool = False

@@ -37,12 +37,7 @@ from sam.scene.verdict import UNSTRAINED, Verdict, summary, verdict_columns
 
 MODEL = "sam"
 COUNTED = (
-    "contact_iterations",
-    "plastic_iterations",
-    "operator_applications",
-    "displacement_applications",
-    "ffts",
-    "step_cuts",
+    "contact_iterations plastic_iterations operator_applications displacement_applications ffts step_cuts"
 )
 AT_EDGE = (Status.CONVERGED, Status.CONTACT_AT_GRID_EDGE)  # of a contact that may have touched it on its way
 
@@ -130,7 +125,7 @@ def _executed(plan: Plan, report: Progress, checkpoint: Keep | None, start: Chec
         history,
         record,
         counters=counters,
-        cost=clock.times() | {name: getattr(counters, name) for name in COUNTED},
+        cost=clock.times() | {name: getattr(counters, name) for name in COUNTED.split()},
     )
     if plan.grid.room == Room():
         return result

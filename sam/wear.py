@@ -79,14 +79,13 @@ class Worn(NamedTuple):
 
 def worn_depth(alpha: Array, faces: Array, limits: StrainLimits, interpolate: bool) -> Worn:
     """What is removed: all above its limit. alpha: accumulated plastic strain (n_layers, nx, ny), mean of
-    each cell; faces: (n_layers + 1,) in m from the current surface, 0, downwards.
-
-    interpolate: the strain is linear between the centres of the layers. At the surface it is extrapolated
-    from the two uppermost ones, never below 0 (a single layer: constant); from the lowest centre to the
-    deepest face it is constant. The depth is the first crossing with the limit, which steps where the layer
-    ends: a crossing at the step is found exactly. Error O(dz^2). Without, whole layers are removed whose mean
-    is above the limit at their centre: error O(dz). Raises ValueError for faces that do not fit the layers or
-    do not descend from 0, and for alpha that is not finite.
+    each cell; faces: (n_layers + 1,) in m from the current surface, 0, downwards. interpolate: the strain is
+    linear between the centres of the layers. At the surface it is extrapolated from the two uppermost ones,
+    never below 0 (a single layer: constant); from the lowest centre to the deepest face it is constant. The
+    depth is the first crossing with the limit, which steps where the layer ends: a crossing at the step is
+    found exactly. Error O(dz^2). Without, whole layers are removed whose mean is above the limit at their
+    centre: error O(dz). Raises ValueError for faces that do not fit the layers or do not descend from 0, and
+    for alpha that is not finite.
     """
     faces = np.asarray(faces, dtype=float)
     if faces.shape != (len(alpha) + 1,) or faces[0] != 0 or not np.all(np.diff(faces) > 0):
@@ -179,15 +178,14 @@ def _four(padded: Array, half: int, k: int, l: int) -> Array:  # noqa: E741
 
 
 def smoothed(depth: Array, window: int, order: int, all_removed: bool = False) -> Array:
-    """Smoothed worn depth (nx, ny) in m, never below 0: smoothing adds no material. window = 0: as it is.
-
-    The filter keeps the volume (see `filtered`). Around a scar its weights of order >= 2 ask for negative
-    depths; these are set to 0, so the worn volume grows by what they held. Flanks within half a window of the
-    raw scar are dug where the filter says so. Within the scar less than the raw depth may go: the
-    material that stays is removed in the next cycle even if nothing is strained, and flanks are dug again. A
-    scar of few cells may lose several times its raw volume that way, over tens of cycles. all_removed:
-    nowhere less than the raw depth, which ends that, up to the error of the remap. Raises ValueError for a
-    depth that is negative or not finite, and as `weights` does.
+    """Smoothed worn depth (nx, ny) in m, never below 0: smoothing adds no material. window = 0: as it is. The
+    filter keeps the volume (see `filtered`). Around a scar its weights of order >= 2 ask for negative depths;
+    these are set to 0, so the worn volume grows by what they held. Flanks within half a window of the raw
+    scar are dug where the filter says so. Within the scar less than the raw depth may go: the material that
+    stays is removed in the next cycle even if nothing is strained, and flanks are dug again. A scar of few
+    cells may lose several times its raw volume that way, over tens of cycles. all_removed: nowhere less than
+    the raw depth, which ends that, up to the error of the remap. Raises ValueError for a depth that is
+    negative or not finite, and as `weights` does.
     """
     check_depth(depth)
     if window == 0 or not depth.any():
@@ -245,12 +243,10 @@ T = TypeVar("T", bound=np.generic)
 
 @dataclass(frozen=True, eq=False)
 class WearState:
-    """Wear so far on the whole grid.
-
-    cell_area: hx hy in m2; depth: (nx, ny) in m, sum over the cycles of what was removed. For each cycle:
-    volumes, in m3, removed; raw_volumes: what tore, before smoothing; roofed_volumes: above the limit under a
-    sound roof, which stays; bottom_columns: how many tore down to the deepest face; residuals: of the remap,
-    see `sam.wear.closing_residual`.
+    """Wear so far on the whole grid. cell_area: hx hy in m2; depth: (nx, ny) in m, sum over the cycles of
+    what was removed. For each cycle: volumes, in m3, removed; raw_volumes: what tore, before smoothing;
+    roofed_volumes: above the limit under a sound roof, which stays; bottom_columns: how many tore down to the
+    deepest face; residuals: of the remap, see `sam.wear.closing_residual`.
     """
 
     cell_area: float
@@ -308,10 +304,9 @@ class WearLaw:
     def removed(
         self, state: WearState, fields: dict[str, Array], faces: Array, window: Window, *, peeq: Array
     ) -> tuple[WearState, dict[str, Array]]:
-        """Wear after one more cycle, and the fields of the material below the new surface.
-
-        fields: by name, each (..., n_layers, nx, ny) on the cells of the window; faces: of the layers,
-        (n_layers + 1,) in m; peeq: accumulated plastic strain of the cells, which decides.
+        """Wear after one more cycle, and the fields of the material below the new surface. fields: by name,
+        each (..., n_layers, nx, ny) on the cells of the window; faces: of the layers, (n_layers + 1,) in m;
+        peeq: accumulated plastic strain of the cells, which decides.
         """
         raw = worn_depth(peeq, faces, self.limits, self.interpolate)
         depth, roofed = (self._on_grid(each, window) for each in (raw.depth, raw.roofed))

@@ -190,11 +190,9 @@ def _mirrored(field: Array) -> bool:
 
 class BoxContact:
     """A contact restricted to a box of cells: its operators are built once and serve any gap and load (Eq. 9
-    and 10).
-
-    Without a traction, and where the gap is mirrored in x and in y, a quarter of the box is iterated.
-    residuals are those of the last solve: after each pass, without a traction after each iteration that left
-    no p < 0.
+    and 10). Without a traction, and where the gap is mirrored in x and in y, a quarter of the box is
+    iterated. residuals are those of the last solve: after each pass, without a traction after each iteration
+    that left no p < 0.
     """
 
     def __init__(self, operators: SurfaceOperators, box: Window):

@@ -264,11 +264,9 @@ def folded(field: Array, at: int, lags: int) -> Array:
 
 class RowConvolution:
     """The same sums as of `Convolution` for an observed window of few rows: sums over y are taken as they
-    stand, transforms are along x alone.
-
-    A field is first folded about the observed row, f(y - l) + parity f(y + l), so that each lag l >= 0 is met
-    once. Along x both windows lie in one frame; the transform of a kernel there is real, times -i if it is
-    odd in x.
+    stand, transforms are along x alone. A field is first folded about the observed row, f(y - l) + parity f(y
+    + l), so that each lag l >= 0 is met once. Along x both windows lie in one frame; the transform of a
+    kernel there is real, times -i if it is odd in x.
     """
 
     def __init__(
@@ -368,11 +366,9 @@ def _run(chosen: Array) -> slice:
 
 class BoxConvolution:
     """f on a box of cells -> sum over its cells of K[lag] f, on the same box; K even in x and in y, so its
-    transform is real.
-
-    kernel: lags >= 0, at least (nx, ny) of them, whose transform is not counted, as it is made when first
-    needed. Works in double, or on request in single precision: then good to about 1e-6 of the largest value,
-    in half the time.
+    transform is real. kernel: lags >= 0, at least (nx, ny) of them, whose transform is not counted, as it is
+    made when first needed. Works in double, or on request in single precision: then good to about 1e-6 of the
+    largest value, in half the time.
     """
 
     def __init__(self, kernel: Real, shape: tuple[int, int], counters: Counters):

@@ -66,7 +66,6 @@ HALVINGS = 60  # of a bracket: to the last digit
 @dataclass(frozen=True)
 class RoundedPunch:
     """The gap (r - flat)^2/(2 radius) beyond the flat end, zero below it; flat, radius (of the edge) in m.
-
     Contact of a rigid one with an elastic half-space: Ciavarella, Hills & Monno, Proc. Inst. Mech. Eng. C 212
     (1998) 319; here from the Abel transform of the gap. With cos t = flat/a the contact radius is a.
     """

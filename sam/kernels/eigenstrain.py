@@ -196,13 +196,11 @@ def _table_basis(terms: list[Term], corners: Corners, source: Array) -> list[Arr
 
 def full_space_functions(x: Array, y: Array, z: Array) -> Iterator[Array]:
     """Q_ijlm, fourth derivatives of the triple antiderivative of R, at corners, one after the other; as
-    FOURTH.
-
-    Paper Eq. 26: R_,kkkk, R_,kkkl, R_,kkll and R_,123k, up to such terms as are named below; U_i is Eq. 27.
-    Terms that the corner differences remove are chosen so that each form is odd or even in x, y and z and
-    none is a difference of nearly equal numbers. With k the third axis: Q_iiii = -2 U_i + S_j + S_k, Q_iijj =
-    -S_k, Q_iijk = x_i/R, Q_iiij = asinh(x_k/p_k) - x_i^2 x_k/(R p_k^2); U_i = atan(x_j x_k/(x_i R)), S_k = x
-    y z/(R p_k^2), p_k^2 = x_i^2 + x_j^2.
+    FOURTH. Paper Eq. 26: R_,kkkk, R_,kkkl, R_,kkll and R_,123k, up to such terms as are named below; U_i is
+    Eq. 27. Terms that the corner differences remove are chosen so that each form is odd or even in x, y and z
+    and none is a difference of nearly equal numbers. With k the third axis: Q_iiii = -2 U_i + S_j + S_k,
+    Q_iijj = -S_k, Q_iijk = x_i/R, Q_iiij = asinh(x_k/p_k) - x_i^2 x_k/(R p_k^2); U_i = atan(x_j x_k/(x_i R)),
+    S_k = x y z/(R p_k^2), p_k^2 = x_i^2 + x_j^2.
     """
     axes: tuple[Array, Array, Array] = (x, y, z)
     squares = [w * w for w in axes]
@@ -233,12 +231,10 @@ def full_space_functions(x: Array, y: Array, z: Array) -> Iterator[Array]:
 @cache
 def _full_space_matrix(nu: float) -> Array:
     """Stress/mu times 8 pi (1 - nu) in terms of Q, (36, 15); rows 6 I + J. Mura (1987) Eq. 11.30 and Hooke's
-    law.
-
-    u_i,m = Q_ijlm e_jl - 2 nu e_ll P_im - 4 (1 - nu) e_il P_lm with P_ij = Q_ijkk/2, and by contraction u_k,k
-    = -2 (1 - 2 nu) P_jl e_jl - 2 nu e_ll P_kk. The last term is zero outside; inside, P_kk = -4 pi after the
-    corner sum, it is part of `own_stress`. Thus sigma_ij = u_i,j + u_j,i - 4 nu P_kl e_kl delta_ij, fit for
-    nu = 1/2.
+    law. u_i,m = Q_ijlm e_jl - 2 nu e_ll P_im - 4 (1 - nu) e_il P_lm with P_ij = Q_ijkk/2, and by contraction
+    u_k,k = -2 (1 - 2 nu) P_jl e_jl - 2 nu e_ll P_kk. The last term is zero outside; inside, P_kk = -4 pi
+    after the corner sum, it is part of `own_stress`. Thus sigma_ij = u_i,j + u_j,i - 4 nu P_kl e_kl delta_ij,
+    fit for nu = 1/2.
     """
     fourth = np.zeros((3, 3, 3, 3, len(FOURTH)))
     for indices in np.ndindex(3, 3, 3, 3):
@@ -258,11 +254,9 @@ def _full_space_matrix(nu: float) -> Array:
 
 def own_stress(nu: float) -> Array:
     """What is subtracted inside, (6, 6): 2 e + (lam/mu) tr e, with the term of P_kk that `_full_space_matrix`
-    leaves out.
-
-    Paper: the last term of Eq. 3, printed once more in the appendix for the stress inside the volume. lam/mu
-    = 2 nu/(1 - 2 nu); the term left out is lam/mu * 8 pi nu/(8 pi (1 - nu)) tr e: together 2 nu/(1 - nu) tr
-    e.
+    leaves out. Paper: the last term of Eq. 3, printed once more in the appendix for the stress inside the
+    volume. lam/mu = 2 nu/(1 - 2 nu); the term left out is lam/mu * 8 pi nu/(8 pi (1 - nu)) tr e: together 2
+    nu/(1 - nu) tr e.
     """
     own = 2 * np.eye(6)
     own[:3, :3] += 2 * nu / (1 - nu)

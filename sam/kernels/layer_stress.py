@@ -109,18 +109,14 @@ class CornerFunctions:
 
 class LayerStress:
     """Stress in observed layers by eigenstrains in layers of cuboids, both of any thickness, from functions
-    of corners.
-
-    functions: (image?, offsets in depth) -> (offsets, functions, nx, ny), as `CornerFunctions`; points:
-    (observed layers, g) depths, the answer is the mean over these g; faces: (n + 1,) as above; transform: a
-    linear one of planes (..., nx, ny) of the given parity (odd in x?, in y?), whose last two sides are then
-    those of the answer.
-
-    With s = -1, +1 on the upper and lower face the stress is a sum over points and faces of s F(z - face) in
-    the full space and of s (p00 + face p01 + z p10 + z face p11) G(z + face) of the image. Pairs of layers
-    with equal offsets share them: the first depends on these alone, up to a sign for their opposite; the
-    second, moved to z + d and face - d, is a polynomial of second degree in d. So equal layers need 2 n - 1
-    sums each, not n^2.
+    of corners. functions: (image?, offsets in depth) -> (offsets, functions, nx, ny), as `CornerFunctions`;
+    points: (observed layers, g) depths, the answer is the mean over these g; faces: (n + 1,) as above;
+    transform: a linear one of planes (..., nx, ny) of the given parity (odd in x?, in y?), whose last two
+    sides are then those of the answer. With s = -1, +1 on the upper and lower face the stress is a sum over
+    points and faces of s F(z - face) in the full space and of s (p00 + face p01 + z p10 + z face p11) G(z +
+    face) of the image. Pairs of layers with equal offsets share them: the first depends on these alone, up to
+    a sign for their opposite; the second, moved to z + d and face - d, is a polynomial of second degree in d.
+    So equal layers need 2 n - 1 sums each, not n^2.
     """
 
     def __init__(

@@ -101,10 +101,9 @@ class Response:
 
     @cached_property
     def det(self) -> Array:
-        """(1 - lam th)(1 - kap th) - 4 kap kh^2 th as a sum of positive terms.
-
-        For kap > 0, with lam = 1 - (1 - lam): (1 - kap)(1 - lam th) + kap [(1 - lam)(1 - th) th + (1 - th)^2
-        - 4 kh^2 th], and the last two are 4 e^{-2 kh} (sinh^2 kh - kh^2).
+        """(1 - lam th)(1 - kap th) - 4 kap kh^2 th as a sum of positive terms. For kap > 0, with lam = 1 - (1
+        - lam): (1 - kap)(1 - lam th) + kap [(1 - lam)(1 - th) th + (1 - th)^2 - 4 kh^2 th], and the last two
+        are 4 e^{-2 kh} (sinh^2 kh - kh^2).
         """
         kh, th, upper = self.kh, self.th, self._less(self.lam, self.not_lam)
         if self.kap <= 0:
@@ -115,10 +114,9 @@ class Response:
 
     def _numerator(self, sign: int) -> Array:
         """1 - lam kap th^2 + sign 4 kap kh th; a sum of positive terms wherever terms of both signs could
-        cancel.
-
-        kap > 0 and sign = -1: (1 - kap) + kap [(1 - lam) th^2 + 1 - th^2 - 4 kh th]; the last three are
-        2 e^{-2 kh} (sinh 2 kh - 2 kh). kap < 0, lam < 0 and sign = 1: the same with |lam| and 1 - lam kap.
+        cancel. kap > 0 and sign = -1: (1 - kap) + kap [(1 - lam) th^2 + 1 - th^2 - 4 kh th]; the last three
+        are 2 e^{-2 kh} (sinh 2 kh - 2 kh). kap < 0, lam < 0 and sign = 1: the same with |lam| and 1 - lam
+        kap.
         """
         lam, kap, kh, th = self.lam, self.kap, self.kh, self.th
         r, (kappa1, kappa2) = self.layers.ratio, self.layers.kappa

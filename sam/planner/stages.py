@@ -17,29 +17,11 @@ from sam.scene.result import NO_FORCE
 from sam.scene.verdict import VERDICT, periods_of, reason_without
 
 LEFT_ORDER = (
-    "tangential kernels",
-    "coupling",
-    "contact search",
-    "surface coefficients",
-    "volume grid",
-    "eigenstrain kernels",
-    "plastic loop",
-    "layered coefficients",
-    "bare comparison",
-    "stresses in the film",
-    "stresses in the substrate",
-    "chemical film",
-    "worn geometry",
-    "stress outside the plane y = 0",
-    "surface heights",
-    "counter-surface heights",
-    "unloading",
-    "unloading steps",
-    "cycles after the first",
-    "back-stresses",
-    VERDICT,
-    "strain limit of the layer",
-)
+    "tangential kernels; coupling; contact search; surface coefficients; volume grid; eigenstrain kernels; "
+    "plastic loop; layered coefficients; bare comparison; stresses in the film; stresses in the substrate; "
+    "chemical film; worn geometry; stress outside the plane y = 0; surface heights; counter-surface heights; "
+    f"unloading; unloading steps; cycles after the first; back-stresses; {VERDICT}; strain limit of the layer"
+).split("; ")
 """The order in which stages that do not run are told."""
 # (c, n) of errors in percent, c times the step in contact radii to the power n, of Swift steel at p0 = 4
 # sigma_y0: steps of a/2 to a/32 against the limit of short ones (case moving-steps).

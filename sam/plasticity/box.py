@@ -154,9 +154,7 @@ class ExpectedBox:
     @property
     def coefficients(self) -> int:
         """For every wave number, the 6 x 6 components between every two layers: 36 nz^2 (N_x + 1)(N_y + 1)
-        real numbers.
-
-        Where x and y may be exchanged, those with k_x <= k_y.
+        real numbers. Where x and y may be exchanged, those with k_x <= k_y.
         """
         nx, ny = half_length(self.nx) + 1, half_length(self.ny) + 1
         return 36 * self.layers**2 * (nx * (nx + 1) // 2 if self.exchange else nx * ny)

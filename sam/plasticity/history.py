@@ -62,7 +62,6 @@ def solve_plastic(
     peak: ElasticPeak | None = None,
 ) -> tuple[History, Progressed]:
     """The load history of a body that yields, from its beginning or from a record on, and the last record.
-
     keep: called as keep(record, done, total) after each committed step, or part of one, with the number of
     load steps; peak: of the body if it stayed elastic, which the first box is chosen from.
     """
@@ -144,10 +143,9 @@ def _cycle_begun(model: Model, record: Progressed) -> Progressed:
 
 
 def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, Trial | None]:
-    """A step to a load on a box that holds it, and the record after it, committed if the step converged.
-
-    The box grows, and the tribofilm is tested, until neither changes any more; each time the step is made
-    again from the committed state. None, and a record that has ended, if the grid cannot hold the step.
+    """A step to a load on a box that holds it, and the record after it, committed if the step converged. The
+    box grows, and the tribofilm is tested, until neither changes any more; each time the step is made again
+    from the committed state. None, and a record that has ended, if the grid cannot hold the step.
     """
     law, track, film = model.plan.tribofilm, model.plan.track, record.tribofilm
     if law is not None and film is not None and track is not None:

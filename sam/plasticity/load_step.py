@@ -128,11 +128,10 @@ FIRST_CONTACT = 1e-3
 
 @dataclass(frozen=True)
 class Problem:
-    """Everything that stays the same over a load step on a box.
-
-    pressure: gives p_hat; unit: Pa per p_hat; tolerance: on yield_excess and flow_residual; coefficient: of
-    friction, a number or (nx, ny); misfit: stress of a misfit strain at its full size, (6, n_layers, nx, ny)
-    in Pa, None without one; longer: whether a step may take LONG_ITERATIONS with LONG_WINDOW.
+    """Everything that stays the same over a load step on a box. pressure: gives p_hat; unit: Pa per p_hat;
+    tolerance: on yield_excess and flow_residual; coefficient: of friction, a number or (nx, ny); misfit:
+    stress of a misfit strain at its full size, (6, n_layers, nx, ny) in Pa, None without one; longer: whether
+    a step may take LONG_ITERATIONS with LONG_WINDOW.
     """
 
     operator: BoxOperator
@@ -200,7 +199,6 @@ class Problem:
         tolerance: float | None = None,
     ) -> Trial:
         """The end of a load step from a committed state, converged or not: a fixed point of the increment x.
-
         x: (6, n_layers, nx, ny) on the cells that the symmetry keeps. guess: change of the plastic strain to
         start from; start: p_hat to start from, (nx, ny); tolerance: in place of that of the problem.
         """

@@ -113,12 +113,11 @@ def stress_at_points(stress: Array, strain: Array, m: float) -> Array:
 
 @dataclass(frozen=True)
 class Returned:
-    """What the return map makes of an increment x and the deviatoric stress that goes with it.
-
-    image: the mean of the increments at the points, (6, n_layers, nx, ny); cells: that may flow; points:
-    their increments (6, 4, n), which have the mean x; stress: deviatoric, that goes with these, in Pa; flow:
-    how the points yield; flow_residual: 2 m |image - x| over the initial yield stress, the stress by which
-    the mean over the points differs from that of the cell.
+    """What the return map makes of an increment x and the deviatoric stress that goes with it. image: the
+    mean of the increments at the points, (6, n_layers, nx, ny); cells: that may flow; points: their
+    increments (6, 4, n), which have the mean x; stress: deviatoric, that goes with these, in Pa; flow: how
+    the points yield; flow_residual: 2 m |image - x| over the initial yield stress, the stress by which the
+    mean over the points differs from that of the cell.
     """
 
     image: Array

@@ -124,12 +124,10 @@ class Change:
 
 @dataclass(frozen=True)
 class Trial:
-    """The end of a load step, converged or not: nothing is committed yet.
-
-    points: increment of the material at the points of the cells; stress in Pa, (6, n_layers, nx, ny);
-    residual: at the end of the step; yield_excess, flow_residual: see `sam.plasticity.points.Returned`;
-    history: their larger one, by iteration; goal: that it is to fall to; rise: change of what is given, see
-    `sam.schedule.Load.rise`.
+    """The end of a load step, converged or not: nothing is committed yet. points: increment of the material
+    at the points of the cells; stress in Pa, (6, n_layers, nx, ny); residual: at the end of the step;
+    yield_excess, flow_residual: see `sam.plasticity.points.Returned`; history: their larger one, by
+    iteration; goal: that it is to fall to; rise: change of what is given, see `sam.schedule.Load.rise`.
     """
 
     load: Load

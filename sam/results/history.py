@@ -44,11 +44,9 @@ class Moved:
 
 @dataclass(frozen=True)
 class PassEnd:
-    """What a pass over a path leaves; see `sam.scene.groove` for the lengths in m.
-
-    direction: 1 from start to end, -1 back; strain: largest accumulated plastic strain that it adds in the
-    steady part; drive: mean force along the path there in N; rolling: that of the pressure over the normal
-    force.
+    """What a pass over a path leaves; see `sam.scene.groove` for the lengths in m. direction: 1 from start to
+    end, -1 back; strain: largest accumulated plastic strain that it adds in the steady part; drive: mean
+    force along the path there in N; rolling: that of the pressure over the normal force.
     """
 
     cycle: int
@@ -123,15 +121,14 @@ def largest_pressure(contact: Contact, grid: CellGrid) -> float:
 
 
 def contact_area(contact: Contact, grid: CellGrid) -> float:
-    """Area in m^2 within an outline between the cells with p > 0 and the others.
-
-    At a distance d from the edge of a contact the pressure inside is in proportion to sqrt(d), and the gap
-    outside to d^(3/2) (Johnson 1985, Sec. 4.2). Of two neighbouring cells, one in contact, q = gap E*/(p h)
-    therefore tells where between their centres the edge is: q grows from 0 to infinity while it moves
-    inwards by a cell. h is the distance of lines of centres that follow the edge: in cells that are not
-    square it is found in a second pass. Straight lines join these places in each square of four centres
-    (marching squares); arcs add an eighth of a cell for each corner that turns outwards. At the end of the
-    counter-body and of the grid the outline is halfway, which gives the area of the cells.
+    """Area in m^2 within an outline between the cells with p > 0 and the others. At a distance d from the
+    edge of a contact the pressure inside is in proportion to sqrt(d), and the gap outside to d^(3/2) (Johnson
+    1985, Sec. 4.2). Of two neighbouring cells, one in contact, q = gap E*/(p h) therefore tells where between
+    their centres the edge is: q grows from 0 to infinity while it moves inwards by a cell. h is the distance
+    of lines of centres that follow the edge: in cells that are not square it is found in a second pass.
+    Straight lines join these places in each square of four centres (marching squares); arcs add an eighth of
+    a cell for each corner that turns outwards. At the end of the counter-body and of the grid the outline is
+    halfway, which gives the area of the cells.
     """
     if contact.area is not None:
         return contact.area
@@ -188,15 +185,12 @@ def history_table(rows: Sequence[Row]) -> dict[str, list[Any]]:
 @dataclass(frozen=True)
 class CycleEnd:
     """The surface after a cycle. wear_volume: of all cycles so far in m^3; roughness: without force, None if
-    smooth.
-
-    new_strain, yielding: largest new plastic strain of a cell in this cycle, and in how many there is any;
-    dissipated: energy in J of the cycle, where it is asked for; wear_of_cycle: in m^3; margin:
-    of the cell that is left nearest to its limit, 1 less strain over limit, None: nothing can wear; roofed:
-    volume in m^3 beyond its limit that stays, as sound material lies above it.
-
-    applications: of the residual-stress operator in all cycles so far; moved: by plastic strain into the
-    body, worn: depth in all cycles so far, both (nx, ny) in m, None: nothing can wear, or of another grid.
+    smooth. new_strain, yielding: largest new plastic strain of a cell in this cycle, and in how many there is
+    any; dissipated: energy in J of the cycle, where it is asked for; wear_of_cycle: in m^3; margin: of the
+    cell that is left nearest to its limit, 1 less strain over limit, None: nothing can wear; roofed: volume
+    in m^3 beyond its limit that stays, as sound material lies above it. applications: of the residual-stress
+    operator in all cycles so far; moved: by plastic strain into the body, worn: depth in all cycles so far,
+    both (nx, ny) in m, None: nothing can wear, or of another grid.
     """
 
     cycle: int
@@ -285,14 +279,13 @@ def loops_table(grid: CellGrid, rows: Sequence[LoopRow]) -> dict[str, list[Any]]
 
 @dataclass(frozen=True)
 class History:
-    """What is recorded of a load history, elastic or plastic, while it is solved and at its end.
-
-    rows: of the load steps; snapshots: name of the state -> it, in the order of the tables; ends: of the
-    cycles; passes: of those over a path; loops: of three cells over the last period; status: CONVERGED, or
-    why the history ended; reached: sides of the grid that plastic zone or contact reached; ending: of the
-    last iteration, in words; certificate: residuals of the load step to the peak, and what is measured at
-    the end; unfinished: cycle, step and attempts of the step that was not reached; floor: strain below which
-    a period counts as without plastic strain.
+    """What is recorded of a load history, elastic or plastic, while it is solved and at its end. rows: of the
+    load steps; snapshots: name of the state -> it, in the order of the tables; ends: of the cycles; passes:
+    of those over a path; loops: of three cells over the last period; status: CONVERGED, or why the history
+    ended; reached: sides of the grid that plastic zone or contact reached; ending: of the last iteration, in
+    words; certificate: residuals of the load step to the peak, and what is measured at the end; unfinished:
+    cycle, step and attempts of the step that was not reached; floor: strain below which a period counts as
+    without plastic strain.
     """
 
     rows: tuple[Row, ...] = ()

@@ -84,6 +84,7 @@ def quantities(
 ) -> Quantities:
     """Every name of QUANTITIES; centred: whether the contact has a centre, which a rough one has not."""
     contact, rows = peak.contact, grid.axis_rows.slices[1]
+    along_x = contact.pressure.sum(axis=1)
     place, top = peak.top or (None, 0.0)
     depth, largest = largest_mises(grid.depths, peak, kinks)
     area, p_max = contact_area(contact, grid), largest_pressure(contact, grid)
@@ -99,7 +100,7 @@ def quantities(
         "peeq_max": top,
         "peeq_max_depth_m": place,
         "friction_coefficient": peak.friction,
-        "pressure_centroid_x_m": _centroid(grid.x, contact.pressure.sum(axis=1)),
+        "pressure_centroid_x_m": float(grid.x @ along_x / along_x.sum()) if along_x.any() else None,
         "wear_volume_m3": wear_volume,
         "peeq_p95": None if peak.box is None else exceeded_strain(peak.box),
     }
@@ -108,26 +109,13 @@ def quantities(
     if peak.coated is not None:
         values |= coated_quantities(grid.depths, peak.mises, p_max, peak.coated)
     if unloaded is not None:
-        values |= _unloaded_quantities(grid, unloaded)
+        moved, sliding = unloaded.residual_displacement, unloaded.sliding
+        values["residual_uz_center_m"] = float(moved[grid.axis_columns, rows].mean())
+        values["residual_mises_max_Pa"] = float(unloaded.mises.max())
+        if sliding is not None:
+            values["residual_ux_center_m"] = float(sliding.residual_ux[grid.axis_columns].mean())
+            values["plastic_shear_center_m"] = float(sliding.shear[grid.axis_columns].mean())
     return {name: values.get(name) for name in QUANTITIES}
-
-
-def _unloaded_quantities(grid: CellGrid, unloaded: Snapshot) -> Quantities:
-    """What is left after the load."""
-    rows, sliding = grid.axis_rows.slices[1], unloaded.sliding
-    values: Quantities = {
-        "residual_uz_center_m": float(unloaded.residual_displacement[grid.axis_columns, rows].mean()),
-        "residual_mises_max_Pa": float(unloaded.mises.max()),
-    }
-    if sliding is not None:
-        values["residual_ux_center_m"] = float(sliding.residual_ux[grid.axis_columns].mean())
-        values["plastic_shear_center_m"] = float(sliding.shear[grid.axis_columns].mean())
-    return values
-
-
-def _centroid(x: Array, weight: Array) -> float | None:
-    """Mean of x with these weights; None where all are zero."""
-    return float(x @ weight / weight.sum()) if weight.any() else None
 
 
 def coated_quantities(depths: Array, mises: Array, p_max: float, coated: Coated) -> Quantities:
@@ -153,21 +141,10 @@ def coated_quantities(depths: Array, mises: Array, p_max: float, coated: Coated)
     return values
 
 
-SECOND_ORDER = (
-    "approach_m",
-    "p_max_Pa",
-    "p_center_Pa",
-    "mises_max_Pa",
-    "mises_max_depth_m",
-    "peeq_max",
-    "peeq_max_depth_m",
-    "residual_uz_center_m",
-    "residual_mises_max_Pa",
-    "p_max_bare_Pa",
-    "mises_max_substrate_Pa",
-    "mises_max_bare_Pa",
-    "mises_max_film_Pa",
-    "peeq_p95",
+SECOND_ORDER = tuple(
+    "approach_m p_max_Pa p_center_Pa mises_max_Pa mises_max_depth_m peeq_max peeq_max_depth_m "
+    "residual_uz_center_m residual_mises_max_Pa p_max_bare_Pa mises_max_substrate_Pa mises_max_bare_Pa "
+    "mises_max_film_Pa peeq_p95".split()
 )
 """Quantities whose error is of second order; those not named are left as the finer grid gives them."""
 

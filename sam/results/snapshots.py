@@ -17,13 +17,11 @@ SHEAR = 4  # index of the component 13 in the order 11 22 33 23 13 12
 
 @dataclass(frozen=True)
 class Sliding:
-    """What friction adds to a state.
-
-    traction: q_x on the body, (nx, ny) in Pa. The others in the rows of cells that touch y = 0, (nx, rows) in
-    m. ux: displacement of the surface along x, by pressure, traction and plastic strain; residual_ux: the
-    part of the plastic strain; uz: what u_z of the body has beyond its share of the contact's displacement;
-    shear: -integral of 2 eps_p_13 over depth, by which plastic flow carries the surface along x over the
-    unstrained depth.
+    """What friction adds to a state. traction: q_x on the body, (nx, ny) in Pa. The others in the rows of
+    cells that touch y = 0, (nx, rows) in m. ux: displacement of the surface along x, by pressure, traction
+    and plastic strain; residual_ux: the part of the plastic strain; uz: what u_z of the body has beyond its
+    share of the contact's displacement; shear: -integral of 2 eps_p_13 over depth, by which plastic flow
+    carries the surface along x over the unstrained depth.
     """
 
     traction: Array
@@ -78,10 +76,9 @@ class Coated:
 
 @dataclass(frozen=True)
 class Box:
-    """The cells that may yield, with all that is known of them.
-
-    x, y, z: faces of the cells in m, z below the current surface; stress in Pa, strain: plastic, both (6, nz,
-    nx, ny); peeq: (nz, nx, ny); repeated: of repeated loading, name -> (nz, nx, ny) or (6, nz, nx, ny).
+    """The cells that may yield, with all that is known of them. x, y, z: faces of the cells in m, z below the
+    current surface; stress in Pa, strain: plastic, both (6, nz, nx, ny); peeq: (nz, nx, ny); repeated: of
+    repeated loading, name -> (nz, nx, ny) or (6, nz, nx, ny).
     """
 
     x: Array
@@ -96,15 +93,14 @@ class Box:
 @dataclass(frozen=True)
 class Snapshot:
     """A state that goes into the tables: "peak" or "unloaded", or "last" where the peak was not reached.
-
-    contact: on the full grid; residual_displacement: of the surface, (nx, ny) in m; stress: (6, nz, nx,
-    rows) in Pa, strain: plastic, (6, nz, nx, rows), peeq: (nz, nx, rows), all in the rows of cells that touch
-    y = 0; mises: von Mises stress of (nz, n) points in Pa, among which the largest is; flowed: which of them
-    have plastic strain, None: none; top: depth in m and value of the largest peeq anywhere, between the
-    cells, None where nothing yields; sliding: None without friction; coated: None without coating; worn:
-    depth in m, (nx, ny), None: nothing can wear; cut: None: not at the peak, or the contact is in y = 0; box:
-    None: the body is elastic; stretch, place: of the counter-body that is opposite, see `sam.schedule.Load`;
-    repeated: fields of repeated loading, name -> (nz, nx, rows) or (6, nz, nx, rows).
+    contact: on the full grid; residual_displacement: of the surface, (nx, ny) in m; stress: (6, nz, nx, rows)
+    in Pa, strain: plastic, (6, nz, nx, rows), peeq: (nz, nx, rows), all in the rows of cells that touch y =
+    0; mises: von Mises stress of (nz, n) points in Pa, among which the largest is; flowed: which of them have
+    plastic strain, None: none; top: depth in m and value of the largest peeq anywhere, between the cells,
+    None where nothing yields; sliding: None without friction; coated: None without coating; worn: depth in m,
+    (nx, ny), None: nothing can wear; cut: None: not at the peak, or the contact is in y = 0; box: None: the
+    body is elastic; stretch, place: of the counter-body that is opposite, see `sam.schedule.Load`; repeated:
+    fields of repeated loading, name -> (nz, nx, rows) or (6, nz, nx, rows).
     """
 
     state: str

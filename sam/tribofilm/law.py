@@ -43,11 +43,9 @@ from sam.scene.section import stated
 
 @dataclass(frozen=True, eq=False)
 class FilmState:
-    """The film since the start of the cycle.
-
-    plastic: plastic strain (6, nx, ny), tensor components in the order 11 22 33 23 13 12; failed: (nx, ny)
-    bool. A failed cell keeps the strain at which it failed; where no equilibrium exists, that of the step
-    before.
+    """The film since the start of the cycle. plastic: plastic strain (6, nx, ny), tensor components in the
+    order 11 22 33 23 13 12; failed: (nx, ny) bool. A failed cell keeps the strain at which it failed; where
+    no equilibrium exists, that of the step before.
     """
 
     plastic: Array
@@ -80,11 +78,9 @@ class Material:
 
 @dataclass(frozen=True)
 class Loads:
-    """What acts on n whole cells of a film at the end of a load step.
-
-    plastic: strain at its beginning, (6, n), order 11 22 33 23 13 12; strain: of the body's surface since the
-    start of the cycle, xx, yy, xy, (3, n), and bulk_normal its zz, (n,), for the printed form only; pressure
-    and shear: P and s_xz in Pa, (n,).
+    """What acts on n whole cells of a film at the end of a load step. plastic: strain at its beginning, (6,
+    n), order 11 22 33 23 13 12; strain: of the body's surface since the start of the cycle, xx, yy, xy, (3,
+    n), and bulk_normal its zz, (n,), for the printed form only; pressure and shear: P and s_xz in Pa, (n,).
     """
 
     plastic: Array

@@ -39,12 +39,11 @@ def bins_of_visits(period: float) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Visits:
-    """When the cells of a surface were in contact with a counter-body that moves.
-
-    clock: way of the counter-body at the end of the last step in m; inside: which cells were in contact then;
-    left: the clock when a cell left, NaN of one that never was inside; limit: largest thinning of the film in
-    the present visit; strain: as `reference` of `TribofilmState`, at the end of the last step, (4, nx, ny);
-    counts: of visits by the way between two of them, see `bins_of_visits`. All but that (nx, ny).
+    """When the cells of a surface were in contact with a counter-body that moves. clock: way of the
+    counter-body at the end of the last step in m; inside: which cells were in contact then; left: the clock
+    when a cell left, NaN of one that never was inside; limit: largest thinning of the film in the present
+    visit; strain: as `reference` of `TribofilmState`, at the end of the last step, (4, nx, ny); counts: of
+    visits by the way between two of them, see `bins_of_visits`. All but that (nx, ny).
     """
 
     clock: float
@@ -62,10 +61,9 @@ class Visits:
 
 @dataclass(frozen=True, eq=False)
 class TribofilmState:
-    """The tribofilm on the cells of a surface, and the strain of the surface at the start of the cycle.
-
-    film: on (nx, ny) cells; reference: total strains xx, yy, xy (tensor), zz of the surface when the film was
-    new, (4, nx, ny). The printed form of the law alone needs zz. visits: below a counter-body that moves.
+    """The tribofilm on the cells of a surface, and the strain of the surface at the start of the cycle. film:
+    on (nx, ny) cells; reference: total strains xx, yy, xy (tensor), zz of the surface when the film was new,
+    (4, nx, ny). The printed form of the law alone needs zz. visits: below a counter-body that moves.
     """
 
     film: FilmState
