@@ -6,37 +6,22 @@ from typing import Any
 
 _WHERE = {
     "Load": "sam.schedule",
-    "Plan": "sam.planner.plan",
+    "Plan": "sam.elastic.problem",
     "Search": "sam.contact.normal",
-    "UnsupportedScene": "sam.planner.refusals",
-    "check": "sam.planner.refusals",
+    "UnsupportedScene": "sam.planner.make",
+    "check": "sam.planner.make",
     "choose_grid": "sam.planner.make",
     "expected_force": "sam.planner.bodies",
     "hertz_semi_axes": "sam.planner.bodies",
     "left_out": "sam.planner.make",
     "misfit_zone": "sam.planner.bodies",
-    "model_of": "sam.planner.yielding",
+    "model_of": "sam.plasticity.model",
     "plan": "sam.planner.make",
     "solve": "sam.solver",
     "solve_contact": "sam.contact.normal",
 }
 
-__all__ = [
-    "Load",
-    "Plan",
-    "Search",
-    "UnsupportedScene",
-    "check",
-    "choose_grid",
-    "expected_force",
-    "hertz_semi_axes",
-    "left_out",
-    "misfit_zone",
-    "model_of",
-    "plan",
-    "solve",
-    "solve_contact",
-]
+__all__ = list(_WHERE)
 
 
 def __getattr__(name: str) -> Any:

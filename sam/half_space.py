@@ -11,19 +11,9 @@ from math import pi, sqrt
 
 @dataclass(frozen=True)
 class ElasticConstants:
-    """An isotropic elastic body.
+    """An isotropic elastic body: Young's modulus in Pa and Poisson's ratio.
 
-    Parameters
-    ----------
-    young : float
-        Young's modulus in Pa.
-    poisson : float
-        Poisson's ratio.
-
-    Examples
-    --------
-    >>> steel = ElasticConstants(210e9, 0.3)
-    >>> round(steel.shear / 1e9, 1)
+    >>> round(ElasticConstants(210e9, 0.3).shear / 1e9, 1)
     80.8
     """
 
@@ -48,17 +38,9 @@ class ElasticConstants:
 
 @dataclass(frozen=True)
 class ElasticPair:
-    """The body, and the counter-body that it is in contact with.
+    """The body, of a coated one the material below the coating, and the counter-body; None if it is rigid, or
+    if a scene gives the pressure in place of it.
 
-    Parameters
-    ----------
-    body : ElasticConstants
-        The half-space z >= 0. Of a coated body the material below the coating.
-    other : ElasticConstants, optional
-        The counter-body; None if it is rigid, or if a scene gives the pressure in place of it.
-
-    Examples
-    --------
     >>> steel = ElasticConstants(210e9, 0.3)
     >>> round(ElasticPair(steel).contact_modulus / 1e9, 1)  # on a rigid body: E/(1 - nu^2)
     230.8
@@ -71,10 +53,8 @@ class ElasticPair:
 
     @property
     def contact_modulus(self) -> float:
-        """E* in Pa, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (Johnson 1985, Eq. 4.23).
-
-        It stands in D_33 of paper Eq. 5, which is printed with E alone. With a coating it is a unit of
-        pressure, no more.
+        """E* in Pa, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (Johnson 1985, Eq. 4.23). In D_33 of paper Eq. 5,
+        which is printed with E alone. With a coating it is a unit of pressure, no more.
         """
         compliance = self.body.compliance
         if self.other is not None:
@@ -89,9 +69,8 @@ class ElasticPair:
     @property
     def tangential_mismatch(self) -> float:
         """2 beta of Dundurs (1969), E*/2 [(1 - 2 nu1)/mu1 - (1 - 2 nu2)/mu2]: body 2 carries the opposite
-        traction.
-
-        It is zero between like bodies and largest against a rigid one; the paper prints the first term alone.
+        traction; zero between like bodies, largest against a rigid one. The paper prints the first term
+        alone.
         """
         compliance = self.body.tangential_compliance
         if self.other is not None:
@@ -100,27 +79,7 @@ class ElasticPair:
 
 
 def circular_contact_radius(force: float, radius: float, modulus: float) -> float:
-    """Contact radius of a sphere on a half-space by Hertz. Johnson 1985, Eq. 4.22.
-
-    Parameters
-    ----------
-    force : float
-        Normal force in N.
-    radius : float
-        Radius of the sphere in m.
-    modulus : float
-        Contact modulus E* in Pa.
-
-    Returns
-    -------
-    float
-        Radius in m.
-
-    Examples
-    --------
-    >>> circular_contact_radius(0.0, 0.01, 230e9)
-    0.0
-    """
+    """Contact radius in m of Hertz of a sphere (radius in m), force in N, E* in Pa (Johnson 1985, 4.22)."""
     return float((3 * force * radius / (4 * modulus)) ** (1 / 3))
 
 

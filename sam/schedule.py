@@ -13,6 +13,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from math import nan
 
+import numpy as np
+
+from sam.arrays import Array
+
 
 @dataclass(frozen=True)
 class Approach:
@@ -23,22 +27,10 @@ class Approach:
 
 @dataclass(frozen=True)
 class Load:
-    """What acts on the body.
-
-    Parameters
-    ----------
-    force
-        Normal, in N; under a given approach that of the solved contact, NaN before.
-    sign
-        Of the traction along x.
-    x, y
-        Where it is centred in m, see `sam.grid.gap.InitialGap`.
-    stretch
-        Which stretch of a rough counter-body is opposite, from 0.
-    misfit
-        Share of the misfit strain that a scene gives, 0 to 1.
-    approach
-        Rigid approach of the bodies in m that is given in place of the force; None where the force is.
+    """What acts on the body. force: normal, in N, under a given approach that of the solved contact, NaN
+    before; sign: of the traction along x; x, y: where it is centred in m; stretch: which one of a rough
+    counter-body is opposite, from 0; misfit: share of the misfit strain, 0 to 1; approach: of the rigid
+    bodies in m, given in place of the force, or None.
     """
 
     force: float
@@ -85,8 +77,8 @@ class Load:
         return replace(self, force=self.force * k / count, approach=approach, misfit=self.misfit * k / count)
 
     def rise(self, start: Load) -> float:
-        """How much more is given than at another load, in N or in m; NaN if the one gives a force and the
-        other an approach, but for no force at all, which counts as no approach.
+        """How much more is given than at another load, in N or m; NaN where one gives a force and the other
+        an approach, but for no force, which counts as no approach.
         """
         if (self.approach is None) != (start.approach is None) and self.force and start.force:
             return nan
@@ -107,10 +99,8 @@ UNLOADED = Load(0.0)
 
 @dataclass(frozen=True)
 class Target:
-    """The end of a load step. cycle, step: as in the history.
-
-    snapshot: the state to be recorded there ("peak", "unloaded" or none); elastic_unloading: in a
-    single step, if that strains nothing; note: for the history.
+    """The end of a load step of a cycle. snapshot: the state to be recorded there ("peak", "unloaded" or
+    none); elastic_unloading: in a single step, if that strains nothing; note: for the history.
     """
 
     cycle: int
@@ -124,13 +114,12 @@ class Target:
 
 @dataclass(frozen=True)
 class Schedule:
-    """All load steps of a scene, unloading in one.
-
-    peak: the largest load; unload_steps: equal steps in which a body is unloaded that yields in it; path:
-    places of the load on its way forth after each step at full size, the start first, in m; alternates:
-    whether the traction changes its sign from cycle to cycle; renews: whether another stretch of the
-    counter-body is opposite in each cycle; returns: whether even cycles go the path back; varies: whether the
-    surfaces opposite each other differ along the path; remembers: whether a film remembers the pass before.
+    """All load steps of a scene, unloading in one. peak: the largest load; unload_steps: equal steps in which
+    a body is unloaded that yields in it; path: places of the load on its way forth after each step at full
+    size, the start first, in m; alternates: whether the traction changes its sign from cycle to cycle;
+    renews: whether another stretch of the counter-body is opposite in each cycle; returns: whether even
+    cycles go the path back; varies: whether the surfaces opposite each other differ along the path;
+    remembers: whether a film remembers the pass before.
     """
 
     targets: tuple[Target, ...]
@@ -144,44 +133,22 @@ class Schedule:
     varies: bool = False
     remembers: bool = False
 
-    def stretch_of(self, cycle: int) -> int:
-        """The stretch of the counter-body that is opposite in a cycle (from 1)."""
-        return cycle - 1 if self.renews else 0
-
     @property
     def peaks(self) -> list[Load]:
-        """The largest load on each stretch of the counter-body, but for the sign of its traction; at each
-        place where the surfaces differ along the path.
-        """
+        """The largest load on each stretch of the counter-body, and at each place where surfaces differ."""
         places = self.path if self.varies else ((self.peak.x, self.peak.y),)
         stretches = range(self.cycles if self.renews else 1)
         return [replace(self.peak, stretch=k, x=x, y=y) for k in stretches for x, y in places]
 
     @property
     def different(self) -> list[Target]:
-        """The steps that an elastic body needs: of all cycles where they have other stretches or go back,
-        else of the last.
-        """
-        return self.last_cycle if self.all_alike else list(self.targets)
+        """The steps that an elastic body needs: of all cycles where these differ, else of the last."""
+        return [target for target in self.targets if target.cycle == self.cycles or not self.all_alike]
 
     @property
     def all_alike(self) -> bool:
         """Whether the cycles of an elastic body differ in nothing but the sign of the traction."""
         return not (self.renews or self.returns or self.remembers)
-
-    def sign_of(self, cycle: int) -> float:
-        """Sign of the traction along x in a cycle (from 1)."""
-        return next(target.load.sign for target in self.targets if target.cycle == cycle)
-
-    @property
-    def peak_force(self) -> float:
-        """The largest force in N; NaN where the approach is given."""
-        return self.peak.force
-
-    @property
-    def last_cycle(self) -> list[Target]:
-        """The steps of the last cycle, which has the states that are recorded."""
-        return [target for target in self.targets if target.cycle == self.cycles]
 
     @property
     def rises(self) -> int:
@@ -203,13 +170,38 @@ class Schedule:
         return not self.targets[-1].rises
 
     def in_steps(self, target: Target, peak: Load) -> list[Target]:
-        """Unloading in equal steps of the force, in place of the target that does it in a single one.
-
-        peak: the load from which, with its force; of a body that yields nobody knows at which approach it is
-        zero.
+        """Unloading in equal steps of the force from the peak, in place of the target that does it in one; of
+        a body that yields nobody knows at which approach the force is zero.
         """
         count = self.unload_steps
         left = [1 - k / count if k < count else 0.0 for k in range(1, count + 1)]
         loads = [replace(target.load, force=peak.force * part, misfit=peak.misfit * part) for part in left]
         steps = [Target(target.cycle, target.step + k, load, False) for k, load in enumerate(loads)]
         return [*steps[:-1], replace(steps[-1], snapshot=target.snapshot)]
+
+
+Coefficient = float | Array
+"""A number, or one for each cell, (nx, ny)."""
+
+
+@dataclass(frozen=True)
+class FullSlip:
+    """The traction q = coefficient * p along x, at every step. slides: whether there is a traction anywhere;
+    coefficient: at the cells, with a tribofilm the low one, as long as it is whole; highest: where a
+    tribofilm has failed everywhere, else the same; coupled: whether the traction moves the surfaces normally;
+    coupling: 2 beta, the factor of the coefficient in the gap (1 with a coating, where 2 beta is a function
+    of the wave number, see `sam.contact.operators`); whole: coefficient under a whole tribofilm, None without
+    one.
+    """
+
+    slides: bool = False
+    coefficient: Coefficient = 0.0
+    highest: Coefficient = 0.0
+    coupled: bool = False
+    coupling: float = 0.0
+    whole: float | None = None
+
+    @property
+    def uniform(self) -> bool:
+        """Whether one coefficient holds everywhere and always."""
+        return self.whole is None and np.ndim(self.coefficient) == 0

@@ -7,42 +7,44 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from sam.contact.convolution import Counters
-from sam.contact.fit import fit_of
-from sam.contact.normal import Contact
+from sam.contact.normal import Contact, fit_of
 from sam.elastic.history import solve_elastic
-from sam.elastic.onset import elastic_peak, yields
-from sam.elastic.problem import ElasticProblem
-from sam.grid.cells import CellGrid, Room
-from sam.grid.enlargement import Sides, enlarged, enlargement, how_to_enlarge
-from sam.planner import parts
-from sam.planner.make import plan
-from sam.planner.plan import Plan
-from sam.planner.refusals import check
+from sam.elastic.problem import ElasticProblem, Plan
+from sam.elastic.stress import elastic_peak, yields
+from sam.grid.cells import Room, Sides, enlarged, enlargement, how_to_enlarge
+from sam.moving import path_quantities, path_tables
+from sam.planner.bodies import Bodies
+from sam.planner.make import check_bodies, plan_of
 from sam.planner.stages import left_out_of_unyielding
-from sam.results.advice import advice
-from sam.results.extrapolation import with_extrapolation
-from sam.results.history import CycleEnd, PassEnd, Row, cycles_table, history_table, of_ends
-from sam.results.loops import LoopRow, loops_table
+from sam.plasticity.history import on_larger_grid, solve_plastic
+from sam.plasticity.progress import Progressed
+from sam.results.history import History, Row, cycles_table, history_table, loops_table, of_ends
 from sam.results.mesh import cycle_grids, field_mesh, state_grids
-from sam.results.peaks import EVEN
-from sam.results.quantities import quantities
+from sam.results.quantities import EVEN, quantities, with_extrapolation
 from sam.results.snapshots import Snapshot
-from sam.results.tables import state_tables
+from sam.results.tables import advice, state_tables
 from sam.scene import Result, Scene, Status
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
-from sam.scene.result import DISSIPATED, FRICTION_SIGN, ROOFED, Attempt, Progress, of_load, residual_table
+from sam.scene.result import (
+    DISSIPATED,
+    FRICTION_SIGN,
+    ROOFED,
+    Progress,
+    of_load,
+    residual_table,
+)
 from sam.scene.verdict import UNSTRAINED, Verdict, summary, verdict_columns
 
-if TYPE_CHECKING:
-    from sam.plasticity.progress import Progressed
-
 MODEL = "sam"
+COUNTED = (
+    "contact_iterations plastic_iterations operator_applications displacement_applications ffts step_cuts"
+)
 AT_EDGE = (Status.CONVERGED, Status.CONTACT_AT_GRID_EDGE)  # of a contact that may have touched it on its way
 
 
@@ -77,40 +79,16 @@ def solve(
     ValueError
         For a `start` of another model.
     """
-    check(scene)
+    bodies = Bodies(scene)
+    check_bodies(bodies)
     check_model(start, MODEL)
-    planned = plan(scene)
+    plan = plan_of(bodies)
     report = progress or (lambda *_: None)
-    if planned.coarser is None:
-        return _executed(planned, report, checkpoint, start)
-    before = _executed(planned.coarser, report, None, None)
-    fine = _executed(planned, report, checkpoint, start)
-    return with_extrapolation(before, fine, finds_force=planned.schedule.peak.approach is not None)
-
-
-@dataclass(frozen=True)
-class _Outcome:
-    """A load history on one grid. yields: whether the plastic loop ran; others as in
-    `sam.plasticity.solution.Found`.
-    """
-
-    rows: Sequence[Row]
-    snapshots: list[Snapshot]
-    status: Status
-    reached: Sides
-    yields: bool = False
-    certificate: Mapping[str, float] = field(default_factory=dict)
-    discretisation: Mapping[str, object] = field(default_factory=dict)
-    warnings: tuple[str, ...] = ()
-    ends: tuple[CycleEnd, ...] = ()
-    volume: float = 0.0
-    ending: str = ""
-    unfinished: tuple[tuple[int, int, Sequence[Attempt]], ...] = ()
-    so_far: Progressed | None = None
-    verdicts: tuple[Verdict, ...] = ()
-    floor: float = 0.0
-    passes: tuple[PassEnd, ...] = ()
-    loops: tuple[LoopRow, ...] = ()
+    if plan.coarser is None:
+        return _executed(plan, report, checkpoint, start)
+    before = _executed(plan.coarser, report, None, None)
+    fine = _executed(plan, report, checkpoint, start)
+    return with_extrapolation(before, fine, finds_force=plan.schedule.peak.approach is not None)
 
 
 class _Clock:
@@ -126,249 +104,184 @@ class _Clock:
         return {"setup_s": self.before["setup_s"] + setup, "solve_s": self.before["solve_s"] + solving}
 
 
-KeepRecord = Callable[["Progressed", int, int], None]
+KeepRecord = Callable[[Progressed, int, int], None]
 
 
-def _executed(planned: Plan, report: Progress, checkpoint: Keep | None, start: Checkpoint | None) -> Result:
-    """The result of a plan. Where the plastic zone or the contact reaches the edge of a chosen grid, on a
-    larger one.
-    """
-    clock, counters = _Clock(start.cost if start else None), Counters()
-    so_far: Progressed | None = parts.progressed(start) if start is not None else None
-    now = planned if so_far is None else planned.on(so_far.room)
+def _executed(plan: Plan, report: Progress, checkpoint: Keep | None, start: Checkpoint | None) -> Result:
+    """The result of a plan, on a larger grid where plastic zone or contact reach the edge of a chosen one."""
+    clock, counters, first = _Clock(start.cost if start else None), Counters(), plan.grid
+    record = start.record(Progressed) if start is not None else None
+    plan = plan if record is None else plan.on(record.room)
     clock.ready = time.perf_counter()
 
     def keep(record: Progressed, done: int, total: int) -> None:
         if checkpoint is not None:
             checkpoint(Checkpoint.of(MODEL, record, done=done, total=total, cost=clock.times()))
 
-    kept = keep if checkpoint is not None else None
-    found = _on_grid(now, counters, report, keep=kept, start=so_far)
-    while room := enlarged(now.given_sides, now.grid.room, found.reached):
-        larger = now.on(room)
-        so_far = found.so_far and parts.on_larger_grid(found.so_far, now.grid, larger.grid)
-        now = larger
-        found = _on_grid(now, counters, report, keep=kept, start=so_far)
-    result = _result(now, found, counters, clock.times() | _counts(counters))
-    if now.grid.room == Room():
+    keeper = keep if checkpoint is not None else None
+    history, record = _on_grid(plan, counters, report, keep=keeper, start=record)
+    while room := enlarged(plan.given_sides, plan.grid.room, history.reached):
+        larger = plan.on(room)
+        anew = record is None or history.status is Status.CONTACT_AT_GRID_EDGE
+        record = None if anew or record is None else on_larger_grid(record, plan.grid, larger.grid)
+        plan = larger
+        history, record = _on_grid(plan, counters, report, keep=keeper, start=record)
+    result = _result(
+        plan,
+        history,
+        record,
+        counters=counters,
+        cost=clock.times() | {name: getattr(counters, name) for name in COUNTED.split()},
+    )
+    if plan.grid.room == Room():
         return result
-    extra, words = enlargement(planned.grid, now.grid)
+    extra, words = enlargement(first, plan.grid)
     return replace(
         result, discretisation={**result.discretisation, **extra}, warnings=(*result.warnings, words)
     )
 
 
 def _on_grid(
-    planned: Plan, counters: Counters, report: Progress, *, keep: KeepRecord | None, start: Progressed | None
-) -> _Outcome:
-    """The load history on the grid of a plan, from its beginning or from a record on."""
-    problem, peak = planned.problem(counters), None
-    if planned.plasticity is None:
-        return _elastic(planned, problem, report)
+    plan: Plan, counters: Counters, report: Progress, *, keep: KeepRecord | None, start: Progressed | None
+) -> tuple[History, Progressed | None]:
+    """The history on the grid of a plan, from its beginning or a record on, and the last plastic record."""
+    problem, peak = plan.problem(counters), None
+    if plan.plasticity is None:
+        return _elastic(problem, report), None
     if start is None:
-        found_peaks = (elastic_peak(problem, load) for load in planned.schedule.peaks)
-        peak = next((each for each in found_peaks if yields(each, planned.initial_yield)), None)
+        peaks = (elastic_peak(problem, load) for load in plan.schedule.peaks)
+        peak = next((each for each in peaks if yields(each, plan.initial_yield)), None)
         if peak is None:
-            return _elastic(planned, problem, report)
-    found = parts.yielding()(planned, problem, report, keep=keep, start=start, peak=peak)
-    status, contact = found.status, found.snapshots[0].contact
+            return _elastic(problem, report), None
+    history, record = solve_plastic(problem, report, keep=keep, start=start, peak=peak)
+    state = next(iter(history.snapshots.values()))
+    status, reached = history.status, history.reached
     if status is Status.CONVERGED:
-        status = _status(found.rows, contact, planned)
-    reached = found.reached
-    so_far: Progressed | None = found.so_far
+        status = _status(history.rows, state.contact, plan)
     if status is Status.CONTACT_AT_GRID_EDGE:
-        reached, so_far = Sides(beside=True), None
-    return _Outcome(
-        found.rows,
-        found.snapshots,
-        status,
-        reached,
-        True,
-        found.certificate,
-        found.discretisation,
-        (*found.warnings, *_warnings(planned, found.snapshots[0]), *_of_steps(planned)),
-        found.ends,
-        found.wear.volume if found.wear is not None else 0.0,
-        found.ending,
-        found.unfinished,
-        so_far,
-        found.verdicts,
-        found.floor,
-        found.so_far.measured.passes,
-        found.so_far.measured.loops,
-    )
+        reached = Sides(beside=True)
+    of_steps = () if plan.track is None else plan.track.warnings
+    warnings = (*history.warnings, *_warnings(plan, state), *of_steps)
+    return replace(history, status=status, reached=reached, warnings=warnings), record
 
 
-def _elastic(planned: Plan, problem: ElasticProblem, report: Progress) -> _Outcome:
+def _elastic(problem: ElasticProblem, report: Progress) -> History:
     """The load history of a body that stays elastic."""
-    tribofilm = planned.tribofilm(planned.grid) if planned.tribofilm is not None else None
-    rows, snapshots = solve_elastic(
-        problem, planned.schedule, planned.remedies, report, tribofilm=tribofilm, track=planned.track
-    )
-    status, ending = _status(rows, snapshots[0].contact, planned), ""
-    left = next((row for row in rows if row.moved is not None and row.moved.at_edge), None)
-    if status in AT_EDGE and left is not None and planned.rough is None and left.moved is not None:
+    plan, history = problem.plan, solve_elastic(problem, report)
+    peak = next(iter(history.snapshots.values()))
+    status, ending = _status(history.rows, peak.contact, plan), ""
+    left = next((row for row in history.rows if row.moved is not None and row.moved.at_edge), None)
+    if status in AT_EDGE and left is not None and plan.rough is None and left.moved is not None:
         status = Status.CONTACT_AT_GRID_EDGE
         ending = f"first {left.moved.way:.4g} m after the start of the path"
-    reached, warnings = Sides(beside=status is Status.CONTACT_AT_GRID_EDGE), _warnings(planned, snapshots[0])
-    return _Outcome(rows, snapshots, status, reached, warnings=warnings, ending=ending)
+    reached = Sides(beside=status is Status.CONTACT_AT_GRID_EDGE)
+    return replace(history, status=status, reached=reached, ending=ending, warnings=_warnings(plan, peak))
 
 
-def _status(rows: Sequence[Row], peak: Contact, planned: Plan) -> Status:
-    """All steps count for convergence, the contact at the peak (on the full grid) for the fit of the grid
-    too.
-    """
+def _status(rows: Sequence[Row], peak: Contact, plan: Plan) -> Status:
+    """All steps count for convergence, the contact at the peak (on the full grid) for the fit too."""
     if not all(row.converged for row in rows):
         return Status.NOT_CONVERGED
-    return fit_of(peak, planned.rough is not None)
+    return fit_of(peak, plan.rough is not None)
 
 
-def _warnings(planned: Plan, peak: Snapshot) -> tuple[str, ...]:
+def _warnings(plan: Plan, peak: Snapshot) -> tuple[str, ...]:
     """What a user should know about a rough or coated peak."""
-    out = planned.rough.warnings(planned.grid, peak.contact) if planned.rough is not None else ()
+    out = plan.rough.warnings(plan.grid, peak.contact) if plan.rough is not None else ()
     comparison = peak.coated.comparison if peak.coated is not None else None
     return (*out, comparison.warning) if comparison is not None and comparison.warning else out
 
 
-def _of_steps(planned: Plan) -> tuple[str, ...]:
-    """What a user should know about the steps of a counter-body that moves."""
-    return () if planned.track is None else planned.track.warnings
-
-
-def _result(planned: Plan, found: _Outcome, counters: Counters, cost: Mapping[str, Any]) -> Result:
-    """The record of what was found on the last grid."""
-    grid, status, ending, left_out = planned.grid, found.status, found.ending, planned.left_out
-    if planned.plasticity is not None and not found.yields:
-        left_out += left_out_of_unyielding(planned)
+def _result(
+    plan: Plan, history: History, record: Progressed | None, *, counters: Counters, cost: Mapping[str, Any]
+) -> Result:
+    """The result of a history on the last grid; record: the last one of a body that yields."""
+    grid, status, ending, left_out = plan.grid, history.status, history.ending, plan.left_out
+    states, judging, rough, steps = list(history.snapshots.values()), plan.judging, plan.rough, plan.schedule
+    if plan.plasticity is not None and record is None:
+        left_out += left_out_of_unyielding(plan)
     if status is Status.NOT_CONVERGED:
-        ending = next((row.ending for row in found.rows if row.ending), "")
-    peak, rough = found.snapshots[0], planned.rough
-    heights, steps = rough.heights if rough is not None else None, planned.schedule
-    words = advice(planned.remedies, status, how_to_enlarge(grid, found.reached))
-    of_path = _of_path(planned, found)
-    discretisation = _discretisation(grid, peak.contact) | (rough.discretisation() if rough else {})
+        ending = next((row.ending for row in history.rows if row.ending), "")
+    peak, heights = states[0], rough.heights if rough is not None else None
+    verdicts: Sequence[Verdict] = ()
+    if judging is not None:  # a body that yields nowhere has them without any strain
+        verdicts = (UNSTRAINED,) * (steps.cycles // judging.period)
+        verdicts = verdicts if record is None else record.periods.verdicts
+    values = quantities(
+        grid,
+        peak,
+        states[1] if len(states) > 1 else None,
+        wear_volume=record.wear.volume if record is not None and record.wear is not None else 0.0,
+        kinks=EVEN if plan.plasticity is None or record is None else plan.plasticity.strength().kinks,
+        centred=rough is None,
+    )
+    tables = _tables(plan, history, verdicts)
+    if plan.track is not None:
+        at_edge = status is Status.CONTACT_AT_GRID_EDGE
+        film = None if record is None or at_edge else record.tribofilm
+        tables |= path_tables(plan.track, grid, history, film)
+        values |= path_quantities(plan.track, grid, history)
+    words = advice(plan.remedies, status, how_to_enlarge(grid, history.reached))
     return Result(
         model=MODEL,
         status=status,
-        **of_load(peak.state, _quantities(planned, found) | of_path[1]),
-        tables=_tables(planned, found) | of_path[0],
+        **of_load(peak.state, values),
+        tables=tables,
         fields=field_mesh(grid, peak, heights),
         bodies={},
-        grids=cycle_grids(grid, found.ends[: steps.cycles - 1], heights)
-        | {each.state: state_grids(grid, each, planned.pair.share, heights) for each in found.snapshots},
+        grids=cycle_grids(grid, history.ends[: steps.cycles - 1], heights)
+        | {each.state: state_grids(grid, each, plan.pair.share, heights) for each in states},
         left_out=left_out,
         discretisation={
-            **discretisation,
+            "cells": [grid.nx, grid.ny],
+            "cell_m": [grid.hx, grid.hy],
+            "depths": len(grid.depths),
+            "largest_depth_m": float(grid.depths[-1]),
+            "contact_box_cells": [peak.contact.box.nx, peak.contact.box.ny],
+            "contact_cells": int(np.count_nonzero(peak.contact.pressure)),
+            **(rough.discretisation() if rough is not None else {}),
             "tangential_kernels": counters.tangential_kernels,
-            **found.discretisation,
+            **history.discretisation,
         },
-        certificate={**_certificate(peak.contact), **found.certificate},
+        certificate={
+            "gap_in_contact": peak.contact.gap_residual,
+            "penetration": peak.contact.penetration,
+            "tension": peak.contact.tension,
+            "load_error": peak.contact.load_error,
+            **history.certificate,
+        },
         cost=cost,
         message="; ".join(filter(None, (words, ending))),
-        warnings=found.warnings,
-        verdict=_verdict(planned, found),
+        warnings=history.warnings,
+        verdict=summary(verdicts, judging.period, history.floor)
+        if judging is not None and verdicts
+        else None,
     )
 
 
-def _verdict(planned: Plan, found: _Outcome) -> Mapping[str, Any] | None:
-    """On repeated loading; None where nothing is judged, or no period was finished."""
-    verdicts = _verdicts(planned, found)
-    if planned.judging is None or not verdicts:
-        return None
-    return summary(verdicts, planned.judging.period, found.floor)
-
-
-def _verdicts(planned: Plan, found: _Outcome) -> Sequence[Verdict]:
-    """After each period; a body that yields nowhere has them without any strain."""
-    if planned.judging is None or found.yields:
-        return found.verdicts
-    return (UNSTRAINED,) * (planned.schedule.cycles // planned.judging.period)
-
-
-def _quantities(planned: Plan, found: _Outcome) -> dict[str, float | None]:
-    """The scalar results."""
-    kinks = EVEN
-    if found.yields and planned.plasticity is not None:
-        kinks = planned.plasticity.strength().kinks
-    return quantities(
-        planned.grid,
-        found.snapshots[0],
-        found.snapshots[1] if len(found.snapshots) > 1 else None,
-        wear_volume=found.volume,
-        kinks=kinks,
-        centred=planned.rough is None,
-    )
-
-
-def _of_path(planned: Plan, found: _Outcome) -> tuple[dict[str, Any], dict[str, float | None]]:
-    """The tables and quantities that only a counter-body has that moves."""
-    if planned.track is None:
-        return {}, {}
-    return parts.path_results(
-        planned.track,
-        planned.grid,
-        found.snapshots[-1],
-        rows=found.rows,
-        passes=found.passes,
-        ends=found.ends,
-        film=None if found.so_far is None else found.so_far.tribofilm,
-    )
-
-
-def _tables(planned: Plan, found: _Outcome) -> dict[str, Any]:
-    """The tables of a result."""
-    grid, rough, steps = planned.grid, planned.rough, planned.schedule
-    tables: dict[str, Any] = {"history": history_table(found.rows)}
-    tables |= state_tables(grid, found.snapshots, planned.pair.share)
+def _tables(plan: Plan, history: History, verdicts: Sequence[Verdict]) -> dict[str, Any]:
+    """The tables of a result, but for those of a path."""
+    grid, rough, steps, states = plan.grid, plan.rough, plan.schedule, list(history.snapshots.values())
+    tables: dict[str, Any] = {"history": history_table(history.rows)}
+    tables |= state_tables(grid, states, plan.pair.share)
     if rough is not None:
-        tables["surface"] = rough.table(grid, found.snapshots)
+        tables["surface"] = rough.table(grid, states)
     tables["residuals"] = residual_table(
-        [*((row.cycle, row.step, row.attempts) for row in found.rows), *found.unfinished]
+        [*((row.cycle, row.step, row.attempts) for row in history.rows), *history.unfinished]
     )
-    if found.loops:
-        tables["loops"] = loops_table(grid, found.loops)
+    if history.loops:
+        tables["loops"] = loops_table(grid, history.loops)
     if steps.cycles > 1:
-        original = rough.roughness() if rough is not None else None
-        tables["cycles"] = cycles_table(found.rows, found.ends, at_peak=steps.at_peak, roughness=original)
+        original, ends = rough.roughness() if rough is not None else None, history.ends
+        tables["cycles"] = cycles_table(history.rows, ends, at_peak=steps.at_peak, roughness=original)
         cycles = tables["cycles"]["cycle"]
-        if planned.slip.slides and any(target.load.sign < 0 for target in steps.targets):
-            tables["cycles"][FRICTION_SIGN] = [int(steps.sign_of(cycle)) for cycle in cycles]
-        if planned.dissipates:
-            tables["cycles"][DISSIPATED] = of_ends(cycles, found.ends, "dissipated")
-        if planned.judging is not None:
-            tables["cycles"] |= verdict_columns(cycles, _verdicts(planned, found), planned.judging.period)
-        if planned.wear is not None:
-            tables["cycles"][ROOFED] = of_ends(cycles, found.ends, "roofed")
+        if plan.slip.slides and any(target.load.sign < 0 for target in steps.targets):
+            signs = {target.cycle: int(target.load.sign) for target in reversed(steps.targets)}
+            tables["cycles"][FRICTION_SIGN] = [signs[cycle] for cycle in cycles]
+        if plan.dissipates:
+            tables["cycles"][DISSIPATED] = of_ends(cycles, ends, "dissipated")
+        if plan.judging is not None:
+            tables["cycles"] |= verdict_columns(cycles, verdicts, plan.judging.period)
+        if plan.wear is not None:
+            tables["cycles"][ROOFED] = of_ends(cycles, ends, "roofed")
     return tables
-
-
-def _discretisation(grid: CellGrid, peak: Contact) -> dict[str, object]:
-    return {
-        "cells": [grid.nx, grid.ny],
-        "cell_m": [grid.hx, grid.hy],
-        "depths": len(grid.depths),
-        "largest_depth_m": float(grid.depths[-1]),
-        "contact_box_cells": [peak.box.nx, peak.box.ny],
-        "contact_cells": int(np.count_nonzero(peak.pressure)),
-    }
-
-
-def _certificate(peak: Contact) -> dict[str, float]:
-    """Residuals of the returned fields, see Contact."""
-    return {
-        "gap_in_contact": peak.gap_residual,
-        "penetration": peak.penetration,
-        "tension": peak.tension,
-        "load_error": peak.load_error,
-    }
-
-
-def _counts(counters: Counters) -> dict[str, int]:
-    return {
-        "contact_iterations": counters.contact_iterations,
-        "plastic_iterations": counters.plastic_iterations,
-        "operator_applications": counters.operator_applications,
-        "displacement_applications": counters.displacement_applications,
-        "ffts": counters.ffts,
-        "step_cuts": counters.step_cuts,
-    }

@@ -85,6 +85,7 @@ PROBES: dict[str, dict[str, Namer]] = {
         "patches.stress_coefficients": lambda a: f"stress {_components(a)}",
         "residual_stress_coefficients": "residual stress",
         "surface_displacement_coefficients": lambda a: f"u{a['component']} of plastic strain",
+        "LayeredPatches.__init__": "layered body",
         "LayeredPatches.displacement": lambda a: f"layered u{_load(a)}",
         "LayeredPatches.stress": lambda a: f"layered stress {_components(a)}",
         "CellGrid.__init__": lambda a: "grid" if a["faces"] is None else "volume grid",
@@ -102,12 +103,13 @@ PROBES: dict[str, dict[str, Namer]] = {
         "stresses": _more_rows,
         "moved_rows": lambda a: "u{} under F{} in y = 0".format(*a["moved_by"]),
         "bare_body": "bare comparison",
-        "onset.yields": "yield stress",
+        "stress.yields": "yield stress",
         "BoxOperator.__init__": lambda a: "sliding plastic box" if a["sliding"] else "plastic box",
         "Problem.step": "plastic step",
-        "PaperProblem.step": "plastic step",
+        "PaperProblem.step": "plastic step, loops of the paper",
+        "KinematicFlow.returned": "return map with back-stresses",
         "Problem.residual": "plastic step",
-        "outside.residual_stress": "stress beside the box",
+        "measure.residual_stress": "stress beside the box",
         "surface_displacement": lambda a: f"u{a['component']} beside the box",
         "FilmLaw.step": "film law",
         "WearLaw.removed": "removal",
@@ -276,11 +278,6 @@ def _with_transform(module) -> None:
     module.state_tables = lambda *args: (scipy.fft.rfft2(numpy.ones((4, 4))), tables(*args))[1]
 
 
-def _with_layers(_module) -> None:
-    """The layered coefficients loaded by every solve."""
-    import sam.layered.patches  # noqa: F401
-
-
 def _with_pictures(_module) -> None:
     import matplotlib  # noqa: F401
 
@@ -301,7 +298,6 @@ def _with_history(module) -> None:
 SPOILERS: dict[str, tuple[str, Callable]] = {
     "traction": ("sam.contact.stress", _with_traction),
     "transform": ("sam.results.tables", _with_transform),
-    "layers": ("sam.results.tables", _with_layers),
     "pictures": ("sam.results.tables", _with_pictures),
     "history": ("fem_reference.axisymmetric.model", _with_history),
 }

@@ -11,8 +11,7 @@ from scipy.optimize import fsolve
 from fem_reference.common.back_stress import BackStresses, KinematicJ2
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.plasticity import History
-from sam.plasticity.kinematic import KinematicMaterial
-from sam.plasticity.return_map import equivalent_strain
+from sam.plasticity.flow import KinematicMaterial, equivalent_strain
 
 YOUNG, POISSON = 210e9, 0.3
 MU, BULK = YOUNG / 2 / (1 + POISSON), YOUNG / 3 / (1 - 2 * POISSON)

@@ -8,13 +8,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import sam
-import sam.plasticity.solution as solution
+import sam.plasticity.history as solution
 from sam.contact.convolution import Counters
-from sam.elastic.onset import elastic_peak
+from sam.elastic.stress import elastic_peak
 from sam.grid.cells import Window
-from sam.planner.yielding import model_of
 from sam.plasticity import Extent, Model, Progressed
-from sam.plasticity.solution import begun, first_box
+from sam.plasticity.history import begun, first_box
+from sam.plasticity.model import model_of
 from sam.scene import Scene
 
 

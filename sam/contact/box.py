@@ -7,21 +7,126 @@ that the iteration carries along is replaced by one in double precision before i
 pressure is projected onto p >= 0 once the residual of the cells in contact, sqrt(r . z), has fallen to
 `HalfSpaces.restart_threshold` of what a sequence of directions started with, not in each iteration: each
 projection costs a displacement of its own and restarts the directions.
+
+Given is the force, or how far the bodies approach; the conjugate gradients are the same for both. Under force
+control the rigid approach is the mean separation of the cells in contact, and each change of the pressure has
+no sum; under displacement control the approach is known, and the sum of the pressure follows (Polonsky & Keer
+1999 with the force balance left out).
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from math import pi, sqrt
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from sam.arrays import Array, Mask
-from sam.contact.control import Control
+from sam.contact.convolution import mirror_half, unfolded
 from sam.contact.operators import SurfaceOperators
-from sam.contact.transforms import mirror_half, unfolded
 from sam.grid.cells import Window
+
+Counted = np.ndarray[Any, np.dtype[np.floating[Any]]]
+Begun = tuple[Array, Array]
+"""p_hat and its u_hat."""
+
+
+@dataclass(frozen=True)
+class ForceControl:
+    """The force is given: total, the sum of p_hat. counted: cells that each stands for, 0 out of contact."""
+
+    total: float
+
+    def coarser(self) -> ForceControl:
+        """The same for cells twice as large."""
+        return ForceControl(self.total / 4)
+
+    def less(self, offset: float) -> ForceControl:
+        """The same: a force does not depend on where gaps are counted from."""
+        return self
+
+    def touches(self, gap0: Array) -> bool:
+        """Whether there is a force, and a counter-body opposite any cell."""
+        return self.total > 0 and bool(np.isfinite(gap0).any())
+
+    def start(self, gap0: Array) -> Array:
+        """Uniform where there is a counter-body."""
+        return np.isfinite(gap0).astype(float)
+
+    def scaled(self, p: Array, count: Array | float = 1.0) -> Array:
+        """The pressure with the given sum."""
+        return p * (self.total / (p * count).sum())
+
+    def begun(self, p: Array, gap0: Array, count: Array | float, apply: Callable[[Array], Array]) -> Begun:
+        """The first iterate, with the given sum, and its u_hat by `apply`."""
+        p = self.scaled(p, count)
+        return p, apply(p)
+
+    def shares(self, counted: Counted) -> Array:
+        """Share of each cell in what is taken off a change of the pressure: equal, it has no sum."""
+        return counted / counted.sum()
+
+    def level(self, separation: Array, counted: Counted) -> float:
+        """Rigid approach of an iterate: the mean separation gap0 + u_hat of the cells in contact."""
+        return np.vdot(counted, separation) / counted.sum()
+
+    def approach(self, contact: Mask, separation: Array) -> float:
+        """Mean separation of the cells in contact."""
+        return float(separation[contact].mean())
+
+
+@dataclass(frozen=True)
+class ApproachControl:
+    """The rigid approach is given: distance, in cells hx. Methods as of `ForceControl`."""
+
+    distance: float
+
+    def coarser(self) -> ApproachControl:
+        """The same for cells twice as large."""
+        return ApproachControl(self.distance / 2)
+
+    def less(self, offset: float) -> ApproachControl:
+        """The same for gaps that are smaller by an offset."""
+        return ApproachControl(self.distance - offset)
+
+    def touches(self, gap0: Array) -> bool:
+        """Whether the bodies would overlap in any cell."""
+        return bool(gap0.min() < self.distance)
+
+    def start(self, gap0: Array) -> Array:
+        """In proportion to the overlap, of which half touches; as large as Hertz's, p_hat = 4 a/(pi R)."""
+        overlap = np.maximum(self.distance - gap0, 0.0)
+        radius = sqrt(max(int(np.count_nonzero(overlap)), 1) / (2 * pi))
+        return 4 / (pi * radius) * overlap
+
+    def scaled(self, p: Array, count: Array | float = 1.0) -> Array:
+        """The pressure itself: its sum is a result."""
+        return p
+
+    def begun(self, p: Array, gap0: Array, count: Array | float, apply: Callable[[Array], Array]) -> Begun:
+        """The start times the number that fits its displacement best; `start` where none is positive."""
+        overlap, u = self.distance - gap0, apply(p)
+        if np.vdot(p * count, overlap) <= 0:
+            p = self.start(gap0)
+            u = apply(p)
+        factor = np.vdot(p * count, overlap) / np.vdot(p * count, u)
+        return factor * p, factor * u
+
+    def shares(self, counted: Counted) -> Array:
+        """None: the sum of the pressure may change."""
+        return np.zeros_like(counted)
+
+    def level(self, separation: Array, counted: Counted) -> float:
+        """The given approach."""
+        return self.distance
+
+    def approach(self, contact: Mask, separation: Array) -> float:
+        """The given approach."""
+        return self.distance
+
 
 # Counted in displacements to 1e-8 for a sphere on 129 x 129 cells, with a traction at a coupling of 0.1.
 PASSES = 500  # limit with a traction; 12 at beta mu = 0.1
@@ -33,10 +138,12 @@ NEGLIGIBLE = 0.01  # share of the tolerance: cells that penetrate more join; 0 t
 NOTHING_OPPOSITE = 1e100  # gap, in cells, where the counter-body ends
 
 
+Control = ForceControl | ApproachControl
+"""What is given of a contact."""
+
+
 class Solution(NamedTuple):
-    """p_hat and u_hat on the cells of a window, u_hat with the part of the traction, and the iterations they
-    took.
-    """
+    """p_hat and u_hat on the cells of a window, u_hat with that of the traction, and the iterations."""
 
     p: Array
     u: Array
@@ -45,10 +152,7 @@ class Solution(NamedTuple):
 
 @dataclass
 class _State:
-    """The iterate: pressure, its displacement, the search direction and what belongs to it.
-
-    count: how many cells of the box each stands for, 1 or (nx, ny).
-    """
+    """The iterate: pressure, displacement, search direction; count: cells that each stands for."""
 
     p: Array
     u: Array
@@ -71,16 +175,12 @@ class _State:
     def projected(self, field: Array) -> Array:
         """The field on the free cells, less its mean over them where the force is given; zero elsewhere."""
         assert self.weight is not None and self.free is not None, "set_free comes first"
-        found: Array = (field - np.vdot(self.weight, field)) * self.free
-        return found
+        return (field - np.vdot(self.weight, field)) * self.free
 
 
 def gap_of_contact(p: Array, separation: Array, control: Control) -> Array:
-    """gap0 + u - delta, with delta given or from the mean over the cells in contact; inf where there is no
-    counter-body.
-    """
-    found: Array = separation - control.approach(p > 0, separation)  # paper Eq. 9: h = h0 + u_3 - delta
-    return found
+    """gap0 + u - delta, with delta given or of the cells in contact; inf without a counter-body."""
+    return separation - control.approach(p > 0, separation)  # paper Eq. 9: h = h0 + u_3 - delta
 
 
 def _mirrored(field: Array) -> bool:
@@ -90,11 +190,9 @@ def _mirrored(field: Array) -> bool:
 
 class BoxContact:
     """A contact restricted to a box of cells: its operators are built once and serve any gap and load (Eq. 9
-    and 10).
-
-    Without a traction, and where the gap is mirrored in x and in y, a quarter of the box is iterated.
-    residuals are those of the last solve: after each pass, without a traction after each iteration that left
-    no p < 0.
+    and 10). Without a traction, and where the gap is mirrored in x and in y, a quarter of the box is
+    iterated. residuals are those of the last solve: after each pass, without a traction after each iteration
+    that left no p < 0.
     """
 
     def __init__(self, operators: SurfaceOperators, box: Window):
@@ -113,22 +211,10 @@ class BoxContact:
     def solve(
         self, gap0: Array, control: Control, start: Array, *, tolerance: float, limit: int, sign: float = 1.0
     ) -> Solution:
-        """Solve the contact on the box: all residuals below the tolerance, or the last iterate.
-
-        Parameters
-        ----------
-        gap0
-            (nx, ny) gap on the box in cells hx, inf where the counter-body ends.
-        control
-            Sum of p_hat, or approach in cells hx.
-        start
-            (nx, ny) p_hat to start from.
-        tolerance
-            On the dimensionless residuals, see `sam.contact.normal.Contact`.
-        limit
-            Most iterations.
-        sign
-            Direction of the traction along x.
+        """Solve the contact on the box, all residuals below the tolerance, or the last iterate. gap0: (nx,
+        ny) in cells hx, inf where the counter-body ends; control: sum of p_hat, or approach in cells hx;
+        start: (nx, ny) p_hat; tolerance: on the residuals of `Contact`; limit: most iterations; sign: of the
+        traction along x.
         """
         gap0, p, self.residuals = np.minimum(gap0, NOTHING_OPPOSITE), start, []
         if self.tangential is None:
@@ -159,9 +245,9 @@ class BoxContact:
         if mirrored and not (p > 0)[tuple(mirror_half(n) for n in p.shape)].any():
             p = np.ones_like(p)  # a start that the kept quarter does not see
         iteration = self._quarter if mirrored else self._whole
-        found = iteration.solve(gap0, control, p, tolerance=tolerance, limit=limit)
+        solution = iteration.solve(gap0, control, p, tolerance=tolerance, limit=limit)
         self.residuals = iteration.residuals
-        return found
+        return solution
 
 
 class _Iteration:
@@ -186,15 +272,11 @@ class _Iteration:
         return self._back(self._apply(self._kept(p)))
 
     def solve(self, gap0: Array, control: Control, p: Array, *, tolerance: float, limit: int) -> Solution:
-        """Solve on the box, see `BoxContact.solve`.
-
-        The iteration gives up after `limit` iterations, or after many without a new smallest residual
-        (`HalfSpaces.stagnation_limit`): rounding, or a tolerance below it.
-        """
+        """See `BoxContact.solve`; given up after `limit` iterations, or many without a smaller residual."""
         if not control.touches(gap0):
             return Solution(np.zeros_like(p), np.zeros_like(p), 0)
-        found = self._solve(self._kept(gap0), control, self._kept(p), tolerance=tolerance, limit=limit)
-        return Solution(self._back(found.p), self._back(found.u), found.iterations)
+        solution = self._solve(self._kept(gap0), control, self._kept(p), tolerance=tolerance, limit=limit)
+        return Solution(self._back(solution.p), self._back(solution.u), solution.iterations)
 
     def _kept(self, field: Array) -> Array:
         return field[self.kept] if self.mirrored else field
@@ -211,13 +293,9 @@ class _Iteration:
         return self.operator.single(change) if self.bodies.single else self.operator(change)
 
     def residual(self, p: Array, gap: Array) -> float:
-        """The larger of |gap| in contact and penetration elsewhere, as a relative pressure error.
-
-        See `Contact`. These are the conditions of paper Eq. 9; `_project` enforces p >= 0.
-        """
+        """The larger of |gap| in contact and penetration elsewhere, as a pressure error: paper Eq. 9."""
         inside = gap * (p > 0)
-        found: float = max(inside.max(), -gap.min()) / (self.self_influence * p.max() or 1.0)
-        return found
+        return max(inside.max(), -gap.min()) / (self.self_influence * p.max() or 1.0)
 
     def _solve(self, gap0: Array, control: Control, p: Array, *, tolerance: float, limit: int) -> Solution:
         """Iterate on the kept cells until the residual is below the tolerance in double precision."""
@@ -258,11 +336,7 @@ class _Iteration:
         return Solution(state.p, state.u, iteration)
 
     def _step(self, state: _State, separation: Array, control: Control) -> bool:
-        """Do one iteration of Eq. 10 on the free cells: a step, of zero sum where the force is given, and the
-        projection where it is due.
-
-        Returns False, and does nothing, when the residual is zero in double precision.
-        """
+        """One iteration of Eq. 10 on the free cells, with a projection where due; False at no residual."""
         r = state.projected(separation)
         z = state.projected(self.precondition(r))
         r = r * self.count

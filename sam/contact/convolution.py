@@ -5,22 +5,142 @@ Transform convention: scipy.fft.rfft2 over the last two axes (x, y), no normalis
 backward. A field given on a source window is convolved exactly (no wrap-around, no periodic image): the
 transform length is at least n_source + n_observed - 1 in each direction, and the lag l = observed - source
 sits at index (l - first) mod m, where `first` is the lag between the first cells of both windows.
+
+Cosine and sine sums (`forward`, `back`) transform what is even or odd about a point from the half of it that
+is kept: the n values at j = 0 .. n - 1 from the point outward, or, `between`, at j + 1/2 (a row of an even
+number of cells). The transform over the 2 half values about the point, those not given zero, is (-i)^odd
+times half + 1 real numbers. With the angle a = pi m/half of wave number m, m = 0 .. half, they are f_0 + 2
+sum_j f_j cos(j a) for even f and 2 sum_j f_j sin(j a) for odd, or with j + 1/2 in place of j 2 sum_j f_j cos
+and sin.
+
+Up to SHORT products a row, values times wave numbers, they are products with matrices, which take less time
+than fast transforms.
+
+`Transforms` have as many numbers for each wave number >= 0 as the symmetry of the scene leaves. Fields are
+(n, ..., nx, ny), each of the n even or odd under x -> -x and under y -> -y as a kind of quantity (a shear
+stress 13 is odd in x). A mirrored scene has mirrored fields: of them only the half from the middle outward is
+kept, and sine and cosine sums take the place of complex transforms. The transform over the lags -N .. N-1 of
+a kept field is (-i)^odd times a real number.
+
+`columns` gives (N_x + 1, N_y + 1, n, ..., r) real numbers, times (-i)^(odd_x + odd_y): r = 4 without a mirror
+(real and imaginary part at (k_x, k_y) and (-k_x, k_y)), 2 with one in y, 1 with both. `fields` takes such
+columns back, (-i)^(odd_x + odd_y) less.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
+from functools import cache, cached_property, lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
 from sam.arrays import Array
-from sam.contact.real_transforms import Real, forward, half_length, real_spectrum
 from sam.grid.cells import Window
+
+# products a row, 64 values times 128 wave numbers, up to which they take less time than a fast transform
+Real = NDArray[np.floating[Any]]
+"""Real numbers in single or double precision."""
+SHORT = 8500  # products a row, 64 values times 128 wave numbers: up to here they beat a fast transform
+
+
+class _Sum(NamedTuple):
+    """Which of the sums of the module's text, or of their inverses."""
+
+    odd: bool
+    between: bool
+    inverse: bool
+
+
+def half_length(n: int) -> int:
+    """Half the length of an even transform of n cells with lags -n .. n: at least n, a product of small
+    primes.
+
+    >>> half_length(65)
+    72
+    """
+    return int(fft.next_fast_len(n, real=True))
+
+
+def forward(kept: Real, half: int, odd: bool, axis: int, *, between: bool = False) -> Real:
+    """Transform kept values (..., n) or (..., n, m) along axis -1 or -2 to half + 1 numbers. odd: about the
+    point; between: whether they stand at j + 1/2; values beyond those that the transform takes are left out.
+    """
+    n = min(kept.shape[axis], half if between else half + 1)
+    if n < kept.shape[axis]:
+        kept = kept[..., :n] if axis == -1 else kept[..., :n, :]
+    if n * half > SHORT:
+        return _fast_forward(kept, half, axis, _Sum(odd, between, False))
+    return _product(kept, _matrix(n, half, _Sum(odd, between, False), kept.dtype), axis)
+
+
+def back(spectrum: Real, n: int, odd: bool, axis: int, *, between: bool = False) -> Real:
+    """The inverse of `forward`: n values from half + 1 numbers along axis -1 or -2."""
+    half = spectrum.shape[axis] - 1
+    if n * half > SHORT:
+        return _fast_back(spectrum, n, axis, _Sum(odd, between, True))
+    return _product(spectrum, _matrix(n, half, _Sum(odd, between, True), spectrum.dtype), axis)
+
+
+def real_spectrum(kernel: Real, half: tuple[int, int], odd: Sequence[bool | int]) -> Real:
+    """Transform of (..., nx, ny) lags >= 0 without its phase, (..., N_x + 1, N_y + 1): over the lags -N ..
+    N-1 it is (-i)^(o_x + o_y) times this, o = 1 for odd, which is even or odd in the wave number.
+    """
+    for axis, (length, is_odd) in enumerate(zip(half, odd, strict=True), start=-2):
+        kernel = forward(kernel, length, bool(is_odd), axis)
+    return kernel
+
+
+def _product(field: Real, matrix: Real, axis: int) -> Real:
+    """The matrix applied to the rows or to the columns of a field."""
+    return field @ matrix if axis == -1 else matrix.T @ field
+
+
+@lru_cache(maxsize=64)
+def _matrix(n: int, half: int, kind: _Sum, real: np.dtype[np.floating[Any]]) -> Real:
+    """The matrix by which a row of numbers is multiplied from the left in `forward` or `back`."""
+    twice = 2 * np.arange(n) + kind.between  # twice the place
+    turns = np.outer(twice, np.arange(half + 1)) % (4 * half)  # of the angle, in pi/(2 half)
+    angle = np.pi / (2 * half) * turns
+    waves = np.where(turns % (2 * half) == 0, 0.0, np.sin(angle)) if kind.odd else np.cos(angle)
+    if kind.inverse:
+        ends = np.isin(np.arange(half + 1), (0, half))
+        return (np.where(ends, 1, 2) * waves / (2 * half)).T.astype(real)
+    own = np.isin(twice, (0, 2 * half))  # its own mirror image
+    return (np.where(own, 1, 2)[:, None] * waves).astype(real)
+
+
+def _fast_forward(kept: Real, half: int, axis: int, kind: _Sum) -> Real:
+    """`forward` by fast sine and cosine transforms."""
+    zero: Real = np.zeros_like(np.take(kept, [0], axis=axis))
+    if kind.between:
+        sums = (fft.dst if kind.odd else fft.dct)(kept, type=2, n=half, axis=axis)
+        parts = [zero, sums] if kind.odd else [sums, zero]
+    elif kind.odd:
+        inner = np.take(kept, range(1, min(kept.shape[axis], half)), axis=axis)
+        parts = [zero, fft.dst(inner, type=1, n=half - 1, axis=axis), zero]
+    else:
+        return fft.dct(kept, type=1, n=half + 1, axis=axis)
+    return np.concatenate(parts, axis=axis)
+
+
+def _fast_back(spectrum: Real, n: int, axis: int, kind: _Sum) -> Real:
+    """`back` by fast sine and cosine transforms."""
+    half = spectrum.shape[axis] - 1
+    values: Real
+    if kind.between:
+        part = np.take(spectrum, range(kind.odd, half + kind.odd), axis=axis)
+        values = (fft.dst if kind.odd else fft.dct)(part, type=3, axis=axis)
+    elif kind.odd:
+        inner = fft.dst(np.take(spectrum, range(1, half), axis=axis), type=1, axis=axis)
+        values = np.concatenate([np.zeros_like(np.take(inner, [0], axis=axis)), inner], axis=axis)
+    else:
+        values = fft.dct(spectrum, type=1, axis=axis)
+    return np.take(values, range(n), axis=axis) / (2 * half)
+
 
 Parities = Iterable[tuple[int, int]]
 """Of each kernel its sign under x -> -x and under y -> -y."""
@@ -31,9 +151,7 @@ FEW_ROWS = 2  # of an observed window, up to which sums over y take less time th
 
 @dataclass
 class Counters:
-    """Work done, for `cost` in the results and for tests that gate it: a number of each kind, see
-    `sam.scene.COST`.
-    """
+    """Work done, for `cost` in the results: a number of each kind, see `sam.scene.COST`."""
 
     ffts: int = 0
     displacement_applications: int = 0
@@ -46,23 +164,17 @@ class Counters:
 
 def transformed(field: Real, lengths: tuple[int, int]) -> NDArray[Any]:
     """rfft2 of (..., nx, ny) padded to the lengths; rows of zeros are not transformed."""
-    found: NDArray[Any] = fft.fft(fft.rfft(field, n=lengths[1], axis=-1), n=lengths[0], axis=-2)
-    return found
+    return fft.fft(fft.rfft(field, n=lengths[1], axis=-1), n=lengths[0], axis=-2)
 
 
 def cropped(spectrum: NDArray[Any], lengths: tuple[int, int], shape: tuple[int, int]) -> NDArray[Any]:
-    """The first cells of irfft2, (..., *shape); other rows are not transformed back. The spectrum is
-    overwritten.
-    """
+    """The first cells of irfft2, (..., *shape), other rows are left out; the spectrum is overwritten."""
     rows = fft.ifft(spectrum, axis=-2, overwrite_x=True)[..., : shape[0], :]
-    found: NDArray[Any] = fft.irfft(rows, n=lengths[1], axis=-1)[..., : shape[1]]
-    return found
+    return fft.irfft(rows, n=lengths[1], axis=-1)[..., : shape[1]]
 
 
 def _lags(first: int, n_source: int, n_observed: int, m: int) -> NDArray[np.intp]:
-    """Lag at each index of a transform of length m; the indices that no pair of cells uses repeat a lag that
-    exists.
-    """
+    """Lag at each index of a transform of length m; indices that no pair of cells uses repeat a lag."""
     index = np.arange(m)
     index = np.where(index < n_observed, index, np.maximum(index - m, 1 - n_source))
     return first + index
@@ -142,9 +254,7 @@ class Convolution:
 
 
 def folded(field: Array, at: int, lags: int) -> Array:
-    """f(at - l) + f(at + l) and f(at - l) - f(at + l) of the last axis, 0 <= l < lags, each cell once: (2,
-    ..., lags).
-    """
+    """f(at - l) + f(at + l) and f(at - l) - f(at + l) of the last axis, each cell once: (2, ..., lags)."""
     n, lag = field.shape[-1], np.arange(lags)
     below, above = at - lag, at + lag
     before = np.where((below >= 0) & (below < n), field[..., below % n], 0.0)
@@ -154,11 +264,9 @@ def folded(field: Array, at: int, lags: int) -> Array:
 
 class RowConvolution:
     """The same sums as of `Convolution` for an observed window of few rows: sums over y are taken as they
-    stand, transforms are along x alone.
-
-    A field is first folded about the observed row, f(y - l) + parity f(y + l), so that each lag l >= 0 is met
-    once. Along x both windows lie in one frame; the transform of a kernel there is real, times -i if it is
-    odd in x.
+    stand, transforms are along x alone. A field is first folded about the observed row, f(y - l) + parity f(y
+    + l), so that each lag l >= 0 is met once. Along x both windows lie in one frame; the transform of a
+    kernel there is real, times -i if it is odd in x.
     """
 
     def __init__(
@@ -188,14 +296,15 @@ class RowConvolution:
         for row in range(self.observed.ny):
             for odd, folded in zip((False, True), self._folded(field, row), strict=True):
                 chosen = self.odd_y == odd
-                product = np.einsum("...kl,klc->...kc", self.spectra[chosen], _pairs(folded))
-                out[chosen, :, row] = self._back(_complex(product), self.odd_x[chosen])
+                # complex numbers as pairs: products with real coefficients then stay real
+                pairs = np.ascontiguousarray(folded).view(float).reshape(*folded.shape, 2)
+                product = np.einsum("...kl,klc->...kc", self.spectra[chosen], pairs)
+                product = np.ascontiguousarray(product).view(complex)[..., 0]
+                out[chosen, :, row] = self._back(product, self.odd_x[chosen])
         return out
 
     def _folded(self, field: Array, row: int) -> tuple[Array, Array]:
-        """Transforms along x of the field folded about an observed row, for kernels even and odd in y, (...,
-        k, l).
-        """
+        """Transforms along x of the field folded about an observed row, even and odd in y, (..., k, l)."""
         lags = self.spectra.shape[-1]
         sums = folded(field, self.observed.j0 + row - self.source.j0, lags)
         framed = np.zeros((2, *field.shape[:-2], self.source.nx + self.source.i0 - self.first, lags))
@@ -207,17 +316,7 @@ class RowConvolution:
         """(..., k) -> (..., nx) of the observed window."""
         spectra = np.where(np.asarray(odd_x)[..., None], -1j, 1.0) * spectra
         start = self.observed.i0 - self.first
-        found: Array = fft.irfft(spectra, n=self.length, axis=-1)[..., start : start + self.observed.nx]
-        return found
-
-
-def _pairs(field: Array) -> Array:
-    """Complex numbers as pairs in a last axis: products with real coefficients then stay real."""
-    return np.ascontiguousarray(field).view(float).reshape(*field.shape, 2)
-
-
-def _complex(pairs: Array) -> Array:
-    return np.ascontiguousarray(pairs).view(complex)[..., 0]
+        return fft.irfft(spectra, n=self.length, axis=-1)[..., start : start + self.observed.nx]
 
 
 def convolution_onto(
@@ -228,18 +327,7 @@ def convolution_onto(
     *,
     counters: Counters | None = None,
 ) -> RowConvolution | Convolution:
-    """The cheaper of `RowConvolution` and `Convolution`.
-
-    Parameters
-    ----------
-    kernels, parities, source, observed, counters
-        As of `Convolution`.
-
-    Returns
-    -------
-    RowConvolution or Convolution
-        A field on `source` -> the sums on `observed`.
-    """
+    """A field on `source` -> the sums on `observed`: the cheaper of both convolutions above."""
     kind = RowConvolution if observed.ny <= FEW_ROWS else Convolution
     return kind(kernels, parities, source, observed, counters=counters)
 
@@ -247,27 +335,11 @@ def convolution_onto(
 def row_sums(
     kernels: Array, fields: Array, source: Window, observed: Window, *, odd_out: Parity, odd_in: Parity
 ) -> Array:
-    """Kernels times fields, summed over components, layers and cells, on an observed window of few rows.
-
-    No transform is needed: the fields are folded about a row, their products with the kernels taken for every
-    lag in x, and summed along x - x' = lag.
-
-    Parameters
-    ----------
-    kernels
-        (m, g, z, n, lags in x, lags in y).
-    fields
-        (g, n, nx, ny) on the source window.
-    source, observed
-        Windows of the fields and of the answer.
-    odd_out, odd_in
-        (2, m) and (2, g), whether each of m and of g is odd in x, in y; a kernel is odd where they differ.
-        Each kind is a run of neighbours.
-
-    Returns
-    -------
-    Array
-        (m, z, nx, rows).
+    """Kernels (m, g, z, n, lags in x, lags in y) times fields (g, n, nx, ny), summed over components, layers
+    and cells on an observed window of few rows: (m, z, nx, rows). No transform is needed: fields are folded
+    about a row, their products with the kernels taken for every lag in x, and summed along x - x' = lag.
+    odd_out, odd_in: (2, m) and (2, g), whether odd in x, in y, each kind a run of neighbours; a kernel is odd
+    where they differ.
     """
     (m, _, depths, *_, lags_x, lags_y), columns = kernels.shape, np.arange(source.nx)
     lag = np.subtract.outer(observed.i0 + np.arange(observed.nx), source.i0 + columns)
@@ -294,11 +366,9 @@ def _run(chosen: Array) -> slice:
 
 class BoxConvolution:
     """f on a box of cells -> sum over its cells of K[lag] f, on the same box; K even in x and in y, so its
-    transform is real.
-
-    kernel: lags >= 0, at least (nx, ny) of them, whose transform is not counted, as it is made when first
-    needed. Works in double, or on request in single precision: then good to about 1e-6 of the largest value,
-    in half the time.
+    transform is real. kernel: lags >= 0, at least (nx, ny) of them, whose transform is not counted, as it is
+    made when first needed. Works in double, or on request in single precision: then good to about 1e-6 of the
+    largest value, in half the time.
     """
 
     def __init__(self, kernel: Real, shape: tuple[int, int], counters: Counters):
@@ -321,15 +391,146 @@ class BoxConvolution:
         return self._apply(field, self.spectrum)
 
     def single(self, field: Array) -> Array:
-        """The same, computed in single precision; the field is scaled first, so that its unit does not
-        matter.
-        """
+        """The same in single precision; the field is scaled first, so that its unit does not matter."""
         scale = max(field.max(), -field.min()) or 1.0
-        found: Array = scale * self._apply((field / scale).astype(np.float32), self._single)
-        return found
+        return scale * self._apply((field / scale).astype(np.float32), self._single)
 
     def _apply(self, field: Real, spectrum: Real) -> NDArray[Any]:
         self.counters.ffts += 2
         product = transformed(field, self.lengths)
         product *= spectrum
         return cropped(product, self.lengths, self.shape)
+
+
+Complex = NDArray[np.complexfloating[Any, Any]]
+"""Complex numbers in single or double precision."""
+
+
+def mirror_half(n: int) -> slice:
+    """The cells from the middle outward, of n in a row."""
+    return slice(n // 2, n)
+
+
+@cache
+def unfolded(n: int) -> NDArray[np.intp]:
+    """The cell of `mirror_half` that each of n cells in a row is equal to."""
+    cell = np.arange(n) - n // 2
+    return np.where(cell < 0, n % 2 - 1 - cell, cell)
+
+
+def filtered(kept: Real, cells: tuple[int, int], spectrum: Real) -> Real:
+    """The quarter of a mirrored field, its transform multiplied by a real one, (N_x + 1, N_y + 1)."""
+    between, sizes = [n % 2 == 0 for n in cells], kept.shape
+    for axis in (-1, -2):
+        kept = forward(kept, spectrum.shape[axis] - 1, False, axis, between=between[axis])
+    kept *= spectrum
+    for axis in (-2, -1):
+        kept = back(kept, sizes[axis], False, axis, between=between[axis])
+    return kept
+
+
+class MirroredConvolution(BoxConvolution):
+    """The same for fields that are mirrored in x and in y, given on the quarter from the middle outward."""
+
+    def _spectrum(self, kernel: Real, half: tuple[int, int]) -> Real:
+        return real_spectrum(kernel, half, (0, 0))
+
+    def _apply(self, field: Real, spectrum: Real) -> NDArray[Any]:
+        self.counters.ffts += 2
+        return filtered(field, self.shape, spectrum)
+
+
+def _by_parity(field: Real, odd: Parity, *, n: int, half: int, axis: int, inverse: bool = False) -> Real:
+    """Transform each field along an axis by its parity; odd: of each entry; n: cells, half are kept."""
+    shape = list(field.shape)
+    shape[axis] = n - n // 2 if inverse else half + 1
+    out = np.empty(shape, dtype=field.dtype)
+    for which in (False, True):
+        if (chosen := odd == which).any():
+            part, between = field[chosen], n % 2 == 0
+            if inverse:
+                out[chosen] = back(part, shape[axis], which, axis, between=between)
+            else:
+                out[chosen] = forward(part, half, which, axis, between=between)
+    return out
+
+
+class Transforms:
+    """Transforms of fields on a box of cells, mirrored in x (only together with y) and in y. shape: of a kept
+    field; half: the N of the module's text; single: whether in single precision.
+    """
+
+    def __init__(
+        self, cells: tuple[int, int], mirror: tuple[bool, bool], *, single: bool, counters: Counters
+    ):
+        self.cells, self.mirror, self.counters = cells, mirror, counters
+        self.half = half_length(cells[0]), half_length(cells[1])
+        self.lengths = 2 * self.half[0], 2 * self.half[1]
+        self.real: type[np.floating[Any]] = np.float32 if single else np.float64
+        self.complex: type[np.complexfloating[Any, Any]] = np.complex64 if single else np.complex128
+        self.kept = tuple(mirror_half(n) if m else slice(n) for n, m in zip(self.cells, mirror, strict=True))
+        self.shape = len(range(cells[0])[self.kept[0]]), len(range(cells[1])[self.kept[1]])
+        self._flip = -np.arange(self.half[0] + 1) % self.lengths[0]
+
+    def keep(self, field: Real) -> Real:
+        """The kept part of (..., nx, ny)."""
+        return field[(..., *self.kept)]
+
+    def whole(self, kept: Real, odd_x: Parity, odd_y: Parity) -> Real:
+        """(n, ..., nx, ny) from its kept part."""
+        for axis, odd in ((-2, odd_x), (-1, odd_y)):
+            if self.mirror[axis]:
+                n = self.cells[axis]
+                kept = np.take(kept, unfolded(n), axis=axis)
+                np.moveaxis(kept, axis, 1)[odd == 1, : n // 2] *= -1
+        return kept
+
+    def columns(self, field: Real, odd_x: Parity, odd_y: Parity) -> Real:
+        """(n, ..., nx, ny), kept, to (N_x + 1, N_y + 1, n, ..., r)."""
+        self.counters.ffts += int(np.prod(field.shape[:-2], dtype=int))
+        field = field.astype(self.real, copy=False)
+        if not self.mirror[1]:
+            rows = fft.rfft(field, n=self.lengths[1], axis=-1)  # rows of zeros need none
+            spectrum = fft.fft(rows, n=self.lengths[0], axis=-2)
+            both = np.stack([spectrum[..., : self.half[0] + 1, :], spectrum[..., self._flip, :]], axis=-1)
+            columns = np.ascontiguousarray(np.moveaxis(both, (-3, -2), (0, 1)))
+            columns *= self._phases(odd_x, odd_y, field.ndim - 3)
+            return columns.view(self.real)
+        rows = _by_parity(field, odd_y, n=self.cells[1], half=self.half[1], axis=-1)
+        sign = np.where(odd_y, -1, 1).reshape(-1, *[1] * (field.ndim - 1)).astype(self.real)  # (-i)(-i)
+        if self.mirror[0]:
+            sign = sign * np.where(odd_x, -1, 1).reshape(sign.shape).astype(self.real)
+            spectrum = sign * _by_parity(rows, odd_x, n=self.cells[0], half=self.half[0], axis=-2)
+            return np.ascontiguousarray(np.moveaxis(spectrum, (-2, -1), (0, 1)))[..., None]
+        spectrum = fft.rfft(rows, n=self.lengths[0], axis=-2) * (sign * self._phase_x(odd_x, field.ndim))
+        return np.ascontiguousarray(np.moveaxis(spectrum, (-2, -1), (0, 1)))[..., None].view(self.real)
+
+    def fields(self, columns: Real, odd_x: Parity, odd_y: Parity) -> Real:
+        """(N_x + 1, N_y + 1, n, ..., r) to (n, ..., nx, ny), kept."""
+        self.counters.ffts += int(np.prod(columns.shape[2:-1], dtype=int))
+        if not self.mirror[1]:
+            phased = columns.view(self.complex) * self._phases(odd_x, odd_y, columns.ndim - 4)
+            spectrum = np.empty((*phased.shape[2:-1], self.lengths[0], phased.shape[1]), dtype=self.complex)
+            both = np.moveaxis(phased, (0, 1), (-3, -2))
+            spectrum[..., self._flip, :] = both[..., 1]
+            spectrum[..., : self.half[0] + 1, :] = both[..., 0]
+            # no other rows are wanted
+            rows = fft.ifft(spectrum, axis=-2, overwrite_x=True)[..., : self.cells[0], :]
+            return fft.irfft(rows, n=self.lengths[1], axis=-1)[..., : self.cells[1]]
+        if self.mirror[0]:
+            spectrum = np.ascontiguousarray(np.moveaxis(columns[..., 0], (0, 1), (-2, -1)))
+            rows = _by_parity(spectrum, odd_x, n=self.cells[0], half=self.half[0], axis=-2, inverse=True)
+        else:
+            spectrum = np.moveaxis(columns.view(self.complex)[..., 0], (0, 1), (-2, -1))
+            spectrum = spectrum * self._phase_x(odd_x, spectrum.ndim)
+            rows = fft.irfft(spectrum, n=self.lengths[0], axis=-2)[..., : self.cells[0], :]
+        return _by_parity(rows, odd_y, n=self.cells[1], half=self.half[1], axis=-1, inverse=True)
+
+    def _phase_x(self, odd_x: Parity, ndim: int) -> Complex:
+        return np.where(odd_x, -1j, 1).reshape(-1, *[1] * (ndim - 1)).astype(self.complex)
+
+    def _phases(self, odd_x: Parity, odd_y: Parity, between: int) -> Complex:
+        """(-i)^(odd_x + odd_y) at k_x and at -k_x, (n, ..., 2)."""
+        phase = (-1j) ** (np.asarray(odd_x) + np.asarray(odd_y))
+        both = np.stack([phase, phase * (-1.0) ** np.asarray(odd_x)], axis=-1)
+        return both.reshape(len(both), *[1] * between, 2).astype(self.complex)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Elastic stresses under surface tractions, at chosen depths, in a window of the grid. Paper Eq. 7, first
-sum.
+"""Elastic stresses under surface tractions in a window of the grid, paper Eq. 7, first sum; and the total
+strains at the surface of a body, which a tribofilm that is bonded to it shares.
 """
 
 from __future__ import annotations
@@ -10,12 +10,11 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sam.arrays import Array
-from sam.contact.bodies import CoatedBody
+from sam.arrays import Array, Mask
 from sam.contact.convolution import Convolution, Counters, convolution_onto
 from sam.grid.cells import Window
-from sam.kernels.lags import Lags
-from sam.kernels.patches import STRESS, parity, stress_coefficients
+from sam.kernels.patches import STRESS, Lags, parity, stress_coefficients
+from sam.layered.patches import LayeredPatches
 
 DEPTHS_AT_ONCE = 16  # bounds the memory of the spectra
 MIRRORED = 1e-9  # of the largest traction: within the tolerance of a contact
@@ -28,7 +27,7 @@ def stresses(
     observed: Window,
     *,
     nu: float,
-    layered: CoatedBody | None = None,
+    layered: LayeredPatches | None = None,
     counters: Counters | None = None,
 ) -> Array:
     """Stress under tractions on the surface, at the centres of the observed cells. Paper Eq. 7, first sum.
@@ -92,9 +91,7 @@ def _loaded(field: Array) -> Window | None:
 
 
 def _needed(field: Array, load: int, observed: Window) -> list[int]:
-    """The components that symmetry does not make zero: in one row about which the field is mirrored, those
-    even in y.
-    """
+    """The components that are not zero by symmetry: in the row of a mirrored field those even in y."""
     everything = list(range(len(STRESS)))
     if observed.ny > 1 or 2 * observed.j0 + 1 != field.shape[1]:
         return everything
@@ -118,5 +115,33 @@ def von_mises(stress: Array) -> Array:
     """
     s11, s22, s33, s23, s13, s12 = stress
     normal = (s11 - s22) ** 2 + (s22 - s33) ** 2 + (s33 - s11) ** 2
-    found: Array = np.sqrt(normal / 2 + 3 * (s23**2 + s13**2 + s12**2))
-    return found
+    return np.sqrt(normal / 2 + 3 * (s23**2 + s13**2 + s12**2))
+
+
+def yielding(mises: Array, limit: Array) -> Mask:
+    """Where material yields: its von Mises stress is above the yield stress, which broadcasts with it."""
+    return np.asarray(mises > limit)  # paper Eq. 8 does not hold
+
+
+def elastic_strain(stress: Array, young: float, poisson: float) -> Array:
+    """Elastic strains xx, yy, xy, zz of stresses (6, ...) in Pa, order 11 22 33 23 13 12."""
+    sxx, syy, szz, sxy = stress[0], stress[1], stress[2], stress[5]
+    parts = (
+        sxx - poisson * (syy + szz),
+        syy - poisson * (sxx + szz),
+        (1 + poisson) * sxy,
+        szz - poisson * (sxx + syy),
+    )
+    return np.stack(parts) / young
+
+
+def surface_strain(stress: Array, plastic: Array, depths: Array, *, young: float, poisson: float) -> Array:
+    """Total strains xx, yy, xy, zz of the surface, (4, nx, ny), from stress in Pa and plastic strain, (6,
+    n_layers, nx, ny), of the two uppermost layers (centres in m). They are continuous across layers in the
+    plane, and extrapolated linearly to z = 0; of one layer its mean is taken.
+    """
+    total = elastic_strain(stress[:, :2], young, poisson) + plastic[[0, 1, 5, 2], :2]
+    if total.shape[1] < 2:
+        return total[:, 0]
+    up: Array = (total[:, 0] - total[:, 1]) * depths[0] / (depths[1] - depths[0])
+    return total[:, 0] + up

@@ -4,52 +4,38 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sam.arrays import Array
-from sam.contact.normal import Contact
-from sam.contact.surface_strain import elastic_strain
-from sam.elastic.comparison import coated_state
-from sam.elastic.problem import ElasticProblem, Loaded
-from sam.elastic.sliding import sliding_of
-from sam.elastic.stress import stress_at, stresses_of
-from sam.results.advice import Remedies
-from sam.results.history import Effort, Row, counted, row_of
-from sam.results.snapshots import Cut, Snapshot, row_of_largest
+from sam.contact.normal import fit_of
+from sam.contact.stress import elastic_strain
+from sam.elastic.problem import ElasticProblem, Loaded, contact_tolerance
+from sam.elastic.stress import sliding_of, stress_at, stresses_of
+from sam.results.history import History, Row, counted, largest_pressure, row_of
+from sam.results.snapshots import Coated, Comparison, Cut, Snapshot, row_of_largest
+from sam.results.tables import advice
+from sam.scene import Status
 from sam.scene.result import Attempt, Progress
-from sam.schedule import UNLOADED, Load, Schedule
-from sam.surface_state import Tribofilm, TribofilmState
+from sam.schedule import UNLOADED, Load
+from sam.tribofilm.state import FilmOnCells, TribofilmState
 
-if TYPE_CHECKING:
-    from sam.moving.track import Track
-
+UNFIT = "bare body, for comparison: {}: its largest pressure and stress and their changes are not given"
 UNLOADING = "elastic: unloading in one step"
 CYCLE = "elastic: equal to cycle 1"
 
 
-def solve_elastic(
-    problem: ElasticProblem,
-    schedule: Schedule,
-    remedies: Remedies,
-    report: Progress,
-    *,
-    tribofilm: Tribofilm | None = None,
-    track: Track | None = None,
-) -> tuple[list[Row], list[Snapshot]]:
-    """History and states of a scene that stays elastic: unloading in one step, the last cycle stands for all
-    unless the counter-surface is renewed.
-
-    Where the sign of the traction changes, the cycles are mirror images: what the history holds of them is
-    equal.
+def solve_elastic(problem: ElasticProblem, report: Progress) -> History:
+    """The load history of a body that stays elastic: unloading in one step, the last cycle stands for all
+    unless the counter-surface is renewed. Where the traction changes its sign the cycles are mirror images.
     """
+    plan, grid = problem.plan, problem.plan.grid
     rows: list[Row] = []
-    snapshots: list[Snapshot] = []
-    targets, grid = schedule.different, problem.grid
-    steps, previous, before = sum(target.rises for target in targets), None, UNLOADED
+    snapshots: dict[str, Snapshot] = {}
+    schedule, tribofilm, track = plan.schedule, plan.tribofilm, plan.track
+    steps, previous, before = sum(target.rises for target in schedule.different), None, UNLOADED
     film = None
-    for k, target in enumerate(targets, start=1):
+    for k, target in enumerate(schedule.different, start=1):
         if tribofilm is not None and target.step == 1 and (track is None or film is None):
             film = tribofilm.fresh(np.zeros((4, grid.nx, grid.ny)))
         if track is not None and previous is not None:
@@ -61,41 +47,41 @@ def solve_elastic(
         else:
             state, film = step_with_tribofilm(problem, tribofilm, film, target.load, start=previous)
         contact, note = state.contact, target.note if target.rises else UNLOADING
-        attempts = (Attempt(True, contact.residuals, problem.tolerance),)
-        effort = Effort(contact.iterations, contact.residual, note, attempts=attempts)
+        attempts = (Attempt(True, contact.residuals, contact_tolerance(plan.solver.tolerance)),)
         once = replace(target, cycle=1) if schedule.all_alike else target
-        row = row_of(grid, once, contact, effort, coefficient=state.coefficient, whole=problem.slip.whole)
+        row = row_of(grid, once, contact, coefficient=state.coefficient, whole=plan.slip.whole)
+        row = replace(row, iterations=contact.iterations, residual=contact.residual, note=note)
+        moved = None
         if track is not None:
-            mu, whole = target.load.sign * state.coefficient, grid.whole
-            moved = track.moved(grid, target.load, contact.pressure, window=whole, traction=mu)
-            row = replace(row, moved=moved)
+            mu = target.load.sign * state.coefficient
+            moved = track.moved(grid, target.load, contact.pressure, window=grid.whole, traction=mu)
+        row = replace(row, attempts=attempts, moved=moved)
         rows.append(row)
         previous, before = contact.pressure, target.load
         if target.rises:
             report("contact", k, steps)
         if target.snapshot:
-            found = snapshot_of(target.snapshot, state, remedies)
             place = target.load.x, target.load.y
-            snapshots.append(replace(found, stretch=target.load.stretch, place=place))
+            snapshots[target.snapshot] = replace(
+                snapshot_of(target.snapshot, state), stretch=target.load.stretch, place=place
+            )
             report("stress", 1, 1)
     first = list(rows)
     for cycle in range(2, schedule.cycles + 1 if schedule.all_alike else 2):
         rows += [replace(row, cycle=cycle, iterations=0, note=CYCLE, attempts=()) for row in first]
-    return rows, snapshots
+    return History(tuple(rows), snapshots)
 
 
 def step_with_tribofilm(
     problem: ElasticProblem,
-    tribofilm: Tribofilm,
+    tribofilm: FilmOnCells,
     film: TribofilmState,
     load: Load,
     *,
     start: Array | None = None,
 ) -> tuple[Loaded, TribofilmState]:
-    """The state under a load and the tribofilm after the step, repeated until the film that breaks down in
-    the state is the one whose friction it was solved with.
-    """
-    tried, grid, body = film, problem.grid, problem.pair.body
+    """State and tribofilm after a step, repeated until the film is the one whose friction it had."""
+    tried, grid, body = film, problem.plan.grid, problem.plan.pair.body
     while True:
         mu = tribofilm.coefficient(tried)
         state = problem.state(load, problem.contact(load, mu, start), mu)
@@ -108,25 +94,42 @@ def step_with_tribofilm(
         start, tried = pressure, tested
 
 
-def snapshot_of(name: str, state: Loaded, remedies: Remedies) -> Snapshot:
+def snapshot_of(name: str, state: Loaded) -> Snapshot:
     """The record of a state."""
-    problem = state.problem
-    row = _row_of_cut(problem, state.contact)
-    found = stresses_of(state, row)
+    problem, plan, contact = state.problem, state.problem.plan, state.contact
+    row = row_of_largest(contact, counted(contact, plan.grid)) if plan.places.off_origin else None
+    stresses = stresses_of(state, row)
     cut = None
-    if row is not None and found.in_row is not None:
-        cut = Cut.elastic(problem.grid, row, found.in_row)
-    coated = coated_state(problem.coated, state, remedies) if problem.coated is not None else None
-    sliding = sliding_of(state)
-    return Snapshot.elastic(
-        name, state.contact, found.plane, found.mises, sliding=sliding, coated=coated, cut=cut
+    if row is not None and stresses.in_row is not None:
+        peeq = np.zeros(stresses.in_row.shape[1:])
+        cut = Cut(float(plan.grid.y[row]), plan.grid.x, plan.grid.depths, stresses.in_row, peeq)
+    coated = None
+    if plan.coated is not None:  # with the bare body to compare with, under force
+        comparison = bare_body(state) if state.load.force else None
+        traction = state.traction if plan.slip.coupled else None
+        moved = plan.coated.counter_uz(plan.grid, contact.pressure, traction, problem.counters)
+        coated = Coated(plan.coated.thickness, moved, comparison)
+    zero, unmoved = np.zeros_like(stresses.plane), np.zeros(contact.gap.shape)
+    return Snapshot(
+        name,
+        contact,
+        unmoved,
+        stresses.plane,
+        zero,
+        zero[0],
+        stresses.mises,
+        sliding=sliding_of(state),
+        coated=coated,
+        cut=cut,
     )
 
 
-def _row_of_cut(problem: ElasticProblem, contact: Contact) -> int | None:
-    """The row of cells through the largest pressure; None without contact, or where that is around the
-    origin.
-    """
-    if not problem.looked.off_origin:
-        return None
-    return row_of_largest(contact, counted(contact, problem.grid))
+def bare_body(state: Loaded) -> Comparison:
+    """Contact of the bare body, from the coated pressure on, and its stress; a warning where it is unfit."""
+    bare, load = state.problem.bare(), state.load.by_force()
+    contact = bare.contact(load, start=state.contact.pressure)
+    status = fit_of(contact, rough=bare.plan.places.anywhere)
+    if status is not Status.CONVERGED:
+        return Comparison(warning=UNFIT.format(advice(bare.plan.remedies, status)))
+    mises = stresses_of(bare.state(load, contact)).mises
+    return Comparison(largest_pressure(contact, bare.plan.grid), mises)

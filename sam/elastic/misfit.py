@@ -35,10 +35,7 @@ AT_ONCE = 200_000  # points whose stress is taken at once: 10 MB
 
 @dataclass(frozen=True)
 class Profile:
-    """A misfit strain over x = r/radius, 1 at the centre.
-
-    local: its value; mean: over the sphere inside x; strength: 3 int f x^2 dx over all x.
-    """
+    """A misfit strain over x = r/radius, 1 at the centre, its mean inside x, and 3 int f x^2 dx."""
 
     local: Callable[[Array], Array]
     mean: Callable[[Array], Array]
@@ -70,10 +67,9 @@ PROFILES: Mapping[str, Profile] = {
 
 @dataclass(frozen=True)
 class MisfitSphere:
-    """A misfit strain about the point (0, 0, depth), and the stress that it makes of an elastic body.
-
-    depth, radius in m; strain: linear, at the centre at full load; free: whether the surface is, else it
-    carries the tractions of the infinite body.
+    """A misfit strain about the point (0, 0, depth), and the stress that it makes of an elastic body. depth,
+    radius in m; strain: linear, at the centre; free: whether the surface is, else it is held by the tractions
+    of the infinite body.
     """
 
     body: ElasticConstants
@@ -86,21 +82,15 @@ class MisfitSphere:
     def deviator(self, x: Array) -> Array:
         """s_theta - s_r of the infinite body in Pa at distances x, in radii, from the centre."""
         scale = self.body.young * self.strain / (1 - self.body.poisson)
-        found: Array = scale * (self.profile.mean(x) - self.profile.local(x))
-        return found
+        return scale * (self.profile.mean(x) - self.profile.local(x))
 
     def radial(self, x: Array) -> Array:
         """s_r of the infinite body in Pa at distances x, in radii, from the centre."""
         scale = self.body.young * self.strain / (1 - self.body.poisson)
-        found: Array = -2 / 3 * scale * self.profile.mean(x)
-        return found
+        return -2 / 3 * scale * self.profile.mean(x)
 
     def zone(self, limit: float) -> float:
-        """Radius in m inside which the stress of the infinite body reaches a yield stress in Pa, FARTHEST
-        radii at most; 0 where it does not.
-
-        That is the radius of its plastic zone whatever the hardening: what yields leaves no stress outside.
-        """
+        """Radius in m of the plastic zone at a yield stress in Pa, FARTHEST radii at most, 0 for none."""
         scale = self.body.young * self.strain / (1 - self.body.poisson) * self.profile.strength
         x = np.linspace(0.0, min((scale / limit) ** (1 / 3), FARTHEST), ZONE_POINTS)
         reaching = x[self.deviator(x) >= limit * (1 - 1e-9)]
@@ -137,13 +127,10 @@ class MisfitSphere:
         mixed = np.zeros_like(second)  # delta_iz phi_zj + delta_jz phi_zi
         mixed[2], mixed[3], mixed[4] = 2 * second[2], second[3], second[4]
         strain = (3 - 4 * nu) * second + 2 * z * third - (2 - 4 * nu) * mixed
-        found: Array = -2 * self.body.shear * self._centre * (strain - 4 * nu * second[2] * identity)
-        return found
+        return -2 * self.body.shear * self._centre * (strain - 4 * nu * second[2] * identity)
 
     def mean_stress(self, grid: CellGrid, window: Window, faces: Array) -> Array:
-        """Means of the stress over the cells of a window and the layers between some faces in m, (6, nz, nx,
-        ny) in Pa.
-        """
+        """Means over the cells of a window and the layers between faces in m, (6, nz, nx, ny) in Pa."""
         (i, j), layers = window.slices, len(faces) - 1
         out = np.zeros((6, layers, window.nx, window.ny))
         x = grid.x[i, None] + grid.hx / 2 * POINTS

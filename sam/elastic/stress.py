@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Stresses of an elastic state at the output depths, and where the largest of them is looked for. Paper Eq.
-7, first sum.
+"""Stresses of an elastic state at the output depths (paper Eq. 7, first sum), how friction moves its surface,
+and the onset of yield: whether the stress of the largest load yields anywhere.
 """
 
 from __future__ import annotations
@@ -10,12 +10,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from sam.arrays import Array
-from sam.contact.stress import stresses, von_mises
-from sam.elastic.problem import Loaded
-from sam.grid.cells import CellGrid, Window
+from sam.contact.normal import Contact
+from sam.contact.operators import half_space_kernel, moved_rows
+from sam.contact.stress import stresses, von_mises, yielding
+from sam.elastic.problem import ElasticProblem, Loaded, depths_at_once
+from sam.grid.cells import Window
+from sam.kernels.patches import Lags
 from sam.results.history import counted
-
-BYTES_AT_ONCE = 2e8  # of the spectra of a block of depths, which bounds the memory
+from sam.results.snapshots import Sliding
+from sam.schedule import Load
 
 
 def stress_at(state: Loaded, depths: Array, window: Window) -> Array:
@@ -23,35 +26,31 @@ def stress_at(state: Loaded, depths: Array, window: Window) -> Array:
     problem, tractions = state.problem, {3: state.contact.pressure}
     if (traction := state.traction) is not None:
         tractions[1] = traction
-    found = stresses(
+    stress = stresses(
         tractions,
-        (problem.grid.hx, problem.grid.hy),
+        (problem.plan.grid.hx, problem.plan.grid.hy),
         depths,
         window,
-        nu=problem.pair.body.poisson,
-        layered=None if problem.coated is None else problem.coated.layered,
+        nu=problem.plan.pair.body.poisson,
+        layered=None if problem.plan.coated is None else problem.plan.coated.layered,
         counters=problem.counters,
     )
-    if problem.misfit is None or not state.load.misfit:
-        return found
-    (i, j), grid = window.slices, problem.grid
+    if problem.plan.misfit is None or not state.load.misfit:
+        return stress
+    (i, j), grid = window.slices, problem.plan.grid
     at = grid.x[i, None], grid.y[j], np.asarray(depths)[:, None, None]
-    return found + state.load.misfit * problem.misfit.stress(*at)
+    return stress + state.load.misfit * problem.plan.misfit.stress(*at)
 
 
 def plane_stress(state: Loaded) -> Array:
     """Stress in the rows of cells that touch y = 0, (6, nz, nx, rows) in Pa."""
-    grid = state.problem.grid
+    grid = state.problem.plan.grid
     return stress_at(state, grid.depths, grid.axis_rows)
 
 
 @dataclass(frozen=True)
 class Stresses:
-    """Stresses of a state.
-
-    plane: in the rows that touch y = 0, (6, nz, nx, rows) in Pa; mises: the von Mises stress among which the
-    largest is, (nz, n) in Pa; in_row: in another row of cells, (6, nz, nx) in Pa, None if none is asked for.
-    """
+    """In Pa: in the rows at y = 0, (6, nz, nx, rows); von Mises, (nz, n); in another row, (6, nz, nx)."""
 
     plane: Array
     mises: Array
@@ -59,42 +58,32 @@ class Stresses:
 
 
 def stresses_of(state: Loaded, row: int | None = None) -> Stresses:
-    """Stresses of a state, also in a row of cells.
-
-    The largest von Mises stress is looked for in the rows at y = 0, n = nx rows, or in the row if the load
-    ends beside it; under a rough body on the whole grid, n = 1. Without friction it lies below the middle
-    of the contact, with friction in the plane along x through it: the other cells of the grid would take
-    eight to twenty times as long.
+    """Stresses of a state, also in a row of cells. The largest von Mises stress is looked for in the rows at
+    y = 0, or in the row if the load ends beside it; under a rough body on the whole grid. Without friction it
+    lies below the middle of the contact, with friction in the plane along x through it: the other cells would
+    take eight to twenty times as long.
     """
     problem = state.problem
-    if problem.looked.anywhere:
-        return _stresses_anywhere(state, counted(state.contact, problem.grid), row)
-    plane, rows = plane_stress(state), problem.grid.axis_rows
+    if problem.plan.places.anywhere:
+        return _stresses_anywhere(state, counted(state.contact, problem.plan.grid), row)
+    plane, rows = plane_stress(state), problem.plan.grid.axis_rows
     if row is None:
         return Stresses(plane, _in_cells(plane))
     if rows.j0 <= row < rows.j0 + rows.ny:
         in_row = plane[..., row - rows.j0]
     else:
-        in_row = stress_at(state, problem.grid.depths, Window(0, row, problem.grid.nx, 1))[..., 0]
-    return Stresses(plane, _in_cells(in_row[..., None] if problem.looked.beside else plane), in_row)
+        in_row = stress_at(state, problem.plan.grid.depths, Window(0, row, problem.plan.grid.nx, 1))[..., 0]
+    return Stresses(plane, _in_cells(in_row[..., None] if problem.plan.places.beside else plane), in_row)
 
 
 def _in_cells(rows: Array) -> Array:
     """Von Mises stress of rows of cells, (nz, nx rows) in Pa, of their stress, (6, nz, nx, rows)."""
-    found: Array = von_mises(rows).reshape(rows.shape[1], -1)
-    return found
-
-
-def depths_at_once(grid: CellGrid) -> int:
-    """How many depths a block has: six spectra each, of complex numbers on a grid twice as long each way."""
-    return int(max(1, BYTES_AT_ONCE // (6 * 16 * 2 * grid.nx * (grid.ny + 1))))
+    return von_mises(rows).reshape(rows.shape[1], -1)
 
 
 def _stresses_anywhere(state: Loaded, window: Window, row: int | None) -> Stresses:
-    """The largest von Mises stress in a window of the grid, for blocks of depths, so that the memory is
-    bounded.
-    """
-    grid = state.problem.grid
+    """The largest von Mises stress in a window of the grid, in blocks of depths, which bounds the memory."""
+    grid = state.problem.plan.grid
     block, rows = depths_at_once(grid), grid.axis_rows.slices[1]
     largest, plane, cut = [], [], []
     for k in range(0, len(grid.depths), block):
@@ -105,3 +94,64 @@ def _stresses_anywhere(state: Loaded, window: Window, row: int | None) -> Stress
             cut.append(stress[..., row].copy())
     in_row = np.concatenate(cut, axis=1) if cut else None
     return Stresses(np.concatenate(plane, axis=1), np.concatenate(largest)[:, None], in_row)
+
+
+def sliding_of(state: Loaded) -> Sliding | None:
+    """What friction adds to an elastic state; None without friction, then nothing is computed."""
+    problem, pressure, traction = state.problem, state.contact.pressure, state.traction
+    if traction is None:
+        return None
+    grid, counters, coated = problem.plan.grid, problem.counters, problem.plan.coated
+    zero = np.zeros(grid.axis_rows.shape)
+    if not traction.any():
+        return Sliding(traction, zero, zero, zero, zero)
+    if coated is not None:  # u_z: the contact's less that of the counter-body, see `CoatedPair`
+
+        def layered(nx: int, ny: int, *, component: int, load: int) -> Array:
+            lags = Lags(nx, ny, grid.hx, grid.hy)
+            return coated.layered.displacement(lags, component=component, load=load)
+
+        ux = moved_rows(grid, pressure, layered, (1, 3), counters=counters)
+        ux = ux + moved_rows(grid, traction, layered, (1, 1), counters=counters)
+        return Sliding(traction, ux, zero, zero, zero)
+    pair = problem.plan.pair
+    kernel = half_space_kernel(grid, pair.body.poisson)
+    ux = grid.hx * moved_rows(grid, pressure, kernel, (1, 3), counters=counters) / pair.body.shear
+    ux = ux + grid.hx * moved_rows(grid, traction, kernel, (1, 1), counters=counters) / pair.body.shear
+    # nu = 0 leaves out the factor 1 - 2 nu of D_31, which is a difference where the contact has it
+    extra = 0.0
+    if problem.plan.slip.coupled and pair.other is not None:
+        share = pair.body.compliance  # times E*: of the body in the displacement of both
+        extra = pair.body.tangential_compliance - 2 * share * pair.tangential_mismatch
+    uz = zero
+    if extra:
+        kernel = half_space_kernel(grid, 0.0)
+        uz = extra * (grid.hx * moved_rows(grid, traction, kernel, (3, 1), counters=counters))
+    return Sliding(traction, ux, zero, uz, zero)
+
+
+@dataclass(frozen=True)
+class ElasticPeak:
+    """The contact at the largest load if the body stayed elastic, and the von Mises stress, (nz, n) in Pa:
+    below a smooth body in y = 0, below a rough one the largest of the grid. A tribofilm may fail and raise
+    the traction: then with its high coefficient everywhere.
+    """
+
+    contact: Contact
+    mises: Array
+
+
+def elastic_peak(problem: ElasticProblem, load: Load) -> ElasticPeak | None:
+    """The elastic state under the largest load; None without any."""
+    if load.rests:
+        return None
+    high = problem.plan.slip.highest
+    state = problem.state(load, problem.contact(load, high), high)
+    if problem.plan.places.anywhere:
+        return ElasticPeak(state.contact, stresses_of(state).mises)
+    return ElasticPeak(state.contact, von_mises(plane_stress(state)).max(axis=-1))
+
+
+def yields(peak: ElasticPeak | None, limit: Array) -> bool:
+    """Whether the elastic stress at the peak exceeds the yield stress (nz,) in Pa anywhere. Paper Eq. 8."""
+    return peak is not None and bool(yielding(peak.mises, limit[:, None]).any())

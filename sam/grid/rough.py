@@ -5,7 +5,6 @@ grid may come into contact.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -13,7 +12,7 @@ import numpy as np
 
 from sam.arrays import Array
 from sam.grid.cells import CellGrid, Room
-from sam.grid.smooth import LAYERS_IN_PROFILE, given_depths, unchanged
+from sam.grid.smooth import LAYERS_IN_PROFILE, depths_with_film, given_depths
 from sam.scene import Grid, Plasticity
 from sam.scene.section import stated
 from sam.scene.surface import (
@@ -43,10 +42,8 @@ LAYER_GROWTH = 1.25  # ratio of the thicknesses of layers
 
 @dataclass(frozen=True)
 class RoughPatch:
-    """The rough surfaces on their cells: of the body, of the counter-body, or both.
-
-    cells: (nx, ny); extent: (Lx, Ly) in m; relief: whether the heights of both fall off at the border; strip:
-    of a rough counter-body that moves.
+    """The rough surfaces of body, counter-body or both on (nx, ny) cells over (Lx, Ly) in m. relief: whether
+    heights fall off at the border; strip: of a rough counter-body that moves.
     """
 
     surface: Surface | None
@@ -77,9 +74,7 @@ class RoughPatch:
         return _heights(stated(self.surface), self.cells, self.extent, self.relief)
 
     def counter_heights(self, number: int, place: tuple[float, float]) -> Array:
-        """Heights of a stretch of a rough counter-body at a place of its path in m, like `heights`, positive
-        out of it.
-        """
+        """Heights of a stretch of a rough counter-body at a place of its path in m, positive out of it."""
         if self.strip is not None:
             return self.strip.at(number, place)
         stretch = stated(self.counter).stretch(number)
@@ -91,9 +86,7 @@ class RoughPatch:
         return np.zeros(self.cells) if self.surface is None else self.heights()
 
     def roughness(self, lowered: Array | float = 0.0) -> Roughness:
-        """Of the heights less what wear and plastic strain have lowered, (nx, ny) in m, but for a border that
-        falls off.
-        """
+        """Of the heights less what is lowered, (nx, ny) in m, but for a border that falls off."""
         (nx, ny), (lx, ly) = self.cells, self.extent
         bx, by = border_cells((nx, ny)) if self.relief else (0, 0)
         inner = (self.of_body - lowered)[bx : nx - bx, by : ny - by]
@@ -103,31 +96,27 @@ class RoughPatch:
 @lru_cache(maxsize=2)  # the body, and the stretch opposite
 def _heights(surface: Surface, cells: tuple[int, int], extent: tuple[float, float], relief: bool) -> Array:
     x, y = (((np.arange(n) + 0.5) / n - 0.5) * side for n, side in zip(cells, extent, strict=True))
-    found = heights(surface, x, y, extent)
+    values = heights(surface, x, y, extent)
     if relief:
-        found = with_relief(found, (x, y), extent, mean_deviation(surface, extent))
-    found.flags.writeable = False
-    return found
+        values = with_relief(values, (x, y), extent, mean_deviation(surface, extent))
+    values.flags.writeable = False
+    return values
 
 
 @dataclass(frozen=True)
 class RoughDemand:
-    """What the grid of a rough scene is chosen from.
-
-    given: the table [grid], or None; with_coating: see `sam.grid.smooth.GridDemand`; reach: depth in m to
-    which a plastic zone may go, if all summits in contact act like one (`sam.grid.smooth.point_load_reach`).
+    """What the grid of a rough scene is chosen from: patch, [grid], thickness of a coating in m, and the
+    depth in m that a plastic zone may reach if all summits act like one (`point_load_reach`).
     """
 
     patch: RoughPatch
     given: Grid | None
     plasticity: Plasticity | None
-    with_coating: Callable[[Array], Array] = unchanged
+    film: float | None = None
     reach: float = 0.0
 
     def grid(self, room: Room) -> CellGrid:
-        """The cells of the patch; depths that [grid] does not give are fine near the surface, where small
-        contacts act. room: its factor on the depth; a body that yields has further layers there.
-        """
+        """The cells of the patch; depths that are not given are fine near the surface, for small contacts."""
         patch, plasticity = self.patch, self.plasticity
         (nx, ny), (lx, ly) = patch.cells, patch.extent
         hx, hy = lx / nx, ly / ny
@@ -139,7 +128,7 @@ class RoughDemand:
                 if plasticity is None
                 else _faces(plasticity, cell, deepest * room.below, self.reach * room.below)
             )
-            depths = self.with_coating(chosen)
+            depths = chosen if self.film is None else depths_with_film(chosen, self.film)
         border = (0, 0) if patch.relief else border_cells((nx, ny))
         if plasticity is not None:
             return CellGrid(nx, ny, hx, hy, (depths[1:] + depths[:-1]) / 2, depths, border, room)
@@ -156,9 +145,8 @@ def _depths(cell: float, deepest: float) -> Array:
 
 
 def _faces(plasticity: Plasticity, cell: float, deepest: float, reach: float) -> Array:
-    """Faces of the layers of a body that yields: half a cell thick at the surface, thinner where the yield
-    stress varies. The face nearest to a kink of the yield stress is moved there, as a layer has the yield
-    stress at its centre; of kinks nearer to each other than faces are, the first counts.
+    """Faces of layers of a body that yields: half a cell thick at the surface, thinner where the yield stress
+    varies; the one nearest to a kink is moved there, as a layer has the yield stress at its centre.
     """
     thin = [cell / 2]
     if plasticity.profile is not None:

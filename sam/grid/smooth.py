@@ -1,13 +1,23 @@
 # SPDX-License-Identifier: MIT
-"""The grid of a smooth scene: taken from [grid], or chosen from an estimate of the contact and of the plastic
-zone.
+"""The grid of a smooth scene: taken from [grid], or chosen from an estimate of the contact, or of a misfit
+sphere, and of the plastic zone.
+
+The contact radius of a coated body is that of the best Hertz pressure in the sense of the
+complementary energy. Under p = p0 sqrt(1 - r^2/a^2), of force F, the harmonics have the amplitudes F S(k a),
+S(t) = 3 j1(t)/t with the spherical Bessel function j1, and 1/E(k) = k c_zz(k)/2 is the compliance that each
+of them meets. The energy F^2/(2 pi) int S(k a)^2/E(k) dk of both bodies and F <r^2>/(2 R) = F a^2/(5 R) of
+the gap are stationary for
+
+    a^3 = 3/4 F R <1/E>,    <1/E> = 5/(3 pi) int 18 j1(t) j2(t)/t 1/E(t/a) dt:
+
+Hertz with a mean compliance (the weights integrate to 1). It is exact without coating.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from math import ceil, inf, pi, sqrt
 
 import numpy as np
@@ -45,33 +55,18 @@ FARTHEST = 4.5  # Hertz radii: no grid is chosen for a larger reach (p0 = 19 yie
 
 @dataclass(frozen=True)
 class PlasticDemand:
-    """What plasticity asks of a grid.
-
-    reach: depth in m to which a plastic zone may go, see `point_load_reach`; kinks: depths in m of the rows
-    of a profile of the yield stress.
-    """
+    """What plasticity asks of a grid: depth in m of the plastic zone, and of kinks of the yield stress."""
 
     reach: float
     kinks: Sequence[float] = ()
 
 
-FIRST_CHOICE = Room()  # no larger than the estimate
-
-
-def unchanged(depths: Array) -> Array:
-    """The output depths of a body without coating."""
-    return depths
-
-
 @dataclass(frozen=True)
 class GridDemand:
-    """What the grid of a smooth scene is chosen from.
-
-    given: the table [grid], or None; axes: estimated semi-axes of the contact along x and y in m; extent:
-    sides of the grid in contact radii; wider: factor on them, for a second contact that has to fit; farthest:
-    largest |x| and |y| in m of the centre of a travelling load; plastic: None for an elastic body;
-    with_coating: output depths of a bare body -> of a coated one; moves: whether a counter-body travels;
-    largest_cell: in m, that resolves the contact.
+    """What the grid of a smooth scene is chosen from. given: the table [grid]; axes: estimated semi-axes in
+    m; extent: sides in contact radii; wider: factor on them, for a second contact that has to fit; farthest:
+    largest |x| and |y| in m of a travelling load; film: thickness of a coating in m; moves: whether a
+    counter-body travels; largest_cell: in m, that resolves the contact.
     """
 
     given: Grid | None
@@ -80,7 +75,7 @@ class GridDemand:
     wider: float = 1.0
     farthest: tuple[float, float] = (0.0, 0.0)
     plastic: PlasticDemand | None = None
-    with_coating: Callable[[Array], Array] = unchanged
+    film: float | None = None
     moves: bool = False
     largest_cell: float = inf
 
@@ -104,30 +99,35 @@ class GridDemand:
         return a, b
 
     def grid(self, room: Room) -> CellGrid:
-        """The grid, larger by the factors of a room than the one chosen first."""
-        return smooth_grid(self, room)
+        """The grid, larger by the factors of a room. What [grid] leaves out is chosen: 129 x 129 cells over
+        four contact radii each way; with plasticity 65 x 65, and layers as thick as a cell where most of the
+        plastic strain is. Cells of the same size and further layers are added where the plastic zone goes
+        further, and along a path.
+        """
+        given, plastic = self.given, self.plastic
+        zone, longer = plastic.reach if plastic else 0.0, []
+        for far, radius in zip(self.farthest, self.axes, strict=True):
+            stretch = max(1.0, ZONE_BESIDE * zone / (self.extent * radius / 2)) * room.beside
+            stretch += 2 * far / (self.extent * radius)
+            longer.append(self.usual if stretch == 1 else 2 * int(np.ceil(stretch * self.usual / 2)) + 1)
+        nx, ny = (given.cells if given and given.cells else None) or longer
+        lx, ly = self.sides((longer[0], longer[1]))
+        hx, hy = lx / nx, ly / ny
+        depths = given_depths(given)
+        if plastic is None:
+            return CellGrid(nx, ny, hx, hy, self._output_depths() if depths is None else depths, room=room)
+        if depths is None:
+            depths = _layer_faces(min(hx, hy), min(self.axes), plastic, room.below)
+        return CellGrid(nx, ny, hx, hy, (depths[1:] + depths[:-1]) / 2, depths, room=room)
 
-
-def smooth_grid(demand: GridDemand, room: Room = FIRST_CHOICE) -> CellGrid:
-    """The grid of a smooth scene. What [grid] leaves out is chosen: 129 x 129 cells over four contact radii
-    each way.
-
-    With plasticity 65 x 65 cells, and layers as thick as a cell where most of the plastic strain is. Cells of
-    the same size and further layers are added where the plastic zone goes further, and along the path of a
-    travelling load. room: see `sam.grid.enlargement`.
-    """
-    given = demand.given
-    longer = _longer(demand, room, demand.usual)
-    nx, ny = (given.cells if given and given.cells else None) or longer
-    a, b = demand.axes
-    lx, ly = demand.sides(longer)
-    hx, hy = lx / nx, ly / ny
-    depths = given_depths(given)
-    if demand.plastic is None:
-        return CellGrid(nx, ny, hx, hy, _output_depths(demand) if depths is None else depths, room=room)
-    if depths is None:
-        depths = _layer_faces(min(hx, hy), min(a, b), demand.plastic, room.below)
-    return CellGrid(nx, ny, hx, hy, (depths[1:] + depths[:-1]) / 2, depths, room=room)
+    def _output_depths(self) -> Array:
+        """Depths in m at which the stress of an elastic body is returned."""
+        count = round(DEPTH_RANGE / DEPTH_SPACING)
+        levels: Array = np.arange(count + 1, dtype=np.float64) * (DEPTH_SPACING * min(self.axes))
+        if self.largest_cell < inf:
+            fine = np.arange(EDGE_DEPTHS + 1) * min(self.largest_cell / EDGE_SPACING, levels[1])
+            levels = np.concatenate([fine, levels[levels > fine[-1]]])
+        return levels if self.film is None else depths_with_film(levels, self.film)
 
 
 def given_depths(given: Grid | None) -> Array | None:
@@ -139,53 +139,21 @@ def given_depths(given: Grid | None) -> Array | None:
     return None
 
 
-def _longer(demand: GridDemand, room: Room, usual: int) -> tuple[int, int]:
-    """Number of cells each way, with those that a plastic zone, a path or more room add."""
-    zone = demand.plastic.reach if demand.plastic else 0.0
-    stretch = [
-        max(1.0, ZONE_BESIDE * zone / (demand.extent * radius / 2)) * room.beside
-        + 2 * far / (demand.extent * radius)
-        for far, radius in zip(demand.farthest, demand.axes, strict=True)
-    ]
-    nx, ny = (usual if s == 1 else 2 * int(np.ceil(s * usual / 2)) + 1 for s in stretch)
-    return nx, ny
-
-
-def _output_depths(demand: GridDemand) -> Array:
-    """Depths in m at which the stress of an elastic body is returned."""
-    count = round(DEPTH_RANGE / DEPTH_SPACING)
-    levels: Array = np.arange(count + 1, dtype=np.float64) * (DEPTH_SPACING * min(demand.axes))
-    if demand.largest_cell < inf:
-        fine = np.arange(EDGE_DEPTHS + 1) * min(demand.largest_cell / EDGE_SPACING, levels[1])
-        levels = np.concatenate([fine, levels[levels > fine[-1]]])
-    return demand.with_coating(levels)
-
-
 def point_load_reach(force: float, poisson: float, bulk_yield: float, radius: float) -> float:
-    """Depth in m at which a force in N, acting at a point, brings unstrained bulk material to yield.
-
-    On the axis of Boussinesq's point force F, szz = -3F/(2 pi z^2) and srr = (1 - 2 nu) F/(4 pi z^2) (Johnson
-    1985, Eq. 3.19), so the von Mises stress (7/2 - nu) F/(2 pi z^2) equals the yield stress at z = sqrt((7/2
-    - nu) F/(2 pi sigma_y)). By Saint-Venant's principle a plastic zone much larger than the contact ends
-    about there, whatever the hardening. bulk_yield in Pa; radius: of Hertz's contact in m, FARTHEST of them
-    at most, as a law may begin at a vanishing yield stress.
+    """Depth in m at which a point force in N brings unstrained bulk material to yield: on the axis of
+    Boussinesq's, szz = -3F/(2 pi z^2), srr = (1 - 2 nu) F/(4 pi z^2) (Johnson 1985, Eq. 3.19), von Mises
+    stress (7/2 - nu) F/(2 pi z^2). By Saint-Venant's principle a plastic zone much larger than the contact
+    ends about there, whatever the hardening. bulk_yield in Pa; radius: of contact in m, FARTHEST of them at
+    most.
     """
     reach = sqrt((3.5 - poisson) * force / (2 * pi * bulk_yield))
     return min(reach, FARTHEST * radius)
 
 
-def layers_as_thick_as_a_cell(axes: tuple[float, float], cell: float) -> float:
-    """How many layers as thick as a cell in m a contact of these semi-axes in m asks for."""
-    return EVEN_DEPTH * min(axes) / cell
-
-
 def _layer_faces(thickness: float, radius: float, plastic: PlasticDemand, room: float) -> Array:
-    """Faces of equal layers down to EVEN_DEPTH radii, then of growing ones to LAYER_RANGE.
-
-    The lowest layer does not begin above the reach of the plastic zone, as that leaves it free; room: factor
-    on both depths. The kinks are faces too, as a layer has the yield stress at its centre: with none at its
-    lower side a soft layer would be thinner or thicker. LAYERS_IN_PROFILE or more down to the last of them,
-    none thinner than thickness/SLENDEST.
+    """Faces of equal layers down to EVEN_DEPTH radii, then of growing ones to LAYER_RANGE and beyond the
+    reach of the plastic zone; room: factor on both. Kinks are faces too, as a layer has the yield stress at
+    its centre, with LAYERS_IN_PROFILE or more down to the last, none thinner than thickness/SLENDEST.
     """
     faces, kinks = [0.0], [z for z in plastic.kinks if 0 < z < EVEN_DEPTH * radius]
     thin = max(min([thickness, *(z / LAYERS_IN_PROFILE for z in kinks[-1:])]), thickness / SLENDEST)
@@ -199,3 +167,134 @@ def _layer_faces(thickness: float, radius: float, plastic: PlasticDemand, room: 
         thickness *= LAYER_GROWTH
         faces.append(faces[-1] + thickness)
     return np.array(faces)
+
+
+CELLS_IN_RADIUS = 8  # plastic strain of a smooth profile within 5 % (linear hardening), in 0.2 s
+CELLS_IN_ZONE = 12  # at most so many are needed in the radius of a plastic zone
+BEYOND_ZONE = 1.5  # radii of the zone: the half side of the grid
+ELASTIC_SIDE = 2.0  # radii of the sphere, where nothing yields: the half side of the grid
+
+
+@dataclass(frozen=True)
+class MisfitDemand:
+    """What the grid of a misfit sphere is chosen from. given: the table [grid]; depth, radius: of the sphere
+    in m; zone: radius of the plastic zone in m, 0 where nothing yields, None of an elastic body.
+    """
+
+    given: Grid | None
+    depth: float
+    radius: float
+    zone: float | None
+
+    def grid(self, room: Room) -> CellGrid:
+        """The grid, its sides and depth larger by the factors of a room than those chosen first."""
+        given, zone = self.given, self.zone or 0.0
+        half = max(BEYOND_ZONE * zone, self.radius) if zone else ELASTIC_SIDE * self.radius
+        cell = max(self.radius / CELLS_IN_RADIUS, zone / CELLS_IN_ZONE)
+        usual = 2 * ceil(half * room.beside / cell - 0.5) + 1
+        nx, ny = (given.cells if given and given.cells else None) or (usual, usual)
+        lx, ly = (given.extent if given and given.extent else None) or (2 * half * room.beside,) * 2
+        if not given or not (given.cells or given.extent):
+            lx = ly = usual * cell
+        hx, hy = lx / nx, ly / ny
+        depths = given_depths(given)
+        if self.zone is None:
+            return CellGrid(nx, ny, hx, hy, self._levels(half) if depths is None else depths, room=room)
+        if depths is None:
+            depths = self._faces(min(hx, hy), half, room.below)
+        return CellGrid(nx, ny, hx, hy, (depths[1:] + depths[:-1]) / 2, depths, room=room)
+
+    def _levels(self, half: float) -> Array:
+        """Output depths of an elastic body: one of them that of the centre."""
+        spacing = DEPTH_SPACING * self.radius
+        above = int(self.depth / spacing)
+        return self.depth + spacing * np.arange(-above, ceil(half / spacing) + 1.0)
+
+    def _faces(self, thickness: float, half: float, room: float) -> Array:
+        """Faces of layers as thick as a cell about the centre, then of growing ones up to the surface."""
+        count = ceil(half / thickness - 0.5)
+        below = self.depth + thickness * (np.arange(ceil(count * room) + 1) + 0.5)
+        above, upper = [self.depth - thickness / 2], thickness
+        while above[-1] > 0:
+            if len(above) > count:
+                upper *= LAYER_GROWTH
+            above.append(above[-1] - upper)
+        above.pop()
+        if len(above) > 1 and above[-1] < thickness / 2:
+            above.pop()
+        return np.concatenate([[0.0], above[::-1], below])
+
+
+LEVELS = 8  # output depths in the coating at least, of equal distance
+FILM_SIDE = 1 - 1e-6  # thicknesses: the deepest of them, the coating's side of the interface
+# times the deepest of the other depths (two contact radii): a thicker coating is all that is looked at
+REACH = 5.0
+BELOW = (1.05, 1.1, 1.2, 1.35, 1.5)  # thicknesses: output depths below a coating where the other depths end
+CLOSE = 0.25  # of the distance of the other depths: none of them is closer to the interface
+BARE_ROOM = 1.6  # the contact of the bare body fits into a default grid up to this many coated contact radii
+MOST_ROOM = 3.0  # factor on a default grid at most, for the contact of the bare body
+PANELS = 30  # of Gauss-Legendre nodes, one panel in pi: the integrand oscillates with that period
+NODES = 8  # in a panel
+TAIL = 1e9  # beyond the panels 18 j1 j2/t has the mean 18/t^4, up to here
+TAIL_NODES = 200  # evenly in the logarithm
+WIDER = 30.0  # the bracket goes so far beyond the radii of the bare coating and of the bare body
+
+
+def room_for_bare(scale: float) -> float:
+    """Factor on a default grid for the coated contact, so that it holds the bare one to compare with."""
+    return float(np.clip(1 / (BARE_ROOM * scale), 1.0, MOST_ROOM))
+
+
+def depths_with_film(depths: Array, thickness: float) -> Array:
+    """Output depths of a bare body, ascending from 0, made those of a coated one: in the coating the given
+    ones, at least LEVELS, and the coating's side of the interface; then the interface, with values of the
+    body below, and deeper ones; none of these where the interface is out of REACH.
+    """
+    deepest, spacing = depths[-1], depths[1] - depths[0]
+    inside: Array = depths[depths < thickness - CLOSE * spacing]
+    if thickness > REACH * deepest:
+        return inside
+    if len(inside) < LEVELS:
+        inside = thickness * np.arange(LEVELS - 1) / (LEVELS - 1)
+    inside = np.append(inside, FILM_SIDE * thickness)
+    below = depths[depths > thickness + CLOSE * spacing]
+    deeper = [share * thickness for share in BELOW if share * thickness > deepest]
+    return np.concatenate([inside, [thickness], below, deeper])
+
+
+@cache
+def _weights() -> tuple[Array, Array]:
+    """Nodes t and weights of <1/E>, which sum to 1."""
+    from scipy.special import spherical_jn  # noqa: PLC0415
+
+    x, w = np.polynomial.legendre.leggauss(NODES)
+    t = (np.arange(PANELS)[:, None] * np.pi + (x + 1) * np.pi / 2).ravel()
+    weight = np.tile(w * np.pi / 2, PANELS) * 18 * spherical_jn(1, t) * spherical_jn(2, t) / t
+    far = np.geomspace(PANELS * np.pi, TAIL, TAIL_NODES)
+    steps = np.gradient(np.log(far))
+    steps[[0, -1]] /= 2
+    nodes, weights = np.append(t, far), np.append(weight, 18 / far**3 * steps)
+    return nodes, weights / weights.sum()
+
+
+def mean_compliance(response: Callable[[Array], Array], radius: float) -> float:
+    """<1/E> in 1/Pa of a contact with the radius in m; response: k in 1/m -> c_zz(k) in m/Pa."""
+    t, weights = _weights()
+    k = t / radius
+    return float(weights @ (k * response(k) / 2))
+
+
+def contact_radius(
+    response: Callable[[Array], Array], force: float, radius: float, bare: tuple[float, float]
+) -> float:
+    """Radius in m of the contact of a paraboloid (radius in m) under a force in N. response: k in 1/m ->
+    c_zz(k) of both bodies in m/Pa; bare: Hertz radii on the bare coating and on the bare body.
+    """
+    from scipy.optimize import brentq  # noqa: PLC0415 - a tenth of a second, for coatings alone
+
+    def excess(log_a: float) -> float:
+        compliance = mean_compliance(response, np.exp(log_a))
+        return float(3 * log_a - np.log(0.75 * force * radius * compliance))
+
+    low, high = np.log(min(bare) / WIDER), np.log(max(bare) * WIDER)
+    return float(np.exp(brentq(excess, low, high, xtol=1e-13)))

@@ -6,8 +6,7 @@
 dimensionless, without a grid or a solver.
 """
 
-from sam.kernels.lags import Cuboids, Lags
-from sam.kernels.patches import STRESS, displacement_coefficients, parity, stress_coefficients
+from sam.kernels.patches import STRESS, Cuboids, Lags, displacement_coefficients, parity, stress_coefficients
 
 __all__ = [
     "STRESS",

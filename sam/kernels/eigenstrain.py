@@ -27,8 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sam.arrays import Array
-from sam.kernels.lags import Cuboids
-from sam.kernels.patches import STRESS
+from sam.kernels.patches import STRESS, Cuboids
 from sam.kernels.primitives import Corners, primitive
 
 PAIRS = tuple((int(name[0]) - 1, int(name[1]) - 1) for name in STRESS)
@@ -58,9 +57,7 @@ Term = tuple[int, int, int, int, int]
 
 @cache
 def eigenstrain_table() -> dict[str, dict[str, dict[Term, tuple[float, ...]]]]:
-    """The derived table: kind -> name -> {(p, q, a, b, c): coefficients of 1, nu, nu^2}; see
-    tests/derivations.
-    """
+    """The derived table: kind -> name -> {(p, q, a, b, c): coefficients of 1, nu, nu^2}."""
     raw = json.loads(Path(__file__).with_name("eigenstrain_table.json").read_text(encoding="utf-8"))
     return {
         kind: {
@@ -72,27 +69,22 @@ def eigenstrain_table() -> dict[str, dict[str, dict[Term, tuple[float, ...]]]]:
 
 
 def parity(i: int, j: int) -> tuple[int, int]:
-    """Sign of stress coefficient [i, j] (0 .. 5) under x -> -x and under y -> -y: each index 1 (2) is odd in
-    x (y).
-    """
+    """Sign of stress coefficient [i, j] (0 .. 5) under x -> -x, y -> -y: each index 1 (2) is odd in x (y)."""
     name = STRESS[i] + STRESS[j]
     return (-1) ** name.count("1"), (-1) ** name.count("2")
 
 
 def displacement_parity(component: int, j: int) -> tuple[int, int]:
-    """Sign of the coefficient of u_component (1, 2, 3) by eigenstrain j (0 .. 5) under x -> -x and under y ->
-    -y.
-    """
+    """Sign of the coefficient of u_component (1 .. 3) by eigenstrain j (0 .. 5) under x -> -x, y -> -y."""
     name = str(component) + STRESS[j]
     return (-1) ** name.count("1"), (-1) ** name.count("2")
 
 
 @dataclass(frozen=True)
 class Block:
-    """The coefficients of one parity in x and y: rows 6 I + J as sums of functions of the same parity.
-
-    of_image, of_full: which of `image_orders` and of FOURTH; image: (4, rows, functions), factors of 1, face,
-    z and z face; full: (rows, functions).
+    """The coefficients of one parity in x and y: rows 6 I + J as sums of functions. of_image, of_full: which
+    of `image_orders` and of FOURTH; image: (4, rows, functions), factors of 1, face, z and z face; full:
+    (rows, functions).
     """
 
     odd: tuple[int, int]
@@ -105,9 +97,8 @@ class Block:
 
 @cache
 def blocks(nu: float) -> list[Block]:
-    """The four blocks, in the order of PARITIES. They take the place of paper Eq. 22 to 26.
-
-    A term z^p z'^q of the table is integrated over z' by parts: z' P[a,b,c] - P[a,b,c-1] for q = 1.
+    """The four blocks, in the order of PARITIES, in place of paper Eq. 22 to 26. A term z^p z'^q of the table
+    is integrated over z' by parts: z' P[a,b,c] - P[a,b,c-1] for q = 1.
     """
     terms, coefficients = _matrix("stress", ENTRIES, nu)
     orders, scale = image_orders(), 8 * pi * (1 - nu)
@@ -120,14 +111,14 @@ def blocks(nu: float) -> list[Block]:
     # paper Eq. 22, 23, 24 and 25, terms with a prime (the full space)
     full = -_full_space_matrix(nu) / scale  # minus: integrated over z', its antiderivative is one in z - z'
     signs = np.array([parity(*divmod(row, 6)) for row in range(36)])
-    found = []
+    out = []
     for odd in PARITIES:
         rows = np.flatnonzero((signs == (-1) ** np.array(odd)).all(axis=1))
         of_image = _run([(a % 2, b % 2) == odd for a, b, _ in orders])
         of_full = _run([(indices.count(0) % 2, indices.count(1) % 2) == odd for indices in FOURTH])
         weights = image.reshape(4, 36, -1)[:, rows, of_image]
-        found.append(Block(odd, rows, of_image, of_full, weights, full[rows, of_full]))
-    return found
+        out.append(Block(odd, rows, of_image, of_full, weights, full[rows, of_full]))
+    return out
 
 
 def _run(chosen: list[bool]) -> slice:
@@ -137,10 +128,7 @@ def _run(chosen: list[bool]) -> slice:
 
 @cache
 def image_orders() -> list[tuple[int, int, int]]:
-    """Orders of the primitives that the image part is made of, by parity.
-
-    Those that need x and y exchanged (a < b) last: they then find every shared function computed.
-    """
+    """Orders of the image part by parity; a < b last, which finds every shared function computed."""
     terms, _ = _matrix("stress", ENTRIES, 0.0)
     wanted = {(a, b, c) for _, _, a, b, c in terms} | {(a, b, c - 1) for _, q, a, b, c in terms if q}
     return sorted(
@@ -155,45 +143,23 @@ def image_functions(x: Array, y: Array, z: Array) -> Iterator[Array]:
 
 
 def surface_displacement_coefficients(cuboids: Cuboids, *, component: int = 3) -> Array:
-    """Displacement of the surface at (i hx, j hy, 0) by a unit eigenstrain in the cuboids at the origin.
-    Paper Eq. 19.
-
-    Eq. 19 is component 3, which is printed twice too large; components 1 and 2 are not printed.
-
-    Parameters
-    ----------
-    cuboids
-        Lags, faces of the layers and Poisson's ratio (negative lags: `displacement_parity`).
-    component
-        Direction of the displacement: 1, 2 or 3 (u_3 > 0 into the body).
-
-    Returns
-    -------
-    Array
-        (6, n, nx, ny) in the unit of the faces: eigenstrain J, layer, lags i, j >= 0.
-
-    Examples
-    --------
-    A wide, thin layer that expands by 1 across itself raises the surface by its thickness:
-
-    >>> from sam.kernels.lags import Lags
-    >>> plate = Cuboids(Lags(1, 1, 1000.0, 1000.0), (0.0, 1.0), nu=0.5)
-    >>> round(float(surface_displacement_coefficients(plate)[2, 0, 0, 0]), 3)
-    -1.0
+    """Displacement of the surface at (i hx, j hy, 0) by a unit eigenstrain in the cuboids at the origin, (6,
+    n, nx, ny) in the unit of the faces: eigenstrain J, layer, lags i, j >= 0. Paper Eq. 19 is component 3 (>
+    0 into the body), printed twice too large; 1 and 2 are not printed.
     """
     x, y = cuboids.lags.corners()
     source = cuboids.depths[:, None, None]
     terms, matrix = _matrix("displacement", tuple(f"{component},{j}" for j in STRESS), cuboids.nu)
     basis = _table_basis(terms, Corners(x[:, None], y[None, :], source), source)
     # paper Eq. 19, with 1/(2 pi) where 1/pi is printed
-    return _combine(matrix / (2 * pi), basis).reshape(6, cuboids.layers, *cuboids.lags.shape)
+    return (matrix / (2 * pi) @ np.stack([term.ravel() for term in basis])).reshape(
+        6, cuboids.layers, *cuboids.lags.shape
+    )
 
 
 @cache
 def _matrix(kind: str, names: tuple[str, ...], nu: float) -> tuple[list[Term], Array]:
-    """The terms (p, q, a, b, c) that the named entries use and their coefficients,
-    (len(names), len(terms)).
-    """
+    """The terms (p, q, a, b, c) of the named entries and their coefficients, (len(names), len(terms))."""
     table = eigenstrain_table()[kind]
     # those that need x and y exchanged (a < b) last: they then find every shared function computed
     terms = sorted(
@@ -213,17 +179,8 @@ def _cells(corners: Array) -> Array:
     return in_xy[1:] - in_xy[:-1]
 
 
-def _combine(coefficients: Array, basis: list[Array]) -> Array:
-    """Coefficients (rows, terms) times the terms: (rows, n * nx * ny)."""
-    return coefficients @ np.stack([term.ravel() for term in basis])
-
-
 def _table_basis(terms: list[Term], corners: Corners, source: Array) -> list[Array]:
-    """Integral over the cuboids of z'^q d_x^a d_y^b d_z^c (1/R), the terms of a table without z^p: each (n,
-    nx, ny).
-
-    By parts: z' P[a,b,c] - P[a,b,c-1] for q = 1.
-    """
+    """Integral of z'^q d_x^a d_y^b d_z^c (1/R) over the cuboids, by parts for q = 1, each (n, nx, ny)."""
     known: dict[tuple[int, int, int], Array] = {}
 
     def value(a: int, b: int, c: int) -> Array:
@@ -239,13 +196,11 @@ def _table_basis(terms: list[Term], corners: Corners, source: Array) -> list[Arr
 
 def full_space_functions(x: Array, y: Array, z: Array) -> Iterator[Array]:
     """Q_ijlm, fourth derivatives of the triple antiderivative of R, at corners, one after the other; as
-    FOURTH.
-
-    Paper Eq. 26: R_,kkkk, R_,kkkl, R_,kkll and R_,123k, up to such terms as are named below; U_i is Eq. 27.
-    Terms that the corner differences remove are chosen so that each form is odd or even in x, y and z and
-    none is a difference of nearly equal numbers. With k the third axis: Q_iiii = -2 U_i + S_j + S_k, Q_iijj =
-    -S_k, Q_iijk = x_i/R, Q_iiij = asinh(x_k/p_k) - x_i^2 x_k/(R p_k^2); U_i = atan(x_j x_k/(x_i R)), S_k = x
-    y z/(R p_k^2), p_k^2 = x_i^2 + x_j^2.
+    FOURTH. Paper Eq. 26: R_,kkkk, R_,kkkl, R_,kkll and R_,123k, up to such terms as are named below; U_i is
+    Eq. 27. Terms that the corner differences remove are chosen so that each form is odd or even in x, y and z
+    and none is a difference of nearly equal numbers. With k the third axis: Q_iiii = -2 U_i + S_j + S_k,
+    Q_iijj = -S_k, Q_iijk = x_i/R, Q_iiij = asinh(x_k/p_k) - x_i^2 x_k/(R p_k^2); U_i = atan(x_j x_k/(x_i R)),
+    S_k = x y z/(R p_k^2), p_k^2 = x_i^2 + x_j^2.
     """
     axes: tuple[Array, Array, Array] = (x, y, z)
     squares = [w * w for w in axes]
@@ -263,8 +218,7 @@ def full_space_functions(x: Array, y: Array, z: Array) -> Iterator[Array]:
         count = [indices.count(i) for i in range(3)]
         i = count.index(max(count))
         if max(count) == 4:
-            fourth: Array = saddle[i - 1] + saddle[i - 2] - 2 * angle[i]  # paper Eq. 26, R_,kkkk
-            return fourth
+            return saddle[i - 1] + saddle[i - 2] - 2 * angle[i]  # paper Eq. 26, R_,kkkk
         if max(count) == 3:
             k = count.index(0)
             return log[k] - squares[i] * slope[k]  # paper Eq. 26, R_,kkkl
@@ -277,12 +231,10 @@ def full_space_functions(x: Array, y: Array, z: Array) -> Iterator[Array]:
 @cache
 def _full_space_matrix(nu: float) -> Array:
     """Stress/mu times 8 pi (1 - nu) in terms of Q, (36, 15); rows 6 I + J. Mura (1987) Eq. 11.30 and Hooke's
-    law.
-
-    u_i,m = Q_ijlm e_jl - 2 nu e_ll P_im - 4 (1 - nu) e_il P_lm with P_ij = Q_ijkk/2, and by contraction u_k,k
-    = -2 (1 - 2 nu) P_jl e_jl - 2 nu e_ll P_kk. The last term is zero outside; inside, P_kk = -4 pi after the
-    corner sum, it is part of `own_stress`. Thus sigma_ij = u_i,j + u_j,i - 4 nu P_kl e_kl delta_ij, fit for
-    nu = 1/2.
+    law. u_i,m = Q_ijlm e_jl - 2 nu e_ll P_im - 4 (1 - nu) e_il P_lm with P_ij = Q_ijkk/2, and by contraction
+    u_k,k = -2 (1 - 2 nu) P_jl e_jl - 2 nu e_ll P_kk. The last term is zero outside; inside, P_kk = -4 pi
+    after the corner sum, it is part of `own_stress`. Thus sigma_ij = u_i,j + u_j,i - 4 nu P_kl e_kl delta_ij,
+    fit for nu = 1/2.
     """
     fourth = np.zeros((3, 3, 3, 3, len(FOURTH)))
     for indices in np.ndindex(3, 3, 3, 3):
@@ -302,11 +254,9 @@ def _full_space_matrix(nu: float) -> Array:
 
 def own_stress(nu: float) -> Array:
     """What is subtracted inside, (6, 6): 2 e + (lam/mu) tr e, with the term of P_kk that `_full_space_matrix`
-    leaves out.
-
-    Paper: the last term of Eq. 3, printed once more in the appendix for the stress inside the volume. lam/mu
-    = 2 nu/(1 - 2 nu); the term left out is lam/mu * 8 pi nu/(8 pi (1 - nu)) tr e: together 2 nu/(1 - nu) tr
-    e.
+    leaves out. Paper: the last term of Eq. 3, printed once more in the appendix for the stress inside the
+    volume. lam/mu = 2 nu/(1 - 2 nu); the term left out is lam/mu * 8 pi nu/(8 pi (1 - nu)) tr e: together 2
+    nu/(1 - nu) tr e.
     """
     own = 2 * np.eye(6)
     own[:3, :3] += 2 * nu / (1 - nu)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from math import floor, log10, prod
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,7 +24,7 @@ from sam.kernels.eigenstrain import (
     image_orders,
     own_stress,
 )
-from sam.kernels.lags import Cuboids, Lags
+from sam.kernels.patches import Cuboids, Lags
 
 Numbers = NDArray[np.intp]
 """Numbers of pairs of layers."""
@@ -37,31 +36,11 @@ DIGITS = 9  # to which depths are compared, in thicknesses of the thinnest layer
 def residual_stress_coefficients(
     cuboids: Cuboids, z: ArrayLike, *, off: tuple[float, float] = (0.0, 0.0)
 ) -> Array:
-    """Stress/mu at (i hx, j hy, z) by a unit eigenstrain in the cuboids at the origin, one in each layer.
-
-    Paper: S_pl of Eq. 7, in the appendix the stress outside and inside the plastic volume with Eq. 22 to 26.
-    The eigenstrain's own stress is subtracted in the cuboid itself.
-
-    Parameters
-    ----------
-    cuboids
-        Lags, faces of the layers and Poisson's ratio (negative lags: `parity`).
-    z
-        Depths (nz,) >= 0 in the unit of hx, none of them on a face but z = 0 (the limit from inside the
-        body).
-    off
-        The answer is the mean over four observed points, this far from the centre on either side in x and y,
-        within half a cell.
-
-    Returns
-    -------
-    Array
-        (6, 6, nz, n, nx, ny), without a unit: stress I, eigenstrain J, depth, layer, lags i, j >= 0.
-
-    Raises
-    ------
-    ValueError
-        For a depth that is negative or on a face inside the body, where the stress jumps.
+    """Stress/mu at (i hx, j hy, z) by a unit eigenstrain in the cuboids at the origin: (6, 6, nz, n, nx, ny),
+    stress I, eigenstrain J, depth, layer, lags i, j >= 0. Paper: S_pl of Eq. 7, in the appendix the stress
+    outside and inside the plastic volume with Eq. 22 to 26; the eigenstrain's own stress is subtracted in the
+    cuboid itself. z: (nz,) >= 0 in the unit of hx, none on a face but z = 0 (ValueError); off: the mean over
+    four points, this far from the centre on either side in x and y.
     """
     z_observed, faces = np.atleast_1d(np.asarray(z, float)), cuboids.depths
     if np.any(z_observed < 0) or np.isin(z_observed, faces[faces > 0]).any():
@@ -79,16 +58,12 @@ Points = Sequence[tuple[float, float]]
 
 
 def four_points(off: tuple[float, float]) -> Points:
-    """The four points that lie off a centre by this much on either side in x and y; the centre alone for (0,
-    0).
-    """
+    """The four points that lie off a centre by this much on either side in x and y; the centre for (0, 0)."""
     return [(a * off[0], b * off[1]) for a in (-1, 1) for b in (-1, 1)] if any(off) else [(0.0, 0.0)]
 
 
 def mesh(lags: Lags, points: Points = ((0.0, 0.0),), *, first: int = 0) -> tuple[Array, Array]:
-    """x and y of the corners of cells, seen from each of the points, both (points, X, Y); lags first .. n -
-    1.
-    """
+    """x and y of the corners of cells, seen from each point, both (points, X, Y); lags first .. n - 1."""
     x, y = lags.corners(first)
     dx, dy = np.array(points, float).T[:, :, None, None]
     moved_x, moved_y = np.broadcast_arrays(dx + x[:, None], dy + y[None, :])
@@ -97,7 +72,6 @@ def mesh(lags: Lags, points: Points = ((0.0, 0.0),), *, first: int = 0) -> tuple
 
 class CornerFunctions:
     """The functions that the coefficients are sums of, differenced over the corners of cells in x and y.
-
     shape: (nx, ny) lags of the answer; meshes: of corners, (points, X, Y) each; here one, over whose points
     the mean is taken.
     """
@@ -109,11 +83,7 @@ class CornerFunctions:
         )
 
     def __call__(self, image: bool, offsets: Array) -> Array:
-        """The functions at depths z + face for the image, z - face for the full space: (offsets, functions,
-        nx, ny).
-
-        In the order of `image_orders` and of FOURTH.
-        """
+        """`image_orders` at depths z + face, or FOURTH at z - face: (offsets, functions, nx, ny)."""
         functions = image_functions if image else full_space_functions
         out = np.empty((len(offsets), len(image_orders() if image else FOURTH), *self.shape))
         for k, value in enumerate(functions(self.x, self.y, offsets[:, None])):
@@ -137,38 +107,21 @@ class CornerFunctions:
             out /= cells.shape[1]
 
 
-class Functions(Protocol):
-    """Functions of corners, differenced over cells: `CornerFunctions`, or others that a
-    caller puts in place.
-    """
-
-    @property
-    def x(self) -> Array:
-        """Coordinates of the corners, as many as functions are computed for."""
-
-    def __call__(self, image: bool, offsets: Array) -> Array:
-        """The functions at depths `offsets`: (offsets, functions, nx, ny)."""
-
-
 class LayerStress:
     """Stress in observed layers by eigenstrains in layers of cuboids, both of any thickness, from functions
-    of corners.
-
-    functions: (image?, offsets in depth) -> (offsets, functions, nx, ny), as `CornerFunctions`; points:
-    (observed layers, g) depths, the answer is the mean over these g; faces: (n + 1,) as above; transform: a
-    linear one of planes (..., nx, ny) of the given parity (odd in x?, in y?), whose last two sides are then
-    those of the answer.
-
-    With s = -1, +1 on the upper and lower face the stress is a sum over points and faces of s F(z - face) in
-    the full space and of s (p00 + face p01 + z p10 + z face p11) G(z + face) of the image. Pairs of layers
-    with equal offsets share them: the first depends on these alone, up to a sign for their opposite; the
-    second, moved to z + d and face - d, is a polynomial of second degree in d. So equal layers need 2 n - 1
-    sums each, not n^2.
+    of corners. functions: (image?, offsets in depth) -> (offsets, functions, nx, ny), as `CornerFunctions`;
+    points: (observed layers, g) depths, the answer is the mean over these g; faces: (n + 1,) as above;
+    transform: a linear one of planes (..., nx, ny) of the given parity (odd in x?, in y?), whose last two
+    sides are then those of the answer. With s = -1, +1 on the upper and lower face the stress is a sum over
+    points and faces of s F(z - face) in the full space and of s (p00 + face p01 + z p10 + z face p11) G(z +
+    face) of the image. Pairs of layers with equal offsets share them: the first depends on these alone, up to
+    a sign for their opposite; the second, moved to z + d and face - d, is a polynomial of second degree in d.
+    So equal layers need 2 n - 1 sums each, not n^2.
     """
 
     def __init__(
         self,
-        functions: Functions,
+        functions: CornerFunctions,
         points: Array,
         faces: Array,
         nu: float,
@@ -212,8 +165,7 @@ class LayerStress:
         powers = self.sign * np.moveaxis(np.array(of_d[: 3 if shared else 1]), 2, 0)
 
         def weights(block: Block) -> Array:
-            found: Array = np.einsum("sdpq,prf->sdrqf", powers, block.image)
-            return found
+            return np.einsum("sdpq,prf->sdrqf", powers, block.image)
 
         return self._sums(True, offsets, weights)
 
@@ -226,9 +178,8 @@ class LayerStress:
     def _sums(
         self, image: bool, offsets: Array, weights: Callable[[Block], Array], own: Array | None = None
     ) -> Array:
-        """Sums of functions at offsets (sets, n), n points and faces: (sets, d, 36, X, Y).
-
-        weights: block -> (sets or 1, d, rows, n, functions); own: (sets, 36), subtracted in the cell itself.
+        """Sums of functions at offsets (sets, n), n points and faces: (sets, d, 36, X, Y). weights: block ->
+        (sets or 1, d, rows, n, functions); own: (sets, 36), subtracted in the cell itself.
         """
         _, first, index = np.unique(np.round(offsets, self.digits), return_index=True, return_inverse=True)
         functions, index = self.functions(image, offsets.ravel()[first]), index.reshape(offsets.shape)
@@ -256,9 +207,8 @@ class LayerStress:
 
 class _Shared:
     """What pairs of layers with equal offsets share, made when first needed and kept until the last need.
-
-    offsets: (observed, sources, points and faces), equal if they are to so many digits; make(numbers of
-    pairs, their offsets, whether shared) -> one array for each, called for at most `at_once` of them.
+    offsets: (observed, sources, points and faces), equal to so many digits; make(numbers of pairs, their
+    offsets, whether shared) -> one array for each, for at most `at_once` of them.
     """
 
     def __init__(

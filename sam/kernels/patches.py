@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cache
 from math import pi
 from pathlib import Path
@@ -25,8 +26,73 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sam.arrays import Array
-from sam.kernels.lags import Lags
 from sam.kernels.primitives import Corners, primitive
+
+
+@dataclass(frozen=True)
+class Lags:
+    """The offsets (i hx, j hy), 0 <= i < nx and 0 <= j < ny, from the centre of a loaded cell to that of an
+    observed one: as many lags as a box has cells, with sides in any unit of length.
+    """
+
+    nx: int
+    ny: int
+    hx: float
+    hy: float
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(nx, ny)."""
+        return self.nx, self.ny
+
+    @property
+    def exchanged(self) -> Lags:
+        """The same lags with x and y exchanged."""
+        return Lags(self.ny, self.nx, self.hy, self.hx)
+
+    def in_units_of(self, length: float) -> Lags:
+        """The same lags with another unit of length."""
+        return replace(self, hx=self.hx / length, hy=self.hy / length)
+
+    def corners(self, first: int = 0) -> tuple[Array, Array]:
+        """x and y of the corners of the cells at the lags first .. n - 1: half-integers times the cell, none
+        of them 0.
+
+        >>> Lags(2, 1, 1.0, 3.0).corners()
+        (array([-0.5,  0.5,  1.5]), array([-1.5,  1.5]))
+        """
+        i = np.arange(first, self.nx + 1, dtype=float)
+        j = np.arange(first, self.ny + 1, dtype=float)
+        return (i - 0.5) * self.hx, (j - 0.5) * self.hy
+
+
+@dataclass(frozen=True)
+class Cuboids:
+    """The half-space z >= 0 below cells of its surface, divided into layers: a cuboid hx x hy x thickness in
+    each. lags: between the columns of cuboids; faces: depths of the n + 1 faces of n layers of any
+    thicknesses, ascending from a depth >= 0, in the unit of hx, else ValueError; nu: Poisson's ratio, 0 <= nu
+    <= 1/2.
+    """
+
+    lags: Lags
+    faces: tuple[float, ...]
+    nu: float
+
+    def __post_init__(self) -> None:
+        faces = self.depths
+        if faces.ndim != 1 or faces.size < 2 or faces[0] < 0 or not np.all(np.diff(faces) > 0):
+            raise ValueError("faces must be two or more increasing depths >= 0")
+
+    @property
+    def depths(self) -> Array:
+        """The faces as an array, (n + 1,)."""
+        return np.asarray(self.faces, dtype=float)
+
+    @property
+    def layers(self) -> int:
+        """Number of layers."""
+        return len(self.faces) - 1
+
 
 STRESS = ("11", "22", "33", "23", "13", "12")
 """Index order of the stress components, here and everywhere."""
@@ -38,9 +104,7 @@ nu^2.
 
 @cache
 def load_table() -> dict[str, dict[str, list[Row]]]:
-    """The derived table, with its coefficients as floats (see tests/derivations/load_table.py for the meaning
-    of a row).
-    """
+    """The derived table with coefficients as floats; for its rows see tests/derivations/load_table.py."""
     raw = json.loads(Path(__file__).with_name("load_table.json").read_text(encoding="utf-8"))
 
     def number(text: str) -> float:
@@ -166,5 +230,4 @@ def displacement_coefficients(
     """
     corners, depth = _corners(lags, z)
     rows = load_table()["displacement"][f"{component},F{load}"]
-    found: Array = _corner_sum(rows, nu, corners, depth)[0] / (2 * pi)  # paper Eq. 5, D_ij
-    return found
+    return _corner_sum(rows, nu, corners, depth)[0] / (2 * pi)  # paper Eq. 5, D_ij

@@ -27,12 +27,11 @@ _SYMMETRIC = ("t", "lz", "vz", "wz", "uz")  # the functions that an exchange of 
 
 
 class Corners:
-    """The functions of corner coordinates that the primitives are made of, each computed once on demand.
-
-    x, y, z: arrays that broadcast against each other, in one length unit; z >= 0. Logarithms and fractions
-    are written so that no difference of nearly equal numbers appears for negative x or y. Points with x = y =
-    z = 0, and points on the extension of an edge (y = z = 0, x < 0), are not representable; grids of cell
-    centres have none.
+    """The functions of corner coordinates that the primitives are made of, each computed once on demand. x,
+    y, z: arrays that broadcast against each other, in one length unit; z >= 0. Logarithms and fractions are
+    written so that no difference of nearly equal numbers appears for negative x or y. Points with x = y = z =
+    0, and points on the extension of an edge (y = z = 0, x < 0), are not representable; grids of cell centres
+    have none.
     """
 
     def __init__(self, x: Array, y: Array, z: Array, radius: Array | None = None):
@@ -165,10 +164,8 @@ _FORMS: dict[tuple[int, int, int], Callable[[Corners], Array]] = {
 def primitive(a: int, b: int, c: int, corners: Corners) -> Array:
     """P[a, b, c] at the corners (paper Eq. 26); KeyError for an order that no coefficient uses."""
     if (a, b, c) in _FORMS:
-        found: Array = _FORMS[a, b, c](corners)
-        return found
-    found = _FORMS[b, a, c](corners.swapped)
-    return found
+        return _FORMS[a, b, c](corners)
+    return _FORMS[b, a, c](corners.swapped)
 
 
 def orders() -> list[tuple[int, int, int]]:

@@ -43,19 +43,8 @@ from sam.arrays import Array
 
 @dataclass(frozen=True)
 class Layers:
-    """A coating on a half-space.
-
-    Parameters
-    ----------
-    young, poisson, thickness
-        Of the coating: in Pa > 0, 0 to 0.5, in m > 0.
-    young_body, poisson_body
-        Of the half-space below it.
-
-    Raises
-    ------
-    ValueError
-        For a number outside of its range.
+    """A coating on a half-space. young, poisson, thickness: of the coating, in Pa > 0, 0 to 0.5, in m > 0;
+    young_body, poisson_body: of the half-space. ValueError for a number outside of its range.
     """
 
     young: float
@@ -96,16 +85,7 @@ def sinh_excess(x: Array) -> Array:
 
 
 class Response:
-    """Response of a coated half-space to tractions of one wave number; displacement in 1/(mu_1 k), stress
-    per traction.
-
-    Parameters
-    ----------
-    layers
-        Coating and half-space.
-    kh
-        Wave number times thickness, > 0, of any shape.
-    """
+    """Response of a coated half-space at a wave number times thickness kh > 0: stress and k mu_1 u."""
 
     def __init__(self, layers: Layers, kh: Array):
         self.layers, self.kh = layers, np.asarray(kh, dtype=float)
@@ -117,54 +97,43 @@ class Response:
 
     def _less(self, reflection: float, rest: float) -> Array:
         """1 - reflection th >= 0 as a sum of terms of one sign; rest = 1 - reflection."""
-        found: Array = rest + reflection * self.gap if reflection > 0 else 1 - reflection * self.th
-        return found
+        return rest + reflection * self.gap if reflection > 0 else 1 - reflection * self.th
 
     @cached_property
     def det(self) -> Array:
-        """(1 - lam th)(1 - kap th) - 4 kap kh^2 th as a sum of positive terms.
-
-        For kap > 0, with lam = 1 - (1 - lam): (1 - kap)(1 - lam th) + kap [(1 - lam)(1 - th) th + (1 - th)^2
-        - 4 kh^2 th], and the last two are 4 e^{-2 kh} (sinh^2 kh - kh^2).
+        """(1 - lam th)(1 - kap th) - 4 kap kh^2 th as a sum of positive terms. For kap > 0, with lam = 1 - (1
+        - lam): (1 - kap)(1 - lam th) + kap [(1 - lam)(1 - th) th + (1 - th)^2 - 4 kh^2 th], and the last two
+        are 4 e^{-2 kh} (sinh^2 kh - kh^2).
         """
         kh, th, upper = self.kh, self.th, self._less(self.lam, self.not_lam)
         if self.kap <= 0:
-            found: Array = upper * (1 - self.kap * th) - 4 * self.kap * kh * kh * th
-            return found
+            return upper * (1 - self.kap * th) - 4 * self.kap * kh * kh * th
         excess = sinh_excess(kh)
         bending = 4 * excess * (excess + 2 * kh * np.exp(-kh))
-        found = self.not_kap * upper + self.kap * (self.not_lam * self.gap * th + bending)
-        return found
+        return self.not_kap * upper + self.kap * (self.not_lam * self.gap * th + bending)
 
     def _numerator(self, sign: int) -> Array:
         """1 - lam kap th^2 + sign 4 kap kh th; a sum of positive terms wherever terms of both signs could
-        cancel.
-
-        kap > 0 and sign = -1: (1 - kap) + kap [(1 - lam) th^2 + 1 - th^2 - 4 kh th]; the last three are
-        2 e^{-2 kh} (sinh 2 kh - 2 kh). kap < 0, lam < 0 and sign = 1: the same with |lam| and 1 - lam kap.
+        cancel. kap > 0 and sign = -1: (1 - kap) + kap [(1 - lam) th^2 + 1 - th^2 - 4 kh th]; the last three
+        are 2 e^{-2 kh} (sinh 2 kh - 2 kh). kap < 0, lam < 0 and sign = 1: the same with |lam| and 1 - lam
+        kap.
         """
         lam, kap, kh, th = self.lam, self.kap, self.kh, self.th
         r, (kappa1, kappa2) = self.layers.ratio, self.layers.kappa
         shear = 2 * sinh_excess(2 * kh)
         both = r * (1 + kappa1) * (1 + kappa2) / ((1 + r * kappa2) * (r + kappa1))  # 1 - lam kap
         if kap > 0 and sign < 0:
-            found: Array = self.not_kap + kap * (self.not_lam * th * th + shear)
-            return found
+            return self.not_kap + kap * (self.not_lam * th * th + shear)
         if lam < 0 and kap < 0 and sign > 0:
             beyond = (kappa1 - 1 - 2 * r * kappa2) / (1 + r * kappa2)  # |lam| - 1
-            found = both - kap * (beyond * -np.expm1(-4 * kh) + shear)
-            return found
+            return both - kap * (beyond * -np.expm1(-4 * kh) + shear)
         if lam * kap > 0:
-            found = both + lam * kap * -np.expm1(-4 * kh) + sign * 4 * kap * kh * th
-            return found
-        found = 1 - lam * kap * th * th + sign * 4 * kap * kh * th
-        return found
+            return both + lam * kap * -np.expm1(-4 * kh) + sign * 4 * kap * kh * th
+        return 1 - lam * kap * th * th + sign * 4 * kap * kh * th
 
     @cached_property
     def surface(self) -> Array:
-        """mu_1 k times (c_zz, c_zL, c_LL, c_TT), (4, ...): u_z = c_zz p + c_zL q_L, u_L = c_zL p + c_LL q_L,
-        u_T = c_TT q_T.
-        """
+        """mu_1 k (c_zz, c_zL, c_LL, c_TT), (4, ...): u_z = c_zz p + c_zL q_L, u_L = c_zL p + c_LL q_L."""
         kappa1, kh, th = self.layers.kappa[0], self.kh, self.th
         cross = th * (self.not_lam - self.not_kap - 4 * kh * kh * self.kap) / self.det
         return np.stack(
@@ -188,8 +157,7 @@ class Response:
     def _arriving(self) -> Array:
         """(P', A') at the interface for the loads p and q_L: (load, 2, ...)."""
         P, A = self._down[:, 0], self._down[:, 1]
-        found: Array = np.stack([P + 2 * self.kh * A, A], axis=1) * np.exp(-self.kh)
-        return found
+        return np.stack([P + 2 * self.kh * A, A], axis=1) * np.exp(-self.kh)
 
     @cached_property
     def _up(self) -> Array:
@@ -198,9 +166,7 @@ class Response:
 
     @cached_property
     def _reflected(self) -> Array:
-        """(P, A) beyond those of a half-space of coating, (load, 2, ...): minus (D, Q) where they arrive at z
-        = 0.
-        """
+        """(P, A) beyond a half-space of coating, (load, 2, ...): minus (D, Q) where they come to z = 0."""
         first, D = self._up[:, 0] * np.exp(-self.kh), self._up[:, 1] * np.exp(-self.kh)
         return -np.stack([D, first + 2 * self.kh * D], axis=1)
 
@@ -211,9 +177,7 @@ class Response:
 
     @property
     def surface_excess(self) -> Array:
-        """`surface` less its value for a half-space of coating; decays like e^{-2 kh}. From the reflected
-        waves, no difference.
-        """
+        """`surface` less that of a half-space of coating, from the reflected waves; falls like e^{-2 kh}."""
         half = (1 + self.layers.kappa[0]) / 2
         under_p, under_q = self._reflected
         c_tt = 2 * self.rho * self.th * self._out_of_plane
@@ -222,10 +186,8 @@ class Response:
         )
 
     def stress(self, depth: float) -> tuple[Array, Array]:
-        """Stress at the depth z = depth (m): (load p or q_L, component zz LL TT zL, ...), and
-        under q_T (component zT LT, ...).
-
-        In the coating for depth < thickness, in the body from there on.
+        """Stress at a depth in m: (load p or q_L, component zz LL TT zL, ...), and under q_T (component zT
+        LT, ...); in the coating for depth < thickness, in the body from there on.
         """
         height = depth / self.layers.thickness
         if height < 1:
@@ -236,9 +198,7 @@ class Response:
         return wave_stress(below, s, kappa2), np.stack([-wave, wave])
 
     def coating_excess(self, depth: float) -> tuple[Array, Array]:
-        """Stress in the coating, depth < thickness, less that of a half-space of coating; decays like
-        e^{-k(2h - depth)}.
-        """
+        """Stress in the coating less that of a half-space of coating; falls like e^{-k(2h - depth)}."""
         return self._in_coating(
             depth / self.layers.thickness, self._reflected, self.rho * self.th * self._out_of_plane
         )
@@ -255,9 +215,7 @@ class Response:
 
 
 def wave_stress(amplitude: Array, s: Array, kappa: float) -> Array:
-    """Stresses zz, LL, TT, zL of the waves (P, A) = amplitude[load], s = k times the way
-    travelled: (load, 4, ...).
-    """
+    """Stresses zz, LL, TT, zL of waves (P, A) = amplitude[load], s = k times their way: (load, 4, ...)."""
     P, A = amplitude[:, 0], amplitude[:, 1]
     shape = [-P - (1 + 2 * s) * A, P + (2 * s - 3) * A, (kappa - 3) * A, -P + (1 - 2 * s) * A]
     return np.stack(shape, axis=1) * np.exp(-s)
@@ -295,5 +253,4 @@ def normal_compliance(layers: Layers, k: Array) -> Array:
     if np.any(~(k >= 0)):
         raise ValueError("wave numbers must be >= 0")
     with np.errstate(divide="ignore"):
-        found: Array = Response(layers, k * layers.thickness).surface[0] / (layers.shear * k)
-        return found
+        return Response(layers, k * layers.thickness).surface[0] / (layers.shear * k)

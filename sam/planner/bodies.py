@@ -1,100 +1,252 @@
 # SPDX-License-Identifier: MIT
-"""The elastic bodies of a scene, their friction, and how large their contact is to be."""
+"""The bodies of a scene, how large their contact is to be, and what the grid is chosen from."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import inf, pi, sqrt
-from typing import TYPE_CHECKING
+from functools import cached_property
+from math import inf, nan, pi, sqrt
+from typing import Any
 
 import numpy as np
 
-from sam.arrays import Array
-from sam.elastic.problem import Looked
-from sam.grid.cells import CellGrid
-from sam.grid.gap import NoCounterBody, Paraboloid, Plane, Punch, Shape
-from sam.grid.smooth import DEFAULT_EXTENT, PUNCH_EXTENT, ROUNDED_EXTENT
-from sam.half_space import ElasticConstants, ElasticPair, circular_contact_radius
-from sam.planner import parts
-from sam.results.advice import Remedies
-from sam.scene import CounterBody, Friction, Scene, remedies
-from sam.scene.section import stated
-from sam.schedule import Schedule
-from sam.slip import Coefficient, FullSlip
-
-if TYPE_CHECKING:
-    from sam.elastic.misfit import MisfitSphere
-
-STRONG = (
-    3.0  # coefficient of friction, beyond that of surfaces in air, that may keep a contact from being found
+from sam.contact.operators import CoatedPair
+from sam.elastic.misfit import PROFILES, MisfitSphere
+from sam.elastic.problem import Demand, GivenHertz
+from sam.grid.cells import CellGrid, Sides
+from sam.grid.gap import Paraboloid, Punch, RoundedPunch, Shape, Uniform, elliptic_contact
+from sam.grid.rough import RoughDemand, RoughPatch
+from sam.grid.smooth import (
+    DEFAULT_EXTENT,
+    FARTHEST,
+    PUNCH_EXTENT,
+    ROUNDED_EXTENT,
+    GridDemand,
+    MisfitDemand,
+    PlasticDemand,
+    contact_radius,
+    mean_compliance,
+    point_load_reach,
+    room_for_bare,
 )
+from sam.half_space import ElasticConstants, ElasticPair, circular_contact_radius
+from sam.scene import CounterBody, Grid, Scene
+from sam.scene.section import stated
+
+SMALLEST = 1e-3  # of the radius of curvature: takes the place of the contact radius of a scene without force
 
 
-def pair_of(scene: Scene) -> ElasticPair:
-    """The elastic constants of the body and of an elastic counter-body."""
-    body, other = scene.body, scene.counterbody
-    counterpart = None
-    if other is not None and other.elastic:
-        counterpart = ElasticConstants(stated(other.young), stated(other.poisson))
-    return ElasticPair(ElasticConstants(body.young, body.poisson), counterpart)
+class Bodies:
+    """The bodies of a scene and what is estimated of their contact before the grid is chosen, each once."""
+
+    def __init__(self, scene: Scene):
+        self.scene = scene
+
+    @cached_property
+    def pair(self) -> ElasticPair:
+        """The elastic constants of the body and of an elastic counter-body."""
+        body, other = self.scene.body, self.scene.counterbody
+        counterpart = None
+        if other is not None and other.elastic:
+            counterpart = ElasticConstants(stated(other.young), stated(other.poisson))
+        return ElasticPair(ElasticConstants(body.young, body.poisson), counterpart)
+
+    @cached_property
+    def coated(self) -> CoatedPair | None:
+        """Both bodies with the coating; None without one."""
+        coating = self.scene.body.coating
+        if coating is None:
+            return None
+        return CoatedPair.of(ElasticConstants(coating.young, coating.poisson), coating.thickness, self.pair)
+
+    @cached_property
+    def given(self) -> GivenHertz | None:
+        """The pressure that a scene gives; None if a counter-body is pressed on."""
+        loading = self.scene.loading
+        return GivenHertz(stated(loading.p0), stated(loading.radius)) if loading.hertz else None
+
+    @cached_property
+    def misfit(self) -> MisfitSphere | None:
+        """The misfit sphere that loads the body; None if it is loaded at its surface."""
+        loading = self.scene.loading
+        if not loading.misfit_sphere:
+            return None
+        return MisfitSphere(
+            self.pair.body,
+            stated(loading.depth),
+            stated(loading.radius),
+            stated(loading.misfit),
+            PROFILES[stated(loading.profile)],
+            free=loading.surface == "free",
+        )
+
+    @cached_property
+    def shape(self) -> Shape:
+        """The shape of the counter-body."""
+        other = self.scene.counterbody
+        return Uniform(nan) if other is None else SHAPES[other.shape].gap(other)
+
+    @cached_property
+    def force(self) -> float:
+        """The force in N at the peak: the given one, or an estimate from the approach."""
+        loading, other = self.scene.loading, stated(self.scene.counterbody)
+        if loading.approach is None:
+            return stated(loading.force)
+        return SHAPES[other.shape].force(self, other, loading.approach)
+
+    @cached_property
+    def axes(self) -> tuple[float, float]:
+        """Contact semi-axes in m, see `hertz_semi_axes`."""
+        other = self.scene.counterbody
+        if other is None:
+            return stated(self.scene.loading.radius), stated(self.scene.loading.radius)
+        return SHAPES[other.shape].semi_axes(self, other)
+
+    @cached_property
+    def zone(self) -> float:
+        """Radius of the plastic zone in m, see `misfit_zone`."""
+        plasticity = self.scene.body.plasticity
+        if plasticity is None or self.misfit is None:
+            return 0.0
+        return self.misfit.zone(float(plasticity.strength().stress(self.misfit.depth, np.zeros(1))[0]))
+
+    @cached_property
+    def largest_cell(self) -> float:
+        """The largest cell in m that resolves the contact of a smooth scene with its counter-body."""
+        other = self.scene.counterbody
+        return inf if other is None else SHAPES[other.shape].largest_cell(self, other)
+
+    @cached_property
+    def patch(self) -> RoughPatch | None:
+        """The rough surfaces on their cells; None if both are smooth."""
+        scene = self.scene
+        if scene.patch_surface is None:
+            return None
+        return RoughPatch.of(scene.surface, scene.counter_surface, scene.grid, strip=scene.counter_strip)
+
+    @cached_property
+    def demand(self) -> Demand:
+        """What the grid is chosen from; of a rough patch under a force with the plastic zone."""
+        scene, sphere, patch = self.scene, self.misfit, self.patch
+        film = None if scene.body.coating is None else scene.body.coating.thickness
+        if sphere is not None:
+            zone = None if scene.body.plasticity is None else self.zone
+            return MisfitDemand(scene.grid, sphere.depth, sphere.radius, zone)
+        if patch is None:
+            return self.smooth_demand
+        plastic = None
+        if scene.loading.approach is None:
+            plastic = self._plastic_demand(min(patch.extent) / 2 / FARTHEST)
+        reach = 0.0 if plastic is None else plastic.reach
+        return RoughDemand(patch, scene.grid, scene.body.plasticity, film, reach)
+
+    @cached_property
+    def smooth_demand(self) -> GridDemand:
+        """What the grid of a smooth scene is chosen from: the contact and the plastic zone to be expected."""
+        scene, coating, other = self.scene, self.scene.body.coating, self.scene.counterbody
+        (a, b), wider, farthest = self.axes, 1.0, (0.0, 0.0)
+        if a == 0.0:
+            a, b = (SMALLEST * r for r in stated(stated(other).radii))
+        elif coating is not None:
+            a, b, wider = a * self.scale, b * self.scale, room_for_bare(self.scale)
+        if (path := scene.loading.path) is not None:
+            x, y = (max(map(abs, ends)) for ends in zip(path.start, path.end, strict=True))
+            farthest = x, y
+        return GridDemand(
+            scene.grid,
+            (a, b),
+            DEFAULT_EXTENT if other is None else SHAPES[other.shape].extent,
+            wider,
+            farthest,
+            self._plastic_demand(min(a, b)),
+            None if coating is None else coating.thickness,
+            moves=scene.moves,
+            largest_cell=self.largest_cell,
+        )
+
+    @cached_property
+    def scale(self) -> float:
+        """Estimated contact radius of the coated body over that of the bare one; 1 where it is given and
+        without force. An ellipse is scaled like the circle of the geometric mean of its radii, what has no
+        radii like the sphere of the same contact with the bare body.
+        """
+        other, pair, coated = self.scene.counterbody, self.pair, self.coated
+        if other is None or SHAPES[other.shape].given or self.force == 0.0 or coated is None:
+            return 1.0
+        if other.radii is None:
+            a, b = self.axes
+            radius = 4 / 3 * pair.contact_modulus * sqrt(a * b) ** 3 / self.force  # Johnson 1985, Eq. 4.22
+        else:
+            radius = sqrt(other.radii[0] * other.radii[1])
+        coating = stated(self.scene.body.coating)
+        of_coating = 1 / (ElasticConstants(coating.young, coating.poisson).compliance + coated.compliance)
+        bare = (
+            circular_contact_radius(self.force, radius, pair.contact_modulus),
+            circular_contact_radius(self.force, radius, of_coating),
+        )
+        return contact_radius(coated.response, self.force, radius, bare) / bare[0]
+
+    def _plastic_demand(self, radius: float) -> PlasticDemand | None:
+        """What plasticity asks of the grid; radius: of the contact in m, or of the widest that may be."""
+        plasticity, poisson = self.scene.body.plasticity, self.scene.body.poisson
+        if plasticity is None:
+            return None
+        force = self.force if self.given is None else self.given.peak_force
+        strength = plasticity.strength()
+
+        def reach(z: float) -> float:
+            limit = float(strength.stress(z, np.zeros(1))[0])
+            return point_load_reach(force, poisson, limit, radius)
+
+        within = min(reach(np.nextafter(strength.thickness, 0.0)), strength.thickness)
+        return PlasticDemand(max(reach(np.inf), within), strength.kinks.depths)
 
 
-def _by_hertz(scene: Scene, other: CounterBody) -> tuple[float, float]:
+def _by_hertz(bodies: Bodies, other: CounterBody) -> tuple[float, float]:
     radii = rx, ry = stated(other.radii)
-    force, modulus = expected_force(scene), pair_of(scene).contact_modulus
     if rx == ry:
-        a = circular_contact_radius(force, rx, modulus)
-        return a, a
-    return parts.ellipse(force, radii, modulus)
+        return (circular_contact_radius(bodies.force, rx, bodies.pair.contact_modulus),) * 2
+    return elliptic_contact(bodies.force, radii, bodies.pair.contact_modulus)
 
 
-def _force_of_hertz(scene: Scene, other: CounterBody, approach: float) -> float:
+def _fully_plastic(bodies: Bodies, strain: float) -> float:
+    """Mean pressure in Pa that plastic material bears, 3 yield stresses at a strain (Tabor 1951), or inf."""
+    plasticity = bodies.scene.body.plasticity
+    if plasticity is None:
+        return inf
+    return 3 * float(plasticity.strength().stress(np.inf, np.array(strain)))
+
+
+def _force_of_hertz(bodies: Bodies, other: CounterBody, approach: float) -> float:
     """With the geometric mean of the radii, and the mean compliance of a coated body."""
-    pair, coating, plasticity = pair_of(scene), scene.body.coating, scene.body.plasticity
     rx, ry = stated(other.radii)
     radius = sqrt(rx * ry)
-    compliance, a = 1 / pair.contact_modulus, sqrt(radius * approach)
-    if coating is not None:
-        compliance = parts.coated_compliance(parts.coated_pair(coating, pair), a)
+    compliance, a = 1 / bodies.pair.contact_modulus, sqrt(radius * approach)
+    if bodies.coated is not None:
+        compliance = mean_compliance(bodies.coated.response, a)
     force = 4 * a * approach / (3 * compliance)
-    if plasticity is None:
-        return force
-    bulk = float(plasticity.strength().stress(np.inf, np.array(0.2 * sqrt(2) * a / radius)))
-    return min(force, 3 * bulk * 2 * pi * a**2)
+    return min(force, _fully_plastic(bodies, 0.2 * sqrt(2) * a / radius) * 2 * pi * a**2)
 
 
-def _end_of_punch(_: Scene, other: CounterBody) -> tuple[float, float]:
-    return stated(other.radius), stated(other.radius)
+def _rounded_punch(other: CounterBody) -> RoundedPunch:
+    return RoundedPunch(stated(other.flat_radius), stated(other.radius))
 
 
-def _force_on_punch(scene: Scene, other: CounterBody, approach: float) -> float:
-    return 2 * pair_of(scene).contact_modulus * stated(other.radius) * approach
+def _by_rounded_edge(bodies: Bodies, other: CounterBody) -> tuple[float, float]:
+    return (_rounded_punch(other).contact_radius(bodies.force, bodies.pair.contact_modulus),) * 2
 
 
-def _by_rounded_edge(scene: Scene, other: CounterBody) -> tuple[float, float]:
-    modulus = pair_of(scene).contact_modulus
-    a = parts.rounded_punch(other).contact_radius(expected_force(scene), modulus)
-    return a, a
-
-
-def _force_on_rounded_edge(scene: Scene, other: CounterBody, approach: float) -> float:
+def _force_on_rounded_edge(bodies: Bodies, other: CounterBody, approach: float) -> float:
     """At most 3 times the yield stress on the part of the punch that is below the surface."""
-    punch, plasticity = parts.rounded_punch(other), scene.body.plasticity
-    force = punch.force(punch.radius_at(approach), pair_of(scene).contact_modulus)
-    if plasticity is None:
-        return force
+    punch = _rounded_punch(other)
+    force = punch.force(punch.radius_at(approach), bodies.pair.contact_modulus)
     beyond = sqrt(2 * punch.radius * approach)
-    bulk = float(plasticity.strength().stress(np.inf, np.array(0.2 * beyond / punch.radius)))
-    return min(force, 3 * bulk * pi * (punch.flat + beyond) ** 2)
+    return min(force, _fully_plastic(bodies, 0.2 * beyond / punch.radius) * pi * (punch.flat + beyond) ** 2)
 
 
-def _finest_of_rounded_edge(scene: Scene, other: CounterBody) -> float:
-    return parts.rounded_punch(other).largest_cell(_by_rounded_edge(scene, other)[0])
-
-
-def _half_of_patch(scene: Scene, _: CounterBody) -> tuple[float, float]:
-    lx, ly = scene.patch[1]
+def _half_of_patch(bodies: Bodies, _: CounterBody) -> tuple[float, float]:
+    lx, ly = bodies.scene.patch[1]
     return lx / 2, ly / 2
 
 
@@ -107,35 +259,33 @@ class Opposite:
     """
 
     gap: Callable[[CounterBody], Shape]
-    semi_axes: Callable[[Scene, CounterBody], tuple[float, float]]
+    semi_axes: Callable[[Bodies, CounterBody], tuple[float, float]]
     given: bool = False
-    force: Callable[[Scene, CounterBody, float], float] = _force_of_hertz
+    force: Callable[[Bodies, CounterBody, float], float] = _force_of_hertz
     extent: float = DEFAULT_EXTENT
-    largest_cell: Callable[[Scene, CounterBody], float] = lambda scene, other: inf
+    largest_cell: Callable[[Bodies, CounterBody], float] = lambda bodies, other: inf
 
 
 SHAPES = {
     "sphere": Opposite(lambda other: Paraboloid(stated(other.radii)), _by_hertz),
     "ellipsoid": Opposite(lambda other: Paraboloid(stated(other.radii)), _by_hertz),
     "punch": Opposite(
-        lambda other: Punch(stated(other.radius)), _end_of_punch, True, _force_on_punch, PUNCH_EXTENT
+        lambda other: Punch(stated(other.radius)),
+        lambda bodies, other: (stated(other.radius),) * 2,
+        True,
+        lambda bodies, other, approach: 2 * bodies.pair.contact_modulus * stated(other.radius) * approach,
+        PUNCH_EXTENT,
     ),
     "rounded-punch": Opposite(
-        parts.rounded_punch,
+        _rounded_punch,
         _by_rounded_edge,
         force=_force_on_rounded_edge,
         extent=ROUNDED_EXTENT,
-        largest_cell=_finest_of_rounded_edge,
+        largest_cell=lambda bodies, other: _rounded_punch(other).largest_cell(bodies.axes[0]),
     ),
-    "flat": Opposite(lambda other: Plane(), _half_of_patch),
+    "flat": Opposite(lambda other: Uniform(), _half_of_patch),
 }
 """The shapes of a scene."""
-
-
-def shape_of(scene: Scene) -> Shape:
-    """The shape of the counter-body."""
-    other = scene.counterbody
-    return NoCounterBody() if other is None else SHAPES[other.shape].gap(other)
 
 
 def hertz_semi_axes(scene: Scene) -> tuple[float, float]:
@@ -154,16 +304,7 @@ def hertz_semi_axes(scene: Scene) -> tuple[float, float]:
     tuple of float
         a and b in m.
     """
-    other = scene.counterbody
-    if other is None:
-        return stated(scene.loading.radius), stated(scene.loading.radius)
-    return SHAPES[other.shape].semi_axes(scene, other)
-
-
-def largest_cell(scene: Scene) -> float:
-    """The largest cell in m that resolves the contact of a smooth scene with its counter-body."""
-    other = scene.counterbody
-    return inf if other is None else SHAPES[other.shape].largest_cell(scene, other)
+    return Bodies(scene).axes
 
 
 def expected_force(scene: Scene) -> float:
@@ -181,17 +322,7 @@ def expected_force(scene: Scene) -> float:
         In N. Of a body that yields not more than its fully plastic contact bears: a^2 = 2 R approach, and 3
         times the yield stress at the strain 0.2 a/R (Tabor 1951).
     """
-    approach, other = scene.loading.approach, stated(scene.counterbody)
-    if approach is None:
-        return stated(scene.loading.force)
-    return SHAPES[other.shape].force(scene, other, approach)
-
-
-def misfit_of(scene: Scene) -> MisfitSphere | None:
-    """The misfit sphere that loads the body; None if it is loaded at its surface."""
-    if not scene.loading.misfit_sphere:
-        return None
-    return parts.misfit_sphere(scene, ElasticConstants(scene.body.young, scene.body.poisson))
+    return Bodies(scene).force
 
 
 def misfit_zone(scene: Scene) -> float:
@@ -207,59 +338,30 @@ def misfit_zone(scene: Scene) -> float:
     float
         In m; 0 where nothing yields, as in an elastic body, and without a misfit sphere.
     """
-    plasticity, sphere = scene.body.plasticity, misfit_of(scene)
-    if plasticity is None or sphere is None:
-        return 0.0
-    return sphere.zone(float(plasticity.strength().stress(sphere.depth, np.zeros(1))[0]))
+    return Bodies(scene).zone
 
 
-def slip_of(scene: Scene, pair: ElasticPair, grid: CellGrid) -> FullSlip:
-    """The friction of a scene at the cells of a grid."""
-    friction = scene.friction
-    if friction is None:
-        return FullSlip()
-    mu = _coefficient(friction, grid)
-    coupling = 0.0
-    if friction.coupling:
-        coupling = pair.tangential_mismatch if scene.body.coating is None else 1.0
-    return FullSlip(
-        slides=scene.coefficient > 0,
-        coefficient=mu,
-        highest=stated(friction.high) if friction.film else mu,
-        coupled=friction.coupling,
-        coupling=coupling,
-        whole=friction.low if friction.film else None,
-    )
+def halved(count: int) -> int:
+    """About half of a number of cells, odd if it is odd: a cell centre then stays on the apex."""
+    return 2 * round((count - 1) / 4) + 1 if count % 2 else 2 * round(count / 4)
 
 
-def _coefficient(friction: Friction, grid: CellGrid) -> Coefficient:
-    """The coefficient that a scene gives: a number, or a map at the cells. With a tribofilm that of a whole
-    one.
-    """
-    if friction.law == "map":
-        found = stated(friction.path)
-        if found.cells != grid.shape:
-            raise ValueError(f"{found!r} is no map of {grid.nx} x {grid.ny} cells")
-        values: Array = stated(found.values)
-        return values
-    return stated(friction.low if friction.film else friction.coefficient)
+def coarse(scene: Scene, grid: CellGrid) -> Scene:
+    """The scene on half as many cells over the same extent, its layers twice as thick if it gives them."""
+    given, cells = scene.grid or Grid(), (halved(grid.nx), halved(grid.ny))
+    change: dict[str, Any] = {"cells": cells, "extent": (grid.nx * grid.hx, grid.ny * grid.hy)}
+    if scene.body.plasticity is not None and given.depths:
+        change["depths"] = given.depths[::2]
+    elif scene.body.plasticity is not None and given.layers:
+        change["layers"] = given.layers // 2
+    solver = scene.solver.model_copy(update={"extrapolate": False})
+    return scene.model_copy(update={"grid": given.model_copy(update=change), "solver": solver})
 
 
-def looked_of(scene: Scene, schedule: Schedule) -> Looked:
-    """Where the largest stress and the contact may be."""
-    rough, last = scene.patch_surface is not None, schedule.targets[-1].load
-    end = last.x, last.y
-    return Looked(anywhere=rough, beside=end[1] != 0.0, off_origin=rough or any(end))
-
-
-def remedies_of(scene: Scene) -> Remedies:
-    """What may be changed of a scene, in words."""
-    return Remedies(
-        finer_cells=remedies.finer_cells(scene),
-        smaller_patch=remedies.smaller_patch(scene),
-        larger_patch=remedies.larger_patch(scene),
-        less_load=remedies.less_load(scene),
-        slower=remedies.less_friction(scene) if scene.coefficient > STRONG else "",
-        more_steps=remedies.more_steps(scene),
-        looser=remedies.looser(scene),
+def given_sides(scene: Scene) -> Sides:
+    """The sides of the grid that the scene gives; a rough one gives those of its patch."""
+    given, rough = scene.grid, scene.patch_surface is not None
+    return Sides(
+        beside=rough or (given is not None and bool(given.cells or given.extent)),
+        below=given is not None and bool(given.depths or given.layers),
     )

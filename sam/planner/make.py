@@ -1,20 +1,31 @@
 # SPDX-License-Identifier: MIT
-"""From a scene to its plan."""
+"""From a scene to its plan, or to the reason why the semi-analytical model cannot solve it."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
+from math import ceil, inf
 
+import numpy as np
+
+from sam.elastic.problem import Places, Plan
 from sam.grid.cells import CellGrid, Room
-from sam.planner import parts
-from sam.planner.bodies import hertz_semi_axes, looked_of, misfit_of, pair_of, remedies_of, shape_of, slip_of
-from sam.planner.grids import coarse, demand_of, given_sides, misfit_demand_of, rough_demand_of
-from sam.planner.plan import Demand, Plan
-from sam.planner.schedules import given_pressure_of, schedule_of
+from sam.grid.smooth import EVEN_DEPTH, MOST_CELLS, MOST_LAYERS, PLASTIC_CELLS, GridDemand
+from sam.half_space import ElasticPair
+from sam.moving import Growth, Track
+from sam.planner.bodies import Bodies, coarse, given_sides
 from sam.planner.stages import stages_of
-from sam.scene import LeftOut, Scene
+from sam.results.rough import RoughRecord
+from sam.results.tables import Remedies
+from sam.scene import CounterBody, LeftOut, Scene, remedies
+from sam.scene.section import stated
 from sam.scene.verdict import counts_dissipation, judging_of
+from sam.schedule import Coefficient, FullSlip, Load, Schedule, Target
+from sam.tribofilm.law import FilmLaw
+from sam.tribofilm.state import FilmOnCells, VisitLaw
+from sam.wear import WearLaw, limit_by_depth
+
+STRONG = 3.0  # coefficient of friction, beyond that in air, that may keep a contact from being found
 
 
 def plan(scene: Scene) -> Plan:
@@ -36,47 +47,168 @@ def plan(scene: Scene) -> Plan:
     ValueError
         For a map of friction that is of another grid.
     """
-    pair, schedule, remedies = pair_of(scene), schedule_of(scene), remedies_of(scene)
-    misfit, axes = misfit_of(scene), hertz_semi_axes(scene)
-    coating, plasticity = scene.body.coating, scene.body.plasticity
-    demand: Demand
-    rough, track = None, parts.track(scene, axes) if scene.moves else None
-    if scene.patch_surface is None:
-        demand = demand_of(scene, pair) if misfit is None else misfit_demand_of(scene, misfit)
-    else:
-        patch = parts.rough_patch(scene)
-        demand = rough_demand_of(scene, patch)
-        rough = parts.rough_record(patch, remedies)
-    grid, friction, wear = demand.grid(Room()), scene.friction, scene.wear
-    layer = None if plasticity is None else plasticity.layer_thickness
-    has_back = plasticity is not None and plasticity.back_stresses > 0
+    return plan_of(Bodies(scene))
+
+
+def plan_of(bodies: Bodies) -> Plan:
+    """The plan of the scene of some bodies, see `plan`."""
+    scene, schedule, words = bodies.scene, schedule_of(bodies.scene), remedies_of(bodies.scene)
+    friction, plasticity = scene.friction, scene.body.plasticity
+    grid = bodies.demand.grid(Room())
+    track = track_of(scene, bodies.axes) if scene.moves else None
+    film = wear = None
+    if friction is not None and friction.film:
+        visited = None
+        if track is not None:
+            visited = VisitLaw(None if track.growth is None else track.growth.rate, track.period)
+        film = FilmOnCells(FilmLaw.of(friction), grid.shape, visited)
+    if scene.wear is not None and scene.wear.removes:
+        limits = limit_by_depth(scene.wear, None if plasticity is None else plasticity.layer_thickness)
+        smoothing = scene.wear.smoothing_window, scene.wear.smoothing_order
+        wear = WearLaw(grid.shape, grid.hx, grid.hy, limits, scene.wear.interpolate, *smoothing)
+    rough, last = bodies.patch, schedule.targets[-1].load
     made = Plan(
         grid=grid,
-        pair=pair,
-        shape=shape_of(scene),
-        axes=axes,
+        pair=bodies.pair,
+        shape=bodies.shape,
+        axes=bodies.axes,
         schedule=schedule,
-        slip=slip_of(scene, pair, grid),
-        looked=looked_of(scene, schedule),
+        slip=slip_of(scene, bodies.pair, grid),
+        places=Places(rough is not None, last.y != 0.0, rough is not None or bool(last.x or last.y)),
         solver=scene.solver,
-        remedies=remedies,
+        remedies=words,
         given_sides=given_sides(scene),
-        demand=demand,
-        given=given_pressure_of(scene),
-        misfit=misfit,
+        demand=bodies.demand,
+        given=bodies.given,
+        misfit=bodies.misfit,
         track=track,
-        coated=None if coating is None else parts.coated_pair(coating, pair),
-        rough=rough,
+        coated=bodies.coated,
+        rough=None if rough is None else RoughRecord(rough, words),
         plasticity=plasticity,
-        with_back=parts.material_with_back_stresses if has_back else None,
+        tribofilm=film,
+        wear=wear,
         judging=judging_of(scene),
         dissipates=counts_dissipation(scene),
-        tribofilm=partial(parts.tribofilm, friction, track) if friction and friction.film else None,
-        wear=partial(parts.wear, wear, layer) if wear and wear.removes else None,
-        paper=parts.paper_problem if scene.solver.method == "paper" else None,
         coarser=plan(coarse(scene, grid)) if scene.solver.extrapolate else None,
     )
     return replace(made, stages=stages_of(scene, made))
+
+
+def schedule_of(scene: Scene) -> Schedule:
+    """All load steps of a scene, unloading in one."""
+    loading, strokes, counter = scene.loading, scene.strokes, scene.counter_surface
+    if loading.misfit_sphere:
+        peak = Load(0.0, misfit=1.0)
+    elif loading.approach is not None:
+        peak = Load.by_approach(loading.approach)
+    else:
+        given = Bodies(scene).given
+        peak = Load(stated(loading.force) if given is None else given.peak_force)
+    empty = Schedule(
+        (),
+        peak,
+        loading.unload_steps or loading.steps,
+        strokes.places(),
+        loading.cycles,
+        strokes.of_cycle(2).sign != strokes.of_cycle(1).sign,
+        renews=counter is not None and counter.renewed,
+        returns=loading.path is not None and loading.path.to_and_fro,
+        remembers=scene.moves and scene.friction is not None and scene.friction.film,
+        varies=scene.moves and scene.patch_surface is not None,
+    )
+    cycles = range(1, loading.cycles + 1)
+    targets = [target for cycle in cycles for target in _targets_of_cycle(scene, empty, cycle)]
+    return replace(empty, targets=tuple(targets))
+
+
+def _targets_of_cycle(scene: Scene, schedule: Schedule, cycle: int) -> list[Target]:
+    """Loading, at the start of the path if there is one, the way along it, and unloading."""
+    loading, stroke, last = scene.loading, scene.strokes.of_cycle(cycle), cycle == scene.loading.cycles
+    sign, stretch, places = stroke.sign, cycle - 1 if schedule.renews else 0, stroke.places
+    start, *along = (replace(schedule.peak, sign=sign, x=x, y=y, stretch=stretch) for x, y in places)
+    targets = []
+    for k in range(1, loading.steps + 1) if stroke.pressed else ():
+        load, note = start.part(k, loading.steps), ""  # what the history has no column for
+        if loading.misfit_sphere:
+            note = f"misfit strain {stated(loading.misfit) * load.misfit:.6g}"
+        targets.append(Target(cycle, k, load, True, note=note))
+    for k, load in enumerate(along, start=len(targets) + 1):
+        note = f"load at x = {load.x:.6g} m, y = {load.y:.6g} m" if scene.counterbody is None else ""
+        targets.append(Target(cycle, k, load, True, note=note))
+    if last:
+        targets[-1] = replace(targets[-1], snapshot="peak")
+    if stroke.unloads:
+        name, zero = "unloaded" if last else "", Load(0.0, sign, *places[-1], stretch=stretch)
+        targets.append(Target(cycle, len(targets) + 1, zero, False, name, elastic_unloading=True))
+    return targets
+
+
+def slip_of(scene: Scene, pair: ElasticPair, grid: CellGrid) -> FullSlip:
+    """The friction of a scene at the cells of a grid; ValueError for a map of another grid."""
+    friction = scene.friction
+    if friction is None:
+        return FullSlip()
+    mu: Coefficient
+    if friction.law == "map":
+        heights = stated(friction.path)
+        if heights.cells != grid.shape:
+            raise ValueError(f"{heights!r} is no map of {grid.nx} x {grid.ny} cells")
+        mu = stated(heights.values)
+    else:
+        mu = stated(friction.low if friction.film else friction.coefficient)
+    coupling = 0.0
+    if friction.coupling:
+        coupling = pair.tangential_mismatch if scene.body.coating is None else 1.0
+    return FullSlip(
+        slides=scene.coefficient > 0,
+        coefficient=mu,
+        highest=stated(friction.high) if friction.film else mu,
+        coupled=friction.coupling,
+        coupling=coupling,
+        whole=friction.low if friction.film else None,
+    )
+
+
+def track_of(scene: Scene, axes: tuple[float, float]) -> Track:
+    """The track of a counter-body that moves; axes: of the contact in m."""
+    path, other, strip = stated(scene.loading.path), stated(scene.counterbody), scene.counter_strip
+    plane, period, friction, growth = other.shape == "flat", path.length, scene.friction, None
+    curvatures = (0.0, 0.0) if plane else None
+    if other.radii is not None:
+        curvatures = 1 / other.radii[0], 1 / other.radii[1]
+    carries = 1.0
+    if plane:  # summits carry it, of the counter-body alone or of both
+        carries = stated(strip).slip if scene.surface is None else 0.0
+    if friction is not None and friction.growth_rate is not None:
+        growth = Growth(friction.growth_rate, stated(friction.speed))
+        if not (plane or path.to_and_fro):
+            period = stated(friction.track)
+    return Track(
+        path.start,
+        path.end,
+        axes[0],
+        curvatures,
+        path.length / scene.strokes.count,
+        plane=plane,
+        carries=carries,
+        strip=strip,
+        period=period,
+        returns=path.to_and_fro,
+        growth=growth,
+    )
+
+
+def remedies_of(scene: Scene) -> Remedies:
+    """What may be changed of a scene, in words."""
+    return Remedies(
+        finer_cells=remedies.finer_cells(scene),
+        smaller_patch=remedies.smaller_patch(scene),
+        larger_patch=remedies.larger_patch(scene),
+        less_load=remedies.less_load(scene),
+        slower=remedies.less_friction(scene) if scene.coefficient > STRONG else "",
+        more_steps=remedies.more_steps(scene),
+        looser=remedies.looser(scene),
+    )
 
 
 def left_out(scene: Scene) -> list[LeftOut]:
@@ -110,3 +242,99 @@ def choose_grid(scene: Scene) -> CellGrid:
         zone that are to be expected.
     """
     return plan(scene).grid
+
+
+ROUNDING = 1e-9  # relative, of a size that is at its bound
+
+
+class UnsupportedScene(ValueError):  # noqa: N818 - the name that callers of both models know
+    """A valid scene that the model cannot solve; the message names key, value and what is allowed."""
+
+
+def check(scene: Scene) -> None:
+    """Refuse a scene that the model cannot solve.
+
+    Parameters
+    ----------
+    scene : Scene
+        Any valid scene.
+
+    Raises
+    ------
+    UnsupportedScene
+        For a coating where anything yields, as the coefficients of plastic strain hold for a homogeneous
+        body; for no force on a shape from which no size of the grid follows; for a plastic scene whose cells
+        are so small that layers as thick would be too many; for a rounded edge that the cells do not resolve;
+        for a surface of which only the digest is known.
+    """
+    check_bodies(Bodies(scene))
+
+
+def check_bodies(bodies: Bodies) -> None:
+    """Refuse the scene of some bodies, see `check`."""
+    scene = bodies.scene
+    plasticity, other = scene.body.plasticity, scene.counterbody
+    _check_coating(scene)
+    if other is not None and other.radii is None and min(bodies.axes) == 0.0:
+        raise UnsupportedScene(
+            f'loading.force = {scene.loading.force} N: with counterbody.shape = "{other.shape}" the '
+            f"semi-analytical model allows a force above 0, as nothing else says how large the grid is"
+        )
+    # a plastic zone that reaches a held surface would change the tractions that hold it
+    if (sphere := bodies.misfit) is not None and not sphere.free and bodies.zone >= sphere.depth:
+        raise UnsupportedScene(
+            f'loading.depth = {sphere.depth:g} m: with surface = "held" more than {bodies.zone:g} m is '
+            f"allowed, the radius of the plastic zone"
+        )
+    if other is not None and scene.patch_surface is None and bodies.largest_cell < inf:
+        _check_cells(scene, other, bodies.smooth_demand)
+    for surface in (scene.surface, scene.counter_surface):
+        if surface is not None and surface.path is not None and surface.path.values is None:
+            raise UnsupportedScene(
+                f"{surface.table}.path = {surface.path!r}: only its digest is at hand, read the scene file"
+            )
+    given = scene.grid
+    if plasticity is None or given is None or given.extent is None or given.depths or given.layers:
+        return
+    thickness = min(np.divide(given.extent, given.cells or (PLASTIC_CELLS, PLASTIC_CELLS)))
+    axes = (2 * sphere.depth,) * 2 if sphere is not None else bodies.axes
+    layers = EVEN_DEPTH * min(axes) / thickness
+    if layers > MOST_LAYERS:
+        extent = " and ".join(f"{side:g} m" for side in given.extent)
+        raise UnsupportedScene(
+            f"grid.extent = {extent}: {layers:.3g} layers as thick as a cell, at most {MOST_LAYERS} are "
+            f"allowed: raise it, or give grid.layers and grid.depth"
+        )
+
+
+def _check_coating(scene: Scene) -> None:
+    coating, plasticity = scene.body.coating, scene.body.plasticity
+    if coating is not None:
+        allowed = "the semi-analytical model allows an elastic coating on an elastic body; fem-axisymmetric"
+        if plasticity is not None:
+            raise UnsupportedScene(
+                f'body.coating together with body.plasticity (law = "{plasticity.law}"): {allowed} solves it'
+            )
+        if coating.yield_stress is not None:
+            stress = f"body.coating.yield_stress = {coating.yield_stress:g} Pa"
+            raise UnsupportedScene(f"{stress}: {allowed} solves it")
+
+
+def _check_cells(scene: Scene, other: CounterBody, demand: GridDemand) -> None:
+    """A contact that the cells of a smooth scene do not resolve: too few of them, or too many needed."""
+    given = scene.grid
+    needs = f"the rounded edge in contact needs cells of at most {demand.largest_cell:.3g} m"
+    if given is not None and given.cells:
+        cell = max(np.divide(demand.sides((demand.usual,) * 2), given.cells))
+        if cell > demand.largest_cell * (1 + ROUNDING):
+            least = ceil(max(given.cells) * cell / demand.largest_cell - ROUNDING)
+            raise UnsupportedScene(
+                f"grid.cells = {list(given.cells)}: {needs}, these have {cell:.3g} m: at least "
+                f"{least} x {least} are allowed, fewer with a smaller grid.extent, or leave out [grid]"
+            )
+    elif demand.usual > MOST_CELLS:
+        raise UnsupportedScene(
+            f"counterbody.radius = {other.radius} m: {needs}, {demand.usual} x {demand.usual} of them; at "
+            f"most {MOST_CELLS} x {MOST_CELLS} are chosen: raise it, give grid.cells, or take "
+            f'shape = "punch"'
+        )

@@ -11,35 +11,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import ceil
 
-from sam.planner.plan import Plan
-from sam.scene import LeftOut, Path, Plasticity, Scene, Stage
+from sam.elastic.problem import Plan
+from sam.scene import LeftOut, Path, Scene, Stage
 from sam.scene.result import NO_FORCE
 from sam.scene.verdict import VERDICT, periods_of, reason_without
 
 LEFT_ORDER = (
-    "tangential kernels",
-    "coupling",
-    "contact search",
-    "surface coefficients",
-    "volume grid",
-    "eigenstrain kernels",
-    "plastic loop",
-    "layered coefficients",
-    "bare comparison",
-    "stresses in the film",
-    "stresses in the substrate",
-    "chemical film",
-    "worn geometry",
-    "stress outside the plane y = 0",
-    "surface heights",
-    "counter-surface heights",
-    "unloading",
-    "unloading steps",
-    "cycles after the first",
-    "back-stresses",
-    VERDICT,
-    "strain limit of the layer",
-)
+    "tangential kernels; coupling; contact search; surface coefficients; volume grid; eigenstrain kernels; "
+    "plastic loop; layered coefficients; bare comparison; stresses in the film; stresses in the substrate; "
+    "chemical film; worn geometry; stress outside the plane y = 0; surface heights; counter-surface heights; "
+    f"unloading; unloading steps; cycles after the first; back-stresses; {VERDICT}; strain limit of the layer"
+).split("; ")
 """The order in which stages that do not run are told."""
 # (c, n) of errors in percent, c times the step in contact radii to the power n, of Swift steel at p0 = 4
 # sigma_y0: steps of a/2 to a/32 against the limit of short ones (case moving-steps).
@@ -51,133 +33,95 @@ UNYIELDING = "the elastic stress at the peak yields nowhere"
 
 def stages_of(scene: Scene, plan: Plan) -> tuple[Stage, ...]:
     """The stages of a scene: those that it needs in their order, then those that it does not need."""
-    solving = [
-        *_coarser(plan),
-        *_surface(scene, plan),
-        *_load(scene, plan),
-        *_plastic(scene, plan),
-        *_unloading(plan),
-        *_output(scene, plan),
-    ]
+    solving = [*_surface(scene, plan), *_load(scene, plan), *_plastic(scene, plan), *_output(scene, plan)]
     if plan.schedule.peak.rests:
         solving = [Stage(each.stage, False, NO_FORCE) if each.runs else each for each in solving]
-    found = [*_cells(scene, plan), *solving]
-    needed = [each for each in found if each.runs or each.reason == NO_FORCE]
-    left = [each for each in found if not each.runs and each.reason != NO_FORCE]
+    stages = [*_cells(scene, plan), *solving]
+    needed = [each for each in stages if each.runs or each.reason == NO_FORCE]
+    left = [each for each in stages if not each.runs and each.reason != NO_FORCE]
     return (*needed, *sorted(left, key=lambda each: LEFT_ORDER.index(each.stage)))
 
 
 def left_out_of_unyielding(plan: Plan) -> list[LeftOut]:
     """What a scene with plasticity turns out not to need when it stays elastic."""
-    stages = ["eigenstrain kernels", "plastic loop"]
-    if plan.wear is not None:
-        stages.append("worn geometry")
+    stages = ["eigenstrain kernels", "plastic loop", *["worn geometry"] * (plan.wear is not None)]
     return [LeftOut(stage, UNYIELDING) for stage in stages]
 
 
-def _not(stage: str, reason: str) -> Stage:
-    return Stage(stage, False, reason)
+def _stage(name: str, why_not: str, words: str = "", **size: object) -> Stage:
+    """A stage that runs, in words and with its sizes, unless there is a reason why not."""
+    return Stage(name, not why_not, why_not or words, {} if why_not else size)
 
 
 def _cells(scene: Scene, plan: Plan) -> Iterator[Stage]:
-    """Cells, layers and heights."""
-    grid = plan.grid
+    """Cells, layers and heights, those of the counter-body in each cycle others if it is renewed."""
+    grid, surface, counter = plan.grid, scene.surface, scene.counter_surface
     cells = [grid.nx, grid.ny]
-    yield Stage("grid", True, _grid_reason(scene), {"cells": cells, "cell_m": [grid.hx, grid.hy]})
+    yield _stage("grid", "", _grid_reason(scene), cells=cells, cell_m=[grid.hx, grid.hy])
     if grid.faces is None:
-        yield _not("volume grid", "no [body.plasticity]: stresses at the output depths only")
+        yield _stage("volume grid", "no [body.plasticity]: stresses at the output depths only")
     else:
-        own = scene.grid is not None and bool(scene.grid.depths or scene.grid.layers)
-        further = "and the load, further ones if the plastic zone reaches the last"
-        reason = "layers of [grid]" if own else f"layers chosen from the {_length(scene)} {further}"
-        size = {"layers": max(len(grid.faces) - 1, 1), "largest_depth_m": float(grid.faces[-1])}
-        yield Stage("volume grid", True, reason, size)
-    if scene.surface is None:
-        yield _not("surface heights", "no [surface]")
-    else:
-        words = f'[surface], kind "{scene.surface.kind}", at the cell centres'
-        yield Stage("surface heights", True, words, {"cells": cells})
-    yield _counter_heights(scene, plan, cells)
-
-
-def _counter_heights(scene: Scene, plan: Plan, cells: list[int]) -> Stage:
-    """Heights of the counter-body, in each cycle others if it is renewed."""
-    stage, surface = "counter-surface heights", scene.counter_surface
-    if surface is None:
-        return _not(stage, "no [counterbody.surface]")
-    count = plan.schedule.cycles if plan.schedule.renews else 1
-    words = f'[{surface.table}], kind "{surface.kind}", at the cell centres'
-    if surface.renewed:
-        words += ", another stretch in each cycle"
-    strip = scene.counter_strip
-    if strip is not None:
+        words = f"layers chosen from the {_length(scene)} and the load, further ones if the plastic zone "
+        words += "reaches the last"
+        if scene.grid is not None and (scene.grid.depths or scene.grid.layers):
+            words = "layers of [grid]"
+        layers, deepest = max(len(grid.faces) - 1, 1), float(grid.faces[-1])
+        yield _stage("volume grid", "", words, layers=layers, largest_depth_m=deepest)
+    words = "" if surface is None else f'[surface], kind "{surface.kind}", at the cell centres'
+    yield _stage("surface heights", "no [surface]" * (surface is None), words, cells=cells)
+    if counter is None:
+        yield _stage("counter-surface heights", "no [counterbody.surface]")
+        return
+    words = f'[{counter.table}], kind "{counter.kind}", at the cell centres'
+    words += ", another stretch in each cycle" * counter.renewed
+    if (strip := scene.counter_strip) is not None:
         words, cells = f"{words}, as long as the patch and the way", list(strip.whole)
-    return Stage(stage, True, words, {"cells": cells, "stretches": count})
-
-
-def _coarser(plan: Plan) -> Iterator[Stage]:
-    """The solution on fewer cells that quantities are extrapolated from."""
-    if plan.coarser is not None:
-        cells = [plan.coarser.grid.nx, plan.coarser.grid.ny]
-        reason = "solver.extrapolate: all that follows on half as many cells first"
-        yield Stage("coarser grid", True, reason, {"cells": cells})
+    count = plan.schedule.cycles if plan.schedule.renews else 1
+    yield _stage("counter-surface heights", "", words, cells=cells, stretches=count)
 
 
 def _surface(scene: Scene, plan: Plan) -> Iterator[Stage]:
-    """Influence coefficients of the surface."""
-    cells = plan.grid.nx * plan.grid.ny
-    if plan.misfit is None:
-        reason = "normal displacement under pressure"
-        yield Stage("surface coefficients", True, reason, {"coefficients": cells})
-    else:
-        yield _not("surface coefficients", UNTOUCHED)
+    """Influence coefficients of the surface, and whether the traction is part of the gap."""
+    cells, loads = plan.grid.nx * plan.grid.ny, 1 + plan.slip.slides  # pressure and traction
+    if plan.coarser is not None:  # from which quantities are extrapolated
+        words = "solver.extrapolate: all that follows on half as many cells first"
+        yield _stage("coarser grid", "", words, cells=[plan.coarser.grid.nx, plan.coarser.grid.ny])
+    touched = UNTOUCHED if plan.misfit is not None else ""
+    yield _stage("surface coefficients", touched, "normal displacement under pressure", coefficients=cells)
     if plan.coated is None:
-        yield _not("layered coefficients", "no [body.coating]")
+        yield _stage("layered coefficients", "no [body.coating]")
     else:
-        loads = 1 + plan.slip.slides  # pressure and traction
-        reason = f"film of {plan.coated.thickness:g} m in the contact and at the output depths"
-        size = {
-            "coefficients": loads * (cells + stress_coefficients(plan)),
-            "tables": loads * (1 + len(plan.grid.depths)),
-        }
-        yield Stage("layered coefficients", True, reason, size)
+        words = f"film of {plan.coated.thickness:g} m in the contact and at the output depths"
+        count, tables = loads * (cells + stress_coefficients(plan)), loads * (1 + len(plan.grid.depths))
+        yield _stage("layered coefficients", "", words, coefficients=count, tables=tables)
     if scene.friction is not None and plan.slip.slides:
-        yield _coupling(plan, {"coefficients": cells})
-
-
-def _coupling(plan: Plan, size: dict[str, object]) -> Stage:
-    """Whether the traction is part of the gap."""
-    if not plan.slip.coupled:
-        return _not("coupling", "friction.coupling = false: the traction moves no surface normally")
-    if plan.given is not None:
-        return _not("coupling", "the pressure is given: the gap that the traction changes is not needed")
-    if plan.slip.coupling == 0:
-        return _not("coupling", "like bodies, equal (1 - 2 nu)/mu: the traction moves both surfaces alike")
-    return Stage("coupling", True, "the traction moves the surfaces normally too: part of the gap", size)
-
-
-def _prescribed(scene: Scene) -> str:
-    """The load in place of a force, in words."""
-    return f'loading.prescribed = "{scene.loading.prescribed}"'
+        why_not = ""
+        if not plan.slip.coupled:
+            why_not = "friction.coupling = false: the traction moves no surface normally"
+        elif plan.given is not None:
+            why_not = "the pressure is given: the gap that the traction changes is not needed"
+        elif plan.slip.coupling == 0:
+            why_not = "like bodies, equal (1 - 2 nu)/mu: the traction moves both surfaces alike"
+        words = "the traction moves the surfaces normally too: part of the gap"
+        yield _stage("coupling", why_not, words, coefficients=cells)
 
 
 def _load(scene: Scene, plan: Plan) -> Iterator[Stage]:
     """What puts the load on."""
-    steps = {"steps": plan.steps}
+    prescribed, steps = f'loading.prescribed = "{scene.loading.prescribed}"', plan.steps
     if plan.misfit is not None:
-        yield Stage("misfit strain", True, f"{_prescribed(scene)}: closed form of the elastic stress", steps)
-        yield _not("contact search", UNTOUCHED)
-        return
-    if plan.given is None:
+        words = f"{prescribed}: closed form of the elastic stress"
+        yield _stage("misfit strain", "", words, steps=steps)
+        yield _stage("contact search", UNTOUCHED)
+    elif plan.given is not None:
+        travels = ", and travels" if len(plan.schedule.path) > 1 else ""
+        yield _stage("given pressure", "", prescribed + travels, steps=steps)
+        yield _stage("contact search", f"{prescribed}: the pressure is given")
+    else:
         way = ", then along the path" if scene.moves else ""
-        yield Stage("contact search", True, f"load steps to the peak{way}", steps)
+        yield _stage("contact search", "", f"load steps to the peak{way}", steps=steps)
         if scene.loading.path is not None:
             yield _moving(scene, scene.loading.path, plan)
-        return
-    words = _prescribed(scene)
-    travels = ", and travels" if len(plan.schedule.path) > 1 else ""
-    yield Stage("given pressure", True, words + travels, steps)
-    yield _not("contact search", f"{words}: the pressure is given")
 
 
 def _moving(scene: Scene, path: Path, plan: Plan) -> Stage:
@@ -203,146 +147,106 @@ def _moving(scene: Scene, path: Path, plan: Plan) -> Stage:
 
 
 def _plastic(scene: Scene, plan: Plan) -> Iterator[Stage]:
-    """What plasticity, a tribofilm and wear add."""
-    cycles = {"cycles": plan.schedule.cycles}
-    if plan.plasticity is None:
-        yield _not("eigenstrain kernels", "no [body.plasticity]")
-        yield _not("plastic loop", "no [body.plasticity]")
-        if plan.schedule.cycles > 1:
-            yield _not("cycles after the first", "elastic: all cycles are equal")
-        yield from _running_in(scene, plan)
+    """What plasticity, a tribofilm and wear add; of an elastic body the film is solved in one cycle."""
+    plasticity, cycles, elastic = plan.plasticity, plan.schedule.cycles, "elastic: all cycles are equal"
+    if plasticity is None:
+        yield _stage("eigenstrain kernels", "no [body.plasticity]")
+        yield _stage("plastic loop", "no [body.plasticity]")
+    else:
+        words = "whether and where the elastic stress exceeds the yield stress"
+        words += ", with friction.high everywhere" * (plan.slip.whole is not None)
+        yield _stage("elastic peak", "", words, depths=len(plan.grid.depths))
+        words = "residual stress and displacement of the plastic strain, in a box that grows"
+        yield _stage("eigenstrain kernels", "", words)
+        where = "the contact" if plan.given is None else "the given pressure"
+        where = "the misfit strain" if plan.misfit is not None else where
+        words = f"method {plan.solver.method}, {where} inside it{plasticity.of_layer}"
+        steps = {"steps": plan.steps} | ({"unload_steps": plan.unload_steps} if plan.unloads else {})
+        yield Stage("plastic loop", True, words, steps)
+    if cycles > 1:
+        why_not = elastic * (plasticity is None)
+        words = "each starts from the strain that the others left"
+        yield _stage("cycles after the first", why_not, words, cycles=cycles)
+    yield from _running_in(scene, plan, 1 if plasticity is None else cycles)
+    if plasticity is None:
         return
-    first = "whether and where the elastic stress exceeds the yield stress"
-    if plan.slip.whole is not None:
-        first += ", with friction.high everywhere"
-    where = "the contact" if plan.given is None else "the given pressure"
-    where = "the misfit strain" if plan.misfit is not None else where
-    kernels = "residual stress and displacement of the plastic strain, in a box that grows"
-    loop = {"steps": plan.steps} | ({"unload_steps": plan.unload_steps} if plan.unloads else {})
-    yield Stage("elastic peak", True, first, {"depths": len(plan.grid.depths)})
-    yield Stage("eigenstrain kernels", True, kernels)
-    yield Stage(
-        "plastic loop",
-        True,
-        f"method {plan.solver.method}, {where} inside it{plan.plasticity.of_layer}",
-        loop,
-    )
-    if plan.schedule.cycles > 1:
-        reason = "each starts from the strain that the others left"
-        yield Stage("cycles after the first", True, reason, cycles)
-    yield from _running_in(scene, plan)
-    yield _back_stresses(plan.plasticity)
-    reason = reason_without(scene)
-    words = "strains of the unloaded body after each period"
-    yield _not(VERDICT, reason) if reason else Stage(VERDICT, True, words, {"periods": periods_of(scene)})
-    if plan.plasticity.layer_thickness is not None and scene.wear is None:
-        idle = ": body.plasticity.layer_thickness changes nothing" * (plan.plasticity.layer is None)
-        yield _not("strain limit of the layer", f"no [wear]{idle}")
-
-
-def _back_stresses(plasticity: Plasticity) -> Stage:
-    """Kinematic hardening."""
-    count = plasticity.back_stresses
-    if not count:
-        return _not("back-stresses", "no [body.plasticity.kinematic]")
+    why_not, count = "", plasticity.back_stresses
     settles = "; the isotropic hardening never ends: every load settles in the end"
     words = f"exact along a constant direction of flow{settles * plasticity.grows_for_ever}"
-    return Stage("back-stresses", True, words, {"back_stresses": count})
+    yield _stage("back-stresses", "no [body.plasticity.kinematic]" * (not count), words, back_stresses=count)
+    words = "strains of the unloaded body after each period"
+    yield _stage(VERDICT, reason_without(scene), words, periods=periods_of(scene))
+    if plasticity.layer_thickness is not None and scene.wear is None:
+        idle = ": body.plasticity.layer_thickness changes nothing" * (plasticity.layer is None)
+        yield _stage("strain limit of the layer", f"no [wear]{idle}")
 
 
-def _running_in(scene: Scene, plan: Plan) -> Iterator[Stage]:
-    """Tribofilm and wear; on an elastic body the film is solved in one cycle, as all are equal."""
-    friction, size = scene.friction, {"cycles": 1 if plan.plasticity is None else plan.schedule.cycles}
+def _running_in(scene: Scene, plan: Plan, cycles: int) -> Iterator[Stage]:
+    """Tribofilm and wear."""
+    friction, why_not, words = scene.friction, "", ""
     if friction is None:
-        yield _not("chemical film", "no [friction]")
+        why_not = "no [friction]"
     elif plan.tribofilm is None:
-        yield _not("chemical film", f'friction.law = "{friction.law}": the coefficient is given')
+        why_not = f'friction.law = "{friction.law}": the coefficient is given'
     else:
-        limit = f"{friction.thinning_limit:.4g}"
-        later = " in the first visit, later by the time out of contact"
-        later *= scene.moves and friction.growth_rate is not None
-        reason = (
-            f"fails where it thins by more than {limit}{later}, solved together with the contact in each step"
-        )
-        yield Stage("chemical film", True, reason, size)
-    if scene.wear is None:
-        yield _not("worn geometry", "no [wear]")
-    elif plan.wear is None:
-        yield _not("worn geometry", "wear.strain_limit = inf: nothing is removed")
-    else:
-        words = "removal, smoothing, remap and equilibrium after each cycle"
-        yield Stage("worn geometry", True, words, size)
-
-
-def _unloading(plan: Plan) -> Iterator[Stage]:
-    """The way back to no force."""
-    if not plan.unloads:
-        yield _not("unloading", "loading.unload = false")
-    elif plan.plasticity is None:
-        yield Stage("unloading", True, "elastic: in one step", {"steps": 1})
-        yield _not("unloading steps", "elastic: unloading in one step is exact")
-    else:
-        words = "in one step if that strains nothing, else in equal ones"
-        yield Stage("unloading", True, words, {"steps": plan.unload_steps})
+        words = f"fails where it thins by more than {friction.thinning_limit:.4g}"
+        if scene.moves and friction.growth_rate is not None:
+            words += " in the first visit, later by the time out of contact"
+        words += ", solved together with the contact in each step"
+    yield _stage("chemical film", why_not, words, cycles=cycles)
+    why_not = "" if plan.wear is not None else "wear.strain_limit = inf: nothing is removed"
+    why_not = "no [wear]" if scene.wear is None else why_not
+    words = "removal, smoothing, remap and equilibrium after each cycle"
+    yield _stage("worn geometry", why_not, words, cycles=cycles)
 
 
 def _output(scene: Scene, plan: Plan) -> Iterator[Stage]:
-    """What is computed of the solved contact."""
-    grid = plan.grid
+    """The way back to no force, and what is computed of the solved contact."""
+    grid, yielding = plan.grid, plan.plasticity is not None
+    depths, deepest = len(grid.depths), float(grid.depths[-1])
     coefficients = stress_coefficients(plan) if plan.misfit is None else 0
-    depths = len(grid.depths)
-    unloaded = " and unloaded" if plan.unloads and plan.plasticity is not None else ""
-    words = f"in the plane y = 0 at peak load{unloaded}"
-    size = {"depths": depths, "largest_depth_m": float(grid.depths[-1]), "coefficients": coefficients}
+    if plan.unloads and not yielding:
+        yield _stage("unloading", "", "elastic: in one step", steps=1)
+        yield _stage("unloading steps", "elastic: unloading in one step is exact")
+    else:
+        why_not, words = "loading.unload = false", "in one step if that strains nothing, else in equal ones"
+        yield _stage("unloading", why_not * (not plan.unloads), words, steps=plan.unload_steps)
+    words = f"in the plane y = 0 at peak load{' and unloaded' if plan.unloads and yielding else ''}"
+    size = {"depths": depths, "largest_depth_m": deepest, "coefficients": coefficients}
     yield Stage("stresses at the output depths", True, words, size)
-    yield _outside(plan, depths)
-    if plan.slip.slides:
-        reason = "stresses of the traction, displacements along x"
-        yield Stage("tangential kernels", True, reason, {"coefficients": coefficients})
+    stage = "stress outside the plane y = 0"
+    if plan.places.anywhere:
+        words = "rough: the largest von Mises stress lies anywhere below the patch"
+        yield _stage(stage, "", words, cells=[grid.nx, grid.ny], depths=depths)
+    elif plan.places.beside:
+        words = "the load ends beside y = 0: the largest von Mises stress lies below it"
+        yield _stage(stage, "", words, cells=[grid.nx, 1], depths=depths)
     else:
-        words = "no [friction]" if scene.friction is None else "friction.coefficient = 0"
-        yield _not("tangential kernels", words)
-    if plan.coated is not None:
-        yield from _coated(plan, plan.coated.thickness)
-
-
-def _outside(plan: Plan, depths: int) -> Stage:
-    """Where the largest von Mises stress is looked for."""
-    stage, grid = "stress outside the plane y = 0", plan.grid
-    if plan.looked.anywhere:
-        reason = "rough: the largest von Mises stress lies anywhere below the patch"
-        return Stage(stage, True, reason, {"cells": [grid.nx, grid.ny], "depths": depths})
-    if plan.looked.beside:
-        reason = "the load ends beside y = 0: the largest von Mises stress lies below it"
-        return Stage(stage, True, reason, {"cells": [grid.nx, 1], "depths": depths})
-    return _not(stage, "smooth, sliding along x: the largest von Mises stress lies in y = 0")
-
-
-def _coated(plan: Plan, thickness: float) -> Iterator[Stage]:
-    """What is computed of a coated contact, and what its depths or its load leave out."""
-    if not plan.schedule.peak.rests:
-        words = "the same contact and stresses without film, from the coated pressure on"
-        yield Stage("bare comparison", True, words, {"steps": 1})
-    else:
-        yield _not("bare comparison", "loading.force = 0: no contact")
-    depths = plan.grid.depths
-    for part, there, where in (
-        ("film", depths[0] < thickness, "above"),
-        ("substrate", depths[-1] >= thickness, "at or below"),
-    ):
-        if not there:
-            reason = f"no output depth {where} the interface, z = {thickness:g} m"
-            yield _not(f"stresses in the {part}", reason)
+        yield _stage(stage, "smooth, sliding along x: the largest von Mises stress lies in y = 0")
+    why_not = "no [friction]" if scene.friction is None else "friction.coefficient = 0"
+    words = "stresses of the traction, displacements along x"
+    yield _stage("tangential kernels", why_not * (not plan.slip.slides), words, coefficients=coefficients)
+    if plan.coated is None:
+        return
+    why_not = "loading.force = 0: no contact" * plan.schedule.peak.rests
+    words, thickness = (
+        "the same contact and stresses without film, from the coated pressure on",
+        plan.coated.thickness,
+    )
+    yield _stage("bare comparison", why_not, words, steps=1)
+    if grid.depths[0] >= thickness:
+        yield _stage("stresses in the film", f"no output depth above the interface, z = {thickness:g} m")
+    if deepest < thickness:
+        words = f"no output depth at or below the interface, z = {thickness:g} m"
+        yield _stage("stresses in the substrate", words)
 
 
 def stress_coefficients(plan: Plan) -> int:
-    """Influence coefficients of the stresses at the output depths, of one load.
-
-    In the plane y = 0 those of the lags between it and the contact of Hertz, and where one row of cells lies
-    in it the four components that are not zero by symmetry; below a rough patch all of them.
+    """Influence coefficients of the stresses at the output depths, of one load: in y = 0 of the lags to the
+    contact of Hertz, four components if one row of cells lies in it; below a rough patch all.
     """
     grid = plan.grid
-    if plan.looked.anywhere:
+    if plan.places.anywhere:
         return 6 * len(grid.depths) * grid.nx * grid.ny
     a, b = plan.axes
     lags = min(ceil(grid.nx / 2 + a / grid.hx), grid.nx) * min(ceil(b / grid.hy), grid.ny)

@@ -8,14 +8,13 @@ record. The load step is `Problem.step`, its operator on a box of cells is `BoxO
 
 from __future__ import annotations
 
-from sam.plasticity.expected import ExpectedBox, Zone, expected_sides, held
+from sam.plasticity.box import ExpectedBox, Zone, expected_sides, held
+from sam.plasticity.flow import SHEAR, contraction
 from sam.plasticity.history import onward
+from sam.plasticity.measure import Strained, at_centres, surface_displacement
 from sam.plasticity.model import Model
-from sam.plasticity.outside import Strained, surface_displacement
 from sam.plasticity.points import POINTS, stress_at_points
-from sam.plasticity.pointwise import at_centres
 from sam.plasticity.progress import Progressed
-from sam.plasticity.return_map import SHEAR, contraction
 from sam.plasticity.spectra import BoxOperator
 from sam.plasticity.state import Extent, MaterialFields, surrounded
 

@@ -3,224 +3,232 @@
 make.
 
 Nothing here changes a step. Fields outside of the box are computed once for a strain, and kept in the record.
+
+The plastic strain of a cell stands for its mean over the cell. Where it is smooth the value at the centre is
+the mean less h^2/24 times the second derivative in each direction, to fourth order, and the largest value
+lies between centres. It is not smooth where the yield stress has a kink over depth: just there a soft layer
+strains most, and a curve across it overshoots. Three points do not do: where the maximum lies between two
+layers, a parabola through the higher one and its neighbours is up to .5 % too high.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.polynomial import Polynomial
+from numpy.typing import NDArray
 
-from sam.arrays import Array, Mask
-from sam.contact.normal import Contact, Found, Units, around, measured, no_contact
+from sam.arrays import Array
+from sam.contact.convolution import FEW_ROWS, Convolution, Counters, row_sums
+from sam.contact.normal import Contact, Solved, Units, around, measured, no_contact
 from sam.contact.stress import von_mises
-from sam.elastic.sliding import sliding_of
-from sam.elastic.stress import plane_stress
+from sam.elastic.stress import plane_stress, sliding_of
 from sam.grid.cells import Window
+from sam.kernels.eigenstrain import surface_displacement_coefficients
+from sam.kernels.layer_stress import residual_stress_coefficients
+from sam.kernels.patches import STRESS, Cuboids, Lags, parity
+from sam.moving import Track
+from sam.plasticity.load_step import ContactPressure, PressureSource, Problem
 from sam.plasticity.model import Model
-from sam.plasticity.outside import Strained, residual_stress, surface_displacement
-from sam.plasticity.pointwise import at_centres, largest
-from sam.plasticity.pressure import ContactPressure
 from sam.plasticity.progress import Outside, Progressed
-from sam.plasticity.state import Extent, Trial
-from sam.plasticity.step import Problem
-from sam.results.history import CycleEnd, CycleStrain, Moved, PassEnd, counted
+from sam.plasticity.spectra import ODD_X, ODD_Y
+from sam.plasticity.state import Extent, Trial, surrounded
+from sam.results.history import CycleEnd, LoopRow, Moved, PassEnd, counted
 from sam.results.snapshots import Box, Cut, Snapshot, row_of_largest
 from sam.scene.result import BACK_STRESS, unfinished
-from sam.schedule import Load
-
-if TYPE_CHECKING:
-    from sam.moving.track import Track
+from sam.scene.section import stated
+from sam.scene.verdict import last_period, loop_places
+from sam.schedule import Load, Target
 
 ROUNDING = 1e-9  # of a pressure: the transforms of another window round differently
 
 
-def problem_now(model: Model, now: Progressed) -> Problem:
+def problem_of(model: Model, record: Progressed) -> Problem:
     """The problem of a step from a record."""
-    return model.problem(now.extent, now.tribofilm, now.wear)
+    return model.problem(record.extent, record.tribofilm, record.wear)
 
 
-def contact_in_box(model: Model, now: Progressed, trial: Trial) -> Contact:
+def contact_in_box(model: Model, record: Progressed, trial: Trial) -> Contact:
     """The contact of a step in its box, with the residuals measured there."""
-    load, p = trial.load, trial.pressure
-    gap = model.gap(load, now.wear)[now.extent.window.slices] + trial.residual.displacement
+    load, p, source = trial.load, trial.pressure, problem_of(model, record).pressure
+    gap = model.gap(load, record.wear)[record.extent.window.slices] + trial.residual.displacement
     if load.force == 0:
         return no_contact(gap, load.given)  # the row of a step asks for no displacement
-    source = problem_now(model, now).pressure
-    if not isinstance(source, ContactPressure):
-        return _given(model, load, p, np.zeros_like(p))
-    return _measured(model, source, load, gap, p=p, u=source.contact.displacement(p, load.sign))
+    u = source.contact.displacement(p, load.sign) if isinstance(source, ContactPressure) else np.zeros_like(p)
+    return _contact(model, source, load, gap, p=p, u=u)
 
 
-def contact_on_grid(model: Model, now: Progressed, trial: Trial) -> Contact:
-    """The contact on the full grid, its residuals measured there: pile-up outside the box counts.
-
-    Where the displacement by plastic strain, a sum over the steps in single precision, misses the one of the
-    full grid by more than the contact may, the pressure is found once more on that.
+def contact_on_grid(model: Model, record: Progressed, trial: Trial) -> Contact:
+    """The contact on the full grid, its residuals measured there: pile-up outside the box counts. Where the
+    displacement by plastic strain, a sum over the steps in single precision, misses that of the full grid by
+    more than the contact may, the pressure is found once more on that.
     """
-    window, load, moved = now.extent.window, trial.load, known_outside(now).displacement
-    gap = model.gap(load, now.wear) + moved
+    window, load, moved = record.extent.window, trial.load, known_outside(record).displacement
+    gap, source = model.gap(load, record.wear) + moved, problem_of(model, record).pressure
     if load.force == 0:
         return model.elastic.untouched(load, gap)
-    source = problem_now(model, now).pressure
-    if not isinstance(source, ContactPressure):
-        return _given(model, load, *_on_grid(model, window, trial.pressure, load.sign))
-    p, u = _on_grid(model, window, trial.pressure, load.sign)
-    found = _measured(model, source, load, gap, p=p, u=u)
-    if found.converged:
-        return found
-    goal = model.contact_share * model.tolerance
-    p, u = _on_grid(model, window, source(moved[window.slices], load, trial.pressure, goal), load.sign)
-    again = _measured(model, source, load, gap, p=p, u=u)
-    return again if again.converged else found
 
-
-def _on_grid(model: Model, window: Window, pressure: Array, sign: float) -> tuple[Array, Array]:
-    """p_hat and u_hat on the full grid of p_hat in a window."""
     surface = model.surface
-    p = np.zeros(surface.shape)
-    p[window.slices] = pressure
-    return p, surface.displacement(pressure, window, surface.whole, sign)
+
+    def of(pressure: Array) -> Contact:
+        p = np.zeros(surface.shape)
+        p[window.slices] = pressure
+        u = surface.displacement(pressure, window, surface.whole, load.sign)
+        return _contact(model, source, load, gap, p=p, u=u)
+
+    contact = of(trial.pressure)
+    if contact.converged:
+        return contact
+    again = of(source(moved[window.slices], load, trial.pressure, model.contact_tolerance))
+    return again if again.converged else contact
 
 
-def _given(model: Model, load: Load, p: Array, u: Array) -> Contact:
-    given = model.elastic.given
-    if given is None:
-        raise ValueError("the pressure is not given")
-    return given.contact(model.grid, load, p * model.unit, u * model.grid.hx)
-
-
-def _measured(
-    model: Model, source: ContactPressure, load: Load, gap: Array, *, p: Array, u: Array
-) -> Contact:
+def _contact(model: Model, source: PressureSource, load: Load, gap: Array, *, p: Array, u: Array) -> Contact:
     """The contact of p_hat and u_hat, on the box or on the grid."""
-    grid, tolerance = model.grid, model.contact_share * model.tolerance + ROUNDING
-    units, fields = Units(grid.hx, grid.hy, 2 * model.unit), Found(p, u, around(p > 0))
-    found = measured(model.surface, gap, fields, units, given=load.given, tolerance=tolerance)
-    if found.converged:
-        return found
+    grid, tolerance = model.grid, model.contact_tolerance + ROUNDING
+    if not isinstance(source, ContactPressure):
+        return stated(model.plan.given).contact(grid, load, p * model.unit, u * grid.hx)
+    units, fields = Units(grid.hx, grid.hy, 2 * model.unit), Solved(p, u, around(p > 0))
+    contact = measured(model.surface, gap, fields, units, given=load.given, tolerance=tolerance)
+    if contact.converged:
+        return contact
     words = unfinished("the contact iteration of a load step", source.contact.residuals, tolerance)
-    return replace(found, ending=words)
+    return replace(contact, ending=words)
 
 
-def with_outside(model: Model, now: Progressed, *, stress: bool = False) -> Progressed:
+def with_outside(model: Model, record: Progressed, *, stress: bool = False) -> Progressed:
     """The record with the fields of its plastic strain outside of the box; stress: also that."""
-    known = now.outside
+    known = record.outside
     if known is None:
         whole = Window(0, 0, model.grid.nx, model.grid.ny)
-        inside = now.state.residual.displacement
-        known = Outside(inside if now.extent.window == whole else _moved(model, now, 3, whole))
+        inside = record.state.residual.displacement
+        known = Outside(inside if record.extent.window == whole else _moved(model, record, 3, whole))
     if stress and known.stress is None:
-        known = replace(known, stress=_residual_stress(model, now))
-    return now if known is now.outside else replace(now, outside=known)
+        known = replace(known, stress=_residual_stress(model, record))
+    return record if known is record.outside else replace(record, outside=known)
 
 
-def known_outside(now: Progressed) -> Outside:
+def known_outside(record: Progressed) -> Outside:
     """The fields outside of the box; ValueError for a record without them, see `with_outside`."""
-    if now.outside is None:
+    if record.outside is None:
         raise ValueError("the record has no fields outside of its box")
-    return now.outside
+    return record.outside
 
 
-def _residual_stress(model: Model, now: Progressed) -> Array:
-    """Stress of the plastic strain in the rows that touch y = 0, at all depths.
-
-    Where the box covers the rows its own stresses are taken, see `snapshot`: zero there.
-    """
-    grid, window, rows = model.grid, now.extent.window, model.grid.axis_rows
+def _residual_stress(model: Model, record: Progressed) -> Array:
+    """Stress of plastic strain in the rows that touch y = 0; zero where the box covers them."""
+    grid, window, rows = model.grid, record.extent.window, model.grid.axis_rows
     across = window.j0 <= rows.j0 and rows.j0 + rows.ny <= window.j0 + window.ny
-    covered = now.extent.layers if across and window.nx == grid.nx else 0
-    below = residual_stress(_strained(model, now), grid.depths[covered:], rows, mu=model.body.mu)
+    covered = record.extent.layers if across and window.nx == grid.nx else 0
+    below = residual_stress(
+        _strained(model, record), grid.depths[covered:], rows, mu=model.plan.pair.body.shear
+    )
     return np.concatenate([np.zeros((6, covered, *below.shape[2:])), below], axis=1)
 
 
-def _strained(model: Model, now: Progressed) -> Strained:
+def _strained(model: Model, record: Progressed) -> Strained:
     """The plastic strain in its box."""
-    return Strained(now.state.material.strain, now.extent.window, model.cuboids(now.extent))
+    return Strained(record.state.material.strain, record.extent.window, model.cuboids(record.extent))
 
 
-def _moved(model: Model, now: Progressed, component: int, observed: Window) -> Array:
+def _moved(model: Model, record: Progressed, component: int, observed: Window) -> Array:
     """Displacement of a window of the surface by the plastic strain, (nx, ny) in m."""
-    source, counters = _strained(model, now), model.counters
+    source, counters = _strained(model, record), model.counters
     return surface_displacement(source, observed, counters=counters, component=component)
 
 
-def start_of(model: Model, now: Progressed, load: Load) -> Array | None:
-    """p_hat to start a step from: of the same load in the cycle before, or moved with the counter-body; None:
-    that of the state.
-    """
-    if model.track is None:
-        return now.recall(load)
-    return model.track.carried(model.grid, now.state.pressure, now.state.load, load)
+def start_of(model: Model, record: Progressed, load: Load) -> Array | None:
+    """p_hat to start from: of the cycle before, or moved with the counter-body; None: the state's."""
+    if model.plan.track is None:
+        return record.recall(load)
+    return model.plan.track.carried(model.grid, record.state.pressure, record.state.load, load)
 
 
-def moved(model: Model, now: Progressed, trial: Trial) -> Moved | None:
-    """What a step says of the motion of the counter-body; None of one in place."""
-    if model.track is None:
-        return None
-    pressure, window = trial.pressure * model.unit, now.extent.window
-    traction = trial.load.sign * problem_now(model, now).coefficient
-    return model.track.moved(model.grid, trial.load, pressure, window=window, traction=traction)
+def moved(model: Model, record: Progressed, track: Track, trial: Trial) -> Moved:
+    """What a step says of the motion of the counter-body."""
+    pressure, window = trial.pressure * model.unit, record.extent.window
+    traction = trial.load.sign * problem_of(model, record).coefficient
+    return track.moved(model.grid, trial.load, pressure, window=window, traction=traction)
 
 
-def pass_end(model: Model, now: Progressed, track: Track, cycle: int) -> PassEnd:
+def pass_end(model: Model, record: Progressed, track: Track, cycle: int) -> PassEnd:
     """What a pass over a path leaves; the record has the fields outside of the box."""
-    start, uz = now.cycle_start, known_outside(now).displacement
-    added = now.state.material.peeq if start is None else start.new_strain(now.state, now.extent)
-    rows = now.measured.rows
-    return track.pass_end(model.grid, cycle, uz=uz, added=added, window=now.extent.window, rows=rows)
+    start, uz = record.cycle_start, known_outside(record).displacement
+    added = record.state.material.peeq if start is None else start.new_strain(record.state, record.extent)
+    rows = record.history.rows
+    return track.pass_end(model.grid, cycle, uz=uz, added=added, window=record.extent.window, rows=rows)
 
 
-def snapshot(model: Model, now: Progressed, name: str, trial: Trial) -> Snapshot:
-    """Stress and strain in the plane y = 0: of the cells in the box, and at the cell centres outside it.
-
-    The record has the fields outside of the box, see `with_outside`.
-    """
-    outside, material, rows = known_outside(now), now.state.material, model.grid.axis_rows
-    extent = now.extent
-    contact, mu = contact_on_grid(model, now, trial), model.coefficient(now.tribofilm)
+def snapshot(model: Model, record: Progressed, name: str, trial: Trial) -> Snapshot:
+    """A state in y = 0: of the cells in the box, and at the cell centres outside of it."""
+    outside, material, rows = known_outside(record), record.state.material, model.grid.axis_rows
+    grid, extent, window, layers = model.grid, record.extent, record.extent.window, record.extent.layers
+    contact, mu = contact_on_grid(model, record, trial), model.coefficient(record.tribofilm)
     loaded = model.elastic.state(trial.load, contact, mu)
     stress = plane_stress(loaded)
     if outside.stress is not None:
         stress = stress + outside.stress
     stress = _filled(model, extent, stress, trial.stress)
     strain = _filled(model, extent, np.zeros_like(stress), material.strain)
-    peeq = _filled(model, extent, np.zeros_like(stress[0]), material.peeq)
     sliding = sliding_of(loaded)
     if sliding is not None:
-        sliding = sliding.strained(_moved(model, now, 1, rows), strain, np.diff(model.grid.layer_faces))
-    back = model.material(extent).back_stress(now.state.points)
-    kept = {} if back is None else {BACK_STRESS: back.mean(axis=1)}
-    mises, flowed = _largest(model, now, trial, contact, plane=stress)
+        sliding = sliding.strained(_moved(model, record, 1, rows), strain, np.diff(grid.layer_faces))
+    back = model.material(extent).back_stress(record.state.points)
+    repeated = {} if back is None else {BACK_STRESS: back.mean(axis=1)}
+
+    # the largest von Mises stress at each depth of all cells of the box, below it of those in y = 0
+    counts, mises = counted(contact, grid), von_mises(stress).max(axis=(-2, -1))
+    flowed = np.zeros(mises.shape, dtype=bool)
+    inside = von_mises(trial.stress)[(..., *counts.slices)].reshape(layers, -1)
+    at = np.arange(layers), inside.argmax(axis=1)
+    mises[:layers] = inside[at]
+    flowed[:layers] = material.peeq[(..., *counts.slices)].reshape(layers, -1)[at] > 0
+
+    # the largest plastic strain; cells hold means
+    top, interval = None, model.strength.kinks.interval(grid.depths[:layers])
+    if material.peeq.any():
+        centres = at_centres(material.peeq, model.faces(extent), interval)
+        top = largest(centres, grid.depths[:layers], interval)
+
+    # the cells of the box in the row of the largest pressure, where that need not be at the origin
+    cut, row = None, None
+    if model.plan.places.off_origin and trial.load.force != 0:
+        row = row_of_largest(contact, counts)
+    if row is not None and window.j0 <= row < window.j0 + window.ny:
+        x, j = grid.x[window.i0 : window.i0 + window.nx], row - window.j0
+        in_row, peeq = trial.stress[..., j].copy(), material.peeq[..., j].copy()
+        cut = Cut(float(grid.y[row]), x, grid.depths[:layers], in_row, peeq)
+    x = (grid.x[window.i0] - grid.hx / 2) + grid.hx * np.arange(window.nx + 1)
+    y = (grid.y[window.j0] - grid.hy / 2) + grid.hy * np.arange(window.ny + 1)
     return Snapshot(
         name,
         contact,
         outside.displacement,
         stress,
         strain,
-        peeq,
-        mises,
-        flowed,
+        _filled(model, extent, np.zeros_like(stress[0]), material.peeq),
+        mises[:, None],
+        flowed[:, None],
         sliding,
-        top=_top(model, now),
-        worn=None if now.wear is None else now.wear.depth,
-        cut=_cut(model, now, trial, contact),
-        box=replace(_box(model, now, trial), repeated=kept),
+        top=top,
+        worn=None if record.wear is None else record.wear.depth,
+        cut=cut,
+        box=Box(x, y, model.faces(extent), trial.stress, material.strain, material.peeq, repeated),
         stretch=trial.load.stretch,
         place=(trial.load.x, trial.load.y),
         repeated={
-            each: _filled(model, extent, np.zeros_like(stress), values) for each, values in kept.items()
+            each: _filled(model, extent, np.zeros_like(stress), values) for each, values in repeated.items()
         },
     )
 
 
-def with_last_period(model: Model, now: Progressed, state: Snapshot) -> Snapshot:
+def with_last_period(model: Model, record: Progressed, state: Snapshot) -> Snapshot:
     """A snapshot with the fields of the last period of the history, also if it is of an earlier state."""
-    fields, box = now.periods.fields(model, now.state, now.extent), state.box
+    fields, box = record.periods.fields(model, record.state, record.extent), state.box
     if box is None or not fields:
         return state
-    own, (layers, nx, ny) = now.extent.window, box.peeq.shape
+    own, (layers, nx, ny) = record.extent.window, box.peeq.shape
     i, j = (
         round(float(side[0] - lines[first]) / step + 0.5)
         for side, lines, first, step in (
@@ -230,7 +238,8 @@ def with_last_period(model: Model, now: Progressed, state: Snapshot) -> Snapshot
     )
     cells = {name: values[:layers, i : i + nx, j : j + ny] for name, values in fields.items()}
     plane = {
-        name: _filled(model, now.extent, np.zeros_like(state.peeq), values) for name, values in fields.items()
+        name: _filled(model, record.extent, np.zeros_like(state.peeq), values)
+        for name, values in fields.items()
     }
     plane["class"] = np.broadcast_to(plane["class"].max(axis=-1, keepdims=True), state.peeq.shape)
     box = replace(box, repeated={**box.repeated, **cells})
@@ -247,85 +256,214 @@ def _filled(model: Model, extent: Extent, plane: Array, field: Array) -> Array:
     return plane
 
 
-def _box(model: Model, now: Progressed, trial: Trial) -> Box:
-    """The cells of the box."""
-    grid, window, material = model.grid, now.extent.window, now.state.material
-    x = (grid.x[window.i0] - grid.hx / 2) + grid.hx * np.arange(window.nx + 1)
-    y = (grid.y[window.j0] - grid.hy / 2) + grid.hy * np.arange(window.ny + 1)
-    return Box(x, y, model.faces(now.extent), trial.stress, material.strain, material.peeq)
+def new_strain(record: Progressed) -> Array:
+    """What the cycle has strained so far, (n_layers, nx, ny); zero where there is one cycle."""
+    if record.cycle_start is None:
+        return np.zeros(record.extent.shape)
+    return record.cycle_start.new_strain(record.state, record.extent)
 
 
-def _cut(model: Model, now: Progressed, trial: Trial, contact: Contact) -> Cut | None:
-    """The cells of the box in the row of the largest pressure; None without contact, or where that is around
-    the origin.
-    """
-    if not model.elastic.looked.off_origin or trial.load.force == 0:
-        return None
-    window, layers, grid = now.extent.window, now.extent.layers, model.grid
-    row = row_of_largest(contact, counted(contact, grid))
-    if row is None or not window.j0 <= row < window.j0 + window.ny:
-        return None
-    x, j = grid.x[window.i0 : window.i0 + window.nx], row - window.j0
-    stress, peeq = trial.stress[..., j].copy(), now.state.material.peeq[..., j].copy()
-    return Cut(float(grid.y[row]), x, grid.depths[:layers], stress, peeq)
-
-
-def _top(model: Model, now: Progressed) -> tuple[float, float] | None:
-    """Depth in m and value of the largest plastic strain; cells hold means."""
-    peeq, depths = now.state.material.peeq, model.grid.depths[: now.extent.layers]
-    if not peeq.any():
-        return None
-    interval = model.body.strength.kinks.interval(depths)
-    return largest(at_centres(peeq, model.faces(now.extent), interval), depths, interval)
-
-
-def _largest(
-    model: Model, now: Progressed, trial: Trial, contact: Contact, *, plane: Array
-) -> tuple[Array, Mask]:
-    """The largest von Mises stress at each depth in Pa, and whether its cell has plastic strain, both (nz,
-    1): of all cells of the box, below it of those in y = 0.
-    """
-    window, layers = counted(contact, model.grid).slices, trial.stress.shape[1]
-    mises = von_mises(plane).max(axis=(-2, -1))
-    flowed = np.zeros(mises.shape, dtype=bool)
-    inside = von_mises(trial.stress)[(..., *window)].reshape(layers, -1)
-    at = np.arange(layers), inside.argmax(axis=1)
-    mises[:layers] = inside[at]
-    flowed[:layers] = now.state.material.peeq[(..., *window)].reshape(layers, -1)[at] > 0
-    return mises[:, None], flowed[:, None]
-
-
-def strained_in_cycle(now: Progressed) -> CycleStrain:
-    """What the cycle has strained so far, before anything is removed; nothing where there is one cycle."""
-    if now.cycle_start is None:
-        return CycleStrain()
-    added = now.cycle_start.new_strain(now.state, now.extent)
-    return CycleStrain(float(added.max()), int(np.count_nonzero(added > 0)))
-
-
-def dissipated_by(model: Model, now: Progressed, trial: Trial) -> float:
+def dissipated_by(model: Model, record: Progressed, trial: Trial) -> float:
     """The energy in J that a step from a record dissipates; 0 where nobody asks for it."""
-    if not (model.dissipates and trial.plastic):
+    if not (model.plan.dissipates and trial.plastic):
         return 0.0
-    flow = model.material(now.extent).flow(now.state.points)
-    return float((model.volumes(now.extent) * flow.dissipated(trial.points).mean(axis=0)).sum())
+    flow = model.material(record.extent).flow(record.state.points)
+    return float((model.volumes(record.extent) * flow.dissipated(trial.points).mean(axis=0)).sum())
 
 
-def cycle_end(model: Model, now: Progressed, cycle: int, strained: CycleStrain) -> CycleEnd:
-    """The surface at the end of a cycle, and how much is worn so far; the record has the fields outside of
-    the box.
-    """
-    moved, roughness = known_outside(now).displacement, model.roughness
-    worn = now.wear.depth if now.wear is not None else None
-    lowered = moved if worn is None else moved + worn
-    volume = now.wear.volume if now.wear is not None else 0.0
-    found = roughness(lowered) if roughness is not None else None
-    work, spent = model.counters.operator_applications, now.dissipated
-    end = CycleEnd(cycle, volume, found, work, strained=strained, dissipated=spent)
-    if model.wear is None or now.wear is None:
+def cycle_end(model: Model, record: Progressed, cycle: int, new: Array) -> CycleEnd:
+    """The surface at the end of a cycle, and how much is worn so far."""
+    moved, rough, wear = known_outside(record).displacement, model.plan.rough, record.wear
+    lowered = moved if wear is None else moved + wear.depth
+    end = CycleEnd(
+        cycle,
+        wear.volume if wear is not None else 0.0,
+        rough.roughness(lowered) if rough is not None else None,
+        model.counters.operator_applications,
+        new_strain=float(new.max()),
+        yielding=int(np.count_nonzero(new > 0)),
+        dissipated=record.dissipated,
+    )
+    if model.plan.wear is None or wear is None:
         return end
-    margin = model.wear.margin(now.state.material.peeq, model.faces(now.extent))
-    worn_now, roofed = 0.0, 0.0
-    if len(now.wear.volumes) == cycle:
-        worn_now, roofed = now.wear.volumes[-1], now.wear.roofed_volumes[-1]
-    return replace(end, moved=moved, worn=worn, margin=margin, wear_of_cycle=worn_now, roofed=roofed)
+    margin, of_cycle = (
+        model.plan.wear.margin(record.state.material.peeq, model.faces(record.extent)),
+        (0.0, 0.0),
+    )
+    if len(wear.volumes) == cycle:
+        of_cycle = wear.volumes[-1], wear.roofed_volumes[-1]
+    worn, roofed = of_cycle
+    return replace(end, moved=moved, worn=wear.depth, margin=margin, wear_of_cycle=worn, roofed=roofed)
+
+
+def with_loops(model: Model, record: Progressed, target: Target, trial: Trial) -> Progressed:
+    """The record with the cells at the end of a step of the last period, or at its beginning."""
+    if model.plan.judging is None or not record.periods.last:
+        return record
+    period, ends = last_period(model.plan.judging, model.plan.schedule.cycles), record.periods.begun is None
+    if not (target.cycle in period or (target.cycle == period.start - 1 and ends)):
+        return record
+    rows = record.history.loops
+    places = [row.place for row in rows[:3]] if rows else _chosen(record)
+    own = record.extent.window
+    at = [(layer, i - own.i0, j - own.j0) for layer, i, j in places]
+    material = record.state.material
+    cells = [
+        LoopRow(
+            place,
+            target.cycle,
+            target.step,
+            float(material.peeq[cell]),
+            tuple(trial.stress[(slice(None), *cell)].tolist()),
+            tuple(material.strain[(slice(None), *cell)].tolist()),
+        )
+        for place, cell in zip(places, at, strict=True)
+    ]
+    return replace(record, history=replace(record.history, loops=(*rows, *cells)))
+
+
+def _chosen(record: Progressed) -> list[tuple[int, int, int]]:
+    """Layer and cells of the grid of the cells, see `loop_places`."""
+    extent, own, last = record.extent, record.extent.window, record.periods.last[-1]
+    accumulated = surrounded(last.accumulated, last.extent.inside(extent), extent.shape)
+    places = loop_places(accumulated.ravel(), record.state.material.peeq.ravel())
+    where = [np.unravel_index(place, extent.shape) for place in places]
+    return [(int(layer), int(i) + own.i0, int(j) + own.j0) for layer, i, j in where]
+
+
+ODD = np.array([ODD_X, ODD_Y])
+AT_ONCE = 1e6  # coefficients, 8 MB of them; ten times as many are no faster
+
+
+@dataclass(frozen=True)
+class Strained:
+    """Plastic strain (6, n_layers, nx, ny) in a box of cells, whose window is on the grid, in m."""
+
+    strain: Array
+    window: Window
+    cuboids: Cuboids
+
+    def part(self) -> Strained | None:
+        """The smallest box that holds all of the strain; None without any."""
+        where = np.nonzero(self.strain.any(axis=0))
+        if not where[0].size:
+            return None
+        (k0, i0, j0), (k1, i1, j1) = ([int(each(axis)) for axis in where] for each in (np.min, np.max))
+        window = Window(int(self.window.i0 + i0), int(self.window.j0 + j0), i1 - i0 + 1, j1 - j0 + 1)
+        lags = replace(self.cuboids.lags, nx=window.nx, ny=window.ny)
+        cuboids = replace(self.cuboids, lags=lags, faces=self.cuboids.faces[k0 : k1 + 2])
+        return Strained(self.strain[:, k0 : k1 + 1, i0 : i1 + 1, j0 : j1 + 1], window, cuboids)
+
+    def seen_from(self, observed: Window) -> Cuboids:
+        """Its cuboids with the lags to another window of the grid, in the unit of hx."""
+        lags, cells = Convolution.lags_needed(self.window, observed), self.cuboids.lags
+        faces = tuple(float(z / cells.hx) for z in self.cuboids.faces)
+        return replace(self.cuboids, lags=Lags(*lags, 1.0, cells.hy / cells.hx), faces=faces)
+
+
+def residual_stress(source: Strained, depths: Array, observed: Window, *, mu: float) -> Array:
+    """Stress of the plastic strain in a box at depths in m, none on a face of it, and cells of the grid, (6,
+    n_depths, nx, ny) in Pa; mu in Pa. Paper Eq. 7.
+    """
+    out = np.zeros((6, len(depths), *observed.shape))
+    part = source.part()
+    if part is None:
+        return out
+    cuboids, hx = part.seen_from(observed), part.cuboids.lags.hx
+    at_once = max(1, int(AT_ONCE // (36 * cuboids.layers * cuboids.lags.nx * cuboids.lags.ny)))
+    for first in range(0, len(depths), at_once):
+        some = slice(first, first + at_once)
+        kernels = residual_stress_coefficients(cuboids, depths[some] / hx)
+        # paper Eq. 7, second sum
+        out[:, some] = mu * row_sums(kernels, part.strain, part.window, observed, odd_out=ODD, odd_in=ODD)
+    return out
+
+
+def surface_displacement(
+    source: Strained, observed: Window, *, counters: Counters, component: int = 3
+) -> Array:
+    """Displacement of the observed cells of the surface by the plastic strain in a box, (nx, ny) in m. Paper
+    Eq. 6. component: 3 for u_z (> 0 into the body), 1 for u_x; counters: where transforms are counted.
+    """
+    part = source.part()
+    if part is None:
+        return np.zeros(observed.shape)
+    hx = part.cuboids.lags.hx
+    kernels = surface_displacement_coefficients(part.seen_from(observed), component=component)[None]
+    if observed.ny <= FEW_ROWS:
+        odd, kernels = np.array([[component == 1], [component == 2]], dtype=int), kernels[:, :, None]
+        rows = row_sums(kernels, part.strain, part.window, observed, odd_out=odd, odd_in=ODD)
+        return np.asarray(hx * rows[0, 0])
+    signs = [parity(name, component) for name in STRESS for _ in range(part.cuboids.layers)]
+    # paper Eq. 6
+    convolution = Convolution(kernels, signs, part.window, observed, counters=counters)
+    return np.asarray(hx * convolution.summed(part.strain)[0])
+
+
+def at_centres(means: Array, faces: Array, interval: NDArray[np.intp] | None = None) -> Array:
+    """Values at the centres of cells from the means over them, (n_layers, nx, ny) >= 0. A direction counts
+    where both neighbours are strained too: beyond the border of the plastic zone, a kink, nothing is known.
+    faces: of the layers, (n_layers + 1,), in any unit; interval: (n_layers,) numbers, depth counts between
+    layers of the same one.
+    """
+    out = means.copy()
+    for axis, edges in enumerate((faces, np.arange(means.shape[1] + 1.0), np.arange(means.shape[2] + 1.0))):
+        if len(edges) > 3:
+            v = np.moveaxis(means, axis, 0)
+            smooth = (v[:-2] > 0) & (v[1:-1] > 0) & (v[2:] > 0)
+            if axis == 0 and interval is not None:
+                smooth &= (interval[:-2] == interval[2:])[:, None, None]
+            np.moveaxis(out, axis, 0)[1:-1] -= np.where(smooth, _bend(v, edges) / 24, 0.0)
+    np.maximum(out, 0.0, out=out)
+    return out
+
+
+def _bend(means: Array, edges: Array) -> Array:
+    """h^2 v'' of the parabola with the means of a cell and its neighbours on the first axis, (n - 2, ...)."""
+    width, centre = (
+        part.reshape(-1, *[1] * (means.ndim - 1)) for part in (np.diff(edges), (edges[1:] + edges[:-1]) / 2)
+    )
+
+    def second(v: Array) -> Array:
+        slope = np.diff(v, axis=0) / np.diff(centre, axis=0)
+        return 2 * np.diff(slope, axis=0) / (centre[2:] - centre[:-2])
+
+    return width[1:-1] ** 2 * second(means) / (1 + second(width**2) / 24)
+
+
+def largest(values: Array, depths: Array, interval: NDArray[np.intp] | None = None) -> tuple[float, float]:
+    """(depth, value) of the largest of (n_layers, nx, ny), from a cubic in each direction through it, its
+    neighbours and the next value beside the larger of these; interval: as of `at_centres`.
+    """
+    at = tuple(map(int, np.unravel_index(int(values.argmax()), values.shape)))
+    depth, height = float(depths[at[0]]), float(values[at])
+    for axis, k in enumerate(at):
+        line = values[tuple(slice(None) if a == axis else i for a, i in enumerate(at))]
+        place, same = depths, np.ones(len(line), bool)
+        if axis > 0:
+            place = np.arange(float(len(line)))
+        elif interval is not None:
+            same = interval == interval[k]
+        shift, rise = _summit(place, line, k, same)
+        height += rise
+        depth += shift if axis == 0 else 0.0
+    return depth, height
+
+
+def _summit(x: Array, y: Array, k: int, same: NDArray[np.bool_]) -> tuple[float, float]:
+    """How far the maximum lies from the k-th point, the highest, and how much higher, by the curve through
+    three points, or four where the fourth is strained too; 0 without both neighbours.
+    """
+    if not 0 < k < len(y) - 1 or not (same[k - 1] and same[k + 1]):
+        return 0.0, 0.0
+    ends = [k - 1, k + 1]
+    side = 1 if y[k + 1] > y[k - 1] else -1
+    fourth = k + 2 * side
+    if 0 <= fourth < len(y) and same[fourth] and y[fourth] > 0:
+        ends[(side + 1) // 2] = fourth
+    near = slice(ends[0], ends[1] + 1)
+    curve = Polynomial.fit(x[near] - x[k], y[near] - y[k], deg=ends[1] - ends[0]).convert()
+    _, slope, bend, third = (*curve.coef, 0.0, 0.0, 0.0)[:4]
+    root = float(np.sqrt(max(bend**2 - 3 * slope * third, 0.0))) - bend
+    place = float(slope / root) if root > 0 else 0.0  # the zero of the slope where the curve bends down
+    return place, float(curve(place) - curve(0.0))

@@ -8,9 +8,8 @@ it built last, which saves time and changes no result.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -18,47 +17,28 @@ from sam.arrays import Array, Mask
 from sam.contact.box import BoxContact
 from sam.contact.convolution import Counters
 from sam.contact.operators import SurfaceOperators
-from sam.contact.surface_strain import surface_strain
-from sam.elastic.problem import ElasticProblem
+from sam.contact.stress import surface_strain
+from sam.elastic.problem import ElasticProblem, Plan
 from sam.grid.cells import CellGrid, Window
-from sam.half_space import ElasticConstants
-from sam.kernels.lags import Cuboids, Lags
-from sam.plasticity.flow import Material
-from sam.plasticity.pressure import ContactPressure, GivenPressure, NoPressure, PressureSource
+from sam.kernels.patches import Cuboids, Lags
+from sam.plasticity.flow import KinematicMaterial, Material
+from sam.plasticity.load_step import (
+    CONTACT_SHARE,
+    ContactPressure,
+    GivenPressure,
+    PressureSource,
+    Problem,
+)
+from sam.plasticity.paper import PaperProblem
 from sam.plasticity.spectra import SINGLE, BoxOperator
 from sam.plasticity.state import Extent
-from sam.plasticity.step import CONTACT_SHARE, Problem
-from sam.scene.surface import Roughness
-from sam.scene.verdict import Judging
+from sam.scene.section import stated
 from sam.scene.yield_curve import Strength
-from sam.schedule import UNLOADED, Load, Schedule
-from sam.slip import Coefficient, FullSlip
-from sam.surface_state import Tribofilm, TribofilmState, Wear, WearState
+from sam.schedule import UNLOADED, Coefficient, Load
+from sam.tribofilm.state import TribofilmState
+from sam.wear import WearState
 
-if TYPE_CHECKING:
-    from sam.moving.track import Track
-
-
-@dataclass(frozen=True)
-class YieldingBody:
-    """Elastic constants of the body, and its yield stress over depth and plastic strain."""
-
-    elastic: ElasticConstants
-    strength: Strength
-
-    @property
-    def mu(self) -> float:
-        """Shear modulus in Pa."""
-        return self.elastic.shear
-
-    @property
-    def poisson(self) -> float:
-        """Poisson's ratio."""
-        return self.elastic.poisson
-
-    def initial_yield(self, depths: Array) -> Array:
-        """Yield stress of unstrained material at some depths in m, (n,) in Pa."""
-        return self.strength.stress(depths, np.zeros(1))
+PAPER_SHARE = 1e2  # residual of a contact in the paper's loops, over the tolerance of the scene
 
 
 @dataclass
@@ -69,100 +49,70 @@ class Built:
     failed: Mask | None = None
     depth: Array | None = None
     surface: SurfaceOperators | None = None
-    pressure: PressureSource | None = None
     problem: Problem | None = None
 
 
 @dataclass(frozen=True)
 class Model:
-    """A body that yields, on the cells of a grid, and the laws of what happens to its surface.
-
-    Parameters
-    ----------
-    elastic
-        The elastic bodies, and what is in contact.
-    body
-        Its yield stress.
-    schedule
-        The load steps.
-    tolerance
-        Of the plastic iteration, see `Problem`.
-    contact_share
-        Residual that a contact may have, over the tolerance.
-    mirrored
-        Whether gap and loads are the same after x -> -x, and after y -> -y.
-    tribofilm, wear
-        Laws of the surface; None without them.
-    roughness
-        Of a surface that was lowered by so much, (nx, ny) in m; None if it is smooth.
-    make
-        `Problem`, or what makes another one of the same fields.
-    judging
-        How repeated loading is judged; None without a verdict.
-    dissipates
-        Whether the energy that each cycle dissipates is asked for.
-    with_back
-        Makes a material with back-stresses of mu, curve, factor and (moduli, recoveries); None without.
-    lengthens
-        Whether its steps know a longer iteration.
-    track
-        Of a counter-body that moves; None of one in place.
-    built
-        The problem that was built last.
-    """
+    """A body that yields on a grid, over its load history; built: the problem that was built last."""
 
     elastic: ElasticProblem
-    body: YieldingBody
-    schedule: Schedule
-    tolerance: float
-    contact_share: float = CONTACT_SHARE
-    mirrored: tuple[bool, bool] = (False, False)
-    tribofilm: Tribofilm | None = None
-    wear: Wear | None = None
-    roughness: Callable[[Array], Roughness] | None = None
-    make: Callable[..., Problem] = Problem
-    lengthens: bool = True
-    track: Track | None = None
-    judging: Judging | None = None
-    dissipates: bool = False
-    with_back: Callable[..., Material] | None = None
     built: Built = field(default_factory=Built, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        if self.plan.plasticity is None:
+            raise ValueError("the plan has no plasticity")
+
+    @property
+    def plan(self) -> Plan:
+        """All that is known beforehand."""
+        return self.elastic.plan
+
+    @cached_property
+    def strength(self) -> Strength:
+        """Yield stress over depth and plastic strain."""
+        return stated(self.plan.plasticity).strength()
 
     @property
     def grid(self) -> CellGrid:
         """The cells and layers."""
-        return self.elastic.grid
+        return self.plan.grid
+
+    @property
+    def tolerance(self) -> float:
+        """Of the plastic iteration, see `Problem`."""
+        return self.plan.solver.tolerance
+
+    @property
+    def contact_tolerance(self) -> float:
+        """Residual that a contact may have: the last move of the surface in the paper's loops leaves it."""
+        return (PAPER_SHARE if self.plan.paper else CONTACT_SHARE) * self.tolerance
 
     @property
     def counters(self) -> Counters:
         """Where the work is counted."""
         return self.elastic.counters
 
-    @property
-    def slip(self) -> FullSlip:
-        """Friction."""
-        return self.elastic.slip
+    def place(self, load: Load) -> str:
+        """Where a counter-body that moves is, in words; empty of one in place."""
+        return "" if self.plan.track is None else self.plan.track.place(load)
 
     @property
     def unit(self) -> float:
         """Pa per p_hat, E*/2."""
-        return self.elastic.pair.contact_modulus / 2
+        return self.plan.pair.contact_modulus / 2
 
     def leaves_grid(self, window: Window, pressure: Array) -> bool:
-        """Whether a counter-body that moves over a smooth body touches the edge of the grid; pressure: on a
-        window.
-        """
-        if self.track is None or self.elastic.looked.anywhere:
+        """Whether a moving counter-body on a smooth body touches the edge; pressure: on a window."""
+        if self.plan.track is None or self.plan.places.anywhere:
             return False
-        return self.track.at_edge(self.grid, pressure, window)
+        return self.plan.track.at_edge(self.grid, pressure, window)
 
     def coefficient(self, film: TribofilmState | None) -> Coefficient:
         """The coefficient of friction on the grid."""
-        return (
-            self.slip.coefficient
-            if self.tribofilm is None or film is None
-            else self.tribofilm.coefficient(film)
-        )
+        if self.plan.tribofilm is None or film is None:
+            return self.plan.slip.coefficient
+        return self.plan.tribofilm.coefficient(film)
 
     def gap(self, load: Load, wear: WearState | None) -> Array:
         """Gap of the surfaces as they are worn, without displacement, (nx, ny) in m."""
@@ -175,99 +125,99 @@ class Model:
 
     def volumes(self, extent: Extent) -> Array:
         """Volume of a cell of each layer of a box, (n_layers, 1, 1) in m^3."""
-        found: Array = self.grid.hx * self.grid.hy * np.diff(self.faces(extent))[:, None, None]
-        return found
+        return self.grid.hx * self.grid.hy * np.diff(self.faces(extent))[:, None, None]
 
     def problem(
         self, extent: Extent, film: TribofilmState | None = None, wear: WearState | None = None
     ) -> Problem:
-        """The problem of a load step on a box, with friction and gap of the surface as it is.
-
-        What was built last is taken again as far as it is for the same box and the same arrays of film and
-        wear.
+        """The problem of a load step on a box, with friction and gap of the surface as it is. What was built
+        last is taken again as far as it is for the same box and the same arrays of film and wear.
         """
-        last = self.built
+        last, old = self.built, self.built.problem
         failed = film.film.failed if film is not None else None
         depth = wear.depth if wear is not None else None
-        same_box, same_wear = extent == last.extent, depth is last.depth
-        same_film = last.problem is not None and failed is last.failed
-        if last.problem is not None and same_box and same_film and same_wear:
-            return last.problem
+        same_box = old is not None and extent == last.extent
+        same_wear, same_film = depth is last.depth, old is not None and failed is last.failed
+        if old is not None and same_box and same_film and same_wear:
+            return old
         coefficient, surface = self.coefficient(film), last.surface
-        touched = self.elastic.misfit is None
-        if touched and (surface is None or not same_film):
+        if self.plan.misfit is None and (surface is None or not same_film):
             surface = self._with_friction(surface, coefficient)
-        if not (same_box and same_wear and surface is last.surface):
-            last.pressure = self._pressure(extent.window, surface, wear)
+        if old is not None and same_box and same_wear and surface is last.surface:
+            pressure = old.pressure
+        else:
+            pressure = self._pressure(extent.window, surface, wear)
         if isinstance(coefficient, np.ndarray):
             coefficient = coefficient[extent.window.slices]
-        last.problem = self.make(
-            last.problem.operator if last.problem is not None and same_box else self._operator(extent),
-            last.pressure,
+        plan, again = self.plan, old if same_box else None
+        misfit = None if again is None else again.misfit
+        if again is None and plan.misfit is not None:  # in the cells of the box, at its full size
+            misfit = plan.misfit.mean_stress(self.grid, extent.window, self.faces(extent))
+        make = partial(PaperProblem, stop=stated(plan.solver.stop)) if plan.paper else Problem
+        problem = make(
+            again.operator if again is not None else self._operator(extent),
+            pressure,
             self.material(extent),
             unit=self.unit,
             tolerance=self.tolerance,
             counters=self.counters,
             coefficient=coefficient,
-            misfit=last.problem.misfit if last.problem is not None and same_box else self._misfit(extent),
+            misfit=misfit,
         )
-        last.extent, last.failed, last.depth, last.surface = extent, failed, depth, surface
-        return last.problem
+        last.extent, last.failed, last.depth = extent, failed, depth
+        last.surface, last.problem = surface, problem
+        return problem
 
     def material(self, extent: Extent) -> Material:
         """The yield stress of the layers of a box, at their centres."""
-        depths, strength = self.grid.depths[: extent.layers], self.body.strength
+        depths, strength, mu = self.grid.depths[: extent.layers], self.strength, self.plan.pair.body.shear
         cells = depths[:, None, None]
         curve, factor, back = strength.curve_at(cells), strength.profile(cells), strength.back_at(cells[None])
-        if back is None or self.with_back is None:
-            return Material(self.body.mu, curve, factor)
-        return self.with_back(self.body.mu, curve, factor, back)
+        if back is None:
+            return Material(mu, curve, factor)
+        return KinematicMaterial.of(mu, curve, factor, back)
 
     def _with_friction(self, surface: SurfaceOperators | None, coefficient: Coefficient) -> SurfaceOperators:
         """The surface coefficients of the grid with this friction; they share what is computed."""
-        grid = self.grid
+        grid, factor = self.grid, self.plan.slip.coupling
         if surface is None:
-            coupling = self.slip.coupling * coefficient
-            return SurfaceOperators((grid.nx, grid.ny), grid.hy / grid.hx, self.counters, coupling=coupling)
-        return surface.with_coupling(self.slip.coupling * coefficient) if self.slip.coupling else surface
-
-    def _misfit(self, extent: Extent) -> Array | None:
-        """The stress of a misfit strain in the cells of a box, (6, n_layers, nx, ny) in Pa; None without."""
-        load = self.elastic.misfit
-        return None if load is None else load.mean_stress(self.grid, extent.window, self.faces(extent))
+            aspect, coupling = grid.hy / grid.hx, factor * coefficient
+            return SurfaceOperators(grid.shape, aspect, self.counters, coupling=coupling)
+        return surface.with_coupling(factor * coefficient) if factor else surface
 
     def cuboids(self, extent: Extent) -> Cuboids:
         """The cells of a box, in m."""
         lags = Lags(extent.window.nx, extent.window.ny, self.grid.hx, self.grid.hy)
-        return Cuboids(lags, tuple(self.faces(extent).tolist()), self.body.poisson)
+        return Cuboids(lags, tuple(self.faces(extent).tolist()), self.plan.pair.body.poisson)
 
     def _operator(self, extent: Extent) -> BoxOperator:
         return BoxOperator(
             self.cuboids(extent),
-            self.body.mu,
+            self.plan.pair.body.shear,
             self.counters,
-            sliding=self.slip.slides,
+            sliding=self.plan.slip.slides,
             single=self.tolerance >= SINGLE,
             mirror=self._mirror(extent.window),
             exchange=self._exchange(extent.window),
         )
 
     def _mirror(self, window: Window) -> tuple[bool, bool]:
-        """Whether all fields are mirrored in x and in y: on a box about the middle; in x only without
-        friction.
-        """
-        in_x, in_y = self.mirrored
+        """Whether fields are mirrored in x and in y: on a box about the middle, x without friction."""
+        plan, path = self.plan, self.plan.schedule.path
+        # gap and loads are: below a smooth body whose load does not leave the apex
+        even = plan.rough is None and not plan.paper and plan.slip.uniform
+        in_x, in_y = even and len(path) == 1, even and all(y == 0 for _, y in path)
         in_y = in_y and 2 * window.j0 + window.ny == self.grid.ny
-        in_x = in_x and 2 * window.i0 + window.nx == self.grid.nx and not self.slip.slides
+        in_x = in_x and 2 * window.i0 + window.nx == self.grid.nx and not self.plan.slip.slides
         return bool(in_x and in_y), bool(in_y)
 
     def _exchange(self, window: Window) -> bool:
         """Whether x and y may be exchanged: below a sphere on square cells without wear."""
         grid = self.grid
         square = grid.hx == grid.hy and window.nx == window.ny and all(self._mirror(window))
-        if not square or self.wear is not None or self.elastic.given is not None:
+        if not square or self.plan.wear is not None or self.plan.given is not None:
             return False
-        if self.elastic.misfit is not None:  # about the axis, and nothing is opposite
+        if self.plan.misfit is not None:  # about the axis, and nothing is opposite
             return True
         gap = self.elastic.gap(UNLOADED)[window.slices]
         return np.array_equal(gap, gap.T)
@@ -278,8 +228,8 @@ class Model:
         """Where the pressure on a window of the grid comes from; no surface coefficients: nothing touches."""
         grid = self.grid
         if surface is None:
-            return NoPressure(window.shape)
-        if (given := self.elastic.given) is not None:
+            return GivenPressure(lambda load: np.zeros(window.shape), window.shape)
+        if (given := self.plan.given) is not None:
             return GivenPressure(lambda load: given.pressure(grid, load, window) / self.unit, window.shape)
         return ContactPressure(
             BoxContact(surface, window),
@@ -301,8 +251,31 @@ class Model:
 
     def surface_strain(self, extent: Extent, stress: Array, plastic: Array) -> Array:
         """Total strains of the surface of the grid, (4, nx, ny), of fields on a box; zero outside of it."""
-        body, out = self.body, self.nothing_strained()
+        body, out = self.plan.pair.body, self.nothing_strained()
         out[(..., *extent.window.slices)] = surface_strain(
-            stress, plastic, self.grid.depths, young=body.elastic.young, poisson=body.poisson
+            stress, plastic, self.grid.depths, young=body.young, poisson=body.poisson
         )
         return out
+
+
+def model_of(plan: Plan, problem: ElasticProblem) -> Model:
+    """The model of a body that yields, as a plan has it.
+
+    Parameters
+    ----------
+    plan
+        A plan with plasticity.
+    problem
+        Its elastic bodies, see `Plan.problem`.
+
+    Returns
+    -------
+    Model
+        What stays the same over the load history.
+
+    Raises
+    ------
+    ValueError
+        For the plan of an elastic body.
+    """
+    return Model(replace(problem, plan=plan))

@@ -16,11 +16,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from sam.arrays import Array
-from sam.contact.stress import von_mises
+from sam.contact.stress import von_mises, yielding
+from sam.plasticity.flow import contraction, deviator, equivalent_strain
+from sam.plasticity.load_step import CONTACT_SHARE, Problem
 from sam.plasticity.points import POINTS
-from sam.plasticity.return_map import contraction, deviator, equivalent_strain
 from sam.plasticity.state import Change, MaterialFields, Residual, State, Trial
-from sam.plasticity.step import CONTACT_SHARE, Problem
 from sam.schedule import Load
 
 OUTER = 60  # alternations of contact and displacement; they end by their criterion, or the step is halved
@@ -29,9 +29,7 @@ INNER = 400  # returns at frozen pressure; likewise
 
 @dataclass(frozen=True)
 class Sum:
-    """The sum of the returns so far: plastic strain, its accumulated length, the residual fields, whether the
-    loop stopped.
-    """
+    """The sum of the returns so far, its accumulated length, residual fields, whether the loop stopped."""
 
     x: Array
     length: Array
@@ -54,34 +52,32 @@ class PaperProblem(Problem):
         start: Array | None = None,
         tolerance: float | None = None,
     ) -> Trial:
-        """Make a step from a committed state to a load. The loops start from the state: guess, start and
-        tolerance are not used.
-        """
+        """A step from a committed state, where the loops start; guess, start, tolerance are not used."""
         zero = np.zeros_like(state.material.strain), np.zeros_like(state.material.peeq)
-        found, pressure, history = Sum(*zero, state.residual), state.pressure, []
+        total, pressure, history = Sum(*zero, state.residual), state.pressure, []
         converged = False
         for _ in range(OUTER):
-            last = found.residual.displacement
+            last = total.residual.displacement
             pressure = self.pressure(last, load, pressure, CONTACT_SHARE * self.tolerance)
             elastic = self.stress(pressure, load)  # paper Eq. 7, first sum
-            found = self._relaxed(state, found, elastic)
-            displaced = found.residual.displacement
+            total = self._relaxed(state, total, elastic)
+            displaced = total.residual.displacement
             moved = np.abs(displaced - last).max() / max(np.abs(displaced).max(), np.finfo(float).tiny)
             history.append(float(moved))
-            converged = bool(found.stopped and moved <= self.tolerance)
-            if converged or not found.stopped:
+            converged = bool(total.stopped and moved <= self.tolerance)
+            if converged or not total.stopped:
                 break
-        stress = elastic + found.residual.stress
+        stress = elastic + total.residual.stress
         step, m = self.material.flow(state.material), self.material.mu
-        again = step.returned(deviator(stress) + 2 * m * found.x, m, near=equivalent_strain(found.x))
-        flow = 2 * m * np.sqrt(contraction(again - found.x, again - found.x).max())
-        increment = step.increment(found.x, found.length)
-        limit = self.material.yield_stress(state.material.peeq + found.length)
+        again = step.returned(deviator(stress) + 2 * m * total.x, m, near=equivalent_strain(total.x))
+        flow = 2 * m * np.sqrt(contraction(again - total.x, again - total.x).max())
+        increment = step.increment(total.x, total.length)
+        limit = self.material.yield_stress(state.material.peeq + total.length)
         return Trial(
-            load=self.pressure.found(load, pressure),
+            load=self.pressure.loaded(load, pressure),
             points=increment.each(lambda values: np.repeat(values[..., None, :, :, :], POINTS, axis=-4)),
             stress=stress,
-            residual=found.residual,
+            residual=total.residual,
             pressure=pressure,
             yield_excess=float(max(np.max(von_mises(stress) / limit - 1), 0.0)),
             flow_residual=float(flow / self.material.initial_yield),
@@ -101,15 +97,15 @@ class PaperProblem(Problem):
             # paper Eq. 8, as the stop of Fig. 7
             if self.stop == "stress" and np.max(q / limit - 1) <= self.tolerance:
                 return Sum(x, length, residual, True)
-            yielding = q > limit
-            if not yielding.any():
+            flowing = yielding(q, limit)
+            if not flowing.any():
                 return Sum(x, length, residual, True)
             flow = self.material.flow(MaterialFields(strain=x, peeq=peeq))
-            gamma = flow.multiplier(q, yielding, m=self.material.mu)
+            gamma = flow.multiplier(q, flowing, m=self.material.mu)
             change = np.zeros_like(x)
-            change[:, yielding] = 1.5 * gamma / q[yielding] * deviator(stress)[:, yielding]
+            change[:, flowing] = 1.5 * gamma / q[flowing] * deviator(stress)[:, flowing]
             x, length = x + change, length.copy()
-            length[yielding] += gamma
+            length[flowing] += gamma
             self.counters.plastic_iterations += 1
             residual = self.residual(state.residual, x)
             total = equivalent_strain(state.material.strain + x).max()

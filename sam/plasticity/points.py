@@ -30,9 +30,9 @@ from math import sqrt
 import numpy as np
 
 from sam.arrays import Array, Mask
-from sam.contact.transforms import Transforms
-from sam.plasticity.flow import Flow, Material
-from sam.plasticity.return_map import contraction, equivalent_strain, mises
+from sam.contact.convolution import Transforms
+from sam.contact.stress import yielding
+from sam.plasticity.flow import Flow, Material, contraction, equivalent_strain, mises
 from sam.plasticity.spectra import EVEN, ODD_X, ODD_Y
 from sam.plasticity.state import MaterialFields
 
@@ -43,9 +43,7 @@ OPPOSITE = {-2: np.array([2, 3, 0, 1]), -1: np.array([1, 0, 3, 2])}  # after x -
 
 
 def whole(transforms: Transforms, kept: Array) -> Array:
-    """A kept field at the points on all of the box: tensors (6, 4, n_layers, nx, ny) or (N, 6, 4, ...), or
-    numbers (4, n_layers, nx, ny).
-    """
+    """A kept field at the points on all of the box, tensors (..., 6, 4, n_layers, nx, ny) or numbers."""
     *lead, points = kept.shape[:-3]
     flat = kept.reshape(-1, *kept.shape[-3:])
     parities = (ODD_X, ODD_Y) if lead else EVEN
@@ -61,32 +59,26 @@ def whole(transforms: Transforms, kept: Array) -> Array:
 
 @dataclass(frozen=True)
 class Linear:
-    """Fields that are linear in each cell of a box, by differences between its neighbours.
-
-    cells: of the box, (nx, ny); mirror: whether fields are mirrored in x and in y, and kept from the middle
-    outward, see `Transforms`.
-    """
+    """Fields that are linear in each of (nx, ny) cells, by differences between neighbours."""
 
     cells: tuple[int, int]
     mirror: tuple[bool, bool] = (False, False)
 
     def at_points(self, values: Array, cells: Mask) -> Array:
         """Of means of cells, kept tensors (6, n_layers, nx, ny): at the points of some of them, (6, 4, n)."""
-        found = np.repeat(values[:, None, cells], POINTS, axis=1)
+        at = np.repeat(values[:, None, cells], POINTS, axis=1)
         for axis, signs in zip((-2, -1), SIGNS, strict=True):
-            found += OFFSET * signs * self.difference(values, axis)[:, None, cells]
-        return found
+            at += OFFSET * signs * self.difference(values, axis)[:, None, cells]
+        return at
 
     def farthest(self, q: Array) -> Array:
         """What von Mises of the values at a point of each cell cannot exceed, of that of their means q."""
         return q + OFFSET * (self._reach(q, -2) + self._reach(q, -1))
 
     def difference(self, values: Array, axis: int) -> Array:
-        """v(i + 1) - v(i - 1) along an axis, -2 or -1; at a side of the box twice the difference from the one
-        neighbour.
-        """
-        found = np.zeros_like(values)
-        v, out = np.moveaxis(values, axis, -1), np.moveaxis(found, axis, -1)
+        """v(i + 1) - v(i - 1) along axis -2 or -1; at a side of the box twice the one difference."""
+        differences = np.zeros_like(values)
+        v, out = np.moveaxis(values, axis, -1), np.moveaxis(differences, axis, -1)
         count = v.shape[-1]
         if count > 1:
             np.subtract(v[..., 2:], v[..., :-2], out=out[..., 1:-1])
@@ -95,46 +87,37 @@ class Linear:
             sign = np.where(ODD_X if axis == -2 else ODD_Y, -1.0, 1.0).reshape(6, *[1] * (v.ndim - 2))
             before = sign * v[..., min(self.cells[axis] % 2, count - 1)]
             out[..., 0] = v[..., 1] - before if count > 1 else 2 * (v[..., 0] - before)
-        return found
+        return differences
 
     def _reach(self, q: Array, axis: int) -> Array:
         """What von Mises of `difference` cannot exceed."""
-        found = np.zeros_like(q)
-        v, out = np.moveaxis(q, axis, -1), np.moveaxis(found, axis, -1)
+        reach = np.zeros_like(q)
+        v, out = np.moveaxis(q, axis, -1), np.moveaxis(reach, axis, -1)
         if v.shape[-1] > 1:
             np.add(v[..., 2:], v[..., :-2], out=out[..., 1:-1])
             out[..., 0], out[..., -1] = 2 * (v[..., 1] + v[..., 0]), 2 * (v[..., -1] + v[..., -2])
-        return found
+        return reach
 
 
 def stress_at_points(stress: Array, strain: Array, m: float) -> Array:
-    """The stress (a) at the points of all cells of a box, (6, 4, n_layers, nx, ny) in Pa.
-
-    Parameters
-    ----------
-    stress
-        Of the cells in Pa, (6, n_layers, nx, ny).
-    strain
-        Plastic strain at the points, (6, 4, n_layers, nx, ny).
-    m
-        Stiffness in Pa with which a part of a cell relaxes, `Problem.stiffness`.
+    """The stress (a) at the points of all cells of a box, (6, 4, n_layers, nx, ny) in Pa, of the stress of
+    the cells, (6, n_layers, nx, ny), and plastic strain at the points; m: stiffness in Pa with which a part
+    of a cell relaxes.
     """
     every = np.ones(stress.shape[1:], dtype=bool)
     smooth = Linear((stress.shape[-2], stress.shape[-1])).at_points(
         stress + 2 * m * strain.mean(axis=1), every
     )
-    found: Array = smooth.reshape(strain.shape) - 2 * m * strain
-    return found
+    return smooth.reshape(strain.shape) - 2 * m * strain
 
 
 @dataclass(frozen=True)
 class Returned:
-    """What the return map makes of an increment x and the deviatoric stress that goes with it.
-
-    image: the mean of the increments at the points, (6, n_layers, nx, ny); cells: that may flow; points:
-    their increments (6, 4, n), which have the mean x; stress: deviatoric, that goes with these, in Pa; flow:
-    how the points yield; flow_residual: 2 m |image - x| over the initial yield stress, the stress by which
-    the mean over the points differs from that of the cell.
+    """What the return map makes of an increment x and the deviatoric stress that goes with it. image: the
+    mean of the increments at the points, (6, n_layers, nx, ny); cells: that may flow; points: their
+    increments (6, 4, n), which have the mean x; stress: deviatoric, that goes with these, in Pa; flow: how
+    the points yield; flow_residual: 2 m |image - x| over the initial yield stress, the stress by which the
+    mean over the points differs from that of the cell.
     """
 
     image: Array
@@ -155,18 +138,9 @@ class Returned:
 
 
 class CellFlow:
-    """How cells yield over a step: the return map of their material at the points.
-
-    Parameters
-    ----------
-    material
-        The yield stress of the layers.
-    before
-        The fields at the points at the beginning of the step, on the cells that the transforms keep.
-    transforms
-        They know which fields are mirrored.
-    m
-        Stiffness in Pa with which a part of a cell relaxes, see (a).
+    """How cells yield over a step: the return map of their material at the points. before: the fields at the
+    points at its beginning, on the cells that the transforms keep; m: stiffness in Pa with which a part of a
+    cell relaxes, see (a).
     """
 
     def __init__(self, material: Material, before: MaterialFields, transforms: Transforms, m: float):
@@ -186,7 +160,7 @@ class CellFlow:
     def trial(self, x: Array, s: Array) -> Array:
         """The trial stress (a) at the points of the cells that may yield, (6, 4, n)."""
         smooth = s + 2 * self.m * (self.strain + x)
-        may_yield: Mask = self.linear.farthest(mises(smooth)) > self.least
+        may_yield: Mask = yielding(self.linear.farthest(mises(smooth)), self.least)
         may_yield |= x.any(axis=0)
         if (may_yield & ~self.cells).any():
             self.cells = self.cells | may_yield
@@ -209,15 +183,13 @@ class CellFlow:
         return Returned(image, self.cells, points, stress, self.flow, relative)
 
     def near(self, own: Array) -> Array:
-        """Lengths that the increments at the points are expected to have: those of the return map before, or
-        of the cells.
-        """
+        """Lengths that the increments at the points about have: of the last return, or of the cells."""
         cells, lengths = self.last
         return lengths if cells is self.cells else equivalent_strain(own)
 
-    def increment(self, found: Returned) -> MaterialFields:
+    def increment(self, returned: Returned) -> MaterialFields:
         """The increment of the fields at the points of all cells."""
-        small = self.flow.increment(found.points, equivalent_strain(found.points))
+        small = self.flow.increment(returned.points, equivalent_strain(returned.points))
 
         def everywhere(values: Array) -> Array:
             out = np.zeros((*values.shape[:-1], *self.cells.shape))

@@ -8,41 +8,131 @@ one of it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+
+import numpy as np
 
 from sam.arrays import Array
 from sam.contact.convolution import Counters
 from sam.grid.cells import Room
-from sam.grid.enlargement import Sides
-from sam.plasticity.periods import Periods
+from sam.plasticity.model import Model
 from sam.plasticity.state import Change, Extent, State, Trial, surrounded
-from sam.results.history import CycleEnd, PassEnd, Row
-from sam.results.loops import LoopRow
-from sam.results.snapshots import Snapshot
+from sam.results.history import History
 from sam.scene import Status
 from sam.scene.result import Attempt
+from sam.scene.verdict import Period, Verdict, cell_fields, norm_of, verdict_on
 from sam.schedule import Load, Target
-from sam.surface_state import TribofilmState, WearState
+from sam.tribofilm.state import TribofilmState
+from sam.wear import WearState
+
+
+@dataclass(frozen=True)
+class Added:
+    """What a period added on a box: accumulated and the norm of the strain, (n_layers, nx, ny), and the
+    strain, (6, n_layers, nx, ny), of the last two periods; worn: depth in m at its beginning, (nx, ny), or
+    None.
+    """
+
+    extent: Extent
+    accumulated: Array
+    norm: Array
+    strain: Array | None
+    worn: Array | None = None
+
+    def on(self, extent: Extent, before: Array | None) -> Period:
+        """The cells of a box in one row. before: worn depth at the beginning of the period before it."""
+        where, shape = self.extent.inside(extent), extent.shape
+        accumulated, norm = (surrounded(each, where, shape).ravel() for each in (self.accumulated, self.norm))
+        strain = None if self.strain is None else surrounded(self.strain, where, shape).reshape(6, -1)
+        restarted = None
+        if self.worn is not None and before is not None:
+            moved = (self.worn != before)[extent.window.slices]
+            restarted = np.broadcast_to(moved, shape).ravel()
+        return Period(accumulated, norm, strain, restarted)
+
+
+@dataclass(frozen=True)
+class Begun:
+    """Plastic strain and accumulated one at the beginning of a period, on a box; worn as of `Added`."""
+
+    extent: Extent
+    strain: Array
+    peeq: Array
+    worn: Array | None = None
+
+    def added(self, state: State, extent: Extent) -> Added:
+        """What a later state has more."""
+        where, shape = self.extent.inside(extent), extent.shape
+        strain = state.material.strain - surrounded(self.strain, where, shape)
+        accumulated = state.material.peeq - surrounded(self.peeq, where, shape)
+        return Added(extent, accumulated, norm_of(strain), strain, self.worn)
+
+
+@dataclass(frozen=True)
+class Periods:
+    """The periods so far. begun: of the present one; last: those that have ended; verdicts: after each."""
+
+    begun: Begun | None = None
+    last: tuple[Added, ...] = ()
+    verdicts: tuple[Verdict, ...] = ()
+
+    def ended(self, model: Model, state: State, extent: Extent) -> Periods:
+        """The same with the period that a state ends, before anything is removed from it."""
+        if self.begun is None or model.plan.judging is None:
+            raise ValueError("no period has begun")
+        earlier = (*(replace(each, strain=None) for each in self.last[:-1]), *self.last[-1:])
+        added = (*earlier, self.begun.added(state, extent))
+        verdict = verdict_on(
+            _compared(added, extent),
+            state.material.peeq.ravel(),
+            _yield_strain(model, extent),
+            model.plan.judging,
+            volume=np.broadcast_to(model.volumes(extent), extent.shape).ravel(),
+        )
+        return Periods(None, added, (*self.verdicts, verdict))
+
+    def fields(self, model: Model, state: State, extent: Extent) -> dict[str, Array]:
+        """Fields of the last period on a box, (n_layers, nx, ny) each; nothing before its end."""
+        if model.plan.judging is None or not self.last:
+            return {}
+        compared, total = _compared(self.last, extent), state.material.peeq.ravel()
+        of_cells = cell_fields(compared, total, _yield_strain(model, extent), model.plan.judging)
+        return {name: values.reshape(extent.shape) for name, values in of_cells.items()}
+
+    def at(self, place: Callable[[Extent], Extent]) -> Periods:
+        """The same on another grid. place: of a box on it."""
+        begun = self.begun and replace(self.begun, extent=place(self.begun.extent))
+        return replace(
+            self, begun=begun, last=tuple(replace(each, extent=place(each.extent)) for each in self.last)
+        )
+
+
+def _compared(added: Sequence[Added], extent: Extent) -> list[Period]:
+    """The periods on one box."""
+    before = [None, *(each.worn for each in added)]
+    return [each.on(extent, worn) for each, worn in zip(added, before, strict=False)]
+
+
+def _yield_strain(model: Model, extent: Extent) -> Array:
+    """Initial yield stress over Young's modulus in each cell of a box, (n,)."""
+    strain = model.plan.initial_yield[: extent.layers] / model.plan.pair.body.young
+    return np.broadcast_to(strain[:, None, None], extent.shape).ravel()
+
+
+def floor(model: Model, extent: Extent) -> Array:
+    """Strain of each cell of a box below which a period counts as without plastic strain, (n,)."""
+    if model.plan.judging is None:
+        raise ValueError("the scene is not judged")
+    return model.plan.judging.floor * _yield_strain(model, extent)
+
 
 ROUNDING = 1e-9  # of a ratio of equal load steps
 
 
 @dataclass(frozen=True)
-class Peak:
-    """What is recorded of the largest load besides its snapshot: residuals of the step."""
-
-    yield_excess: float
-    flow_residual: float
-
-
-@dataclass(frozen=True)
 class Parts:
-    """What is already committed of the step to the first target: number of parts, iterations, largest
-    residual.
-
-    attempts: also those that were discarded.
-    """
+    """What is committed of the step to the first target: parts, iterations, largest residual, attempts."""
 
     count: int = 0
     iterations: int = 0
@@ -62,11 +152,7 @@ class Parts:
 
 @dataclass(frozen=True)
 class Outside:
-    """Fields of the plastic strain outside of the box.
-
-    displacement: of the whole surface, (nx, ny) in m; stress: in the rows of cells that touch y = 0, at all
-    depths, (6, nz, nx, rows) in Pa, None as long as nobody asked for it.
-    """
+    """Plastic u_z of the surface (nx, ny) in m, and stress in the rows at y = 0, (6, nz, nx, rows) in Pa."""
 
     displacement: Array
     stress: Array | None = None
@@ -86,58 +172,16 @@ class CycleStart:
 
 
 @dataclass(frozen=True)
-class Measured:
-    """What is recorded of the steps so far. peak: None before it is reached; ends: of the cycles; passes: of
-    those over a path; loops: of three cells over the last period.
-    """
-
-    rows: tuple[Row, ...] = ()
-    snapshots: Mapping[str, Snapshot] = field(default_factory=dict)
-    peak: Peak | None = None
-    ends: tuple[CycleEnd, ...] = ()
-    passes: tuple[PassEnd, ...] = ()
-    loops: tuple[LoopRow, ...] = ()
-
-
-@dataclass(frozen=True)
 class Progressed:
-    """A history after a committed step, or part of one.
-
-    Parameters
-    ----------
-    state, extent
-        The plastic state, and the box that it is on.
-    room
-        Room of the grid.
-    targets
-        Ends of load steps to come.
-    counters
-        Work done so far.
-    tribofilm, wear
-        What the surface remembers; None without them.
-    last, change
-        The trial that was committed last, and what it changed.
-    cuts
-        Loads on the way to the first target, itself the last; empty before its step begins.
-    parts
-        What is already committed of that step.
-    measured
-        What is recorded of the steps so far.
-    recalled
-        p_hat at the end of earlier steps, by their force or approach.
-    outside
-        Fields outside of the box; None where they are to be computed.
-    longer
-        Whether the load steps to come are made by the longer iteration.
-    cycle_start
-        What the strain of the cycle is counted from; None where there is only one cycle.
-    periods
-        Strain of the periods of a repeated load that is judged.
-    dissipated
-        Energy in J that the cycle has dissipated so far, where that is asked for.
-    status, reached, ending
-        CONVERGED, or why the history ended; the sides of the grid that were reached; in words how the last
-        iteration ended.
+    """A history after a committed step, or part of one. state, extent: the plastic state, and the box that it
+    is on; room: of the grid; targets: ends of load steps to come; counters: work done so far; tribofilm,
+    wear: what the surface remembers; last, change: the trial that was committed last, and what it changed;
+    cuts: loads on the way to the first target, itself the last, empty before its step begins; parts: what is
+    committed of that step; history: what is recorded so far; recalled: p_hat at the end of earlier steps, by
+    their force or approach; outside: fields outside of the box, None where they are to be computed; longer:
+    whether steps to come are made by the longer iteration; cycle_start: what the strain of the cycle is
+    counted from, None where there is only one; periods: of a repeated load that is judged; dissipated: energy
+    in J of the cycle so far, where it is asked for.
     """
 
     state: State
@@ -151,21 +195,18 @@ class Progressed:
     change: Change | None = None
     cuts: tuple[Load, ...] = ()
     parts: Parts = Parts()
-    measured: Measured = Measured()
+    history: History = field(default_factory=History)
     recalled: Mapping[str, Array] = field(default_factory=dict)
     outside: Outside | None = None
     longer: bool = False
     cycle_start: CycleStart | None = None
     periods: Periods = field(default_factory=Periods)
     dissipated: float = 0.0
-    status: Status = Status.CONVERGED
-    reached: Sides = field(default_factory=Sides)
-    ending: str = ""
 
     @property
     def ended(self) -> bool:
         """Whether all targets are reached, or one was not."""
-        return not self.targets or self.status is not Status.CONVERGED
+        return not self.targets or self.history.status is not Status.CONVERGED
 
     def guess(self, load: Load) -> Change | None:
         """What the last step changed, scaled with the load, while the load rises on the same box."""
@@ -180,5 +221,5 @@ class Progressed:
 
     def recall(self, load: Load) -> Array | None:
         """p_hat under the same load in the cycle before, if the box is the same."""
-        found = self.recalled.get(repr(load.level))
-        return found if found is not None and found.shape == self.extent.window.shape else None
+        pressure = self.recalled.get(repr(load.level))
+        return pressure if pressure is not None and pressure.shape == self.extent.window.shape else None

@@ -24,13 +24,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sam.arrays import Array
-from sam.contact.convolution import Counters
-from sam.contact.real_transforms import real_spectrum
-from sam.contact.transforms import Transforms
+from sam.contact.convolution import Counters, Transforms, real_spectrum
 from sam.kernels.eigenstrain import surface_displacement_coefficients
-from sam.kernels.lags import Cuboids, Lags
 from sam.kernels.layer_stress import CornerFunctions, LayerStress, four_points, mesh
-from sam.kernels.patches import STRESS, stress_coefficients
+from sam.kernels.patches import STRESS, Cuboids, Lags, stress_coefficients
 
 Reals = NDArray[Any]
 """Real numbers in the precision of the operator, single or double."""
@@ -52,14 +49,12 @@ NEAR = 4  # cells: up to there stresses are means over the observed cell
 
 def _points(faces: Array) -> Array:
     """Depths of the Gauss points of each layer, (n_layers, 2)."""
-    points: Array = ((faces[1:] + faces[:-1])[:, None] + np.diff(faces)[:, None] * GAUSS) / 2
-    return points
+    return ((faces[1:] + faces[:-1])[:, None] + np.diff(faces)[:, None] * GAUSS) / 2
 
 
 class CellMeans(CornerFunctions):
-    """The functions of its base class, each as its mean over the observed cell in x and y.
-
-    Four Gauss points up to NEAR cells away; beyond, where the stress is smooth, second differences.
+    """The functions of its base class as means over the observed cell in x and y: by four Gauss points up to
+    NEAR cells away, beyond, where the stress is smooth, by second differences.
     """
 
     def __init__(self, lags: Lags):
@@ -84,11 +79,7 @@ def _first(lags: Lags, counts: tuple[int, int]) -> Lags:
 
 
 def mean_stress_of_load(cuboids: Cuboids, load: int = 3) -> Array:
-    """Stress/Pa in the cuboids due to a unit pressure (load 3) or traction along x (1) on one cell, (6,
-    n_layers, nx, ny).
-
-    The means over a cell are those of `CellMeans`; lengths in the unit of hx.
-    """
+    """Mean stress/Pa in cuboids, (6, n_layers, nx, ny), of pressure (3) or traction (1) on one cell."""
     lags, nu = cuboids.lags, cuboids.nu
     points, (nx, ny) = _points(cuboids.depths), lags.shape
     depths, shape = points.ravel(), (6, *points.shape)
@@ -104,9 +95,7 @@ def mean_stress_of_load(cuboids: Cuboids, load: int = 3) -> Array:
 
 
 def _plane_mean(kernel: Array, out: Array) -> None:
-    """Mean over the cell in x and y to fourth order, K + (d_x^2 K + d_y^2 K)/24, from lags -1 .. n: lags 0 ..
-    n - 1.
-    """
+    """Mean over the cell in x and y, K + (d_x^2 K + d_y^2 K)/24, from lags -1 .. n at lags 0 .. n - 1."""
     row, flat = (
         kernel.shape[-1],
         kernel.reshape(-1),
@@ -134,10 +123,9 @@ def _shifts(lags: Lags) -> list[tuple[float, float]]:
 
 
 class BoxSpectra:
-    """Real transforms of the coefficients of cuboids, in the unit of their cells hx, with mu = 1.
-
-    stored: of (N_x + 1) (N_y + 1) wave numbers, those that `strain_to_stress` (6 n_layers, stored, 6
-    n_layers) holds: all, or with `exchange` those with k_x <= k_y.
+    """Real transforms of the coefficients of cuboids, in the unit of their cells hx, with mu = 1. stored: of
+    (N_x + 1) (N_y + 1) wave numbers, those that `strain_to_stress` (6 n_layers, stored, 6 n_layers) holds:
+    all, or with `exchange` those with k_x <= k_y.
     """
 
     def __init__(self, cuboids: Cuboids, single: bool, exchange: bool = False):
@@ -160,20 +148,17 @@ class BoxSpectra:
 
     @cached_property
     def own_stress(self) -> Array:
-        """Stress/mu of a unit plastic strain in its own cell, (6, 6, n_layers): sums over the wave numbers.
-
-        With `exchange` only the means of both are right where x and y are exchanged.
-        """
+        """Stress/mu of plastic strain in its own cell, (6, 6, n_layers): sums over the wave numbers."""
         ends = [np.where(np.isin(np.arange(n + 1), (0, n)), 0.5, 1.0) / n for n in self.half]
         weight = np.outer(*ends).ravel()[self.stored]
         if not isinstance(self.stored, slice):
             weight[np.not_equal(*np.divmod(self.stored, self.half[1] + 1))] *= 2
         layers = range(self.cuboids.layers)
         blocks = [self.strain_to_stress[i :: len(layers), :, i :: len(layers)] for i in layers]
-        found: Array = np.einsum("kipj,p->ijk", np.stack(blocks), weight).reshape(36, -1)
-        found[TWICE] *= -1
-        found[ODD] = 0.0
-        return found.reshape(6, 6, -1)
+        stress: Array = np.einsum("kipj,p->ijk", np.stack(blocks), weight).reshape(36, -1)
+        stress[TWICE] *= -1
+        stress[ODD] = 0.0
+        return stress.reshape(6, 6, -1)
 
     def _of_block(self, kernel: Array, odd: tuple[int, int]) -> Reals:
         """Spectra of coefficients (..., rows, nx, ny) of one parity: (..., rows, 1, stored)."""
@@ -181,9 +166,7 @@ class BoxSpectra:
         return spectrum.reshape(*spectrum.shape[:-2], 1, -1)[..., self.stored]
 
     def _of_surface(self, kernel: Array, odd_x: Parities) -> Reals:
-        """Spectra of coefficients (6, n_layers, nx, ny) between layers and surface, (N_x + 1, N_y + 1, 6
-        n_layers).
-        """
+        """Spectra of (6, n_layers, nx, ny) between layers and surface, (N_x + 1, N_y + 1, 6 n_layers)."""
         rows = [real_spectrum(part, self.half, odd) for part, *odd in zip(kernel, odd_x, ODD_Y, strict=True)]
         return np.ascontiguousarray(np.moveaxis(np.concatenate(rows), 0, -1), dtype=self.real)
 
@@ -194,45 +177,25 @@ class BoxSpectra:
 
     @cached_property
     def traction_to_stress(self) -> Reals:
-        """What `pressure_to_stress` is, of a traction along x. That is odd in x: its own phase is -i, and
-        (-i)^2 is left where both are.
-        """
+        """The same of a traction along x, odd in x: its phase is -i, and (-i)^2 is left where both are."""
         spectrum = self._of_surface(mean_stress_of_load(self.cuboids, load=1), ODD_X ^ 1)
-        signed: Reals = spectrum * np.repeat((-1.0) ** ODD_X, self.cuboids.layers).astype(self.real)
-        return signed
+        return spectrum * np.repeat((-1.0) ** ODD_X, self.cuboids.layers).astype(self.real)
 
 
 @lru_cache(maxsize=CACHED_BOXES)
 def spectra_of(cuboids: Cuboids, single: bool, exchange: bool) -> BoxSpectra:
-    """Spectra by content: boxes with transforms of equal length, layers (in cells) and Poisson's ratio share
-    them.
-    """
+    """Spectra by content: boxes with equal transforms, layers (in cells) and Poisson's ratio share them."""
     return BoxSpectra(cuboids, single, exchange)
 
 
 class BoxOperator:
-    """Stress in the cells of a box and normal displacement of its surface, of plastic strain and of loads.
-
-    Fields are on the cells that `keep` leaves of the box, all of them without a mirror; `whole` goes back.
-
-    Parameters
-    ----------
-    box
-        The cells: as many as lags, with sides in m; layers from the surface, 0, downwards; Poisson's ratio.
-    mu
-        Shear modulus in Pa.
-    counters
-        Where the work is counted.
-    sliding
-        Whether tractions are to come.
-    single
-        Coefficients and transforms in single precision, 1e-7 of the largest stress, in half the time and
-        memory.
-    mirror
-        Whether all fields are mirrored in x and in y (x only with y).
-    exchange
-        Whether the fields stay the same when x and y are exchanged, on a mirrored box of n x n square cells:
-        the products for half of the wave numbers then give all.
+    """Stress in the cells of a box and normal displacement of its surface, of plastic strain and of loads, on
+    the cells that `keep` leaves of the box; `whole` goes back. box: as many cells as lags, with sides in m,
+    layers from the surface, 0, downwards; mu in Pa; sliding: whether tractions are to come; single:
+    coefficients and transforms in single precision, 1e-7 of the largest stress, in half the time and memory;
+    mirror: whether all fields are mirrored in x and in y (x only with y); exchange: whether they stay the
+    same when x and y are exchanged, on a mirrored box of n x n square cells: the products for half of the
+    wave numbers then give all.
     """
 
     def __init__(
@@ -261,9 +224,7 @@ class BoxOperator:
 
     @cached_property
     def from_surface(self) -> Reals:
-        """Spectra of the stress of pressure and, where there is to be one, traction; made for the first
-        load.
-        """
+        """Spectra of the stress of pressure and, if there is to be one, traction."""
         parts = [self.spectra.pressure_to_stress]
         return np.stack([*parts, self.spectra.traction_to_stress] if self.sliding else parts, axis=-1)
 
@@ -275,8 +236,7 @@ class BoxOperator:
     @property
     def own_stress(self) -> Array:
         """Stress in Pa of a unit plastic strain in its own cell, see `BoxSpectra.own_stress`."""
-        found: Array = self.mu * self.spectra.own_stress
-        return found
+        return self.mu * self.spectra.own_stress
 
     def keep(self, field: Reals) -> Reals:
         """The part of (..., nx, ny) on the box that fields here have; a view."""
@@ -288,29 +248,22 @@ class BoxOperator:
             return np.stack([self.whole(each) for each in field])
         if field.ndim == 4:
             return self.transforms.whole(field, ODD_X, ODD_Y)
-        even: Reals = self.transforms.whole(field[None], *EVEN)[0]
-        return even
+        return self.transforms.whole(field[None], *EVEN)[0]
 
     def transformed(self, strain: Reals) -> Reals:
-        """Plastic strain (6, n_layers, nx, ny) as the other methods take it: (N_x + 1, N_y + 1, 6 n_layers,
-        r).
-        """
+        """Plastic strain (6, n_layers, nx, ny) in wave numbers, (N_x + 1, N_y + 1, 6 n_layers, r)."""
         columns = self.transforms.columns(strain, ODD_X, ODD_Y)
-        together: Reals = columns.reshape(*columns.shape[:2], 6 * self.layers, -1)
-        return together
+        return columns.reshape(*columns.shape[:2], 6 * self.layers, -1)
 
     def displacement(self, transformed: Reals) -> Reals:
         """u_z of the surface due to plastic strain, (nx, ny) in m, > 0 into the body: paper Eq. 6."""
         # paper Eq. 6 in the wave numbers
         columns = np.einsum("xyj,xyjr->xyr", self.spectra.strain_to_displacement, transformed)
         self.counters.displacement_applications += 1
-        moved: Reals = self.transforms.fields(columns[:, :, None], *EVEN)[0] * self.hx
-        return moved
+        return self.transforms.fields(columns[:, :, None], *EVEN)[0] * self.hx
 
     def response(self, transformed: Reals) -> Reals:
-        """Transform of the stress due to plastic strain, for `stress`: the one product with the stored
-        matrices.
-        """
+        """Transform of the stress of plastic strain: the one product with the stored matrices."""
         self.counters.operator_applications += 1
         matrices, shape = self.spectra.strain_to_stress, transformed.shape  # paper Eq. 7, second sum
         waves = transformed.reshape(-1, *shape[2:])[self.spectra.stored]
@@ -320,13 +273,10 @@ class BoxOperator:
             product = matrices.swapaxes(0, 1) @ waves
         if self.exchange:
             product = self._exchanged(product)
-        stress: Reals = self.real(self.mu) * product.reshape(shape)
-        return stress
+        return self.real(self.mu) * product.reshape(shape)
 
     def _exchanged(self, product: Reals) -> Reals:
-        """The product at all wave numbers from those with k_x <= k_y: k_x and k_y are exchanged where 11 and
-        22, 23 and 13 are.
-        """
+        """The product at all wave numbers from k_x <= k_y: 11 and 22, 23 and 13 change places with them."""
         n, layers = self.transforms.half[0] + 1, np.arange(self.layers)
         below, left = np.triu_indices(n)
         out = np.empty((n, n, *product.shape[1:]), dtype=product.dtype)
@@ -340,11 +290,7 @@ class BoxOperator:
         response: Reals | None = None,
         traction: Array | None = None,
     ) -> Reals:
-        """Stress due to surface pressure, traction along x (Pa) and plastic strain (`response`), (6,
-        n_layers, nx, ny) in Pa.
-
-        Paper Eq. 7; Eq. 4 where both parts are there.
-        """
+        """Stress of pressure, traction (Pa) and plastic strain, (6, n_layers, nx, ny) in Pa: paper Eq. 7."""
         loads = [(p, k) for k, p in enumerate((pressure, traction)) if p is not None and p.any()]
         if loads:
             columns = self._of_loads(loads)
@@ -357,13 +303,10 @@ class BoxOperator:
         return self.transforms.fields(columns.reshape(*columns.shape[:2], 6, self.layers, -1), ODD_X, ODD_Y)
 
     def _of_loads(self, loads: list[tuple[Array, int]]) -> Reals:
-        """Transform of the stress due to loads on the surface in Pa, each with 0 (pressure) or 1 (traction
-        along x, odd in x).
-        """
+        """Transform of the stress of loads in Pa, each with 0 (pressure) or 1 (traction, odd in x)."""
         which = np.array([k for _, k in loads])
         columns = self.transforms.columns(np.stack([load for load, _ in loads]), which, np.zeros_like(which))
         spectra = (
             self.from_surface if len(which) == self.from_surface.shape[-1] else self.from_surface[..., which]
         )
-        stress: Reals = spectra @ columns  # paper Eq. 7, first sum
-        return stress
+        return spectra @ columns  # paper Eq. 7, first sum

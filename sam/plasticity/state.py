@@ -28,18 +28,10 @@ from sam.schedule import UNLOADED, Load
 
 @dataclass(frozen=True)
 class MaterialFields:
-    """What the material remembers at the points of the cells of a box, see `sam.plasticity.points`, or the
-    increment of it over a step; or the means of these over the points of each cell.
-
-    Parameters
-    ----------
-    strain
-        Plastic strain, (6, 4, n_layers, nx, ny); of means (6, n_layers, nx, ny), and so on.
-    peeq
-        Accumulated plastic strain, (4, n_layers, nx, ny).
-    back
-        Strains a_k of the back-stresses, (N, 6, 4, n_layers, nx, ny), see `sam.plasticity.kinematic`; None
-        without them.
+    """What the material remembers at the points of the cells of a box, see `sam.plasticity.points`, or its
+    increment over a step; or means over the points. strain: plastic, (6, 4, n_layers, nx, ny), of means (6,
+    n_layers, nx, ny), and so on; peeq: accumulated, (4, n_layers, nx, ny); back: strains a_k of the
+    back-stresses, (N, 6, 4, n_layers, nx, ny), or None.
     """
 
     strain: Array
@@ -77,10 +69,7 @@ class MaterialFields:
 
 @dataclass(frozen=True)
 class Residual:
-    """What plastic strain alone makes, without any load; all of it is linear in the strain.
-
-    stress: (6, n_layers, nx, ny) in Pa; displacement: of the surface, (nx, ny) in m, > 0 into the body.
-    """
+    """What plastic strain makes without load: stress (6, n_layers, nx, ny) in Pa, u_z (nx, ny) in m."""
 
     stress: Array
     displacement: Array
@@ -100,9 +89,7 @@ class Residual:
 
 @dataclass(frozen=True)
 class State:
-    """A committed state of the box; a load step makes the next one by `after`. points: the material at the
-    points of the cells; pressure: p_hat, (nx, ny).
-    """
+    """A committed state of the box: material at the points, residual fields, p_hat (nx, ny), load."""
 
     points: MaterialFields
     residual: Residual
@@ -137,12 +124,10 @@ class Change:
 
 @dataclass(frozen=True)
 class Trial:
-    """The end of a load step, converged or not: nothing is committed yet.
-
-    points: increment of the material at the points of the cells; stress in Pa, (6, n_layers, nx, ny);
-    residual: at the end of the step; yield_excess, flow_residual: see `sam.plasticity.points.Returned`;
-    history: their larger one, by iteration; goal: that it is to fall to; rise: change of what is given, see
-    `sam.schedule.Load.rise`.
+    """The end of a load step, converged or not: nothing is committed yet. points: increment of the material
+    at the points of the cells; stress in Pa, (6, n_layers, nx, ny); residual: at the end of the step;
+    yield_excess, flow_residual: see `sam.plasticity.points.Returned`; history: their larger one, by
+    iteration; goal: that it is to fall to; rise: change of what is given, see `sam.schedule.Load.rise`.
     """
 
     load: Load
@@ -176,15 +161,7 @@ class Trial:
 
 @dataclass(frozen=True)
 class Extent:
-    """A box of cells.
-
-    Parameters
-    ----------
-    window
-        Its cells of the grid.
-    layers
-        Number of its layers, the uppermost ones of the grid.
-    """
+    """A box of cells: a window of the grid, and so many of its uppermost layers."""
 
     window: Window
     layers: int
@@ -201,24 +178,9 @@ class Extent:
 
 
 def surrounded(values: Array, where: tuple[slice, ...], shape: tuple[int, ...]) -> Array:
-    """Put zeros around the values of a field, as a box does that grows; leading axes of a tensor stay.
+    """Zeros around the values (..., *cells) of a field, as a box does that grows: (..., *shape), with the
+    values at `where`, see `Extent.inside`.
 
-    Parameters
-    ----------
-    values
-        (..., *cells), a tensor of any shape in each cell.
-    where
-        The cells among those of the larger box, see `Extent.inside`.
-    shape
-        Cells of the larger box.
-
-    Returns
-    -------
-    Array
-        (..., *shape).
-
-    Examples
-    --------
     >>> surrounded(np.ones(2), (slice(1, 3),), (4,))
     array([0., 1., 1., 0.])
     """

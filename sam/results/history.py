@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -12,33 +12,20 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from sam.arrays import Array
 from sam.contact.normal import Contact
-from sam.grid.cells import CellGrid, Window
-from sam.scene.result import CYCLES, HISTORY, PATH_HISTORY, Attempt
+from sam.grid.cells import CellGrid, Sides, Window
+from sam.results.snapshots import Snapshot
+from sam.scene import Status
+from sam.scene.result import CYCLES, HISTORY, LOOPS, PATH_HISTORY, Attempt
 from sam.scene.surface import Roughness
-from sam.schedule import Target
-from sam.slip import Coefficient
+from sam.schedule import Coefficient, Target
 
 OUTERMOST, HALFWAY = 0.785, 1.866
 """Of `contact_area`. Fitted to the areas of 42 contacts of Hertz of 4 to 28 cells in the radius, the apex
 anywhere in a cell; with a range and an exponent of its own the fit finds one cell, as it must be, and 1.07.
 """
 
+OF_ROW = "cycle step force approach area p_max peeq_max friction iterations residual note".split()
 OF_CYCLE = ("new_strain_max", "yielding_cells", "wear_of_cycle_m3")  # zero of a body that stays elastic
-
-
-@dataclass(frozen=True)
-class Effort:
-    """How a load step was solved.
-
-    iterations, residual: of its last attempt; note: for the history; peeq_max: largest accumulated plastic
-    strain after it; attempts: all of them.
-    """
-
-    iterations: int
-    residual: float
-    note: str = ""
-    peeq_max: float = 0.0
-    attempts: tuple[Attempt, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -56,11 +43,9 @@ class Moved:
 
 @dataclass(frozen=True)
 class PassEnd:
-    """What a pass over a path leaves; see `sam.scene.groove` for the lengths in m.
-
-    direction: 1 from start to end, -1 back; strain: largest accumulated plastic strain that it adds in the
-    steady part; drive: mean force along the path there in N; rolling: that of the pressure over the normal
-    force.
+    """What a pass over a path leaves; see `sam.scene.groove` for the lengths in m. direction: 1 from start to
+    end, -1 back; strain: largest accumulated plastic strain that it adds in the steady part; drive: mean
+    force along the path there in N; rolling: that of the pressure over the normal force.
     """
 
     cycle: int
@@ -76,9 +61,7 @@ class PassEnd:
 
 @dataclass(frozen=True)
 class Row:
-    """One load step in the history. ending: of its contact, in words, if that did not converge; moved: of a
-    counter-body on a path.
-    """
+    """One load step. ending: of its contact, if that did not converge; moved: of a moving counter-body."""
 
     cycle: int
     step: int
@@ -99,19 +82,9 @@ class Row:
 
 
 def row_of(
-    grid: CellGrid,
-    target: Target,
-    contact: Contact,
-    effort: Effort,
-    *,
-    coefficient: Coefficient,
-    whole: float | None = None,
+    grid: CellGrid, target: Target, contact: Contact, *, coefficient: Coefficient, whole: float | None = None
 ) -> Row:
-    """The row of a contact on the full grid, or on a box of it.
-
-    coefficient: of friction, whatever the sign of the traction; whole: that under a whole tribofilm, None
-    without one.
-    """
+    """The row of a contact; coefficient: of friction, without sign; whole: that under a whole film."""
     friction, protected, p = 0.0, None, contact.pressure
     if contact.force:
         varies = np.ndim(coefficient) > 0
@@ -127,21 +100,14 @@ def row_of(
         contact_area(contact, grid),
         largest_pressure(contact, grid),
         contact.converged,
-        effort.iterations,
-        effort.residual,
-        effort.note,
-        friction,
-        protected,
-        effort.peeq_max,
-        effort.attempts,
-        contact.ending,
+        friction=friction,
+        protected=protected,
+        ending=contact.ending,
     )
 
 
 def counted(contact: Contact, grid: CellGrid) -> Window:
-    """The cells that count for maxima: all, but for the border of a grid that has one once the contact
-    touches the edge.
-    """
+    """The cells that count for maxima: all but a border, once the contact touches the edge."""
     touching, (bx, by) = contact.pressure > 0, grid.border
     if not (touching[[0, -1], :].any() or touching[:, [0, -1]].any()):
         bx = by = 0
@@ -154,15 +120,14 @@ def largest_pressure(contact: Contact, grid: CellGrid) -> float:
 
 
 def contact_area(contact: Contact, grid: CellGrid) -> float:
-    """Area in m^2 within an outline between the cells with p > 0 and the others.
-
-    At a distance d from the edge of a contact the pressure inside is in proportion to sqrt(d), and the gap
-    outside to d^(3/2) (Johnson 1985, Sec. 4.2). Of two neighbouring cells, one in contact, q = gap E*/(p h)
-    therefore tells where between their centres the edge is: q grows from 0 to infinity while it moves
-    inwards by a cell. h is the distance of lines of centres that follow the edge: in cells that are not
-    square it is found in a second pass. Straight lines join these places in each square of four centres
-    (marching squares); arcs add an eighth of a cell for each corner that turns outwards. At the end of the
-    counter-body and of the grid the outline is halfway, which gives the area of the cells.
+    """Area in m^2 within an outline between the cells with p > 0 and the others. At a distance d from the
+    edge of a contact the pressure inside is in proportion to sqrt(d), and the gap outside to d^(3/2) (Johnson
+    1985, Sec. 4.2). Of two neighbouring cells, one in contact, q = gap E*/(p h) therefore tells where between
+    their centres the edge is: q grows from 0 to infinity while it moves inwards by a cell. h is the distance
+    of lines of centres that follow the edge: in cells that are not square it is found in a second pass.
+    Straight lines join these places in each square of four centres (marching squares); arcs add an eighth of
+    a cell for each corner that turns outwards. At the end of the counter-body and of the grid the outline is
+    halfway, which gives the area of the cells.
     """
     if contact.area is not None:
         return contact.area
@@ -197,61 +162,34 @@ def _shares(p: Array, gap: Array, unit: Array) -> Array:
 
 def _distances(normal: tuple[Array, Array], axis: int, cell: tuple[float, float]) -> Array:
     """In m, of lines of centres that follow the outline, at each line to a next cell. normal: of the outline
-    in squares of four centres, in cells, of any length; axis: along which two squares share such a line.
+    in squares of four centres, in cells; axis: along which two squares share such a line.
     """
     width = [(1, 1) if each == axis else (0, 0) for each in (0, 1)]
     u, v = (sliding_window_view(np.pad(part, width), 2, axis).sum(axis=-1) for part in normal)
-    reach, found = np.hypot(u / cell[0], v / cell[1]), np.full(u.shape, min(cell))
-    np.divide(np.hypot(u, v), reach, out=found, where=reach > 0)
-    return found
+    reach, distance = np.hypot(u / cell[0], v / cell[1]), np.full(u.shape, min(cell))
+    np.divide(np.hypot(u, v), reach, out=distance, where=reach > 0)
+    return distance
 
 
 def history_table(rows: Sequence[Row]) -> dict[str, list[Any]]:
     """The table history, one row a load step."""
-    values = [
-        (
-            row.cycle,
-            row.step,
-            row.force,
-            row.approach,
-            row.area,
-            row.p_max,
-            row.peeq_max,
-            row.friction,
-            row.iterations,
-            row.residual,
-            row.note,
-        )
-        for row in rows
-    ]
-    table = {name: [value[k] for value in values] for k, name in enumerate(HISTORY)}
-    moved = [(row.moved.way, row.moved.force, row.moved.offset) for row in rows if row.moved is not None]
+    table = {name: [getattr(row, each) for row in rows] for name, each in zip(HISTORY, OF_ROW, strict=True)}
+    moved = [row.moved for row in rows if row.moved is not None]
     if moved:
-        table |= {name: [value[k] for value in moved] for k, name in enumerate(PATH_HISTORY)}
+        of_path = zip(PATH_HISTORY, ("way", "force", "offset"), strict=True)
+        table |= {name: [getattr(each, field) for each in moved] for name, field in of_path}
     return table
-
-
-@dataclass(frozen=True)
-class CycleStrain:
-    """What a cycle has strained: the largest new plastic strain of a cell, and in how many cells there is
-    any.
-    """
-
-    largest: float = 0.0
-    cells: int = 0
 
 
 @dataclass(frozen=True)
 class CycleEnd:
     """The surface after a cycle. wear_volume: of all cycles so far in m^3; roughness: without force, None if
-    smooth.
-
-    strained, dissipated: in this cycle, the energy in J where it is asked for; wear_of_cycle: in m^3; margin:
-    of the cell that is left nearest to its limit, 1 less strain over limit, None: nothing can wear; roofed:
-    volume in m^3 beyond its limit that stays, as sound material lies above it.
-
-    applications: of the residual-stress operator in all cycles so far; moved: by plastic strain into the
-    body, worn: depth in all cycles so far, both (nx, ny) in m, None: nothing can wear, or of another grid.
+    smooth. new_strain, yielding: largest new plastic strain of a cell in this cycle, and in how many there is
+    any; dissipated: energy in J of the cycle, where it is asked for; wear_of_cycle: in m^3; margin: of the
+    cell that is left nearest to its limit, 1 less strain over limit, None: nothing can wear; roofed: volume
+    in m^3 beyond its limit that stays, as sound material lies above it. applications: of the residual-stress
+    operator in all cycles so far; moved: by plastic strain into the body, worn: depth in all cycles so far,
+    both (nx, ny) in m, None: nothing can wear, or of another grid.
     """
 
     cycle: int
@@ -260,7 +198,8 @@ class CycleEnd:
     applications: int
     moved: Array | None = None
     worn: Array | None = None
-    strained: CycleStrain = CycleStrain()
+    new_strain: float = 0.0
+    yielding: int = 0
     wear_of_cycle: float = 0.0
     margin: float | None = None
     roofed: float = 0.0
@@ -274,10 +213,9 @@ def cycles_table(
     at_peak: Callable[[int, int], bool],
     roughness: Roughness | None = None,
 ) -> dict[str, list[Any]]:
-    """The table cycles: one row for each cycle that came to its peak; volume and roughness at its end.
-
-    at_peak: whether a cycle's step ends there; ends: of an elastic body none, as its surface stays the
-    same; roughness: of a rough surface before the first load. What there is not (skewness) is None.
+    """The table cycles: a row for each cycle that came to its peak, with volume and roughness at its end.
+    at_peak: whether a cycle's step ends there; roughness: before the first load. What there is not (skewness)
+    is None.
     """
     peaks: dict[int, Row] = {}
     for row in rows:
@@ -295,7 +233,7 @@ def cycles_table(
     for end in ends:
         table["operator_applications"][end.cycle - 1], before = end.applications - before, end.applications
         table["wear_volume_m3"][end.cycle - 1] = end.wear_volume
-        own = end.strained.largest, end.strained.cells, end.wear_of_cycle, end.margin
+        own = end.new_strain, end.yielding, end.wear_of_cycle, end.margin
         for name, value in zip((*OF_CYCLE, "margin_to_limit"), own, strict=True):
             table[name][end.cycle - 1] = value
         for name, value in _heights_of(end.roughness).items():
@@ -306,9 +244,59 @@ def cycles_table(
 
 def of_ends(cycles: Sequence[int], ends: Sequence[CycleEnd], name: str) -> list[float | None]:
     """A number of CycleEnd for each cycle; zero of an elastic body, None of a cycle that did not end."""
-    found = {end.cycle: getattr(end, name) for end in ends}
-    return [found.get(cycle) if found else 0.0 for cycle in cycles]
+    values = {end.cycle: getattr(end, name) for end in ends}
+    return [values.get(cycle) if values else 0.0 for cycle in cycles]
 
 
-def _heights_of(found: Roughness | None) -> Mapping[str, float | None]:
-    return {"sa_m": found.sa, "sq_m": found.sq, "ssk": found.ssk} if found is not None else {}
+def _heights_of(roughness: Roughness | None) -> Mapping[str, float | None]:
+    return {"sa_m": roughness.sa, "sq_m": roughness.sq, "ssk": roughness.ssk} if roughness is not None else {}
+
+
+@dataclass(frozen=True)
+class LoopRow:
+    """A cell (layer, i, j) at the end of a load step; stress in Pa and plastic strain, both (6,)."""
+
+    place: tuple[int, int, int]
+    cycle: int
+    step: int
+    peeq: float
+    stress: tuple[float, ...]
+    strain: tuple[float, ...]
+
+
+def loops_table(grid: CellGrid, rows: Sequence[LoopRow]) -> dict[str, list[Any]]:
+    """The table loops; points are numbered from 1, the one that strains most first."""
+    places = list(dict.fromkeys(row.place for row in rows))
+    values = []
+    for row in sorted(rows, key=lambda row: places.index(row.place)):
+        layer, i, j = row.place
+        where = float(grid.x[i]), float(grid.y[j]), float(grid.depths[layer])
+        number = places.index(row.place) + 1
+        values.append((number, *where, row.cycle, row.step, row.peeq, *row.stress, *row.strain))
+    return {name: [value[k] for value in values] for k, name in enumerate(LOOPS)}
+
+
+@dataclass(frozen=True)
+class History:
+    """What is recorded of a load history, elastic or plastic, while it is solved and at its end. rows: of the
+    load steps; snapshots: name of the state -> it, in the order of the tables; ends: of the cycles; passes:
+    of those over a path; loops: of three cells over the last period; status: CONVERGED, or why the history
+    ended; reached: sides of the grid that plastic zone or contact reached; ending: of the last iteration, in
+    words; certificate: residuals of the load step to the peak, and what is measured at the end; unfinished:
+    cycle, step and attempts of the step that was not reached; floor: strain below which a period counts as
+    without plastic strain.
+    """
+
+    rows: tuple[Row, ...] = ()
+    snapshots: Mapping[str, Snapshot] = field(default_factory=dict)
+    ends: tuple[CycleEnd, ...] = ()
+    passes: tuple[PassEnd, ...] = ()
+    loops: tuple[LoopRow, ...] = ()
+    status: Status = Status.CONVERGED
+    reached: Sides = field(default_factory=Sides)
+    ending: str = ""
+    certificate: Mapping[str, float] = field(default_factory=dict)
+    discretisation: Mapping[str, Any] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+    unfinished: tuple[tuple[int, int, tuple[Attempt, ...]], ...] = ()
+    floor: float = 0.0

@@ -19,10 +19,8 @@ from sam.scene import FieldMesh, GridFields
 
 
 def field_mesh(grid: CellGrid, snapshot: Snapshot, height: Array | None = None) -> FieldMesh:
-    """The mesh of a state: stress and strain at the nodes of the plane, pressure in the cells of the surface.
-
-    With friction the cells also have the traction and the local coefficient, of a rough body its heights,
-    (nx, ny) in m.
+    """The mesh of a state: stress and strain at the nodes of the plane, pressure (with friction traction and
+    coefficient, of a rough body heights, (nx, ny) in m) in the cells of the surface.
     """
     xs, ys = (np.append(c - h / 2, c[-1] + h / 2) for c, h in ((grid.x, grid.hx), (grid.y, grid.hy)))
     surface = np.stack([*np.meshgrid(xs, ys, indexing="ij"), np.zeros((len(xs), len(ys)))], axis=-1).reshape(
@@ -71,10 +69,7 @@ def field_mesh(grid: CellGrid, snapshot: Snapshot, height: Array | None = None) 
 def state_grids(
     grid: CellGrid, snapshot: Snapshot, share: float, height: Array | None = None
 ) -> dict[str, GridFields]:
-    """The fields of a state by the part of the body: "surface", "plane" and, of one that yields, "body".
-
-    share: of the body in the displacement of both surfaces, see `sam.half_space.ElasticPair.share`.
-    """
+    """The fields of a state: on the "surface", in the "plane" and, of one that yields, in the "body"."""
     strained = {"plastic_strain": snapshot.strain, "peeq": snapshot.peeq} if snapshot.box else {}
     means = {"stress_Pa": snapshot.stress, **strained, **snapshot.repeated}
     in_plane = {name: field.mean(axis=-1) for name, field in means.items()}
@@ -127,9 +122,8 @@ def _surface(grid: CellGrid, snapshot: Snapshot, share: float, height: Array | N
 
 
 def _on_cells(grid: CellGrid, cells: Mapping[str, Array | None]) -> GridFields:
-    """Fields of the cells of the surface, (nx, ny), without those that are None.
-
-    The displacement at a node, which can be drawn as a deformed surface, is the mean of the cells around it.
+    """Fields of the cells of the surface, (nx, ny), without those that are None; the displacement at a node,
+    to be drawn as a deformed surface, is the mean of the cells around it.
     """
     points, moved = {}, cells.get("uz_m")
     if moved is not None:

@@ -10,16 +10,14 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-from scipy import ndimage
 
 from sam.arrays import Array
-from sam.contact.fit import FEWEST_IN_SPOT
-from sam.contact.normal import Contact
+from sam.contact.normal import FEWEST_IN_SPOT, Contact
 from sam.grid.cells import CellGrid
 from sam.grid.gap import Place
 from sam.grid.rough import RoughPatch
-from sam.results.advice import Remedies
 from sam.results.snapshots import Snapshot
+from sam.results.tables import Remedies
 from sam.scene.remedies import either
 from sam.scene.result import COUNTER_HEIGHT, SURFACE
 from sam.scene.surface import Roughness, roughness_as_read
@@ -58,9 +56,7 @@ class RoughRecord:
         return out
 
     def table(self, grid: CellGrid, snapshots: Sequence[Snapshot]) -> dict[str, Any]:
-        """The table surface: for each state a row a cell, y running first, with the original heights; those
-        of the counter-body as the last column, if it is rough.
-        """
+        """The table surface: a row a cell for each state, y running first; counter-body heights last."""
         x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
         parts = [
             {
@@ -83,7 +79,8 @@ class RoughRecord:
 
     def warnings(self, grid: CellGrid, contact: Contact) -> tuple[str, ...]:
         """What a user should know about the peak, in words."""
-        out, touching, finer = [], contact.pressure > 0, _then(self.remedies.finer_cells)
+        out, touching, finer = [], contact.pressure > 0, self.remedies.finer_cells
+        finer = f": {finer}" if finer else ""
         for surface in (self.patch.surface, self.patch.counter):
             if surface is None or surface.kind == "file":
                 continue
@@ -96,28 +93,27 @@ class RoughRecord:
         if coarse := too_few_cells(contact.pressure):
             out.append(f"{coarse}{finer}")
         if touching[[0, -1], :].any() or touching[:, [0, -1]].any():
-            words = "the contact touches the edge of the grid, where the half-space is cut"
-            out.append(f"{words}{self._at_edge(grid)}")
+            words, (bx, by) = (
+                "the contact touches the edge of the grid, where the half-space is cut",
+                grid.border,
+            )
+            if any(grid.border):
+                words += f": the outer {bx} x {by} cells do not count for p_max_Pa and mises_max_Pa; "
+                words += 'grid.border = "relief" lets the heights fall off'
+            else:  # the heights fall off already, and all cells count
+                can = either(self.remedies.larger_patch, self.remedies.less_load)
+                words += f' although the heights fall off there (grid.border = "relief"): {can}'
+            out.append(words)
         return tuple(out)
-
-    def _at_edge(self, grid: CellGrid) -> str:
-        """What becomes of the edge, and what to change."""
-        if not any(grid.border):  # the heights fall off already, and all cells count
-            words = ' although the heights fall off there (grid.border = "relief")'
-            return f"{words}: {either(self.remedies.larger_patch, self.remedies.less_load)}"
-        bx, by = grid.border
-        return (
-            f": the outer {bx} x {by} cells do not count for p_max_Pa and mises_max_Pa; "
-            'grid.border = "relief" lets the heights fall off'
-        )
 
 
 def too_few_cells(pressure: Array) -> str:
-    """What a user should know about the spots of a contact; empty if those that matter are resolved.
-
-    pressure: of the cells, (nx, ny) in Pa. A spot is what hangs together over sides of its cells: two that
-    touch at a corner have a saddle between them, and as one they would pass for resolved.
+    """What a user should know about the spots of a contact (nx, ny) in Pa; empty if those that matter are
+    resolved. A spot hangs together over sides of its cells: two that touch at a corner have a saddle between
+    them, and as one they would pass for resolved.
     """
+    from scipy import ndimage  # noqa: PLC0415 - for rough scenes alone
+
     spots, _ = ndimage.label(pressure > 0)
     if not spots.any():
         return ""
@@ -134,8 +130,3 @@ def too_few_cells(pressure: Array) -> str:
         f"more, or with the largest pressure ({counts} cells; together {100 * share[few].sum():.3g} % of the "
         f"load): with fewer than {FEWEST_IN_SPOT} the largest pressure of a spot is off by some percent"
     )
-
-
-def _then(remedy: str) -> str:
-    """A remedy behind a warning, if there is one."""
-    return f": {remedy}" if remedy else ""

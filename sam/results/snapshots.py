@@ -10,20 +10,18 @@ import numpy as np
 
 from sam.arrays import Array, Mask
 from sam.contact.normal import Contact
-from sam.grid.cells import CellGrid, Window
+from sam.grid.cells import Window
 
 SHEAR = 4  # index of the component 13 in the order 11 22 33 23 13 12
 
 
 @dataclass(frozen=True)
 class Sliding:
-    """What friction adds to a state.
-
-    traction: q_x on the body, (nx, ny) in Pa. The others in the rows of cells that touch y = 0, (nx, rows) in
-    m. ux: displacement of the surface along x, by pressure, traction and plastic strain; residual_ux: the
-    part of the plastic strain; uz: what u_z of the body has beyond its share of the contact's displacement;
-    shear: -integral of 2 eps_p_13 over depth, by which plastic flow carries the surface along x over the
-    unstrained depth.
+    """What friction adds to a state. traction: q_x on the body, (nx, ny) in Pa. The others in the rows of
+    cells that touch y = 0, (nx, rows) in m. ux: displacement of the surface along x, by pressure, traction
+    and plastic strain; residual_ux: the part of the plastic strain; uz: what u_z of the body has beyond its
+    share of the contact's displacement; shear: -integral of 2 eps_p_13 over depth, by which plastic flow
+    carries the surface along x over the unstrained depth.
     """
 
     traction: Array
@@ -40,23 +38,13 @@ class Sliding:
 
 @dataclass(frozen=True)
 class Cut:
-    """The plane y = const through the largest pressure at the peak, where the contact need not be in the
-    plane y = 0.
-
-    So it is below a rough body, and under a load that travels. y: of the centres of the cells in m; x: (nx,),
-    z: (nz,) in m; stress: (6, nz, nx) in Pa; peeq: (nz, nx).
-    """
+    """The plane y = const (m) through the largest pressure; x, z in m, stress (6, nz, nx) in Pa, peeq."""
 
     y: float
     x: Array
     z: Array
     stress: Array
     peeq: Array
-
-    @classmethod
-    def elastic(cls, grid: CellGrid, row: int, stress: Array) -> Cut:
-        """The plane in a body without plastic strain; row: of cells; stress: (6, nz, nx) in Pa."""
-        return cls(float(grid.y[row]), grid.x, grid.depths, stress, np.zeros(stress.shape[1:]))
 
 
 def row_of_largest(contact: Contact, counts: Window) -> int | None:
@@ -67,11 +55,7 @@ def row_of_largest(contact: Contact, counts: Window) -> int | None:
 
 @dataclass(frozen=True)
 class Comparison:
-    """The bare body under the same load, on the same grid and at the same depths.
-
-    p_max in Pa; mises: von Mises stress of (nz, n) points in Pa, where that of the coated body is taken;
-    warning: why they are None where the grid does not suit the contact of the bare body.
-    """
+    """The bare body under the same load: p_max, von Mises stress (nz, n) in Pa, or a warning."""
 
     p_max: float | None = None
     mises: Array | None = None
@@ -80,11 +64,9 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Coated:
-    """What a coating adds to a state.
-
-    thickness in m; counter_uz: displacement of the counter-body's surface away from the body, (nx, rows) in
-    m, which the contact counts and the body has not; comparison: with the bare body, at the peak of a scene
-    with force.
+    """What a coating adds to a state. thickness in m; counter_uz: of the counter-body away from the body,
+    (nx, rows) in m, which the contact counts and the body has not; comparison: with the bare body, under
+    force.
     """
 
     thickness: float
@@ -94,10 +76,9 @@ class Coated:
 
 @dataclass(frozen=True)
 class Box:
-    """The cells that may yield, with all that is known of them.
-
-    x, y, z: faces of the cells in m, z below the current surface; stress in Pa, strain: plastic, both (6, nz,
-    nx, ny); peeq: (nz, nx, ny); repeated: of repeated loading, name -> (nz, nx, ny) or (6, nz, nx, ny).
+    """The cells that may yield, with all that is known of them. x, y, z: faces of the cells in m, z below the
+    current surface; stress in Pa, strain: plastic, both (6, nz, nx, ny); peeq: (nz, nx, ny); repeated: of
+    repeated loading, name -> (nz, nx, ny) or (6, nz, nx, ny).
     """
 
     x: Array
@@ -112,15 +93,14 @@ class Box:
 @dataclass(frozen=True)
 class Snapshot:
     """A state that goes into the tables: "peak" or "unloaded", or "last" where the peak was not reached.
-
-    contact: on the full grid; residual_displacement: of the surface, (nx, ny) in m; stress: (6, nz, nx,
-    rows) in Pa, strain: plastic, (6, nz, nx, rows), peeq: (nz, nx, rows), all in the rows of cells that touch
-    y = 0; mises: von Mises stress of (nz, n) points in Pa, among which the largest is; flowed: which of them
-    have plastic strain, None: none; top: depth in m and value of the largest peeq anywhere, between the
-    cells, None where nothing yields; sliding: None without friction; coated: None without coating; worn:
-    depth in m, (nx, ny), None: nothing can wear; cut: None: not at the peak, or the contact is in y = 0; box:
-    None: the body is elastic; stretch, place: of the counter-body that is opposite, see `sam.schedule.Load`;
-    repeated: fields of repeated loading, name -> (nz, nx, rows) or (6, nz, nx, rows).
+    contact: on the full grid; residual_displacement: of the surface, (nx, ny) in m; stress: (6, nz, nx, rows)
+    in Pa, strain: plastic, (6, nz, nx, rows), peeq: (nz, nx, rows), all in the rows of cells that touch y =
+    0; mises: von Mises stress of (nz, n) points in Pa, among which the largest is; flowed: which of them have
+    plastic strain, None: none; top: depth in m and value of the largest peeq anywhere, between the cells,
+    None where nothing yields; sliding: None without friction; coated: None without coating; worn: depth in m,
+    (nx, ny), None: nothing can wear; cut: None: not at the peak, or the contact is in y = 0; box: None: the
+    body is elastic; stretch, place: of the counter-body that is opposite, see `sam.schedule.Load`; repeated:
+    fields of repeated loading, name -> (nz, nx, rows) or (6, nz, nx, rows).
     """
 
     state: str
@@ -140,25 +120,6 @@ class Snapshot:
     stretch: int = 0
     place: tuple[float, float] = (0.0, 0.0)
     repeated: Mapping[str, Array] = field(default_factory=dict)
-
-    @classmethod
-    def elastic(
-        cls,
-        state: str,
-        contact: Contact,
-        stress: Array,
-        mises: Array,
-        *,
-        sliding: Sliding | None = None,
-        coated: Coated | None = None,
-        cut: Cut | None = None,
-    ) -> Snapshot:
-        """A state without plastic strain."""
-        zero = np.zeros_like(stress)
-        unmoved = np.zeros(contact.gap.shape)
-        return cls(
-            state, contact, unmoved, stress, zero, zero[0], mises, sliding=sliding, coated=coated, cut=cut
-        )
 
     @property
     def friction(self) -> float:
@@ -180,5 +141,4 @@ class Snapshot:
     @property
     def in_plane(self) -> Array:
         """Stress in y = 0, the mean of the rows, (6, nz, nx) in Pa."""
-        mean: Array = self.stress.mean(axis=-1)
-        return mean
+        return self.stress.mean(axis=-1)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""The tables axis, line and plane of the states, one state after the other, and the table cut."""
+"""The tables axis, line, plane and cut of the states, and what to change when a solve ends badly."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,16 +12,49 @@ import numpy as np
 from sam.contact.stress import von_mises
 from sam.grid.cells import CellGrid
 from sam.results.snapshots import Cut, Snapshot
+from sam.scene import Status
+from sam.scene.remedies import either
 from sam.scene.result import CUT, LINE, STRESSES
+
+
+@dataclass(frozen=True)
+class Remedies:
+    """What may be changed of a scene, in words; empty what may not. slower: less friction."""
+
+    finer_cells: str
+    smaller_patch: str
+    larger_patch: str
+    less_load: str
+    slower: str
+    more_steps: str
+    looser: str
+
+
+def advice(remedies: Remedies, status: Status, larger: str = "") -> str:
+    """What to change, in words; empty for a converged solve; larger: how to enlarge the sides of the grid."""
+    can = remedies
+    match status:
+        case Status.NOT_CONVERGED:
+            what = either(can.finer_cells, can.looser, can.slower)
+            return f"the contact iteration stopped above its tolerance: {what}"
+        case Status.CONTACT_AT_GRID_EDGE:
+            what = either(larger or can.larger_patch, can.less_load)
+            return f"the contact touches the edge of the grid: {what}"
+        case Status.UNDER_RESOLVED:
+            return f"too few cells in the contact: {either(can.finer_cells, can.smaller_patch)}"
+        case Status.PLASTIC_ZONE_AT_GRID_EDGE:
+            return f"the plastic zone touches the edge of the grid: {either(larger, can.less_load)}"
+        case Status.STEP_CUT_LIMIT:
+            what = either(can.more_steps, can.looser, can.less_load)
+            return f"a load step did not converge however often it was halved: {what}"
+    return status.advice
+
 
 Table = dict[str, Any]
 
 
 def state_tables(grid: CellGrid, snapshots: Sequence[Snapshot], share: float) -> dict[str, Table]:
-    """The tables axis, line and plane, and cut where a state has one.
-
-    share: of the body in the displacement of both surfaces, see `sam.half_space.ElasticPair.share`.
-    """
+    """The tables axis, line and plane, and cut where a state has one; share: see `ElasticPair.share`."""
     parts = [_tables_of(grid, snapshot, share) for snapshot in snapshots]
     merged: dict[str, Table] = {
         name: {column: np.concatenate([part[name][column] for part in parts]) for column in parts[0][name]}

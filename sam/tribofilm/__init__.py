@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from sam.surface_state import FilmState
-from sam.tribofilm.law import FilmLaw
+from sam.tribofilm.law import FilmLaw, FilmState
 
 __all__ = ["FilmLaw", "FilmState"]

@@ -6,45 +6,176 @@ tested with the low coefficient of friction. It fails where it thins by more tha
 (paper Eq. 15, 17), or where it cannot bear the traction at all: sqrt(3) mu p >= sigma_y. A film that
 becomes thicker loses nothing; the printed form, which only ever thickens under a pressure, is judged by the
 size of its strain. A failure lasts until the end of the cycle, and the next cycle starts with a fresh film.
+
+A step is backward Euler under mixed control, every cell by itself. Known at its end: the strains in the
+plane, those of the body below (xx, yy, xy), and the stresses on top, s_zz = -p, s_xz = tau, s_yz = 0. That is
+the plane-stress problem of Simo & Hughes (1998), section 3.4, with other stresses than 0 off the plane. With
+S = s_xx + s_yy - 2 s_zz, D = s_xx - s_yy, T = s_xy and the flow rule d eps_p = lambda s',
+
+    S = S_tr/(1 + a lambda), (D, T) = (D_tr, T_tr)/(1 + b lambda), a = E/(3 (1 - nu)), b = E/(1 + nu),    (a)
+    q(lambda) = sqrt(S^2/4 + 3 D^2/4 + 3 T^2) = k,   k^2 = sigma_y^2 - 3 tau^2.                            (b)
+
+Without k^2 > 0 the film cannot bear tau, whatever its strains: no equilibrium. 1/q is concave and grows in
+lambda (a power mean of exponent -2 of 1 + a lambda and 1 + b lambda), so Newton's method on 1/q = 1/k climbs
+to the root from below, from lambda = 0, and never passes it: it needs no bracket. Where only S or only (D, T)
+is there it ends after one iteration.
+
+For comparison only, the printed form: s_ii = E/(2 (1 + nu)) e_ii + nu E/((1 + nu)(1 - 2 nu)) (e_xx + e_yy +
+e_zz) with all three strains of the body (Eq. 12), then s_zz + P for s_zz (Eq. 13) and s_xz = mu P (Eq. 14).
+Used by default: the strains in the plane only, Hooke's law, s_zz = -P. Why: Hooke's law has E/(1 + nu) before
+e_ii; a bonded film shares only the strains in the surface with the body; and equilibrium fixes s_zz, so that
+Eq. 13 counts the pressure twice, and as a tension where compression is negative: under a pressure this film
+grows thicker. The plastic strain follows by the radial return of that stress at a given strain with Hooke's
+2G (Simo & Hughes 1998, box 3.1), so it always exists, at a shear stress below the mu P prescribed.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from importlib import import_module
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sam.arrays import Array
+from sam.arrays import Array, Mask
 from sam.scene.friction import Friction
 from sam.scene.section import stated
-from sam.surface_state import FilmState
-from sam.tribofilm.material import Loads, Material
-from sam.tribofilm.return_map import bearable_radius
 
-FORMS = {"consistent": "sam.tribofilm.return_map", "printed": "sam.tribofilm.printed"}
-"""Form of the law -> the module whose `increment` gives the plastic strain; loaded when a
-step asks for it.
-"""
+
+@dataclass(frozen=True, eq=False)
+class FilmState:
+    """The film since the start of the cycle. plastic: plastic strain (6, nx, ny), tensor components in the
+    order 11 22 33 23 13 12; failed: (nx, ny) bool. A failed cell keeps the strain at which it failed; where
+    no equilibrium exists, that of the step before.
+    """
+
+    plastic: Array
+    failed: Mask
+
+    @classmethod
+    def fresh(cls, shape: tuple[int, int]) -> FilmState:
+        """A whole film without plastic strain on (nx, ny) cells."""
+        return cls(np.zeros((6, *shape)), np.zeros(shape, dtype=bool))
+
+    @property
+    def thinning(self) -> Array:
+        """Share of the thickness that plastic flow took, (nx, ny); negative where it is thicker."""
+        return 0.0 - self.plastic[2]
+
+
+@dataclass(frozen=True)
+class Material:
+    """An elastic, perfectly plastic film; young and yield_stress in Pa."""
+
+    young: float
+    poisson: float
+    yield_stress: float
+
+    @property
+    def twice_shear(self) -> float:
+        """2 G = E/(1 + nu) in Pa."""
+        return self.young / (1.0 + self.poisson)
+
+
+@dataclass(frozen=True)
+class Loads:
+    """What acts on n whole cells of a film at the end of a load step. plastic: strain at its beginning, (6,
+    n), order 11 22 33 23 13 12; strain: of the body's surface since the start of the cycle, xx, yy, xy, (3,
+    n), and bulk_normal its zz, (n,), for the printed form only; pressure and shear: P and s_xz in Pa, (n,).
+    """
+
+    plastic: Array
+    strain: Array
+    pressure: Array
+    shear: Array
+    bulk_normal: Array | None = None
+
+
+ITERATIONS = 50  # limit: 2 to 5 are needed from 1 to 1e9 times k
+ROUNDING = 1e-14  # of k: 45 roundings of a number
+
+
+def bearable_radius(shear: Array, yield_stress: float) -> Array:
+    """k in Pa of (b), 0 where there is no equilibrium; shear: tau in Pa, any shape."""
+    return np.sqrt(np.maximum(yield_stress**2 - 3.0 * shear**2, 0.0))
+
+
+def increment(loads: Loads, material: Material) -> Array:
+    """Increment of the plastic strain, (6, n), of cells that bear their traction."""
+    radius = bearable_radius(loads.shear, material.yield_stress)
+    return flow(trial_stress(loads, material), loads.shear, radius, material)
+
+
+def trial_stress(loads: Loads, material: Material) -> Array:
+    """(S, D, T) of (a) in Pa, (3, n), without further flow: paper Eq. 12 by Hooke's law, s_zz by Eq. 13."""
+    young, poisson, normal = material.young, material.poisson, -loads.pressure  # paper Eq. 13: s_zz = -P
+    xx, yy, xy = loads.strain - loads.plastic[[0, 1, 5]]
+    # s_xx + s_yy of paper Eq. 12, with E/(1 + nu) where E/(2 (1 + nu)) is printed, and s_zz = normal
+    in_plane = (young * (xx + yy) + 2.0 * poisson * normal) / (1.0 - poisson)
+    twice_shear = material.twice_shear
+    return np.stack([in_plane - 2.0 * normal, twice_shear * (xx - yy), twice_shear * xy])
+
+
+def flow(trial: Array, shear: Array, radius: Array, material: Material) -> Array:
+    """Increment of plastic strain (6, n) that brings trial stresses (3, n) to radius k > 0, (n,), or 0."""
+    a, b = material.young / (3.0 * (1.0 - material.poisson)), material.twice_shear
+    along, across = trial[0] ** 2 / 4.0, 0.75 * trial[1] ** 2 + 3.0 * trial[2] ** 2
+    factor = multiplier(along, across, radius, (a, b))
+    S, D, T = trial[0] / (1.0 + a * factor), *(trial[1:] / (1.0 + b * factor))
+    deviator = np.stack([S / 6.0 + D / 2.0, S / 6.0 - D / 2.0, -S / 3.0, np.zeros_like(S), shear, T])
+    return factor * deviator
+
+
+def multiplier(along: Array, across: Array, radius: Array, moduli: tuple[float, float]) -> Array:
+    """lambda >= 0 in 1/Pa of (b), (n,), where along = S_tr^2/4 and across = 3 D_tr^2/4 + 3 T_tr^2 in Pa^2;
+    radius: k in Pa; moduli: a and b of (a) in Pa. ArithmeticError for numbers that are not finite.
+    """
+    (a, b), factor = moduli, np.zeros_like(along)
+    for _ in range(ITERATIONS):
+        x, y = 1.0 + a * factor, 1.0 + b * factor
+        square = along / x**2 + across / y**2
+        excess = np.sqrt(square) / radius - 1.0
+        above = ~(excess <= ROUNDING)  # NaN too
+        if not above.any():
+            return factor
+        slope = np.where(above, a * along / x**3 + b * across / y**3, 1.0)  # of -q^2/2
+        factor = factor + np.where(above, excess * square / slope, 0.0)
+    raise ArithmeticError("the return map of the film did not settle: its strains or stresses are not finite")
+
+
+SHEAR = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # each shear component stands for two entries of the tensor
+
+
+def printed_increment(loads: Loads, material: Material) -> Array:
+    """Increment of the plastic strain, (6, n), of cells under the printed stress."""
+    return radial_flow(printed_stress(loads, material), loads.plastic, material)
+
+
+def printed_stress(loads: Loads, material: Material) -> Array:
+    """Stress (6, n) in Pa by Eqs. 12-14 as printed, order 11 22 33 23 13 12."""
+    young, poisson = material.young, material.poisson
+    half, lame = young / (2.0 * (1.0 + poisson)), young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
+    normals = np.stack([loads.strain[0], loads.strain[1], np.asarray(loads.bulk_normal)])
+    stress = np.zeros((6, *loads.pressure.shape))
+    stress[:3] = half * normals + lame * normals.sum(axis=0)  # paper Eq. 12
+    stress[2] += loads.pressure  # paper Eq. 13
+    stress[4] = loads.shear  # paper Eq. 14
+    return stress
+
+
+def radial_flow(stress: Array, plastic: Array, material: Material) -> Array:
+    """Increment of the plastic strain (6, ...) after `plastic`, at given total strains; 0 below yield."""
+    twice_shear, yield_stress = material.twice_shear, material.yield_stress
+    deviator = stress - twice_shear * plastic
+    deviator[:3] -= deviator[:3].mean(axis=0)
+    q = np.sqrt(1.5 * np.einsum("i,i...,i...->...", SHEAR, deviator, deviator))
+    return np.maximum(q - yield_stress, 0.0) / (twice_shear * np.maximum(q, yield_stress)) * deviator
 
 
 @dataclass(frozen=True)
 class FilmLaw:
     """The law of a tribofilm, which decides where the coefficient of friction is low and where it is high.
-
-    Parameters
-    ----------
-    young, yield_stress
-        In Pa; the film is perfectly plastic.
-    poisson
-        Poisson's ratio, below 1/2.
-    low, high
-        Coefficients of friction of a whole film, and where it has broken down.
-    limit
-        Largest loss of thickness in a cycle, as a strain (paper Eq. 17).
-    printed
-        Whether Eq. 12 and 13 are taken as printed.
+    young, yield_stress: in Pa, perfectly plastic; poisson: below 1/2; limit: largest loss of thickness in a
+    cycle, as a strain (paper Eq. 17); printed: whether Eq. 12 and 13 are taken as printed.
     """
 
     young: float
@@ -119,9 +250,9 @@ class FilmLaw:
             -sign * self.low * pressure[alive],  # paper Eq. 14
             None if bulk is None else bulk[alive],
         )
-        form = import_module(FORMS["printed" if self.printed else "consistent"])
+        flow_of = printed_increment if self.printed else increment
         plastic = state.plastic.copy()
-        plastic[:, alive] += form.increment(loads, self.material)
+        plastic[:, alive] += flow_of(loads, self.material)
         lost = np.abs(plastic[2]) if self.printed else -plastic[2]
         beyond = ~bears | (
             lost > (self.limit if limit is None else limit)
@@ -134,9 +265,7 @@ class FilmLaw:
 
     @property
     def bearable_pressure(self) -> float:
-        """Pressure in Pa from which there is no equilibrium at the low coefficient; infinite without
-        friction.
-        """
+        """Pressure in Pa from which there is no equilibrium at the low coefficient; infinite at zero."""
         return float(self.yield_stress / (np.sqrt(3.0) * self.low)) if self.low > 0 else np.inf
 
     def _checked(

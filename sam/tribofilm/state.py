@@ -5,28 +5,115 @@ friction is low.
 Within a load step the film is tested with the pressure and the surface strain of a solved contact. Where it
 fails, friction becomes high, which changes both; so the step is solved again, from where it began, until no
 further cell fails. Failures only add up, hence this ends. A failure lasts until the end of the cycle; the
-next one begins with a new film. Bosman & Schipper 2011, section 4. Below a counter-body that moves a visit of
-it takes the place of a cycle, see `sam.tribofilm.visits`.
+next one begins with a new film. Bosman & Schipper 2011, section 4. Below a counter-body that moves each visit
+of it to a cell begins with a whole film, which may thin by what grew while the cell was out of contact.
+
+A cell enters when it bears pressure after it bore none while the counter-body moved on; then its film is
+whole, and its strain is counted from that of the surface before the step. It leaves when it bears none; a
+failure lasts until then. The film that may be lost in a visit is what grew since the last one, K_0 sqrt(t)
+over its thickness (Bosman & Schipper 2011, Eq. 11, 16 and 17), t = way of the counter-body between the two
+over its speed; in the first visit it is that of the scene. The clock is the way: it stands still while the
+load is put on or taken off, so that a cell that is unloaded and loaded again at one place goes on with the
+film that it had.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
-from sam.arrays import Array
-from sam.surface_state import FilmState, TribofilmState
-from sam.tribofilm.law import FilmLaw
+import numpy as np
 
-if TYPE_CHECKING:
-    from sam.tribofilm.visits import VisitLaw
+from sam.arrays import Array, Mask
+from sam.tribofilm.law import FilmLaw, FilmState
+
+ROUNDING = 1e-9  # of a way that is as long as a bin, and of a pass: a clock that stands still
+
+
+BINS = 40  # of the way between two visits, each sqrt(2) times as long as the one before
+
+
+def bins_of_visits(period: float) -> Array:
+    """Upper ends in m of the bins of the way between two visits, (BINS,); period: of a pass, the last one."""
+    return period * 2.0 ** (np.arange(1 - BINS, 1) / 2)
+
+
+@dataclass(frozen=True, eq=False)
+class Visits:
+    """When the cells of a surface were in contact with a counter-body that moves. clock: way of the
+    counter-body at the end of the last step in m; inside: which cells were in contact then; left: the clock
+    when a cell left, NaN of one that never was inside; limit: largest thinning of the film in the present
+    visit; strain: as `reference` of `TribofilmState`, at the end of the last step, (4, nx, ny); counts: of
+    visits by the way between two of them, see `bins_of_visits`. All but that (nx, ny).
+    """
+
+    clock: float
+    inside: Mask
+    left: Array
+    limit: Array
+    strain: Array
+    counts: Array
+
+    def unloaded(self, strain: Array) -> Visits:
+        """The same without contact, on a surface with these strains."""
+        left = np.where(self.inside, self.clock, self.left)
+        return replace(self, inside=np.zeros_like(self.inside), left=left, strain=strain)
+
+
+@dataclass(frozen=True, eq=False)
+class TribofilmState:
+    """The tribofilm on the cells of a surface, and the strain of the surface at the start of the cycle. film:
+    on (nx, ny) cells; reference: total strains xx, yy, xy (tensor), zz of the surface when the film was new,
+    (4, nx, ny). The printed form of the law alone needs zz. visits: below a counter-body that moves.
+    """
+
+    film: FilmState
+    reference: Array
+    visits: Visits | None = None
+
+
+@dataclass(frozen=True)
+class VisitLaw:
+    """How a film begins each visit. rate: of the thinning that may be lost, in 1/sqrt(m) of the way out of
+    contact, None: the same in every visit; period: way in m from one pass to the next.
+    """
+
+    rate: float | None
+    period: float
+
+    def never(self, strain: Array, limit: float) -> Visits:
+        """Before the first contact; strain: of the surface, (4, nx, ny)."""
+        shape = strain.shape[1:]
+        nothing = np.zeros(shape, dtype=bool)
+        left, limits = np.full(shape, np.nan), np.full(shape, limit)
+        return Visits(0.0, nothing, left, limits, strain, np.zeros(BINS))
+
+    def entered(self, state: TribofilmState, visits: Visits, clock: float) -> TribofilmState:
+        """The film at the beginning of a step to a clock in m."""
+        new = ~visits.inside & ~(clock <= visits.left + ROUNDING * self.period)
+        limit, failed = visits.limit, state.film.failed
+        if self.rate is not None:
+            again = new & np.isfinite(visits.left)
+            limit = np.where(again, self.rate * np.sqrt(np.where(again, clock - visits.left, 0.0)), limit)
+        if (failed & new).any():  # else the same array: nothing is solved anew for it
+            failed = failed & ~new
+        film = FilmState(np.where(new, 0.0, state.film.plastic), failed)
+        reference = np.where(new, visits.strain, state.reference)
+        return TribofilmState(film, reference, replace(visits, clock=clock, limit=limit))
+
+    def after(self, visits: Visits, pressure: Array, strain: Array) -> Visits:
+        """The visits at the end of a step with this pressure, (nx, ny)."""
+        inside, bins = pressure > 0, bins_of_visits(self.period)
+        came = inside & ~visits.inside & (visits.clock > visits.left + ROUNDING * self.period)
+        ways = (visits.clock - visits.left)[came]
+        which = np.minimum(np.searchsorted(bins, ways * (1 - ROUNDING)), BINS - 1)
+        counts = visits.counts + np.bincount(which, minlength=BINS)
+        left = np.where(visits.inside & ~inside, visits.clock, visits.left)
+        return replace(visits, inside=inside, left=left, strain=strain, counts=counts)
 
 
 @dataclass(frozen=True)
 class FilmOnCells:
-    """The law of a tribofilm on `shape` (nx, ny) cells; what it makes is a new `TribofilmState` each time.
-    visited: below a counter-body that moves.
-    """
+    """The law of a tribofilm on `shape` (nx, ny) cells; visited: below a counter-body that moves."""
 
     law: FilmLaw
     shape: tuple[int, int]
@@ -50,20 +137,18 @@ class FilmOnCells:
     def tested(
         self, committed: TribofilmState, tried: TribofilmState, strain: Array, *, pressure: Array, sign: float
     ) -> TribofilmState:
-        """The film at the end of a load step that was solved with the friction of `tried`.
-
-        committed: at its beginning; strain: of the surface at its end, (4, nx, ny); pressure: in Pa, (nx,
-        ny); sign: of the traction along x. The film flows from where it was committed, and what failed in an
-        earlier pass of the step stays so. Where no further cell fails, `failed` is the array of `tried`:
-        friction is what the step was solved with.
+        """The film at the end of a load step that was solved with the friction of `tried`. committed: at its
+        beginning; strain: of the surface at its end, (4, nx, ny); pressure in Pa, (nx, ny); sign: of the
+        traction. The film flows from where it was committed, and what failed in an earlier pass of the step
+        stays so; where no further cell fails, `failed` is the array of `tried`.
         """
         before = FilmState(committed.film.plastic, tried.film.failed)
         since = strain - committed.reference
         visits = committed.visits
         limit = None if visits is None else visits.limit
-        found = self.law.step(before, since[:3], pressure, sign=sign, bulk_normal=since[3], limit=limit)
-        if not (found.failed & ~before.failed).any():
-            found = replace(found, failed=before.failed)
+        film = self.law.step(before, since[:3], pressure, sign=sign, bulk_normal=since[3], limit=limit)
+        if not (film.failed & ~before.failed).any():
+            film = replace(film, failed=before.failed)
         if visits is not None and self.visited is not None:
             visits = self.visited.after(visits, pressure, strain)
-        return replace(committed, film=found, visits=visits)
+        return replace(committed, film=film, visits=visits)

@@ -78,7 +78,7 @@ def fed(monkeypatch, of_force: Scene, result):
     peak = next(target.load for target in reversed(targets) if target.rises)
     schedule = replace(plan.schedule, targets=targets, peak=replace(peak, sign=1.0))
     with monkeypatch.context() as patched:
-        patched.setattr("sam.solver.plan", lambda _scene: replace(plan, schedule=schedule))
+        patched.setattr("sam.solver.plan_of", lambda _bodies: replace(plan, schedule=schedule))
         return sam.solve(of_force)
 
 

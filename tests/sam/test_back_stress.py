@@ -15,8 +15,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from sam.plasticity.kinematic import BackStresses, BackStressFields, kinematic_multiplier
-from sam.plasticity.return_map import deviator, mises
+from sam.plasticity.flow import BackStresses, BackStressFields, deviator, kinematic_multiplier, mises
 from sam.scene.yield_curve import Linear, Swift
 from tests.material_point import MU, POINTS, YOUNG, FemPoint, SamPoint, Specimen
 

@@ -9,18 +9,15 @@ from rounding import FAR_SCENE, close
 
 import sam
 from sam import choose_grid
-from sam.contact.bodies import CoatedBodies
 from sam.contact.convolution import Counters
 from sam.contact.normal import solve_contact
-from sam.contact.operators import SurfaceOperators
+from sam.contact.operators import CoatedBodies, SurfaceOperators
 from sam.grid.cells import Window
-from sam.grid.coated import contact_radius, depths_with_film
-from sam.kernels.lags import Lags
-from sam.kernels.patches import displacement_coefficients
+from sam.grid.smooth import contact_radius, depths_with_film
+from sam.kernels.patches import Lags, displacement_coefficients
 from sam.layered.patches import LayeredPatches
 from sam.layered.response import Layers
-from sam.planner.bodies import pair_of
-from sam.planner.grids import contact_scale
+from sam.planner.bodies import Bodies
 from sam.scene import Body, CounterBody, Grid, Loading, Plasticity, Scene, Solver, Status
 from sam.schedule import Load
 from verification.cost.plan import plan
@@ -310,7 +307,7 @@ def bare(a_scene: Scene) -> Scene:
 
 def scale(a_scene: Scene) -> float:
     """Estimated contact radius over that of the bare body."""
-    return contact_scale(a_scene, pair_of(a_scene), a_scene.body.coating)
+    return Bodies(a_scene).scale
 
 
 def test_the_estimated_radius_is_hertz_without_film_and_close_with_it():
@@ -396,7 +393,7 @@ def test_solve_contact_takes_the_bodies_as_an_argument():
     assert contact.pressure.max() == pytest.approx(
         hertz.CircularContact(FORCE, RADIUS, modulus).peak_pressure, rel=2e-3
     )
-    assert pair_of(scene()).contact_modulus == pytest.approx(modulus)
+    assert Bodies(scene()).pair.contact_modulus == pytest.approx(modulus)
 
 
 def test_the_plan_lists_what_a_coating_adds():
@@ -421,7 +418,7 @@ def test_a_wrong_coefficient_is_noticed():
     a_scene, counters = scene(80 / 210, 1.0), Counters()
     problem = sam.plan(a_scene).problem(counters)
     right = problem.contact(Load(FORCE)).pressure[32, 32]
-    bodies = problem.coated.bodies(problem.grid)
+    bodies = problem.plan.coated.bodies(problem.plan.grid)
     bodies.modulus *= 0.99
     bodies._known.clear()
     assert abs(problem.contact(Load(FORCE)).pressure[32, 32] / right - 1) > 5e-3

@@ -8,8 +8,7 @@ from rounding import FAR
 from sam.contact.convolution import Convolution, Counters
 from sam.contact.normal import Search, around, no_contact, solve_contact
 from sam.grid.cells import CellGrid, Window
-from sam.kernels.lags import Lags
-from sam.kernels.patches import displacement_coefficients
+from sam.kernels.patches import Lags, displacement_coefficients
 from sam.results.history import contact_area
 from verification.reference.elliptic import EllipticContact
 

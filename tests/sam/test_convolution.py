@@ -7,8 +7,7 @@ from rounding import EPS
 
 from sam.contact.convolution import Convolution, Counters
 from sam.grid.cells import Window
-from sam.kernels.lags import Lags
-from sam.kernels.patches import STRESS, displacement_coefficients, parity, stress_coefficients
+from sam.kernels.patches import STRESS, Lags, displacement_coefficients, parity, stress_coefficients
 
 
 def direct_sum(kernel, signs, field, source, observed):

@@ -13,7 +13,7 @@ from fem_reference.common.bodies import Elastic
 from fem_reference.common.hertz import plastic_radius
 from fem_reference.common.schedule import Load
 from sam.contact.convolution import Counters
-from sam.contact.normal import Found, Units, measured
+from sam.contact.normal import Solved, Units, measured
 from sam.contact.operators import SurfaceOperators
 from sam.layered.response import Layers
 
@@ -29,7 +29,7 @@ def test_converged_within_twice_the_tolerance():
     p[1, 1:3], u[1, 2] = 0.5, 2e-9
     gap0 = np.where(p > 0, 0.0, 1.0)
     expected = 1e-9 / (grid.self_influence * 0.5)  # of the two cells each lies 1e-9 off their mean
-    fields = Found(p, u, grid.whole, 1)
+    fields = Solved(p, u, grid.whole, 1)
     for share, converged in ((1.9995, True), (2.0005, False)):
         found = measured(grid, gap0, fields, Units(1.0, 1.0, 2.0), given=1.0, tolerance=expected / share)
         assert found.gap_residual == pytest.approx(expected, rel=1e-9, abs=0.0) and found.penetration == 0.0

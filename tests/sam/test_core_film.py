@@ -6,9 +6,8 @@ otherwise.
 import numpy as np
 import pytest
 
-from sam.contact.surface_strain import elastic_strain, surface_strain
-from sam.tribofilm.material import Loads, Material
-from sam.tribofilm.printed import printed_stress, radial_flow
+from sam.contact.stress import elastic_strain, surface_strain
+from sam.tribofilm.law import Loads, Material, printed_stress, radial_flow
 
 YOUNG = 80e9
 CASES = [0.0, 0.2, 0.3, 0.45]

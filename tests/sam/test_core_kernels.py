@@ -14,11 +14,10 @@ from fem_reference.common.bodies import Coating, Elastic
 from fem_reference.common.layered_force import _across
 from fem_reference.spatial.lines import Lines
 from sam.contact.convolution import Counters
-from sam.contact.fit import fit_of
-from sam.elastic.coated import CoatedPair
+from sam.contact.normal import fit_of
+from sam.contact.operators import CoatedPair
 from sam.half_space import ElasticConstants, ElasticPair
-from sam.kernels.lags import Cuboids, Lags
-from sam.kernels.patches import stress_coefficients
+from sam.kernels.patches import Cuboids, Lags, stress_coefficients
 from sam.layered.patches import normal_compliance
 from sam.layered.response import Layers
 from sam.plasticity.spectra import NEAR, mean_stress_of_load
@@ -92,7 +91,7 @@ def test_given_pressure_lowers_the_surface_as_hertz_s():
         {"cells": (65, 65), "extent": (24e-6, 24e-6)},
     )
     plan = sam.plan(Scene(body={"young": 210e9, "poisson": 0.3}, loading=loading, grid=grid))
-    found = plan.problem(Counters()).contact(Load(plan.schedule.peak_force))
+    found = plan.problem(Counters()).contact(Load(plan.schedule.peak.force))
     expected = np.pi * 2e9 * 10e-6 / 2 * (1 - 0.3**2) / 210e9
     assert found.displacement.max() == pytest.approx(expected, rel=3e-4, abs=0.0)
 

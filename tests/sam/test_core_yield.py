@@ -17,10 +17,10 @@ from fem_reference.spatial import recovery as spatial
 from sam.contact.convolution import Counters
 from sam.contact.stress import von_mises
 from sam.plasticity.flow import Material
+from sam.plasticity.load_step import GivenPressure
 from sam.plasticity.paper import PaperProblem
-from sam.plasticity.pressure import GivenPressure
 from sam.plasticity.state import MaterialFields, Trial
-from sam.results.peaks import largest_mises
+from sam.results.quantities import largest_mises
 from sam.scene.yield_curve import Kinks, Linear, Swift
 from sam.schedule import Load
 

@@ -8,7 +8,7 @@ from pydantic import ValidationError
 
 from sam import UnsupportedScene, left_out, plan, solve
 from sam.contact.convolution import Counters
-from sam.planner.plan import Plan
+from sam.elastic.problem import Plan
 from sam.scene import COUNTER_HEIGHT, CounterSurface, HeightMap, Scene
 from sam.scene.surface import heights
 from verification.runs import models

@@ -13,7 +13,10 @@ PACKAGES = ("sam.scene", "sam.kernels", "sam.layered", "sam.contact", "sam.tribo
 def examples(package: str) -> tuple[int, int]:
     """(failed, tried) of all modules of a package; a module that is a script is left out."""
     root = import_module(package)
-    names = [package, *(each.name for each in pkgutil.walk_packages(root.__path__, f"{package}."))]
+    names = [
+        package,
+        *(each.name for each in pkgutil.walk_packages(getattr(root, "__path__", ()), f"{package}.")),
+    ]
     found = [doctest.testmod(import_module(name)) for name in names if not name.endswith("_child")]
     return sum(each.failed for each in found), sum(each.attempted for each in found)
 

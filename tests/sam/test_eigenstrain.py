@@ -21,8 +21,8 @@ from sam.kernels.eigenstrain import (
     parity,
     surface_displacement_coefficients,
 )
-from sam.kernels.lags import Cuboids, Lags
 from sam.kernels.layer_stress import residual_stress_coefficients
+from sam.kernels.patches import Cuboids, Lags
 from verification.reference.mindlin_cheng import EigenstrainSphere
 from verification.reference.nuclei import (
     cuboid_by_faces,

@@ -9,7 +9,7 @@ from scipy.integrate import quad
 
 import sam
 from sam import choose_grid
-from sam.planner.bodies import hertz_semi_axes, pair_of
+from sam.planner.bodies import Bodies, hertz_semi_axes
 from sam.scene import Solver, Status
 from verification.reference import flat_punch, hertz
 
@@ -99,7 +99,7 @@ def test_estimated_semi_axes_meet_hertz(ratio):
     """
     a_scene = scene({"shape": "ellipsoid", "radius": None, "radius_x": 1e-4, "radius_y": 1e-4 * ratio})
     a, b = hertz_semi_axes(a_scene)
-    p0, modulus = 1.5 * 0.65 / (np.pi * a * b), pair_of(a_scene).contact_modulus
+    p0, modulus = 1.5 * 0.65 / (np.pi * a * b), Bodies(a_scene).pair.contact_modulus
     for this, other, radius in ((a, b, 1e-4), (b, a, 1e-4 * ratio)):
 
         def integrand(t, m=this, n=other):  # w = m^2 tan^2 t
@@ -118,7 +118,7 @@ def test_punch():
     grid = choose_grid(a_scene)
     a = np.sqrt(result.discretisation["contact_cells"] * grid.hx * grid.hy / np.pi)
     assert a == pytest.approx(10e-6, rel=5e-3)
-    modulus = pair_of(a_scene).contact_modulus
+    modulus = Bodies(a_scene).pair.contact_modulus
     assert result.status is Status.CONVERGED
     assert result.quantities == result.quantities | {
         "approach_m": pytest.approx(flat_punch.FlatPunch(1.0, 10e-6, modulus).approach, rel=5e-3),

@@ -12,15 +12,13 @@ from plastic_start import begin
 
 import sam
 import sam.grid.smooth
-import sam.planner.grids
+import sam.planner.bodies
 import sam.solver
 from sam import choose_grid
-from sam.grid.cells import Room
-from sam.grid.enlargement import MOST_TIMES, RATIO, Sides, enlarged
+from sam.grid.cells import MOST_TIMES, RATIO, Room, Sides, enlarged
 from sam.grid.smooth import FARTHEST, point_load_reach
-from sam.planner.bodies import SHAPES, hertz_semi_axes
-from sam.planner.grids import given_sides
-from sam.plasticity.solution import on_larger_grid
+from sam.planner.bodies import SHAPES, given_sides, hertz_semi_axes
+from sam.plasticity.history import on_larger_grid
 from sam.scene import Body, Scene, Status
 from verification.reference.point_loads import boussinesq_stress
 from verification.reference.stress import von_mises
@@ -133,7 +131,7 @@ def test_enlarged_during_the_solve_it_is_the_answer_of_the_larger_grid(coarse, m
     assert any("enlarged" in warning for warning in small.warnings)
     assert list(small.tables["history"]["step"]) == list(range(1, len(small.tables["history"]["step"]) + 1))
     whole = sam.plan(scene(9)).on(Room(**grown)).grid
-    monkeypatch.setattr(sam.solver, "plan", lambda scene: replace(sam.plan(scene), grid=whole))
+    monkeypatch.setattr(sam.solver, "plan_of", lambda bodies: replace(sam.plan(bodies.scene), grid=whole))
     large = sam.solve(scene(9))
     assert large.discretisation["cells"] == small.discretisation["cells"]
     for name in ("approach_m", "p_max_Pa", "peeq_max", "mises_max_Pa"):
@@ -191,8 +189,8 @@ def test_layers_below_a_rough_body_are_added_when_the_zone_reaches_the_last(monk
     deep enough from the beginning.
     """
     deep = sam.solve(rough())
-    reach = sam.planner.grids.point_load_reach
-    monkeypatch.setattr(sam.planner.grids, "point_load_reach", lambda *numbers: 0.6 * reach(*numbers))
+    reach = sam.planner.bodies.point_load_reach
+    monkeypatch.setattr(sam.planner.bodies, "point_load_reach", lambda *numbers: 0.6 * reach(*numbers))
     kept = []
     grown = sam.solve(rough(), checkpoint=kept.append)
     assert deep.converged and "grid_enlarged" not in deep.discretisation

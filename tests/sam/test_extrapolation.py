@@ -10,8 +10,8 @@ from pydantic import ValidationError
 import fem_reference
 import sam
 from sam import choose_grid
-from sam.planner.grids import coarse, halved
-from sam.results.extrapolation import extrapolated
+from sam.planner.bodies import coarse, halved
+from sam.results.quantities import extrapolated
 from sam.scene import Scene, Status, read_scene
 from verification.cases.case import with_grid, with_loading, with_mesh
 from verification.cases.recipes import at_ratio

@@ -9,7 +9,7 @@ import pytest
 
 from sam.scene.friction import GROWTH_ROWS, Friction, growth_coefficient
 from sam.tribofilm import FilmLaw, FilmState
-from sam.tribofilm.return_map import multiplier
+from sam.tribofilm.law import multiplier
 from verification.cases.film import film_law
 from verification.reference.bonded_film import (
     in_plane_strain,

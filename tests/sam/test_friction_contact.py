@@ -16,12 +16,10 @@ from sam import choose_grid
 from sam.contact.convolution import Counters
 from sam.contact.normal import Search, solve_contact
 from sam.contact.operators import SurfaceOperators
-from sam.elastic.sliding import sliding_of
-from sam.elastic.stress import plane_stress
+from sam.elastic.stress import plane_stress, sliding_of
 from sam.grid.cells import Window
-from sam.kernels.lags import Lags
-from sam.kernels.patches import displacement_coefficients, parity
-from sam.planner.bodies import pair_of
+from sam.kernels.patches import Lags, displacement_coefficients, parity
+from sam.planner.bodies import Bodies
 from sam.scene import Scene, Solver, Status
 from sam.schedule import Load
 from verification.reference import hertz
@@ -59,7 +57,7 @@ def test_traction_moves_both_bodies_as_point_forces_do(counterbody):
     constants.
     """
     a_scene = scene(0.37, counterbody)
-    rng, modulus, h = np.random.default_rng(1), pair_of(a_scene).contact_modulus, 2e-7
+    rng, modulus, h = np.random.default_rng(1), Bodies(a_scene).pair.contact_modulus, 2e-7
     pressure = rng.random((3, 2))
     expected = np.zeros((5, 4))
     for i, j in np.ndindex(5, 4):
@@ -78,13 +76,13 @@ def test_the_mismatch_is_dundurs_and_zero_between_like_bodies():
     """Twice beta = ((1 - 2 nu1)/mu1 - (1 - 2 nu2)/mu2)/(2 ((1 - nu1)/mu1 + (1 - nu2)/mu2)); rigid: (1 - 2
     nu)/(2 (1 - nu)).
     """
-    assert pair_of(scene()).tangential_mismatch == pytest.approx(0.4 / 0.7, rel=1e-14)
-    assert pair_of(scene(counterbody=STEEL)).tangential_mismatch == 0.0
+    assert Bodies(scene()).pair.tangential_mismatch == pytest.approx(0.4 / 0.7, rel=1e-14)
+    assert Bodies(scene(counterbody=STEEL)).pair.tangential_mismatch == 0.0
     assert coupling_of(scene(counterbody=STEEL)) == 0.0
     assert coupling_of(scene(friction={"coupling": False})) == 0.0
     mu, other = 210e9 / 2.6, 70e9 / 2.66
     beta = (0.4 / mu - 0.34 / other) / (2 * (0.7 / mu + 0.67 / other))
-    assert pair_of(scene(counterbody=ALUMINIUM)).tangential_mismatch == pytest.approx(2 * beta, rel=1e-13)
+    assert Bodies(scene(counterbody=ALUMINIUM)).pair.tangential_mismatch == pytest.approx(2 * beta, rel=1e-13)
 
 
 def dense(n, h, load, tangential):
@@ -221,7 +219,7 @@ def test_given_tractions_make_hamiltons_stresses():
     a_scene = scene(0.4, grid={"cells": (145, 145), "depths": tuple(depths)}, **HERTZ)
     grid, counters = choose_grid(a_scene), Counters()
     assert 6e-6 / grid.hx == pytest.approx(36.25)
-    problem, load = sam.plan(a_scene).problem(counters), Load(sam.plan(a_scene).schedule.peak_force)
+    problem, load = sam.plan(a_scene).problem(counters), Load(sam.plan(a_scene).schedule.peak.force)
     contact = problem.contact(load)
     stress = plane_stress(problem.state(load, contact))[..., 0]
     for friction, good in ((0.4, True), (-0.4, False)):

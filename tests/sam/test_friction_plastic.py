@@ -17,8 +17,7 @@ from sam.contact.convolution import Counters
 from sam.contact.stress import Window
 from sam.grid.cells import CellGrid
 from sam.kernels.eigenstrain import displacement_parity, surface_displacement_coefficients
-from sam.kernels.lags import Cuboids, Lags
-from sam.kernels.patches import STRESS, parity, stress_coefficients
+from sam.kernels.patches import STRESS, Cuboids, Lags, parity, stress_coefficients
 from sam.plasticity import Extent, Strained, surface_displacement
 from sam.plasticity.spectra import BoxOperator, mean_stress_of_load
 from sam.results.snapshots import SHEAR
@@ -154,7 +153,7 @@ def test_converged_with_the_current_traction(sliding):
 
 def test_the_other_way_is_the_mirror_image():
     """One step with q along +x and one along -x: everything mirrored, to the tolerance of the step."""
-    force, found = sam.plan(scene()).schedule.peak_force, {}
+    force, found = sam.plan(scene()).schedule.peak.force, {}
     for sign in (1.0, -1.0):
         model, now = begin(scene())
         trial = model.problem(now.extent).step(now.state, Load(force, sign))

@@ -12,7 +12,7 @@ import sam
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.plasticity import J2, History
 from fem_reference.spatial.planner import plan as spatial_plan
-from sam.plasticity.return_map import plastic_multiplier
+from sam.plasticity.flow import plastic_multiplier
 from sam.scene import Plasticity, load_scene, parse_scene
 from sam.scene.body import LAWS
 from sam.scene.section import SceneError

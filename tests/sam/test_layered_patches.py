@@ -8,11 +8,16 @@ import pytest
 from rounding import EPS, close, of_sum
 
 import sam.layered.patches as patches
-from sam.kernels.lags import Lags
-from sam.kernels.patches import STRESS, displacement_coefficients, parity, stress_coefficients
-from sam.layered.cells import Angular, CellIntegrals, spline_matrix
-from sam.layered.patches import LayeredPatches
-from sam.layered.radial import RadialTable, quintic, wave_numbers
+from sam.kernels.patches import STRESS, Lags, displacement_coefficients, parity, stress_coefficients
+from sam.layered.patches import (
+    Angular,
+    CellIntegrals,
+    LayeredPatches,
+    RadialTable,
+    quintic,
+    spline_matrix,
+    wave_numbers,
+)
 from sam.layered.response import Layers, Response
 from verification.reference.quadrature import point_response
 

@@ -11,7 +11,7 @@ from builders import PERFECT, RUN_IN_STEEL, hertz_force, running_in, scene as sm
 from plastic_start import begin
 
 import sam
-from sam.plasticity import history, step as plastic_step
+from sam.plasticity import history, load_step as plastic_step
 from sam.plasticity.history import LONGER
 from sam.scene import Status
 from sam.schedule import Load

@@ -11,7 +11,7 @@ from scipy.integrate import quad
 
 from sam.elastic.misfit import PROFILES, MisfitSphere
 from sam.grid.cells import CellGrid, Room
-from sam.grid.misfit import MisfitDemand
+from sam.grid.smooth import MisfitDemand
 from sam.half_space import ElasticConstants
 from sam.scene import Grid
 

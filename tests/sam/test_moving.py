@@ -9,13 +9,13 @@ import pytest
 from plastic_start import begin
 
 import sam
-from sam.elastic.given import GivenHertz
+from sam.contact import Counters
+from sam.elastic.problem import GivenHertz
 from sam.grid.cells import CellGrid, Window
-from sam.moving.track import Track
+from sam.moving import Track
 from sam.plasticity import Model, onward
-from sam.plasticity.model import Built
 from sam.plasticity.progress import Progressed
-from sam.results.peaks import refined_peak
+from sam.results.quantities import refined_peak
 from sam.scene import Checkpoint, Plasticity, Scene, Status
 from sam.scene.groove import Groove
 from sam.schedule import Load
@@ -311,7 +311,7 @@ class Replayed:
 
 def all_steps(model: Model, now: Progressed) -> tuple[Progressed, dict]:
     """The record after a history, and the pressure under each of its loads."""
-    found, given = {}, model.elastic.given
+    found, given = {}, model.plan.given
     while not now.ended:
         cycle = now.targets[0].cycle
         if given is not None:
@@ -330,12 +330,12 @@ def test_pressures_that_are_given_again_leave_the_same_strains():
     scene = moving(3, {"steps": 2}, track=1.5, loading={"steps": 1, "cycles": 2})
     scene = scene.model_copy(update={"solver": scene.solver.model_copy(update={"tolerance": 1e-8})})
     model, start = begin(scene)
-    start = replace(start, targets=model.schedule.targets)
+    start = replace(start, targets=model.plan.schedule.targets)
     end, found = all_steps(model, start)
     strain, off = end.state.material.strain, []
     for change in (1.0, 1.0001):
-        elastic = replace(model.elastic, given=Replayed(found, change))
-        again, _ = all_steps(replace(model, elastic=elastic, built=Built()), start)
+        plan = replace(model.plan, given=Replayed(found, change))
+        again, _ = all_steps(Model(plan.problem(Counters())), start)
         assert end.extent == again.extent and not end.targets and not again.targets
         off.append(np.abs(again.state.material.strain - strain).max() / np.abs(strain).max())
     assert off[0] < 1e-6 and off[1] > 1e-5

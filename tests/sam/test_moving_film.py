@@ -8,15 +8,13 @@ import pytest
 from builders import CHEMICAL_FILM, RUN_IN_STEEL, STEEL
 
 import sam
-from sam.moving.track import Track
-from sam.planner.schedules import schedule_of
+from sam.moving import Track
+from sam.planner.make import schedule_of
 from sam.plasticity.progress import Progressed
 from sam.scene import Checkpoint, Scene
 from sam.schedule import Load
-from sam.surface_state import FilmState, bins_of_visits
-from sam.tribofilm.law import FilmLaw
-from sam.tribofilm.state import FilmOnCells
-from sam.tribofilm.visits import VisitLaw
+from sam.tribofilm.law import FilmLaw, FilmState
+from sam.tribofilm.state import FilmOnCells, VisitLaw, bins_of_visits
 
 LIMIT, RATE, TRACK = 0.02, 3.0, 10.0
 LAW = FilmLaw(80e9, 0.3, 2e9 / 3, 0.1, 0.4, LIMIT)

@@ -10,7 +10,7 @@ from pydantic import ValidationError
 
 import sam
 from sam.contact.convolution import Counters
-from sam.moving.track import Track
+from sam.moving import Track
 from sam.scene import HeightMap, Scene
 from sam.scene.surface import CounterSurface, Strip, heights, with_relief
 

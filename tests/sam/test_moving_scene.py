@@ -7,7 +7,7 @@ import pytest
 from builders import PATH, parsed, scene, scene_text
 from hypothesis import given, strategies as st
 
-from sam.planner.schedules import schedule_of
+from sam.planner.make import schedule_of
 from sam.scene import Path, Scene, SceneError, Strokes, parse_scene, resolved
 
 

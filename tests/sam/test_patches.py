@@ -8,8 +8,14 @@ import pytest
 from derivations.load_table import TABLE, as_text, derive
 
 import sam.kernels.patches as patches
-from sam.kernels.lags import Lags
-from sam.kernels.patches import STRESS, displacement_coefficients, load_table, parity, stress_coefficients
+from sam.kernels.patches import (
+    STRESS,
+    Lags,
+    displacement_coefficients,
+    load_table,
+    parity,
+    stress_coefficients,
+)
 from sam.kernels.primitives import Corners, orders, primitive
 from verification.reference.quadrature import patch_response, point_response
 

@@ -9,10 +9,9 @@ import pytest
 from sam.contact.convolution import Counters
 from sam.grid.cells import Window
 from sam.kernels.eigenstrain import surface_displacement_coefficients
-from sam.kernels.lags import Cuboids, Lags
 from sam.kernels.layer_stress import LayerStress, residual_stress_coefficients
-from sam.kernels.patches import STRESS, parity, stress_coefficients
-from sam.plasticity.outside import Strained, residual_stress, surface_displacement
+from sam.kernels.patches import STRESS, Cuboids, Lags, parity, stress_coefficients
+from sam.plasticity.measure import Strained, residual_stress, surface_displacement
 from sam.plasticity.spectra import BoxOperator, CellMeans, _points, mean_stress_of_load
 
 NX, NY, ASPECT, NU, MU = 7, 6, 0.8, 0.3, 2.5

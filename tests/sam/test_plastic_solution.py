@@ -18,12 +18,12 @@ from sam import choose_grid
 from sam.contact.convolution import Counters
 from sam.elastic.history import solve_elastic
 from sam.grid.smooth import LAYERS_IN_PROFILE
-from sam.kernels.lags import Lags
 from sam.kernels.layer_stress import CornerFunctions, LayerStress, mesh
-from sam.planner.schedules import schedule_of
-from sam.plasticity import step as plastic_step
+from sam.kernels.patches import Lags
+from sam.planner.make import schedule_of
+from sam.plasticity import load_step as plastic_step
+from sam.plasticity.flow import contraction, deviator, equivalent_strain, plastic_multiplier
 from sam.plasticity.history import committed
-from sam.plasticity.return_map import contraction, deviator, equivalent_strain, plastic_multiplier
 from sam.scene import Scene, Solver, Status
 from sam.scene.yield_curve import Linear, Swift, Tabulated
 from sam.schedule import Load
@@ -146,7 +146,7 @@ def test_one_and_a_half_times_the_yield_stress_is_elastic():
     assert result.quantities["peeq_max"] == 0.0 and result.cost["operator_applications"] == 0
     assert any(entry.stage == "eigenstrain kernels" for entry in result.left_out)
     plan = sam.plan(a_scene)
-    rows, _ = solve_elastic(plan.problem(Counters()), plan.schedule, plan.remedies, lambda *_: None)
+    rows = solve_elastic(plan.problem(Counters()), lambda *_: None).rows
     assert result.tables["history"]["p_max_Pa"][3] == rows[3].p_max
 
 

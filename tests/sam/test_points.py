@@ -8,12 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sam.contact.convolution import Counters
-from sam.contact.transforms import Transforms
-from sam.plasticity import step
-from sam.plasticity.flow import Material
+from sam.contact.convolution import Counters, Transforms
+from sam.plasticity import load_step as step
+from sam.plasticity.flow import Material, deviator, equivalent_strain, mises
 from sam.plasticity.points import POINTS, CellFlow, Linear, stress_at_points, whole
-from sam.plasticity.return_map import deviator, equivalent_strain, mises
 from sam.plasticity.spectra import ODD_X, ODD_Y
 from sam.plasticity.state import MaterialFields
 from sam.scene.yield_curve import Layered, Linear as LinearLaw, Swift

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from sam.plasticity.pointwise import at_centres, largest
+from sam.plasticity.measure import at_centres, largest
 
 FACES = np.array([0.0, 1.0, 2.0, 3.0, 4.0, 5.5, 7.5])
 X, Y = np.arange(7) - 3.0, np.arange(6) - 2.5

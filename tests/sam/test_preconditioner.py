@@ -8,10 +8,10 @@ from plastic_start import begin
 
 from sam.contact.convolution import Counters
 from sam.grid.cells import Window
-from sam.kernels.lags import Cuboids, Lags
-from sam.plasticity import step
-from sam.plasticity.preconditioner import PARTS, ROOT, preconditioned, stiffness_of_parts
-from sam.plasticity.return_map import contraction, deviator, equivalent_strain
+from sam.kernels.patches import Cuboids, Lags
+from sam.plasticity import load_step as step
+from sam.plasticity.flow import contraction, deviator, equivalent_strain
+from sam.plasticity.load_step import PARTS, ROOT, preconditioned, stiffness_of_parts
 from sam.plasticity.spectra import BoxOperator
 from sam.plasticity.state import Extent
 from sam.schedule import Load

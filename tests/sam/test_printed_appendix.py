@@ -16,8 +16,7 @@ import pytest
 import sympy as sp
 
 from sam.kernels.eigenstrain import surface_displacement_coefficients
-from sam.kernels.lags import Cuboids, Lags
-from sam.kernels.patches import STRESS, displacement_coefficients, stress_coefficients
+from sam.kernels.patches import STRESS, Cuboids, Lags, displacement_coefficients, stress_coefficients
 from verification.reference.nuclei import PAIRS, point_nucleus
 
 HX, HY, NU = 1.0, 0.7, 0.3

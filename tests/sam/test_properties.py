@@ -16,7 +16,7 @@ from sam.contact.convolution import Counters
 from sam.contact.normal import Search, solve_contact
 from sam.contact.stress import stresses
 from sam.grid.cells import Window
-from sam.kernels.lags import Cuboids, Lags
+from sam.kernels.patches import Cuboids, Lags
 from sam.plasticity import Extent
 from sam.plasticity.history import attempt
 from sam.plasticity.spectra import BoxOperator

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from rounding import EPS
 
-from sam.contact import real_transforms
-from sam.contact.real_transforms import back, forward, half_length, real_spectrum
+from sam.contact import convolution as real_transforms
+from sam.contact.convolution import back, forward, half_length, real_spectrum
 
 
 def summed(kept: np.ndarray, half: int, odd: bool, between: bool) -> np.ndarray:

@@ -15,10 +15,9 @@ import sam
 from sam.contact.box import BoxContact
 from sam.contact.convolution import Counters
 from sam.contact.operators import SurfaceOperators
-from sam.contact.stress import von_mises
-from sam.contact.surface_strain import surface_strain
-from sam.grid.enlargement import Sides
-from sam.plasticity import history, solution
+from sam.contact.stress import surface_strain, von_mises
+from sam.grid.cells import Sides
+from sam.plasticity import history
 from sam.scene import Body, CounterBody, Friction, FrictionMap, Grid, Loading, Plasticity, Scene, Status
 from sam.scene.result import STRESSES
 from sam.scene.surface import border_cells, heights, mean_deviation, with_relief
@@ -155,7 +154,7 @@ def test_every_failed_cell_fails_in_the_converged_contact(monkeypatch):
             pressure[now.extent.window.slices] = trial.pressure * model.unit
             plastic = now.state.material.strain + trial.increment.strain
             strain = model.surface_strain(now.extent, trial.stress, plastic)
-            again = model.tribofilm.tested(
+            again = model.plan.tribofilm.tested(
                 now.tribofilm, now.tribofilm, strain, pressure=pressure, sign=trial.load.sign
             ).film.failed
             seen.append((int(failed.sum()), int((failed & ~again).sum()), int((again & ~failed).sum())))
@@ -283,10 +282,10 @@ def test_a_new_film_without_friction_forgets_the_traction_of_the_cycle_before(mo
         return source(trial.residual.displacement, trial.load, trial.pressure, 1e-8)
 
     with_failures = pressure(model.problem(extent, film, None).pressure)
-    new = pressure(model.problem(extent, model.tribofilm.fresh(model.nothing_strained()), None).pressure)
+    new = pressure(model.problem(extent, model.plan.tribofilm.fresh(model.nothing_strained()), None).pressure)
     grid = model.grid
     bare = SurfaceOperators((grid.nx, grid.ny), grid.hy / grid.hx, Counters())
-    alone = pressure(replace(model.built.pressure, contact=BoxContact(bare, extent.window)))
+    alone = pressure(replace(model.built.problem.pressure, contact=BoxContact(bare, extent.window)))
     assert np.abs(new - alone).max() <= 1e-7 * alone.max()
     assert np.abs(with_failures - alone).max() > 0.01 * alone.max()
 
@@ -318,7 +317,7 @@ def test_the_box_grows_after_wear_and_removal_strains_nothing_at_its_bottom(monk
     """
     worn, seen = [], []
     first, grown, edge, removed, committed = (
-        solution.first_extent, history.grown, history.edge_reached, history._worn, history.committed
+        history.first_extent, history.grown, history.edge_reached, history._worn, history.committed
     )  # fmt: skip
 
     def after_removal(model, now, trial):
@@ -329,7 +328,7 @@ def test_the_box_grows_after_wear_and_removal_strains_nothing_at_its_bottom(monk
         seen.append((now.extent.layers, bool(trial.increment.strain[:, -1].any())))
         return committed(model, now, trial, film)
 
-    monkeypatch.setattr(solution, "first_extent", lambda *a, **k: replace(first(*a, **k), layers=3))
+    monkeypatch.setattr(history, "first_extent", lambda *a, **k: replace(first(*a, **k), layers=3))
     monkeypatch.setattr(history, "grown", lambda extent, *a: grown(extent, *a) if worn else extent)
     monkeypatch.setattr(history, "edge_reached", lambda *a, **k: edge(*a, **k) if worn else Sides())
     monkeypatch.setattr(history, "_worn", after_removal)

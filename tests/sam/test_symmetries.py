@@ -12,7 +12,7 @@ from builders import scene as small_scene
 from made_results import context, red as red_gates
 
 import sam
-from sam.contact import bodies
+from sam.contact import operators as bodies
 from sam.kernels.patches import displacement_coefficients
 from verification.cases.hertz import symmetries
 from verification.cases.hertz.invariances import (

@@ -7,22 +7,21 @@ import numpy as np
 import pytest
 from rounding import EPS
 
-from sam.contact.box import BoxContact
-from sam.contact.control import ForceControl
+from sam.contact.box import BoxContact, ForceControl
 from sam.contact.convolution import (
     BoxConvolution,
     Convolution,
     Counters,
+    MirroredConvolution,
     RowConvolution,
     Window,
     convolution_onto,
+    mirror_half,
     row_sums,
 )
 from sam.contact.normal import Search, solve_contact
 from sam.contact.operators import SurfaceOperators
-from sam.contact.transforms import MirroredConvolution, mirror_half
-from sam.kernels.lags import Cuboids, Lags
-from sam.kernels.patches import STRESS, displacement_coefficients, parity, stress_coefficients
+from sam.kernels.patches import STRESS, Cuboids, Lags, displacement_coefficients, parity, stress_coefficients
 from sam.plasticity.spectra import EXCHANGED, ODD_X, ODD_Y, BoxOperator
 
 FACES = np.array([0.0, 1.0, 2.0, 3.5])

@@ -13,10 +13,7 @@ from rounding import EPS, close, of_least_squares
 from scipy.signal import savgol_filter
 
 from sam.scene import Wear
-from sam.wear.depth import StrainLimits, limit_by_depth, worn_depth
-from sam.wear.remap import remapped
-from sam.wear.removal import WearLaw
-from sam.wear.smoothing import filtered, smoothed, weights
+from sam.wear import StrainLimits, WearLaw, filtered, limit_by_depth, remapped, smoothed, weights, worn_depth
 
 UM = 1e-6
 GRADED = UM * np.concatenate([[0.0], np.cumsum(0.1 * 1.25 ** np.arange(14))])

@@ -9,11 +9,16 @@ from hypothesis import given, settings, strategies as st
 from rounding import EPS, close
 from test_wear import GRADED, UM, column, paraboloid
 
-from sam.surface_state import WearState
-from sam.wear.depth import StrainLimits, Worn, worn_depth
-from sam.wear.remap import closing_residual, remapped
-from sam.wear.removal import with_cycle
-from sam.wear.smoothing import smoothed
+from sam.wear import (
+    StrainLimits,
+    WearState,
+    Worn,
+    closing_residual,
+    remapped,
+    smoothed,
+    with_cycle,
+    worn_depth,
+)
 
 # remap
 

@@ -20,7 +20,7 @@ from builders import MODULUS, RADIUS, parsed, scene_text
 import fem_reference.axisymmetric.planner
 import fem_reference.spatial.planner
 import sam.planner.make
-from sam.contact.real_transforms import half_length
+from sam.contact.convolution import half_length
 from sam.scene import LeftOut, Status
 from samfem.cli import main
 from verification.cost.plan import plan

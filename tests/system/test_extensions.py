@@ -17,7 +17,7 @@ import sam
 from sam.grid.cells import CellGrid
 from sam.planner import bodies
 from sam.planner.bodies import Opposite
-from sam.planner.refusals import UnsupportedScene, check
+from sam.planner.make import UnsupportedScene, check
 from sam.scene import load_scene
 from sam.scene.body import LAWS
 from sam.scene.counterbody import SHAPES as SHAPES_OF_SCENES
@@ -101,8 +101,8 @@ class TestAShapeWithoutRadii:
     def pressed(self, monkeypatch):
         def semi_axes(found, _):
             """Sneddon (1965): the mean pressure is E*/2 times the slope."""
-            modulus = bodies.pair_of(found).contact_modulus
-            return (math.sqrt(2 * found.loading.force / (math.pi * modulus * self.SLOPE)),) * 2
+            modulus = found.pair.contact_modulus
+            return (math.sqrt(2 * found.force / (math.pi * modulus * self.SLOPE)),) * 2
 
         monkeypatch.setitem(bodies.SHAPES, "cone", Opposite(lambda _: Cone(self.SLOPE), semi_axes))
 

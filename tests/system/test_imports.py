@@ -273,8 +273,7 @@ SOLVERS = {
     "fem_reference.common.contact",
     "sam.solver",
 }
-OF_OTHERS = {"sam.layered", "sam.grid.coated", "sam.elastic.coated", "sam.plasticity", "sam.grid.rough"}
-OF_OTHERS |= {"sam.tribofilm", "sam.wear"}
+OF_OTHERS = {"scipy.optimize", "scipy.ndimage"}  # for ellipses and coatings, and for rough bodies
 OF_COMPARISONS = {
     "verification.reference",
     "verification.compare.comparison",

@@ -18,7 +18,7 @@ import sam
 from fem_reference import spatial
 from fem_reference.axisymmetric.model import Model
 from fem_reference.common import contact, loading
-from sam.plasticity import history, step as plastic_step
+from sam.plasticity import history, load_step as plastic_step
 from sam.scene import Status
 from sam.scene.result import LAST, PEAK, UNLOADED
 from samfem import solving

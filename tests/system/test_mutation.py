@@ -9,8 +9,7 @@ import sys
 import numpy as np
 import pytest
 
-from sam.kernels.lags import Lags
-from sam.kernels.patches import displacement_coefficients as coefficients
+from sam.kernels.patches import Lags, displacement_coefficients as coefficients
 from verification.cases.robustness import mutation as case
 from verification.judging import RowStatus, evaluate
 from verification.robustness.mutants import __main__ as mutation, equivalent, inject, scope

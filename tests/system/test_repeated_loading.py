@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from fem_reference.common.back_stress import KinematicJ2
-from sam.plasticity.kinematic import KinematicFlow
+from sam.plasticity.flow import KinematicFlow
 from sam.plasticity.progress import Progressed
 from sam.scene import Scene
 from sam.scene.verdict import ORDER

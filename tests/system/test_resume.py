@@ -13,7 +13,7 @@ import pytest
 from builders import PERFECT, RUN_IN_STEEL, SPHERE, SWIFT, running_in, scene
 from plastic_start import shrink_first_box
 
-from sam.plasticity import history, step as plastic_step
+from sam.plasticity import history, load_step as plastic_step
 from sam.scene import HeightMap, Scene
 from sam.scene.checkpoint import Checkpoint
 from verification.runs import models

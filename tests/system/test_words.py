@@ -17,8 +17,8 @@ from builders import CHEMICAL_FILM, HARDENING, parsed, scene_text
 
 import sam
 from fem_reference.common.messages import advice_of, message_of
-from sam.planner.bodies import remedies_of
-from sam.results.advice import advice as words_of
+from sam.planner.make import remedies_of
+from sam.results.tables import advice as words_of
 from sam.scene import Compare, HeightMap, Scene, SceneError, Status, resolved
 from sam.scene.section import OTHER_NAMES, Section, places_of
 from samfem import comparing

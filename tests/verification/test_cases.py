@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from made_results import context, red, with_column, with_quantities
+from verification.cases.hertz.hertz import fem_values, sam_values
 
 from sam.scene import load_scene
 from verification.cases import LEVELS, all_cases
 from verification.cases.case import with_grid, with_mesh
-from verification.cases.hertz.hertz import fem_values, sam_values
 from verification.reference.convergence import fit_order
 from verification.references import contact_of
 from verification.rows import load_rows

@@ -11,7 +11,7 @@ import pytest
 from builders import scene_text
 
 from fem_reference.common import recovery
-from sam.results import peaks
+from sam.results import quantities as peaks
 from sam.results.snapshots import Box
 from sam.scene import parse_scene
 from verification.compare.comparison import compare_scene

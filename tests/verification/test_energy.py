@@ -15,7 +15,7 @@ from rounding import close
 from fem_reference import Model, load_steps
 from sam.kernels.eigenstrain import surface_displacement_coefficients
 from sam.kernels.patches import displacement_coefficients as right
-from sam.plasticity import outside, points, spectra
+from sam.plasticity import measure as outside, points, spectra
 from sam.scene import CounterBody, Scene, plastic_work
 from sam.scene.yield_curve import Linear, Swift, Tabulated
 from tests.system.test_repeated_loading import MELAN, pressed

@@ -9,8 +9,8 @@ from builders import MODULUS, PERFECT, STEEL, scene
 
 import fem_reference
 import sam
-from sam.grid.rounded import RoundedPunch as SamPunch
-from sam.planner.refusals import UnsupportedScene
+from sam.grid.gap import RoundedPunch as SamPunch
+from sam.planner.make import UnsupportedScene
 from verification.compare.comparison import compare_scene
 from verification.reference.rounded_punch import RoundedPunch
 from verification.runs import models

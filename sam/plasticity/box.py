@@ -1,19 +1,25 @@
 # SPDX-License-Identifier: MIT
-"""The box of cells on which plastic strain is solved: the first guess, and how it grows."""
+"""The box of cells on which plastic strain is solved: the first guess, and how it grows; and the boxes
+that a solve is expected to go through.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import ceil
+from dataclasses import dataclass
+from math import ceil, floor
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sam.arrays import Array, Mask
-from sam.contact.normal import around
-from sam.elastic.onset import ElasticPeak
-from sam.grid.cells import CellGrid, Window
-from sam.grid.enlargement import Sides
+from sam.contact.convolution import half_length
+from sam.contact.normal import around, margin_around
+from sam.contact.stress import yielding
+from sam.elastic.stress import ElasticPeak
+from sam.grid.cells import CellGrid, Sides, Window
+from sam.plasticity.points import OFFSET, POINTS
+from sam.plasticity.spectra import CACHED_BOXES, SINGLE
 from sam.plasticity.state import Extent, Trial
 
 # Measured on spheres, 41 x 41 cells, 4 steps at 1e-4: P is of perfect plasticity at p0 = 4.8 yield stresses,
@@ -43,14 +49,12 @@ def first_extent(
     both_ways: bool = False,
     path: Sequence[tuple[float, float]] = ((0.0, 0.0),),
 ) -> Extent:
-    """Box around the contact and the cells that would yield if the body stayed elastic at the peak.
-
-    limit: yield stress at the depths of the grid, (nz,) in Pa; anywhere: islands of plasticity lie anywhere
-    below a rough surface, and flattened summits bring others into contact, so the box is as wide as the grid,
-    and grows in depth; both_ways: whether the traction changes its sign; path: places of the load in m, along
-    which the box of the origin is taken.
+    """Box around the contact and the cells that would yield if the body stayed elastic at the peak. limit:
+    yield stress at the depths of the grid, (nz,) in Pa; anywhere: islands of plasticity lie anywhere below a
+    rough surface, and flattened summits bring others into contact, so the box is as wide as the grid, and
+    grows in depth; both_ways: whether the traction changes its sign; path: places of the load in m.
     """
-    exceeds = peak.mises > limit[:, None]
+    exceeds = yielding(peak.mises, limit[:, None])
     if anywhere:
         return Extent(Window(0, 0, grid.nx, grid.ny), _layers(np.flatnonzero(exceeds.any(axis=1)), grid))
     if not peak.contact.pressure.any():
@@ -123,10 +127,89 @@ def widened(first: int, count: int, limit: int, reached: tuple[bool, bool]) -> t
 
 
 def edge_reached(trial: Trial, *, cut_beside: bool) -> Sides:
-    """The sides of the box at which plastic strain fills the outermost cells.
-
-    cut_beside: below a rough patch, which is cut there anyway and says so: then only its depth counts.
-    """
+    """Sides at which plastic strain fills the outermost cells; a rough patch is cut beside anyway."""
     strained = _strained(trial)
     beside = strained[:, [0, -1]].any() or strained[:, :, [0, -1]].any()
     return Sides(bool(beside and not cut_beside), bool(strained[-1].any()))
+
+
+@dataclass(frozen=True)
+class ExpectedBox:
+    """A box of nx x ny cells and layers on which plastic strain is expected. tolerance: of the plastic
+    iteration, on which the precision of the coefficients depends; exchange: whether x and y may be exchanged,
+    so that half of them are stored.
+    """
+
+    nx: int
+    ny: int
+    layers: int
+    tolerance: float
+    exchange: bool = False
+
+    @property
+    def width(self) -> int:
+        """Bytes of a stored coefficient."""
+        return 4 if self.tolerance >= SINGLE else 8
+
+    @property
+    def coefficients(self) -> int:
+        """For every wave number, the 6 x 6 components between every two layers: 36 nz^2 (N_x + 1)(N_y + 1)
+        real numbers. Where x and y may be exchanged, those with k_x <= k_y.
+        """
+        nx, ny = half_length(self.nx) + 1, half_length(self.ny) + 1
+        return 36 * self.layers**2 * (nx * (nx + 1) // 2 if self.exchange else nx * ny)
+
+    def numbers(self, back_stresses: int) -> int:
+        """Numbers of the material at the points of all cells: strain, accumulated strain, back-stresses."""
+        return (7 + 6 * back_stresses) * POINTS * self.layers * self.nx * self.ny
+
+    @property
+    def set_up(self) -> int:
+        """Coefficients of a layer with all others, which are made at once."""
+        return 36 * self.layers * (self.nx + 1) * (self.ny + 1)
+
+
+@dataclass(frozen=True)
+class Zone:
+    """What is guessed of a smooth contact with semi-axes in m and of the plastic zone below it. wide, deep:
+    radius and depth in which the elastic stress exceeds the yield stress, needed: radius and depth of the
+    plastic zone, in semi-axes; ratio: largest elastic von Mises stress over the yield stress; path: cells
+    that the load passes in x and in y.
+    """
+
+    axes: tuple[float, float]
+    wide: float
+    deep: float
+    needed: tuple[float, float]
+    ratio: float
+    path: tuple[int, int] = (0, 0)
+
+
+def expected_sides(grid: CellGrid, depths: np.ndarray, zone: Zone) -> list[tuple[int, int, int]]:
+    """Cells in x, in y, and layers of the expected boxes, from the first on; depths (nz,) in m."""
+    box, needed = [], []
+    for axis, h, n, path in zip(zone.axes, (grid.hx, grid.hy), (grid.nx, grid.ny), zone.path, strict=True):
+        contact = 2 * floor(axis / h) + n % 2
+        contact += 2 * margin_around(contact)
+        some = ceil(contact / 8) if zone.ratio > CONTAINED else 0
+        beside = min(max(floor(zone.wide * axis / h) + 2 - contact // 2, some), max(contact // 6, some))
+        box.append(min(contact + 2 * beside + path, n))
+        # a cell yields with the first of its points; the last two cells of a box stay free
+        needed.append(min(2 * floor(zone.needed[0] * axis / h + 2 * OFFSET) + 5 + path, n))
+    deep, half_width = zone.deep * min(zone.axes), min(box[0] * grid.hx, box[1] * grid.hy) / 2
+    layers = int(np.searchsorted(depths, min(deep, DEEPEST * half_width))) + 1
+    boxes = [(box[0], box[1], min(layers, len(depths)))]
+    needed_layers = int(np.searchsorted(depths, zone.needed[1] * min(zone.axes))) + 1
+    while True:
+        nx, ny, nz = boxes[-1]
+        wider, longer = (n + 2 * growth(n) * (n < need) for n, need in zip((nx, ny), needed, strict=True))
+        deeper = nz + growth(nz) * (nz < needed_layers)
+        larger = min(wider, grid.nx), min(longer, grid.ny), min(deeper, len(depths))
+        if larger == boxes[-1]:
+            return boxes
+        boxes.append(larger)
+
+
+def held(boxes: list[ExpectedBox]) -> list[ExpectedBox]:
+    """The boxes, in order, in memory at the end: one that is outgrown stays until the next is there."""
+    return boxes[-max(CACHED_BOXES, 2) :]

@@ -1,0 +1,341 @@
+# SPDX-License-Identifier: MIT
+"""Wear at the end of a cycle: of each column strained material is removed from the surface down, and what was
+below it moves up.
+
+Nelias, Boucly & Brunet 2006; Bosman & Schipper 2011, section 5: a crack runs along the border of the volume
+that both reaches the surface and is strained beyond the limit; what it encloses becomes a wear particle in
+the cycle that strained it. What is above the limit under a sound roof does not reach the surface: it stays,
+and is counted.
+
+The worn depth is smoothed by local polynomials (Savitzky & Golay 1964). In a window of n x n cells, a
+polynomial of total degree <= m is fitted by least squares; its value in the middle is the smoothed value.
+With p_i, the polynomials of degree i = 0 ... m that are orthonormal over the n lags, it is
+
+    sum over lags k, l of w(k, l) f(k, l),    w(k, l) = sum_{i + j <= m} p_i(k) p_i(0) p_j(l) p_j(0).    (a)
+
+The total degree is bounded, not the degree in each direction (the filter along x and then along y would take
+i, j <= m): those polynomials are the same in a turned frame, and the negative weights at the corners of the
+window are smaller.
+
+Layers are counted from the current surface: when it wears, the material moves up through them. New layer k of
+a column worn by w holds the mean of what was between z_k + w and z_{k+1} + w, the old layers being uniform;
+below the deepest face the material is fresh. With h the thicknesses of the layers and overlaps by interval
+arithmetic,
+
+    sum_k h_k new_k + integral over 0 ... w of old = sum_k h_k old_k                                       (b)
+
+for each column and component, to rounding. Means of plastic strains are free of volume change again, and the
+accumulated strain stays at least their norm. A shift by a fraction t of a uniform layer h smears like a
+diffusion, with second moment t (1 - t) h^2 per remap (first-order upwind); whole layers move without it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import pairwise
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+from numpy.polynomial.legendre import legvander
+from numpy.typing import NDArray
+
+from sam.arrays import Array, Mask
+from sam.grid.cells import Window
+from sam.scene import Wear
+
+UNREACHED = 1e300  # a strain, in place of inf: differences stay numbers
+
+
+@dataclass(frozen=True)
+class StrainLimits:
+    """Plastic strain beyond which material is removed: `layer` at z < thickness (m), `bulk` below."""
+
+    bulk: float
+    layer: float
+    thickness: float
+
+    def __call__(self, z: Array) -> Array:
+        """The limit at depths z in m."""
+        return np.where(np.asarray(z) < self.thickness, self.layer, self.bulk)
+
+
+def limit_by_depth(wear: Wear, layer_thickness: float | None) -> StrainLimits:
+    """The limits of a scene; layer_thickness in m, of its plasticity, for a limit of the layer."""
+    if wear.strain_limit_layer is None or layer_thickness is None:
+        return StrainLimits(wear.strain_limit, wear.strain_limit, 0.0)
+    return StrainLimits(wear.strain_limit, wear.strain_limit_layer, layer_thickness)
+
+
+class Worn(NamedTuple):
+    """What is removed of each column before smoothing, (nx, ny): depth in m from the surface; thickness in m
+    above its limit under a sound roof; whether all layers are, so that the true depth may be larger.
+    """
+
+    depth: Array
+    roofed: Array
+    at_bottom: Mask
+
+
+def worn_depth(alpha: Array, faces: Array, limits: StrainLimits, interpolate: bool) -> Worn:
+    """What is removed: all above its limit. alpha: accumulated plastic strain (n_layers, nx, ny), mean of
+    each cell; faces: (n_layers + 1,) in m from the current surface, 0, downwards. interpolate: the strain is
+    linear between the centres of the layers. At the surface it is extrapolated from the two uppermost ones,
+    never below 0 (a single layer: constant); from the lowest centre to the deepest face it is constant. The
+    depth is the first crossing with the limit, which steps where the layer ends: a crossing at the step is
+    found exactly. Error O(dz^2). Without, whole layers are removed whose mean is above the limit at their
+    centre: error O(dz). Raises ValueError for faces that do not fit the layers or do not descend from 0, and
+    for alpha that is not finite.
+    """
+    faces = np.asarray(faces, dtype=float)
+    if faces.shape != (len(alpha) + 1,) or faces[0] != 0 or not np.all(np.diff(faces) > 0):
+        raise ValueError(f"faces = {faces.tolist()}: {len(alpha) + 1} depths, ascending from 0, are needed")
+    if not np.isfinite(alpha).all():
+        raise ValueError("alpha: all of it must be finite")
+    centres = (faces[:-1] + faces[1:]) / 2
+    if not interpolate:
+        start = alpha - np.minimum(limits(centres), UNREACHED)[:, None, None]
+        return _from_surface(start, start, np.diff(faces))
+    surface, thickness = alpha[0], limits.thickness
+    if len(alpha) > 1:
+        surface = np.maximum(alpha[0] - (alpha[1] - alpha[0]) * (centres[0] / (centres[1] - centres[0])), 0.0)
+    nodes, strain = np.append(np.append(0.0, centres), faces[-1]), np.stack([surface, *alpha, alpha[-1]])
+    k = int(np.searchsorted(nodes, thickness))
+    if 0 < thickness < faces[-1] and nodes[k] != thickness:  # one more node where the limit steps
+        share = (thickness - nodes[k - 1]) / (nodes[k] - nodes[k - 1])
+        there = strain[k - 1] + share * (strain[k] - strain[k - 1])
+        nodes, strain = np.insert(nodes, k, thickness), np.insert(strain, k, there, axis=0)
+    limit = np.minimum(limits((nodes[:-1] + nodes[1:]) / 2), UNREACHED)[:, None, None]
+    return _from_surface(strain[:-1] - limit, strain[1:] - limit, np.diff(nodes))
+
+
+def _from_surface(start: Array, end: Array, lengths: Array) -> Worn:
+    """Columns of segments (n, nx, ny) in which the excess over the limit is linear, from `start` to `end`; it
+    may jump between them. An excess of exactly 0 removes nothing; one that only touches 0 at an end goes on.
+    """
+    open_top, full = start > 0, (start > 0) & (end >= 0)
+    crossing = (open_top != (end > 0)) & ~full
+    share = np.divide(np.maximum(start, end), np.abs(start - end), out=full.astype(float), where=crossing)
+    above = share * lengths[:, None, None]  # of each segment; it holds on to the end that is above
+    reached = np.ones_like(full)
+    np.logical_and.accumulate(full[:-1], axis=0, out=reached[1:])
+    removed = np.where(reached & open_top, above, 0.0)
+    return Worn(removed.sum(axis=0), (above - removed).sum(axis=0), np.asarray(full.all(axis=0)))
+
+
+@cache
+def weights(window: int, order: int) -> Array:
+    """w(k, l) of (a) at the lags k, l = 0 ... (window - 1)/2; even in both, symmetric.
+
+    Their sum over all lags is 1.
+
+    Raises ValueError for an even window, or an order that the window does not determine.
+
+    >>> (weights(3, 2) * 9).round(3)  # of the cell itself, of its neighbours, of the corners
+    array([[ 5.,  2.],
+           [ 2., -1.]])
+    """
+    if window < 1 or window % 2 == 0:
+        raise ValueError(f"window = {window}: an odd number of cells is needed")
+    if not 0 <= order < window:
+        raise ValueError(f"order = {order}: from 0 to {window - 1} for a window of {window}")
+    half = window // 2
+    lags = np.arange(-half, half + 1) / max(half, 1)
+    orthonormal = np.linalg.qr(legvander(lags, order))[0]  # column i: p_i, up to its sign
+    terms = orthonormal * orthonormal[half]  # p_i(k) p_i(0)
+    degrees = np.add.outer(np.arange(order + 1), np.arange(order + 1))
+    w = (terms @ (degrees <= order) @ terms.T)[half:, half:]
+    w.flags.writeable = False
+    return w
+
+
+def filtered(field: Array, window: int, order: int) -> Array:
+    """The smoothed field (nx, ny), continued as in a mirror at the outer faces of the border cells, so the
+    sum stays. Cells at lags of equal weight are added first, in an order that no mirror changes: a field with
+    the symmetry of the square gives one with that symmetry bit by bit.
+    """
+    w, half = weights(window, order), window // 2
+    padded = np.pad(field, half, mode="symmetric")
+    out = np.zeros(field.shape)
+    for k in range(half + 1):
+        for other in range(k + 1):
+            cells = 1 if k == 0 else 4 if other in (0, k) else 8
+            repeated = _four(padded, half, k, other) + _four(
+                padded, half, other, k
+            )  # each cell 8/cells times
+            out += w[k, other] * (repeated * (cells / 8))
+    return out
+
+
+def _four(padded: Array, half: int, k: int, l: int) -> Array:  # noqa: E741
+    """f(k, l) + f(-k, -l) + (f(k, -l) + f(-k, l)) around each cell."""
+    nx, ny = padded.shape[0] - 2 * half, padded.shape[1] - 2 * half
+
+    def at(i: int, j: int) -> Array:
+        return padded[half + i : half + i + nx, half + j : half + j + ny]
+
+    return (at(k, l) + at(-k, -l)) + (at(k, -l) + at(-k, l))
+
+
+def smoothed(depth: Array, window: int, order: int, all_removed: bool = False) -> Array:
+    """Smoothed worn depth (nx, ny) in m, never below 0: smoothing adds no material. window = 0: as it is. The
+    filter keeps the volume (see `filtered`). Around a scar its weights of order >= 2 ask for negative depths;
+    these are set to 0, so the worn volume grows by what they held. Flanks within half a window of the raw
+    scar are dug where the filter says so. Within the scar less than the raw depth may go: the material that
+    stays is removed in the next cycle even if nothing is strained, and flanks are dug again. A scar of few
+    cells may lose several times its raw volume that way, over tens of cycles. all_removed: nowhere less than
+    the raw depth, which ends that, up to the error of the remap. Raises ValueError for a depth that is
+    negative or not finite, and as `weights` does.
+    """
+    check_depth(depth)
+    if window == 0 or not depth.any():
+        return depth
+    return np.maximum(filtered(depth, window, order), depth if all_removed else 0.0)
+
+
+def check_depth(depth: Array) -> None:
+    """Raises ValueError unless all depths are finite and >= 0."""
+    if not (np.isfinite(depth) & (depth >= 0)).all():
+        raise ValueError(f"depth from {np.min(depth)} to {np.max(depth)} m: finite depths >= 0 are needed")
+
+
+def remapped(field: Array, faces: Array, depth: Array) -> tuple[Array, Array]:
+    """A field (..., n_layers, nx, ny), means of cells, with each column moved up by its depth (nx, ny) in m
+    >= 0, and its integral over that depth, (..., nx, ny) in m; faces: (n_layers + 1,) in m. Columns that are
+    not worn keep every bit, and without any the field itself is returned. ValueError for a depth that is
+    negative or not finite.
+    """
+    check_depth(depth)
+    worn, leading = depth > 0, field.shape[:-3]
+    removed = np.zeros((*leading, *depth.shape))
+    if worn.any():
+        columns = field[..., worn]
+        field = field.copy()
+        moved, gone = _moved_up(
+            columns.reshape(-1, *columns.shape[-2:]), np.asarray(faces, float), depth[worn]
+        )
+        field[..., worn], removed[..., worn] = moved.reshape(columns.shape), gone.reshape(*leading, -1)
+    return field, removed
+
+
+def _moved_up(state: Array, faces: Array, depth: Array) -> tuple[Array, Array]:
+    """The new columns (n, n_layers, m) of (b), worn by depth (m,), and integrals (n, m) of what is gone."""
+    new = np.empty_like(state)
+    above, below = faces[:-1, None], faces[1:, None]
+    for k, (top, bottom) in enumerate(pairwise(faces)):
+        # nothing moves down: only the layers from k on
+        overlap = np.minimum(bottom + depth, below[k:]) - np.maximum(top + depth, above[k:])
+        np.einsum("cjm,jm->cm", state[:, k:], np.maximum(overlap, 0.0) / (bottom - top), out=new[:, k])
+    gone = np.clip(depth - above, 0.0, below - above)
+    return new, np.einsum("cjm,jm->cm", state, gone)
+
+
+def closing_residual(before: Array, after: Array, removed: Array, faces: Array) -> float:
+    """Largest difference of both sides of (b) over the largest integral of |before|; 0 without strain."""
+    h = np.diff(faces)[:, None, None]
+    scale = (np.abs(before) * h).sum(axis=-3).max()
+    difference = (after * h).sum(axis=-3) + removed - (before * h).sum(axis=-3)
+    return float(np.abs(difference).max() / scale) if scale > 0 else 0.0
+
+
+T = TypeVar("T", bound=np.generic)
+
+
+@dataclass(frozen=True, eq=False)
+class WearState:
+    """Wear so far on the whole grid. cell_area: hx hy in m2; depth: (nx, ny) in m, sum over the cycles of
+    what was removed. For each cycle: volumes, in m3, removed; raw_volumes: what tore, before smoothing;
+    roofed_volumes: above the limit under a sound roof, which stays; bottom_columns: how many tore down to the
+    deepest face; residuals: of the remap, see `sam.wear.closing_residual`.
+    """
+
+    cell_area: float
+    depth: Array
+    volumes: tuple[float, ...] = ()
+    raw_volumes: tuple[float, ...] = ()
+    roofed_volumes: tuple[float, ...] = ()
+    bottom_columns: tuple[int, ...] = ()
+    residuals: tuple[float, ...] = ()
+
+    @classmethod
+    def empty(cls, shape: tuple[int, int], hx: float, hy: float) -> WearState:
+        """The surface before the first cycle; hx, hy: cell in m."""
+        return cls(hx * hy, np.zeros(shape))
+
+    @property
+    def volume(self) -> float:
+        """Removed so far, in m3."""
+        return sum(self.volumes)
+
+    @property
+    def raw_volume(self) -> float:
+        """Raw removal so far, in m3; what smoothing left counts again when it is removed again."""
+        return sum(self.raw_volumes)
+
+    def volume_of(self, thickness: Array) -> float:
+        """Volume in m3 of a layer of this thickness in m on the cells, (nx, ny)."""
+        return float(self.cell_area * thickness.sum())
+
+    def imbalance(self, original: Array, current: Array) -> float:
+        """Volume minus hx hy sum(original - current), in m3; heights (nx, ny) in m, undisplaced."""
+        return self.volume - self.volume_of(original - current)
+
+
+@dataclass(frozen=True)
+class WearLaw:
+    """Wear of a grid of `shape` (nx, ny) cells hx, hy in m, at limits of the plastic strain."""
+
+    shape: tuple[int, int]
+    hx: float
+    hy: float
+    limits: StrainLimits
+    interpolate: bool
+    window: int
+    order: int
+
+    def fresh(self) -> WearState:
+        """The surface before the first cycle."""
+        return WearState.empty(self.shape, self.hx, self.hy)
+
+    def margin(self, peeq: Array, faces: Array) -> float:
+        """1 less the largest plastic strain of cells, (n_layers, nx, ny), over its limit; faces in m."""
+        return 1.0 - float((peeq / self.limits((faces[:-1] + faces[1:]) / 2)[:, None, None]).max())
+
+    def removed(
+        self, state: WearState, fields: dict[str, Array], faces: Array, window: Window, *, peeq: Array
+    ) -> tuple[WearState, dict[str, Array]]:
+        """Wear after one more cycle, and the fields of the material below the new surface. fields: by name,
+        each (..., n_layers, nx, ny) on the cells of the window; faces: of the layers, (n_layers + 1,) in m;
+        peeq: accumulated plastic strain of the cells, which decides.
+        """
+        raw = worn_depth(peeq, faces, self.limits, self.interpolate)
+        depth, roofed = (self._on_grid(each, window) for each in (raw.depth, raw.roofed))
+        whole = Worn(depth, roofed, self._on_grid(raw.at_bottom, window))
+        depth = smoothed(whole.depth, self.window, self.order, all_removed=True)
+        below, worst = {}, 0.0
+        for name, field in fields.items():
+            below[name], gone = remapped(field, faces, depth[window.slices])
+            worst = max(worst, closing_residual(field, below[name], gone, faces))
+        return with_cycle(state, whole, depth, worst), below
+
+    def _on_grid(self, field: NDArray[T], window: Window) -> NDArray[T]:
+        """A field of the window on the whole grid, zero outside of it."""
+        out: NDArray[T] = np.zeros(self.shape, dtype=field.dtype)
+        out[window.slices] = field
+        return out
+
+
+def with_cycle(state: WearState, raw: Worn, depth: Array, residual: float) -> WearState:
+    """The wear state after one more cycle. raw: before smoothing; depth: (nx, ny) in m that was removed;
+    residual: of the remap, relative. The depth stays the same array where nothing is removed: what was
+    computed for the surface is still right.
+    """
+    return replace(
+        state,
+        depth=state.depth + depth if depth.any() else state.depth,
+        volumes=(*state.volumes, state.volume_of(depth)),
+        raw_volumes=(*state.raw_volumes, state.volume_of(raw.depth)),
+        roofed_volumes=(*state.roofed_volumes, state.volume_of(raw.roofed)),
+        bottom_columns=(*state.bottom_columns, int(raw.at_bottom.sum())),
+        residuals=(*state.residuals, residual),
+    )
