@@ -200,7 +200,7 @@ def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
         known = {c: c.removesuffix(" expected") for c in rows if not rows[c].isna().all()}
         shown = [c for c in rows if known.get(c) in sweep.columns and np.ndim(rows[c].dropna().iloc[0]) == 0]
         lines = [
-            (*(spelt(row[axis]) for axis in axes), row["model"].upper(), *(number(row[c], 5) for c in shown))
+            (*(spelt(row[axis]) for axis in axes), row["model"].upper(), *(_shown(row[c]) for c in shown))
             for _, row in rows.iterrows()
         ]
         for model, own in rows.groupby("model", sort=False):
@@ -210,6 +210,10 @@ def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
                 lines.append((*[""] * len(axes), model.upper(), *cells))
         heads = [words_of(file, known[c]) + ", expected" * c.endswith(" expected") for c in shown]
         yield SmallTable(f"Points of {name}", (*map(_plain, axes), "model", *heads), lines)
+
+
+def _shown(value: Any) -> str:
+    return value if isinstance(value, str) else number(value, 5)
 
 
 def _plain(axis: str) -> str:
