@@ -58,10 +58,10 @@ class Reference:
 @dataclass(frozen=True)
 class Solved:
     """A scene with its reference and the result of each model, by the name of its run; frame: of the sweeps
-    of the case, see `verification.cases.sweep`.
+    of the case, see `verification.cases.sweep`; without a scene there is nothing else.
     """
 
-    scene: Scene
+    scene: Scene | None
     reference: Reference | None
     results: dict[str, Result]
     frame: pd.DataFrame | None = None
@@ -153,6 +153,7 @@ QUANTITIES: Mapping[str, Quantity] = {
     "p-center": _scalar("p_center_Pa", "pressure in the centre", "Pa"),
     "approach": _scalar("approach_m", "approach", "m"),
     "radius": _scalar("contact_radius_m", "contact radius", "m"),
+    "area": _scalar("contact_area_m2", "area of contact", "m²"),
     "load": Quantity("sum of the pressure over the cells", "N", _load),
     "pressure": Quantity("pressure over the surface", "Pa", _pressure, _pressure_on_cells),
     "displacement": Quantity("displacement of the surface to 2 a", "m", row="uz_m on the line"),
@@ -161,6 +162,7 @@ QUANTITIES: Mapping[str, Quantity] = {
     "mises-axis": Quantity("von Mises stress on the axis", "Pa", _mises_on_axis, row="mises_Pa on the axis"),
     "mises-plane": Quantity("von Mises stress in the plane y = 0", "Pa", row="mises_Pa in the plane y = 0"),
     "peeq-max": _scalar("peeq_max", "largest plastic strain", pair=True),
+    "peeq-depth": _scalar("peeq_max_depth_m", "depth of the largest plastic strain", "m"),
     "peeq-axis": Quantity("plastic strain on the axis", row="peeq on the axis"),
     "peeq-plane": Quantity("plastic strain in the plane y = 0", row="peeq in the plane y = 0"),
     "residual-centre": _scalar("residual_uz_center_m", "residual displacement in the centre", "m", pair=True),

@@ -56,6 +56,7 @@ def hertz_sphere(scene: Scene) -> Reference:
             "approach": delta,
             "load": exact.force,
             "radius": a,
+            "area": math.pi * a**2,
             "mises-max": largest,
             "mises-depth": depth,
             "pressure": lambda x, y: exact.pressure(np.hypot(x, y)),

@@ -21,8 +21,8 @@ each of which overrides the keys above it. A row is `name = [metric, tolerance, 
 "radius, {SAM,FEM}" are two. A reason "@name" stands in `[reasons]`, an equation "name" in equations.toml.
 
 Where a case has tables `[sweeps.NAME]`, a fifth entry says what a row takes of the points of the sweeps, see
-`Take`: `"order p-max of sam"`, `"share of fem at depth = 3"`, `"limit peeq-max of sam | limit peeq-max of
-fem"` with what it is held against.
+`Take`: `"order p-max of sam"`, `"share of fem at depth = 3"`, `"limit peeq-max of sam | of fem"` with what it
+is held against. Where it has takes and no sweeps, a function `frame` of its module returns the points.
 """
 
 from __future__ import annotations
@@ -97,7 +97,8 @@ class Take(NamedTuple):
     """What a row takes of the frame of the sweeps: `STATISTIC COLUMN of SWEEP MODEL at AXIS = VALUE, ...`.
 
     statistic: a name in `verification.cases.sweep.STATISTICS` or of a function beside the file; of: names of
-    sweeps and models; at: (axis, comparison, value); a number alone: what is expected.
+    sweeps and models; at: (axis, comparison, value). What it is held against follows a bar: a number alone,
+    another take, or `of` and names in place of its own.
     """
 
     statistic: str
@@ -107,8 +108,21 @@ class Take(NamedTuple):
     number: float | None = None
 
     @classmethod
+    def of_row(cls, text: str) -> tuple[Take, ...]:
+        """What a row takes, and what that is held against where it says so. Raises ValueError."""
+        first, *others = text.split(" | ")
+        take = cls.parse(first)
+        held = (
+            cls(take.statistic, take.column, tuple(other.split()[1:]), take.at)
+            if other.startswith("of ")
+            else cls.parse(other)
+            for other in others
+        )
+        return take, *held
+
+    @classmethod
     def parse(cls, text: str) -> Take:
-        """Raises ValueError for what does not read as one."""
+        """One side of a take. Raises ValueError for what does not read as one."""
         found = _TAKE.fullmatch(text.strip())
         if not found:
             raise ValueError(f"no take: {text}")
@@ -158,7 +172,7 @@ class CaseFile(BaseModel):
     level; models: that solve it; reference: an independent answer, a name in `verification.references`;
     figures: kinds of `verification.cases.kinds`; claims: table of rows -> the names in it without a take;
     sweeps: its points beside the scene itself; takes: id of a row -> what it takes of them, see `Take`;
-    notes: sentences below the tables.
+    notes: sentences below the tables; setting: (name, number with unit) for the reader.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
@@ -182,6 +196,7 @@ class CaseFile(BaseModel):
     sweeps: dict[str, SweepFile] = {}
     takes: dict[str, tuple[Take, ...]] = {}
     notes: tuple[str, ...] = ()
+    setting: tuple[tuple[str, str], ...] = ()
 
 
 @cache
@@ -231,7 +246,7 @@ def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     named = [each for each in content.get("equations", ()) if isinstance(each, str)]
     content["equations"] = [_equations().get(e, e) if e in named else e for e in content.get("equations", ())]
     lists = {key: tuple(value) for key, value in content.items() if isinstance(value, list)}
-    lists["equations"] = tuple(map(tuple, lists["equations"]))
+    lists |= {key: tuple(map(tuple, lists[key])) for key in ("equations", "setting") if key in lists}
     twice = sorted({row.id for row in rows if sum(other.id == row.id for other in rows) > 1})
     faults += [Problem("rows", name, "occurs twice") for name in twice]
     try:
@@ -265,11 +280,8 @@ def _rows(
             said, *take = words or [f"{QUANTITIES[key].words}{of}"]
             names = _braces(key)
             if take:
-                parts = [each.split(" | ") for each in _braces(*take)]
-                takes |= {
-                    f"{case}.{name}": tuple(map(Take.parse, part))
-                    for name, part in zip(names, parts, strict=True)
-                }
+                sides = map(Take.of_row, _braces(*take))
+                takes |= {f"{case}.{name}": side for name, side in zip(names, sides, strict=True)}
             for name, quantity in zip(names, _braces(said), strict=True):
                 yield Row(
                     id=f"{case}.{lead}{name}",

@@ -43,11 +43,13 @@ class Compared(Case):
     file: CaseFile | None = None
 
     def solve(self, context: Context) -> Solved:
+        if not self.file.scene:
+            return Solved(None, None, {}, framed(context, self.file, None))
         scene = scene_of(context, self.file)
         answer = beside(self.file, self.file.reference, REFERENCES) if self.file.reference else None
         runs = {run.partition("-")[0]: MODELS[run] for run in self.file.models}
         results = {run: context.solve(model, scene, run) for run, model in runs.items()}
-        frame = framed(context, self.file, scene) if self.file.sweeps else None
+        frame = framed(context, self.file, scene) if self.file.takes else None
         return Solved(scene, answer and answer(scene), results, frame)
 
     def ahead(self, context: Context) -> Iterator[Scene]:
@@ -60,7 +62,7 @@ class Compared(Case):
         """The rows of the file: `sam/exact` and the like by the vocabulary, `sam/fem` by the rows of
         `compare`, and what they take of the sweeps.
         """
-        values, difference = taken(self.file, found.frame) if self.file.sweeps else {}, None
+        values, difference = taken(self.file, found.frame) if self.file.takes else {}, None
         for table, names in self.file.claims.items():
             model, against = table.split("/")
             for name in names:
@@ -77,6 +79,9 @@ class Compared(Case):
         return values
 
     def setup(self, found: Solved) -> Iterator[tuple[str, str]]:
+        yield from self.file.setting
+        if found.scene is None:
+            return
         scene, other, loading = found.scene, found.scene.counterbody, found.scene.loading
         a = found.reference.units["a"] if found.reference else 0.0
         if not a and found.results:
@@ -88,18 +93,21 @@ class Compared(Case):
             else ""
         )
         yield "Half-space", elastic_text(scene.body) + law
-        sizes = ("radius", "radius_x", "radius_y", "flat_radius")
-        size = ", ".join(f"{n.replace('_', ' ')} {v * 1e6:g} µm" for n in sizes if (v := getattr(other, n)))
-        yield other.shape.capitalize(), f"{size}, {elastic_text(other) if other.elastic else 'rigid'}"
-        unloaded = ", then unloaded" * loading.unload
-        yield "Force", f"{loading.force:.5g} N in {loading.steps} equal steps{unloaded}"
+        if other:
+            names = ("radius", "radius_x", "radius_y", "flat_radius")
+            sizes = ((n.replace("_", " "), v * 1e6) for n in names if (v := getattr(other, n)))
+            elastic = elastic_text(other) if other.elastic else "rigid"
+            yield other.shape.capitalize(), f"{', '.join(f'{n} {v:g} µm' for n, v in sizes)}, {elastic}"
+        if loading.force:
+            unloaded = ", then unloaded" * loading.unload
+            yield "Force", f"{loading.force:.5g} N in {loading.steps} equal steps{unloaded}"
         yield from found.reference.facts if found.reference else ()
         for run, result in found.results.items():
             yield run.upper(), grid_text(result, a) if result.model == SAM else mesh_text(result)
         yield from ran(self.file, found.frame) if self.file.sweeps else ()
 
     def tables(self, found: Solved) -> Iterator[SmallTable]:
-        yield from tables_of(self.file, found.frame) if self.file.sweeps else ()
+        yield from tables_of(self.file, found.frame) if self.file.takes else ()
         if set(found.results) != {"sam", "fem"}:
             return
         rows = []
