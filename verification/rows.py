@@ -22,7 +22,7 @@ each of which overrides the keys above it. A row is `name = [metric, tolerance, 
 
 Where a case has tables `[sweeps.NAME]`, a fifth entry says what a row takes of the points of the sweeps, see
 `Take`: `"order p-max of sam"`, `"share of fem at depth = 3"`, `"limit peeq-max of sam | of fem"` with what it
-is held against. Where it has takes and no sweeps, a function `frame` of its module returns the points.
+is held against. Points that need more than axes are what a function returns, `frame = "NAME"`.
 """
 
 from __future__ import annotations
@@ -171,7 +171,8 @@ class CaseFile(BaseModel):
     vary: recipe of `verification.cases.recipes` -> its value; quick: `set` and `vary` that differ at that
     level; models: that solve it; reference: an independent answer, a name in `verification.references`;
     figures: kinds of `verification.cases.kinds`; claims: table of rows -> the names in it without a take;
-    sweeps: its points beside the scene itself; takes: id of a row -> what it takes of them, see `Take`;
+    sweeps: its points beside the scene itself; frame: function beside the file that returns points instead;
+    takes: id of a row -> what it takes of them, see `Take`;
     notes: sentences below the tables; setting: (name, number with unit) for the reader.
     """
 
@@ -194,6 +195,7 @@ class CaseFile(BaseModel):
     rows: tuple[Row, ...]
     claims: dict[str, tuple[str, ...]]
     sweeps: dict[str, SweepFile] = {}
+    frame: str = ""
     takes: dict[str, tuple[Take, ...]] = {}
     notes: tuple[str, ...] = ()
     setting: tuple[tuple[str, str], ...] = ()

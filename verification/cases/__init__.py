@@ -30,7 +30,7 @@ def all_cases() -> dict[str, Case]:
 def case_of(file: CaseFile) -> Case:
     """What runs the case of a file."""
     said = {key: getattr(file, key) for key in ("title", "question", "equations", "levels")}
-    if file.scene or file.takes:
+    if file.scene or file.frame:
         return Compared(file.name, **said, file=file)
     module = import_module(f"{__name__}.{file.path.parent.name}.{file.path.stem}")
     (case,) = (case for case in module.CASES if case.name == file.name)

@@ -4,7 +4,7 @@ rows of the case take of its columns.
 
 A frame has the columns sweep, model ("sam/fem" for what is between both), an axis each, h (size of what is
 refined), converged, the columns of the file with `NAME value` and `NAME expected` beside each, scene and
-result. The function `frame` of a module, for a case without sweeps, returns such rows as mappings.
+result. The function that a case names as `frame` returns such rows as mappings.
 """
 
 from __future__ import annotations
@@ -51,8 +51,9 @@ def framed(context: Context, file: CaseFile, base: Scene | None) -> DataFrame:
     """All sweeps of a case, solved; or what its module returns."""
     import pandas as pd
 
-    if not file.sweeps:
-        return pd.DataFrame([{"sweep": "", "model": "", **row} for row in beside(file, "frame", {})(context)])
+    if file.frame:
+        rows = beside(file, file.frame, {})(context)
+        return pd.DataFrame([{"sweep": "", "model": "", **row} for row in rows])
     return pd.DataFrame([row for name in file.sweeps for row in _runs(context, file, name, base)])
 
 
