@@ -28,7 +28,7 @@ from verification.cases.hertz.symmetries import (
     scenes,
     turned,
 )
-from verification.quantities import Measured
+from verification.judging import Measured
 from verification.runs.models import SAM
 
 CELL = (1e-6, 0.8e-6)

@@ -62,7 +62,7 @@ def solved(scene):
 def measured(scene, solved, **changed):
     """What the case measures of both models, one of them perhaps changed, on the closed form of a scene."""
     results = {"sam": solved[models.SAM], "fem": solved[models.FEM]} | changed
-    return CASES["hertz-sphere"].measure(Solved(scene, hertz_sphere(scene), results))
+    return CASES["hertz-sphere"].measure({"": Solved(scene, hertz_sphere(scene), results)})
 
 
 @pytest.mark.parametrize(
@@ -87,7 +87,11 @@ def test_a_wrong_pressure_a_lost_force_and_a_wrong_stress_turn_red(scene, solved
     assert red("hertz-sphere", measured(scene, solved, sam=wrong)) == {"sam-load", "sam-pressure", "pressure"}
     wrong = with_column(fem, "axis", "mises_Pa", lambda values: 1.01 * values)
     wrong = replace(wrong, certificate={**fem.certificate, "force_balance": 2e-8})
-    assert red("hertz-sphere", measured(scene, solved, fem=wrong)) == {"fem-load", "fem-mises-axis", "mises-axis"}
+    assert red("hertz-sphere", measured(scene, solved, fem=wrong)) == {
+        "fem-load",
+        "fem-mises-axis",
+        "mises-axis",
+    }
 
 
 def test_softer_body_is_noticed(scene, solved):

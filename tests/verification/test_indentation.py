@@ -4,6 +4,7 @@ other.
 """
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -143,3 +144,15 @@ def test_the_fit_under_a_force_is_the_fit_at_its_approach():
     assert answer.values["approach"] == pytest.approx(0.007e-3, rel=1e-12, abs=0)
     fit = TestHardening.STEEL.area_radius(0.007) * 1e-3
     assert answer.values["radius"] == pytest.approx(float(fit), rel=1e-12, abs=0)
+
+
+def test_indentation_counts_resolved_load_steps_within_the_fits_only():
+    """Approach 1 to 30 w_c, load equal to it; the first contacts are a few elements, the last are beyond w* =
+    20.
+    """
+    scene, w = load_scene("verification/scenes/plastic-perfect.toml"), np.arange(1.0, 31.0)
+    unit = published.jackson_green(scene)[1]
+    history = {"approach_m": w * unit.approach, "force_N": w * unit.load, "contact_area_m2": w * unit.area}
+    found = published.points(scene, SimpleNamespace(tables={"history": history}))
+    assert found["w"] == pytest.approx(np.arange(4.0, 22.0))  # sqrt(4/30) > 0.35
+    assert found["load"] == pytest.approx(found["w"])

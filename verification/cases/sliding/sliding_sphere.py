@@ -15,7 +15,7 @@ from sam.contact import stresses, von_mises
 from sam.grid import Window
 from verification.cases.case import Context, Plot
 from verification.figures.profiles import Profile, profiles
-from verification.quantities import Measured
+from verification.judging import Measured
 from verification.reference.hamilton import largest_von_mises, sliding_stress
 
 if TYPE_CHECKING:
