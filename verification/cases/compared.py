@@ -138,7 +138,7 @@ class Compared(Case):
         scene, other, loading = first.scene, first.scene.counterbody, first.scene.loading
         units = first.reference.units if first.reference else {}
         solved = first.results.get("sam")
-        a = units.get("a") or (solved and solved.quantities["contact_radius_m"]) or math.nan
+        a = units.get("a") or loading.radius or (solved and solved.quantities["contact_radius_m"]) or math.nan
         plasticity = scene.body.plasticity
         law = (
             f"; {plasticity.law}, {plasticity.curve().stress(0.0) / 1e6:.1f} MPa at first yield"
@@ -155,9 +155,12 @@ class Compared(Case):
             )
             yield other.shape.capitalize(), f"{size}{elastic_text(other) if other.elastic else 'rigid'}"
         again = f", {loading.cycles} times" * (loading.cycles > 1)
-        load = f"{loading.force:.5g} N" if other else f"given, {loading.p0 / 1e9:.4f} GPa in the centre"
+        if loading.misfit:
+            load = f"a sphere that grows, e = {loading.misfit:g} in its centre, radius {1e6 * a:g} µm"
+        else:
+            load = f"{loading.force:.5g} N" if other else f"given, {loading.p0 / 1e9:.4f} GPa in the centre"
         steps = f"{load} in {loading.steps} equal steps{', then unloaded' * loading.unload}{again}"
-        yield "Force" if other else "Pressure", steps
+        yield "Force" if other else "Load", steps
         if loading.path:
             ends = " a to ".join(f"{end[0] / a:g}" for end in (loading.path.start, loading.path.end))
             yield "Way", f"from {ends} a along x in {loading.path.steps} steps"
