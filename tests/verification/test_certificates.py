@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Certificates of returned solutions turn red on perturbed answers; endings of iterations in words; step
-cutting; threads.
+cutting.
 """
 
-import os
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -199,16 +198,6 @@ class TestFem:
         assert max(finite.surface().values()) > limit("certificates.fem-surface")
 
 
-def test_gates_turn_red():
-    """Every gate of the three cases on an answer beyond it."""
-    gates = [g for g in load_rows() if g.case in ("certificates", "step-cutting", "threads")]
-    assert len(gates) == 58
-    for gate in gates:
-        value = 0.5 * gate.tolerance if gate.metric == "at_least" else 1.1 * gate.tolerance or 1
-        measured = certificates.Measured(value, 0 if gate.metric == "equal" else None)
-        assert evaluate([gate], {gate.case: {gate.id: measured}})[0].status is RowStatus.FAILED
-
-
 class TestHistories:
     """What is kept of the iterations, and why they ended."""
 
@@ -313,55 +302,3 @@ class TestStepCutting:
         assert result.converged and result.cost["step_cuts"] > 0
         assert result.tables["history"]["note"] == [f"cut into {result.cost['step_cuts'] + 1} steps"]
         assert sum(not each.accepted for _, each in curves_of(result)) == result.cost["step_cuts"]
-
-    def test_gates_see_a_solve_that_did_not_finish(self, scene):
-        sam_result = models.solve(scene, SAM)
-        worse = replace(sam_result, status=Status.STEP_CUT_LIMIT)
-        key = StepScene(6.2, 0.0)
-        found = step_cutting.values_of({(key, SAM): worse, (key, FEM): sam_result})
-        assert found["unfinished"].value == 1 and found["area"].value == 0.0
-
-
-class TestThreads:
-    """Differences between two results are found wherever they are."""
-
-    def test_differences(self, solves):
-        _, result, _ = solves["Swift", SAM]
-        assert threads.difference(result, result) == 0.0
-        for name, column in (("axis", "szz_Pa"), ("line", "gap_m"), ("plane", "peeq")):
-            other = with_column(result, name, column, lambda values: values * (1 + 1e-9))
-            assert threads.difference(result, other) == pytest.approx(1e-9, rel=1e-3)
-        assert (
-            threads.difference(result, with_field(result, "cell_data", "p_Pa", scaled_at(0, np.nan)))
-            == np.inf
-        )
-
-    def test_statuses(self, solves):
-        _, result, _ = solves["Swift", SAM]
-        cut = replace(result, status=Status.STEP_CUT_LIMIT)
-        assert [threads.unfinished(*pair) for pair in ((result, result), (result, cut), (cut, cut))] == [
-            0,
-            2,
-            2,
-        ]
-
-    def test_cells(self):
-        table = {"x_m": [0.0, 1.0, 2.0], "worn_m": [0.0, 1e-6, 0.0], "friction": [0.1, 0.4, np.nan]}
-        one = SimpleNamespace(tables={"surface": table})
-        assert threads.cells_apart(one, one) == (0, 0.0)
-        two = SimpleNamespace(tables={"surface": table | {"friction": [0.4, 0.1, np.nan]}})
-        assert threads.cells_apart(one, two) == (2, 0.0)
-        three = SimpleNamespace(tables={"surface": table | {"worn_m": [1e-9, 1e-6, 0.0]}})
-        assert threads.cells_apart(one, three) == (1, pytest.approx(1e-3))
-
-    def test_rounding_about_zero(self):
-        assert (
-            threads.relative([1e-20], [-1e-20], 1e-15) == 0.0 and threads.relative([0.0], [1.0], 1e-15) == 1.0
-        )
-
-
-def test_threads_are_compared_on_two_cores_only(monkeypatch):
-    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1}, raising=False)
-    assert threads.needs() == ""
-    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {1}, raising=False)
-    assert threads.needs() == "2 cores are needed, this process may use 1"
