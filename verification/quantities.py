@@ -9,32 +9,41 @@ results, where nothing else is said the row of `compare` of that name; of all ru
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.interpolate import RegularGridInterpolator
 
 from sam.scene import Result, Scene
 from verification.compare import sliding_measures as sliding
+from verification.compare.rough_measures import (
+    Depths,
+    PatchPressure,
+    Spot,
+    compared_depths,
+    relative_l2,
+    residual_line,
+    spots,
+)
 from verification.compare.sliding_measures import Plane
+from verification.judging import Measured
+from verification.reference.hertz import CircularContact, effective_modulus
 from verification.reference.stress import von_mises
 from verification.runs.models import FEM_3D, SAM
-from verification.runs.sampling import peak, pressure_map, pressure_on
+from verification.runs.sampling import (
+    means_of_cells,
+    means_of_line,
+    peak,
+    plane_field,
+    pressure_map,
+    pressure_on,
+    ring_edges,
+)
 
-
-@dataclass(frozen=True)
-class Measured:
-    """A computed value and its independent answer.
-
-    value, expected: numbers, or arrays of one shape for relative_l2; expected stays None for at_most and
-    at_least; weight: of each entry of the arrays (1 by default); unit: for the reader only.
-    """
-
-    value: object
-    expected: object = None
-    weight: object = None
-    unit: str = ""
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True)
@@ -55,13 +64,30 @@ class Reference:
     facts: tuple[tuple[str, str], ...] = ()
 
 
+def modulus_of(scene: Scene) -> float:
+    """The contact modulus E* in Pa: 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2."""
+    body, other = scene.body, scene.counterbody
+    return effective_modulus(body.young, body.poisson, other.young, other.poisson)
+
+
+def contact_of(scene: Scene) -> CircularContact:
+    """The elastic contact of a scene with a sphere."""
+    return CircularContact(scene.loading.force, scene.counterbody.radius, modulus_of(scene))
+
+
 @dataclass(frozen=True)
 class Solved:
-    """A scene with its reference and the result of each model, by the name of its run."""
+    """A scene with its reference and the result of each model, by the name of its run; frame: of the
+    sweeps of the case, see `verification.cases.sweep`; coarser: the same with larger cells and elements,
+    and the ratio of the sizes; others: of another scene, likewise by run.
+    """
 
     scene: Scene
     reference: Reference | None
     results: dict[str, Result]
+    frame: pd.DataFrame | None = None
+    coarser: Sequence[tuple[Result, float]] = ()
+    others: Mapping[str, Result] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -77,15 +103,16 @@ class Values:
 
 @dataclass(frozen=True)
 class Quantity:
-    """words: for the reader, without the model; of: (result, reference) -> number or Values; between:
-    (scene, SAM, FEM) -> Measured; row: of `compare` that holds one model against the other; whole: of all
+    """words: for the reader, without the model; of: (result, reference) -> number, Values, or Measured where
+    the result has the answer itself; between: (scene, SAM, other result) -> Measured; row: of `compare`, the
+    difference of both models where that alone is held.; whole: of all
     runs of a scene.
     """
 
     words: str
     unit: str = ""
-    of: Callable[[Result, Reference], float | Values] | None = None
-    between: Callable[[Scene, Result, Result], Measured | None] | None = None
+    of: Callable[[Result, Reference], float | Values | Measured] | None = None
+    between: Callable[[Scene, Result, Result], Measured] | None = None
     row: str = ""
     whole: Callable[[Solved], Measured | float] | None = None
 
@@ -94,21 +121,21 @@ class Quantity:
         none.
         """
         found = self.of(result, reference)
+        if isinstance(found, Measured):
+            return found
         expected = reference.values.get(name) if reference else None
         if isinstance(found, Values):
             return Measured(found.values, expected(*found.places), found.weight)
         return Measured(found, expected, unit=self.unit)
 
 
-def _scalar(name: str, words: str, unit: str = "", *, pair: bool = False) -> Quantity:
-    """A quantity of summary.json; pair: SAM against FEM it is the value beside the other, not a row of
-    compare.
-    """
+def _scalar(name: str, words: str, unit: str = "") -> Quantity:
+    """A quantity of summary.json."""
 
-    def between(scene: Scene, sam: Result, fem: Result) -> Measured:
-        return Measured(sam.quantities[name], fem.quantities[name], unit=unit)
+    def between(scene: Scene, sam: Result, other: Result) -> Measured:
+        return Measured(sam.quantities[name], other.quantities[name], unit=unit)
 
-    return Quantity(words, unit, lambda result, _: result.quantities[name], between if pair else None, name)
+    return Quantity(words, unit, lambda result, _: result.quantities[name], between, name)
 
 
 def _load(result: Result, reference: Reference) -> float:
@@ -134,22 +161,144 @@ def _pressure(result: Result, reference: Reference) -> Values:
     return Values((r, 0.0), p, r * np.gradient(r))
 
 
-def _pressure_on_cells(scene: Scene, sam: Result, fem: Result) -> Measured:
-    """Both over the cells of SAM; between nodes p is linear where the body yields, else p^2. Of the
-    three-dimensional model at its nodes.
+def _pressure_on_cells(scene: Scene, sam: Result, other: Result) -> Measured:
+    """Both over the cells of SAM; between other cells p is bilinear, zero beyond the outermost, between nodes
+    linear where the body yields, else p^2; of the three-dimensional model at its nodes.
     """
-    if fem.model == FEM_3D:
-        return Measured(*sliding.nodal_pressures(sam, fem))
+    if other.model == FEM_3D:
+        return Measured(*sliding.nodal_pressures(sam, other))
     x, y, p = pressure_map(sam)
-    return Measured(p, pressure_on(x, y, fem.tables, power=1 if scene.body.plasticity else 2))
+    if other.model == SAM:
+        u, v, field = pressure_map(other)
+        at = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)
+        return Measured(p, RegularGridInterpolator((u, v), field, bounds_error=False, fill_value=0.0)(at))
+    return Measured(p, pressure_on(x, y, other.tables, power=1 if scene.body.plasticity else 2))
 
 
-def _largest_at_nodes(scene: Scene, sam: Result, fem: Result) -> Measured | None:
-    """Of the three-dimensional model, whose nodes are few; else the row of `compare`."""
+def _pressure_over_rings(scene: Scene, sam: Result, fem: Result) -> Measured:
+    """Means over rings of a tenth of the elastic contact radius, weighted with their areas."""
+    reach = 1.2 * fem.quantities["contact_radius_m"]
+    edges = ring_edges(0.1 * contact_of(scene).contact_radius, reach)
+    r, p = peak(fem.tables["line"], "x_m", "p_Pa")
+    cells = means_of_cells(*pressure_map(sam), edges)
+    return Measured(cells, means_of_line(r, p, edges), np.diff(edges**2))
+
+
+def _largest_strain(below: bool) -> Callable[[Scene, Result, Result], Measured]:
+    """The largest plastic strain of cells or Gauss points in y = 0, in the layer or below it."""
+
+    def between(scene: Scene, *results: Result) -> Measured:
+        thickness = scene.body.plasticity.layer_thickness
+        pairs = [peak(each.tables["plane"], "z_m", "peeq") for each in results]
+        return Measured(*(float(peeq[(z >= thickness) == below].max()) for z, peeq in pairs))
+
+    return between
+
+
+def _surface_change(scene: Scene, result: Result, other: Result) -> Measured:
+    """Of quantities and of fields along the surface, relative to the largest value of each."""
+    names = ("approach_m", "contact_area_m2", "p_max_Pa"), ("p_Pa", "uz_m", "gap_m")
+    pairs: list[tuple] = [(result.quantities[name], other.quantities[name]) for name in names[0]]
+    pairs += [(peak(result.tables["line"], n)[0], peak(other.tables["line"], n)[0]) for n in names[1]]
+    return Measured(max(float(np.max(np.abs(np.subtract(a, b))) / np.max(np.abs(b))) for a, b in pairs))
+
+
+def _of_second_cycle(of: Callable[..., float | Measured]) -> Callable[[Result, Reference], float | Measured]:
+    """of: (plastic strain at the first peak, in the end, approach at the first peak, at the second)."""
+
+    def found(result: Result, reference: Reference) -> float | Measured:
+        names = ("cycle", "force_N", "approach_m", "peeq_max")
+        cycle, force, approach, peeq = (np.asarray(result.tables["history"][name]) for name in names)
+        first, second = (np.flatnonzero(cycle == k)[np.argmax(force[cycle == k])] for k in (1, 2))
+        return of(float(peeq[first]), float(peeq[-1]), float(approach[first]), float(approach[second]))
+
+    return found
+
+
+def _largest_at_nodes(scene: Scene, sam: Result, fem: Result) -> Measured:
+    """Of the three-dimensional model at its nodes, which are few."""
     if fem.model != FEM_3D:
-        return None
+        return Measured(sam.quantities["p_max_Pa"], fem.quantities["p_max_Pa"], unit="Pa")
     one, other, _ = sliding.nodal_pressures(sam, fem)
     return Measured(one.max(), other.max(), unit="Pa")
+
+
+def _patch(scene: Scene, sam: Result, fem: Result) -> Measured:
+    """Of a rough patch on the cells that both models have in common, else at the nodes of FEM with their
+    areas.
+    """
+    if scene.patch_surface:
+        return Measured(*(PatchPressure.of(each.tables).p for each in (sam, fem)))
+    return Measured(*sliding.nodal_pressures(sam, fem))
+
+
+def _spots(sam: Result, fem: Result) -> list[Spot]:
+    return spots(*(PatchPressure.of(each.tables) for each in (sam, fem)))
+
+
+def _of_spot(number: int, of: Callable[[Scene, Result, Result, Spot], Measured]) -> Callable:
+    """A quantity of one of the contact spots, which are counted along x; nan where there are fewer."""
+
+    def between(scene: Scene, sam: Result, fem: Result) -> Measured:
+        found = _spots(sam, fem)[number - 1 : number]
+        return of(scene, sam, fem, *found) if found else Measured(np.nan, np.nan)
+
+    return between
+
+
+def strain_below(scene: Scene, sam: Result, fem: Result, spot: Spot) -> tuple[np.ndarray, Measured]:
+    """Depths in m, and the plastic strains there below the centre of a spot."""
+    law = scene.body.plasticity
+    jump = law.layer_thickness if law.layer else 0.0
+    own, other = (Depths.of(each.tables, jump) for each in (sam, fem))
+    z = compared_depths(other, spot.x, spot.radius)
+    return z, Measured(own.below(spot.x, z), other.below(spot.x, z))
+
+
+def _strain(scene: Scene, sam: Result, fem: Result) -> Measured:
+    pairs = (strain_below(scene, sam, fem, spot)[1] for spot in _spots(sam, fem))
+    return Measured(max((relative_l2(p.value, p.expected) for p in pairs), default=np.nan))
+
+
+def _residual(scene: Scene, sam: Result, fem: Result) -> Measured:
+    (x, own), other = residual_line(sam.tables), residual_line(fem.tables)
+    return Measured(own, np.interp(x, *other), unit="m")
+
+
+def _below_film(scene: Scene, sam: Result, fem: Result) -> Measured:
+    """In y = 0 where FEM gives it, from the interface on: SAM linear between its points."""
+    interface, wide = scene.body.coating.thickness * (1.0 - 1e-9), 1.5 * contact_of(scene).contact_radius
+    (x, z, own), (u, w, other) = (plane_field(each.tables, "mises_Pa") for each in (sam, fem))
+    body, columns, rows = z >= interface, np.abs(u) <= wide, (w >= interface) & (w <= z[-1])
+    depths = np.maximum(w[rows], z[body][0])  # the interface to rounding
+    at = np.stack(np.meshgrid(u[columns], depths, indexing="ij"), axis=-1)
+    field = RegularGridInterpolator((x, z[body]), own[:, body])(at)
+    return Measured(field, other[np.ix_(columns, rows)])
+
+
+def _centroid(scene: Scene, sam: Result, fem: Result) -> Measured:
+    a = contact_of(scene).contact_radius
+    first, second = (each.quantities["pressure_centroid_x_m"] / a for each in (sam, fem))
+    return Measured(first, second, unit="a")
+
+
+def _largest(of: Callable[[Scene, Result, Result], Measured]) -> Callable:
+    """The largest value of a field of both models."""
+
+    def between(scene: Scene, sam: Result, fem: Result) -> Measured:
+        found = of(scene, sam, fem)
+        first, second = (float(np.max(np.asarray(each))) for each in (found.value, found.expected))
+        return Measured(first, second, unit="Pa")
+
+    return between
+
+
+def _at_interface(result: Result, reference: Reference) -> Values:
+    """Along y = 0 where the body meets the film."""
+    x, z, field = plane_field(result.tables, "mises_Pa")
+    use = np.abs(x) <= 1.5 * reference.units["a"]
+    (row,) = np.flatnonzero(np.isclose(z, reference.units["h"], rtol=1e-9, atol=0.0))
+    return Values((x[use],), field[use, row])
 
 
 def _mises_on_axis(result: Result, reference: Reference) -> Values:
@@ -207,11 +356,6 @@ def _nodal(solved: Solved, run: str = "sam") -> tuple[np.ndarray, np.ndarray, np
     return sliding.nodal_pressures(solved.results[run], solved.results["fem"])
 
 
-def _centroid(solved: Solved) -> Measured:
-    sam, fem = (solved.results[run].quantities["pressure_centroid_x_m"] for run in ("sam", "fem"))
-    return Measured(sam / solved.reference.units["a"], fem / solved.reference.units["a"], unit="a")
-
-
 def _decoupled(solved: Solved) -> float:
     """Pressure of the decoupled form off FEM over that of the coupled one, at the nodes of FEM."""
     form, coupled = (sliding.pressure_distance(*_nodal(solved, run)) for run in ("decoupled", "sam"))
@@ -266,9 +410,6 @@ SLIDING: Mapping[str, Quantity] = {
         for percent in (0.2, 2.0)
         for extent in ("depth", "length")
     },
-    "centroid": Quantity(
-        "shift of the centre of pressure", "m", row="pressure_centroid_x_m", whole=_centroid
-    ),
     "decoupled": Quantity(
         "pressure of the decoupled form off FEM over that of the coupled one, L2 at the nodes of FEM",
         whole=_decoupled,
@@ -282,7 +423,7 @@ SLIDING: Mapping[str, Quantity] = {
         "largest error of the von Mises stress in y = 0 from 0.25 a on, in p0", of=_mises_inside
     ),
     "adds": Quantity("plastic strain added by later cycles over that of the first", of=_added),
-    "moved": _scalar("residual_ux_center_m", "residual displacement of the centre along x", "m", pair=True),
+    "moved": _scalar("residual_ux_center_m", "residual displacement of the centre along x", "m"),
     "settles": Quantity("plastic strain that a pass adds anywhere in y = 0, p0/k = 4.4", whole=_settles),
     "grows": Quantity("plastic strain that a pass adds anywhere in y = 0, p0/k = 4.9", whole=_grows),
     "apart": Quantity(
@@ -412,10 +553,69 @@ QUANTITIES: Mapping[str, Quantity] = {
     "mises-depth": _scalar("mises_max_depth_m", "depth of the largest von Mises stress", "m"),
     "mises-axis": Quantity("von Mises stress on the axis", "Pa", _mises_on_axis, row="mises_Pa on the axis"),
     "mises-plane": Quantity("von Mises stress in the plane y = 0", "Pa", row="mises_Pa in the plane y = 0"),
-    "peeq-max": _scalar("peeq_max", "largest plastic strain", pair=True),
+    "peeq-max": _scalar("peeq_max", "largest plastic strain"),
+    "peeq-depth": _scalar("peeq_max_depth_m", "depth of the largest plastic strain", "m"),
     "peeq-axis": Quantity("plastic strain on the axis", row="peeq on the axis"),
     "peeq-plane": Quantity("plastic strain in the plane y = 0", row="peeq in the plane y = 0"),
-    "residual-centre": _scalar("residual_uz_center_m", "residual displacement in the centre", "m", pair=True),
+    "residual-centre": _scalar("residual_uz_center_m", "displacement of the centre after unloading", "m"),
+    "residual-mises": _scalar("residual_mises_max_Pa", "largest residual von Mises stress", "Pa"),
+    "pressure-rings": Quantity("mean pressure over rings of a/10", "Pa", between=_pressure_over_rings),
+    "strain-layer": Quantity("largest plastic strain in the layer", between=_largest_strain(below=False)),
+    "strain-below": Quantity("largest plastic strain below the layer", between=_largest_strain(below=True)),
+    "peeq-reloaded": Quantity(
+        "largest plastic strain after the second load, against the first",
+        of=_of_second_cycle(lambda first, last, *_: Measured(last, first)),
+    ),
+    "approach-reloaded": Quantity(
+        "change of the approach at the peak by the second cycle",
+        of=_of_second_cycle(lambda *values: abs(values[3] / values[2] - 1.0)),
+    ),
+    "surface-change": Quantity("largest change of the surface and the contact", between=_surface_change),
+    "applications": Quantity(
+        "applications of the residual-stress operator by SAM",
+        between=lambda scene, sam, fem: Measured(sam.cost["operator_applications"]),
+    ),
     **SLIDING,
     **MOVING,
+    "mises-film": _scalar("mises_max_film_Pa", "largest von Mises stress of the film", "Pa"),
+    "mises-body": _scalar("mises_max_substrate_Pa", "largest von Mises stress of the body", "Pa"),
+    "mises-interface": Quantity("von Mises stress of the body along the interface", "Pa", _at_interface),
+    "p-change": _scalar("p_max_change", "change of the largest pressure by the film"),
+    "mises-change": _scalar(
+        "mises_max_change", "change of the largest von Mises stress of the body by the film"
+    ),
+    "nodal-pressure": Quantity("pressure over the cells or nodes", "Pa", between=_patch),
+    "nodal-p-max": Quantity("largest nodal pressure", "Pa", between=_largest(_patch)),
+    "centroid": Quantity("centre of pressure, in contact radii", between=_centroid),
+    "mises-below-film": Quantity(
+        "von Mises stress of the body in y = 0, at the interface and the centres of the elements",
+        between=_below_film,
+    ),
+    "mises-below-film-max": Quantity("largest of these", "Pa", between=_largest(_below_film)),
+    "area": _scalar("contact_area_m2", "contact area", "m²"),
+    "friction": _scalar("friction_coefficient", "coefficient of friction of the whole contact"),
+    "spots": Quantity(
+        "contact spots of the three asperities that bear more than 5 % of the force",
+        between=lambda scene, *both: Measured(len(_spots(*both)), 3),
+    ),
+    **{
+        f"load-{k}": Quantity(
+            f"load of spot {k}",
+            "N",
+            between=_of_spot(k, lambda *of: Measured(of[-1].sam, of[-1].fem, unit="N")),
+        )
+        for k in (1, 2, 3)
+    },
+    **{
+        f"strain-{k}": Quantity(
+            f"plastic strain below spot {k} at z >= 0.3 radii, down to a tenth of the largest",
+            between=_of_spot(k, lambda *of: strain_below(*of)[1]),
+        )
+        for k in (1, 2, 3)
+    },
+    "strain-below-spots": Quantity("plastic strain below a spot, the largest difference", between=_strain),
+    "residual-line": Quantity("displacement along y = 0 after unloading", "m", between=_residual),
+    "reference-residual": Quantity(
+        "error of the surface's shape in the spectral solution", of=lambda _, exact: exact.values["residual"]
+    ),
 }
