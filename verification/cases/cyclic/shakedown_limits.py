@@ -92,7 +92,7 @@ def shakes_down(scene: Scene, result: Result, _: Reference | None) -> float:
     return float(result.verdict["class"] == "shakedown")
 
 
-def strain_of_cycles(file: CaseFile, frame: DataFrame) -> Plot:
+def strain_over_first(file: CaseFile, frame: DataFrame) -> Plot:
     """Strain of each cycle over that of the first, below and above the limit."""
     fades = frame["scene"].iloc[0].loading.path is not None
     panels: dict[str, dict[str, Curve]] = {}
