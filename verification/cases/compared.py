@@ -175,11 +175,11 @@ class Compared(Case):
         yield from ran(self.file, first.frame) if self.file.sweeps else ()
 
     def tables(self, found: Mapping[str, Solved]) -> Iterator[SmallTable]:
-        if self.file.variants:
+        if self.file.variants or self.file.runs:
             also = {name: found[name] for name in self.file.also}
             yield _results("Results", self.file, {name: found[name] for name in found if name not in also})
             for name, solved in found.items():
-                yield from _passes(self.file.variants[name]["words"], solved.results)
+                yield from _passes(self.file.variants[name]["words"] if name else "", solved.results)
             if also:
                 yield _results("Refinement", self.file, also)
                 yield _differences(self.file, found)
@@ -265,17 +265,19 @@ def _results(caption: str, file: CaseFile, found: Mapping[str, Solved]) -> Small
     shown = [
         q for q in QUANTITIES.values() if any(each.quantities.get(q.row) is not None for *_, each in runs)
     ]
-    words = {name: file.variants[name]["words"].replace("mu = ", "μ = ").rpartition(" = ") for name in found}
-    (head,) = {head for head, *_ in words.values()} if len({h for h, *_ in words.values()}) == 1 else ("",)
-    columns = (f"{q.words} [{q.unit}]" if q.unit else q.words for q in shown)
+    words = [file.variants[name]["words"].replace("mu = ", "μ = ") if name else "" for name in found]
+    heads = {each.rpartition(" = ")[0] for each in words}
+    said = {n: w.rpartition(" = ")[2] if len(heads) == 1 else w for n, w in zip(found, words, strict=True)}
     rows = [
         (
-            words[name][2],
-            run.upper() if run in ("sam", "fem") else f"SAM, {run}",
+            said[name],
+            run.upper() if run in ("sam", "fem") else f"{'SAM' if each.model == SAM else 'FEM'}, {run}",
             *(number(each.quantities.get(q.row), 5) for q in shown),
         )
         for name, run, each in runs
     ]
+    columns = (f"{q.words} [{q.unit}]" if q.unit else q.words for q in shown)
+    head = heads.pop() if len(heads) == 1 else ""
     return SmallTable(caption, (head or "variant", "model", *columns), rows)
 
 
