@@ -264,7 +264,7 @@ def _below_film(scene: Scene, sam: Result, fem: Result) -> Measured:
 
 def _centroid(scene: Scene, sam: Result, fem: Result) -> Measured:
     a = contact_of(scene).contact_radius
-    return Measured(*(each.quantities["pressure_centroid_x_m"] / a for each in (sam, fem)), unit="a")
+    return Measured(*(each.quantities["pressure_centroid_x_m"] / a for each in (sam, fem)))
 
 
 def _largest(of: Callable[[Scene, Result, Result], Measured]) -> Callable:
@@ -272,7 +272,7 @@ def _largest(of: Callable[[Scene, Result, Result], Measured]) -> Callable:
 
     def between(scene: Scene, sam: Result, fem: Result) -> Measured:
         found = of(scene, sam, fem)
-        return Measured(float(np.max(found.value)), float(np.max(found.expected)), unit="Pa")
+        return Measured(*(float(np.asarray(v).max()) for v in (found.value, found.expected)))
 
     return between
 
