@@ -24,8 +24,7 @@ from verification.cases.case import (
     with_loading,
     with_mesh,
 )
-from verification.cases.recipes import Resolution, at_ratio, coated_scene, resolved_at, resolved_grid
-from verification.cases.sliding.friction import BOX
+from verification.cases.recipes import BOX, Resolution, at_ratio, coated_scene, resolved_at, resolved_grid
 from verification.cost.advice_rows import (
     COATED,
     DEEP,

@@ -18,7 +18,7 @@ import numpy as np
 from fem_reference.spatial import WornCycle, worn_cycles
 from sam.scene import Plasticity, Result, Scene, Wear
 from verification.cases.case import SAM, Case, Context, Measured, Plot, SmallTable, with_loading
-from verification.cases.recipes import cells_of_asperities, friction
+from verification.cases.recipes import cells_of_asperities, rubbed
 from verification.compare.rough_measures import Depths, PatchPressure, compared_depths, relative_l2, spots
 from verification.figures.rough import residual
 from verification.scenes.asperities import HIGH, LOW, SIDE
@@ -111,7 +111,7 @@ def over_squares(values: np.ndarray) -> np.ndarray:
 
 def scene_of(base: Scene, cells: int) -> Scene:
     """The asperities on cells x cells cells, with back-stresses, friction map and wear."""
-    scene = cells_of_asperities(friction(base, "map"), cells)
+    scene = cells_of_asperities(rubbed(base, "map"), cells)
     scene = with_loading(scene, steps=STEPS, cycles=CYCLES)
     body = scene.body.model_copy(update={"plasticity": LAW})
     return scene.model_copy(
