@@ -90,8 +90,9 @@ class SweepFile(BaseModel):
 
     models: that solve each; axes: key of the scene or recipe -> its values, or name -> the keys and recipes
     of a value; quick: axes with other values at that level; columns: quantity, or a function beside the
-    file -> "value", "between" (SAM against FEM), or the metric of its error against the reference; size: what
-    is refined, for orders and limits; demand: whether a point that does not converge breaks the case off.
+    file -> "value", "between" (SAM against FEM), or the metric of its error against the reference, a list of
+    names for values alone; size: what is refined, for orders and limits; demand: whether a point that does
+    not converge breaks the case off.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
@@ -107,6 +108,11 @@ class SweepFile(BaseModel):
     @classmethod
     def _accept_lists(cls, value: object) -> object:
         return tuple(value) if isinstance(value, list) else value
+
+    @field_validator("columns", mode="before")
+    @classmethod
+    def _accept_names(cls, value: object) -> object:
+        return dict.fromkeys(value, "value") if isinstance(value, list) else value
 
 
 class CaseFile(BaseModel):

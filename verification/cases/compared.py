@@ -139,7 +139,7 @@ class Compared(Case):
         scene, other, loading = scenes[0], scenes[0].counterbody, scenes[0].loading
         units = first.reference.units if first.reference else {}
         solved = first.results.get("sam")
-        a = units.get("a") or (solved and solved.quantities["contact_radius_m"]) or math.nan
+        a = units.get("a") or loading.radius or (solved and solved.quantities["contact_radius_m"]) or math.nan
         plasticity = scene.body.plasticity
         law = (
             f"; {plasticity.law}, {plasticity.curve().stress(0.0) / 1e6:.1f} MPa at first yield"
@@ -157,13 +157,14 @@ class Compared(Case):
             yield other.shape.capitalize(), f"{size}{elastic_text(other) if other.elastic else 'rigid'}"
         again = f", {loading.cycles} times" * (loading.cycles > 1)
         forces = sorted({each.loading.force for each in scenes} - {None})
-        load = (
-            f"{' to '.join(f'{force:.5g}' for force in forces[:: max(1, len(forces) - 1)])} N"
-            if other
-            else f"given, {loading.p0 / 1e9:.4f} GPa in the centre"
-        )
+        if loading.misfit:
+            load = f"a sphere that grows, e = {loading.misfit:g} in its centre, radius {1e6 * a:g} µm"
+        elif other:
+            load = f"{' to '.join(f'{force:.5g}' for force in forces[:: max(1, len(forces) - 1)])} N"
+        else:
+            load = f"given, {loading.p0 / 1e9:.4f} GPa in the centre"
         steps = f"{load} in {loading.steps} equal steps{', then unloaded' * loading.unload}{again}"
-        yield "Force" if other else "Pressure", steps
+        yield "Force" if other else "Load", steps
         if loading.path:
             ends = " a to ".join(f"{end[0] / a:g}" for end in (loading.path.start, loading.path.end))
             yield "Way", f"from {ends} a along x in {loading.path.steps} steps"
@@ -178,11 +179,11 @@ class Compared(Case):
         yield from ran(self.file, first.frame) if self.file.sweeps else ()
 
     def tables(self, found: Mapping[str, Solved]) -> Iterator[SmallTable]:
-        if self.file.variants:
+        if self.file.variants or self.file.runs:
             also = {name: found[name] for name in self.file.also}
             yield _results("Results", self.file, {name: found[name] for name in found if name not in also})
             for name, solved in found.items():
-                yield from _passes(self.file.variants[name]["words"], solved.results)
+                yield from _passes(self.file.variants[name]["words"] if name else "", solved.results)
             if also:
                 yield _results("Refinement", self.file, also)
                 yield _differences(self.file, found)
@@ -268,17 +269,19 @@ def _results(caption: str, file: CaseFile, found: Mapping[str, Solved]) -> Small
     shown = [
         q for q in QUANTITIES.values() if any(each.quantities.get(q.row) is not None for *_, each in runs)
     ]
-    words = {name: file.variants[name]["words"].replace("mu = ", "μ = ").rpartition(" = ") for name in found}
-    (head,) = {head for head, *_ in words.values()} if len({h for h, *_ in words.values()}) == 1 else ("",)
-    columns = (f"{q.words} [{q.unit}]" if q.unit else q.words for q in shown)
+    words = [file.variants[name]["words"].replace("mu = ", "μ = ") if name else "" for name in found]
+    heads = {each.rpartition(" = ")[0] for each in words}
+    said = {n: w.rpartition(" = ")[2] if len(heads) == 1 else w for n, w in zip(found, words, strict=True)}
     rows = [
         (
-            words[name][2],
-            run.upper() if run in ("sam", "fem") else f"SAM, {run}",
+            said[name],
+            run.upper() if run in ("sam", "fem") else f"{'SAM' if each.model == SAM else 'FEM'}, {run}",
             *(number(each.quantities.get(q.row), 5) for q in shown),
         )
         for name, run, each in runs
     ]
+    columns = (f"{q.words} [{q.unit}]" if q.unit else q.words for q in shown)
+    head = heads.pop() if len(heads) == 1 else ""
     return SmallTable(caption, (head or "variant", "model", *columns), rows)
 
 

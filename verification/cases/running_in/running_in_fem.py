@@ -23,6 +23,7 @@ from verification.compare.rough_measures import Depths, PatchPressure, compared_
 from verification.figures.rough import residual
 from verification.scenes.asperities import HIGH, LOW, SIDE
 
+SCENE = "rough-asperities"
 CELLS = (32, 48, 64)
 SQUARES = 16  # along a side; the rim of a scar bears on single cells, of any size
 CYCLES, STEPS = 3, 2
@@ -134,7 +135,7 @@ class RunningInFem(Case):
     """Both models over the cycles on three grids."""
 
     def solve(self, context: Context) -> dict[int, Solved]:
-        base = context.scene("rough-asperities")
+        base = context.scene(SCENE)
         return {cells: solved(context, base, cells) for cells in CELLS}
 
     def measure(self, found: dict[int, Solved]) -> dict[str, Measured]:
