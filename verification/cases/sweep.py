@@ -3,7 +3,8 @@
 rows of the case take of its columns.
 
 A frame has the columns sweep, model ("sam/fem" for what is between both), an axis each, h (size of what is
-refined), converged, the columns of the file with `NAME expected` beside a value, scene and result.
+refined), converged, the columns of the file with `NAME value` and `NAME expected` beside each, scene and
+result. The function that a case names as `frame` returns such rows as mappings.
 """
 
 from __future__ import annotations
@@ -48,10 +49,13 @@ def points(sweep: SweepFile, level: str) -> Iterator[tuple[dict[str, Any], dict[
         yield dict(zip(axes, (name for name, _ in chosen), strict=True)), changes
 
 
-def framed(context: Context, file: CaseFile, base: Scene) -> DataFrame:
-    """All sweeps of a case, solved."""
+def framed(context: Context, file: CaseFile, base: Scene | None) -> DataFrame:
+    """All sweeps of a case, solved; or what its module returns."""
     import pandas as pd
 
+    if file.frame:
+        rows = beside(file, file.frame, {})(context)
+        return pd.DataFrame([{"sweep": "", "model": "", **row} for row in rows])
     return pd.DataFrame([row for name in file.sweeps for row in _runs(context, file, name, base)])
 
 
@@ -79,9 +83,12 @@ def _runs(context: Context, file: CaseFile, name: str, base: Scene) -> Iterator[
                 else:
                     found = of(scene, result, reference)
                 found = found if isinstance(found, Measured) else Measured(found)
-                if how == "value":
-                    own |= {column: found.value, f"{column} expected": found.expected}
-                else:
+                own |= {
+                    column: found.value,
+                    f"{column} value": found.value,
+                    f"{column} expected": found.expected,
+                }
+                if how != "value":
                     own[column] = error_of(how, found)
             yield own
         if between := [column for column, how in sweep.columns.items() if how == "between"]:
@@ -124,8 +131,8 @@ def _single(rows: DataFrame, column: str) -> Measured:
     """The value at one point, with what is expected there."""
     if len(rows) != 1:
         raise ValueError(f"{column}: {len(rows)} points where one is meant")
-    expected = rows.get(f"{column} expected")
-    return Measured(rows[column].iloc[0], None if expected is None else expected.iloc[0])
+    value, expected = rows.get(f"{column} value", rows[column]), rows.get(f"{column} expected")
+    return Measured(value.iloc[0], None if expected is None else expected.iloc[0])
 
 
 def _pair(rows: DataFrame, column: str) -> Measured:
@@ -153,11 +160,15 @@ missing.
 
 def selected(file: CaseFile, frame: DataFrame, take: Take) -> DataFrame:
     """The rows of the frame that a take is about, of the sweeps that have its column."""
-    hows = [file.sweeps[name].columns.get(take.column) for name in frame["sweep"]]
-    both = frame["model"] == BOTH
-    rows = frame[[how is not None and (how == "between") == own for how, own in zip(hows, both, strict=True)]]
+    rows = frame[frame[take.column].notna().groupby(frame["sweep"]).transform("any")]
+    if file.sweeps:
+        hows = [file.sweeps[name].columns.get(take.column) for name in frame["sweep"]]
+        both = [
+            (how == "between") == (model == BOTH) for how, model in zip(hows, frame["model"], strict=True)
+        ]
+        rows = frame[[how is not None and own for how, own in zip(hows, both, strict=True)]]
     for name in take.of:
-        rows = rows[(rows["sweep"] == name) | (rows["model"] == name)]
+        rows = rows[(rows[["sweep", "model"]] == name).any(axis=1)]
     for axis, sign, value in take.at:
         if sign == "=":
             rows = rows[[spelt(each) == value for each in rows[axis]]]
@@ -190,14 +201,16 @@ def taken(file: CaseFile, frame: DataFrame) -> dict[str, Measured]:
 
 def words_of(file: CaseFile, column: str) -> str:
     """A column for the reader: of the vocabulary, or what its function says of itself."""
-    of = beside(file, column, QUANTITIES)
+    of = beside(file, column, QUANTITIES) if file.sweeps else None
+    if of is None:
+        return column.replace("-", " ")
     return of.words if isinstance(of, Quantity) else of.__doc__.strip().splitlines()[0].rstrip(".").lower()
 
 
 def ran(file: CaseFile, frame: DataFrame) -> Iterator[tuple[str, str]]:
     """The points of each sweep, for the reader."""
-    for name, rows in frame.groupby("sweep", sort=False):
-        sweep = file.sweeps[name]
+    for name, sweep in file.sweeps.items():
+        rows = frame[frame["sweep"] == name]
         values = ((axis, dict.fromkeys(map(spelt, rows[axis]))) for axis in sweep.axes)
         said = "; ".join(f"{_plain(axis)} {', '.join(own)}" for axis, own in values)
         yield f"Points, {', '.join(map(str.upper, sweep.models))}", said
@@ -206,12 +219,14 @@ def ran(file: CaseFile, frame: DataFrame) -> Iterator[tuple[str, str]]:
 def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
     """A table for each sweep: a line a run, and the observed orders in the last."""
     for name, rows in frame.groupby("sweep", sort=False):
-        sweep = file.sweeps[name]
-        axes = [axis for axis in sweep.axes if len(set(map(spelt, rows[axis]))) > 1]
-        known = {c: c.removesuffix(" expected") for c in rows if not rows[c].isna().all()}
-        shown = [c for c in rows if known.get(c) in sweep.columns and np.ndim(rows[c].dropna().iloc[0]) == 0]
+        axes, shown = [], [column for column in rows if column not in ("sweep", "model", "expected")]
+        if sweep := file.sweeps.get(name):
+            axes = [axis for axis in sweep.axes if len(set(map(spelt, rows[axis]))) > 1]
+            with_expected = ((c, f"{c} expected")[: 1 + (how == "value")] for c, how in sweep.columns.items())
+            shown = [column for columns in with_expected for column in columns if column in rows]
+        shown = [c for c in shown if not rows[c].isna().all() and np.ndim(rows[c].dropna().iloc[0]) == 0]
         lines = [
-            (*(spelt(row[axis]) for axis in axes), row["model"].upper(), *(number(row[c], 5) for c in shown))
+            (*(spelt(row[axis]) for axis in axes), row["model"].upper(), *(_cell(row[c]) for c in shown))
             for _, row in rows.iterrows()
         ]
         for model, own in rows.groupby("model", sort=False):
@@ -219,8 +234,16 @@ def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
             if any(orders):
                 cells = (f"order {order.order:.2f}" if order else "" for order in orders)
                 lines.append((*[""] * len(axes), model.upper(), *cells))
-        heads = [words_of(file, known[c]) + ", expected" * c.endswith(" expected") for c in shown]
-        yield SmallTable(f"Points of {name}", (*map(_plain, axes), "model", *heads), lines)
+        heads = (
+            words_of(file, c.removesuffix(" expected")) + c[len(c.removesuffix(" expected")) :] for c in shown
+        )
+        yield SmallTable(
+            f"Points of {name}".removesuffix(" of "), (*map(_plain, axes), "model", *heads), lines
+        )
+
+
+def _cell(value: Any) -> str:
+    return value if isinstance(value, str) else number(None if value is None or value != value else value, 5)
 
 
 def _plain(axis: str) -> str:

@@ -16,13 +16,12 @@ import numpy as np
 
 from sam.scene import Result, Scene, Status
 from verification.cases.case import FEM, SAM, Context, with_grid, with_keys, with_loading
-from verification.cases.plastic.misfit_sphere import closed_form
 from verification.cases.recipes import at_ratio
 from verification.reference.coated_changes import largest_mises
 from verification.reference.elliptic import EllipticContact
 from verification.reference.hamilton import largest_von_mises
 from verification.reference.rounded_punch import RoundedPunch
-from verification.references import coated_contact, contact_of
+from verification.references import coated_contact, contact_of, growing_sphere
 from verification.runs.store import solve_or_reuse
 from verification.uncertainty import asked_of, bound, order_seen, solve
 
@@ -199,7 +198,7 @@ def of_film(_: Context, scene: Scene) -> Truth:
 def of_misfit(_: Context, scene: Scene) -> Truth:
     """A misfit sphere held in an infinite body: its largest strain by the closed form."""
     radius = scene.loading.radius * np.linspace(0.5, 1.0, 4001)
-    return _exact({"peeq_max": float(closed_form(scene).fields(radius).peeq.max())})
+    return _exact({"peeq_max": float(growing_sphere(scene).fields(radius).peeq.max())})
 
 
 def _modulus(scene: Scene) -> float:
