@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The figures of running-in: six panels of a run (Bosman & Schipper 2011, Figs. 13-17), all runs over the
-cycles, regimes.
+cycles, regimes, statements over uncertain inputs, worn volume over the size of cells.
 """
 
 from __future__ import annotations
@@ -22,10 +22,13 @@ from verification.figures.style import (
     BLUE,
     GREEN,
     GREY,
+    GUIDE,
     ORANGE,
+    PURPLE,
     VERMILION,
     Columns,
     Drawing,
+    log_ticks,
     sheet,
 )
 
@@ -168,43 +171,61 @@ def _local_friction(panel: Axes, scar: Scar, friction: tuple[float, float]) -> N
     panel.legend(handles=patches, **place, ncols=3, fontsize=7, handlelength=1.2)
 
 
-PANELS = (
-    ("volume", CUBIC, "wear volume [µm³]"),
-    ("friction", 1.0, "coefficient of friction"),
-    ("sa", 1e9, "Sa [nm]"),
-)
-_EACH = {"color": "#9a9a9a", "linewidth": 0.7}
-_MIDDLE = {"color": BLUE, "linewidth": 1.8}
+COLORS, LINES = (BLUE, VERMILION, GREEN), ("-", "--")
+"""Of the first and of the second name of a line, in order."""
+Lines = Mapping[tuple[str, str], np.ndarray]
+"""Two names of a line -> (n,) its values, a cycle each."""
 
 
-def comparison(runs: Mapping[str, Sequence[History]]) -> Drawing:
-    """Volume, friction and Sa over the cycles, a column for each case: each surface thin, their median
-    thick.
+def over_cycles(
+    panels: Mapping[tuple[str, str], Lines], names: Sequence[str], *, first: int = 0, thick: str = ""
+) -> Drawing:
+    """A row of panels for each quantity, a column for each title, lines over the cycles from the `first` on;
+    colours by the first of the `names` of a line, dashes by the second, unless one of these is drawn `thick`,
+    the others thin.
+
+    panels: (quantity, title) -> its lines.
     """
-    rows = Columns("panel", "case", "cycle", "median", "lowest", "highest", "surfaces")
-    shape, most = (len(PANELS), len(runs)), max(map(len, runs.values()))
-    with sheet(max(0.8 + 2.0 * len(runs), 3.6), 6.2, shape, sharex=True, sharey="row") as (figure, axes):
-        for column, (name, histories) in zip(axes.T, runs.items(), strict=True):
-            cycle = histories[0].cycle
-            for panel, (quantity, scale, _) in zip(column, PANELS, strict=True):
-                values = scale * np.array([getattr(history, quantity) for history in histories])
-                middle, low, high = np.median(values, axis=0), values.min(axis=0), values.max(axis=0)
-                if most > 1:
-                    panel.plot(cycle, values.T, **_EACH)
-                panel.plot(cycle, middle, **_MIDDLE)
-                rows.add(quantity, name, cycle, middle, low, high, len(histories))
-            column[0].set_title(name)
+    numbers = Columns("quantity", "panel", *names, "cycle", "value")
+    rows, titles = (list(dict.fromkeys(parts)) for parts in zip(*panels, strict=True))
+    firsts, seconds = ({key[k]: None for lines in panels.values() for key in lines} for k in (0, 1))
+    colors = dict(zip(firsts, COLORS, strict=False))
+    dashes = dict(zip(firsts if thick else seconds, LINES, strict=False))
+    size = (len(rows), len(titles))
+    with sheet(2.2 * max(3, size[1]), 1.1 + 1.7 * size[0], size, sharex=True, sharey="row") as (figure, axes):
+        for (quantity, title), lines in panels.items():
+            panel = axes[rows.index(quantity), titles.index(title)]
+            for (one, two), values in lines.items():
+                look = {"color": colors[one], "linestyle": dashes[one if thick else two], "linewidth": 1.3}
+                look |= (
+                    ({"linewidth": 2.0} if two == thick else {"linewidth": 0.5, "alpha": 0.4})
+                    if thick
+                    else {}
+                )
+                cycles = np.arange(first, first + len(values))
+                panel.plot(cycles, values, **look)
+                numbers.add(quantity, title, one, two, cycles, values)
+            panel.xaxis.set_major_locator(MaxNLocator(4, integer=True, min_n_ticks=2))
+        for row, quantity in zip(axes, rows, strict=True):
+            row[0].set(ylabel=quantity, ylim=(0.0, None))
+        for column, title in zip(axes.T, titles, strict=True):
+            begin, comma, rest = title.rpartition(", ") if len(title) > LONG_TITLE else (title, "", "")
+            column[0].set_title(f"{begin}{comma.strip()}\n{rest}" if comma else title)
             column[-1].set_xlabel("cycle")
-            column[-1].xaxis.set_major_locator(MaxNLocator(4, integer=True, min_n_ticks=2))
-        for panel, (quantity, _, label) in zip(axes[:, 0], PANELS, strict=True):
-            panel.set_ylabel(label)
-            if quantity != "friction":
-                panel.set_ylim(0.0, None)
-        each = Line2D([], [], **_EACH, label="each surface")
-        middle = Line2D([], [], **_MIDDLE, label=f"median of {most} surfaces" if most > 1 else "one surface")
-        figure.legend(handles=[each, middle] if most > 1 else [middle], loc="outside lower center", ncols=2)
+        named = [
+            Line2D([], [], color=color, linestyle=dashes.get(name, "-"), label=name)
+            for name, color in colors.items()
+        ]
+        if not thick:
+            named += [
+                Line2D([], [], color=BLACK, linestyle=line, label=name) for name, line in dashes.items()
+            ]
+        figure.legend(handles=named, loc="outside lower center", ncols=len(named))
         figure.align_ylabels()
-    return Drawing(figure, rows)
+    return Drawing(figure, numbers)
+
+
+LONG_TITLE = 20  # characters from which a title is broken at its last comma
 
 
 def surface(scar: Scar) -> Drawing:
@@ -375,3 +396,93 @@ def _zones(panel: Axes, high: float, film: float, top: float) -> None:
         where = {"ha": "center" if x > 1.0 else "left", "va": "center"}
         panel.text(x, y, words, fontsize=8.5, style="italic", **where)
     panel.axhline(film, color=BLACK, linewidth=1.0, linestyle="-.")
+
+
+PALE = "#9fc8e3"  # of bars on which bounds are drawn
+
+
+def probabilities(rows: Sequence[tuple[str, int, int, tuple[float, float]]]) -> Drawing:
+    """A bar with its bounds for each statement. rows: words, points at which it holds, points at which it
+    says anything, bounds of the share.
+    """
+    table = Columns("statement", "holds", "of", "low", "high")
+    names, held, of, bounds = (list(each) for each in zip(*rows[::-1], strict=True))
+    value, (low, high) = np.array(held) / np.maximum(of, 1), np.array(bounds).T
+    with sheet(7.2, 0.8 + 0.24 * len(names)) as (figure, axis):
+        axis.barh(names, value, color=PALE, height=0.6)
+        ends = np.maximum([value - low, high - value], 0.0)
+        axis.errorbar(
+            value, range(len(names)), xerr=ends, fmt="none", ecolor=BLACK, elinewidth=1.0, capsize=3
+        )
+        for k, words in enumerate(f"{yes} of {all_}" for yes, all_ in zip(held, of, strict=True)):
+            axis.text(1.02, k, words, va="center", fontsize=8.0, transform=axis.get_yaxis_transform())
+        axis.axvline(0.5, color=BLACK, linewidth=0.6, gid=GUIDE)
+        axis.set(xlabel="share of points at which the statement holds")
+        axis.set(xlim=(0.0, 1.0), ylim=(-0.7, len(names) - 0.3))
+        axis.set_axisbelow(True)
+    table.add(names, held, of, low, high)
+    return Drawing(figure, table)
+
+
+def best_pair(
+    places: Sequence[Sequence[float]],
+    labels: Sequence[str],
+    counts: np.ndarray,
+    logarithmic: Sequence[bool],
+    *,
+    printed: Sequence[float],
+) -> Drawing:
+    """A mark for each point over two inputs, coloured by the number of statements that hold there. printed:
+    the two printed inputs.
+    """
+    table = Columns(*labels, "statements that hold")
+    with sheet(5.6, 4.2) as (figure, axis):
+        marks = axis.scatter(*places, c=counts, cmap="viridis", s=36, edgecolors=BLACK, linewidths=0.4)
+        figure.colorbar(marks, ax=axis, label="statements that hold", ticks=MaxNLocator(integer=True))
+        axis.plot(
+            *printed,
+            "x",
+            color=VERMILION,
+            markersize=9,
+            markeredgewidth=2,
+            clip_on=False,
+            label="printed inputs",
+        )
+        axis.set(xlabel=labels[0], ylabel=labels[1], axisbelow=True)
+        for of, scale, yes in zip(
+            (axis.xaxis, axis.yaxis), (axis.set_xscale, axis.set_yscale), logarithmic, strict=True
+        ):
+            if yes:
+                scale("log")
+                log_ticks(of)
+        figure.legend(loc="outside upper left")
+    table.add(*places, counts)
+    return Drawing(figure, table)
+
+
+SURFACES = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, BLACK)
+
+
+def over_cells(volumes: Mapping[str, Mapping[float, Sequence[float]]], default: float) -> Drawing:
+    """A line for each surface through the means, with bars from the smallest to the largest.
+
+    volumes: name of a surface -> cells in the shortest wave -> volumes in um3 of the surface shifted against
+    the cells; default: the cells in the shortest wave that are recommended, marked by a line.
+    """
+    table = Columns("surface", "cells in the shortest wave", "mean V [µm³]", "smallest", "largest")
+    with sheet(6.2, 3.6) as (figure, axis):
+        for (name, of_cells), color in zip(volumes.items(), SURFACES, strict=False):
+            cells = np.array(list(of_cells))
+            mean, low, high = (
+                np.array([of(each) for each in of_cells.values()]) for of in (np.mean, min, max)
+            )
+            axis.plot(cells, mean, color=color, marker="o", markersize=3.5, linewidth=1.2, label=name)
+            ends = mean - low, high - mean
+            axis.errorbar(cells, mean, ends, fmt="none", ecolor=color, elinewidth=2.2)
+            table.add(name, cells, mean, low, high)
+        axis.axvline(default, color=BLACK, linewidth=0.8, linestyle=":", label="recommended")
+        axis.set(xlabel="cells in the shortest wave of the surface", ylabel="worn volume [µm³]", xscale="log")
+        axis.set_ylim(bottom=0.0)
+        log_ticks(axis.xaxis)
+        figure.legend(loc="outside right center")
+    return Drawing(figure, table)
