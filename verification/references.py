@@ -5,27 +5,21 @@ of the library in `verification.reference`.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
+from functools import cache
 
 import numpy as np
 
 from sam.scene import Scene
-from verification.quantities import Reference
+from verification.quantities import Reference, contact_of, modulus_of
+from verification.reference.coated_sphere import CoatedContact, solve_force
 from verification.reference.elliptic import EllipticContact
 from verification.reference.flat_punch import FlatPunch
-from verification.reference.hertz import CircularContact, axis_stress, effective_modulus, largest_von_mises
+from verification.reference.hertz import axis_stress, largest_von_mises
+from verification.reference.layered_axisymmetric import CoatedHalfSpace
+from verification.reference.rounded_punch import RoundedPunch
 from verification.reference.stress import von_mises
-
-
-def modulus_of(scene: Scene) -> float:
-    """The contact modulus E* in Pa: 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2."""
-    body, other = scene.body, scene.counterbody
-    return effective_modulus(body.young, body.poisson, other.young, other.poisson)
-
-
-def contact_of(scene: Scene) -> CircularContact:
-    """The elastic contact of a scene with a sphere."""
-    return CircularContact(scene.loading.force, scene.counterbody.radius, modulus_of(scene))
 
 
 def elliptic_contact(scene: Scene) -> EllipticContact:
@@ -55,6 +49,7 @@ def hertz_sphere(scene: Scene) -> Reference:
             "mises-depth": depth,
             "pressure": lambda x, y: exact.pressure(np.hypot(x, y)),
             "mises-axis": lambda z: von_mises(stress(z)),
+            "peeq-max": 0.0,
         },
         {"a": a, "p0": p0, "approach": delta},
         {
@@ -130,9 +125,81 @@ def flat_punch(scene: Scene) -> Reference:
     )
 
 
+def rounded_contact(scene: Scene) -> RoundedPunch:
+    """The elastic contact of a scene with a punch with a rounded edge."""
+    other = scene.counterbody
+    return RoundedPunch(scene.loading.force, other.flat_radius, other.radius, modulus_of(scene))
+
+
+def rounded_punch(scene: Scene) -> Reference:
+    """Ciavarella, Hills & Monno (1998); the largest pressure on 4001 places in the edge, within 1e-6; the
+    pressure to the flat end, beyond which it is steeper than any power.
+    """
+    exact, nu = rounded_contact(scene), scene.body.poisson
+    a, b, centre = exact.contact_radius, exact.flat, float(exact.pressure(0.0))
+    largest = float(exact.pressure(np.linspace(b, a, 4001)).max())
+
+    def mises(z: np.ndarray) -> np.ndarray:
+        return von_mises(exact.axis_stress(z, nu))
+
+    return Reference(
+        {
+            "approach": exact.approach,
+            "radius": a,
+            "p-center": centre,
+            "p-max": largest,
+            "pressure": lambda x, y: exact.pressure(np.hypot(x, y)),
+            "mises-axis": mises,
+        },
+        {"a": a, "p0": centre, "approach": exact.approach},
+        {
+            ("line", "p_Pa"): lambda x: exact.pressure(np.abs(x)),
+            ("line", "uz_m"): lambda x: exact.displacement(np.abs(x)),
+            ("axis", "mises_Pa"): mises,
+        },
+        deepest=2.0 * a,
+        inside=b,
+        facts=(
+            ("Contact radius a, flat end b/a", f"{a * 1e6:.5f} µm, {b / a:.5f}"),
+            ("Approach δ", f"{exact.approach * 1e9:.4f} nm"),
+            ("Pressure: centre, largest", f"{centre / 1e9:.4f}, {largest / 1e9:.4f} GPa"),
+        ),
+    )
+
+
+@cache
+def _coated_contact(layers: CoatedHalfSpace, radius: float, force: float, counter: float) -> CoatedContact:
+    return solve_force(layers, radius, force, counter)
+
+
+def coated_contact(scene: Scene) -> CoatedContact:
+    """The elastic contact of a scene with a sphere and a coating, by a spectral solution."""
+    body, film, other = scene.body, scene.body.coating, scene.counterbody
+    layers = CoatedHalfSpace(film.young, film.poisson, film.thickness, body.young, body.poisson)
+    counter = other.young / (1.0 - other.poisson**2) if other.elastic else math.inf
+    return _coated_contact(layers, other.radius, scene.loading.force, counter)
+
+
+def coated_sphere(scene: Scene) -> Reference:
+    """A spectral solution of the contact on a coated half-space."""
+    exact = coated_contact(scene)
+    a, p0 = exact.contact_radius, exact.central_pressure
+    return Reference(
+        {
+            "p-center": p0,
+            "approach": exact.approach,
+            "radius": a,
+            "pressure": lambda x, y: exact.pressure(np.hypot(x, y)),
+        },
+        {"a": a, "p0": p0, "approach": exact.approach},
+    )
+
+
 REFERENCES: Mapping[str, Callable[[Scene], Reference]] = {
     "hertz-sphere": hertz_sphere,
     "hertz-ellipse": hertz_ellipse,
     "flat-punch": flat_punch,
+    "rounded-punch": rounded_punch,
+    "coated-sphere": coated_sphere,
 }
 """Name in a case file -> the answer for a scene."""

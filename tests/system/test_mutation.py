@@ -12,12 +12,13 @@ import pytest
 from sam.kernels.lags import Lags
 from sam.kernels.patches import displacement_coefficients as coefficients
 from verification.cases.robustness import mutation as case
+from verification.judging import RowStatus, evaluate
 from verification.robustness.mutants import __main__ as mutation, equivalent, inject, scope
 from verification.robustness.mutants.judge import MutantVerdict, mutants_of
 from verification.robustness.mutants.numbers import Mutant, Number, find
 from verification.robustness.mutants.pool import forked
 from verification.robustness.mutants.probes import change
-from verification.rows import RowStatus, evaluate, load_rows
+from verification.rows import load_rows
 
 TOY = '''"""A toy."""
 from functools import cache

@@ -4,33 +4,30 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
-from sam.scene import Coating, CounterBody, Result, Scene
-from verification.cases.case import FEM, SAM, Case, Context, Plot, SmallTable, with_body, with_grid
-from verification.cases.hertz.hertz import stress_panels
+from sam.scene import Result, Scene
+from verification.cases.case import FEM, SAM, Case, Context, Plot, SmallTable
+from verification.cases.recipes import COUNTERBODIES, coated_scene, resolved_grid
 from verification.figures.coated import Pressures, film_planes, film_pressures
 from verification.figures.profiles import Profile, profiles
 from verification.reference.coated_changes import largest_bare_mises, largest_mises, pressure_change
-from verification.reference.coated_sphere import CoatedContact, solve_force
-from verification.reference.layered_axisymmetric import CoatedHalfSpace
-from verification.references import contact_of
+from verification.reference.coated_sphere import CoatedContact
+from verification.reference.stress import von_mises
+from verification.references import coated_contact, contact_of
 from verification.runs.sampling import peak, pressure_map
 
 MODELS = ("SAM", "FEM")
 RATIOS = (80 / 210, 2.0)
 THICKNESSES = (0.1, 0.5, 1.0, 2.0)
 """Over the contact radius without film."""
-COUNTERBODIES = {"rigid": {}, "steel": {"young": 210e9, "poisson": 0.3}}
 QUICK = ((80 / 210, 0.1, "rigid"), (2.0, 0.5, "steel"))
 """(E1/E2, thickness, counter-body) of the quick level, which are drawn at both."""
 CELLS_IN_RADIUS = 48
-ROOM = 1.06
-"""Half a side of the grid over the larger of the contact radii with and without film."""
 QUANTITIES = {
     "center": "p(0)",
     "approach": "approach",
@@ -71,29 +68,7 @@ class Answer:
 
 def answer_of(scene: Scene) -> Answer:
     """The independent answer of a scene with a sphere and a coating."""
-    body, film, other = scene.body, scene.body.coating, scene.counterbody
-    layers = CoatedHalfSpace(film.young, film.poisson, film.thickness, body.young, body.poisson)
-    counter = other.young / (1.0 - other.poisson**2) if other.elastic else math.inf
-    return Answer(solve_force(layers, other.radius, scene.loading.force, counter))
-
-
-def coated_scene(base: Scene, ratio: float, thickness: float, counterbody: str) -> Scene:
-    """The sphere of `base` on another film. ratio: E1/E2; thickness: over the contact radius without film."""
-    other = CounterBody(shape="sphere", radius=base.counterbody.radius, **COUNTERBODIES[counterbody])
-    bare = base.model_copy(update={"counterbody": other})
-    coating = Coating(
-        young=ratio * base.body.young,
-        poisson=base.body.coating.poisson,
-        thickness=thickness * contact_of(bare).contact_radius,
-    )
-    return with_body(bare, coating=coating)
-
-
-def resolved_grid(scene: Scene, contact: CoatedContact, cells: int = CELLS_IN_RADIUS) -> Scene:
-    """The scene on square cells, so many in the contact radius; the contact without film has room as well."""
-    cell = contact.contact_radius / cells
-    count = 2 * math.ceil(ROOM * max(contact.contact_radius, contact.bare.contact_radius) / cell) + 1
-    return with_grid(scene, cells=(count, count), extent=(count * cell, count * cell))
+    return Answer(coated_contact(scene))
 
 
 def errors(result: Result, answer: Answer) -> dict[str, float]:
@@ -317,6 +292,30 @@ def axis_panels(each: SolvedSphere) -> list[Profile]:
         return known[zeta.tobytes()]
 
     return stress_panels(each.models, (a0, p0), stress, "$z/a_0$")
+
+
+def scaled_columns(
+    results: Mapping[str, Result], table: str, columns: tuple[str, str], units: tuple[float, float]
+) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Name of a model -> (place, value) at the peak in a table, each divided by its unit."""
+    found = {name: peak(result.tables[table], *columns) for name, result in results.items()}
+    return {name: (x / units[0], y / units[1]) for name, (x, y) in found.items()}
+
+
+def stress_panels(
+    results: Mapping[str, Result], units: tuple[float, float], stress: Callable, xlabel: str
+) -> list[Profile]:
+    """Normal, lateral and von Mises stress on the axis. stress: depths (n,) -> (n, 6), both in `units`."""
+
+    def panel(title: str, ylabel: str, column: str, function: Callable) -> Profile:
+        series = scaled_columns(results, "axis", ("z_m", column), units)
+        return Profile(title, xlabel, ylabel, function, series, 1.0, "$p_0$", (0.0, 2.0))
+
+    return [
+        panel("Normal", r"$\sigma_{zz}/p_0$", "szz_Pa", lambda z: stress(z)[..., 2]),
+        panel("Lateral", r"$\sigma_{xx}/p_0$", "sxx_Pa", lambda z: stress(z)[..., 0]),
+        panel("Von Mises", r"$\sigma_\mathrm{vM}/p_0$", "mises_Pa", lambda z: von_mises(stress(z))),
+    ]
 
 
 CASES = (CoatedSphere("coated-sphere"),)

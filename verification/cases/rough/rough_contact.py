@@ -30,8 +30,7 @@ from verification.cases.case import (
     with_keys,
     with_loading,
 )
-from verification.cases.plastic.plastic_layer import LINEAR, with_layer
-from verification.cases.recipes import initial_yield
+from verification.cases.recipes import initial_yield, with_layer
 from verification.compare.rough_measures import (
     Depths,
     PatchPressure,
@@ -51,6 +50,7 @@ DEEP, SHOWN, REACH = 3.6e-6, 2.0e-6, 3.2e-6  # m: layers of SAM down to; depth a
 MAP = "map"
 MODELS = ((SAM, "sam"), (FEM_3D, "fem"))
 THICK = 0.9e-6  # m: of a layer with a law of its own; the strain of each spot is largest in it
+LINEAR = {"law": "linear", "yield_stress": 2.2e9, "modulus": 20e9}
 
 
 @dataclass(frozen=True)
