@@ -4,22 +4,25 @@ result.
 
 A quantity is a number or a field. Held against a reference, it is `of` a result of either model beside
 the value or function of the same name in the reference; SAM against finite elements, it is `between` two
-results, where nothing else is said the row of `compare` of that name.
+results, where nothing else is said the row of `compare` of that name; of all runs of a scene it is `whole`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
 from sam.scene import Result, Scene
+from verification.compare import sliding_measures as sliding
+from verification.compare.sliding_measures import Plane
 from verification.judging import Measured
 from verification.reference.hertz import CircularContact, effective_modulus
-from verification.runs.models import SAM
+from verification.reference.stress import von_mises
+from verification.runs.models import FEM_3D, SAM
 from verification.runs.sampling import (
     means_of_cells,
     means_of_line,
@@ -92,7 +95,8 @@ class Values:
 class Quantity:
     """words: for the reader, without the model; of: (result, reference) -> number, Values, or Measured where
     the result has the answer itself; between: (scene, SAM, other result) -> Measured; row: of `compare`, the
-    difference of both models where that alone is held.
+    difference of both models where that alone is held.; whole: of all
+    runs of a scene.
     """
 
     words: str
@@ -100,6 +104,7 @@ class Quantity:
     of: Callable[[Result, Reference], float | Values | Measured] | None = None
     between: Callable[[Scene, Result, Result], Measured] | None = None
     row: str = ""
+    whole: Callable[[Solved], Measured | float] | None = None
 
     def against(self, name: str, result: Result, reference: Reference | None) -> Measured:
         """The quantity of a result beside the value of its name in the reference; alone where that has
@@ -148,8 +153,10 @@ def _pressure(result: Result, reference: Reference) -> Values:
 
 def _pressure_on_cells(scene: Scene, sam: Result, other: Result) -> Measured:
     """Both over the cells of SAM; between other cells p is bilinear, zero beyond the outermost, between nodes
-    linear where the body yields, else p^2.
+    linear where the body yields, else p^2; of the three-dimensional model at its nodes.
     """
+    if other.model == FEM_3D:
+        return Measured(*sliding.nodal_pressures(sam, other))
     x, y, p = pressure_map(sam)
     if other.model == SAM:
         u, v, field = pressure_map(other)
@@ -198,6 +205,14 @@ def _of_second_cycle(of: Callable[..., float | Measured]) -> Callable[[Result, R
     return found
 
 
+def _largest_at_nodes(scene: Scene, sam: Result, fem: Result) -> Measured:
+    """Of the three-dimensional model at its nodes, which are few."""
+    if fem.model != FEM_3D:
+        return Measured(sam.quantities["p_max_Pa"], fem.quantities["p_max_Pa"], unit="Pa")
+    one, other, _ = sliding.nodal_pressures(sam, fem)
+    return Measured(one.max(), other.max(), unit="Pa")
+
+
 def _mises_on_axis(result: Result, reference: Reference) -> Values:
     """Each point stands for the depth around it."""
     z, mises = peak(result.tables["axis"], "z_m", "mises_Pa")
@@ -205,8 +220,249 @@ def _mises_on_axis(result: Result, reference: Reference) -> Values:
     return Values((z,), mises, np.gradient(z))
 
 
+PATCH = 0.2  # half width, in elastic contact radii, of the hats over which pressures are held against FEM
+STILL = 1e-9  # growth that counts as none in a ratio: thousandths of what the plastic loop resolves
+
+
+def planes(solved: Solved) -> dict[str, Plane]:
+    """Run -> plastic strain in the plane y = 0."""
+    return {name: Plane.of(each, solved.reference.units["a"]) for name, each in solved.results.items()}
+
+
+def _profile(column: bool, words: str) -> Quantity:
+    """The plastic strain over depth, on the axis or in the column where that of FEM is largest."""
+
+    def whole(solved: Solved) -> float:
+        both = planes(solved)
+        x = both["fem"].place_of_maximum() if column else 0.0
+        return sliding.profile_difference(both["sam"], both["fem"], x)
+
+    return Quantity(f"{words}, largest relative difference", whole=whole)
+
+
+def _limit(column: bool, words: str) -> Quantity:
+    """The same of the limits of both models."""
+
+    def whole(solved: Solved) -> float:
+        a, fem = solved.reference.units["a"], planes(solved)["fem"]
+        x = fem.place_of_maximum() if column else 0.0
+        z = sliding.depths_compared(fem, x)
+        one, other = (sliding.limit_of_strain(solved.results, m, a=a, x=x, z=z) for m in ("sam", "fem"))
+        return float(np.abs(one / other - 1.0).max())
+
+    return Quantity(f"{words} without cells and load steps, largest relative difference", whole=whole)
+
+
+def _contour(percent: float, extent: str) -> Quantity:
+    """Depth or length of the part of y = 0 beyond a plastic strain."""
+
+    def whole(solved: Solved) -> Measured:
+        both = planes(solved)
+        sam, fem = sliding.contours((both["sam"], both["fem"]), percent / 100)
+        return Measured(sam and getattr(sam, extent), fem and getattr(fem, extent), unit="a")
+
+    return Quantity(f"{extent} of the part of y = 0 beyond {percent:g} % of plastic strain", "a", whole=whole)
+
+
+def _nodal(solved: Solved, run: str = "sam") -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    return sliding.nodal_pressures(solved.results[run], solved.results["fem"])
+
+
+def _centroid(solved: Solved) -> Measured:
+    sam, fem = (solved.results[run].quantities["pressure_centroid_x_m"] for run in ("sam", "fem"))
+    return Measured(sam / solved.reference.units["a"], fem / solved.reference.units["a"], unit="a")
+
+
+def _decoupled(solved: Solved) -> float:
+    """Pressure of the decoupled form off FEM over that of the coupled one, at the nodes of FEM."""
+    form, coupled = (sliding.pressure_distance(*_nodal(solved, run)) for run in ("decoupled", "sam"))
+    return form / coupled
+
+
+def _decoupled_hats(solved: Solved) -> float:
+    width, results = PATCH * solved.reference.units["a"], solved.results
+    form, coupled = (
+        sliding.patch_distance(results[run], results["fem"], width) for run in ("decoupled", "sam")
+    )
+    return form / coupled
+
+
+def _component(k: int) -> Quantity:
+    """A stress against the closed form of the reference, in p0."""
+
+    def of(result: Result, reference: Reference) -> float:
+        places, stress = sliding.stresses_inside(result, reference.units["a"])
+        exact = reference.values["stress"](*places)[:, k]
+        return float(np.abs(stress[:, k] / reference.units["p0"] - exact).max())
+
+    return Quantity(f"largest error of {sliding.COMPONENTS[k]} at interior points, in p0", of=of)
+
+
+def _mises_inside(result: Result, reference: Reference) -> float:
+    places, mises = sliding.mises_inside(result, reference.units["a"])
+    exact = von_mises(reference.values["stress"](*places))
+    return float(np.abs(mises / reference.units["p0"] - exact).max())
+
+
+def _added(result: Result, reference: Reference | None) -> float:
+    strain = result.tables["cycles"]["peeq_max"]
+    return float(strain[-1] / strain[0] - 1.0)
+
+
+def _growth(lead: str) -> Callable[[Solved], float]:
+    """Of two runs of a travelling load, the latter of more passes."""
+    return lambda solved: sliding.growth(*(r for n, r in solved.results.items() if n.startswith(lead)))
+
+
+_ON_AXIS = "plastic strain at z >= 0.3 a on the axis"
+_IN_COLUMN = "plastic strain at z >= 0.3 a at the x of the largest"
+_settles, _grows = _growth("below"), _growth("above")
+SLIDING: Mapping[str, Quantity] = {
+    "axis": _profile(False, _ON_AXIS),
+    "column": _profile(True, _IN_COLUMN),
+    "limit-axis": _limit(False, _ON_AXIS),
+    "limit-column": _limit(True, _IN_COLUMN),
+    **{
+        f"contour-{percent:g}-{extent}".replace(".", "-"): _contour(percent, extent)
+        for percent in (0.2, 2.0)
+        for extent in ("depth", "length")
+    },
+    "centroid": Quantity(
+        "shift of the centre of pressure", "m", row="pressure_centroid_x_m", whole=_centroid
+    ),
+    "decoupled": Quantity(
+        "pressure of the decoupled form off FEM over that of the coupled one, L2 at the nodes of FEM",
+        whole=_decoupled,
+    ),
+    "decoupled-hats": Quantity(
+        "the same over hats of 0.2 a, which take both sides of the contact's edge together",
+        whole=_decoupled_hats,
+    ),
+    **{name: _component(k) for k, name in enumerate(sliding.COMPONENTS)},
+    "plane": Quantity(
+        "largest error of the von Mises stress in y = 0 from 0.25 a on, in p0", of=_mises_inside
+    ),
+    "adds": Quantity("plastic strain added by later cycles over that of the first", of=_added),
+    "moved": _scalar("residual_ux_center_m", "residual displacement of the centre along x", "m"),
+    "settles": Quantity("plastic strain that a pass adds anywhere in y = 0, p0/k = 4.4", whole=_settles),
+    "grows": Quantity("plastic strain that a pass adds anywhere in y = 0, p0/k = 4.9", whole=_grows),
+    "apart": Quantity(
+        "growth at p0/k = 4.9 over that at 4.4", whole=lambda s: _grows(s) / max(_settles(s), STILL)
+    ),
+}
+
+
+def ladders(solved: Solved) -> list[dict[int, Result]]:
+    """Of SAM and of finite elements, the runs "sam-N" and "fem-N": N -> result, the finest last."""
+    named = {tuple(name.split("-", 1)): each for name, each in solved.results.items()}
+    return [
+        {int(n): named[model, n] for model, n in named if model == run and n.isdigit()}
+        for run in ("sam", "fem")
+    ]
+
+
+def refined(runs: Mapping[int, Result], value: Callable[[Result], Any]) -> np.ndarray:
+    """The limit of a value in 1/N of second order, of the two finest runs; of a single run its own."""
+    *coarse, fine = (np.asarray(value(runs[n])) for n in sorted(runs))
+    if not coarse:
+        return fine
+    n, m = sorted(runs)[-2:]
+    return fine + (fine - coarse[-1]) / ((m / n) ** 2 - 1)
+
+
+def groove_at(result: Result, places: np.ndarray) -> np.ndarray:
+    """Depth of the groove in m at places along the track."""
+    return np.interp(places, result.tables["track"]["x_m"], result.tables["track"]["uz_m"])
+
+
+def _groove(solved: Solved) -> float:
+    """Difference of the finest runs within a radius of the middle, over the depth."""
+    places = np.linspace(-1.0, 1.0, 81) * solved.reference.units["a"]
+    sam, fem = (groove_at(runs[max(runs)], places) for runs in ladders(solved))
+    return float(np.abs(sam - fem).max() / fem.max())
+
+
+OF_TRACKS: Mapping[str, Callable[[Result], float]] = {
+    "groove in the middle of the track": lambda result: float(groove_at(result, 0.0)),
+    "largest depth of the groove": lambda result: float(result.quantities["groove_deepest_m"]),
+    "largest plastic strain": lambda result: float(result.quantities["peeq_max"]),
+}
+
+
+def _both_refined(words: str, unit: str) -> Quantity:
+    """A value of a track, both models refined."""
+
+    def whole(solved: Solved) -> Measured:
+        sam, fem = (float(refined(runs, OF_TRACKS[words])) for runs in ladders(solved))
+        return Measured(sam, fem, unit=unit)
+
+    return Quantity(f"{words}, both models refined", unit, whole=whole)
+
+
+def of_passes(result: Result, name: str) -> np.ndarray:
+    """The "energy" in J that each pass dissipates, or the largest new "strain" of the steady part."""
+    table, column = {"energy": ("cycles", "dissipated_J"), "strain": ("passes", "new_strain_max")}[name]
+    return np.asarray(result.tables[table][column], dtype=float)
+
+
+def _limits_of_passes(solved: Solved, name: str) -> list[np.ndarray]:
+    return [refined(runs, lambda result: of_passes(result, name)) for runs in ladders(solved)]
+
+
+def _counted(solved: Solved) -> np.ndarray:
+    """Which passes strain more than the floor of the verdict, in all runs of both models."""
+    runs = solved.results.values()
+    return np.all([of_passes(each, "strain") > each.verdict["floor"] for each in runs], axis=0)
+
+
+def _pass(name: str, words: str, *, own: bool = False) -> Quantity:
+    """Largest difference of a pass, over what the first one does, as a later pass strains little and has the
+    error of the strain that has accumulated; own: of a pass that counts, over what itself does.
+    """
+
+    def whole(solved: Solved) -> float:
+        sam, fem = _limits_of_passes(solved, name)
+        if own:
+            return float(np.abs(sam[counted := _counted(solved)] / fem[counted] - 1.0).max())
+        return float(np.abs(sam - fem).max() / fem[0])
+
+    over = "of a pass that counts, over itself" if own else "over the first pass"
+    return Quantity(f"{words}, largest difference of both models {over}", whole=whole)
+
+
+def _verdicts(solved: Solved) -> Measured:
+    return Measured(float(len({each.verdict["class"] for each in solved.results.values()})), 1.0)
+
+
+def _becomes(name: str) -> Quantity:
+    """Whether all runs end with a verdict."""
+
+    def whole(solved: Solved) -> Measured:
+        return Measured(float({each.verdict["class"] for each in solved.results.values()} == {name}), 1.0)
+
+    return Quantity(f"1 if the verdict is {name}", whole=whole)
+
+
+MOVING: Mapping[str, Quantity] = {
+    "groove": Quantity("largest difference of the groove between both models over its depth", whole=_groove),
+    "groove-refined": _both_refined("groove in the middle of the track", "m"),
+    "deepest-refined": _both_refined("largest depth of the groove", "m"),
+    "strain-refined": _both_refined("largest plastic strain", ""),
+    "verdict": Quantity("different verdicts of both models on all grids", whole=_verdicts),
+    "energy": _pass("energy", "energy that a pass dissipates"),
+    "strain": _pass("strain", "largest strain that a pass adds"),
+    "own-energy": _pass("energy", "energy of a pass", own=True),
+    "own-strain": _pass("strain", "largest strain of a pass", own=True),
+    "counted": Quantity(
+        "passes that strain some cell by more than the floor of the verdict, on all grids",
+        whole=lambda solved: float(_counted(solved).sum()),
+    ),
+    "shakes-down": _becomes("shakedown"),
+    "alternates": _becomes("alternating"),
+}
+
 QUANTITIES: Mapping[str, Quantity] = {
-    "p-max": _scalar("p_max_Pa", "largest pressure", "Pa"),
+    "p-max": replace(_scalar("p_max_Pa", "largest pressure", "Pa"), between=_largest_at_nodes),
     "p-center": _scalar("p_center_Pa", "pressure in the centre", "Pa"),
     "approach": _scalar("approach_m", "approach", "m"),
     "radius": _scalar("contact_radius_m", "contact radius", "m"),
@@ -239,4 +495,6 @@ QUANTITIES: Mapping[str, Quantity] = {
         "applications of the residual-stress operator by SAM",
         between=lambda scene, sam, fem: Measured(sam.cost["operator_applications"]),
     ),
+    **SLIDING,
+    **MOVING,
 }

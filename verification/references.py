@@ -16,9 +16,11 @@ from verification.quantities import Reference, contact_of, modulus_of
 from verification.reference.coated_sphere import CoatedContact, solve_force
 from verification.reference.elliptic import EllipticContact
 from verification.reference.flat_punch import FlatPunch
+from verification.reference.hamilton import sliding_stress
 from verification.reference.hertz import axis_stress, largest_von_mises
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
 from verification.reference.rounded_punch import RoundedPunch
+from verification.reference.shakedown import upper_bound
 from verification.reference.stress import von_mises
 
 
@@ -195,11 +197,31 @@ def coated_sphere(scene: Scene) -> Reference:
     )
 
 
+def hamilton(scene: Scene) -> Reference:
+    """Hamilton (1983): stresses over p0, (..., 6), under a given Hertz pressure and traction."""
+    a, p0 = scene.loading.radius, scene.loading.p0
+    unit = {"contact_radius": a, "nu": scene.body.poisson, "friction": scene.coefficient}
+    return Reference(
+        {"stress": lambda x, y, z: sliding_stress(x, y, z, 1.0, **unit)},
+        {"a": a, "p0": p0},
+        facts=(("Radius a of the pressure", f"{a * 1e6:.4f} µm"),),
+    )
+
+
+def travelling_load(scene: Scene) -> Reference:
+    """The shakedown limit below a Hertz pressure that travels."""
+    bound = upper_bound(scene.coefficient, nu=scene.body.poisson)
+    facts = (("Upper bound of p₀/k", f"{bound:.3f}"),)
+    return Reference({}, {"a": scene.loading.radius, "p0": scene.loading.p0}, facts=facts)
+
+
 REFERENCES: Mapping[str, Callable[[Scene], Reference]] = {
     "hertz-sphere": hertz_sphere,
     "hertz-ellipse": hertz_ellipse,
     "flat-punch": flat_punch,
     "rounded-punch": rounded_punch,
     "coated-sphere": coated_sphere,
+    "hamilton": hamilton,
+    "travelling-load": travelling_load,
 }
 """Name in a case file -> the answer for a scene."""

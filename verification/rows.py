@@ -104,7 +104,9 @@ class CaseFile(BaseModel):
 
     scene: of `verification/scenes`; set: key of the scene, as `loading.force` -> its value here, in SI;
     vary: recipe of `verification.cases.recipes` -> its value; quick: `set` and `vary` that differ at that
-    level; models: that solve it; values: quantity -> the number that it is held against; reference: an
+    level; models: that solve it; runs: name -> {model, set, vary}, beside these, which need not converge;
+    variants: name -> {words, set, vary} of the scene, each solved and measured by itself if rows or `also`
+    name it; values: quantity -> the number that it is held against; reference: an
     independent answer, a name in `verification.references`; figures: kinds of `verification.cases.kinds`;
     claims: table of rows -> name -> its quantity, of those without a take; sweeps: its points beside the
     scene itself; takes: id of a row -> what it takes of them, see `Take`; notes: sentences below the
@@ -130,6 +132,9 @@ class CaseFile(BaseModel):
     values: dict[str, float] = {}
     quick: dict[str, Any] = {}
     models: tuple[Literal["sam", "fem", "fem-3d"], ...] = ()
+    runs: dict[str, dict[str, Any]] = {}
+    variants: dict[str, dict[str, Any]] = {}
+    also: tuple[str, ...] = ()
     reference: str = ""
     coarser: tuple[int, ...] = ()
     allowance: tuple[str, ...] = ()
@@ -169,26 +174,26 @@ def read_cases(path: Path) -> list[CaseFile]:
         raise SceneError([Problem("case file", path.name, str(error))], str(path)) from error
     own, reasons = content.pop("cases", {}), content.pop("reasons", {})
     common = {"name": path.stem.replace("_", "-"), "family": path.parent.name, "path": path}
-    cases = [_merged(content, case | {"name": name}) for name, case in own.items()] if own else [content]
+    cases = [merged(content, case | {"name": name}) for name, case in own.items()] if own else [content]
     return [_case(common | case, reasons) for case in cases]
 
 
-def _merged(first: Mapping, second: Mapping) -> dict:
+def merged(first: Mapping, second: Mapping) -> dict:
     """Nested tables, the second's values before the first's."""
-    both = {k: _merged(first[k], v) if isinstance(v, dict) and k in first else v for k, v in second.items()}
+    both = {k: merged(first[k], v) if isinstance(v, dict) and k in first else v for k, v in second.items()}
     return {**first, **both}
 
 
 def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     """One case of a file. Raises SceneError with every fault of it."""
     faults: list[Problem] = []
-    tables = content.pop("rows", {})
     takes: dict[str, tuple[Take, ...]] = {}
-    rows = [
-        row
-        for table in tables
-        for row in _rows(content["name"], table, tables[table], reasons=reasons, takes=takes, faults=faults)
-    ]
+    variants, tables = content.get("variants", {}), dict[str, dict[str, Any]]()
+    for heads, named in content.pop("rows", {}).items():
+        for head in _braces(heads):
+            tables[head] = tables.get(head, {}) | named
+    more = {"reasons": reasons, "variants": variants, "takes": takes, "faults": faults}
+    rows = [row for table, named in tables.items() for row in _rows(content["name"], table, named, **more)]
     named = [each for each in content.get("equations", ()) if isinstance(each, str)]
     content["equations"] = [_equations().get(e, e) if e in named else e for e in content.get("equations", ())]
     lists = {key: tuple(value) for key, value in content.items() if isinstance(value, list)}
@@ -196,7 +201,7 @@ def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     twice = sorted({row.id for row in rows if sum(other.id == row.id for other in rows) > 1})
     faults += [Problem("rows", name, "occurs twice") for name in twice]
     claims = {
-        table: {name: _named(name, cells) for name, cells in named.items() if len(cells) < 5}
+        table: {n: _named(n, cells) for key, cells in named.items() if len(cells) < 5 for n in _braces(key)}
         for table, named in tables.items()
     }
     try:
@@ -208,32 +213,39 @@ def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     return case
 
 
+def head_of(table: str, variants: Mapping) -> tuple[str, str, str]:
+    """Variant, model and what it is held against, of the name of a table of rows; "" for what it lacks."""
+    first, _, rest = table.partition("/")
+    variant, rest = (first, rest) if first in variants else ("", table)
+    model, _, against = rest.rpartition("/")
+    return variant, model, against
+
+
 def _rows(
-    case: str, table: str, named: Mapping, *, reasons: Mapping, takes: dict, faults: list[Problem]
+    case: str, table: str, named: Mapping, *, reasons: Mapping, variants: Mapping, takes: dict, faults: list
 ) -> Iterator[Row]:
-    """The rows of a table, of kind `exact`, or, where two models are held against each other or one against
-    something, `sam/fem`, `sam/exact`; what they take is added to `takes`, what is wrong with one to `faults`.
+    """The rows of a table, of kind `exact`, or, where two models are held against each other or one
+    against something, `sam/fem`, `sam/exact`, after the name of a variant of the scene if there are; what
+    they take is added to `takes`, what is wrong with one to `faults`.
     """
-    model, _, against = table.rpartition("/")
+    variant, model, against = head_of(table, variants)
     kind = "model" if against == "fem" else against
-    lead = f"{model}-" if model and kind != "model" else ""
-    of = f", {model.upper()}" + " against FEM" * (kind == "model") if model else ""
+    lead = f"{variant}-" * bool(variant) + (f"{model}-" if model and kind != "model" else "")
+    of = f", {variants[variant]['words']}" if variant else ""
+    of += f", {model.upper()}" + " against FEM" * (kind == "model") if model else ""
     for key, cells in named.items():
         try:
             metric, tolerance, reason, *words = cells
             reason = reasons[reason[1:]] if reason.startswith("@") else reason
-            quantity = _named(key, cells)
-            said, *take = (
-                words if words and words[0] not in QUANTITIES else [f"{QUANTITIES[quantity].words}{of}"]
-            )
-            names = _braces(key)
-            if take:
+            names, own = _braces(key), bool(words) and words[0] not in QUANTITIES
+            said = _braces(words[0]) if own else [f"{QUANTITIES[_named(n, cells)].words}{of}" for n in names]
+            if take := words[1:]:
                 parts = [each.split(" | ") for each in _braces(*take)]
                 takes |= {
                     f"{case}.{name}": tuple(map(Take.parse, part))
                     for name, part in zip(names, parts, strict=True)
                 }
-            for name, quantity in zip(names, _braces(said), strict=True):
+            for name, quantity in zip(names, said, strict=True):
                 yield Row(
                     id=f"{case}.{lead}{name}",
                     case=case,

@@ -5,7 +5,7 @@ both models (`verification.quantities.Solved`). Titles and captions follow from 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import cycle
 from typing import TYPE_CHECKING
 
@@ -13,14 +13,16 @@ import numpy as np
 
 from verification.cases.case import Plot, View
 from verification.cases.sweep import BOTH, fitted, spelt, words_of
-from verification.figures.friction import CYCLES, Curve, curves
+from verification.compare.sliding_measures import SHALLOWEST
+from verification.figures.friction import CYCLES, LOOKS, Curve, compared_planes, curves, profile_of
 from verification.figures.maps import FieldPair, maps_over_axes, pressure_maps
-from verification.figures.plastic import axis_profiles, compared_peeq, residual_surface
+from verification.figures.moving import grooves, new_strains
+from verification.figures.plastic import PERCENT, axis_profiles, compared_peeq, residual_surface
 from verification.figures.profiles import Profile, convergence, profiles
 from verification.figures.refinement import refinement
 from verification.figures.style import Drawing
 from verification.figures.views import SURFACE_AXES, VON_MISES, compared_mises, compared_pressure
-from verification.quantities import Solved
+from verification.quantities import OF_TRACKS, Solved, ladders, of_passes, planes, refined
 from verification.reference.convergence import extrapolate
 from verification.references import contact_of
 from verification.rows import CaseFile
@@ -191,6 +193,107 @@ def _mises_maps(found: Solved) -> Drawing:
     return compared_mises(*found.results.values(), found.reference.units["a"], found.reference.units["p0"])
 
 
+TOO_NEAR = "too near the surface to be compared, where the strain depends on the mesh."
+
+
+def _strain_planes(found: Solved) -> Plot:
+    """Plastic strain in y = 0 of SAM and the three-dimensional elements, to the depth that is compared."""
+    both = planes(found)
+    a, fem = found.reference.units["a"], found.results["fem"]
+    edge = fem.quantities["contact_radius_m"] / a if found.scene.counterbody else 1.0
+    drawing = compared_planes(both["sam"], both["fem"], ("SAM", "FEM"), edge, strip=SHALLOWEST)
+    alt = "Three maps of the plastic strain over x/a and z/a: SAM, FEM and their difference."
+    caption = f"{alt} Iso-lines in %. The body is pulled along +x. Hatched: {TOO_NEAR}"
+    return Plot(drawing, "plane", "Plastic strain in the plane y = 0", alt, caption)
+
+
+DEEP = 1.4  # radii to which profiles are drawn
+
+
+def _strain_profiles(found: Mapping[str, Solved], words: Mapping[str, str]) -> Iterator[Plot]:
+    """Plastic strain over depth of every run, a panel a variant."""
+    fields = {name: planes(each) for name, each in found.items()}
+    for name, place in (("axis", "on the axis"), ("column", "where it is largest")):
+        panels = {}
+        for variant, runs in fields.items():
+            x = runs["fem"].place_of_maximum() if name == "column" else 0.0
+            order = ("fem", *(run for run in runs if run != "fem"))
+            panels[f"{words[variant]}, x = {x:.2f} a"] = {
+                run.upper() if run in ("sam", "fem") else f"SAM, {run}": profile_of(runs[run], x, DEEP)
+                for run in order
+                if run in ("sam", "fem") or f"SAM, {run}" in LOOKS
+            }
+        drawing = curves(panels, "$z/a$", "plastic strain [%]", (0.0, SHALLOWEST))
+        alt = "Curves of the plastic strain over depth: FEM, SAM on it, other forms of SAM beside it."
+        caption = f"In y = 0 at the peak. Grey: {TOO_NEAR}"
+        yield Plot(drawing, name, f"Plastic strain over depth {place}", alt, caption)
+
+
+def _strain_of_cycles(found: Mapping[str, Solved], words: Mapping[str, str]) -> Iterator[Plot]:
+    """The largest plastic strain over the cycles, of the runs with most of them, a panel a variant."""
+    panels = {}
+    for name, solved in found.items():
+        strains = {run: np.asarray(each.tables["cycles"]["peeq_max"]) for run, each in solved.results.items()}
+        most = max(map(len, strains.values()))
+        panels[words[name]] = {
+            run: Curve(np.arange(1, most + 1), PERCENT * each)
+            for run, each in strains.items()
+            if len(each) == most
+        }
+    series = dict.fromkeys(run for panel in panels.values() for run in panel)
+    looks = dict(zip(series, CYCLES, strict=False))
+    alt = "Curves of the largest plastic strain over the cycles of every run."
+    drawing = curves(panels, "cycle", "largest plastic strain [%]", looks=looks, count=True)
+    yield Plot(drawing, "strain", "Plastic strain over the cycles", alt, alt)
+
+
+def _grooves(found: Solved) -> Plot:
+    """The groove along the track of the finest runs that are compared."""
+    a, path = found.reference.units["a"], found.scene.loading.path
+    length, lines = (path.end[0] - path.start[0]) / a, {}
+    for runs in ladders(found):
+        n = max(runs)
+        x, depth = (np.asarray(runs[n].tables["track"][column]) / a for column in ("x_m", "uz_m"))
+        near = np.abs(x) <= length / 2 + 2.0
+        lines[f"{runs[n].model}, {n} in a"] = x[near] + length / 2, depth[near]
+    words = "Depth of the unloaded surface over the distance from the start, both models; a: radius of Hertz."
+    return Plot(grooves(lines, length), "groove", "Groove of one pass in both models", words, words)
+
+
+def _cost_of_errors(found: Solved) -> Plot:
+    """The largest error of each run against the limit of the two finest of its model, over its time."""
+    series = {}
+    for run in ("sam", "fem"):
+        named = {int(name.rpartition("-")[2]): r for name, r in found.results.items() if f"{run}-" in name}
+        limits = [(of, refined(named, of)) for of in OF_TRACKS.values()]
+        error = [100 * max(abs(of(named[n]) / limit - 1) for of, limit in limits) for n in sorted(named)]
+        series[run.upper()] = Curve(
+            np.array([named[n].cost["cpu_s"] for n in sorted(named)]), np.array(error)
+        )
+    looks = dict(zip(series, CYCLES, strict=False))
+    drawing = curves(
+        {"Cost of an error": series}, "processor time [s]", "error [%]", looks=looks, logarithmic=True
+    )
+    drawing.figure.axes[0].set_xscale("log")
+    words = (
+        "The largest error of groove, depth and strain over the processor time, against the limit of the two "
+        "finest runs of each model in second order; in the same steps along the path."
+    )
+    return Plot(drawing, "cost", "Error and processor time", words, words)
+
+
+def _new_strains(found: Mapping[str, Solved], words: Mapping[str, str]) -> Iterator[Plot]:
+    """What each pass adds, a figure a variant."""
+    for variant, solved in found.items():
+        runs = {name: of_passes(each, "strain") for name, each in solved.results.items()}
+        floors = sorted({float(each.verdict["floor"]) for each in solved.results.values()})
+        text = (
+            f"Largest plastic strain that a pass adds to a cell or element of the steady part of the track, "
+            f"{words[variant]}; below its floor the verdict counts none."
+        )
+        yield Plot(new_strains(runs, floors), f"new-strain-{variant}", "What each pass adds", text, text)
+
+
 _PUNCH = (("line", "p_Pa"), ("line", "uz_m"), ("axis", "mises_Pa"))
 KINDS: Mapping[str, Callable[[Solved], Plot]] = {
     "pressure-maps": _maps("contact pressure over x/a and y/a", "pressure-maps", _pressure_maps),
@@ -223,6 +326,9 @@ KINDS: Mapping[str, Callable[[Solved], Plot]] = {
     "across": _across,
     "plastic-axis": _plastic_axis,
     "residual-surface": _residual_surface,
+    "strain-planes": _strain_planes,
+    "grooves": _grooves,
+    "cost-of-errors": _cost_of_errors,
 }
 """Name in a case file -> how it is drawn."""
 
@@ -311,3 +417,9 @@ VIEWS: Mapping[str, View] = {
     ),
 }
 """Name in a case file -> the picture in space."""
+OVER_VARIANTS: Mapping[str, Callable[[Mapping[str, Solved], Mapping[str, str]], Iterator[Plot]]] = {
+    "strain-profiles": _strain_profiles,
+    "strain-of-cycles": _strain_of_cycles,
+    "new-strains": _new_strains,
+}
+"""The same of all variants of a scene, with the words of each."""

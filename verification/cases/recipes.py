@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sam.scene import Coating, CounterBody, Grid, Plasticity, Scene
+from sam.scene import Coating, CounterBody, Friction, Grid, Loading, Path, Plasticity, Scene
 from verification.cases.case import with_body, with_grid, with_keys, with_loading, with_mesh
 from verification.reference.coated_sphere import CoatedContact
 from verification.reference.hertz import CircularContact
@@ -116,8 +116,96 @@ def cells_in_coated_contact(scene: Scene, cells: int) -> Scene:
     return with_grid(resolved_grid(scene, contact, cells), depths=(0.0, h, h + 0.5 * contact.contact_radius))
 
 
+BOX = 6.0  # elastic contact radii: the far field of the point forces is prescribed there
+
+
+def sliding_scene(base: Scene, ratio: float, friction: float, resolution: Resolution) -> Scene:
+    """Loading to p0 = ratio times the initial yield stress with friction, on these grids."""
+    scene = resolved_at(with_loading(at_ratio(base, ratio), unload=False), resolution)
+    scene = with_keys(scene, "fem", box=BOX)
+    return rubbed(scene, {"coefficient": friction}) if friction else scene
+
+
+def rubbed(scene: Scene, keys: Mapping[str, Any]) -> Scene:
+    """The scene with friction of these keys."""
+    return scene.model_copy(update={"friction": Friction(**keys)})
+
+
+def given_tractions(scene: Scene, friction: float) -> Scene:
+    """The scene with the Hertz pressure of its elastic contact in place of the counter-body, and traction."""
+    elastic, steps = contact_of(scene), scene.loading.steps
+    size = {"p0": elastic.peak_pressure, "radius": elastic.contact_radius}
+    loading = Loading(prescribed="hertz", **size, steps=steps)
+    changed = {"counterbody": None, "loading": loading, "friction": Friction(coefficient=friction)}
+    return scene.model_copy(update=changed)
+
+
+def even_depths(scene: Scene, deepest: float, count: int = 81) -> Scene:
+    """Output depths from 0 to `deepest` radii of a given pressure."""
+    return with_grid(
+        scene, depths=tuple(float(z) * scene.loading.radius for z in np.linspace(0, deepest, count))
+    )
+
+
+WAY, PASS_STEPS, PASS_CELLS = 2.0, 20, 6  # half of the way in radii, its steps, cells in the radius
+BESIDE = (2.0, 1.8, 2.0)  # grid beyond the way of the centre along x, to its sides and in depth, in radii
+
+
+def travelling(scene: Scene, keys: Mapping[str, float]) -> Scene:
+    """A given Hertz pressure of radius 10 um that travels along x in so many passes; over_shear: p0 over the
+    shear yield stress.
+    """
+    radius, (ahead, beside, below) = 1e-5, BESIDE
+    h = radius / PASS_CELLS
+    nx, ny = (2 * round(half * PASS_CELLS) + 1 for half in (WAY + ahead, beside))
+    path = Path(start=(-WAY * radius, 0.0), end=(WAY * radius, 0.0), steps=PASS_STEPS)
+    size = {"p0": keys["over_shear"] * initial_yield(scene) / np.sqrt(3.0), "radius": radius}
+    loading = Loading(prescribed="hertz", **size, path=path, steps=2, unload=True, cycles=int(keys["passes"]))
+    depths = tuple(h * np.arange(round(below * PASS_CELLS) + 1))
+    grid = Grid(cells=(nx, ny), extent=(nx * h, ny * h), depths=depths)
+    return scene.model_copy(update={"counterbody": None, "loading": loading, "grid": grid})
+
+
+BESIDE_TRACK, BEHIND, DEEP = 1.8, 2.2, 3.0  # radii of the grid beside a track, at its ends, and below
+EVEN_TO, LAYER_GROWTH = 1.2, 1.2  # radii down to which layers are as thick as a cell; ratio of deeper ones
+TRACK = 6.0  # radii of a track: three to be steady, one and a half before its end
+TRACK_RATIO = 4.0  # p0 over the initial yield stress
+
+
+def radius_at(scene: Scene, ratio: float = TRACK_RATIO) -> float:
+    """Hertz radius in m of a rigid sphere at p0 = ratio times the initial yield stress."""
+    modulus = scene.body.young / (1 - scene.body.poisson**2)
+    return float(np.pi * ratio * initial_yield(scene) * scene.counterbody.radius / (2 * modulus))
+
+
+def on_track(scene: Scene, keys: Mapping[str, Any]) -> Scene:
+    """The scene with a track along x on a grid of its own. cells, per_radius: cells and steps in a radius;
+    length in radii; ratio: p0 over the yield stress; shift: of the track in cells; back: from its other end;
+    cycles: passes; to_and_fro, or one way.
+    """
+    cells, length, shift = keys["cells"], keys.get("length", TRACK), keys.get("shift", 0.0)
+    ratio = keys.get("ratio", TRACK_RATIO)
+    a = radius_at(scene, ratio)
+    h, faces = a / cells, [0.0]
+    while faces[-1] < DEEP * a:
+        even = len(faces) <= round(EVEN_TO * cells)
+        faces.append(faces[-1] + (h if even else (faces[-1] - faces[-2]) * LAYER_GROWTH))
+    half = length / 2 + BEHIND + abs(shift) / cells
+    count = 2 * int(np.ceil(half * cells)) + 1, 2 * round(BESIDE_TRACK * cells) + 1
+    ends = [(x * a + shift * h, 0.0) for x in (-length / 2, length / 2)]
+    start, end = ends[::-1] if keys.get("back") else ends
+    comes_back = {"return": "to-and-fro" if keys.get("to_and_fro") else "lifted"}
+    path = Path(start=start, end=end, steps=round(length * keys.get("per_radius", 4.0)), **comes_back)
+    force = float(2 / 3 * np.pi * ratio * initial_yield(scene) * a**2)
+    scene = with_loading(scene, force=force, path=path, cycles=keys.get("cycles", 1))
+    return with_grid(scene, cells=count, extent=(count[0] * h, count[1] * h), depths=tuple(faces))
+
+
+KINEMATIC = {"law": "perfect", "yield_stress": 1e9, "kinematic": {"modulus": (20e9,), "recovery": (0.0,)}}
+"""Steel of Prager's law."""
+
+
 RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {
-    "elastic": lambda scene, value: with_body(scene, plasticity=None) if value else scene,
     "layer": with_layer,
     "p0-over-yield": at_ratio,
     "resolution": resolved_at,
@@ -127,6 +215,14 @@ RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {
     "grid-over-rounded-punch": grid_over_rounded_punch,
     "film": lambda scene, film: coated_scene(scene, *film),
     "cells-in-coated-contact": cells_in_coated_contact,
+    "elastic": lambda scene, on: with_body(scene, plasticity=None) if on else scene,
+    "friction": rubbed,
+    "coupling": lambda scene, on: with_keys(scene, "friction", coupling=on) if scene.friction else scene,
+    "given": given_tractions,
+    "depths": even_depths,
+    "travelling": travelling,
+    "kinematic": lambda scene, _: with_body(scene, plasticity=Plasticity(**KINEMATIC)),
+    "track": on_track,
 }
 """Name in a case file -> what it does to the scene, in the order in which those of a case are applied."""
 

@@ -25,8 +25,7 @@ from verification.cases.case import (
     with_mesh,
 )
 from verification.cases.coated.coated_sphere import answer_of, coated_scene, resolved_grid
-from verification.cases.recipes import Resolution, at_ratio, resolved_at
-from verification.cases.sliding.friction import BOX
+from verification.cases.recipes import BOX, Resolution, at_ratio, resolved_at
 from verification.cost.advice_rows import (
     COATED,
     DEEP,

@@ -9,10 +9,9 @@ import numpy as np
 
 from sam.scene import Result, Scene, Wear
 from verification.cases.case import SAM, Case, Context, Measured, SmallTable, number, with_keys, with_loading
-from verification.cases.recipes import Resolution
+from verification.cases.recipes import Resolution, sliding_scene
 from verification.cases.running_in.scenes import Effort, reduced
 from verification.cases.running_in.study import CUBIC
-from verification.cases.sliding.friction import sliding_scene
 from verification.runs.sampling import surface_pressure
 
 SPHERE, RATIO, LIMIT = "plastic-linear", 6.2, 0.004
