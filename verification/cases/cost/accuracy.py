@@ -99,13 +99,10 @@ def subjects(context: Context) -> list[Subject]:
     def closed(reference: str) -> Callable[[Context, Scene], float]:
         return lambda _, scene: float(REFERENCES[reference](scene).values["p-max"])
 
-    sphere, coated = context.scene("hertz-sphere"), context.scene("coated-sphere")
+    sphere, ellipse, coated = map(context.scene, ("hertz-sphere", "hertz-ellipse", "coated-sphere"))
     found = {
         "elastic sphere": (with_loading(sphere, force=0.2), closed("hertz-sphere")),
-        "ellipse 3 : 1": (
-            context.scene("hertz-ellipse").model_copy(update={"grid": None}),
-            closed("hertz-ellipse"),
-        ),
+        "ellipse 3 : 1": (ellipse.model_copy(update={"grid": None}), closed("hertz-ellipse")),
         "sliding sphere": (sliding(sphere), closed("hertz-sphere")),
         "soft film": (coated, of_film),
         "stiff film": (with_keys(coated, "body.coating", young=FILM * coated.body.young), of_film),
