@@ -30,7 +30,6 @@ from verification.cases.cost.work_precision_study import (
     ErrorCurve,
     ProblemStudy,
     Solve,
-    SolvePoint,
     studied,
 )
 from verification.cost import measured
@@ -68,33 +67,19 @@ class WorkPrecision(Case):
     def measure(self, studies: Sequence[ProblemStudy]) -> dict[str, Measured]:
         return gated(studies)
 
-    def setup(self, studies: Sequence[ProblemStudy]) -> list[tuple[str, str]]:
+    def setup(self, studies: Sequence[ProblemStudy]) -> Iterator[tuple[str, str]]:
+        yield "Problems", "; ".join(study.problem.title for study in studies)
         points = (point for study in studies for each in study.points.values() for point in each)
         kernels = [point.kernel_s for point in points if math.isfinite(point.kernel_s)]
-        return [
-            ("Problems", "; ".join(study.problem.title for study in studies)),
-            (
-                "Calibration kernel",
-                f"{median(kernels):.3f} s, from {min(kernels):.3f} to {max(kernels):.3f} s between the "
-                "solves",
-            ),
-            (
-                "Repeats",
-                (
-                    f"Solves of less than {FAST_S:g} s are repeated {REPEATS} times, in rounds with the "
-                    "others; medians count"
-                ),
-            ),
-        ]
+        between = f"from {min(kernels):.3f} to {max(kernels):.3f} s between the solves"
+        yield "Calibration kernel", f"{median(kernels):.3f} s, {between}"
+        repeated = f"repeated {REPEATS} times, in rounds with the others; medians count"
+        yield "Repeats", f"Solves of less than {FAST_S:g} s are {repeated}"
 
-    def tables(self, studies: Sequence[ProblemStudy]) -> list[SmallTable]:
-        tables = [
-            times_table(studies),
-            faster_table(studies),
-            references_table(studies),
-            steps_table(studies),
-        ]
-        return tables + [points_table(study) for study in studies]
+    def tables(self, studies: Sequence[ProblemStudy]) -> Iterator[SmallTable]:
+        for table in (times_table, faster_table, references_table, steps_table):
+            yield table(studies)
+        yield from map(points_table, studies)
 
     def notes(self, studies: Sequence[ProblemStudy]) -> Iterator[str]:
         yield (
@@ -281,17 +266,12 @@ def times_table(studies: Sequence[ProblemStudy]) -> SmallTable:
     rows = []
     for study in studies:
         for name, found in study.curves.items():
-            cells = [
-                spent(found.time(target, study.floor), found.fineness(target, study.floor))
-                for target in TARGETS
-            ]
+            reached = ((found.time(t, study.floor), found.fineness(t, study.floor)) for t in TARGETS)
             kernels = found.kernels(0.01, study.floor).value
-            rows.append((study.problem.title, name, *cells, "" if kernels is None else number(kernels, 3)))
-    return SmallTable(
-        "Processor time in s to an error (resolution)",
-        ("problem", "method", *(f"{100.0 * t:g} %" for t in TARGETS), "1 %, in kernels"),
-        rows,
-    )
+            last = "" if kernels is None else number(kernels, 3)
+            rows.append((study.problem.title, name, *(spent(*each) for each in reached), last))
+    columns = ("problem", "method", *(f"{100.0 * t:g} %" for t in TARGETS), "1 %, in kernels")
+    return SmallTable("Processor time in s to an error (resolution)", columns, rows)
 
 
 def spent(time: Reached, fineness: Reached) -> str:
@@ -318,10 +298,8 @@ def faster_table(studies: Sequence[ProblemStudy]) -> SmallTable:
         "How many times the time of SAM finite elements take at the smallest error that both reach, and that "
         f"is {KNOWN:g} times the uncertainty of the reference. A sphere at rest is a problem in two "
         "dimensions for the axisymmetric model and in three for SAM",
-        (
-            *("problem", "beside", "error", "uncertainty of the reference", "times"),
-            *("with the reference off by its uncertainty", "share of the goal"),
-        ),
+        "problem|beside|error|uncertainty of the reference|times|with the reference off by its uncertainty"
+        "|share of the goal".split("|"),
         rows,
     )
 
@@ -329,41 +307,28 @@ def faster_table(studies: Sequence[ProblemStudy]) -> SmallTable:
 def references_table(studies: Sequence[ProblemStudy]) -> SmallTable:
     """What the errors are measured against."""
     rows = [
-        (
-            study.problem.title,
-            MEASURES[name],
-            number(one.value, 6),
-            f"{100.0 * one.uncertainty:.2g} %",
-            one.origin,
-        )
+        (study.problem.title, MEASURES[q], number(one.value, 6), f"{1e2 * one.uncertainty:.2g} %", one.origin)
         for study in studies
-        for name, one in study.references.items()
+        for q, one in study.references.items()
     ]
     return SmallTable("References", ("problem", "quantity (SI)", "value", "uncertainty", "from"), rows)
 
 
 def steps_table(studies: Sequence[ProblemStudy]) -> SmallTable:
     """Errors over the load steps."""
-    rows = []
-    for study in studies:
-        for name, found in study.step_curves.items() if study.problem.steps else ():
-            for point, error in zip(found.points, found.errors, strict=True):
-                cells = (
-                    f"{100.0 * error:.3g} %",
-                    number(point.cpu_s, 3),
-                    f"{point.counters.get('operator_applications')}",
-                )
-                rows.append((study.problem.title, name, f"{point.resolution}", *cells, point.status))
-    columns = (
-        "problem",
-        "method",
-        "load steps",
-        "error",
-        "processor time [s]",
-        "operator applications",
-        "status",
-    )
-    return SmallTable("Load steps at one resolution, against their extrapolation", columns, rows)
+    rows = [
+        (
+            *(study.problem.title, name, f"{point.resolution}", f"{100.0 * error:.3g} %"),
+            *(number(point.cpu_s, 3), f"{point.counters.get('operator_applications')}", point.status),
+        )
+        for study in studies
+        if study.problem.steps
+        for name, found in study.step_curves.items()
+        for point, error in zip(found.points, found.errors, strict=True)
+    ]
+    columns = "problem|method|load steps|error|processor time [s]|operator applications|status"
+    words = "Load steps at one resolution, against their extrapolation"
+    return SmallTable(words, columns.split("|"), rows)
 
 
 def points_table(study: ProblemStudy) -> SmallTable:
@@ -371,34 +336,16 @@ def points_table(study: ProblemStudy) -> SmallTable:
     rows = []
     for name, found in study.curves.items():
         profiles = study.profile_errors(name) if study.problem.profile else [math.nan] * len(found.points)
-        for point, error, profile in zip(found.points, found.errors, profiles, strict=True):
-            rows.append((name, f"{point.resolution}", *_cells(point, error, profile)))
-    return SmallTable(
-        study.problem.title,
-        (
-            *(
-                "method",
-                study.problem.unit,
-                "error",
-                "axis, L2",
-                "processor time [s]",
-                "spread",
-                "in kernels",
-            ),
-            *("set-up [s]", "solution [s]", "memory [MB]", "counters", "status"),
-        ),
-        rows,
-    )
-
-
-def _cells(point: SolvePoint, error: float, profile: float) -> tuple[str, ...]:
-    counted = ", ".join(
-        f"{name.replace('_', ' ')} {value}" for name, value in point.counters.items() if value
-    )
-    shares = tuple(f"{100.0 * value:.3g} %" if math.isfinite(value) else "" for value in (error, profile))
-    seconds = (number(point.cpu_s, 3), f"{point.spread:.2f}", number(point.kernels, 3))
-    rest = (number(point.setup_s, 3), number(point.solve_s, 3), number(point.peak_memory_bytes / 1e6, 3))
-    return (*shares, *seconds, *rest, counted, point.status)
+        for point, *both in zip(found.points, found.errors, profiles, strict=True):
+            shares = (f"{100.0 * value:.3g} %" if math.isfinite(value) else "" for value in both)
+            numbers = (point.kernels, point.setup_s, point.solve_s, point.peak_memory_bytes / 1e6)
+            cost = (number(point.cpu_s, 3), f"{point.spread:.2f}", *(number(value, 3) for value in numbers))
+            counters = (f"{key.replace('_', ' ')} {value}" for key, value in point.counters.items() if value)
+            row = (name, f"{point.resolution}", *shares, *cost, ", ".join(counters), point.status)
+            rows.append(row)
+    columns = "error|axis, L2|processor time [s]|spread|in kernels|set-up [s]|solution [s]|memory [MB]"
+    columns = ("method", study.problem.unit, *columns.split("|"), "counters", "status")
+    return SmallTable(study.problem.title, columns, rows)
 
 
 def lines_of(found: Mapping[str, ErrorCurve]) -> dict[str, Line]:
