@@ -37,12 +37,10 @@ from verification.cases.running_in.scenes import (
     with_seed,
 )
 from verification.cases.running_in.study import (
-    AGREED,
     CUBIC,
     EARLY,
     GIGA,
     Judged,
-    Judgement,
     Run,
     Study,
     apart,
@@ -229,7 +227,6 @@ class RunningIn(Study):
         yield cost_table(found)
 
     def notes(self, found: Found) -> Iterator[str]:
-        yield from (findings_note(reading, each) for reading, each in found.judged.items())
         if Reading.PRINTED in found.judged:
             yield FINDINGS_NOTE
             yield REST_NOTE
@@ -374,41 +371,34 @@ def restless_cycles(one: Run) -> int:
     return 0 if one.renewed else int((busy & (np.cumsum(~busy) > 0)).sum())
 
 
+def spreads(groups: Mapping[str, Sequence[Run]], columns: Mapping[str, Callable[[Run], float]]) -> list:
+    """Rows: name, and median and range over its runs of each column."""
+    return [(name, *(spread(map(of, runs)) for of in columns.values())) for name, runs in groups.items()]
+
+
 def cases_table(found: Found, reading: Reading) -> SmallTable:
     """Median and range over the surfaces."""
     last = found.efforts[reading].cycles
-    early, rows = min(EARLY, last), []
-    shown = [("volume", cycle, CUBIC) for cycle in (1, early, last)]
-    shown += [(name, cycle, scale) for name, scale in (("friction", 1.0), ("sa", 1e9)) for cycle in (1, last)]
-    shown += [("protected", last, 100.0), *(("p_max", cycle, GIGA) for cycle in (1, last))]
-    for case, runs in found.cases(reading).items():
-        histories = [one.history for one in runs.values()]
-        cells = (spread([each.at(name, cycle) for each in histories], scale) for name, cycle, scale in shown)
-        rows.append((NAMES[case], *cells))
-    columns = (
-        "case|V, first [µm³]|V, early|V, last|μ, first|μ, last|Sa, first [nm]|Sa, last|protected, last [%]"
-    )
-    words = f"median and range over the surfaces; early: after {early} cycles, last: after {last}"
-    columns += "|p_max, first [GPa]|p_max, last"
-    return SmallTable(f"{reading.capitalize()}: {words}", columns.split("|"), rows)
+    early = min(EARLY, last)
 
+    def at(column: str, cycle: int, scale: float = 1.0) -> Callable[[Run], float]:
+        return lambda one: scale * one.history.at(column, cycle)
 
-def findings_note(reading: str, found: Sequence[Judged]) -> str:
-    """How many statements came out how, which not as the paper says, and which by less than the surfaces
-    scatter.
-    """
-    verdicts = [one.by_median for one in found], [one.agreed for one in found]
-    medians, agreement = (", ".join(f"{of.count(each)} {each}" for each in Judgement) for of in verdicts)
-    named = {
-        "Failed by the median": [one for one in found if one.by_median is Judgement.FAILED],
-        "Not decided by it": [one for one in found if one.by_median is Judgement.OPEN],
-        "Decided by less than the interquartile range": [one for one in found if one.is_close],
+    columns = {
+        "V, first [µm³]": at("volume", 1, CUBIC),
+        "V, early": at("volume", early, CUBIC),
+        "V, last": at("volume", last, CUBIC),
+        "μ, first": at("friction", 1),
+        "μ, last": at("friction", last),
+        "Sa, first [nm]": at("sa", 1, 1e9),
+        "Sa, last": at("sa", last, 1e9),
+        "protected, last [%]": at("protected", last, 100.0),
+        "p_max, first [GPa]": at("p_max", 1, GIGA),
+        "p_max, last": at("p_max", last, GIGA),
     }
-    text = f"{reading.capitalize()}: of {len(found)} statements {medians} by the median of the surfaces; "
-    text += f"{agreement} by agreement of {AGREED:.0%} of them."
-    for words, ones in named.items():
-        text += f" {words}: {'; '.join(one.statement.words for one in ones)}." if ones else ""
-    return text
+    words = f"median and range over the surfaces; early: after {early} cycles, last: after {last}"
+    groups = {NAMES[case]: list(runs.values()) for case, runs in found.cases(reading).items()}
+    return SmallTable(f"{reading.capitalize()}: {words}", ("case", *columns), spreads(groups, columns))
 
 
 FINDINGS_NOTE = (
@@ -559,35 +549,30 @@ def cost_table(found: Found) -> SmallTable:
         for case in NAMES
         for of in found.efforts
         if (runs := found.of(of, case, lost=True))
+    } | ({"other assumptions": list(found.varied.values())} if found.varied else {})
+
+    def cost(key: str, scale: float = 1.0) -> Callable[[Run], float]:
+        return lambda one: scale * float(one.result.cost.get(key) or 0.0)
+
+    def a_cycle(key: str) -> Callable[[Run], float]:
+        return lambda one: cost(key)(one) / (len(one.of_cycles("cycle")) or np.nan)
+
+    def iterations(part: int) -> Callable[[Run], float]:
+        return lambda one: float(np.mean(iterations_of(one.result)[part] or [np.nan]))
+
+    columns = {
+        "time of a cycle [s]": a_cycle("solve_s"),
+        "CPU [s]": cost("cpu_s"),
+        "memory [MiB]": cost("peak_memory_bytes", 2.0**-20),
+        "operator applications a cycle": a_cycle("operator_applications"),
+        f"plastic iterations a cycle, to the {FIRST_CYCLES}th": iterations(0),
+        "later": iterations(1),
+        "halved steps": cost("step_cuts"),
     }
-    if found.varied:
-        groups["other assumptions"] = list(found.varied.values())
-    rows = []
-    for name, runs in groups.items():
-        results = [one.result for one in runs]
-        cycles = [len(one.of_cycles("cycle")) or np.nan for one in runs]
-
-        def cost(key: str, over: Sequence[float] | None = None, results=results, scale: float = 1.0) -> str:
-            values = [float(result.cost.get(key) or 0.0) for result in results]
-            return spread(np.divide(values, over or 1.0), scale)
-
-        iterations = [[np.mean(part) if part else np.nan for part in iterations_of(each)] for each in results]
-        rows.append(
-            (
-                name,
-                f"{sum(result.converged for result in results)} of {len(results)}",
-                cost("solve_s", cycles),
-                cost("cpu_s"),
-                cost("peak_memory_bytes", scale=2.0**-20),
-                cost("operator_applications", cycles),
-                *map(spread, zip(*iterations, strict=True)),
-                cost("step_cuts"),
-            )
-        )
-    columns = "runs|converged|time of a cycle [s]|CPU [s]|memory [MiB]|operator applications a cycle"
-    columns += f"|plastic iterations a cycle, to the {FIRST_CYCLES}th|later|halved steps"
+    done = [f"{len(good(dict(enumerate(runs))))} of {len(runs)}" for runs in groups.values()]
+    rows = [(name, of, *rest) for of, (name, *rest) in zip(done, spreads(groups, columns), strict=True)]
     words = "Cost on one core, median and range of the runs; memory: of the process so far"
-    return SmallTable(words, columns.split("|"), rows)
+    return SmallTable(words, ("runs", "converged", *columns), rows)
 
 
 def lost_height_note(scars: Mapping[str, Scar]) -> str:

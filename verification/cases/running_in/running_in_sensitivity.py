@@ -281,6 +281,21 @@ class Studied:
         return [deciders(self.shares, *each) for each in zip(self.held, self.fits, strict=True)]
 
     @property
+    def chances(self) -> list[dict[str, Any]]:
+        """Of each statement: at how many points it holds, of those at which it says anything, bounds of that
+        share, and the inputs that decide it.
+        """
+        found = []
+        for said, row, own in zip(STATEMENTS, self.held, self.deciders, strict=True):
+            holds, of = int(np.nansum(row)), int(np.isfinite(row).sum())
+            bounds, acting = wilson(holds, of), [each for each in own[:DECIDING] if each.acts]
+            deciding = [{"input": e.input.words, "change": e.change, "bounds": e.bounds} for e in acting]
+            chance = {"figure": said.figure, "statement": said.words, "holds": holds, "of": of}
+            named = {"deciders": deciding, "words": [each.text for each in acting]}
+            found.append(chance | {"bounds": bounds} | named)
+        return found
+
+    @property
     def judged(self) -> bool:
         """Whether there are as many cycles as the statements ask for."""
         return self.effort.cycles >= LAST
@@ -362,23 +377,9 @@ class RunningInSensitivity(Study):
         yield "Resolved", f"changes of {least:.0f} % and more between the halves of a range"
 
     def data(self, found: Studied) -> dict[str, Any]:
-        if not found.judged:
-            return {}
-        statements = [
-            {"figure": said.figure, "statement": said.words, "holds": int(np.nansum(row)), "of": of}
-            | {"low": (ends := wilson(int(np.nansum(row)), of))[0], "high": ends[1]}
-            | {
-                "deciders": [
-                    {"input": each.input.words, "change": each.change, "bounds": each.bounds}
-                    for each in own[:DECIDING]
-                    if each.acts
-                ]
-            }
-            for said, row, own in zip(STATEMENTS, found.held, found.deciders, strict=True)
-            if (of := int(np.isfinite(row).sum())) >= 0
-        ]
         best = [{"point": k, "hold": int(found.counts[k]), "away": float(found.away[k])} for k in found.best]
-        return {"statements": statements, "resolved": least_change(len(found.shares)), "best": best}
+        resolved = least_change(len(found.shares))
+        return {"statements": found.chances, "resolved": resolved, "best": best} if found.judged else {}
 
     def tables(self, found: Studied) -> Iterator[SmallTable]:
         even = ("logarithm" if one.logarithmic else "value" for one in INPUTS)
@@ -400,10 +401,11 @@ class RunningInSensitivity(Study):
     def figures(self, found: Studied) -> Iterator[Plot]:
         if not found.judged:
             return
-        held = [(int(np.nansum(row)), int(np.isfinite(row).sum())) for row in found.held]
-        names = (f"{each.figure}: {each.words}" for each in STATEMENTS)
+        chances = found.chances
+        names = [f"{each['figure']}: {each['statement']}" for each in chances]
+        numbers = ([each[key] for key in ("holds", "of", "bounds")] for each in chances)
         yield Plot(
-            probabilities([(name, *each, wilson(*each)) for name, each in zip(names, held, strict=True)]),
+            probabilities([(name, *each) for name, each in zip(names, numbers, strict=True)]),
             "probabilities",
             "Probability that a statement of the paper holds",
             "A bar with its bounds for each of the 17 statements, and at how many points it holds.",
@@ -437,12 +439,11 @@ def _filled(cells: Sequence[str], count: int) -> tuple[str, ...]:
 def statements_table(found: Studied) -> SmallTable:
     """How probable each statement is, and what decides it."""
     rows = []
-    for statement, row, deciding in zip(STATEMENTS, found.held, found.deciders, strict=True):
-        of, held = int(np.isfinite(row).sum()), int(np.nansum(row))
-        low, high = wilson(held, of)
-        named = [each.text for each in deciding[:DECIDING] if each.acts]
+    for each in found.chances:
+        held, of, (low, high) = each["holds"], each["of"], each["bounds"]
         share = f"{100 * held / of:.0f} % ({100 * low:.0f} to {100 * high:.0f})" if of else "says nothing"
-        rows.append((statement.figure, statement.words, f"{held} of {of}", share, *_filled(named, DECIDING)))
+        cells = each["figure"], each["statement"], f"{held} of {of}", share
+        rows.append((*cells, *_filled(each["words"], DECIDING)))
     return SmallTable(
         "Probability that a statement holds, and what changes it by most between the halves of its range, "
         f"with bounds of 90 %: beyond what chance does once in {1 / CHANCE:.0f}, or, where the fit below "

@@ -216,7 +216,8 @@ class Judged:
         found = {"figure": self.statement.figure, "statement": self.statement.words, "values": self.values}
         found |= {"measure": self.statement.measure, "asked": self.statement.asked, "holds_on": self.agreeing}
         found |= {"of": len(self.values), "none_on": len(self.values) - self.spread.n}
-        return found | {"by_median": self.by_median, "margin": self.margin, "by_agreement": self.agreed}
+        margin = {"margin": self.margin, "close": self.is_close}
+        return found | {"by_median": self.by_median, "by_agreement": self.agreed, **margin}
 
 
 def judged(surfaces: Sequence[Histories]) -> list[Judged]:
