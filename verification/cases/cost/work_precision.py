@@ -95,7 +95,8 @@ class WorkPrecision(Case):
     def figures(self, studies: Sequence[ProblemStudy]) -> Iterator[Plot]:
         advising = [each for each in studies if each.problem.kind]
         times = {
-            each.problem.kind: {name: each.time(name, 0.01) for name in each.curves} for each in advising
+            each.problem.kind: {name: curve.time(0.01) for name, curve in each.curves.items()}
+            for each in advising
         }
         yield Plot(
             Drawing(overview(times, "1 %").figure, columns_of(advice_rows(studies))),
@@ -108,7 +109,7 @@ class WorkPrecision(Case):
         for study in studies:
             panels = {"resolution": (lines_of(study.curves), study.floor)}
             if study.problem.steps:
-                panels["load steps"] = (lines_of(study.step_curves), study.step_floor)
+                panels["load steps"] = (lines_of(study.step_curves), study.step_curves[COUPLED].floor)
             words = " and ".join(MEASURES[name] for name in study.problem.measures)
             yield Plot(
                 curves(panels, f"error of the {words}"),
@@ -154,10 +155,10 @@ def time_ratio(study: ProblemStudy, other: str, target: float) -> float:
     A method that never reaches it needs more than its finest point took: that time is taken, which is in its
     favour.
     """
-    found = [study.time(name, target).value for name in (COUPLED, TWICE) if name in study.curves]
+    found = [study.curves[name].time(target).value for name in (COUPLED, TWICE) if name in study.curves]
     own, its = (
         min((time for time in found if time is not None), default=None),
-        study.time(other, target).value,
+        study.curves[other].time(target).value,
     )
     if own is None:
         return math.inf
@@ -180,8 +181,8 @@ def faster(study: ProblemStudy, other: str) -> tuple[float, float]:
     if other not in curves or not own or not math.isfinite(ends(other)):
         return math.nan, math.nan
     target = max(ends(other), min(map(ends, own)))
-    times = (study.time(name, target).value for name in own)
-    least, its = min(time for time in times if time is not None), study.time(other, target).value
+    times = (study.curves[name].time(target).value for name in own)
+    least, its = min(time for time in times if time is not None), study.curves[other].time(target).value
     return (math.nan if its is None else its / least), target
 
 
@@ -197,68 +198,30 @@ def growth(errors: np.ndarray, floor: float) -> float:
     return max((b / a for a, b in pairs), default=0.0)
 
 
-@dataclass(frozen=True)
-class Advised:
-    """A method that a user may take. unit, size: of what the advice calls a resolution of 1."""
-
-    curve: ErrorCurve
-    floor: float
-    unit: str
-    size: float
-
-    def time(self, target: float) -> Reached:
-        """Processor time to an error."""
-        return self.curve.time(target, self.floor)
-
-    def kernels(self, target: float) -> float | None:
-        """The same in runs of the calibration kernel."""
-        return self.curve.kernels(target, self.floor).value
-
-    def fineness(self, target: float) -> float | None:
-        """The resolution at an error."""
-        return self.curve.fineness(target, self.floor).value
-
-
 def advice_rows(studies: Sequence[ProblemStudy]) -> list[AdviceRow]:
     """What each error takes, for the methods that a user is advised to take, and the load steps."""
     rows = []
     for study in (each for each in studies if each.problem.kind):
         values = {name: reference.value for name, reference in study.references.items()}
-        unit, size = study.problem.advised(study.scene, values)
-        found = {
-            ADVISED[name]: Advised(curve, study.floor, unit, size)
-            for name, curve in study.curves.items()
-            if name in ADVISED
-        }
+        of_grid = study.problem.advised(study.scene, values)  # what the advice calls a resolution of 1
+        methods = {ADVISED[name]: curve for name, curve in study.curves.items() if name in ADVISED}
+        found = [(name, curve, *of_grid) for name, curve in methods.items()]
         if study.problem.steps:
-            found[LOAD_STEPS] = Advised(study.step_curves[COUPLED], study.step_floor, "load steps", 1.0)
+            found.append((LOAD_STEPS, study.step_curves[COUPLED], "load steps", 1.0))
+        said = study.problem.kind, " and ".join(MEASURES[measure] for measure in study.problem.measures)
         for target in TARGETS:
-            times = [each.time(target).value for name, each in found.items() if name != LOAD_STEPS]
-            least = min((time for time in times if time is not None), default=math.nan)
-            rows += [row_of(study, name, each, target=target, least=least) for name, each in found.items()]
+            every = [curve.time(target).value for curve in methods.values()]
+            least = min((time for time in every if time is not None), default=math.nan)
+            for name, curve, unit, size in found:
+                time = curve.time(target)
+                numbers = (time.value, curve.fineness(target).value, curve.kernels(target))
+                seconds, fineness, kernels = (math.nan if each is None else each for each in numbers)
+                bound = NEVER if time.value is None else BELOW * time.coarsest
+                relative = math.nan if name == LOAD_STEPS else seconds / least
+                steps = study.scene.loading.steps
+                row = (*said, name, target, bound, fineness * size, unit, steps, seconds, kernels, relative)
+                rows.append(AdviceRow(*row))
     return rows
-
-
-def row_of(study: ProblemStudy, name: str, method: Advised, *, target: float, least: float) -> AdviceRow:
-    """What one error takes a method. least: the time of the fastest method, s."""
-    time = method.time(target)
-    seconds, resolution, kernels = (
-        math.nan if value is None else value
-        for value in (time.value, method.fineness(target), method.kernels(target))
-    )
-    return AdviceRow(
-        study.problem.kind,
-        " and ".join(MEASURES[measure] for measure in study.problem.measures),
-        name,
-        target,
-        NEVER if time.value is None else BELOW * time.coarsest,
-        resolution * method.size,
-        method.unit,
-        study.scene.loading.steps,
-        seconds,
-        kernels,
-        math.nan if name == LOAD_STEPS else seconds / least,
-    )
 
 
 def times_table(studies: Sequence[ProblemStudy]) -> SmallTable:
@@ -266,8 +229,7 @@ def times_table(studies: Sequence[ProblemStudy]) -> SmallTable:
     rows = []
     for study in studies:
         for name, found in study.curves.items():
-            reached = ((found.time(t, study.floor), found.fineness(t, study.floor)) for t in TARGETS)
-            kernels = found.kernels(0.01, study.floor).value
+            reached, kernels = ((found.time(t), found.fineness(t)) for t in TARGETS), found.kernels(0.01)
             last = "" if kernels is None else number(kernels, 3)
             rows.append((study.problem.title, name, *(spent(*each) for each in reached), last))
     columns = ("problem", "method", *(f"{100.0 * t:g} %" for t in TARGETS), "1 %, in kernels")
