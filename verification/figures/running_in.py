@@ -64,38 +64,23 @@ def six_panels(scar: Scar, history: History, friction: tuple[float, float]) -> D
         worn.set_title("(a) worn depth" if np.isfinite(depth).any() else f"(a) worn depth: {NO_WEAR}")
         _relief(relief, scar)
         _over_cycles(volume, history.cycle, CUBIC * history.volume, ("(c) wear volume", "volume [µm³]"))
-        _over_cycles(
-            over_cycles,
-            history.cycle,
-            history.friction,
-            ("(d) friction, this surface", "coefficient of friction"),
-        )
-        over_cycles.set_ylim(*_room(friction))
+        words = "(d) friction, this surface", "coefficient of friction"
+        _over_cycles(over_cycles, history.cycle, history.friction, words)
+        room = 0.05 * (friction[1] - friction[0])
+        over_cycles.set_ylim(friction[0] - room, friction[1] + room)
         _local_friction(local, scar, friction)
-        _map(
-            pressure, scar, np.where(scar.in_contact, GIGA * scar.p, np.nan), "pressure [GPa]", cmap="plasma"
-        )
+        touching = np.where(scar.in_contact, GIGA * scar.p, np.nan)
+        _map(pressure, scar, touching, "pressure [GPa]", cmap="plasma")
         pressure.set_title("(f) pressure")
-    return Drawing(figure, _columns(scar))
+    return Drawing(figure, _columns(scar, "worn_m", "p_Pa", "friction"))
 
 
-def _columns(scar: Scar) -> dict[str, np.ndarray]:
-    """One row a cell; the cycles are in cycles.csv of the run."""
+def _columns(scar: Scar, *more: str) -> dict[str, np.ndarray]:
+    """One row a cell; the cycles are in cycles.csv of the run. more: columns beside places and heights."""
     x, y = np.meshgrid(scar.x, scar.y, indexing="ij")
-    fields = {
-        "x_m": x,
-        "y_m": y,
-        "height_m": scar.height,
-        "worn_m": scar.worn,
-        "p_Pa": scar.p,
-        "friction": scar.friction,
-    }
+    fields = {"x_m": x, "y_m": y, "height_m": scar.height}
+    fields |= {name: getattr(scar, name.partition("_")[0]) for name in more}
     return {name: field.ravel() for name, field in fields.items()}
-
-
-def _room(friction: tuple[float, float]) -> tuple[float, float]:
-    low, high = friction
-    return low - 0.05 * (high - low), high + 0.05 * (high - low)
 
 
 def _map(panel: Axes, scar: Scar, field: np.ndarray, label: str, *, cmap: str) -> None:
@@ -240,9 +225,7 @@ def surface(scar: Scar) -> Drawing:
         right.plot(x, height[:, j], color=VERMILION, linewidth=1.2)
         right.set(xlabel=f"$x$ [µm] at $y$ = {y[j]:.3g} µm", ylabel="height [µm]")
         remark(right, f"through the highest place; all heights: {height.min():.2f} to {height.max():.2f} µm")
-    places = np.meshgrid(scar.x, scar.y, indexing="ij")
-    columns = {"x_m": places[0], "y_m": places[1], "height_m": scar.height}
-    return Drawing(figure, {name: values.ravel() for name, values in columns.items()})
+    return Drawing(figure, _columns(scar))
 
 
 def yield_profiles(cases: Mapping[str, Callable[[np.ndarray, float], np.ndarray]], deep: float) -> Drawing:
@@ -266,11 +249,10 @@ STRAINS = {0.0: "Before any plastic strain", 0.01: "After a plastic strain of 1 
 """Plastic strain -> title of its panel."""
 
 
-ZONES = (
-    ("#e3f0e3", "film whole"),
-    ("#fdf1d6", "film failed, metal holds"),
-    ("#f6d9d2", "film broken down, metal removed"),
-)
+ZONES = {"film whole": "#e3f0e3", "film failed, metal holds": "#fdf1d6"}
+ZONES |= {"film broken down, metal removed": "#f6d9d2"}
+DARK = "#555555"
+TOP, STRONG = 12.0, 7.5  # GPa: of the pressure, unless runs reach more, and of the strength
 
 
 def regime_map(
@@ -288,24 +270,20 @@ def regime_map(
     """
     rows = Columns("case", "constant", "strength_GPa", "tears_GPa", "film_GPa", "first_GPa", "last_GPa")
     with sheet(10.6, 4.4, 2, sharey=True) as (figure, (left, right)):
-        top = max([TOP, *(1.1 * GIGA * p for ends in reached.values() for p in ends)])
         _over_friction(left, limits, friction, constants)
-        _over_strength(right, limits, reached, high=friction[1], top=top)
+        _over_strength(right, limits, reached, friction[1])
         for name, values in limits.items():
             for words, one in zip(constants, values, strict=True):
                 ends = reached.get(name, (np.nan,) * 2) if words == constants[0] else (np.nan,) * 2
                 rows.add(name, words, *(GIGA * v for v in (one.strength, one.removal, one.film, *ends)))
-        handles = [*left.get_legend_handles_labels()[0], *_marks(constants)]
+        look = {"color": BLACK, "marker": "o", "linestyle": "none", "markersize": 4}
+        marks = [
+            Line2D([], [], **look, fillstyle=fill, label=f"strength with {words}")
+            for fill, words in zip(("full", "none"), (constants[0], constants[-1]), strict=True)
+        ]
+        handles = [*left.get_legend_handles_labels()[0], *marks]
         figure.legend(handles=handles, loc="outside lower center", ncols=max(4, len(limits)))
     return Drawing(figure, rows)
-
-
-def film_breaks_at(limits: Mapping[str, Sequence[Limits]]) -> float:
-    """The pressure in GPa at which the film breaks down, the same in all cases."""
-    return GIGA * next(iter(limits.values()))[0].film
-
-
-TOP = 12.0  # GPa, unless runs reach more
 
 
 def _over_friction(
@@ -314,63 +292,47 @@ def _over_friction(
     friction: tuple[float, float],
     constants: Sequence[str],
 ) -> None:
-    film = film_breaks_at(limits)
     mu = np.linspace(0.05, 0.6, 200)
-    for look, values in zip(LOOKS, limits.values(), strict=False):
+    for look, (name, values) in zip(LOOKS, limits.items(), strict=False):
         for line, one in zip(("-", ":"), values, strict=False):
             removal = GIGA * one.strength / (np.sqrt(3.0) * mu)
             panel.plot(mu, removal, color=look["color"], linestyle=line, linewidth=1.5)
-    for look, name in zip(LOOKS, limits, strict=False):
         mark = {"color": look["color"], "marker": look["marker"], "markersize": 5}
         panel.plot([], [], **mark, linewidth=1.5, label=name)
+    film = GIGA * next(iter(limits.values()))[0].film
     panel.axhline(film, color=BLACK, linewidth=1.0, linestyle="-.", label="film fails")
+    box = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
+    text = {"rotation": 90, "fontsize": 7.5, "ha": "center", "va": "bottom", "color": DARK, "bbox": box}
     for coefficient, words in zip(friction, ("film whole", "film failed"), strict=True):
-        panel.axvline(coefficient, color="#555555", linewidth=0.8)
-        box = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
-        panel.text(
-            coefficient,
-            0.3,
-            words,
-            rotation=90,
-            fontsize=7.5,
-            ha="center",
-            va="bottom",
-            color="#555555",
-            bbox=box,
-        )
+        panel.axvline(coefficient, color=DARK, linewidth=0.8)
+        panel.text(coefficient, 0.3, words, **text)
     for line, words in zip(("-", ":"), (constants[0], constants[-1]), strict=True):
         panel.plot([], [], color=BLACK, linewidth=1.5, linestyle=line, label=words)
-    panel.set(
-        xlabel="local coefficient of friction", ylabel="pressure [GPa]", xlim=(0.05, 0.6), ylim=(0.0, TOP)
-    )
-    panel.set_title("removed above the line of its case")
-
-
-def _marks(constants: Sequence[str]) -> list[Line2D]:
-    """Entries of the legend for the marks at the foot of the right panel."""
-    look = {"color": BLACK, "marker": "o", "linestyle": "none", "markersize": 4}
-    hollow = f"strength with {constants[-1]}"
-    return [
-        Line2D([], [], **look, label=f"strength with {constants[0]}"),
-        Line2D([], [], **look, fillstyle="none", label=hollow),
-    ]
+    panel.set(xlabel="local coefficient of friction", ylabel="pressure [GPa]")
+    panel.set(xlim=(0.05, 0.6), ylim=(0.0, TOP), title="removed above the line of its case")
 
 
 def _over_strength(
     panel: Axes,
     limits: Mapping[str, Sequence[Limits]],
     reached: Mapping[str, tuple[float, float]],
-    *,
     high: float,
-    top: float,
 ) -> None:
-    _zones(panel, high, film_breaks_at(limits), top)
-    places: list[float] = []
+    top = max([TOP, *(1.1 * GIGA * p for ends in reached.values() for p in ends)])
+    film, strength = GIGA * next(iter(limits.values()))[0].film, np.linspace(0.0, STRONG, 100)
+    edges = [0.0, film, np.minimum(np.maximum(strength / (np.sqrt(3.0) * high), film), top), top]
+    places = ((4.6, 0.5 * film), (5.15, 4.9), (0.2, 11.3))
+    for (words, color), low, upper, (x, y) in zip(ZONES.items(), edges[:-1], edges[1:], places, strict=True):
+        panel.fill_between(strength, low, upper, color=color, linewidth=0.0)
+        side = "center" if x > 1.0 else "left"
+        panel.text(x, y, words, fontsize=8.5, style="italic", ha=side, va="center")
+    panel.axhline(film, color=BLACK, linewidth=1.0, linestyle="-.")
+    before: list[float] = []
     for look, (name, values) in zip(LOOKS, limits.items(), strict=False):
         mark = {"color": look["color"], "marker": look["marker"]}
         x = GIGA * values[0].strength
-        x += 0.12 * sum(abs(x - other) < 0.1 for other in places)  # beside one that is as strong
-        places.append(x)
+        x += 0.12 * sum(abs(x - other) < 0.1 for other in before)  # beside one that is as strong
+        before.append(x)
         if name in reached:
             first, last = (GIGA * p for p in reached[name])
             arrow = {"arrowstyle": "->", "color": look["color"], "linewidth": 1.4}
@@ -378,24 +340,8 @@ def _over_strength(
             panel.plot(x, first, **mark, markersize=5)
         panel.plot(x, 0.15, **mark, markersize=4)
         panel.plot(GIGA * values[-1].strength, 0.15, **mark, markersize=4, fillstyle="none")
-    panel.set(
-        xlabel="yield stress of the surface at its strain limit [GPa]", xlim=(0.0, 7.5), ylim=(0.0, top)
-    )
-    panel.set_title(f"with friction {high:g}: largest pressure, first → last cycle")
-
-
-def _zones(panel: Axes, high: float, film: float, top: float) -> None:
-    """The three regimes as colours, and the pressure at which the film fails."""
-    strength = np.linspace(0.0, 7.5, 100)
-    removal = strength / (np.sqrt(3.0) * high)
-    upper = np.maximum(removal, film)
-    panel.fill_between(strength, 0.0, film, color=ZONES[0][0], linewidth=0.0)
-    panel.fill_between(strength, film, np.minimum(upper, top), color=ZONES[1][0], linewidth=0.0)
-    panel.fill_between(strength, np.minimum(upper, top), top, color=ZONES[2][0], linewidth=0.0)
-    for (x, y), (_, words) in zip(((4.6, 0.5 * film), (5.15, 4.9), (0.2, 11.3)), ZONES, strict=True):
-        where = {"ha": "center" if x > 1.0 else "left", "va": "center"}
-        panel.text(x, y, words, fontsize=8.5, style="italic", **where)
-    panel.axhline(film, color=BLACK, linewidth=1.0, linestyle="-.")
+    panel.set(xlabel="yield stress of the surface at its strain limit [GPa]", xlim=(0.0, STRONG))
+    panel.set(ylim=(0.0, top), title=f"with friction {high:g}: largest pressure, first → last cycle")
 
 
 PALE = "#9fc8e3"  # of bars on which bounds are drawn
@@ -439,15 +385,8 @@ def best_pair(
     with sheet(5.6, 4.2) as (figure, axis):
         marks = axis.scatter(*places, c=counts, cmap="viridis", s=36, edgecolors=BLACK, linewidths=0.4)
         figure.colorbar(marks, ax=axis, label="statements that hold", ticks=MaxNLocator(integer=True))
-        axis.plot(
-            *printed,
-            "x",
-            color=VERMILION,
-            markersize=9,
-            markeredgewidth=2,
-            clip_on=False,
-            label="printed inputs",
-        )
+        look = {"color": VERMILION, "markersize": 9, "markeredgewidth": 2, "clip_on": False}
+        axis.plot(*printed, "x", **look, label="printed inputs")
         axis.set(xlabel=labels[0], ylabel=labels[1], axisbelow=True)
         for of, scale, yes in zip(
             (axis.xaxis, axis.yaxis), (axis.set_xscale, axis.set_yscale), logarithmic, strict=True
