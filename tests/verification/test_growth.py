@@ -10,14 +10,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from builders import LINEAR, PERFECT, RUN_IN_STEEL, SWIFT, SWIFT_YIELD, hertz_force, running_in, scene
+from verification.cases.cyclic.repeated_loading import P0, pressed
+from verification.cases.cyclic.repeated_sliding import slid
 
 import sam
 from sam import choose_grid
 from verification.cases import all_cases
 from verification.cases.case import Context, with_loading
 from verification.cases.cost import growth as case
-from verification.cases.cyclic.repeated_loading import P0, pressed
-from verification.cases.cyclic.repeated_sliding import slid
 from verification.cost import estimates, growth
 from verification.cost.growth import Applied, Taken
 from verification.cost.measured import alone, idle_bytes, solve_alone

@@ -3,13 +3,15 @@
 rows of the case take of its columns.
 
 A frame has the columns sweep, model ("sam/fem" for what is between both), an axis each, h (size of what is
-refined), converged, the columns of the file with `NAME expected` beside a value, scene and result.
+refined), converged, the columns of the file with `NAME value` and `NAME expected` beside each, scene and
+result. The function that a case names as `frame` returns such rows as mappings.
 """
 
 from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
@@ -47,10 +49,13 @@ def points(sweep: SweepFile, level: str) -> Iterator[tuple[dict[str, Any], dict[
         yield dict(zip(axes, (name for name, _ in chosen), strict=True)), changes
 
 
-def framed(context: Context, file: CaseFile, base: Scene) -> DataFrame:
-    """All sweeps of a case, solved."""
+def framed(context: Context, file: CaseFile, base: Scene | None) -> DataFrame:
+    """All sweeps of a case, solved; or what its module returns."""
     import pandas as pd
 
+    if file.frame:
+        rows = beside(file, file.frame, {})(context)
+        return pd.DataFrame([{"sweep": "", "model": "", **row} for row in rows])
     return pd.DataFrame([row for name in file.sweeps for row in _runs(context, file, name, base)])
 
 
@@ -78,23 +83,28 @@ def _runs(context: Context, file: CaseFile, name: str, base: Scene) -> Iterator[
                 else:
                     found = of(scene, result, reference)
                 found = found if isinstance(found, Measured) else Measured(found)
-                if how == "value":
-                    own |= {column: found.value, f"{column} expected": found.expected}
-                else:
+                own |= {
+                    column: found.value,
+                    f"{column} value": found.value,
+                    f"{column} expected": found.expected,
+                }
+                if how != "value":
                     own[column] = error_of(how, found)
             yield own
         if between := [column for column, how in sweep.columns.items() if how == "between"]:
             yield row | {"model": BOTH} | between_models(scene, *results.values(), names=between)
 
 
-def between_models(scene: Scene, sam: Result, fem: Result, *, names: Sequence[str]) -> dict[str, float]:
-    """The differences of both models: relative, or as the row of `compare` says."""
+def between_models(scene: Scene, sam: Result, fem: Result, *, names: Sequence[str]) -> dict[str, Any]:
+    """The differences of both models: relative, or as the row of `compare` says; NAME pair: their values."""
     rows, values = {row.quantity: row.error for row in compare_scene(scene, sam, fem)}, {}
     for name in names:
         between = QUANTITIES[name].between
         measured = between(scene, sam, fem) if between else None
         metric = "relative_l2" if measured and np.ndim(measured.value) else "relative"
+        metric = metric if measured is None or measured.expected is not None else "at_most"
         values[name] = error_of(metric, measured) if measured else rows[QUANTITIES[name].row]
+        values[f"{name} pair"] = measured
     return values
 
 
@@ -121,12 +131,18 @@ def _single(rows: DataFrame, column: str) -> Measured:
     """The value at one point, with what is expected there."""
     if len(rows) != 1:
         raise ValueError(f"{column}: {len(rows)} points where one is meant")
-    expected = rows.get(f"{column} expected")
-    return Measured(rows[column].iloc[0], None if expected is None else expected.iloc[0])
+    value, expected = rows.get(f"{column} value", rows[column]), rows.get(f"{column} expected")
+    return Measured(value.iloc[0], None if expected is None else expected.iloc[0])
+
+
+def _pair(rows: DataFrame, column: str) -> Measured:
+    """Of both models at one point."""
+    return _single(rows, f"{column} pair").value
 
 
 STATISTICS: Mapping[str, Callable[[DataFrame, str], float | Measured]] = {
     "value": _single,
+    "pair": _pair,
     "order": lambda rows, column: fit_order(rows["h"], rows[column]).order,
     "limit": lambda rows, column: extrapolate(rows["h"], rows[column]).limit,
     "largest": lambda rows, column: float(np.max(rows[column].to_numpy())),
@@ -136,18 +152,23 @@ STATISTICS: Mapping[str, Callable[[DataFrame, str], float | Measured]] = {
     "ratio": lambda rows, column: rows[column].iloc[0] / rows[column].iloc[-1],
     "growth": lambda rows, column: float(np.max(rows[column].to_numpy()[1:] / rows[column].to_numpy()[:-1])),
 }
-"""Word of a row -> what it takes of a column: order and limit under refinement; ratio: first over last;
-growth: largest ratio of a value to the one before; nan where one is missing.
+"""Word of a row -> what it takes of a column. pair: the value of SAM beside that of FEM; order, limit: under
+refinement; ratio: first over last; growth: largest ratio of a value to the one before; nan where one is
+missing.
 """
 
 
 def selected(file: CaseFile, frame: DataFrame, take: Take) -> DataFrame:
     """The rows of the frame that a take is about, of the sweeps that have its column."""
-    hows = [file.sweeps[name].columns.get(take.column) for name in frame["sweep"]]
-    both = frame["model"] == BOTH
-    rows = frame[[how is not None and (how == "between") == own for how, own in zip(hows, both, strict=True)]]
+    rows = frame[frame[take.column].notna().groupby(frame["sweep"]).transform("any")]
+    if file.sweeps:
+        hows = [file.sweeps[name].columns.get(take.column) for name in frame["sweep"]]
+        both = [
+            (how == "between") == (model == BOTH) for how, model in zip(hows, frame["model"], strict=True)
+        ]
+        rows = frame[[how is not None and own for how, own in zip(hows, both, strict=True)]]
     for name in take.of:
-        rows = rows[(rows["sweep"] == name) | (rows["model"] == name)]
+        rows = rows[(rows[["sweep", "model"]] == name).any(axis=1)]
     for axis, sign, value in take.at:
         if sign == "=":
             rows = rows[[spelt(each) == value for each in rows[axis]]]
@@ -173,20 +194,23 @@ def taken(file: CaseFile, frame: DataFrame) -> dict[str, Measured]:
             against = [evaluated(file, frame, other).value for other in file.takes[row.id][1:]]
             expected = against[0] if against else found.expected
             alone = row.metric in ("at_most", "at_least")
-            values[row.id.removeprefix(f"{file.name}.")] = Measured(found.value, None if alone else expected)
+            found = replace(found, expected=None if alone else expected)
+            values[row.id.removeprefix(f"{file.name}.")] = found
     return values
 
 
 def words_of(file: CaseFile, column: str) -> str:
     """A column for the reader: of the vocabulary, or what its function says of itself."""
-    of = beside(file, column, QUANTITIES)
+    of = beside(file, column, QUANTITIES) if file.sweeps else None
+    if of is None:
+        return column.replace("-", " ")
     return of.words if isinstance(of, Quantity) else of.__doc__.strip().splitlines()[0].rstrip(".").lower()
 
 
 def ran(file: CaseFile, frame: DataFrame) -> Iterator[tuple[str, str]]:
     """The points of each sweep, for the reader."""
-    for name, rows in frame.groupby("sweep", sort=False):
-        sweep = file.sweeps[name]
+    for name, sweep in file.sweeps.items():
+        rows = frame[frame["sweep"] == name]
         values = ((axis, dict.fromkeys(map(spelt, rows[axis]))) for axis in sweep.axes)
         said = "; ".join(f"{_plain(axis)} {', '.join(own)}" for axis, own in values)
         yield f"Points, {', '.join(map(str.upper, sweep.models))}", said
@@ -195,12 +219,14 @@ def ran(file: CaseFile, frame: DataFrame) -> Iterator[tuple[str, str]]:
 def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
     """A table for each sweep: a line a run, and the observed orders in the last."""
     for name, rows in frame.groupby("sweep", sort=False):
-        sweep = file.sweeps[name]
-        axes = [axis for axis in sweep.axes if len(set(map(spelt, rows[axis]))) > 1]
-        known = {c: c.removesuffix(" expected") for c in rows if not rows[c].isna().all()}
-        shown = [c for c in rows if known.get(c) in sweep.columns and np.ndim(rows[c].dropna().iloc[0]) == 0]
+        axes, shown = [], [column for column in rows if column not in ("sweep", "model", "expected")]
+        if sweep := file.sweeps.get(name):
+            axes = [axis for axis in sweep.axes if len(set(map(spelt, rows[axis]))) > 1]
+            with_expected = ((c, f"{c} expected")[: 1 + (how == "value")] for c, how in sweep.columns.items())
+            shown = [column for columns in with_expected for column in columns if column in rows]
+        shown = [c for c in shown if not rows[c].isna().all() and np.ndim(rows[c].dropna().iloc[0]) == 0]
         lines = [
-            (*(spelt(row[axis]) for axis in axes), row["model"].upper(), *(number(row[c], 5) for c in shown))
+            (*(spelt(row[axis]) for axis in axes), row["model"].upper(), *(_cell(row[c]) for c in shown))
             for _, row in rows.iterrows()
         ]
         for model, own in rows.groupby("model", sort=False):
@@ -208,8 +234,16 @@ def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
             if any(orders):
                 cells = (f"order {order.order:.2f}" if order else "" for order in orders)
                 lines.append((*[""] * len(axes), model.upper(), *cells))
-        heads = [words_of(file, known[c]) + ", expected" * c.endswith(" expected") for c in shown]
-        yield SmallTable(f"Points of {name}", (*map(_plain, axes), "model", *heads), lines)
+        heads = (
+            words_of(file, c.removesuffix(" expected")) + c[len(c.removesuffix(" expected")) :] for c in shown
+        )
+        yield SmallTable(
+            f"Points of {name}".removesuffix(" of "), (*map(_plain, axes), "model", *heads), lines
+        )
+
+
+def _cell(value: Any) -> str:
+    return value if isinstance(value, str) else number(None if value is None or value != value else value, 5)
 
 
 def _plain(axis: str) -> str:

@@ -28,13 +28,12 @@ from verification.cases.case import (
     with_keys,
     with_loading,
 )
-from verification.cases.plastic.misfit_sphere import closed_form
 from verification.cases.recipes import at_ratio
 from verification.figures.uncertainty import coverage
 from verification.quantities import QUANTITIES
 from verification.reference.coated_changes import largest_mises
 from verification.reference.hamilton import largest_von_mises
-from verification.references import REFERENCES, coated_contact, contact_of
+from verification.references import REFERENCES, coated_contact, contact_of, growing_sphere
 from verification.runs.store import solve_or_reuse
 from verification.uncertainty import asked_of, bound, order_seen, solve
 
@@ -193,7 +192,7 @@ def of_film(_: Context, scene: Scene) -> Truth:
 def of_misfit(_: Context, scene: Scene) -> Truth:
     """A misfit sphere held in an infinite body: its largest strain by the closed form."""
     radius = scene.loading.radius * np.linspace(0.5, 1.0, 4001)
-    return {"peeq_max": (float(closed_form(scene).fields(radius).peeq.max()), 0.0)}
+    return {"peeq_max": (float(growing_sphere(scene).fields(radius).peeq.max()), 0.0)}
 
 
 def sliding(scene: Scene, friction: float = FRICTION) -> Scene:

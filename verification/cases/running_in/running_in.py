@@ -179,19 +179,15 @@ class RunningIn(Study):
 
     def setup(self, found: Found) -> Iterator[tuple[str, str]]:
         scene, effort = next(iter(found.bases.values())), found.efforts[Reading.PRINTED]
-        film, rough, plasticity, wear = scene.friction, scene.surface, scene.body.plasticity, scene.wear
-        law = f"σ_y = {plasticity.B / 1e6:g} MPa ({plasticity.C:g} + 10⁶ ε)^{plasticity.n:g}"
+        film, rough, steel, wear = scene.friction, scene.surface, scene.body.plasticity, scene.wear
+        law = f"σ_y = {steel.B / 1e6:g} MPa ({steel.C:g} + 10⁶ ε)^{steel.n:g}"
         yield "Body", f"E = {scene.body.young / 1e9:g} GPa, {law}"
-        waves = f"waves of {rough.cutoff_short * 1e6:g} µm and more"
-        seeds = ", ".join(map(str, effort.seeds))
+        waves, seeds = f"waves of {rough.cutoff_short * 1e6:g} µm and more", ", ".join(map(str, effort.seeds))
         yield "Surface", f"hard-turned, Ra = {rough.ra * 1e6:g} µm, {waves}; seeds {seeds}"
-        side, cells = 1e6 * scene.grid.extent[0], f"{effort.cells} × {effort.cells} cells"
-        yield (
-            "Patch",
-            f"{side:g} × {side:g} µm, {cells}, {len(scene.grid.depths) - 1} layers, the first 0.1 µm",
-        )
-        cycles = f"{effort.cycles} cycles of {effort.steps} + {effort.steps} steps"
-        yield "Load", f"{scene.loading.force:g} N, {cycles}, flat steel above"
+        size = "{0:g} × {0:g} µm, {1} × {1} cells".format(1e6 * scene.grid.extent[0], effort.cells)
+        yield "Patch", f"{size}, {len(scene.grid.depths) - 1} layers, the first 0.1 µm"
+        steps = f"{effort.cycles} cycles of {effort.steps} + {effort.steps} steps, flat steel above"
+        yield "Load", f"{scene.loading.force:g} N, {steps}"
         fails = f"yields at {film.film_yield / 1e9:.3g} GPa, fails beyond {film.thinning_limit:.2%} a cycle"
         yield "Film", f"{film.film_thickness * 1e9:g} nm, {fails}"
         yield "Friction", f"{film.low:g} below a whole film, {film.high:g} where it has failed"

@@ -21,11 +21,36 @@ from verification.checks import (
 )
 from verification.runs import models
 
+NAMES = {
+    "load": "load: |sum of p - F|/F",
+    "complementarity": "contact: |gap| where p > 0, penetration elsewhere, over the approach",
+    "displacement": "the same on all cells, displacements summed directly over pressure, traction and "
+    "plastic strain",
+    "friction": "friction: |q - μp| over p_max; at nodes of FEM over F",
+    "equilibrium": "equilibrium: nodal forces on free degrees of freedom over F",
+    "yield": "yield: (σ_vM - σ_y)/σ_y",
+    "flow": "flow rule: 2G |Δεᵖ - 3/2 Δγ s/σ_vM| over σ_y0, Δεᵖ without volume, Δγ its length and never "
+    "negative",
+    "consistency": "consistency: |σ_vM - σ_y|/σ_y where Δγ > 0",
+    "surface": "surface: tractions at z = 0 or extrapolated to it less those returned, away from the edge of "
+    "contact, over p_max",
+    "stress": "stress below the surface of elastic SAM, summed directly over pressure and traction, over "
+    "p_max",
+    "fields": "stress and plastic strain of the returned elements less the means of their points, over the "
+    "largest",
+    "interface": "film: jumps of σ_zz, σ_xz, σ_yz over p_max, and of ε_xx, ε_yy, ε_xy over p_max/E",
+    "film": "chemical film where it is whole: its plastic strain, thinning and traction beyond their limits, "
+    "over the limits; cells that have healed",
+    "planes": "planes: force through z = const over the load, less 1",
+    "histories": "histories: steps that were accepted above the residual where they may stop",
+}
+"""Condition -> what it says, in words."""
+
 
 @dataclass
 class Conditions:
-    """What is measured of a scene with one model: condition (of NAMES) -> value; curves: see
-    `figures.residuals`.
+    """What is measured of a scene with one model: condition (of NAMES) -> value; curves: (load step,
+    attempt).
     """
 
     values: dict[str, float] = field(default_factory=dict)
@@ -122,7 +147,7 @@ def of_spatial(scene: Scene, result: Result, records: list) -> Conditions:
 
 
 OF_GROUP = {"sam": of_sam, "fem": of_fem, "coated": of_coated, "rough": of_sam, "fem-3d": of_spatial}
-"""By the groups of `certificates_scenes`."""
+"""Group of scenes of the case `certificates` -> how they are measured."""
 
 
 def larger(one: Mapping[str, float], other: Mapping[str, float]) -> dict[str, float]:
