@@ -36,6 +36,14 @@ MODELS = {"sam": SAM, "fem": FEM, "fem-3d": FEM_3D}
 BOTH = "sam/fem"
 SIGNS = {"<": operator.lt, ">": operator.gt, "<=": operator.le, ">=": operator.ge}
 
+ERRORS = {
+    "value": "",
+    "between": ", SAM against FEM",
+    "relative": ", relative error",
+    "absolute": ", error",
+    "relative_l2": ", relative error in L2",
+}
+
 
 def points(sweep: SweepFile, level: str) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
     """Of each point: axis -> its value or the name of it, and key of the scene or recipe -> value."""
@@ -211,7 +219,7 @@ def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
         axes, shown = [], {c: c.replace("-", " ") for c in rows if c not in ("sweep", "model")}
         if sweep := file.sweeps.get(name):
             axes = [axis for axis in sweep.axes if len(set(map(spelt, rows[axis]))) > 1]
-            shown = {column: words_of(file, column) for column in sweep.columns}
+            shown = {column: words_of(file, column) + ERRORS[how] for column, how in sweep.columns.items()}
             values = [column for column, how in sweep.columns.items() if how == "value"]
             shown |= {f"{column} expected": f"{shown[column]}, expected" for column in values}
         known = {c: rows[c].dropna() for c in shown if c in rows}
