@@ -287,7 +287,7 @@ def _results(caption: str, file: CaseFile, found: Mapping[str, Solved]) -> Small
 
 def _passes(words: str, results: Mapping[str, Result]) -> Iterator[SmallTable]:
     """What each pass of a counter-body that moves does, in every run."""
-    moving = {run: each for run, each in results.items() if "passes" in each.tables}
+    moving = {run: each for run, each in results.items() if {"passes", "cycles"} <= set(each.tables)}
     for name, head, scale in (
         ("strain", "Largest strain that a pass adds [1e-3]", 1e3),
         ("energy", "Energy that a pass dissipates [nJ]", 1e9),

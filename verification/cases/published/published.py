@@ -27,6 +27,18 @@ from verification.reference.indentation import (
 )
 from verification.references import modulus_of
 
+__all__ = [
+    "area_jackson",
+    "area_kogut",
+    "full_slip",
+    "load_jackson",
+    "load_kogut",
+    "over_approach",
+    "sixty_depths",
+    "w_star",
+    "yields_at",
+]
+
 if TYPE_CHECKING:
     from pandas import DataFrame
 
