@@ -67,7 +67,7 @@ def _runs(context: Context, file: CaseFile, name: str, base: Scene) -> Iterator[
     for where, changes in every:
         scene = changed(base, changes, file)
         reference = beside(file, file.reference, REFERENCES)(scene) if file.reference else None
-        row, results = {"sweep": name, **where, "scene": scene}, {}
+        row, results, runs = {"sweep": name, **where, "scene": scene}, {}, []
         for model in sweep.models:
             led = [model] if len(file.sweeps) == 1 or name == model else [model, name]
             label = "-".join([*led, *(spelt(where[axis]) for axis in varied)])
@@ -90,9 +90,15 @@ def _runs(context: Context, file: CaseFile, name: str, base: Scene) -> Iterator[
                 }
                 if how != "value":
                     own[column] = error_of(how, found)
-            yield own
+            runs.append(own)
         if between := [column for column, how in sweep.columns.items() if how == "between"]:
-            yield row | {"model": BOTH} | between_models(scene, *results.values(), names=between)
+            both = between_models(scene, *results.values(), names=between)
+            for column in between:
+                pair = both[f"{column} pair"]
+                if pair and np.ndim(pair.value) == 0:
+                    runs[0][column], runs[1][column] = pair.value, pair.expected
+            runs.append(row | {"model": BOTH} | both)
+        yield from runs
 
 
 def between_models(scene: Scene, sam: Result, fem: Result, *, names: Sequence[str]) -> dict[str, Any]:
