@@ -21,6 +21,13 @@ from verification.quantities import Reference
 from verification.reference.shakedown import cell_limit, in_place_limit, travelling_limit
 from verification.rows import CaseFile
 
+__all__ = [
+    "limit_of_cells",
+    "shakes_down",
+    "share_of_limit",
+    "strain_of_cycles",
+]
+
 if TYPE_CHECKING:
     from pandas import DataFrame
 
