@@ -75,7 +75,7 @@ def _runs(context: Context, file: CaseFile, name: str, base: Scene) -> Iterator[
     for where, changes in every:
         scene = changed(base, changes, file)
         reference = beside(file, file.reference, REFERENCES)(scene) if file.reference else None
-        row, results = {"sweep": name, **where, "scene": scene}, {}
+        row, results, runs = {"sweep": name, **where, "scene": scene}, {}, []
         for model in sweep.models:
             led = [model] if len(file.sweeps) == 1 or name == model else [model, name]
             label = "-".join([*led, *(spelt(where[axis]) for axis in varied)])
@@ -92,9 +92,16 @@ def _runs(context: Context, file: CaseFile, name: str, base: Scene) -> Iterator[
                 own[column] = found.value if how == "value" else error_of(how, found)
                 if np.ndim(found.value) == 0:
                     own |= {f"{column} value": found.value, f"{column} expected": found.expected}
-            yield own
-        if between := [column for column, how in sweep.columns.items() if how == "between"]:
-            yield row | {"model": BOTH} | between_models(scene, *results.values(), names=between)
+            runs.append(own)
+        between = [column for column, how in sweep.columns.items() if how == "between"]
+        if between and all(result.converged for result in results.values()):
+            both = between_models(scene, *results.values(), names=between)
+            for column in between:
+                pair = both[f"{column} pair"]
+                if pair and np.ndim(pair.value) == 0:
+                    runs[0][column], runs[1][column] = pair.value, pair.expected
+            runs.append(row | {"model": BOTH} | both)
+        yield from runs
 
 
 def between_models(scene: Scene, sam: Result, fem: Result, *, names: Sequence[str]) -> dict[str, Any]:
