@@ -79,10 +79,10 @@ def contact_of(scene: Scene) -> CircularContact:
 class Solved:
     """A scene with its reference and the result of each model, by the name of its run; frame: of the
     sweeps of the case, see `verification.cases.sweep`; coarser: the same with larger cells and elements,
-    and the ratio of the sizes; others: of another scene, likewise by run.
+    and the ratio of the sizes; others: of another scene, likewise by run; without a scene the frame is all.
     """
 
-    scene: Scene
+    scene: Scene | None
     reference: Reference | None
     results: dict[str, Result]
     frame: pd.DataFrame | None = None
@@ -591,7 +591,9 @@ QUANTITIES: Mapping[str, Quantity] = {
         "von Mises stress of the body in y = 0, at the interface and the centres of the elements",
         between=_below_film,
     ),
-    "mises-below-film-max": Quantity("largest of these", "Pa", between=_largest(_below_film)),
+    "mises-below-film-max": Quantity(
+        "largest von Mises stress of the body there", "Pa", between=_largest(_below_film)
+    ),
     "area": _scalar("contact_area_m2", "contact area", "m²"),
     "friction": _scalar("friction_coefficient", "coefficient of friction of the whole contact"),
     "spots": Quantity(

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import cycle
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +20,7 @@ from verification.compare.sliding_measures import SHALLOWEST
 from verification.figures import coated, rough
 from verification.figures.film import sliding_sections
 from verification.figures.friction import CYCLES, LOOKS, Curve, compared_planes, curves, profile_of
-from verification.figures.maps import FieldPair, maps_over_axes, pressure_maps
+from verification.figures.maps import FieldPair, pressure_maps
 from verification.figures.moving import grooves, new_strains
 from verification.figures.plastic import PERCENT, axis_profiles, compared_peeq, residual_surface
 from verification.figures.profiles import Profile, convergence, profiles
@@ -447,8 +448,9 @@ def _lines(file: CaseFile, frame: DataFrame, y: str, *words: str) -> Plot:
     said = dict(zip(words[::2], words[1::2], strict=True))
     x, by, panel = said["over"], said.get("by", "model"), said.get("in", "sweep")
     panels: dict[str, dict[str, Curve]] = {}
-    for (title, name), rows in frame.dropna(subset=[y]).groupby([panel, by], sort=False):
-        for column, series in ((y, spelt(name)), (f"{y} expected", f"{spelt(name)}, expected")):
+    for (title, key), rows in frame.dropna(subset=[y]).groupby([panel, by], sort=False):
+        name = spelt(key).upper() if by == "model" else spelt(key)
+        for column, series in ((y, name), (f"{y} expected", f"{name}, expected")):
             if rows[column].notna().all() if column in rows else False:
                 values = (np.concatenate([np.atleast_1d(each) for each in rows[c]]) for c in (x, column))
                 panels.setdefault(spelt(title), {})[series] = Curve(*values)
@@ -459,18 +461,7 @@ def _lines(file: CaseFile, frame: DataFrame, y: str, *words: str) -> Plot:
     what = words_of(file, y)
     title = f"{what[0].upper()}{what[1:]}"
     text = f"Curves of the {what} over {x.replace('.', ' ')}, by {by}; dotted: what is expected."
-    return Plot(curves(panels, x.replace(".", " "), what, looks=looks), y, title, text, text)
-
-
-def _maps(file: CaseFile, frame: DataFrame, z: str, *words: str) -> Plot:
-    """`maps Z over X Y in PANEL`: a column over two axes, with lines of equal values."""
-    (_, x, y, *rest), said = words, words_of(file, z)
-    panels = {}
-    for name, rows in frame.dropna(subset=[z]).groupby(rest[1] if rest else "model", sort=False):
-        table = rows.pivot(index=y, columns=x, values=z)
-        panels[spelt(name)] = (table.columns.to_numpy(), table.index.to_numpy(), table.to_numpy(dtype=float))
-    text = f"Maps of the {said} over {x} and {y}."
-    return Plot(maps_over_axes(panels, (x, y), said), z, f"{said[0].upper()}{said[1:]}", text, text)
+    return Plot(curves(panels, x.replace(".", " "), fill(what, 40), looks=looks), y, title, text, text)
 
 
 def _at(file: CaseFile, frame: DataFrame, kind: str, *where: str) -> Plot:
@@ -512,7 +503,6 @@ SWEPT: Mapping[str, Callable[..., Plot]] = {
     "orders": _orders,
     "limits": _limits,
     "lines": _lines,
-    "maps": _maps,
     "at": _at,
     "film-pressures": _film_pressures,
 }
