@@ -18,6 +18,15 @@ from scipy.interpolate import RegularGridInterpolator
 
 from sam.scene import Result, Scene
 from verification.compare import sliding_measures as sliding
+from verification.compare.rough_measures import (
+    Depths,
+    PatchPressure,
+    Spot,
+    compared_depths,
+    relative_l2,
+    residual_line,
+    spots,
+)
 from verification.compare.sliding_measures import Plane
 from verification.judging import Measured
 from verification.reference.hertz import CircularContact, effective_modulus
@@ -27,6 +36,7 @@ from verification.runs.sampling import (
     means_of_cells,
     means_of_line,
     peak,
+    plane_field,
     pressure_map,
     pressure_on,
     ring_edges,
@@ -69,10 +79,10 @@ def contact_of(scene: Scene) -> CircularContact:
 class Solved:
     """A scene with its reference and the result of each model, by the name of its run; frame: of the
     sweeps of the case, see `verification.cases.sweep`; coarser: the same with larger cells and elements,
-    and the ratio of the sizes; others: of another scene, likewise by run.
+    and the ratio of the sizes; others: of another scene, likewise by run; without a scene the frame is all.
     """
 
-    scene: Scene
+    scene: Scene | None
     reference: Reference | None
     results: dict[str, Result]
     frame: pd.DataFrame | None = None
@@ -213,6 +223,84 @@ def _largest_at_nodes(scene: Scene, sam: Result, fem: Result) -> Measured:
     return Measured(one.max(), other.max(), unit="Pa")
 
 
+def _patch(scene: Scene, sam: Result, fem: Result) -> Measured:
+    """Of a rough patch on the cells that both models have in common, else at the nodes of FEM with their
+    areas.
+    """
+    if scene.patch_surface:
+        return Measured(*(PatchPressure.of(each.tables).p for each in (sam, fem)))
+    return Measured(*sliding.nodal_pressures(sam, fem))
+
+
+def _spots(sam: Result, fem: Result) -> list[Spot]:
+    return spots(*(PatchPressure.of(each.tables) for each in (sam, fem)))
+
+
+def _of_spot(number: int, of: Callable[[Scene, Result, Result, Spot], Measured]) -> Callable:
+    """A quantity of one of the contact spots, which are counted along x; nan where there are fewer."""
+
+    def between(scene: Scene, sam: Result, fem: Result) -> Measured:
+        found = _spots(sam, fem)[number - 1 : number]
+        return of(scene, sam, fem, *found) if found else Measured(np.nan, np.nan)
+
+    return between
+
+
+def strain_below(scene: Scene, sam: Result, fem: Result, spot: Spot) -> tuple[np.ndarray, Measured]:
+    """Depths in m, and the plastic strains there below the centre of a spot."""
+    law = scene.body.plasticity
+    jump = law.layer_thickness if law.layer else 0.0
+    own, other = (Depths.of(each.tables, jump) for each in (sam, fem))
+    z = compared_depths(other, spot.x, spot.radius)
+    return z, Measured(own.below(spot.x, z), other.below(spot.x, z))
+
+
+def _strain(scene: Scene, sam: Result, fem: Result) -> Measured:
+    pairs = (strain_below(scene, sam, fem, spot)[1] for spot in _spots(sam, fem))
+    return Measured(max((relative_l2(p.value, p.expected) for p in pairs), default=np.nan))
+
+
+def _residual(scene: Scene, sam: Result, fem: Result) -> Measured:
+    (x, own), other = residual_line(sam.tables), residual_line(fem.tables)
+    return Measured(own, np.interp(x, *other), unit="m")
+
+
+def _below_film(scene: Scene, sam: Result, fem: Result) -> Measured:
+    """In y = 0 where FEM gives it, from the interface on: SAM linear between its points."""
+    interface, wide = scene.body.coating.thickness * (1.0 - 1e-9), 1.5 * contact_of(scene).contact_radius
+    (x, z, own), (u, w, other) = (plane_field(each.tables, "mises_Pa") for each in (sam, fem))
+    body, columns, rows = z >= interface, np.abs(u) <= wide, (w >= interface) & (w <= z[-1])
+    depths = np.maximum(w[rows], z[body][0])  # the interface to rounding
+    at = np.stack(np.meshgrid(u[columns], depths, indexing="ij"), axis=-1)
+    field = RegularGridInterpolator((x, z[body]), own[:, body])(at)
+    return Measured(field, other[np.ix_(columns, rows)])
+
+
+def _centroid(scene: Scene, sam: Result, fem: Result) -> Measured:
+    a = contact_of(scene).contact_radius
+    first, second = (each.quantities["pressure_centroid_x_m"] / a for each in (sam, fem))
+    return Measured(first, second, unit="a")
+
+
+def _largest(of: Callable[[Scene, Result, Result], Measured]) -> Callable:
+    """The largest value of a field of both models."""
+
+    def between(scene: Scene, sam: Result, fem: Result) -> Measured:
+        found = of(scene, sam, fem)
+        first, second = (float(np.max(np.asarray(each))) for each in (found.value, found.expected))
+        return Measured(first, second, unit="Pa")
+
+    return between
+
+
+def _at_interface(result: Result, reference: Reference) -> Values:
+    """Along y = 0 where the body meets the film."""
+    x, z, field = plane_field(result.tables, "mises_Pa")
+    use = np.abs(x) <= 1.5 * reference.units["a"]
+    (row,) = np.flatnonzero(np.isclose(z, reference.units["h"], rtol=1e-9, atol=0.0))
+    return Values((x[use],), field[use, row])
+
+
 def _mises_on_axis(result: Result, reference: Reference) -> Values:
     """Each point stands for the depth around it."""
     z, mises = peak(result.tables["axis"], "z_m", "mises_Pa")
@@ -266,11 +354,6 @@ def _contour(percent: float, extent: str) -> Quantity:
 
 def _nodal(solved: Solved, run: str = "sam") -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return sliding.nodal_pressures(solved.results[run], solved.results["fem"])
-
-
-def _centroid(solved: Solved) -> Measured:
-    sam, fem = (solved.results[run].quantities["pressure_centroid_x_m"] for run in ("sam", "fem"))
-    return Measured(sam / solved.reference.units["a"], fem / solved.reference.units["a"], unit="a")
 
 
 def _decoupled(solved: Solved) -> float:
@@ -327,9 +410,6 @@ SLIDING: Mapping[str, Quantity] = {
         for percent in (0.2, 2.0)
         for extent in ("depth", "length")
     },
-    "centroid": Quantity(
-        "shift of the centre of pressure", "m", row="pressure_centroid_x_m", whole=_centroid
-    ),
     "decoupled": Quantity(
         "pressure of the decoupled form off FEM over that of the coupled one, L2 at the nodes of FEM",
         whole=_decoupled,
@@ -497,4 +577,47 @@ QUANTITIES: Mapping[str, Quantity] = {
     ),
     **SLIDING,
     **MOVING,
+    "mises-film": _scalar("mises_max_film_Pa", "largest von Mises stress of the film", "Pa"),
+    "mises-body": _scalar("mises_max_substrate_Pa", "largest von Mises stress of the body", "Pa"),
+    "mises-interface": Quantity("von Mises stress of the body along the interface", "Pa", _at_interface),
+    "p-change": _scalar("p_max_change", "change of the largest pressure by the film"),
+    "mises-change": _scalar(
+        "mises_max_change", "change of the largest von Mises stress of the body by the film"
+    ),
+    "nodal-pressure": Quantity("pressure over the cells or nodes", "Pa", between=_patch),
+    "nodal-p-max": Quantity("largest nodal pressure", "Pa", between=_largest(_patch)),
+    "centroid": Quantity("centre of pressure, in contact radii", between=_centroid),
+    "mises-below-film": Quantity(
+        "von Mises stress of the body in y = 0, at the interface and the centres of the elements",
+        between=_below_film,
+    ),
+    "mises-below-film-max": Quantity(
+        "largest von Mises stress of the body there", "Pa", between=_largest(_below_film)
+    ),
+    "area": _scalar("contact_area_m2", "contact area", "m²"),
+    "friction": _scalar("friction_coefficient", "coefficient of friction of the whole contact"),
+    "spots": Quantity(
+        "contact spots of the three asperities that bear more than 5 % of the force",
+        between=lambda scene, *both: Measured(len(_spots(*both)), 3),
+    ),
+    **{
+        f"load-{k}": Quantity(
+            f"load of spot {k}",
+            "N",
+            between=_of_spot(k, lambda *of: Measured(of[-1].sam, of[-1].fem, unit="N")),
+        )
+        for k in (1, 2, 3)
+    },
+    **{
+        f"strain-{k}": Quantity(
+            f"plastic strain below spot {k} at z >= 0.3 radii, down to a tenth of the largest",
+            between=_of_spot(k, lambda *of: strain_below(*of)[1]),
+        )
+        for k in (1, 2, 3)
+    },
+    "strain-below-spots": Quantity("plastic strain below a spot, the largest difference", between=_strain),
+    "residual-line": Quantity("displacement along y = 0 after unloading", "m", between=_residual),
+    "reference-residual": Quantity(
+        "error of the surface's shape in the spectral solution", of=lambda _, exact: exact.values["residual"]
+    ),
 }

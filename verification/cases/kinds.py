@@ -6,25 +6,30 @@ both models (`verification.quantities.Solved`). Titles and captions follow from 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import cycle
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from verification.cases.case import Plot, View
 from verification.cases.sweep import BOTH, fitted, spelt, words_of
+from verification.compare.rough_measures import Depths, PatchPressure, residual_line, spots
 from verification.compare.sliding_measures import SHALLOWEST
+from verification.figures import coated, rough
+from verification.figures.film import sliding_sections
 from verification.figures.friction import CYCLES, LOOKS, Curve, compared_planes, curves, profile_of
-from verification.figures.maps import FieldPair, maps_over_axes, pressure_maps
+from verification.figures.maps import FieldPair, pressure_maps
 from verification.figures.moving import grooves, new_strains
 from verification.figures.plastic import PERCENT, axis_profiles, compared_peeq, residual_surface
 from verification.figures.profiles import Profile, convergence, profiles
 from verification.figures.refinement import refinement
 from verification.figures.style import Drawing
 from verification.figures.views import SURFACE_AXES, VON_MISES, compared_mises, compared_pressure
-from verification.quantities import OF_TRACKS, Solved, ladders, of_passes, planes, refined
+from verification.quantities import OF_TRACKS, Solved, ladders, of_passes, planes, refined, strain_below
 from verification.reference.convergence import extrapolate
-from verification.references import contact_of
+from verification.references import REFERENCES, coated_contact, contact_of
 from verification.rows import CaseFile
 from verification.runs.sampling import peak, pressure_map
 
@@ -77,7 +82,9 @@ def _along(
 
         names = ", ".join(COLUMNS[each][0].lower() for each in columns)
         words = f"Curves of {names} of the models on those of the reference, with the errors underneath."
-        return Plot(profiles([panel(*each) for each in columns]), name, title, words, words)
+        film = found.scene.body.coating if columns[0][0] == "axis" else None
+        drawn = profiles([panel(*each) for each in columns], interface=film.thickness / a if film else None)
+        return Plot(drawn, name, title, words, words)
 
     return plot
 
@@ -190,7 +197,68 @@ def _pressure_maps(found: Solved) -> Drawing:
 
 
 def _mises_maps(found: Solved) -> Drawing:
-    return compared_mises(*found.results.values(), found.reference.units["a"], found.reference.units["p0"])
+    units = found.reference.units["a"], found.reference.units["p0"]
+    if not (film := found.scene.body.coating):
+        return compared_mises(*found.results.values(), *units)
+    element = coated_contact(found.scene).bare.contact_radius / found.scene.fem.cells_per_radius
+    return coated.film_planes(*found.results.values(), units, film=film.thickness, element=element)
+
+
+def _spot_pressures(found: Solved) -> Plot:
+    own, fem = (PatchPressure.of(each.tables) for each in found.results.values())
+    words = "Maps of the pressure by SAM and FEM at peak load, and their difference."
+    return Plot(
+        rough.pressures(own.x, own.y, {"SAM": own.p, "FEM": fem.p}, reach=3.2e-6),
+        "pressure",
+        "Pressure of the spots",
+        words,
+        words,
+    )
+
+
+def _spot_strains(found: Solved) -> Plot:
+    """Over depth below the centre of each spot: SAM as a line, FEM at its points."""
+    sam, fem = found.results.values()
+    both, panels = (Depths.of(sam.tables), Depths.of(fem.tables)), {}
+    depths = np.linspace(both[0].z[0], 2e-6, 100), both[1].z[both[1].z <= 2e-6]
+    for spot in spots(*(PatchPressure.of(each.tables) for each in (sam, fem))):
+        first = strain_below(found.scene, sam, fem, spot)[0][0]
+        curves_of = [(z, each.below(spot.x, z)) for z, each in zip(depths, both, strict=True)]
+        panels[f"x = {spot.x * 1e6:.2f} µm"] = (*curves_of, first)
+    words = "Plastic strain over depth below each spot, in y = 0 at peak load: SAM on the points of FEM."
+    caption = f"{words} Grey: too near the surface to be compared."
+    return Plot(rough.below_spots(panels), "strain", "Plastic strain below the spots", words, caption)
+
+
+def _residual_line(found: Solved) -> Plot:
+    lines = (residual_line(each.tables) for each in found.results.values())
+    side = found.scene.patch_surface.path.extent[0]
+    near = ((x[use := np.abs(x) <= side / 2], uz[use]) for x, uz in lines)
+    words = "Change of the heights along y = 0 after unloading, by SAM and FEM."
+    return Plot(rough.residual(*near), "residual", "Residual heights", words, words)
+
+
+def _pressure_line(found: Solved) -> Plot:
+    hertz, series = contact_of(found.scene), {}
+    for run, result in found.results.items():
+        x, p = peak(result.tables["line"], "x_m", "p_Pa")
+        near = np.abs(x) <= 1.4 * hertz.contact_radius
+        series[run.upper()] = Curve(x[near] / hertz.contact_radius, p[near] / hertz.peak_pressure)
+    words = "Pressure on y = 0 of SAM and FEM. The traction acts on the body along +x."
+    drawn = curves({"": series}, "$x/a_0$", "$p/p_0$")
+    return Plot(drawn, "pressure", "Pressure along the sliding direction", words, words)
+
+
+def _mises_below_film(found: Solved) -> Plot:
+    hertz, thickness = contact_of(found.scene), found.scene.body.coating.thickness
+    units = hertz.contact_radius, hertz.peak_pressure
+    words = "Three maps of the von Mises stress of the body below its film: SAM, FEM and their difference."
+    caption = (
+        "From the lower face of the film on; the cross marks the largest value. FEM is linear between its "
+        "lower face and the centres of the elements below."
+    )
+    drawn = sliding_sections(*found.results.values(), units, thickness)
+    return Plot(drawn, "mises", "Von Mises stress in the plane y = 0", words, caption)
 
 
 TOO_NEAR = "too near the surface to be compared, where the strain depends on the mesh."
@@ -329,6 +397,11 @@ KINDS: Mapping[str, Callable[[Solved], Plot]] = {
     "strain-planes": _strain_planes,
     "grooves": _grooves,
     "cost-of-errors": _cost_of_errors,
+    "spot-pressures": _spot_pressures,
+    "spot-strains": _spot_strains,
+    "residual-line": _residual_line,
+    "pressure-line": _pressure_line,
+    "mises-below-film": _mises_below_film,
 }
 """Name in a case file -> how it is drawn."""
 
@@ -375,8 +448,9 @@ def _lines(file: CaseFile, frame: DataFrame, y: str, *words: str) -> Plot:
     said = dict(zip(words[::2], words[1::2], strict=True))
     x, by, panel = said["over"], said.get("by", "model"), said.get("in", "sweep")
     panels: dict[str, dict[str, Curve]] = {}
-    for (title, name), rows in frame.dropna(subset=[y]).groupby([panel, by], sort=False):
-        for column, series in ((y, spelt(name)), (f"{y} expected", f"{spelt(name)}, expected")):
+    for (title, key), rows in frame.dropna(subset=[y]).groupby([panel, by], sort=False):
+        name = spelt(key).upper() if by == "model" else spelt(key)
+        for column, series in ((y, name), (f"{y} expected", f"{name}, expected")):
             if rows[column].notna().all() if column in rows else False:
                 values = (np.concatenate([np.atleast_1d(each) for each in rows[c]]) for c in (x, column))
                 panels.setdefault(spelt(title), {})[series] = Curve(*values)
@@ -387,25 +461,50 @@ def _lines(file: CaseFile, frame: DataFrame, y: str, *words: str) -> Plot:
     what = words_of(file, y)
     title = f"{what[0].upper()}{what[1:]}"
     text = f"Curves of the {what} over {x.replace('.', ' ')}, by {by}; dotted: what is expected."
-    return Plot(curves(panels, x.replace(".", " "), what, looks=looks), y, title, text, text)
+    return Plot(curves(panels, x.replace(".", " "), fill(what, 40), looks=looks), y, title, text, text)
 
 
-def _maps(file: CaseFile, frame: DataFrame, z: str, *words: str) -> Plot:
-    """`maps Z over X Y in PANEL`: a column over two axes, with lines of equal values."""
-    (_, x, y, *rest), said = words, words_of(file, z)
-    panels = {}
-    for name, rows in frame.dropna(subset=[z]).groupby(rest[1] if rest else "model", sort=False):
-        table = rows.pivot(index=y, columns=x, values=z)
-        panels[spelt(name)] = (table.columns.to_numpy(), table.index.to_numpy(), table.to_numpy(dtype=float))
-    text = f"Maps of the {said} over {x} and {y}."
-    return Plot(maps_over_axes(panels, (x, y), said), z, f"{said[0].upper()}{said[1:]}", text, text)
+def _at(file: CaseFile, frame: DataFrame, kind: str, *where: str) -> Plot:
+    """`at KIND AXIS VALUE AXIS VALUE`: a figure of one point."""
+    at = dict(zip(where[::2], where[1::2], strict=True))
+    rows = frame[frame["model"] != BOTH]
+    for axis, value in at.items():
+        rows = rows[[spelt(each) == value for each in rows[axis]]]
+    scene, models = rows["scene"].iloc[0], (model.partition("-")[0] for model in rows["model"])
+    reference = REFERENCES[file.reference](scene) if file.reference else None
+    plot = KINDS[kind](Solved(scene, reference, dict(zip(models, rows["result"], strict=True))))
+    name = "-".join((plot.name, *at.values())).replace(".", "-")
+    said = ", ".join(f"{axis.replace('-', ' ')} {value.replace('-', ', ')}" for axis, value in at.items())
+    return replace(plot, name=name, title=f"{plot.title}, {said}")
+
+
+def _film_pressures(file: CaseFile, frame: DataFrame) -> Plot:
+    """Pressure over the radius, a panel for each modulus and counter-body, with that of Hertz."""
+    panels: dict[str, dict] = {}
+    for _, rows in frame.groupby(frame["film"].map(spelt), sort=False):
+        (ratio, thickness, counterbody), scene = rows["film"].iloc[0], rows["scene"].iloc[0]
+        contact = coated_contact(scene)
+        a, p0 = contact.bare.contact_radius, contact.bare.peak_pressure
+        x = contact.contact_radius * np.sin(np.linspace(0.0, np.pi / 2, 201))
+        series = {"reference": (x / a, contact.pressure(x) / p0)}
+        for model, result in zip(rows["model"], rows["result"], strict=True):
+            x, p = peak(result.tables["line"], "x_m", "p_Pa")
+            use = np.flatnonzero((x >= 0.0) & (p > 0.0))[::4]
+            series[model.upper()] = x[use] / a, p[use] / p0
+        panel = panels.setdefault(f"$E_1/E_2$ = {ratio:.3g}, {counterbody}", {})
+        panel[f"$h/a_0$ = {thickness:g}"] = series
+    words = "Pressure over the radius for each film: lines of the spectral solution, points of SAM and FEM."
+    caption = f"{words} Dotted: Hertz, without film. Every fourth cell along y = 0 and every fourth node."
+    title = "Contact pressure with and without film"
+    return Plot(coated.film_pressures(panels), "pressure", title, words, caption)
 
 
 SWEPT: Mapping[str, Callable[..., Plot]] = {
     "orders": _orders,
     "limits": _limits,
     "lines": _lines,
-    "maps": _maps,
+    "at": _at,
+    "film-pressures": _film_pressures,
 }
 """First word of a figure in a case file -> how the frame of its sweeps is drawn; the others are handed on."""
 VIEWS: Mapping[str, View] = {

@@ -8,20 +8,23 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from sam.scene import Coating, CounterBody, Friction, Grid, Loading, Path, Plasticity, Scene
+from sam.scene import Coating, CounterBody, CounterSurface, Friction, Grid, Loading, Path, Plasticity, Scene
 from verification.cases.case import with_body, with_grid, with_keys, with_loading, with_mesh
 from verification.reference.coated_sphere import CoatedContact
-from verification.reference.hertz import CircularContact
-from verification.references import coated_contact, contact_of, rounded_contact
+from verification.reference.hertz import CircularContact, effective_modulus
+from verification.references import coated_contact, contact_of, growing_sphere, rounded_contact
 from verification.rows import CaseFile
+from verification.scenes import asperities
 
 REACH = 2.2  # half of the extent: the plastic zone reaches 1.6 a in the surface at 6.2 times the yield stress
 EVEN, DEEPEST = 1.0, 2.2  # layers are even to 1 a; at "even depth" 2.2 they have reached 3.3 a
 GROWTH = 0.75
+FILM_SIDE = 1 - 1e-6  # thicknesses: the side of the interface on which the stresses are those of the film
 ROOM = 1.06  # half a side of the grid over the larger of the contact radii with and without film
 
 
@@ -62,6 +65,32 @@ def layer_faces(cells: int) -> np.ndarray:
     """
     even = np.arange(round(DEEPEST * cells) + 1) / cells
     return even + GROWTH * np.maximum(even - EVEN, 0.0) ** 2
+
+
+def even_cells(scene: Scene, reach: Sequence[float]) -> Scene:
+    """Cubes of a/size for a given pressure, a its radius. reach: size, then in a how far they go along x
+    beyond its path, along y, and down.
+    """
+    size, along, across, below = reach
+    a, path = scene.loading.radius, scene.loading.path
+    h, half = a / size, path.end[0] / a if path else 0.0
+    cells = tuple(2 * round(each * size) + 1 for each in (half + along, across))
+    depths = tuple(h * np.arange(round(below * size) + 1))
+    return with_grid(scene, cells=cells, extent=tuple(n * h for n in cells), depths=depths)
+
+
+def sphere_cells(scene: Scene, size: int) -> Scene:
+    """Cubes of radius/size about the plastic zone of a misfit sphere, one of them at the centre; above, where
+    nothing yields, a layer more. The tolerance is a tenth of the errors that are judged, in single precision.
+    """
+    cell, depth = scene.loading.radius / size, scene.loading.depth
+    half = math.ceil(growing_sphere(scene).zone()[1] / cell) + 2
+    faces = depth + cell * (np.arange(-half, half + 1) + 0.5)
+    faces = np.append(faces[0] - cell, faces)
+    cells = 2 * half + 3
+    depths = (0.0, *(float(z) for z in faces if z > cell / 2))
+    scene = with_grid(scene, cells=(cells, cells), extent=(cells * cell,) * 2, depths=depths)
+    return with_keys(scene, "solver", tolerance=1e-4)
 
 
 def with_layer(scene: Scene, law: Mapping[str, str | float]) -> Scene:
@@ -126,9 +155,13 @@ def sliding_scene(base: Scene, ratio: float, friction: float, resolution: Resolu
     return rubbed(scene, {"coefficient": friction}) if friction else scene
 
 
-def rubbed(scene: Scene, keys: Mapping[str, Any]) -> Scene:
-    """The scene with friction of these keys."""
-    return scene.model_copy(update={"friction": Friction(**keys)})
+def rubbed(scene: Scene, friction: Mapping[str, Any] | float | str) -> Scene:
+    """The scene with friction: its keys, its coefficient, or "map": high on the asperity in the middle."""
+    if friction == "map":
+        law = Friction(law="map", path=asperities.friction_map(asperities.CELLS))
+    else:
+        law = Friction(**friction) if isinstance(friction, Mapping) else Friction(coefficient=friction)
+    return scene.model_copy(update={"friction": law})
 
 
 def given_tractions(scene: Scene, friction: float) -> Scene:
@@ -205,6 +238,71 @@ KINEMATIC = {"law": "perfect", "yield_stress": 1e9, "kinematic": {"modulus": (20
 """Steel of Prager's law."""
 
 
+def film_sliding(scene: Scene, share: float) -> Scene:
+    """A film of `share` of the contact radius without it under a contact that slides: 16 cells and 10
+    elements in that radius, depths at both sides of the interface.
+    """
+    a = contact_of(scene).contact_radius
+    h, n = share * a, 2 * round(1.6 * 16) + 1
+    even = 0.04 * a * np.arange(round(1.6 / 0.04) + 1)
+    depths = np.union1d(even[np.abs(even - h) > 1e-3 * a], [FILM_SIDE * h, h])
+    scene = with_grid(scene, cells=(n, n), extent=(n * a / 16,) * 2, depths=tuple(map(float, depths)))
+    return with_keys(with_keys(scene, "body.coating", thickness=h), "fem", box=6.0, cells_per_radius=10)
+
+
+def film_dragged(scene: Scene, share: float) -> Scene:
+    """The Hertz pressure of the contact without film in place of the counter-body, on a film of `share` of
+    its radius: 24 cells and 6 elements in that.
+    """
+    hertz = contact_of(scene)
+    a, n = hertz.contact_radius, 2 * round(1.6 * 24) + 1
+    depths = (0.0, 0.25, 0.5, 0.75, FILM_SIDE, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
+    scene = with_keys(scene, "body.coating", thickness=share * a)
+    load = Loading(prescribed="hertz", p0=hertz.peak_pressure, radius=a, steps=1)
+    scene = scene.model_copy(update={"counterbody": None, "loading": load})
+    depths = tuple(z * (share * a) for z in depths)
+    scene = with_grid(scene, cells=(n, n), extent=(n * a / 24,) * 2, depths=depths)
+    return with_keys(scene, "fem", box=6.0, cells_per_radius=6)
+
+
+def film_under(scene: Scene, film: tuple[str, float, float, float]) -> Scene:
+    """A film on a contact of 6.5 GPa. film: counter-body, contact radius without film in m, thickness in m,
+    E1/E2.
+    """
+    (counterbody, radius, thickness, ratio), p0 = film, 6.5e9
+    body, other = scene.body, CounterBody(shape="sphere", radius=1.0, **COUNTERBODIES[counterbody])
+    modulus = effective_modulus(body.young, body.poisson, other.young, other.poisson)
+    curvature = 2.0 * modulus * radius / (math.pi * p0)  # p0 = 2 E* a/(pi R)
+    force = CircularContact.from_peak_pressure(p0, curvature, modulus).force
+    coating = Coating(young=ratio * body.young, poisson=0.3, thickness=thickness)
+    other = other.model_copy(update={"radius": curvature})
+    scene = scene.model_copy(update={"counterbody": other, "loading": Loading(force=force)})
+    return with_body(scene, coating=coating)
+
+
+def on_counterbody(scene: Scene, _: bool) -> Scene:
+    """The heights of the body on the counter-body, and the body smooth."""
+    heights = CounterSurface(kind="file", path=scene.surface.path)
+    return with_keys(scene, "counterbody", surface=heights).model_copy(update={"surface": None})
+
+
+def cells_of_asperities(scene: Scene, cells: int) -> Scene:
+    """The three asperities, and a map of friction, on cells x cells cells; even layers of half a cell, with a
+    face where the hardening law changes.
+    """
+    section = "surface" if scene.surface else "counterbody.surface"
+    scene = with_keys(scene, section, path=asperities.height_map(cells))
+    if scene.friction and scene.friction.law == "map":
+        scene = with_keys(scene, "friction", path=asperities.friction_map(cells))
+    thickness, deep = 0.5 * asperities.SIDE / cells, 3.6e-6
+    if not scene.body.plasticity.layer:
+        return scene.model_copy(update={"grid": Grid(layers=round(deep / thickness), depth=deep)})
+    ends = 0.0, scene.body.plasticity.layer_thickness, deep
+    parts = [np.linspace(a, b, round((b - a) / thickness) + 1) for a, b in pairwise(ends)]
+    faces = *parts[0], *parts[1][1:]
+    return scene.model_copy(update={"grid": Grid(depths=tuple(map(float, faces)))})
+
+
 RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {
     "layer": with_layer,
     "p0-over-yield": at_ratio,
@@ -217,24 +315,34 @@ RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {
     "cells-in-coated-contact": cells_in_coated_contact,
     "elastic": lambda scene, on: with_body(scene, plasticity=None) if on else scene,
     "friction": rubbed,
+    "even-cells": even_cells,
+    "sphere-depth": lambda scene, radii: with_loading(scene, depth=radii * scene.loading.radius),
+    "sphere-cells": sphere_cells,
     "coupling": lambda scene, on: with_keys(scene, "friction", coupling=on) if scene.friction else scene,
     "given": given_tractions,
     "depths": even_depths,
     "travelling": travelling,
     "kinematic": lambda scene, _: with_body(scene, plasticity=Plasticity(**KINEMATIC)),
     "track": on_track,
+    "coated-grid": lambda scene, cells: resolved_grid(scene, coated_contact(scene), cells),
+    "film-under": film_under,
+    "film-sliding": film_sliding,
+    "film-dragged": film_dragged,
+    "on-counterbody": on_counterbody,
+    "asperities": cells_of_asperities,
 }
 """Name in a case file -> what it does to the scene, in the order in which those of a case are applied."""
 
 
 def beside(file: CaseFile, name: str, known: Mapping[str, Any]) -> Any:
-    """What a name in a case file stands for: of a registry, or a function of the module beside the file."""
-    if name in known:
-        return known[name]
-    if not file.path.with_suffix(".py").exists():
+    """What a name in a case file stands for: a function of the module beside the file, or of a registry."""
+    if file.path.with_suffix(".py").exists():
+        module = import_module(f"verification.cases.{file.path.parent.name}.{file.path.stem}")
+        if own := getattr(module, name.replace("-", "_"), None):
+            return own
+    if name not in known:
         raise KeyError(f"{file.path.name}: {name} is none of {', '.join(known)}")
-    module = import_module(f"verification.cases.{file.path.parent.name}.{file.path.stem}")
-    return getattr(module, name.replace("-", "_"))
+    return known[name]
 
 
 def changed(scene: Scene, changes: Mapping[str, Any], file: CaseFile) -> Scene:

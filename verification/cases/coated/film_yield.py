@@ -9,13 +9,15 @@ Semi-analytical models have one material; this is finite elements alone.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cache
+from itertools import product
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sam.scene import Body, Coating, Plasticity, Result, Scene
+from sam.scene import Body, Coating, CounterBody, Plasticity, Result, Scene
 from verification.cases.case import (
     FEM,
     Case,
@@ -27,173 +29,268 @@ from verification.cases.case import (
     mesh_text,
     with_body,
     with_loading,
+    with_mesh,
 )
-from verification.cases.coated.film_contacts import (
-    BARE_RADIUS,
-    BODIES,
-    PRESSURES,
-    RADII,
-    STEEL,
-    FilmContact,
-    SolvedFilm,
-    exact_changes,
-    scene_of,
-)
-from verification.cases.coated.film_words import answer, claims, numbers, refinement
+from verification.cases.recipes import COUNTERBODIES
 from verification.compare.verdicts import LIMIT
 from verification.figures.film import changes, pressures, strains
-from verification.reference.bonded_film import flow_gradient
+from verification.reference.bonded_film import elastic_mises, flow_gradient, in_plane_strain, plastic_strain
+from verification.reference.hertz import effective_modulus
+from verification.references import film_changes
+from verification.runs.sampling import peak
+
+if TYPE_CHECKING:
+    from pandas import DataFrame, Series
 
 SCENE = "film-yield"
 LEVEL = {"quick": (8, 5), "full": (12, 10)}
 """Elements in the contact radius, of which the film has two over its thickness whatever their number; load
 steps.
 """
-THIN_RADIUS = 10e-6
+LARGEST_STRAIN = 0.14
+"""Of a film, up to which small strains on its undeformed thickness are taken for an answer: half of it is
+their own error, and with elements of half the size the strain at the edge grows by a tenth; beyond, by half
+of itself and more.
+"""
+RADII, THIN_RADIUS = (5e-6, 2e-6, 1e-6), 10e-6
+PRESSURES = (4e9, 6.5e9)
+BARE_RADIUS = 2e-6
+"""Elastic contact radius in m at which the contacts without film are solved, one for all: without film
+nothing has a length, and all that is relative to it is as at any other.
+"""
+STEEL = COUNTERBODIES["steel"]
+BODIES = {
+    "elastic": None,
+    "B 945": Plasticity(law="swift", B=945e6, C=20.0, n=0.121),
+    "B 1780": Plasticity(law="swift", B=1780e6, C=4.0, n=0.095),
+}
+"""Steel of the substrate: elastic, the set published for 52100, and what the paper prints in section 5 for
+its own.
+"""
+LEAST_STRAIN = 1e-3
+"""Of a body without film, below which a relative change of it says nothing."""
+CHANGES = ("p_change", "mises_change")
+COLUMNS = (
+    ("p_bare", "p_max bare [GPa]", 1e-9),
+    ("p_change", "its change [%]", 1e2),
+    ("mises_change", "change of the body's von Mises [%]", 1e2),
+    ("bare_strain", "largest plastic strain of the body, bare [%]", 1e2),
+    ("body_strain", "with film [%]", 1e2),
+    ("film_strain", "of the film [%]", 1e2),
+    ("film_mises", "von Mises in the film [GPa]", 1e-9),
+)
+"""Of the frame, in words and in these units."""
 PERFECT = Plasticity(law="perfect", yield_stress=1.358e9)
 """Body whose film is of its own material: about the initial yield stress of the first Swift law."""
 
 
-def contacts(level: str) -> list[FilmContact]:
-    """Those of the quick level have a contact radius of 2 um, one pressure and a rigid sphere."""
-    if level == "quick":
-        return [
-            FilmContact(2e-6, 6.5e9, False, *kind)
-            for kind in (("elastic", False), ("elastic", True), ("B 945", True))
-        ]
-    return [
-        FilmContact(radius, p0, steel, body, yields)
-        for steel in (False, True)
-        for p0 in PRESSURES
-        for body in BODIES
-        for yields in (False, True)
-        for radius in RADII
-    ]
-
-
-def refined(level: str) -> list[FilmContact]:
-    """Those solved again with elements of half the size: under them the most strained film that still gives
-    an answer.
+@dataclass(frozen=True)
+class FilmContact:
+    """radius: a0 of the elastic contact without film, m; p0: its largest pressure, Pa; body: see BODIES;
+    film: "elastic" or "yields".
     """
-    if level == "quick":
-        return [FilmContact(2e-6, 6.5e9, False, "B 945", True)]
-    rigid = [FilmContact(radius, 6.5e9, False, "B 945", True) for radius in RADII]
-    return [*rigid, FilmContact(2e-6, 6.5e9, True, "B 1780", True)]
+
+    radius: float
+    p0: float
+    counterbody: str
+    body: str
+    film: str
+
+    @property
+    def words(self) -> str:
+        """The contact for the reader."""
+        return f"{self.counterbody}, a₀ = {1e6 * self.radius:g} µm, p₀ = {1e-9 * self.p0:g} GPa"
 
 
-def thin() -> list[FilmContact]:
-    """An elastic body under a film of a hundredth of the contact radius, elastic and yielding, for what holds
-    of a thin film.
+def scene_of(base: Scene, contact: FilmContact, cells: int, film: bool = True) -> Scene:
+    """The scene of a contact; cells: elements in a0; film: False without coating."""
+    other = COUNTERBODIES[contact.counterbody]
+    modulus = effective_modulus(base.body.young, base.body.poisson, *other.values())
+    radius = 2.0 * contact.radius * modulus / (math.pi * contact.p0)  # Johnson (1985), Eq. 4.24
+    force = 2.0 / 3.0 * math.pi * contact.radius**2 * contact.p0
+    coating = base.body.coating
+    if contact.film == "elastic":
+        coating = coating.model_copy(update={"yield_stress": None})
+    scene = with_body(base, plasticity=BODIES[contact.body], coating=coating if film else None)
+    scene = scene.model_copy(update={"counterbody": CounterBody(shape="sphere", radius=radius, **other)})
+    return with_mesh(with_loading(scene, force=force), cells)
+
+
+def row_of(contact: FilmContact, scene: Scene, result: Result, bare: Result) -> dict[str, Any]:
+    """A row of the frame of contacts. bare: the result without film, on a mesh of its own, at BARE_RADIUS.
+
+    film_strain, body_strain, bare_strain: the largest plastic ones, the last without film; film_mises:
+    largest in the film in Pa, where it yields at the points where it is held to its yield stress; known: it
+    is not squeezed out of reach of small strains; holds: the claim of Bosman & Schipper (2011); at_centre:
+    mean over the film on the axis, the plastic strain where it yields, else the von Mises stress in Pa;
+    thin_film: what that is on an elastic body, the film much thinner than the contact is wide; gradient: fall
+    of the pressure over r in Pa/m, of the line fitted to it from 0.4 to 0.8 a0.
     """
-    return [FilmContact(THIN_RADIUS, PRESSURES[-1], False, "elastic", yields) for yields in (False, True)]
+    body, film, q, yields = scene.body, scene.body.coating, result.quantities, contact.film == "yields"
 
+    def within(table: str, column: str, inside: bool = True) -> np.ndarray:
+        z, values = peak(result.tables[table], "z_m", column)
+        return values[(z < film.thickness) == inside]
 
-def flowing() -> FilmContact:
-    """The smallest contact: its film flows out, so that its strain is no answer, but the pressure that it
-    holds is known.
-    """
-    return FilmContact(RADII[-1], PRESSURES[-1], False, "elastic", True)
-
-
-class FilmSolver:
-    """Solves contacts, each once. base: the scene that they vary."""
-
-    def __init__(self, context: Context, base: Scene) -> None:
-        self.context, self.base = context, base
-        self._result = cache(self._solved)
-
-    def __call__(self, contact: FilmContact, cells: int) -> SolvedFilm:
-        """With the film and without. cells: elements in the contact radius."""
-        results = self._result(contact, cells, True), self._result(contact.alone, cells, False)
-        return SolvedFilm(contact, scene_of(self.base, contact, cells), *results)
-
-    def _solved(self, contact: FilmContact, cells: int, film: bool) -> Result:
-        label = f"{contact.label}-{cells}" if film else f"bare-{contact.label}-{cells}"
-        return self.context.solve(FEM, scene_of(self.base, contact, cells, film), label)
+    film_strain, body_strain = (
+        float(max(within(table, "peeq", inside).max() for table in ("axis", "plane")))
+        for inside in (True, False)
+    )
+    r, p = peak(result.tables["line"], "x_m", "p_Pa")
+    part = (r >= 0.4 * contact.radius) & (r <= 0.8 * contact.radius)
+    centre = q["p_center_Pa"]
+    strain = in_plane_strain(centre, body.young, body.poisson)
+    if yields:
+        thin = plastic_strain(centre, strain, (film.young, film.poisson, film.yield_stress))
+    else:
+        thin = elastic_mises(centre, strain, film.young, film.poisson)
+    changes = {"p_change": q["p_max_change"], "mises_change": q["mises_max_change"]}
+    return vars(contact) | {
+        "contact": contact,
+        "scene": scene,
+        "result": result,
+        "bare": bare,
+        "words": contact.words,
+        **changes,
+        "p_bare": q["p_max_bare_Pa"],
+        "film_strain": film_strain,
+        "body_strain": body_strain,
+        "bare_strain": bare.quantities["peeq_max"],
+        "film_mises": float(within("plane", "mises_Pa").max()) if yields else q["mises_max_film_Pa"],
+        "known": film_strain <= LARGEST_STRAIN,
+        "holds": all(abs(change) <= LIMIT for change in changes.values()),
+        "at_centre": float(within("axis", "peeq" if yields else "mises_Pa").mean()),
+        "thin_film": thin,
+        "gradient": -float(np.polynomial.polynomial.polyfit(r[part] - r[part][0], p[part], 1)[1]),
+    }
 
 
 @dataclass(frozen=True)
 class YieldingFilms:
-    """Every contact, on `cells` elements in its radius. base: the scene that they vary.
-
-    limits: thin films; hills: contacts whose film flows; pairs: contacts and themselves on finer elements;
-    same: a film of the material of the body, and that body without it.
+    """base: the scene that all vary; found: every contact; limits: thin films; hills: contacts whose film
+    flows; coarse, fine: the same contacts on elements of half the size; same: a film of the material of the
+    body, and that body without it.
     """
 
     base: Scene
-    cells: int
-    found: Sequence[SolvedFilm]
-    limits: Sequence[SolvedFilm]
-    hills: Sequence[SolvedFilm]
-    pairs: Sequence[tuple[SolvedFilm, SolvedFilm]]
+    found: DataFrame
+    limits: DataFrame
+    hills: DataFrame
+    coarse: DataFrame
+    fine: DataFrame
     same: tuple[Result, Result]
 
 
 class FilmYield(Case):
-    """Every contact, the refined ones, and a film of the body's own material."""
+    """Every contact, some on finer elements, and a film of the body's own material."""
 
     def solve(self, context: Context) -> YieldingFilms:
+        from pandas import DataFrame
+
         cells, steps = LEVEL[context.level]
-        base = with_loading(context.scene(SCENE), steps=steps)
-        solved = FilmSolver(context, base)
-        found = {contact: solved(contact, cells) for contact in contacts(context.level)}
-        pairs = [(found[each], solved(each, 2 * cells)) for each in refined(context.level)]
-        limits = [solved(contact, cells) for contact in thin()]
-        flows = [*found.values(), solved(flowing(), cells)]
-        hills = [one for one in flows if replace(one.contact, body="elastic") == flowing()]
-        same = of_one_material(context, base, cells)
-        return YieldingFilms(base, cells, list(found.values()), limits, hills, pairs, same)
+        base, bare = with_loading(context.scene(SCENE), steps=steps), {}
+
+        def solved(contact: FilmContact, cells: int = cells) -> dict[str, Any]:
+            scene, alone = (
+                scene_of(base, contact, cells),
+                replace(contact, radius=BARE_RADIUS, film="elastic"),
+            )
+            label = "-".join((contact.body, contact.film, contact.counterbody)).lower().replace(" ", "")
+            label += f"-{1e6 * contact.radius:g}um-{1e-8 * contact.p0:g}-{cells}"
+            if (alone, cells) not in bare:
+                without = scene_of(base, alone, cells, film=False)
+                bare[alone, cells] = context.solve(FEM, without, f"bare-{label}")
+            return row_of(contact, scene, context.solve(FEM, scene, label), bare[alone, cells])
+
+        most = FilmContact(2e-6, PRESSURES[-1], "rigid", "B 945", "yields")
+        elastic = replace(most, body="elastic", film="elastic")
+        contacts, refined = [elastic, replace(elastic, film="yields"), most], [most]
+        if context.level == "full":
+            every = product(("rigid", "steel"), PRESSURES, BODIES, ("elastic", "yields"), RADII)
+            contacts = [FilmContact(a, p0, other, body, film) for other, p0, body, film, a in every]
+            refined = [replace(most, radius=a) for a in RADII]
+            refined.append(replace(most, counterbody="steel", body="B 1780"))
+        # the film of the smallest contact flows out: its strain is no answer, the pressure that it holds is
+        flowing = replace(elastic, radius=RADII[-1], film="yields")
+        thin = [replace(elastic, radius=THIN_RADIUS, film=film) for film in ("elastic", "yields")]
+        found = {contact: solved(contact) for contact in dict.fromkeys([*contacts, flowing, *thin])}
+        hills = [contact for contact in found if replace(contact, body="elastic") == flowing]
+        own = scene_of(base, FilmContact(BARE_RADIUS, PRESSURES[0], "rigid", "elastic", "yields"), cells)
+        film = Coating(thickness=own.body.coating.thickness, **STEEL, yield_stress=PERFECT.yield_stress)
+        own = own.model_copy(update={"body": Body(**STEEL, plasticity=PERFECT, coating=film)})
+        same = context.solve(FEM, own, "one-material")
+        return YieldingFilms(
+            base,
+            *(DataFrame([found[each] for each in some]) for some in (contacts, thin, hills, refined)),
+            DataFrame([solved(contact, 2 * cells) for contact in refined]),
+            (same, context.solve(FEM, with_body(own, coating=None), "one-material-bare")),
+        )
 
     def measure(self, films: YieldingFilms) -> dict[str, Measured | float]:
         own, alone = (result.quantities for result in films.same)
-        return {
-            **against_theory(films.found),
-            **of_the_layers(films.found, films.limits, films.hills),
-            **of_refinement(films.pairs),
+        return against_theory(films) | {
             "equal-pressure": abs(own["p_max_change"]),
             "equal-mises": abs(own["mises_max_change"]),
             "equal-strain": Measured(own["peeq_max"], alone["peeq_max"]),
         }
 
-    def setup(self, films: YieldingFilms) -> list[tuple[str, str]]:
-        film, last = films.base.body.coating, films.found[-1].result
-        return [
-            ("Film", f"{1e9 * film.thickness:g} nm, {elastic_text(film)}; elastic, or"),
-            ("Yield stress of the film", f"{film.yield_stress / 1e9:g} GPa, perfectly plastic"),
-            (
-                "Half-space",
-                "E = 210 GPa, ν = 0.3; elastic, or Swift with B = 945 MPa, C = 20, n = 0.121 or 1780 MPa, "
-                "4, 0.095",
-            ),
-            ("Sphere", "rigid, or elastic with the constants of the half-space; radius from a₀ and p₀"),
-            (
-                "Contacts",
-                "a₀ and p₀ of the elastic contact without film; force F = 2πa₀²p₀/3, the same with film and "
-                "without",
-            ),
-            ("Load steps", f"{films.base.loading.steps}, the same with film and without"),
-            (
-                "FEM",
-                f"{films.cells} elements in a₀, {last.discretisation['film_layers']} over the film; "
-                f"{mesh_text(last)}",
-            ),
-        ]
+    def setup(self, films: YieldingFilms) -> Iterator[tuple[str, str]]:
+        film, last = films.base.body.coating, films.found["result"].iloc[-1]
+        strength = f"elastic, or perfectly plastic at {film.yield_stress / 1e9:g} GPa"
+        yield "Film", f"{1e9 * film.thickness:g} nm, {elastic_text(film)}; {strength}"
+        swift = "Swift with B = 945 MPa, C = 20, n = 0.121 or 1780 MPa, 4, 0.095"
+        yield "Half-space", f"E = 210 GPa, ν = 0.3; elastic, or {swift}"
+        yield "Sphere", "rigid, or elastic with the constants of the half-space; radius from a₀ and p₀"
+        yield "Contacts", "a₀ and p₀ of the elastic contact without film; force F = 2πa₀²p₀/3"
+        yield "Load steps", f"{films.base.loading.steps}, the same with film and without"
+        layers = last.discretisation["film_layers"]
+        yield "FEM", f"{layers} layers of elements over the film; {mesh_text(last)}"
 
-    def tables(self, films: YieldingFilms) -> list[SmallTable]:
-        stress = films.base.body.coating.yield_stress
-        each = (numbers(films.found, steel, stress) for steel in (False, True))
-        tables = [claims(films.found), *each, refinement(films.pairs)]
-        return [table for table in tables if table.rows]
+    def tables(self, films: YieldingFilms) -> Iterator[SmallTable]:
+        rows = []
+        for kind, ones in films.found.groupby(["body", "film"], sort=False):
+            known = ones[ones["known"]]
+            largest = (f"{1e2 * max(known[k], key=abs, default=math.nan):+.2f} %" for k in CHANGES)
+            apart = known[~known["holds"]], ones[~ones["known"]]
+            said = ("; ".join(each["words"]) or "none" for each in apart)
+            rows.append((*kind, f"{known['holds'].sum()} of {len(ones)}", *largest, *said))
+        heads = "body", "film", f"below {LIMIT:.0%}", "largest change of p_max", "of the body's von Mises"
+        no_answer = f"no answer (film squeezed by more than {1e2 * LARGEST_STRAIN:g} %)"
+        caption = f"Does the film change pressure and stress by less than {LIMIT:.0%}?"
+        yield SmallTable(caption, (*heads, "fails in", no_answer), rows)
+        for caption, ones in (
+            ("Every contact", films.found),
+            ("On finer elements, a film that yields", films.fine),
+        ):
+            numbers = ([f"{factor * value:.4g}" for value in ones[name]] for name, _, factor in COLUMNS)
+            lines = zip(ones["words"], ones["body"], ones["film"], *numbers, strict=True)
+            heads = "contact", "body", "film", *(words for _, words, _ in COLUMNS)
+            yield SmallTable(caption, heads, list(lines))
 
-    def notes(self, films: YieldingFilms) -> list[str]:
-        return answer(films.found, films.base.body.coating)
+    def notes(self, films: YieldingFilms) -> Iterator[str]:
+        known = films.found[films.found["known"] & (films.found["bare_strain"] > LEAST_STRAIN)]
+        kept = known["body_strain"] / known["bare_strain"]
+        most = known.loc[kept.idxmin()]
+        yield (
+            "A body that yields hides the film from this measure, as its von Mises stress is its yield "
+            f"stress. Its largest plastic strain falls by up to {1e2 * (1.0 - kept.min()):.0f} % "
+            f"({most['body']}, {most['words']}; strains above {LEAST_STRAIN:.1%} without film)."
+        )
+        film, lost = films.base.body.coating, films.found[~films.found["known"]]
+        gradient = 1e-15 * flow_gradient(film.yield_stress, film.thickness)
+        steep = ", ".join(f"{1e-15 * each:g}" for each in sorted(set(lost["p0"] / lost["radius"])))
+        yield (
+            "Bonded below and smooth above, the film that yields holds a pressure gradient of about "
+            f"σ_y/(√3 h) = {gradient:.2f} GPa/µm; p₀/a₀ of contacts without an answer in GPa/µm: "
+            f"{steep or 'none'}."
+        )
 
     def figures(self, films: YieldingFilms) -> Iterator[Plot]:
-        hardest = [one for one in films.found if one.contact.p0 == PRESSURES[-1]]
-        rigid = [one for one in hardest if not one.contact.steel]
-        if len({one.contact.radius for one in films.found}) > 1:
+        hardest = films.found[films.found["p0"] == PRESSURES[-1]]
+        rigid = hardest[hardest["counterbody"] == "rigid"]
+        if films.found["radius"].nunique() > 1:
             yield Plot(
-                changes([one for one in hardest if one.negligible is not None], LIMIT),
+                changes(hardest[hardest["known"]], LIMIT),
                 "changes",
                 "Changes by the film over the contact radius, p₀ = 6.5 GPa",
                 "Changes of the largest pressure and of the largest von Mises stress of the body over the "
@@ -203,7 +300,7 @@ class FilmYield(Case):
                 "answer are left out.",
             )
         yield Plot(
-            pressures(rigid),
+            pressures(rigid, BARE_RADIUS),
             "pressure",
             "Pressure under films, rigid sphere, p₀ = 6.5 GPa",
             "Pressure over radius for each contact radius: without film and with one that is elastic or "
@@ -212,7 +309,7 @@ class FilmYield(Case):
             "about σ_y/(√3 h).",
         )
         yield Plot(
-            strains([one for one in rigid if one.contact.yields]),
+            strains(rigid[rigid["film"] == "yields"]),
             "film-strain",
             "Plastic strain of the film, rigid sphere, p₀ = 6.5 GPa",
             "Plastic strain of the film over radius for each contact radius: nearly even under the contact, "
@@ -222,76 +319,40 @@ class FilmYield(Case):
         )
 
 
-def against_theory(found: Sequence[SolvedFilm]) -> dict[str, Measured]:
-    """Contacts that are elastic throughout against the layered closed form, and every bare one on a mesh of
-    its own.
+def against_theory(films: YieldingFilms) -> dict[str, float]:
+    """Contacts that are elastic throughout against the layered closed form, every bare one on a mesh of its
+    own, thin and flowing films against theirs, what a plastic body is spared, and what finer elements change:
+    of films that are not squeezed too far, as at the edge of the others the strain grows with them.
     """
-    elastic = [one for one in found if one.contact.kind == ("elastic", "elastic")]
-    apart = np.array([np.subtract(one.changes, exact_changes(one)) for one in elastic])
-    hertz = (one.result.quantities["p_max_bare_Pa"] / one.contact.p0 for one in elastic)
-    meshes = (one.result.quantities["p_max_bare_Pa"] / one.bare.quantities["p_max_Pa"] for one in found)
+    found, film = films.found, films.base.body.coating
+    elastic = found[(found["body"] == "elastic") & (found["film"] == "elastic")]
+    exact = np.array([film_changes(scene) for scene in elastic["scene"]])
+    apart = np.abs(elastic[list(CHANGES)].to_numpy() - exact).max(axis=0)
+    alone = np.array([bare.quantities["p_max_Pa"] for bare in found["bare"]])
+    yields = found[found["film"] == "yields"]
+    centre = (films.limits["at_centre"] / films.limits["thin_film"]).to_numpy()
+    known = films.coarse["known"] & films.fine["known"]
+    coarse, fine, kept = films.coarse[known], films.fine[known], found[found["bare_strain"] > 0.0]
+    finer = (coarse[list(CHANGES)] - fine[list(CHANGES)]).abs().max()
     return {
-        "elastic-pressure": Measured(float(np.abs(apart[:, 0]).max())),
-        "elastic-mises": Measured(float(np.abs(apart[:, 1]).max())),
-        "bare-hertz": Measured(off(hertz)),
-        "bare-mesh": Measured(off(meshes)),
+        "elastic-pressure": apart[0],
+        "elastic-mises": apart[1],
+        "bare-hertz": off(elastic["p_bare"] / elastic["p0"]),
+        "bare-mesh": off(found["p_bare"] / alone),
+        "centre-mises": off(centre[:1]),
+        "centre-strain": off(centre[1:]),
+        "flow": off(films.hills["gradient"] / flow_gradient(film.yield_stress, film.thickness)),
+        "film-excess": max(0.0, (yields["film_mises"] / film.yield_stress - 1.0).max()),
+        "spared": (kept["body_strain"] / kept["bare_strain"]).max(),
+        "refined-pressure": finer.iloc[0],
+        "refined-mises": finer.iloc[1],
+        "refined-strain": off(coarse["body_strain"] / fine["body_strain"]),
     }
 
 
-def of_the_layers(
-    found: Sequence[SolvedFilm], limits: Sequence[SolvedFilm], hills: Sequence[SolvedFilm]
-) -> dict[str, Measured]:
-    """Thin films at their centre, flowing ones over r, the yield stress, and what a plastic body is
-    spared.
-    """
-    excess = max(
-        one.film_mises / one.scene.body.coating.yield_stress - 1.0 for one in found if one.contact.yields
-    )
-    return {
-        "centre-mises": Measured(
-            off(one.at_centre / one.thin_film for one in limits if not one.contact.yields)
-        ),
-        "centre-strain": Measured(off(one.at_centre / one.thin_film for one in limits if one.contact.yields)),
-        "flow": Measured(off(one.gradient / gradient_of(one) for one in hills)),
-        "film-excess": Measured(max(0.0, excess)),
-        "spared": Measured(max(one.body_strain / one.bare_strain for one in found if one.bare_strain > 0.0)),
-    }
-
-
-def gradient_of(found: SolvedFilm) -> float:
-    """Of the pressure over a film that flows out, Pa/m."""
-    return flow_gradient(found.scene.body.coating.yield_stress, found.thickness)
-
-
-def of_refinement(pairs: Iterable[tuple[SolvedFilm, SolvedFilm]]) -> dict[str, Measured]:
-    """Largest differences of the changes, and of the plastic strain of the body, between two sizes of
-    elements.
-
-    Of films that are not squeezed too far: at the edge of the others the strain grows with finer elements.
-    """
-    pairs = [pair for pair in pairs if all(one.negligible is not None for one in pair)]
-    apart = np.abs([np.subtract(coarse.changes, fine.changes) for coarse, fine in pairs])
-    strain = off(coarse.body_strain / fine.body_strain for coarse, fine in pairs)
-    return {
-        "refined-pressure": Measured(float(apart[:, 0].max())),
-        "refined-mises": Measured(float(apart[:, 1].max())),
-        "refined-strain": Measured(strain),
-    }
-
-
-def of_one_material(context: Context, base: Scene, cells: int) -> tuple[Result, Result]:
-    """A film of the material of the body, perfectly plastic, and that body without it: nothing may change."""
-    scene = scene_of(base, FilmContact(BARE_RADIUS, PRESSURES[0], False, "elastic", True), cells)
-    film = Coating(thickness=scene.body.coating.thickness, **STEEL, yield_stress=PERFECT.yield_stress)
-    coated = scene.model_copy(update={"body": Body(**STEEL, plasticity=PERFECT, coating=film)})
-    result = context.solve(FEM, coated, "one-material")
-    return result, context.solve(FEM, with_body(coated, coating=None), "one-material-bare")
-
-
-def off(ratios: Iterable[float]) -> float:
+def off(ratios: Series | np.ndarray) -> float:
     """Largest distance from 1; NaN without any."""
-    distances = [abs(ratio - 1.0) for ratio in ratios]
-    return float(np.max(distances)) if distances else np.nan
+    return float(np.abs(np.asarray(ratios) - 1.0).max(initial=-math.inf if len(ratios) else math.nan))
 
 
 CASES = (FilmYield("film-yield"),)

@@ -24,8 +24,7 @@ from verification.cases.case import (
     with_loading,
     with_mesh,
 )
-from verification.cases.coated.coated_sphere import answer_of, coated_scene, resolved_grid
-from verification.cases.recipes import BOX, Resolution, at_ratio, resolved_at
+from verification.cases.recipes import BOX, Resolution, at_ratio, coated_scene, resolved_at, resolved_grid
 from verification.cost.advice_rows import (
     COATED,
     DEEP,
@@ -36,29 +35,15 @@ from verification.cost.advice_rows import (
     SLIDING,
     YIELDING,
 )
-from verification.references import contact_of, elliptic_contact
+from verification.references import coated_contact, contact_of, elliptic_contact
 from verification.scenes.asperities import height_map
 
 COUPLED, DECOUPLED, PAPER, TWICE = "SAM", "SAM, decoupled", "SAM, the paper's loop", "SAM, two grids"
 AXISYMMETRIC, SPATIAL = "FEM, axisymmetric", "FEM, 3D"
 
-ELASTIC_CELLS, ELASTIC_MESHES, ELASTIC_SPATIAL = (
-    (3, 4, 5, 6, 8, 12, 16, 32),
-    (4, 6, 8, 12, 16, 32),
-    (4, 5, 6, 7, 8),
-)
-COATED_CELLS, COATED_MESHES, COATED_SPATIAL = (3, 4, 6, 8, 12, 16, 24), (4, 6, 8, 12, 16, 32), (4, 5, 6)
-PLASTIC_CELLS, PLASTIC_PAPER, PLASTIC_MESHES = (
-    (3, 4, 5, 6, 7, 8, 10, 14, 20),
-    (3, 4, 6, 8, 10),
-    (4, 6, 8, 12, 16, 24, 32),
-)
-SLIDING_CELLS, SLIDING_OTHER, SPATIAL_MESHES = (3, 4, 5, 6, 8, 10, 14), (3, 4, 6, 8, 10), (4, 5, 6, 7, 8)
+SPATIAL_MESHES = (4, 5, 6, 7, 8)
+SLIDING_OTHER = (3, 4, 6, 8, 10)
 TWICE_CELLS = (6, 7, 8, 10, 14)
-ELLIPTIC_CELLS, ELLIPTIC_SPATIAL = (3, 4, 5, 6, 8, 12, 16), (4, 5, 6, 7, 8)
-ROUGH_CELLS, ROUGH_SPATIAL = (16, 20, 24, 32, 48, 64, 96, 192, 384), (16, 24, 32)
-YIELDING_CELLS, YIELDING_SPATIAL = (16, 20, 24, 32, 48, 64), (16, 24, 32)
-WORN_CELLS = (24, 32, 40, 48, 64)
 LOAD_STEPS = (1, 2, 5, 10, 20, 40)
 
 STEPS, ROUGH_STEPS, WORN_STEPS = 5, 2, 4
@@ -110,10 +95,7 @@ class Problem:
     measures: tuple[str, ...]
     methods: tuple[Method, ...]
     unit: str = "cells in a"
-    advised: Callable[[Scene, Mapping[str, float]], tuple[str, float]] = lambda scene, values: (
-        IN_RADIUS,
-        1.0,
-    )
+    advised: Callable[[Scene, Mapping[str, float]], tuple[str, float]] = lambda *_: (IN_RADIUS, 1.0)
     exact: Callable[[Scene], Mapping[str, float]] | None = None
     references: tuple[str, ...] = ()
     tops: int = 4
@@ -178,7 +160,7 @@ def on_two_grids(scene: Scene, n: int) -> Scene:
 
 def coated_cells(scene: Scene, n: int) -> Scene:
     """Cells of a/n on a coated contact."""
-    return resolved_grid(scene, answer_of(scene).contact, n)
+    return resolved_grid(scene, coated_contact(scene), n)
 
 
 def smaller_box(scene: Scene, n: int) -> Scene:
@@ -189,11 +171,8 @@ def smaller_box(scene: Scene, n: int) -> Scene:
 def asperities(scene: Scene, n: int) -> Scene:
     """The three asperities on n x n cells."""
     surface = scene.surface.model_copy(update={"path": height_map(n)})
-    if scene.body.plasticity is None:
-        grid = None
-    else:
-        side = surface.path.extent[0]
-        grid = Grid(layers=round(DEEPEST / (LAYER * side / n)), depth=DEEPEST)
+    layers = round(DEEPEST / (LAYER * surface.path.extent[0] / n))
+    grid = Grid(layers=layers, depth=DEEPEST) if scene.body.plasticity else None
     return scene.model_copy(update={"surface": surface, "grid": grid})
 
 
@@ -203,18 +182,6 @@ def worn_cells(scene: Scene, n: int) -> Scene:
     at = np.linspace(0.0, faces.size - 1.0, max(round((faces.size - 1) * n * 1e-6 / PATCH), 2) + 1)
     depths = np.interp(at, np.arange(faces.size), faces)
     return with_grid(scene, cells=(n, n), depths=tuple(float(z) for z in depths))
-
-
-def with_steps(
-    at: Callable[[Scene, int], Scene], resolution: int, change: Callable[[Scene], Scene] | None = None
-):
-    """(scene, steps) -> the scene at one resolution in so many load steps."""
-
-    def chosen(scene: Scene, steps: int) -> Scene:
-        scene = with_loading(at(scene, resolution), steps=steps)
-        return change(scene) if change else scene
-
-    return chosen
 
 
 def changed(at: Callable[[Scene, int], Scene], change: Callable[[Scene], Scene]):
@@ -231,7 +198,7 @@ def _elliptic(scene: Scene) -> Mapping[str, float]:
 
 
 def _coated(scene: Scene) -> Mapping[str, float]:
-    return {"p_max_Pa": answer_of(scene).contact.largest_pressure()[0]}
+    return {"p_max_Pa": coated_contact(scene).largest_pressure()[0]}
 
 
 def _loaded(ratio: float) -> Callable[[Scene], Scene]:
@@ -249,24 +216,27 @@ def _elastic(base: Scene) -> Scene:
 def _worn(base: Scene) -> Scene:
     """One cycle on a part of the patch, at the nominal pressure of the whole."""
     share = (PATCH / base.grid.extent[0]) ** 2
-    scene = with_grid(base, extent=(PATCH, PATCH))
-    return with_loading(
-        scene, force=share * base.loading.force, cycles=1, steps=WORN_STEPS, unload_steps=WORN_STEPS
-    )
+    keys = {"cycles": 1, "steps": WORN_STEPS, "unload_steps": WORN_STEPS}
+    return with_loading(with_grid(base, extent=(PATCH, PATCH)), force=share * base.loading.force, **keys)
 
 
 def _steps(
-    change: Callable[[Scene], Scene] | None = None, name: str = COUPLED, strict: bool = True
+    change: Callable[[Scene], Scene] = lambda each: each, name: str = COUPLED, strict: bool = True
 ) -> Method:
-    return Method(name, SAM, LOAD_STEPS, with_steps(plastic_cells, AT_STEPS, change), strict)
+    """Load steps refined at one resolution."""
+
+    def at(scene: Scene, steps: int) -> Scene:
+        return change(with_loading(plastic_cells(scene, AT_STEPS), steps=steps))
+
+    return Method(name, SAM, LOAD_STEPS, at, strict)
 
 
 def _sphere(name: str, ratio: float, kind: str, spatial: Sequence[int] = ()) -> Problem:
     methods = [
-        Method(COUPLED, SAM, PLASTIC_CELLS, plastic_cells),
+        Method(COUPLED, SAM, (3, 4, 5, 6, 7, 8, 10, 14, 20), plastic_cells),
         Method(TWICE, SAM, TWICE_CELLS, on_two_grids),
-        Method(PAPER, SAM, PLASTIC_PAPER, changed(plastic_cells, by_paper), strict=False),
-        Method(AXISYMMETRIC, FEM, PLASTIC_MESHES, with_mesh),
+        Method(PAPER, SAM, (3, 4, 6, 8, 10), changed(plastic_cells, by_paper), strict=False),
+        Method(AXISYMMETRIC, FEM, (4, 6, 8, 12, 16, 24, 32), with_mesh),
     ]
     if spatial:
         methods.append(Method(SPATIAL, FEM_3D, spatial, smaller_box))
@@ -284,11 +254,8 @@ def _sphere(name: str, ratio: float, kind: str, spatial: Sequence[int] = ()) -> 
     )
 
 
-IN_RADIUS, IN_SPOT, IN_WAVE = (
-    "cells in the contact radius",
-    "cells in the mean radius of a spot",
-    "cells in the shortest wave",
-)
+IN_RADIUS, IN_WAVE = "cells in the contact radius", "cells in the shortest wave"
+IN_SPOT = "cells in the mean radius of a spot"
 SPOTS = 3
 
 
@@ -311,9 +278,9 @@ PROBLEMS = (
         loaded,
         ("p_max_Pa",),
         (
-            Method(COUPLED, SAM, ELASTIC_CELLS, elastic_cells),
-            Method(AXISYMMETRIC, FEM, ELASTIC_MESHES, with_mesh),
-            Method(SPATIAL, FEM_3D, ELASTIC_SPATIAL, smaller_box),
+            Method(COUPLED, SAM, (3, 4, 5, 6, 8, 12, 16, 32), elastic_cells),
+            Method(AXISYMMETRIC, FEM, (4, 6, 8, 12, 16, 32), with_mesh),
+            Method(SPATIAL, FEM_3D, (4, 5, 6, 7, 8), smaller_box),
         ),
         exact=_hertz,
     ),
@@ -327,7 +294,7 @@ PROBLEMS = (
         _sliding,
         ("peeq_max",),
         (
-            Method(COUPLED, SAM, SLIDING_CELLS, plastic_cells),
+            Method(COUPLED, SAM, (3, 4, 5, 6, 8, 10, 14), plastic_cells),
             Method(TWICE, SAM, TWICE_CELLS, on_two_grids),
             Method(DECOUPLED, SAM, SLIDING_OTHER, changed(plastic_cells, uncoupled)),
             Method(PAPER, SAM, SLIDING_OTHER, changed(plastic_cells, by_paper), strict=False),
@@ -344,9 +311,9 @@ PROBLEMS = (
         lambda base: coated_scene(base, *FILM),
         ("p_max_Pa",),
         (
-            Method(COUPLED, SAM, COATED_CELLS, coated_cells),
-            Method(AXISYMMETRIC, FEM, COATED_MESHES, with_mesh),
-            Method(SPATIAL, FEM_3D, COATED_SPATIAL, smaller_box),
+            Method(COUPLED, SAM, (3, 4, 6, 8, 12, 16, 24), coated_cells),
+            Method(AXISYMMETRIC, FEM, (4, 6, 8, 12, 16, 32), with_mesh),
+            Method(SPATIAL, FEM_3D, (4, 5, 6), smaller_box),
         ),
         exact=_coated,
     ),
@@ -358,8 +325,8 @@ PROBLEMS = (
         _elastic,
         ("p_max_Pa", "contact_area_m2"),
         (
-            Method(COUPLED, SAM, ROUGH_CELLS, asperities),
-            Method(SPATIAL, FEM_3D, ROUGH_SPATIAL, asperities),
+            Method(COUPLED, SAM, (16, 20, 24, 32, 48, 64, 96, 192, 384), asperities),
+            Method(SPATIAL, FEM_3D, (16, 24, 32), asperities),
         ),
         unit="cells a side",
         advised=_in_spot,
@@ -373,8 +340,8 @@ PROBLEMS = (
         lambda base: loaded(base, ROUGH_STEPS),
         ("p_max_Pa", "contact_area_m2"),
         (
-            Method(COUPLED, SAM, YIELDING_CELLS, asperities),
-            Method(SPATIAL, FEM_3D, YIELDING_SPATIAL, asperities),
+            Method(COUPLED, SAM, (16, 20, 24, 32, 48, 64), asperities),
+            Method(SPATIAL, FEM_3D, (16, 24, 32), asperities),
         ),
         unit="cells a side",
         advised=_in_spot,
@@ -387,7 +354,7 @@ PROBLEMS = (
         "running-in-curve-b",
         _worn,
         ("wear_volume_m3",),
-        (Method(COUPLED, SAM, WORN_CELLS, worn_cells),),
+        (Method(COUPLED, SAM, (24, 32, 40, 48, 64), worn_cells),),
         unit="cells a side",
         advised=_in_wave,
         references=(COUPLED,),
@@ -402,8 +369,8 @@ ELLIPSOID = Problem(
     loaded,
     ("p_max_Pa",),
     (
-        Method(COUPLED, SAM, ELLIPTIC_CELLS, elliptic_cells),
-        Method(SPATIAL, FEM_3D, ELLIPTIC_SPATIAL, with_mesh),
+        Method(COUPLED, SAM, (3, 4, 5, 6, 8, 12, 16), elliptic_cells),
+        Method(SPATIAL, FEM_3D, (4, 5, 6, 7, 8), with_mesh),
     ),
     unit="cells in b",
     exact=_elliptic,
