@@ -30,9 +30,6 @@ NOT_YET = "not available in this version of samfem: remove it"
 Conflict = tuple[str, str]
 """A key of the section, dotted for one of a section inside it, and what is allowed instead."""
 MISSING = "missing"
-MISSING_INPUT = object()
-"""Stands for the value of a key that should be there."""
-
 MOST_SHOWN = 100  # problems of a file: more is no scene file
 _LONGEST = 60  # characters of a value in a message
 _MOST_ALIKE, _MOST_PLACES = 3, 4  # keys in a hint, of the same table and of others
@@ -55,6 +52,13 @@ OTHER_NAMES = {
 """What others call a table -> where it is here."""
 _WORDS = {"string_type": "a string", "bool_type": "true or false", "model_type": "a table"}
 T = TypeVar("T")
+
+
+class _Missing:
+    """Stands for the value of a key that should be there."""
+
+
+MISSING_INPUT = _Missing()
 
 
 @dataclass(frozen=True)
@@ -154,8 +158,8 @@ class Given(dict[str, Any]):
 
 
 def broken(*rules: tuple[object, str, str]) -> Iterator[Conflict]:
-    """The conflicts of a table of rules: whether one is broken, the key, and what is allowed."""
-    return ((key, allowed) for holds, key, allowed in rules if holds)
+    """The conflicts of a table of rules: whether the rule is broken, the key, and what is allowed."""
+    return ((key, allowed) for breaks, key, allowed in rules if breaks)
 
 
 def of_choice(
