@@ -133,9 +133,7 @@ def contact_area(contact: Contact, grid: CellGrid) -> float:
     if contact.area is not None:
         return contact.area
     hx, hy = grid.hx, grid.hy
-    compliance = (
-        2 / np.pi * (hx * np.arcsinh(hy / hx) + hy * np.arcsinh(hx / hy))
-    )  # times E*, Love 1929
+    compliance = 2 / np.pi * (hx * np.arcsinh(hy / hx) + hy * np.arcsinh(hx / hy))  # times E*, Love 1929
     p, gap = np.pad(contact.pressure, 1), np.pad(contact.gap, 1, constant_values=np.inf)
     unit, mean = HALFWAY * contact.compliance / compliance, np.array(2 / (1 / hx + 1 / hy))
     along_x, along_y = _shares(p, gap, unit * mean), _shares(p.T, gap.T, unit * mean).T

@@ -10,13 +10,14 @@ import numpy as np
 import pytest
 
 from sam.kernels.patches import Lags, displacement_coefficients as coefficients
+from verification.cases.robustness import mutation as case
+from verification.judging import RowStatus, evaluate
 from verification.robustness.mutants import __main__ as mutation, equivalent, inject, scope
 from verification.robustness.mutants.judge import MutantVerdict, mutants_of
 from verification.robustness.mutants.numbers import Mutant, Number, find
 from verification.robustness.mutants.pool import forked
 from verification.robustness.mutants.probes import change
-from verification.suite.cases import mutation as case
-from verification.suite.gates import GateStatus, evaluate, load_gates
+from verification.rows import load_rows
 
 TOY = '''"""A toy."""
 from functools import cache
@@ -185,8 +186,8 @@ def judgement(outcome="killed", text="2.0", seconds=0.1):
 
 
 def status(found):
-    gates = [gate for gate in load_gates() if gate.case == "mutation"]
-    return {v.gate.id: v.status for v in evaluate(gates, {"mutation": case.CASES[0].values(found)})}
+    gates = [gate for gate in load_rows() if gate.case == "mutation"]
+    return {v.row.id: v.status for v in evaluate(gates, {"mutation": case.CASES[0].values(found)})}
 
 
 GOOD = {"judged": [judgement()] * 40, "shown": [{"equivalent": True}], "control": []}
@@ -203,8 +204,8 @@ GOOD = {"judged": [judgement()] * 40, "shown": [{"equivalent": True}], "control"
     ],
 )
 def test_what_is_wrong_turns_its_gate_red(wrong, gate):
-    assert set(status(GOOD).values()) == {GateStatus.PASSED}
-    assert status(GOOD | wrong)[gate] is GateStatus.FAILED
+    assert set(status(GOOD).values()) == {RowStatus.PASSED}
+    assert status(GOOD | wrong)[gate] is RowStatus.FAILED
 
 
 def test_structure_and_rows_are_counted_apart():

@@ -6,10 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import pytest
 from made_results import Made, red
-
-from sam.scene import FieldMesh
-from verification.suite.cases import all_cases, misfit_cycles
-from verification.suite.cases.repeated_loading import (
+from verification.cases.cyclic.repeated_loading import (
     NESTED,
     RADIUS,
     STEPS,
@@ -19,6 +16,10 @@ from verification.suite.cases.repeated_loading import (
     Kept,
     where_beyond,
 )
+
+from sam.scene import FieldMesh
+from verification.cases import all_cases
+from verification.cases.cyclic import misfit_cycles
 
 CASE, KEPT = "repeated-loading", "repeated-loading-kept"
 TOP = where_beyond(3.4e9)[0]

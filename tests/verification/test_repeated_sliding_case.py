@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 from made_results import Made, red
+from verification.cases.cyclic.repeated_sliding import CELLS, ELEMENTS, FINE, RADIUS, Both
 
 from sam.scene import FieldMesh
-from verification.suite.cases import all_cases
-from verification.suite.cases.repeated_sliding import CELLS, ELEMENTS, FINE, RADIUS, Both
+from verification.cases import all_cases
 
 CASE = "repeated-sliding"
 

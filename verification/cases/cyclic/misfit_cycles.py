@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: MIT
+"""A sphere that grows and shrinks inside a body with a back-stress, a little above the limit below which it
+settles: strain of a period and verdict of both models against the exact solution, which alternates.
+
+With Armstrong and Frederick's law the strain that a period leaves falls to nothing by a few per cent a period
+or less: nothing ratchets, and it takes many periods to see that.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sam.scene import Plasticity, Result, Scene
+from verification.cases.case import Plot, with_body, with_keys, with_loading, with_mesh
+from verification.cases.recipes import sphere_cells
+from verification.figures.friction import CYCLES, Curve, curves
+from verification.judging import Measured
+from verification.quantities import Reference
+from verification.reference.misfit_sphere import PROFILES
+from verification.references import growing_sphere
+from verification.rows import CaseFile
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+YIELD, MODULUS = 1e9, 160e9
+REACHES = np.linspace(0.3, 3.0, 2701)  # radii at which the exact solution is looked at
+TOLERANCE = 1e-7
+"""It sets the noise of the verdict: at 1e-6 the periods until it is decided are three times as many."""
+TOLD = 30  # the period after which the number of further periods is read
+
+
+def above_limit(scene: Scene, of: tuple[float, float]) -> Scene:
+    """A share of the misfit above that below which the elastic range holds a period everywhere, in the end,
+    and the recovery of the back-stress.
+    """
+    (share, recovery), body = of, scene.body
+    excess = float(PROFILES["gauss"](REACHES)[1].max())
+    limit = 2 * YIELD * (1 - body.poisson) / (body.young * excess)
+    back = {"modulus": (MODULUS,), "recovery": (recovery,)}
+    law = Plasticity(law="perfect", yield_stress=YIELD, kinematic=back)
+    return with_loading(with_body(scene, plasticity=law), misfit=limit * (1 + share))
+
+
+def even_sphere(scene: Scene, size: int) -> Scene:
+    """On cells and elements of a/size, at the tolerance of a verdict."""
+    return with_keys(with_mesh(sphere_cells(scene, size), size), "solver", tolerance=TOLERANCE)
+
+
+def cycled_sphere(scene: Scene) -> Reference:
+    """Largest dp and de of each period after the first."""
+    radius = scene.loading.radius
+    ends = list(growing_sphere(scene, (1.0, 0.0) * scene.loading.cycles).history(REACHES * radius))[1::2]
+    both = np.array([(0 * REACHES, 0 * REACHES), *((each.peeq, 2 * each.plastic) for each in ends)])
+    peeq, strain = np.abs(np.diff(both, axis=0)).max(axis=2).T
+    return Reference({"peeq": peeq[1:], "strain": strain[1:]}, {"a": radius})
+
+
+def _column(result: Result, name: str) -> list:
+    return list(result.tables["cycles"][name])
+
+
+def peeq(scene: Scene, result: Result, exact: Reference) -> Measured:
+    """Accumulated strain of each period after the first."""
+    return Measured(np.array(_column(result, "peeq_step_max"))[1:], exact.values["peeq"])
+
+
+def strain(scene: Scene, result: Result, exact: Reference) -> Measured:
+    """Strain that each period after the first leaves: none with Prager's law."""
+    return Measured(np.array(_column(result, "strain_step_max"))[1:], exact.values["strain"])
+
+
+def decided(scene: Scene, result: Result, _: Reference | None) -> float:
+    """Period since which the verdict is alternating."""
+    said = _column(result, "verdict")
+    others = [number for number, each in enumerate(said, start=1) if each != "alternating"]
+    return 1.0 + max(others, default=0) if not others or others[-1] < len(said) else float("inf")
+
+
+def told(scene: Scene, result: Result, _: Reference | None) -> float:
+    """The same over the number of periods told after thirty."""
+    further = _column(result, "periods_to_decide")
+    return (
+        decided(scene, result, None) / (TOLD + (further[TOLD - 1] or 0)) if len(further) >= TOLD else np.nan
+    )
+
+
+def ratchets(scene: Scene, result: Result, _: Reference | None) -> float:
+    """Periods after which it is said to ratchet."""
+    return float(_column(result, "verdict").count("ratchetting"))
+
+
+def total(rows: DataFrame, column: str) -> float:
+    """The sum over all runs."""
+    return float(rows[column].sum())
+
+
+def strain_of_periods(file: CaseFile, frame: DataFrame) -> Plot:
+    """The strain that a period leaves, with Armstrong and Frederick's law."""
+    panels = {}
+    for name, runs in frame[~frame["run"].str.startswith("prager")].groupby("run", sort=False):
+        periods = np.arange(2, runs["strain"].iloc[0].size + 2)
+        series = {"exact": runs["strain expected"].iloc[0]}
+        series |= dict(zip(runs["model"], runs["strain"], strict=True))
+        title = f"{name.rpartition('-')[2]} % above the limit"
+        panels[title] = {of: Curve(periods, 1e6 * values) for of, values in series.items()}
+    words = "Largest strain that a period leaves: it falls in both models as the exact one does."
+    return Plot(
+        curves(
+            *(panels, "period", "strain that a period leaves [$10^{-6}$]"),
+            looks=dict(zip(("exact", "sam", "fem"), CYCLES, strict=False)),
+            count=True,
+        ),
+        *("strain", "Strain that a period leaves", words, words),
+    )

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: MIT
+"""A Hertz load with and without traction on a body with Prager's back-stress, on either side of the shakedown
+limit: pressed in place, and travelling.
+
+Cells see means of the stress, so that a grid has a limit of its own above that of the body. It follows from
+the same theorem, by the smallest ball about the means over each cell: the plastic strain of coarse cells
+settles beyond the limit of the body, and rightly so.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sam.scene import Path, Plasticity, Result, Scene
+from verification.cases.case import Plot, with_body, with_loading
+from verification.figures.friction import CYCLES, Curve, curves
+from verification.quantities import Reference
+from verification.reference.shakedown import cell_limit, in_place_limit, travelling_limit
+from verification.rows import CaseFile
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+
+def back_stress(scene: Scene, modulus: float) -> Scene:
+    """The scene with Prager's back-stress of a modulus in Pa."""
+    stress, back = scene.body.plasticity.yield_stress, {"modulus": (modulus,)}
+    return with_body(scene, plasticity=Plasticity(law="perfect", yield_stress=stress, kinematic=back))
+
+
+def path(scene: Scene, way: tuple[float, int]) -> Scene:
+    """The load travels along x from -half to half, in contact radii, in so many steps."""
+    (half, steps), radius = way, scene.loading.radius
+    return with_loading(scene, path=Path(start=(-half * radius, 0.0), end=(half * radius, 0.0), steps=steps))
+
+
+@cache
+def limit(friction: float, nu: float, travels: bool) -> float:
+    """p0/k of a body at the shakedown limit, k the shear yield stress."""
+    return (travelling_limit if travels else in_place_limit)(friction, nu=nu)[0]
+
+
+def limit_of(scene: Scene) -> float:
+    """That of the body of a scene."""
+    return limit(scene.coefficient, scene.body.poisson, scene.loading.path is not None)
+
+
+def share_of_limit(scene: Scene, share: float) -> Scene:
+    """The load at a share of the limit of the body."""
+    return with_loading(scene, p0=share * limit_of(scene) * scene.body.plasticity.yield_stress / np.sqrt(3.0))
+
+
+def limit_of_cells(scene: Scene, result: Result, _: Reference | None) -> float:
+    """Limit of the cells over that of the body, less 1."""
+    radius, ways = scene.loading.radius, scene.loading.path
+    cells = round(radius * scene.grid.cells[0] / scene.grid.extent[0])
+    stops = np.linspace(ways.start[0] / radius, ways.end[0] / radius, ways.steps + 1)
+    return cell_limit(scene.coefficient, 1 / cells, stops, nu=scene.body.poisson) / limit_of(scene) - 1
+
+
+def strains(result: Result) -> np.ndarray:
+    """Largest strain that each cycle adds."""
+    return np.array(result.tables["cycles"]["peeq_step_max"], dtype=float)
+
+
+def settles(scene: Scene, result: Result, _: Reference | None) -> float:
+    """Strain of the last two cycles over that of the first."""
+    return float(strains(result)[-2:].max() / strains(result)[0])
+
+
+def steady(scene: Scene, result: Result, _: Reference | None) -> float:
+    """Strain of the last cycle over that of the one before."""
+    *_, before, last = strains(result)
+    return float(last / before) if before else 0.0
+
+
+def verdict(scene: Scene, result: Result, _: Reference | None) -> str:
+    """Verdict."""
+    return result.verdict["class"]
+
+
+def alternates(scene: Scene, result: Result, _: Reference | None) -> float:
+    """1 if the verdict is alternating."""
+    return float(result.verdict["class"] == "alternating")
+
+
+def shakes_down(scene: Scene, result: Result, _: Reference | None) -> float:
+    """1 if the verdict is shakedown."""
+    return float(result.verdict["class"] == "shakedown")
+
+
+def strain_of_cycles(file: CaseFile, frame: DataFrame) -> Plot:
+    """Strain of each cycle over that of the first, below and above the limit."""
+    fades = frame["scene"].iloc[0].loading.path is not None
+    panels: dict[str, dict[str, Curve]] = {}
+    for _, run in frame.iterrows():
+        off, strain = run["share-of-limit"] - 1, strains(run["result"]) / strains(run["result"])[0]
+        shown = (strain > 0) | (not fades)
+        name = f"μ = {run['friction']}" + ", coarse cells" * (run["sweep"] == "coarse")
+        panel = panels.setdefault(f"{abs(1e2 * off):.2g} % {'below' if off < 0 else 'above'} the limit", {})
+        panel[name] = Curve(np.arange(1, strain.size + 1)[shown], strain[shown])
+    names = dict.fromkeys(name for panel in panels.values() for name in panel)
+    words = "Strain of each cycle over the cycle: below the limit it falls to nothing, above it stays."
+    return Plot(
+        curves(
+            *(panels, "cycle", "strain of a cycle over that of the first"),
+            looks=dict(zip(names, CYCLES, strict=False)),
+            count=True,
+            logarithmic=fades,
+        ),
+        *("strain", "Strain that each cycle adds", words, words),
+    )

@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: MIT
+"""A sphere that grows inside a yielding body: plastic strain of both models against a closed form, without
+any contact, and against each other below a free surface.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sam.scene import Plasticity, Result, Scene
+from verification.cases.case import Plot, with_body, with_loading
+from verification.cases.plastic.misfit_images import NAMES, Images, images
+from verification.figures.profiles import Profile, profiles
+from verification.judging import Measured
+from verification.quantities import Reference
+from verification.reference.misfit_sphere import GrowingSphere
+from verification.references import growing_sphere
+from verification.rows import CaseFile
+from verification.runs.sampling import peak
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+LAWS = {
+    "linear": (0.02, {"law": "linear", "yield_stress": 1e9, "modulus": 10e9}),
+    "swift": (0.03, {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121}),
+    "perfect": (0.04, {"law": "perfect", "yield_stress": 1e9}),
+}
+"""Misfit strain at the centre and hardening law."""
+POINTS = 4  # Gauss points of a cell each way, for means of the closed form
+FARTHEST = 1.6  # radii of the sphere: where its plastic zone has ended
+REMOVED = (1.0, 0.0)  # shares of the misfit: loaded, and taken back
+
+
+def law(scene: Scene, name: str) -> Scene:
+    """The scene with one of LAWS and its misfit strain."""
+    misfit, keys = LAWS[name]
+    return with_loading(with_body(scene, plasticity=Plasticity(**keys)), misfit=misfit)
+
+
+def infinite_body(scene: Scene) -> Reference:
+    """The unit of length; fields are those of `growing_sphere`."""
+    return Reference({}, {"a": scene.loading.radius})
+
+
+def in_cells(
+    scene: Scene, result: Result, shares: tuple[float, ...] = (1.0,)
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Plastic strain of SAM, means of the closed form over its cells, and their volumes."""
+    exact = growing_sphere(scene, shares)
+    box = result.grids["peak" if len(shares) == 1 else "unloaded"]["body"]
+    t, w = np.polynomial.legendre.leggauss(POINTS)
+    edges = box.x, box.y, box.z - scene.loading.depth
+    x, y, z = ((e[1:] + e[:-1])[:, None] / 2 + np.diff(e)[:, None] / 2 * t for e in edges)
+    mean = np.zeros((len(x), len(y), len(z)))
+    for k, p in enumerate(w):
+        r = np.sqrt(x[:, :, None, None, None] ** 2 + y[:, :, None] ** 2 + z[:, k] ** 2)
+        mean += p / 8 * np.einsum("iajbk,a,b->ijk", exact.fields(r).peeq, w, w)
+    return box.cell_data["peeq"], mean, np.einsum("i,j,k->ijk", *(np.diff(e) for e in edges))
+
+
+def at_points(scene: Scene, result: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Plastic strain of FEM and of the closed form at its Gauss points, and the volumes around them."""
+    x, z, peeq = (each.reshape(-1, 4) for each in peak(result.tables["plane"], "x_m", "z_m", "peeq"))
+    corners = result.fields.points[result.fields.cells["quad"]]
+    area = np.ptp(corners[..., 0], axis=1) * np.ptp(corners[..., 2], axis=1)
+    here = growing_sphere(scene).fields(np.hypot(x, z - scene.loading.depth)).peeq
+    return peeq, here, 2 * np.pi * x * area[:, None] / 4
+
+
+def _l2(peeq: np.ndarray, here: np.ndarray, volume: np.ndarray) -> float:
+    return float(np.sqrt((volume * (peeq - here) ** 2).sum() / (volume * here**2).sum()))
+
+
+def l2(scene: Scene, result: Result, _: Reference) -> float:
+    """L2 error of the plastic strain."""
+    return _l2(*in_cells(scene, result))
+
+
+def total(scene: Scene, result: Result, _: Reference) -> float:
+    """Error of the total plastic strain."""
+    peeq, _, volume = in_cells(scene, result)
+    return float((volume * peeq).sum() / growing_sphere(scene).total() - 1)
+
+
+def removed_total(scene: Scene, result: Result, _: Reference) -> float:
+    """Error of the total plastic strain after removal."""
+    peeq, _, volume = in_cells(scene, result, REMOVED)
+    return float((volume * peeq).sum() / growing_sphere(scene, REMOVED).total() - 1)
+
+
+def removed_mises(scene: Scene, result: Result, _: Reference) -> float:
+    """Error of the largest von Mises stress after removal."""
+    exact = growing_sphere(scene, REMOVED)
+    deviator = np.abs(exact.fields(exact.radius * np.linspace(0.01, 2.0, 2000)).deviator).max()
+    return float(result.quantities["residual_mises_max_Pa"] / deviator - 1)
+
+
+def raised(scene: Scene, result: Result, _: Reference) -> float:
+    """Displacement of the surface by the plastic strain over the radius."""
+    return abs(result.quantities["residual_uz_center_m"]) / scene.loading.radius
+
+
+def l2_at_points(scene: Scene, result: Result, _: Reference) -> float:
+    """L2 error of the plastic strain at the Gauss points."""
+    return _l2(*at_points(scene, result))
+
+
+def total_at_points(scene: Scene, result: Result, _: Reference) -> float:
+    """Error of the total plastic strain, against the closed form at the same points, as a kink between them
+    is worth more than the error of the elements.
+    """
+    peeq, here, volume = at_points(scene, result)
+    return float((volume * peeq).sum() / (volume * here).sum() - 1)
+
+
+def iterations(scene: Scene, result: Result, _: Reference) -> float:
+    """Most iterations of a load step."""
+    return float(max(result.tables["history"]["iterations"]))
+
+
+def uplift(scene: Scene, result: Result, _: Reference) -> float:
+    """Displacement of the surface on the axis in m."""
+    x, u = peak(result.tables["line"], "x_m", "uz_m")
+    return float(u[np.abs(x).argmin()])
+
+
+@cache
+def zone(exact: GrowingSphere) -> Images:
+    """The images of its plastic zone."""
+    return images(exact)
+
+
+def _image(place: int, words: str) -> Callable[..., float]:
+    def of(scene: Scene, result: Result, _: Reference) -> float:
+        found = zone(growing_sphere(scene))
+        return float([*found.left, found.largest][place])
+
+    of.__doc__ = words
+    return of
+
+
+image_xx, image_zz, image_xz, image_xy = (
+    _image(NAMES.index(name), f"Stress {name} that the surface adds to that of the plastic zone.")
+    for name in ("xx", "zz", "xz", "xy")
+)
+image_raised = _image(len(NAMES), "Displacement of the surface by the plastic zone.")
+
+
+def second_order(rows: DataFrame, column: str) -> float:
+    """The largest error times the square of the cells in the radius: its sign may change between two sizes,
+    which leaves no order to fit.
+    """
+    return float((rows[column].abs() * rows["sphere-cells"] ** 2).max())
+
+
+def order_of_half(rows: DataFrame, column: str) -> float:
+    """The order of errors of two sizes, one half of the other."""
+    first, last = rows[column]
+    return float(np.log2(first / last))
+
+
+def sam_on_fem(rows: DataFrame, column: str) -> Measured:
+    """SAM against FEM."""
+    return Measured(*rows[column])
+
+
+def rays(file: CaseFile, frame: DataFrame, law: str) -> Plot:
+    """Plastic strain, deviator and radial stress of SAM on cells of a/12 along the axis below the centre."""
+    run = frame[(frame["sweep"] == "sizes") & (frame["law"] == law) & (frame["sphere-cells"] == 12)].iloc[0]
+    exact, centre = growing_sphere(run["scene"]), run["scene"].loading.depth
+    z, *values = peak(run["result"].tables["axis"], "z_m", "peeq", "sxx_Pa", "szz_Pa")
+    peeq, across, along = (each[z >= centre] for each in values)
+    at, r = (z[z >= centre] - centre) / exact.radius, exact.radius
+    wanted = (
+        ("Plastic strain", "plastic strain [%]", 1e2 * peeq, lambda x: 1e2 * exact.fields(r * x).peeq),
+        (
+            *("Deviator", r"$\sigma_\theta - \sigma_r$ [GPa]", 1e-9 * (across - along)),
+            lambda x: 1e-9 * exact.fields(r * x).deviator,
+        ),
+        (
+            *("Radial stress", r"$\sigma_r$ [GPa]", 1e-9 * along),
+            lambda x: 1e-9 * exact.radial_stress(r * x),
+        ),
+    )
+    panels = []
+    for title, label, found, value in wanted:
+        largest = float(np.abs(value(np.linspace(0.01, FARTHEST, 200))).max())
+        series = {"SAM": (at, found)}
+        panels.append(Profile(title, "$r/a$", label, value, series, largest, "max", (0.0, FARTHEST)))
+    words = (
+        "Plastic strain, deviator and radial stress over the distance from the centre: cells of SAM (a/12) "
+        "along the axis, and the closed form."
+    )
+    return Plot(profiles(panels), f"ray-{law}", f"Along a ray through the centre, {law}", words, words)
