@@ -314,17 +314,17 @@ def _track(track: Track, grid: CellGrid, last: Snapshot) -> dict[str, Any]:
     """Along the path, in the rows that touch it; unloaded stresses in the top and the most strained layer."""
     box, x = last.box, grid.x
     assert box is not None, "asked for of bodies that have yielded"
-    own, rows = _inside(x, box.x), track.touched(grid.y, grid.hy)
+    inside, rows = _inside(x, box.x), track.touched(grid.y, grid.hy)
     across = track.touched(_centres(box.y), grid.hy)
     way = (x - track.start[0]) * track.direction[0]
     steady = track.steady(way)
     peeq, stress = np.zeros(grid.nx), np.full((2, 3, grid.nx), np.nan)
-    peeq[own] = box.peeq.max(axis=(0, 2))
-    counted = box.peeq[:, steady[own]] if steady.any() else box.peeq
+    peeq[inside] = box.peeq.max(axis=(0, 2))
+    counted = box.peeq[:, steady[inside]] if steady.any() else box.peeq
     layer = int(counted.max(axis=(1, 2)).argmax())
     if last.state == UNLOADED:
         for row, k in enumerate((0, layer)):
-            stress[row][:, own] = box.stress[[XX, YY, XZ], k][..., across].mean(axis=-1)
+            stress[row][:, inside] = box.stress[[XX, YY, XZ], k][..., across].mean(axis=-1)
     columns = {
         "x_m": x,
         "uz_m": last.residual_displacement[:, rows].mean(axis=1),

@@ -109,8 +109,8 @@ def _matrix(n: int, half: int, kind: _Sum, real: np.dtype[np.floating[Any]]) -> 
     if kind.inverse:
         ends = np.isin(np.arange(half + 1), (0, half))
         return (np.where(ends, 1, 2) * waves / (2 * half)).T.astype(real)
-    own = np.isin(twice, (0, 2 * half))  # its own mirror image
-    return (np.where(own, 1, 2)[:, None] * waves).astype(real)
+    itself = np.isin(twice, (0, 2 * half))  # its own mirror image
+    return (np.where(itself, 1, 2)[:, None] * waves).astype(real)
 
 
 def _fast_forward(kept: Real, half: int, axis: int, kind: _Sum) -> Real:

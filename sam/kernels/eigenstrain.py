@@ -258,6 +258,6 @@ def own_stress(nu: float) -> Array:
     volume. lam/mu = 2 nu/(1 - 2 nu); the term left out is lam/mu * 8 pi nu/(8 pi (1 - nu)) tr e: together 2
     nu/(1 - nu) tr e.
     """
-    own = 2 * np.eye(6)
-    own[:3, :3] += 2 * nu / (1 - nu)
-    return own
+    out = 2 * np.eye(6)
+    out[:3, :3] += 2 * nu / (1 - nu)
+    return out

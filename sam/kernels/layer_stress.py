@@ -159,8 +159,8 @@ class LayerStress:
     def _image_sums(self, first: Numbers, offsets: Array, shared: bool) -> Array:
         """Coefficients of 1, d and d^2, of 1 alone if not shared: (sets of offsets, 3 or 1, 36, X, Y)."""
         z, face = (part.reshape(-1, part.shape[-1])[first] for part in (self.z, self.face))
-        one, none = np.ones_like(z), np.zeros_like(z)
-        of_d = [[one, face, z, z * face], [none, -one, one, face - z], [none, none, none, -one]]
+        ones, zeros = np.ones_like(z), np.zeros_like(z)
+        of_d = [[ones, face, z, z * face], [zeros, -ones, ones, face - z], [zeros, zeros, zeros, -ones]]
         # (sets, 3 or 1, 4, points and faces)
         powers = self.sign * np.moveaxis(np.array(of_d[: 3 if shared else 1]), 2, 0)
 

@@ -256,7 +256,7 @@ def kinematic_multiplier(
     and the constants; curve: yield stress over the increment; m3: 3 m in Pa.
     """
     turns = _Turns.of(trial, start)
-    low, high = np.zeros(trial.shape[1]), (turns.own**0.5 - curve(np.zeros(trial.shape[1]))[0]) / m3
+    low, high = np.zeros(trial.shape[1]), (turns.square**0.5 - curve(np.zeros(trial.shape[1]))[0]) / m3
     gamma = np.clip(near, low, high)
     for _ in range(KINEMATIC_ITERATIONS):
         lost, steps = back.recovered(gamma)
@@ -304,13 +304,13 @@ class BackStresses:
 @dataclass(frozen=True)
 class _Turns:
     """How eta of (d) turns with dp: eta = xi + sum (1 - b_k) X_k0; 3/2 eta : eta is a quadratic form of 1 -
-    b_k, which is zero for Prager's law. xi: trial stress less all X_k0, (6, n); own: 3/2 xi : xi, (n,);
+    b_k, which is zero for Prager's law. xi: trial stress less all X_k0, (6, n); square: 3/2 xi : xi, (n,);
     cross: 3/2 xi : X_k0, (N, n).
     """
 
     xi: Array
     start: BackStresses
-    own: Array
+    square: Array
     cross: Array
 
     @classmethod
@@ -324,9 +324,9 @@ class _Turns:
     def mises(self, lost: Array, recovery: Array) -> tuple[Array, Array, Array]:
         """J(eta) after 1 - b_k, its slope over dp, and the size that its rounding goes with."""
         with_lost = self.cross + np.einsum("jkn,kn->jn", self.start.mutual, lost)
-        q = np.sqrt(self.own + ((self.cross + with_lost) * lost).sum(axis=0))
+        q = np.sqrt(self.square + ((self.cross + with_lost) * lost).sum(axis=0))
         turning = (with_lost * recovery * (1 - lost)).sum(axis=0) / q
-        return q, turning, (np.sqrt(self.own) + (self.start.sizes * lost).sum(axis=0)) ** 2 / q
+        return q, turning, (np.sqrt(self.square) + (self.start.sizes * lost).sum(axis=0)) ** 2 / q
 
     def effective(self, lost: Array) -> Array:
         """The tensor eta in Pa, (6, n)."""

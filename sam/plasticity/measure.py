@@ -228,12 +228,12 @@ def with_last_period(model: Model, record: Progressed, state: Snapshot) -> Snaps
     fields, box = record.periods.fields(model, record.state, record.extent), state.box
     if box is None or not fields:
         return state
-    own, (layers, nx, ny) = record.extent.window, box.peeq.shape
+    window, (layers, nx, ny) = record.extent.window, box.peeq.shape
     i, j = (
         round(float(side[0] - lines[first]) / step + 0.5)
         for side, lines, first, step in (
-            (box.x, model.grid.x, own.i0, model.grid.hx),
-            (box.y, model.grid.y, own.j0, model.grid.hy),
+            (box.x, model.grid.x, window.i0, model.grid.hx),
+            (box.y, model.grid.y, window.j0, model.grid.hy),
         )
     )
     cells = {name: values[:layers, i : i + nx, j : j + ny] for name, values in fields.items()}
@@ -305,8 +305,8 @@ def with_loops(model: Model, record: Progressed, target: Target, trial: Trial) -
         return record
     rows = record.history.loops
     places = [row.place for row in rows[:3]] if rows else _chosen(record)
-    own = record.extent.window
-    at = [(layer, i - own.i0, j - own.j0) for layer, i, j in places]
+    window = record.extent.window
+    at = [(layer, i - window.i0, j - window.j0) for layer, i, j in places]
     material = record.state.material
     cells = [
         LoopRow(
@@ -324,11 +324,11 @@ def with_loops(model: Model, record: Progressed, target: Target, trial: Trial) -
 
 def _chosen(record: Progressed) -> list[tuple[int, int, int]]:
     """Layer and cells of the grid of the cells, see `loop_places`."""
-    extent, own, last = record.extent, record.extent.window, record.periods.last[-1]
+    extent, window, last = record.extent, record.extent.window, record.periods.last[-1]
     accumulated = surrounded(last.accumulated, last.extent.inside(extent), extent.shape)
     places = loop_places(accumulated.ravel(), record.state.material.peeq.ravel())
     where = [np.unravel_index(place, extent.shape) for place in places]
-    return [(int(layer), int(i) + own.i0, int(j) + own.j0) for layer, i, j in where]
+    return [(int(layer), int(i) + window.i0, int(j) + window.j0) for layer, i, j in where]
 
 
 ODD = np.array([ODD_X, ODD_Y])

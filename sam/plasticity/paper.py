@@ -87,9 +87,9 @@ class PaperProblem(Problem):
             goal=self.tolerance,
         )
 
-    def _relaxed(self, state: State, now: Sum, elastic: Array) -> Sum:
+    def _relaxed(self, state: State, before: Sum, elastic: Array) -> Sum:
         """The plasticity loop at frozen pressure, from the returns so far."""
-        x, length, residual = now.x, now.length, now.residual
+        x, length, residual = before.x, before.length, before.residual
         for _ in range(INNER):
             stress = elastic + residual.stress  # paper Eq. 4
             peeq = state.material.peeq + length

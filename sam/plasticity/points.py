@@ -170,22 +170,22 @@ class CellFlow:
     def returned(self, x: Array, s: Array) -> Returned:
         """The return map of an increment x (6, n_layers, nx, ny) and the deviatoric stress s of the cells."""
         trial = self.trial(x, s)
-        own = x[:, self.cells]
-        points = self.flow.returned(trial, self.m, near=self.near(own))
+        means = x[:, self.cells]
+        points = self.flow.returned(trial, self.m, near=self.near(means))
         self.last = self.cells, equivalent_strain(points)
         image = np.zeros_like(x)
         image[:, self.cells] = points.mean(axis=1)
-        change = own - image[:, self.cells]
+        change = means - image[:, self.cells]
         points += change[:, None]
-        points[:, :, ~own.any(axis=0)] = 0.0  # what is accepted without an increment strains nothing
+        points[:, :, ~means.any(axis=0)] = 0.0  # what is accepted without an increment strains nothing
         residual = 2 * self.m * np.sqrt(contraction(change, change).max(initial=0.0))
         stress, relative = trial - 2 * self.m * points, float(residual / self.material.initial_yield)
         return Returned(image, self.cells, points, stress, self.flow, relative)
 
-    def near(self, own: Array) -> Array:
+    def near(self, means: Array) -> Array:
         """Lengths that the increments at the points about have: of the last return, or of the cells."""
         cells, lengths = self.last
-        return lengths if cells is self.cells else equivalent_strain(own)
+        return lengths if cells is self.cells else equivalent_strain(means)
 
     def increment(self, returned: Returned) -> MaterialFields:
         """The increment of the fields at the points of all cells."""

@@ -132,9 +132,9 @@ def contact_area(contact: Contact, grid: CellGrid) -> float:
     if contact.area is not None:
         return contact.area
     hx, hy = grid.hx, grid.hy
-    own = 2 / np.pi * (hx * np.arcsinh(hy / hx) + hy * np.arcsinh(hx / hy))  # compliance times E*, Love 1929
+    compliance = 2 / np.pi * (hx * np.arcsinh(hy / hx) + hy * np.arcsinh(hx / hy))  # times E*, Love 1929
     p, gap = np.pad(contact.pressure, 1), np.pad(contact.gap, 1, constant_values=np.inf)
-    unit, mean = HALFWAY * contact.compliance / own, np.array(2 / (1 / hx + 1 / hy))
+    unit, mean = HALFWAY * contact.compliance / compliance, np.array(2 / (1 / hx + 1 / hy))
     along_x, along_y = _shares(p, gap, unit * mean), _shares(p.T, gap.T, unit * mean).T
     if hx != hy:
         normal = np.diff(along_y, axis=0), np.diff(along_x, axis=1)
@@ -233,8 +233,8 @@ def cycles_table(
     for end in ends:
         table["operator_applications"][end.cycle - 1], before = end.applications - before, end.applications
         table["wear_volume_m3"][end.cycle - 1] = end.wear_volume
-        own = end.new_strain, end.yielding, end.wear_of_cycle, end.margin
-        for name, value in zip((*OF_CYCLE, "margin_to_limit"), own, strict=True):
+        numbers = end.new_strain, end.yielding, end.wear_of_cycle, end.margin
+        for name, value in zip((*OF_CYCLE, "margin_to_limit"), numbers, strict=True):
             table[name][end.cycle - 1] = value
         for name, value in _heights_of(end.roughness).items():
             table[name][end.cycle - 1] = value

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from made_results import context, red, with_column, with_quantities
-from verification.cases.hertz.hertz import fem_values, sam_values
 
 from sam.scene import load_scene
 from verification.cases import LEVELS, all_cases

@@ -8,7 +8,7 @@ import pytest
 from made_results import last_released, with_column, with_field
 
 import fem_reference.common.contact
-import sam.plasticity.step
+import sam.plasticity.load_step
 from fem_reference.common.contact import ended
 from fem_reference.spatial import load_steps
 from sam.contact.normal import Search, solve_contact
@@ -282,8 +282,8 @@ class TestEndings:
         assert fine.converged and not fine.ending and fine.residuals[-1] <= 1e-10
 
     def test_plastic_iteration_of_sam(self, solves, monkeypatch):
-        monkeypatch.setattr(sam.plasticity.step, "ITERATIONS", 1)
-        monkeypatch.setattr(sam.plasticity.step, "LONG_ITERATIONS", 1)
+        monkeypatch.setattr(sam.plasticity.load_step, "ITERATIONS", 1)
+        monkeypatch.setattr(sam.plasticity.load_step, "LONG_ITERATIONS", 1)
         result = models.solve(solves["Swift", SAM][0], SAM)
         assert result.status is Status.STEP_CUT_LIMIT
         assert (
@@ -312,7 +312,7 @@ class TestStepCutting:
     def test_sam_cuts_and_goes_on(self, scene, monkeypatch):
         """With fewer iterations than two steps take, steps are cut; the answer is that of smaller steps."""
         whole = models.solve(scene, SAM)
-        monkeypatch.setattr(sam.plasticity.step, "ITERATIONS", 14)
+        monkeypatch.setattr(sam.plasticity.load_step, "ITERATIONS", 14)
         cut = models.solve(scene, SAM)
         assert whole.converged and whole.cost["step_cuts"] == 0
         assert (
