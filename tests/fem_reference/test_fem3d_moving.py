@@ -15,7 +15,7 @@ from fem_reference import spatial
 from fem_reference.common.loading import run
 from fem_reference.spatial.model import build
 from fem_reference.spatial.solution import METHOD
-from sam.planner.bodies import schedule_of
+from sam.planner.make import schedule_of
 from verification.compare.comparison import compare_scene
 
 ELASTIC = {"cells_per_radius": 4, "box": 4}
