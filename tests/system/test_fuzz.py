@@ -27,7 +27,7 @@ from verification.robustness.bad_files import ARCHIVE, RUN, lay, mutated, with_p
 from verification.robustness.bad_meshes import GOOD, good_meshes, with_mapping
 from verification.robustness.fuzz import KINDS, MAPPINGS, MESHES, MORE_KINDS, STUDIES, bad_input, good_scenes
 from verification.robustness.hostile import MARKUP, SMALL
-from verification.rows import load_rows
+from verification.rows import Row
 from verification.runs import models
 from verification.runs.archive import ArchiveError, read_archive, write_archive
 from verification.runs.files import FolderError, read_run
@@ -307,9 +307,8 @@ def test_markup_and_control_characters_do_no_harm_in_a_report(tmp_path, monkeypa
     def fail(context):
         raise RuntimeError(text)
 
-    gate = '[[gate]]\nid = "{0}.one"\ncase = "{0}"\nquantity = "q"\nmetric = "relative"\n'
-    gate += 'tolerance = 0.1\nreason = "r"\n'
-    gates = load_rows(gate.format("good") + gate.format("bad"))
+    said = {"quantity": "q", "metric": "relative", "tolerance": 0.1, "reason": "r", "kind": "exact"}
+    gates = tuple(Row(id=f"{case}.one", case=case, **said) for case in ("good", "bad"))
     cases = {
         "good": FakeCase("good", text, text, does=fill),
         "bad": FakeCase("bad", "Bad", "Why?", does=fail),
