@@ -63,12 +63,16 @@ def infinite_body(scene: Scene) -> Reference:
     return Reference({}, {"a": scene.loading.radius})
 
 
-def in_cells(
-    scene: Scene, result: Result, shares: tuple[float, ...] = (1.0,)
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Plastic strain of SAM, means of the closed form over its cells, and their volumes."""
-    exact = growing_sphere(scene, shares)
-    box = result.grids["peak" if len(shares) == 1 else "unloaded"]["body"]
+def in_cells(result: Result, state: str) -> tuple[np.ndarray, np.ndarray]:
+    """Plastic strain of SAM in its box, and the volumes of the cells."""
+    box = result.grids[state]["body"]
+    volume = np.einsum("i,j,k->ijk", *(np.diff(edges) for edges in (box.x, box.y, box.z)))
+    return box.cell_data["peeq"], volume
+
+
+def means_of_cells(scene: Scene, result: Result) -> np.ndarray:
+    """Plastic strain of the closed form over the cells of SAM."""
+    exact, box = growing_sphere(scene), result.grids["peak"]["body"]
     t, w = np.polynomial.legendre.leggauss(POINTS)
     edges = box.x, box.y, box.z - scene.loading.depth
     x, y, z = ((e[1:] + e[:-1])[:, None] / 2 + np.diff(e)[:, None] / 2 * t for e in edges)
@@ -76,7 +80,7 @@ def in_cells(
     for k, p in enumerate(w):
         r = np.sqrt(x[:, :, None, None, None] ** 2 + y[:, :, None] ** 2 + z[:, k] ** 2)
         mean += p / 8 * np.einsum("iajbk,a,b->ijk", exact.fields(r).peeq, w, w)
-    return box.cell_data["peeq"], mean, np.einsum("i,j,k->ijk", *(np.diff(e) for e in edges))
+    return mean
 
 
 def at_points(scene: Scene, result: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -94,18 +98,19 @@ def _l2(peeq: np.ndarray, here: np.ndarray, volume: np.ndarray) -> float:
 
 def l2(scene: Scene, result: Result, _: Reference) -> float:
     """L2 error of the plastic strain."""
-    return _l2(*in_cells(scene, result))
+    peeq, volume = in_cells(result, "peak")
+    return _l2(peeq, means_of_cells(scene, result), volume)
 
 
 def total(scene: Scene, result: Result, _: Reference) -> float:
     """Error of the total plastic strain."""
-    peeq, _, volume = in_cells(scene, result)
+    peeq, volume = in_cells(result, "peak")
     return float((volume * peeq).sum() / growing_sphere(scene).total() - 1)
 
 
 def removed_total(scene: Scene, result: Result, _: Reference) -> float:
     """Error of the total plastic strain after removal."""
-    peeq, _, volume = in_cells(scene, result, REMOVED)
+    peeq, volume = in_cells(result, "unloaded")
     return float((volume * peeq).sum() / growing_sphere(scene, REMOVED).total() - 1)
 
 
