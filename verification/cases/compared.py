@@ -286,7 +286,7 @@ def _results(caption: str, file: CaseFile, found: Mapping[str, Solved]) -> Small
 
 
 def _passes(words: str, results: Mapping[str, Result]) -> Iterator[SmallTable]:
-    """What each pass of a counter-body that moves does, in every run."""
+    """What each pass of a counter-body that moves does, in runs that end with the cells in a radius."""
     moving = {run: each for run, each in results.items() if {"passes", "cycles"} <= set(each.tables)}
     for name, head, scale in (
         ("strain", "Largest strain that a pass adds [1e-3]", 1e3),
@@ -294,18 +294,16 @@ def _passes(words: str, results: Mapping[str, Result]) -> Iterator[SmallTable]:
     ):
         rows = [
             (
-                {"sam": "SAM", "fem": "finite elements"}.get(run.partition("-")[0], run),
-                run.partition("-")[2],
-                *(number(scale * v) for v in of_passes(each, name)),
+                "SAM" if each.model == SAM else "finite elements",
+                run.rpartition("-")[2],
+                *(number(scale * value) for value in of_passes(each, name)),
                 str((each.verdict or {}).get("class", "")),
             )
             for run, each in moving.items()
         ]
         if rows:
             passes = (f"pass {k + 1}" for k in range(len(rows[0]) - 3))
-            yield SmallTable(
-                f"{head}, {words}", ("model", "cells or elements in a", *passes, "verdict"), rows
-            )
+            yield SmallTable(f"{head}, {words}", ("model", "in a", *passes, "verdict"), rows)
 
 
 def _differences(file: CaseFile, found: Mapping[str, Solved]) -> SmallTable:
