@@ -25,7 +25,7 @@ __all__ = [
     "limit_of_cells",
     "shakes_down",
     "share_of_limit",
-    "strain_of_cycles",
+    "strain_over_first",
 ]
 
 if TYPE_CHECKING:
