@@ -276,14 +276,14 @@ def coated_traction(scene: Scene) -> Reference:
     )
 
 
-def film_reference(scene: Scene) -> Reference:
+def film_changes(scene: Scene) -> Reference:
     """What a film changes, by the spectral solution."""
-    elastic, (p, mises) = contact_of(scene), film_changes(scene)
+    elastic, (p, mises) = contact_of(scene), changes_by_film(scene)
     units = {"a": elastic.contact_radius, "p0": elastic.peak_pressure, "approach": elastic.approach}
     return Reference({"p-change": p, "mises-change": mises}, units)
 
 
-def film_changes(scene: Scene) -> tuple[float, float]:
+def changes_by_film(scene: Scene) -> tuple[float, float]:
     """What the film changes, as shares of the contact without it: largest pressure, and largest von Mises
     stress of the body.
     """
@@ -311,6 +311,6 @@ REFERENCES: Mapping[str, Callable[[Scene], Reference]] = {
     "hamilton": hamilton,
     "travelling-load": travelling_load,
     "coated-traction": coated_traction,
-    "film-changes": film_reference,
+    "film-changes": film_changes,
 }
 """Name in a case file -> the answer for a scene."""

@@ -335,14 +335,18 @@ RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {
 
 
 def beside(file: CaseFile, name: str, known: Mapping[str, Any]) -> Any:
-    """What a name in a case file stands for: a function of the module beside the file, or of a registry."""
+    """What a name in a case file stands for: what the module beside the file defines, of a registry, or what
+    that module imports.
+    """
+    own = None
     if file.path.with_suffix(".py").exists():
         module = import_module(f"verification.cases.{file.path.parent.name}.{file.path.stem}")
-        if own := getattr(module, name.replace("-", "_"), None):
+        own = getattr(module, name.replace("-", "_"), None)
+        if getattr(own, "__module__", "") == module.__name__:
             return own
-    if name not in known:
+    if name not in known and own is None:
         raise KeyError(f"{file.path.name}: {name} is none of {', '.join(known)}")
-    return known[name]
+    return known.get(name, own)
 
 
 def changed(scene: Scene, changes: Mapping[str, Any], file: CaseFile) -> Scene:

@@ -36,7 +36,7 @@ from verification.compare.verdicts import LIMIT
 from verification.figures.film import changes, pressures, strains
 from verification.reference.bonded_film import elastic_mises, flow_gradient, in_plane_strain, plastic_strain
 from verification.reference.hertz import effective_modulus
-from verification.references import film_changes
+from verification.references import changes_by_film
 from verification.runs.sampling import peak
 
 if TYPE_CHECKING:
@@ -326,7 +326,7 @@ def against_theory(films: YieldingFilms) -> dict[str, float]:
     """
     found, film = films.found, films.base.body.coating
     elastic = found[(found["body"] == "elastic") & (found["film"] == "elastic")]
-    exact = np.array([film_changes(scene) for scene in elastic["scene"]])
+    exact = np.array([changes_by_film(scene) for scene in elastic["scene"]])
     apart = np.abs(elastic[list(CHANGES)].to_numpy() - exact).max(axis=0)
     alone = np.array([bare.quantities["p_max_Pa"] for bare in found["bare"]])
     yields = found[found["film"] == "yields"]

@@ -37,7 +37,7 @@ from verification.reference.coated_changes import (
     mises_change,
     pressure_change,
 )
-from verification.references import contact_of, film_changes
+from verification.references import changes_by_film, contact_of
 from verification.runs import models
 from verification.runs.sampling import pressure_map
 
@@ -411,7 +411,7 @@ class ThinFilmGrids(Case):
             "unfinished": Measured(sum(unfinished(r) for _, *results in found.values() for r in results), 0),
         }
         for name, (scene, result, _) in found.items():
-            pairs = zip(changes_of(result).items(), film_changes(scene), strict=True)
+            pairs = zip(changes_of(result).items(), changes_by_film(scene), strict=True)
             values |= {f"{name}-{change}": abs(ours - exact) for (change, ours), exact in pairs}
         return values
 
