@@ -13,7 +13,7 @@ from verification.cost.measured import solve_alone
 from verification.runs.models import FEM, SAM
 
 CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-pytestmark = pytest.mark.skipif(CORES < 2, reason="a second thread on the same core is none to numpy")
+two_cores = pytest.mark.skipif(CORES < 2, reason="a second thread on the same core is none to numpy")
 COUNTERS = ("contact_iterations", "plastic_iterations", "newton_iterations", "step_cuts")
 
 
@@ -27,6 +27,7 @@ def twice(of, model=SAM):
     return one, two, 1e-10 if same else of.solver.tolerance
 
 
+@two_cores
 @pytest.mark.parametrize("model, mu", [(SAM, None), (SAM, 0.2), (FEM, None)])
 def test_every_number_of_a_load_step_is_that_of_one_thread(model, mu):
     made = scene(
@@ -47,6 +48,7 @@ def test_every_number_of_a_load_step_is_that_of_one_thread(model, mu):
                 np.testing.assert_allclose(b, a, rtol=0.0, atol=allowed * size, err_msg=key)
 
 
+@two_cores
 def test_the_same_cells_are_worn_and_lose_their_film():
     """Where iteration counts differ a load step differs by its tolerance: cycles at random add up to five
     times that.

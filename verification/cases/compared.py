@@ -135,7 +135,8 @@ class Compared(Case):
         first = next(iter(found.values()))
         if first.scene is None:
             return
-        scene, other, loading = first.scene, first.scene.counterbody, first.scene.loading
+        scenes = [first.scene] if first.results else list(first.frame["scene"])
+        scene, other, loading = scenes[0], scenes[0].counterbody, scenes[0].loading
         units = first.reference.units if first.reference else {}
         solved = first.results.get("sam")
         a = units.get("a") or loading.radius or (solved and solved.quantities["contact_radius_m"]) or math.nan
@@ -155,10 +156,13 @@ class Compared(Case):
             )
             yield other.shape.capitalize(), f"{size}{elastic_text(other) if other.elastic else 'rigid'}"
         again = f", {loading.cycles} times" * (loading.cycles > 1)
+        forces = sorted({each.loading.force for each in scenes} - {None})
         if loading.misfit:
             load = f"a sphere that grows, e = {loading.misfit:g} in its centre, radius {1e6 * a:g} µm"
+        elif other:
+            load = f"{' to '.join(f'{force:.5g}' for force in forces[:: max(1, len(forces) - 1)])} N"
         else:
-            load = f"{loading.force:.5g} N" if other else f"given, {loading.p0 / 1e9:.4f} GPa in the centre"
+            load = f"given, {loading.p0 / 1e9:.4f} GPa in the centre"
         steps = f"{load} in {loading.steps} equal steps{', then unloaded' * loading.unload}{again}"
         yield "Force" if other else "Load", steps
         if loading.path:
@@ -283,22 +287,25 @@ def _results(caption: str, file: CaseFile, found: Mapping[str, Solved]) -> Small
 
 def _passes(words: str, results: Mapping[str, Result]) -> Iterator[SmallTable]:
     """What each pass of a counter-body that moves does, in every run."""
-    moving = {run: each for run, each in results.items() if "passes" in each.tables}
+    moving = {run: each for run, each in results.items() if {"passes", "cycles"} <= set(each.tables)}
     for name, head, scale in (
         ("strain", "Largest strain that a pass adds [1e-3]", 1e3),
         ("energy", "Energy that a pass dissipates [nJ]", 1e9),
     ):
         rows = [
             (
-                run,
+                {"sam": "SAM", "fem": "finite elements"}.get(run.partition("-")[0], run),
+                run.partition("-")[2],
                 *(number(scale * v) for v in of_passes(each, name)),
                 str((each.verdict or {}).get("class", "")),
             )
             for run, each in moving.items()
         ]
         if rows:
-            passes = (f"pass {k + 1}" for k in range(len(rows[0]) - 2))
-            yield SmallTable(f"{head}, {words}", ("run", *passes, "verdict"), rows)
+            passes = (f"pass {k + 1}" for k in range(len(rows[0]) - 3))
+            yield SmallTable(
+                f"{head}, {words}", ("model", "cells or elements in a", *passes, "verdict"), rows
+            )
 
 
 def _differences(file: CaseFile, found: Mapping[str, Solved]) -> SmallTable:

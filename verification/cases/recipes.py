@@ -335,13 +335,14 @@ RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {
 
 
 def beside(file: CaseFile, name: str, known: Mapping[str, Any]) -> Any:
-    """What a name in a case file stands for: of a registry, or a function of the module beside the file."""
-    if name in known:
-        return known[name]
-    if not file.path.with_suffix(".py").exists():
+    """What a name in a case file stands for: a function of the module beside the file, or of a registry."""
+    if file.path.with_suffix(".py").exists():
+        module = import_module(f"verification.cases.{file.path.parent.name}.{file.path.stem}")
+        if own := getattr(module, name.replace("-", "_"), None):
+            return own
+    if name not in known:
         raise KeyError(f"{file.path.name}: {name} is none of {', '.join(known)}")
-    module = import_module(f"verification.cases.{file.path.parent.name}.{file.path.stem}")
-    return getattr(module, name.replace("-", "_"))
+    return known[name]
 
 
 def changed(scene: Scene, changes: Mapping[str, Any], file: CaseFile) -> Scene:

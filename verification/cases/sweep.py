@@ -3,7 +3,7 @@
 rows of the case take of its columns.
 
 A frame has the columns sweep, model ("sam/fem" for what is between both), an axis each, h (size of what is
-refined), converged, the columns of the file with `NAME value` and `NAME expected` beside each, scene and
+refined), the columns of the file with `NAME value` and `NAME expected` beside each, scene and
 result. The function that a case names as `frame` returns such rows as mappings.
 """
 
@@ -24,7 +24,7 @@ from verification.compare.comparison import compare_scene
 from verification.judging import Measured, error_of
 from verification.quantities import QUANTITIES, Quantity, Reference
 from verification.reference.convergence import Order, extrapolate, fit_order
-from verification.references import REFERENCES, contact_of
+from verification.references import REFERENCES, hertz_sphere
 from verification.rows import CaseFile, SweepFile, Take
 from verification.runs.models import FEM, FEM_3D, SAM
 from verification.text.console import number
@@ -34,7 +34,15 @@ if TYPE_CHECKING:
 
 MODELS = {"sam": SAM, "fem": FEM, "fem-3d": FEM_3D}
 BOTH = "sam/fem"
-SIGNS = {"<": operator.lt, ">": operator.gt, "<=": operator.le, ">=": operator.ge}
+SIGNS = {"<": operator.lt, ">": operator.gt}
+
+ERRORS = {
+    "value": "",
+    "between": ", SAM against FEM",
+    "relative": ", relative error",
+    "absolute": ", error",
+    "relative_l2": ", relative error in L2",
+}
 
 
 def points(sweep: SweepFile, level: str) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
@@ -67,32 +75,33 @@ def _runs(context: Context, file: CaseFile, name: str, base: Scene) -> Iterator[
     for where, changes in every:
         scene = changed(base, changes, file)
         reference = beside(file, file.reference, REFERENCES)(scene) if file.reference else None
-        row, results = {"sweep": name, **where, "scene": scene}, {}
+        row, results, runs = {"sweep": name, **where, "scene": scene}, {}, []
         for model in sweep.models:
             led = [model] if len(file.sweeps) == 1 or name == model else [model, name]
             label = "-".join([*led, *(spelt(where[axis]) for axis in varied)])
-            result = results[model] = context.solve(MODELS[model], scene, label, demand=sweep.demand)
+            result = results[model] = context.solve(MODELS[model], scene, label)
             size = size_of(sweep, scene, result, reference)
-            own = row | {"model": model, "result": result, "h": size, "converged": result.converged}
-            for column, how in sweep.columns.items() if result.converged else ():
-                of = beside(file, column, QUANTITIES)
+            own = row | {"model": model, "result": result, "h": size}
+            for column, how in sweep.columns.items():
                 if how == "between":
                     continue
-                if isinstance(of, Quantity):
-                    found = of.against(column, result, reference)
-                else:
-                    found = of(scene, result, reference)
+                of = beside(file, column, QUANTITIES)
+                named = isinstance(of, Quantity)
+                found = of.against(column, result, reference) if named else of(scene, result, reference)
                 found = found if isinstance(found, Measured) else Measured(found)
-                own |= {
-                    column: found.value,
-                    f"{column} value": found.value,
-                    f"{column} expected": found.expected,
-                }
-                if how != "value":
-                    own[column] = error_of(how, found)
-            yield own
-        if between := [column for column, how in sweep.columns.items() if how == "between"]:
-            yield row | {"model": BOTH} | between_models(scene, *results.values(), names=between)
+                own[column] = found.value if how == "value" else error_of(how, found)
+                if np.ndim(found.value) == 0:
+                    own |= {f"{column} value": found.value, f"{column} expected": found.expected}
+            runs.append(own)
+        between = [column for column, how in sweep.columns.items() if how == "between"]
+        if between and all(result.converged for result in results.values()):
+            both = between_models(scene, *results.values(), names=between)
+            for column in between:
+                pair = both[f"{column} pair"]
+                if pair and np.ndim(pair.value) == 0:
+                    runs[0][column], runs[1][column] = pair.value, pair.expected
+            runs.append(row | {"model": BOTH} | both)
+        yield from runs
 
 
 def between_models(scene: Scene, sam: Result, fem: Result, *, names: Sequence[str]) -> dict[str, Any]:
@@ -110,14 +119,11 @@ def between_models(scene: Scene, sam: Result, fem: Result, *, names: Sequence[st
 
 def size_of(sweep: SweepFile, scene: Scene, result: Result, reference: Reference | None) -> float:
     """Size of a cell or element over the radius of the contact, or of a load step over the load."""
-    if sweep.size == "step":
+    if sweep.size != "cell":
         return 1.0 / scene.loading.steps
-    if sweep.size == "cell" and result.model != SAM:
+    if result.model != SAM:
         return 1.0 / scene.fem.cells_per_radius
-    if sweep.size == "cell":
-        a = reference.units["a"] if reference else contact_of(scene).contact_radius
-        return result.discretisation["cell_m"][0] / a
-    return np.nan
+    return result.discretisation["cell_m"][0] / (reference or hertz_sphere(scene)).units["a"]
 
 
 def spelt(value: Any) -> str:
@@ -135,26 +141,18 @@ def _single(rows: DataFrame, column: str) -> Measured:
     return Measured(value.iloc[0], None if expected is None else expected.iloc[0])
 
 
-def _pair(rows: DataFrame, column: str) -> Measured:
-    """Of both models at one point."""
-    return _single(rows, f"{column} pair").value
-
-
 STATISTICS: Mapping[str, Callable[[DataFrame, str], float | Measured]] = {
     "value": _single,
-    "pair": _pair,
+    "pair": lambda rows, column: _single(rows, f"{column} pair").value,
     "order": lambda rows, column: fit_order(rows["h"], rows[column]).order,
     "limit": lambda rows, column: extrapolate(rows["h"], rows[column]).limit,
     "largest": lambda rows, column: float(np.max(rows[column].to_numpy())),
-    "smallest": lambda rows, column: float(np.min(rows[column].to_numpy())),
     "first": lambda rows, column: rows[column].iloc[0],
     "last": lambda rows, column: rows[column].iloc[-1],
     "ratio": lambda rows, column: rows[column].iloc[0] / rows[column].iloc[-1],
-    "growth": lambda rows, column: float(np.max(rows[column].to_numpy()[1:] / rows[column].to_numpy()[:-1])),
 }
 """Word of a row -> what it takes of a column. pair: the value of SAM beside that of FEM; order, limit: under
-refinement; ratio: first over last; growth: largest ratio of a value to the one before; nan where one is
-missing.
+refinement; ratio: first over last; nan where one is missing.
 """
 
 
@@ -201,10 +199,12 @@ def taken(file: CaseFile, frame: DataFrame) -> dict[str, Measured]:
 
 def words_of(file: CaseFile, column: str) -> str:
     """A column for the reader: of the vocabulary, or what its function says of itself."""
-    of = beside(file, column, QUANTITIES) if file.sweeps else None
-    if of is None:
-        return column.replace("-", " ")
+    of = beside(file, column, QUANTITIES)
     return of.words if isinstance(of, Quantity) else of.__doc__.strip().splitlines()[0].rstrip(".").lower()
+
+
+def _plain(axis: str) -> str:
+    return axis.replace(".", " ").replace("-", " ").replace("_", " ")
 
 
 def ran(file: CaseFile, frame: DataFrame) -> Iterator[tuple[str, str]]:
@@ -219,12 +219,14 @@ def ran(file: CaseFile, frame: DataFrame) -> Iterator[tuple[str, str]]:
 def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
     """A table for each sweep: a line a run, and the observed orders in the last."""
     for name, rows in frame.groupby("sweep", sort=False):
-        axes, shown = [], [column for column in rows if column not in ("sweep", "model", "expected")]
+        axes, shown = [], {c: c.replace("-", " ") for c in rows if c not in ("sweep", "model")}
         if sweep := file.sweeps.get(name):
             axes = [axis for axis in sweep.axes if len(set(map(spelt, rows[axis]))) > 1]
-            with_expected = ((c, f"{c} expected")[: 1 + (how == "value")] for c, how in sweep.columns.items())
-            shown = [column for columns in with_expected for column in columns if column in rows]
-        shown = [c for c in shown if not rows[c].isna().all() and np.ndim(rows[c].dropna().iloc[0]) == 0]
+            shown = {column: words_of(file, column) + ERRORS[how] for column, how in sweep.columns.items()}
+            values = [column for column, how in sweep.columns.items() if how == "value"]
+            shown |= {f"{column} expected": f"{shown[column]}, expected" for column in values}
+        known = {c: rows[c].dropna() for c in shown if c in rows}
+        shown = {c: shown[c] for c, own in known.items() if len(own) and np.ndim(own.iloc[0]) == 0}
         lines = [
             (*(spelt(row[axis]) for axis in axes), row["model"].upper(), *(_cell(row[c]) for c in shown))
             for _, row in rows.iterrows()
@@ -234,20 +236,11 @@ def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
             if any(orders):
                 cells = (f"order {order.order:.2f}" if order else "" for order in orders)
                 lines.append((*[""] * len(axes), model.upper(), *cells))
-        heads = (
-            words_of(file, c.removesuffix(" expected")) + c[len(c.removesuffix(" expected")) :] for c in shown
-        )
-        yield SmallTable(
-            f"Points of {name}".removesuffix(" of "), (*map(_plain, axes), "model", *heads), lines
-        )
+        yield SmallTable(f"Points {name}".strip(), (*map(_plain, axes), "model", *shown.values()), lines)
 
 
 def _cell(value: Any) -> str:
     return value if isinstance(value, str) else number(None if value is None or value != value else value, 5)
-
-
-def _plain(axis: str) -> str:
-    return axis.replace(".", " ").replace("-", " ").replace("_", " ")
 
 
 def fitted(file: CaseFile, rows: DataFrame, column: str) -> Order | None:

@@ -22,6 +22,8 @@ from verification.reference.misfit_sphere import PROFILES
 from verification.references import growing_sphere
 from verification.rows import CaseFile
 
+__all__ = ["even_sphere", "strain_of_periods"]
+
 if TYPE_CHECKING:
     from pandas import DataFrame
 

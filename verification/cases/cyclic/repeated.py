@@ -22,6 +22,15 @@ from verification.reference.stress import von_mises
 from verification.rows import CaseFile
 from verification.runs.sampling import rows_of
 
+__all__ = [
+    "flow_depth",
+    "flow_elsewhere",
+    "last_strain",
+    "later_strain",
+    "other_classes",
+    "splines_apart",
+]
+
 if TYPE_CHECKING:
     from pandas import DataFrame
 

@@ -22,6 +22,22 @@ from verification.references import growing_sphere
 from verification.rows import CaseFile
 from verification.runs.sampling import peak
 
+__all__ = [
+    "image_raised",
+    "image_xx",
+    "image_xy",
+    "image_xz",
+    "image_zz",
+    "infinite_body",
+    "l2_at_points",
+    "rays",
+    "removed_mises",
+    "removed_total",
+    "sam_on_fem",
+    "total_at_points",
+    "uplift",
+]
+
 if TYPE_CHECKING:
     from pandas import DataFrame
 

@@ -27,6 +27,18 @@ from verification.reference.indentation import (
 )
 from verification.references import modulus_of
 
+__all__ = [
+    "area_jackson",
+    "area_kogut",
+    "full_slip",
+    "load_jackson",
+    "load_kogut",
+    "over_approach",
+    "sixty_depths",
+    "w_star",
+    "yields_at",
+]
+
 if TYPE_CHECKING:
     from pandas import DataFrame
 
@@ -85,12 +97,12 @@ def ghaednia(scene: Scene) -> Reference:
     return Reference({"approach": depth * radius, "radius": area_radius}, {"a": area_radius})
 
 
-def friction(scene: Scene, coefficient: float) -> Scene:
+def full_slip(scene: Scene, coefficient: float) -> Scene:
     """With the traction of full slip, where there is any."""
     return scene.model_copy(update={"friction": Friction(coefficient=coefficient) if coefficient else None})
 
 
-def depths(scene: Scene, step: float) -> Scene:
+def sixty_depths(scene: Scene, step: float) -> Scene:
     """Sixty output depths, so many m apart, none at the surface."""
     return with_grid(scene, depths=tuple(float(k * step) for k in range(1, 61)))
 

@@ -39,14 +39,7 @@ def checked(quick: bool) -> dict:
     """
     with tempfile.TemporaryDirectory(prefix="samfem-mutation-") as base:
         found = Path(base, "judged.json")
-        words = [
-            sys.executable,
-            "-m",
-            TOOL,
-            "--json",
-            str(found),
-            *(["--quick"] if quick else []),
-        ]
+        words = [sys.executable, "-m", TOOL, "--json", str(found), *["--quick"] * quick]
         environment = os.environ | dict.fromkeys(EVERY_LIBRARY, "1") | {"SAMFEM_STORE": ""}
         ended = subprocess.run(words, cwd=ROOT, env=environment, capture_output=True, text=True)
         if not found.is_file():
@@ -91,84 +84,50 @@ def counts_table(found: Mapping) -> SmallTable:
         counts[one["mutant"]["module"], one["mutant"]["kind"]] += one["outcome"] != "structure"
     for one in found["shown"]:
         counts[one["mutant"]["module"], "equivalent"] += one["equivalent"]
-    names = [
-        name for names in scope.GROUPS.values() for name in names if any(where == name for where, _ in counts)
-    ]
+    there = {where for where, _ in counts}
+    names = [name for names in scope.GROUPS.values() for name in names if name in there]
 
     def row(title: str, modules: Sequence[str]) -> tuple[str, ...]:
-        total = {what: sum(counts[name, what] for name in modules) for _, what in counts}
-        both = total.get("killed", 0) + total.get("survived", 0)
-        parts = [
-            both,
-            total.get("row", 0),
-            total.get("killed", 0),
-            total.get("survived", 0),
-            total.get("equivalent", 0),
-        ]
-        return (title, *map(str, parts), str(total.get("structure", 0)))
+        kinds = ("row", "killed", "survived", "equivalent", "structure")
+        rows, killed, survived, *rest = (sum(counts[name, kind] for name in modules) for kind in kinds)
+        return (title, *map(str, (killed + survived, rows, killed, survived, *rest)))
 
-    columns = (
-        "module",
-        "mutants",
-        "of them table rows",
-        "killed",
-        "survived",
-        "equivalent",
-        "structure, left out",
-    )
-    return SmallTable(
-        "Mutants by module", columns, [*[row(name, [name]) for name in names], row("all", names)]
-    )
+    columns = "module|mutants|of them table rows|killed|survived|equivalent|structure, left out"
+    rows = [*[row(name, [name]) for name in names], row("all", names)]
+    return SmallTable("Mutants by module", columns.split("|"), rows)
+
+
+def _place(one: Mapping) -> str:
+    return f"{one['mutant']['module']} {one['mutant']['function']}"
 
 
 def survivors_table(found: Mapping) -> SmallTable:
     """Every mutant that no test noticed, and why."""
     from verification.robustness.mutants import scope  # noqa: PLC0415 - of the source only
 
-    survived = [one for one in found["judged"] if one["outcome"] == "survived"]
-    rows = [
-        (
-            f"{one['mutant']['module']} {one['mutant']['function']}",
-            f"{one['mutant']['text']} in {one['mutant']['line'] or one['mutant']['place']}",
-            str(one["asked"]),
-            scope.EXPLAINED.get(key_of(one), "not explained"),
-        )
-        for one in survived
-    ]
+    rows = []
+    for one in (one for one in found["judged"] if one["outcome"] == "survived"):
+        number = f"{one['mutant']['text']} in {one['mutant']['line'] or one['mutant']['place']}"
+        why = scope.EXPLAINED.get(key_of(one), "not explained")
+        rows.append((_place(one), number, str(one["asked"]), why))
     return SmallTable("Survivors", ("where", "number", "tests asked", "why"), rows)
 
 
 def equivalent_table(found: Mapping) -> SmallTable:
     """The equivalent mutants: constants that must not matter, and how much they do."""
     rows = [
-        (
-            f"{one['mutant']['module']} {one['mutant']['function']}",
-            one["mutant"]["text"],
-            one["reason"],
-            f"{one['change']:.2g}",
-            str(one["probes"]),
-        )
+        (_place(one), one["mutant"]["text"], one["reason"], f"{one['change']:.2g}", str(one["probes"]))
         for one in found["shown"]
     ]
-    return SmallTable(
-        "Constants that must not change the answer",
-        (
-            "where",
-            "constant",
-            "why it must not matter",
-            "largest change, in tolerances",
-            "solves that run the module",
-        ),
-        rows,
-    )
+    columns = "where|constant|why it must not matter|largest change, in tolerances|solves that run the module"
+    return SmallTable("Constants that must not change the answer", columns.split("|"), rows)
 
 
 def killers_table(found: Mapping) -> SmallTable:
     """The tests that kill most."""
     counts = Counter(one["by"] for one in found["judged"] if one["outcome"] == "killed")
-    return SmallTable(
-        "Tests that kill most", ("test", "mutants"), [(n, str(k)) for n, k in counts.most_common(NAMED)]
-    )
+    rows = [(name, str(count)) for name, count in counts.most_common(NAMED)]
+    return SmallTable("Tests that kill most", ("test", "mutants"), rows)
 
 
 class Mutation(Case):

@@ -18,6 +18,8 @@ from verification.figures.profiles import Profile, profiles
 from verification.judging import Measured
 from verification.reference.hamilton import largest_von_mises, sliding_stress
 
+__all__ = ["limit_of_crossings"]
+
 if TYPE_CHECKING:
     from pandas import DataFrame
 
