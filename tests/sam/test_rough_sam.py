@@ -229,7 +229,7 @@ def test_the_largest_stress_is_looked_for_below_the_whole_patch(patches):
 
 
 def test_blocks_of_depths_change_nothing(patches, monkeypatch):
-    monkeypatch.setattr("sam.elastic.stress.BYTES_AT_ONCE", 1)
+    monkeypatch.setattr("sam.elastic.problem.BYTES_AT_ONCE", 1)
     again = sam.solve(patch(64))
     assert again.quantities == patches[64].quantities
     assert np.array_equal(column(again, "plane", "mises_Pa"), column(patches[64], "plane", "mises_Pa"))

@@ -107,7 +107,8 @@ def test_sam_that_fails_in_the_second_cycle_has_the_first_in_its_cycles(monkeypa
     def few(model, now, load):
         done.append(load.force)
         if len(done) > 4:  # both steps up, and what unloading takes
-            return replace(now, status=Status.PLASTIC_ZONE_AT_GRID_EDGE), None
+            ended = replace(now.history, status=Status.PLASTIC_ZONE_AT_GRID_EDGE)
+            return replace(now, history=ended), None
         return attempt(model, now, load)
 
     monkeypatch.setattr(history, "attempt", few)
