@@ -1,182 +1,236 @@
 # SPDX-License-Identifier: MIT
-"""Equivalent mutants: constants that must not change an answer, each with the reason.
-
-What a perturbation of them does change is measured in small solves.
+"""Equivalent mutants: constants that must not change an answer, and what a perturbation of them changes in
+the numbers that small scenes return.
 """
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
 
 import numpy as np
 
+from sam.scene import Result, parse_scene
 from verification.robustness.mutants import inject
-from verification.robustness.mutants.numbers import Mutant
-from verification.robustness.mutants.pool import forked
-from verification.robustness.mutants.probes import PROBES, Probe, change, numbers
+from verification.robustness.mutants.changes import Mutant
+from verification.robustness.mutants.judge import forked
+from verification.robustness.mutants.scope import constants
+from verification.runs import models
 
 WITHIN = 10.0
 """A number may change by this many tolerances of its solver."""
 SECONDS = 60.0
+STEEL = '[body]\nyoung = "210 GPa"\npoisson = 0.3\n'
+SPHERE = '[counterbody]\nshape = "sphere"\nradius = "105 um"\n'
+PUNCH = '[counterbody]\nshape = "rounded-punch"\nflat_radius = "5 um"\nradius = "100 um"\n'
+ELASTIC = SPHERE + 'young = "70 GPa"\npoisson = 0.2\n'
+SWIFT = '[body.plasticity]\nlaw = "swift"\nB = "945 MPa"\nC = 20\nn = 0.121\n'
+FILM = '[body.coating]\nthickness = "1 um"\nyoung = "400 GPa"\npoisson = 0.2\n'
+LAW = """[friction]
+law = "chemical-film"
+low = 0.1
+high = 0.4
+film_thickness = "100 nm"
+film_young = "80 GPa"
+film_poisson = 0.3
+film_yield = "0.67 GPa"
+strain_limit = 0.0204
+"""
+MISFIT = """[body.plasticity]
+law = "linear"
+yield_stress = "1 GPa"
+modulus = "10 GPa"
+[loading]
+prescribed = "misfit-sphere"
+depth = "35 um"
+radius = "10 um"
+misfit = 0.02
+profile = "gauss"
+surface = "held"
+steps = 2
+"""
+BACK = """[body.plasticity.kinematic]
+modulus = ["60 GPa", "6 GPa"]
+recovery = [300, 3]
+"""
+ROUGH = """[surface]
+kind = "self-affine"
+ra = "0.1 um"
+cutoff_long = "16 um"
+cutoff_short = "8 um"
+hurst = 0.8
+seed = 1
+"""
 
-START, LIMIT, STOP, PATH, MEMORY, QUADRATURE, ROUNDING, LINEAR = (
-    "where an iteration starts: it ends at the same answer",
-    "limit of an iteration that ends before it",
-    "inner tolerance: the answer is held to the tolerance of the scene",
-    "way of an iteration to its solution, which does not depend on it",
-    "how much is computed at once, or by which of two equal ways",
-    "order of a quadrature or spline that is converged",
-    "what counts as rounding",
-    "iterations with a kept factorisation before a new one",
+
+@dataclass(frozen=True)
+class Probe:
+    """A scene for one solver; tolerance: that of the solver, of which a number may change by ten times,
+    relatively.
+    """
+
+    name: str
+    solver: str
+    text: str
+    tolerance: float
+
+    def solve(self) -> Result:
+        scene = parse_scene(f'title = "{self.name}"\n{self.text}'.encode(), self.name)
+        result = models.solve(scene, self.solver)
+        if not result.converged:
+            raise ArithmeticError(f"{self.name} ended {result.status}: {result.message}")
+        return result
+
+
+def _sam(
+    name: str, text: str, force: str, cells: int, *, tolerance: float, loading: str = "", solver: str = ""
+) -> Probe:
+    loads = f'[loading]\nforce = "{force}"\n{loading}'
+    end = f"[grid]\ncells = [{cells}, {cells}]\n[solver]\ntolerance = {tolerance}\n{solver}"
+    return Probe(name, models.SAM, text + loads + end, tolerance)
+
+
+PROBES = (
+    _sam(
+        "elastic sphere that slides",
+        STEEL + ELASTIC + "[friction]\ncoefficient = 0.3\n",
+        "0.1 N",
+        49,
+        tolerance=1e-9,
+    ),
+    _sam(
+        "coated half-space that slides",
+        STEEL + FILM + ELASTIC + "[friction]\ncoefficient = 0.2\n",
+        "0.1 N",
+        33,
+        tolerance=1e-8,
+    ),
+    _sam(
+        "plastic sphere",
+        STEEL + SWIFT + SPHERE,
+        "0.17 N",
+        33,
+        tolerance=1e-6,
+        loading="steps = 3\nunload = true\n",
+    ),
+    _sam(
+        "sphere with back-stresses",
+        STEEL + SWIFT + BACK + SPHERE,
+        "0.17 N",
+        17,
+        tolerance=1e-6,
+        loading="steps = 2\nunload = true\n",
+    ),
+    Probe(
+        "punch with a rounded edge",
+        models.SAM,
+        STEEL
+        + PUNCH
+        + '[loading]\napproach = "0.1 um"\n[grid]\ncells = [65, 65]\n[solver]\ntolerance = 1e-9\n',
+        1e-9,
+    ),
+    _sam(
+        "the loops of the paper",
+        STEEL + SWIFT + SPHERE,
+        "0.1 N",
+        17,
+        tolerance=1e-4,
+        loading="steps = 2\n",
+        solver='method = "paper"\n',
+    ),
+    Probe(
+        "running-in",
+        models.SAM,
+        STEEL + SWIFT + '[counterbody]\nshape = "flat"\n' + ROUGH + LAW + "[wear]\nstrain_limit = 0.002\n"
+        '[loading]\nforce = "0.06 N"\nsteps = 2\nunload = true\n'
+        '[grid]\ncells = [24, 24]\nextent = ["16 um", "16 um"]\n'
+        'depths = ["0 um", "0.2 um", "0.4 um", "0.7 um", "1.2 um", "2 um", "3.5 um", "6 um"]\n'
+        'border = "relief"\n'
+        "[solver]\ntolerance = 1e-5\n",
+        1e-5,
+    ),
+    Probe(
+        "plastic sphere of finite elements",
+        models.FEM,
+        STEEL
+        + SWIFT
+        + SPHERE
+        + '[loading]\nforce = "0.17 N"\nsteps = 3\nunload = true\n[fem]\ncells_per_radius = 4\n',
+        1e-9,
+    ),
+    Probe(
+        "finite elements with back-stresses",
+        models.FEM,
+        f"{STEEL}{SWIFT}{BACK}{SPHERE}"
+        '[loading]\nforce = "0.17 N"\nsteps = 2\nunload = true\n[fem]\ncells_per_radius = 4\n',
+        1e-9,
+    ),
+    Probe(
+        "misfit sphere of finite elements",
+        models.FEM,
+        f"{STEEL}{MISFIT}[fem]\ncells_per_radius = 4\n",
+        1e-9,
+    ),
+    Probe(
+        "misfit sphere",
+        models.SAM,
+        f"{STEEL}{MISFIT}[grid]\ncells = [13, 13]\n[solver]\ntolerance = 1e-6\n",
+        1e-6,
+    ),
+    Probe(
+        "coated sphere of finite elements",
+        models.FEM,
+        STEEL + FILM + SPHERE + '[loading]\nforce = "0.1 N"\n[fem]\ncells_per_radius = 4\n',
+        1e-9,
+    ),
+    Probe(
+        "coated sphere of hexahedra that slides",
+        models.FEM_3D,
+        STEEL + FILM + SPHERE + '[friction]\ncoefficient = 0.2\n[loading]\nforce = "0.1 N"\n'
+        "[fem]\ncells_per_radius = 4\nbox = 5\n",
+        1e-9,
+    ),
 )
-BRACKET = "how far a root is looked for"
-NOTHING = "stands where there is nothing to scale"
 
-EQUIVALENT: dict[tuple[str, str, str], str] = {
-    ("sam.contact.normal", "", "COARSEST = 24"): START,
-    ("sam.contact.normal", "", "COARSE_TOLERANCE = 0.001"): START,
-    ("sam.contact.normal", "", "COARSE_LIMIT = 60"): START,
-    ("sam.contact.normal", "Search", "tolerance = 1e-10"): STOP,
-    ("sam.contact.normal", "_coarse_start", "2"): START,
-    ("sam.contact.control", "Control", "1.0"): "of a declaration: nothing calls it",
-    ("sam.contact.control", "ForceControl", "1.0"): START,
-    ("sam.contact.control", "ApproachControl", "1.0"): "of a default that nothing uses",
-    ("sam.contact.control", "ForceControl.coarser", "4"): START,
-    ("sam.contact.control", "ApproachControl.coarser", "2"): START,
-    ("sam.contact.control", "ApproachControl.start", "2"): START,
-    ("sam.contact.control", "ApproachControl.start", "4"): START,
-    ("sam.contact.box", "", "PASSES = 500"): LIMIT,
-    ("sam.contact.box", "", "FIRST_PASS = 0.01"): STOP,
-    ("sam.contact.box", "", "NEXT_PASS = 0.1"): STOP,
-    ("sam.contact.box", "", "ANEW = 0.001"): PATH,
-    ("sam.contact.box", "", "LONGEST = 20"): PATH,
-    ("sam.contact.box", "", "NOTHING_OPPOSITE = 1e+100"): "a gap that nothing closes",
-    ("sam.contact.box", "", "NEGLIGIBLE = 0.01"): PATH,
-    ("sam.contact.box", "BoxContact.solve", "2"): STOP,
-    ("sam.contact.box", "_Iteration.residual", "1.0"): NOTHING,
-    ("sam.contact.operators", "SurfaceOperators.relaxation", "1"): PATH,
-    ("sam.contact.operators", "SurfaceOperators.relaxation", "1.0"): PATH,
-    ("sam.contact.operators", "SurfaceOperators.preconditioner", "2"): PATH,
-    ("sam.contact.operators", "SurfaceOperators.preconditioner.apply", "1.0"): NOTHING,
-    ("sam.contact.bodies", "", "WAVES = 64"): PATH,
-    ("sam.contact.bodies", "HalfSpaces", "most_iterations = 1000"): LIMIT,
-    ("sam.contact.bodies", "HalfSpaces", "stagnation_limit = 100"): LIMIT,
-    ("sam.contact.bodies", "HalfSpaces", "restart_threshold = 0.4"): PATH,
-    ("sam.contact.bodies", "CoatedBodies", "most_iterations = 5000"): LIMIT,
-    ("sam.contact.bodies", "CoatedBodies", "stagnation_limit = 2000"): LIMIT,
-    ("sam.contact.bodies", "HalfSpaces.tangential_share", "0.5"): PATH,
-    ("sam.contact.bodies", "CoatedBodies.stiffness", "1"): PATH,
-    ("sam.contact.bodies", "CoatedBodies.stiffness", "2"): PATH,
-    ("sam.contact.bodies", "CoatedBodies.tangential_share", "2"): PATH,
-    ("sam.contact.bodies", "CoatedBodies.coarser", "2"): START,
-    ("sam.contact.convolution", "", "FEW_ROWS = 2"): MEMORY,
-    ("sam.contact.convolution", "BoxConvolution.single", "1.0"): NOTHING,
-    ("sam.contact.real_transforms", "", "SHORT = 8500"): MEMORY,
-    ("sam.contact.stress", "", "DEPTHS_AT_ONCE = 16"): MEMORY,
-    ("sam.contact.stress", "", "MIRRORED = 1e-09"): ROUNDING,
-    ("sam.kernels.layer_stress", "", "AT_ONCE = 100000.0"): MEMORY,
-    ("sam.kernels.layer_stress", "", "IN_CACHE = 2500"): MEMORY,
-    ("sam.kernels.layer_stress", "", "DIGITS = 9"): ROUNDING,
-    ("sam.elastic.stress", "", "BYTES_AT_ONCE = 200000000.0"): MEMORY,
-    ("sam.elastic.problem", "", "CONTACT_SHARE = 0.0001"): STOP,
-    ("sam.elastic.problem", "", "REACHED = 1e-12"): STOP,
-    ("sam.plasticity.spectra", "", "CACHED_BOXES = 4"): MEMORY,
-    ("sam.plasticity.spectra", "", "SINGLE = 5e-05"): MEMORY,
-    ("sam.plasticity.outside", "", "AT_ONCE = 1000000.0"): MEMORY,
-    ("sam.plasticity.outside", "residual_stress", "36"): MEMORY,
-    ("sam.plasticity.paper", "", "OUTER = 60"): LIMIT,
-    ("sam.plasticity.paper", "", "INNER = 400"): LIMIT,
-    ("fem_reference.common.layered_force", "", "SPREAD = 60.0"): QUADRATURE,
-    ("fem_reference.common.layered_force", "", "PANELS = 24"): QUADRATURE,
-    ("fem_reference.common.layered_force", "", "HALVINGS = 24"): QUADRATURE,
-    ("fem_reference.common.layered_force", "", "POINTS = 10"): QUADRATURE,
-    ("fem_reference.common.layered_force", "_wave_numbers", "30.0"): QUADRATURE,
-    ("fem_reference.common.layered_force", "slanted_pair", "1.0"): NOTHING,
-    ("fem_reference.spatial.problem", "", "ACCURACY = 0.003"): STOP,
-    ("fem_reference.spatial.problem", "SlidingProblem.overall", "1.0"): MEMORY,
-    ("fem_reference.spatial.problem", "SlidingProblem._solve", "1.0"): "a load whose answer is scaled",
-    ("fem_reference.spatial.problem", "", "SLOWER = 2"): PATH,
-    ("sam.layered.radial", "", "STEP = 0.1"): QUADRATURE,
-    ("sam.layered.response", "sinh_excess", "1.0"): "where one of two equal formulas ends",
-    ("sam.layered.radial", "", "COUNT = 2048"): QUADRATURE,
-    ("sam.layered.radial", "", "REFINE = 4"): QUADRATURE,
-    ("sam.layered.cells", "", "NEAR = 8"): QUADRATURE,
-    ("sam.layered.cells", "", "NODES = 32"): QUADRATURE,
-    ("sam.layered.cells", "", "16.0"): QUADRATURE,
-    ("sam.layered.cells", "", "32.0"): QUADRATURE,
-    ("sam.layered.cells", "", "64.0"): QUADRATURE,
-    ("sam.layered.patches", "", "DISPLACEMENT_BIAS = 0.5"): QUADRATURE,
-    ("sam.layered.patches", "", "STRESS_BIAS = 1.0"): QUADRATURE,
-    ("sam.plasticity.return_map", "", "ITERATIONS = 50"): LIMIT,
-    ("sam.plasticity.return_map", "", "ROUNDING = 1e-14"): ROUNDING,
-    ("sam.plasticity.return_map", "plastic_multiplier", "2"): PATH,
-    ("sam.plasticity.kinematic", "", "ITERATIONS = 60"): LIMIT,
-    ("sam.plasticity.kinematic", "", "ROUNDING = 1e-15"): ROUNDING,
-    ("sam.plasticity.kinematic", "kinematic_multiplier", "2"): PATH,
-    ("sam.plasticity.kinematic", "kinematic_multiplier", "0.5"): BRACKET,
-    ("sam.grid.rounded", "", "HALVINGS = 60"): LIMIT,
-    ("sam.grid.rounded", "RoundedPunch.force", "1.0"): ROUNDING,
-    ("sam.grid.rounded", "RoundedPunch.approach", "1.0"): ROUNDING,
-    ("sam.grid.rounded", "RoundedPunch.contact_radius", "1"): BRACKET,
-    ("sam.grid.rounded", "RoundedPunch.contact_radius", "3"): BRACKET,
-    ("sam.grid.rounded", "RoundedPunch.contact_radius", "4"): BRACKET,
-    ("sam.grid.rounded", "RoundedPunch.radius_at", "2"): BRACKET,
-    ("sam.schedule", "Load", "sign = 1.0"): "of a default of loads without friction",
-    ("sam.schedule", "Schedule", "cycles = 1"): "of a default that nothing uses",
-    ("sam.scene.dissipation", "", "POINTS = 24"): QUADRATURE,
-    ("sam.scene.dissipation", "", "GRADING = 4"): QUADRATURE,
-    ("sam.scene.dissipation", "", "SMALL = 0.5"): "where one of two equal formulas ends",
-    ("sam.scene.dissipation", "", "TERMS = 18"): "terms of a series that has converged",
-    ("sam.plasticity.anderson", "Anderson", "1e-12"): ROUNDING,
-    ("sam.plasticity.step", "", "WINDOW = 8"): PATH,
-    ("sam.plasticity.step", "", "ITERATIONS = 60"): LIMIT,
-    ("sam.plasticity.step", "", "LONG_WINDOW = 20"): PATH,
-    ("sam.plasticity.step", "", "LONG_ITERATIONS = 600"): LIMIT,
-    ("sam.plasticity.step", "", "CONTACT_SHARE = 0.01"): STOP,
-    ("sam.plasticity.step", "", "AHEAD = 0.1"): STOP,
-    ("sam.plasticity.step", "", "FIRST_CONTACT = 0.001"): STOP,
-    ("sam.tribofilm.return_map", "", "ITERATIONS = 50"): LIMIT,
-    ("sam.tribofilm.return_map", "", "ROUNDING = 1e-14"): ROUNDING,
-    ("sam.wear.depth", "", "UNREACHED = 1e+300"): "a limit that no strain reaches",
-    ("fem_reference.common.plasticity", "", "ON_SURFACE = 1e-11"): ROUNDING,
-    ("fem_reference.common.plasticity", "", "MAX_ITERATIONS = 100"): LIMIT,
-    ("fem_reference.common.plasticity", "plastic_increment", "16.0"): ROUNDING,
-    ("fem_reference.common.plasticity", "plastic_increment", "0.5"): PATH,
-    ("fem_reference.common.contact", "", "EQUILIBRIUM = 1e-09"): STOP,
-    ("fem_reference.common.contact", "", "SIGN = 1e-10"): ROUNDING,
-    ("fem_reference.common.contact", "", "MAX_ITERATIONS = 60"): LIMIT,
-    ("fem_reference.common.contact", "", "DIVERGED = 1.0"): LIMIT,
-    ("fem_reference.common.contact", "", "NEGLIGIBLE = 0.3"): STOP,
-    ("fem_reference.axisymmetric.problem", "", "FEW = 12"): LINEAR,
-    ("fem_reference.common.contact", "", "STALLED = 10"): LIMIT,
-    (
-        "fem_reference.axisymmetric.problem",
-        "ContactProblem._order",
-        "2.0",
-    ): "of a place among the nodes, rounded",
-    ("fem_reference.axisymmetric.problem", "ContactProblem.newton_step", "1.0"): NOTHING,
-    ("fem_reference.common.contact", "_iterate", "1.0"): NOTHING,
-    ("fem_reference.axisymmetric.misfit", "", "EDGE_POINTS = 8"): QUADRATURE,
-    ("fem_reference.axisymmetric.misfit", "_gauss", "0.1"): "where one of two equal formulas ends",
-    ("fem_reference.common.back_stress", "", "MAX_ITERATIONS = 100"): LIMIT,
-    ("fem_reference.common.back_stress", "KinematicJ2._increment", "16.0"): ROUNDING,
-    ("fem_reference.common.back_stress", "KinematicJ2._increment", "0.5"): PATH,
-    ("sam.elastic.misfit", "", "SMALL = 0.01"): "where one of two equal formulas ends",
-    ("sam.elastic.misfit", "", "AT_ONCE = 200000"): MEMORY,
-    ("sam.scene.verdict", "loop_places", "1.0"): NOTHING,
-    ("fem_reference.axisymmetric.recovery", "on_face", "1e-06"): ROUNDING,
-    ("fem_reference.axisymmetric.recovery", "on_face", "1.0"): ROUNDING,
-    ("fem_reference.axisymmetric.recovery", "on_axis", "1e-06"): ROUNDING,
-    (
-        "fem_reference.common.hertz",
-        "largest_mises",
-        "2.0",
-    ): "so deep is searched for the largest, which is at 0.5",
-    ("fem_reference.common.hertz", "", "UNLOADED_RADIUS = 0.01"): "unit of length where nothing is loaded",
-}
+
+def numbers(result: Result) -> dict[str, np.ndarray]:
+    """All numbers of a result but its work: the quantities, and the columns of the tables but iterations and
+    residuals.
+
+    The table of all residuals has a row for each iteration, and the goals that the constants set.
+    """
+    found = {name: np.array([value]) for name, value in result.quantities.items() if value is not None}
+    for table in result.tables.keys() - {"residuals"}:
+        for name, column in result.tables[table].items():
+            values = np.asarray(column)
+            if values.dtype.kind == "f" and name not in ("iterations", "residual", "operator_applications"):
+                found[f"{table}.{name}"] = values
+    return found
+
+
+SHARES = {"_Pa": 1e-3, "_m": 1e-6, "_N": 1e-6}
+"""By unit: share of the largest number in it, below which the numbers of a column are rounding by symmetry.
+"""
+
+
+def change(before: Mapping[str, np.ndarray], after: Mapping[str, np.ndarray]) -> float:
+    """Largest change of a number over the largest of its column, or over that of its unit times SHARES if
+    that is more.
+    """
+    if before.keys() != after.keys() or any(before[name].shape != after[name].shape for name in before):
+        return np.inf
+    tops = {name: np.abs(np.nan_to_num(values)).max(initial=0.0) for name, values in before.items()}
+    worst = 0.0
+    for name, values in before.items():
+        unit = next((unit for unit in SHARES if name.endswith(unit)), "")
+        floor = (
+            max(SHARES[unit] * top for other, top in tops.items() if other.endswith(unit)) if unit else 0.0
+        )
+        if (scale := max(tops[name], floor)) > 0:
+            worst = max(worst, float(np.abs(np.nan_to_num(after[name] - values)).max(initial=0.0) / scale))
+    return worst
 
 
 @dataclass(frozen=True)
@@ -193,11 +247,6 @@ class Shown:
     @property
     def equivalent(self) -> bool:
         return self.probes > 0 and self.change <= WITHIN
-
-
-def reason_of(mutant: Mutant) -> str:
-    """Why it must not change an answer; empty if it may."""
-    return EQUIVALENT.get(mutant.key, "")
 
 
 def solved(probe: Probe) -> tuple[dict[str, np.ndarray], frozenset[str]]:
@@ -234,6 +283,11 @@ def show(mutants: Iterable[Mutant]) -> list[Shown]:
         tasks.append((mutant, lambda mutant=mutant, relevant=relevant: changed([mutant], relevant)))
     answers = forked(tasks, SECONDS)
     return [
-        Shown(mutant, reason_of(mutant), float("inf") if answer is None else answer, counts[mutant])
+        Shown(
+            mutant,
+            constants("equivalent")[mutant.key],
+            float("inf") if answer is None else answer,
+            counts[mutant],
+        )
         for mutant, answer in answers
     ]

@@ -1,17 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""The numbers of a module: where they stand in its source, and the source with one of them perturbed.
+"""The mutants of a module: numbers, comparisons and conditions of its source, which changes some of them.
 
 Perturbed by a factor 1.001 are, each by itself: every float; every integer that is an operand of + - * / and
 meets a float there, which only the run tells (`Number`); every row of a table. Structure, and left as it is:
 0, indices and slices, powers, keys of dictionaries, operands of // and %, arguments and limits that are
 integers, integers that only ever meet integers. A named integer, NAME = 24 in a module or a class, is a
-count: it grows by 2, as some have to stay even.
+count: it grows by 2, as some have to stay even. In functions, < becomes <= and any other comparison its
+opposite, by itself; each condition of an if, a while or the like is negated.
 """
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,30 +24,41 @@ MORE = 2
 HOOK = "_perturbed_number_"
 """Begins the names under which a rewritten module finds its `Number`; one underscore, as a class changes
 names with two."""
+NEIGHBOUR = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt}
+OPPOSITE = {ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Gt: ast.LtE, ast.GtE: ast.Lt} | {
+    one: other
+    for pair in ((ast.Eq, ast.NotEq), (ast.Is, ast.IsNot), (ast.In, ast.NotIn))
+    for one, other in (pair, pair[::-1])
+}
 
 
 @dataclass(frozen=True)
 class Mutant:
-    """A number or a row. function: qualified name, "" at the level of the module; code: file line where its
-    code begins; place: (line, column) in the source, (name of the entry, row) in a table; kind: "number",
-    "count" or "row".
+    """One change. kind: "number", "count", "row", "comparison" or "branch"; function: qualified name, "" at
+    the level of the module; ordinal: among those of its kind in the function; text: what is changed, or what
+    a comparison becomes; code: file line where the code begins; line: of the source.
     """
 
     module: str
     kind: str
     function: str
-    code: int
-    place: tuple
+    ordinal: int
     text: str
+    code: int
     line: str = ""
 
     @property
     def name(self) -> str:
-        return f"{self.module}:{self.place[0]}:{self.place[1]} {self.function or 'module'} {self.text}"
+        return f"{self.module}:{self.function or 'module'}:{self.kind}:{self.ordinal}"
+
+    @property
+    def integer(self) -> bool:
+        """Whether it is a `Number`, of which the run tells whether it is structure."""
+        return self.kind == "number" and self.text.rpartition(" ")[2].lstrip("-").isdigit()
 
     @property
     def key(self) -> tuple[str, str, str]:
-        """What a list of constants calls it: independent of lines."""
+        """What a list of constants calls it."""
         return self.module, self.function, self.text
 
 
@@ -131,19 +144,57 @@ class Number:
         )
 
 
+def _conditions(node: ast.AST) -> list[ast.expr]:
+    """What decides in an if, a while, an assertion, a conditional expression or a comprehension."""
+    return [node.test] if hasattr(node, "test") else getattr(node, "ifs", [])
+
+
 class _Finder(ast.NodeVisitor):
-    """Collects the mutants of a module."""
+    """Collects the mutants of a module, each with its node and the operator or value that takes its place."""
 
     def __init__(self, module: str, source: str):
         self.module, self.lines = module, source.splitlines()
-        self.found: list[Mutant] = []
+        self.found: list[tuple[Mutant, ast.AST, tuple[int, type] | None]] = []
+        self.ordinals: Counter[tuple[str, str]] = Counter()
         self.functions: list[tuple[str, int, bool]] = []  # qualified name, first line, whether a function
         self.parents: list[ast.AST] = []
+        self.indices = 0  # of how many subscripts the node is inside
+
+    def _add(self, kind: str, text: str, node, operator: tuple[int, type] | None = None) -> None:
+        """operator: its place among those of a comparison, and what it becomes."""
+        path = ".".join(name for name, *_ in self.functions)
+        code = next((first for _, first, function in reversed(self.functions) if function), 0)
+        if code or operator is None:
+            line = self.lines[node.lineno - 1].strip()
+            mutant = Mutant(self.module, kind, path, self.ordinals[path, kind], text, code, line)
+            self.ordinals[path, kind] += 1
+            self.found.append((mutant, node, operator))
 
     def generic_visit(self, node: ast.AST) -> None:
         self.parents.append(node)
+        for test in _conditions(node):
+            if not isinstance(test, ast.Constant):
+                self._add("branch", f"not ({ast.unparse(test)})", test, (0, ast.Not))
         super().generic_visit(node)
         self.parents.pop()
+
+    def visit_Subscript(self, node):
+        self.parents.append(node)
+        self.visit(node.value)
+        self.indices += 1
+        self.visit(node.slice)
+        self.indices -= 1
+        self.parents.pop()
+
+    def visit_Compare(self, node):
+        negated = len(node.ops) == 1 and node in _conditions(self.parents[-1])
+        for place, operator in enumerate(map(type, node.ops)):
+            others = [NEIGHBOUR.get(operator), None if negated else OPPOSITE[operator]]
+            left, right = [node.left, *node.comparators][place : place + 2]
+            for other in filter(None, others):
+                changed = ast.unparse(ast.Compare(left, [other()], [right]))
+                self._add("comparison", changed, node, (place, other))
+        self.generic_visit(node)
 
     def _inside(self, node, name: str, function: bool) -> None:
         first = min([node.lineno, *(d.lineno for d in getattr(node, "decorator_list", ()))])
@@ -170,11 +221,6 @@ class _Finder(ast.NodeVisitor):
     def visit_ClassDef(self, node):
         self._inside(node, node.name, False)
 
-    def visit_Subscript(self, node):
-        self.parents.append(node)
-        self.visit(node.value)
-        self.parents.pop()
-
     def visit_Dict(self, node):
         self.parents.append(node)
         for value in node.values:
@@ -191,22 +237,13 @@ class _Finder(ast.NodeVisitor):
         self._number(node, node.value)
 
     def _number(self, node, value) -> None:
-        if type(value) not in (int, float, complex) or value == 0:
+        if type(value) not in (int, float, complex) or value == 0 or self.indices:
             return
-        running = [function for function in self.functions if function[2]]
-        kind = "number"
-        if type(value) is int:
-            kind = self._kind_of_integer(node, bool(running))
-            if not kind:
-                return
-        text = ast.unparse(node)
-        if not running and (name := self._assigned(node)):
-            text = f"{name} = {text}"
-        path, code = ".".join(name for name, *_ in self.functions), running[-1][1] if running else 0
-        where = node.lineno, node.col_offset
-        self.found.append(
-            Mutant(self.module, kind, path, code, where, text, self.lines[node.lineno - 1].strip())
-        )
+        running = any(function for *_, function in self.functions)
+        kind = "number" if type(value) is not int else self._kind_of_integer(node, running)
+        if kind:
+            name = "" if running else self._assigned(node)
+            self._add(kind, f"{name} = {ast.unparse(node)}" if name else ast.unparse(node), node)
 
     def _kind_of_integer(self, node, running: bool) -> str:
         parent = self.parents[-1]
@@ -232,49 +269,60 @@ class _Finder(ast.NodeVisitor):
 
 
 def find(module: str, source: str) -> list[Mutant]:
-    """All numbers of a module's source, in the order of the source."""
+    """All mutants of a module's source, in the order of the source."""
     finder = _Finder(module, source)
     finder.visit(ast.parse(source))
-    return finder.found
+    return [mutant for mutant, *_ in finder.found]
 
 
 class _Rewriter(ast.NodeTransformer):
-    def __init__(self, wanted: dict[tuple[int, int], Mutant], factor: float):
+    """Puts into a tree what takes the place of nodes; numbers: name in the module -> mutant, `Number`."""
+
+    def __init__(self, wanted: dict[int, list[tuple]], factor: float):
         self.wanted, self.factor = wanted, factor
-        self.numbers: dict[str, Number] = {}
+        self.numbers: dict[str, tuple[Mutant, Number]] = {}
 
-    def visit_UnaryOp(self, node):
-        if isinstance(node.operand, ast.Constant) and (node.lineno, node.col_offset) in self.wanted:
-            return self._rewritten(node, -node.operand.value)
-        return self.generic_visit(node)
+    def visit(self, node):
+        changed = self.generic_visit(node)
+        for mutant, operator in self.wanted.get(id(node), ()):
+            if mutant.kind == "comparison":
+                changed.ops[operator[0]] = operator[1]()
+            elif mutant.kind == "branch":
+                changed = ast.copy_location(ast.UnaryOp(operator[1](), changed), node)
+            else:
+                changed = ast.copy_location(self._number(mutant, ast.literal_eval(node)), node)
+        return changed
 
-    def visit_Constant(self, node):
-        return self._rewritten(node, node.value) if (node.lineno, node.col_offset) in self.wanted else node
-
-    def _rewritten(self, node, value):
-        mutant = self.wanted[node.lineno, node.col_offset]
+    def _number(self, mutant: Mutant, value: complex) -> ast.expr:
         if mutant.kind == "count":
-            new = ast.Constant(value + (MORE if self.factor != 1.0 else 0))
-        elif isinstance(value, int):
-            name = f"{HOOK}{len(self.numbers)}"
-            self.numbers[name] = Number(value, self.factor)
-            new = ast.Name(name, ast.Load())
-        else:
-            new = ast.Constant(value * self.factor)
-        return ast.copy_location(new, node)
+            return ast.Constant(value + (MORE if self.factor != 1.0 else 0))
+        if not isinstance(value, int):
+            return ast.Constant(value * self.factor)
+        name = f"{HOOK}{len(self.numbers)}"
+        self.numbers[name] = mutant, Number(value, self.factor)
+        return ast.Name(name, ast.Load())
 
 
 def rewritten(
-    source: str, mutants: list[Mutant], factor: float = FACTOR
-) -> tuple[ast.Module, dict[str, Number]]:
-    """The tree of the source with these numbers perturbed, and the names that it needs to run."""
-    rewriter = _Rewriter({mutant.place: mutant for mutant in mutants}, factor)
-    return ast.fix_missing_locations(rewriter.visit(ast.parse(source))), rewriter.numbers
+    source: str, mutants: Sequence[Mutant], factor: float = FACTOR
+) -> tuple[ast.Module, dict[str, tuple[Mutant, Number]]]:
+    """The tree of the source with these changed, and the integers by the names that it needs to run."""
+    finder, wanted = _Finder(mutants[0].module, source), {}
+    finder.visit(tree := ast.parse(source))
+    for mutant, node, operator in finder.found:
+        if mutant in mutants:
+            wanted.setdefault(id(node), []).append((mutant, operator))
+    rewriter = _Rewriter(wanted, factor)
+    return ast.fix_missing_locations(rewriter.visit(tree)), rewriter.numbers
 
 
-def rows(module: str, function: str, table: dict) -> Iterator[Mutant]:
+def rows(module: str, function: str, table: dict, code: int) -> Iterator[Mutant]:
     """The rows of a table kind -> entry -> rows; function: by whose execution a test is known to read it."""
-    for kind, entries in table.items():
-        for entry, lines in entries.items():
-            for k, row in enumerate(lines if isinstance(lines, list) else lines.items()):
-                yield Mutant(module, "row", function, 0, (f"{kind} {entry}", k), str(row))
+    places = (
+        (f"{kind} {entry} {k}", row)
+        for kind, entries in table.items()
+        for entry, lines in entries.items()
+        for k, row in enumerate(lines if isinstance(lines, list) else lines.items())
+    )
+    for ordinal, (text, row) in enumerate(places):
+        yield Mutant(module, "row", function, ordinal, text, code, str(row))
