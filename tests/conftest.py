@@ -23,7 +23,7 @@ for name in THREADS:  # BLAS reads them when numpy is loaded, here and in the pr
 from builders import COARSE, scene_text  # noqa: E402 - these load numpy
 from hypothesis import settings  # noqa: E402
 
-from verification.app.cli import main  # noqa: E402
+from samfem.cli import main  # noqa: E402
 from verification.runs import meshes  # noqa: E402
 
 # the same examples in every run, on a machine of any speed; nothing is written

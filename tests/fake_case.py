@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from verification.suite.cases.case import Case, Context, Outcome
+from verification.cases.case import Case, Context, Outcome
 
 
 @dataclass(frozen=True)

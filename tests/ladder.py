@@ -21,7 +21,7 @@ from pathlib import Path
 from ladder_scenes import SCENES
 
 ROOT = Path(__file__).resolve().parent.parent
-OURS = ("sam", "fem_reference", "verification")
+OURS = ("samfem", "sam", "fem_reference", "verification")
 TRANSFORMS = [
     f"{kind}{axes}"
     for kind in ("rfft", "irfft", "fft", "ifft", "dct", "idct", "dst", "idst")

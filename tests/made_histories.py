@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from verification.cases.running_in.running_in_statements import BULK, HARDENING, A, B
 from verification.compare.running_in_measures import History
-from verification.suite.cases.running_in_statements import BULK, HARDENING, A, B
 
 CYCLES = np.arange(1, 26)
 

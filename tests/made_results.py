@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from sam.scene import FieldMesh
-from verification.suite.cases.case import Context
-from verification.suite.gates import evaluate, load_gates
+from verification.cases.case import Context
+from verification.rows import evaluate, load_rows
 
 
 @dataclass(frozen=True)
@@ -82,6 +82,6 @@ def red(case: str, values: dict, prefix: str = "", whole: bool = False) -> set[s
     named = {
         name if name.startswith(f"{case}.") else f"{case}.{prefix}{name}": v for name, v in values.items()
     }
-    verdicts = [v for v in evaluate(load_gates(), {case: named}) if v.gate.id in named or whole]
-    assert {v.gate.id for v in verdicts} >= set(named)
-    return {v.gate.id.removeprefix(f"{case}.{prefix}") for v in verdicts if v.status.red}
+    verdicts = [v for v in evaluate(load_rows(), {case: named}) if v.row.id in named or whole]
+    assert {v.row.id for v in verdicts} >= set(named)
+    return {v.row.id.removeprefix(f"{case}.{prefix}") for v in verdicts if v.status.red}

@@ -7,15 +7,15 @@ from types import SimpleNamespace
 import numpy as np
 from made_histories import as_the_paper_says
 
-from verification.sensitivity import UNIFORM, design
-from verification.suite.cases import (
+from verification.cases.running_in import (
     running_in_physics as physics_study,
     running_in_sensitivity as inputs_study,
 )
-from verification.suite.cases.running_in_deciders import Studied
-from verification.suite.cases.running_in_inputs import INPUTS, scene_at
-from verification.suite.cases.running_in_physics import ALL, Counter, Physics
-from verification.suite.cases.running_in_statements import NAMES
+from verification.cases.running_in.running_in_deciders import Studied
+from verification.cases.running_in.running_in_inputs import INPUTS, scene_at
+from verification.cases.running_in.running_in_physics import ALL, Counter, Physics
+from verification.cases.running_in.running_in_statements import NAMES
+from verification.sensitivity import UNIFORM, design
 
 POINTS = 40
 GOOD = Physics(Counter.MOVES_RENEWED, "alternating", "kinematic")

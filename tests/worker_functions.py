@@ -49,7 +49,7 @@ def solve_but_die_once(scene, model, code, *how):
     """The worker of the special scene is killed, the first time; the marker is beside the `title` of the
     scene.
     """
-    from verification.app.sweep import solve_scene
+    from samfem.sweeping import solve_scene
 
     marker = Path(os.environ[MARKER])
     if scene.loading.force == SPECIAL and not marker.exists():
@@ -59,14 +59,14 @@ def solve_but_die_once(scene, model, code, *how):
 
 
 def solve_but_die(scene, model, code, *how):
-    from verification.app.sweep import solve_scene
+    from samfem.sweeping import solve_scene
 
     return die() if scene.loading.force == SPECIAL else solve_scene(scene, model, code, *how)
 
 
 def solve_but_raise(scene, model, code, *how):
     """The solver of the special scene raises."""
-    from verification.app.sweep import solve_scene
+    from samfem.sweeping import solve_scene
     from verification.runs import models
 
     if scene.loading.force != SPECIAL:

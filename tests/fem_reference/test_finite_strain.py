@@ -27,8 +27,9 @@ from fem_reference.finite_strain.kinematics import (
 )
 from fem_reference.finite_strain.material import Hencky
 from sam.scene.yield_curve import Linear, Swift
-from verification.suite.cases import model_limits, model_limits_curves
-from verification.suite.gates import Measured, evaluate, load_gates
+from verification.cases.limits import model_limits, model_limits_curves
+from verification.quantities import Measured
+from verification.rows import evaluate, load_rows
 
 YOUNG, POISSON = 200.0, 0.3
 CURVES = {
@@ -244,8 +245,8 @@ def test_true_geometry_changes_radius_and_approach_by_the_first_order_of_theory(
 
 def red(values):
     """Red gates among these values, all of one case."""
-    verdicts = evaluate(load_gates(), {next(iter(values)).split(".")[0]: values})
-    return {v.gate.id for v in verdicts if v.error is not None and v.status.red}
+    verdicts = evaluate(load_rows(), {next(iter(values)).split(".")[0]: values})
+    return {v.row.id for v in verdicts if v.error is not None and v.status.red}
 
 
 class TestLimit:

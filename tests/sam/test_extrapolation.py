@@ -13,10 +13,10 @@ from sam import choose_grid
 from sam.planner.grids import coarse, halved
 from sam.results.extrapolation import extrapolated
 from sam.scene import Scene, Status, read_scene
+from verification.cases.case import with_grid, with_loading, with_mesh
+from verification.cases.recipes import at_ratio
 from verification.cost.plan import plan
 from verification.reference.hertz import CircularContact
-from verification.suite.cases.case import with_grid, with_loading, with_mesh
-from verification.suite.cases.plastic import at_ratio
 
 SPHERE = {
     "body": {"young": 2.1e11, "poisson": 0.3},

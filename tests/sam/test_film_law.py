@@ -13,6 +13,7 @@ import pytest
 from sam.scene.friction import GROWTH_ROWS, Friction, growth_coefficient
 from sam.tribofilm import FilmLaw, FilmState
 from sam.tribofilm.return_map import multiplier
+from verification.cases.film import film_law
 from verification.reference.bonded_film import (
     in_plane_strain,
     overall_coefficient,
@@ -22,12 +23,11 @@ from verification.reference.bonded_film import (
 from verification.reference.film_flow import Film, FlowPoint, deviator, mises
 from verification.reference.film_tables import growth_coefficients, mean_of, table
 from verification.reference.regime import thinning
-from verification.suite.cases import film_law
-from verification.suite.gates import evaluate, load_gates
+from verification.rows import evaluate, load_rows
 
 LAW = FilmLaw(80e9, 0.3, 2e9 / 3.0, 0.1, 0.4, np.inf)
 STEEL = 210e9, 0.3
-GATES = [gate for gate in load_gates() if gate.case == "film-law"]
+GATES = [gate for gate in load_rows() if gate.case == "film-law"]
 
 
 def cells(*values):
@@ -316,7 +316,7 @@ class TestOverallCoefficient:
 def red():
     values = {f"film-law.{name}": value for name, value in film_law.values("quick").items()}
     film_law.failure_pressure.cache_clear()
-    return {v.gate.id.split(".")[1] for v in evaluate(GATES, {"film-law": values}) if v.status.red}
+    return {v.row.id.split(".")[1] for v in evaluate(GATES, {"film-law": values}) if v.status.red}
 
 
 class TestGates:

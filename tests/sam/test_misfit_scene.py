@@ -13,7 +13,7 @@ from sam.grid.cells import CellGrid
 from sam.half_space import ElasticConstants
 from sam.scene import Scene, parse_scene, resolved
 from sam.scene.errors import SceneError
-from verification.app.cli import main
+from samfem.cli import main
 from verification.reference.mindlin_cheng import EigenstrainSphere
 from verification.reference.misfit_sphere import GrowingSphere
 

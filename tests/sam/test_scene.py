@@ -282,7 +282,7 @@ def test_every_command_refuses_a_malformed_scene(folder, refused, name):
 def test_a_malformed_scene_in_a_process_of_its_own(folder, name):
     text, fragments = MALFORMED[name]
     (folder / "bad.toml").write_text(text)
-    command = [sys.executable, "-m", "verification.app.cli", "solve", "bad.toml"]
+    command = [sys.executable, "-m", "samfem.cli", "solve", "bad.toml"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 2 and done.stdout == ""
     assert all(fragment in done.stderr for fragment in fragments) and "Traceback" not in done.stderr

@@ -14,9 +14,8 @@ from made_results import context, red as red_gates
 import sam
 from sam.contact import bodies
 from sam.kernels.patches import displacement_coefficients
-from verification.runs.models import SAM
-from verification.suite.cases import symmetries
-from verification.suite.cases.invariances import (
+from verification.cases.hertz import symmetries
+from verification.cases.hertz.invariances import (
     LENGTH_FACTOR,
     SCALED,
     YOUNG_FACTOR,
@@ -24,8 +23,9 @@ from verification.suite.cases.invariances import (
     in_units,
     scaled,
 )
-from verification.suite.cases.symmetries import blunter, change, contact_of, scenes, turned
-from verification.suite.gates import Measured
+from verification.cases.hertz.symmetries import blunter, change, contact_of, scenes, turned
+from verification.quantities import Measured
+from verification.runs.models import SAM
 
 CELL = (1e-6, 0.8e-6)
 

@@ -22,7 +22,7 @@ import fem_reference.spatial.planner
 import sam.planner.make
 from sam.contact.real_transforms import half_length
 from sam.scene import LeftOut, Status
-from verification.app.cli import main
+from samfem.cli import main
 from verification.cost.plan import plan
 from verification.robustness.kills import hears_interrupts
 from verification.runs import models
@@ -164,7 +164,7 @@ def test_an_interrupt_in_a_process_of_its_own(folder):
     """The signal arrives while a command runs; one that waits stands for it. Tests in a background job would
     ignore it.
     """
-    code = "import sys, time; from verification.app import cli, planning\n"
+    code = "import sys, time; from samfem import cli, planning\n"
     code += "planning.plan = lambda **_: (print('runs', flush=True), time.sleep(60))\n"
     code += "sys.exit(cli.main(['plan', 'sphere.toml']))"
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
@@ -184,7 +184,7 @@ def test_an_interrupt_in_a_process_of_its_own(folder):
     ],
 )
 def test_closed_streams_and_little_memory_end_in_words(folder, before, after, code, words):
-    command = f"{before} {sys.executable} -m verification.app.cli plan sphere.toml {after}"
+    command = f"{before} {sys.executable} -m samfem.cli plan sphere.toml {after}"
     done = subprocess.run(command, shell=True, capture_output=True, text=True, check=False)
     assert done.returncode == code and done.stderr.count("\n") == bool(words) and words in done.stderr
 
@@ -356,7 +356,7 @@ def test_a_scene_whose_name_and_title_are_not_ascii_is_solved_in_the_c_locale(fo
     (folder / f"{name}.toml").write_text(text, encoding="utf-8")
     language = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
     for words in (["plan"], ["solve", "--out", "out"]):
-        command = [sys.executable, "-m", "verification.app.cli", *words, f"{name}.toml"]
+        command = [sys.executable, "-m", "samfem.cli", *words, f"{name}.toml"]
         done = subprocess.run(command, capture_output=True, env=os.environ | language, check=False)
         said = [] if words == ["plan"] else [True]  # by how much the model is off, and nothing else
         assert [b"small strains" in line for line in done.stderr.splitlines()] == said, done.stderr

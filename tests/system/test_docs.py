@@ -16,9 +16,9 @@ import pytest
 from sam.scene import SceneError
 from sam.scene.inputs import Inputs
 from sam.scene.load import scene_of
-from verification.app.cli import _options
+from samfem.cli import _options
+from verification.cases import all_cases
 from verification.runs.study import read_study
-from verification.suite.cases import all_cases
 
 ROOT = Path(__file__).resolve().parents[2]
 README = ROOT / "README.md"
@@ -31,7 +31,7 @@ PLACEHOLDER = "NAME"
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 CODE = re.compile(r"`([^`\n]+)`")
-PATH_OF_SOURCE = re.compile(r"(sam|fem_reference|verification|tests|docs|reports)/[\w./*-]+")
+PATH_OF_SOURCE = re.compile(r"(samfem|sam|fem_reference|verification|tests|docs|reports)/[\w./*-]+")
 SYMBOLS_IN_FILE = re.compile(r"((?:`[\w.]+`(?:, | and ))*`[\w.]+`) in `([\w/]+\.py)`")
 NUMBER_OF_GATE = re.compile(
     r"\| ([0-9.]+) (%|times) \| `([a-z0-9.-]+)` \| \[[^]]+\]\((reports/[\w-]+\.html)\) \|"
@@ -198,7 +198,7 @@ def test_every_symbol_stands_in_the_file_that_the_architecture_names():
 
 def test_the_architecture_names_every_package():
     text = text_of(ROOT / "docs" / "architecture.md")
-    folders = {path.parent for name in ("sam", "fem_reference", "verification") for path in
+    folders = {path.parent for name in ("samfem", "sam", "fem_reference", "verification") for path in
                (ROOT / name).rglob("__init__.py")}  # fmt: skip
     parts = {folder.relative_to(ROOT).as_posix() for folder in folders}
     missing = {part for part in parts if f"`{part.replace('/', '.')}`" not in text}

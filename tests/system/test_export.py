@@ -9,7 +9,7 @@ import pytest
 import pyvista
 from builders import PERFECT, scene
 
-from verification.app.cli import main
+from samfem.cli import main
 from verification.runs import models
 from verification.runs.files import write_run
 

@@ -12,7 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from verification.app import cli
+from samfem import cli
+from verification.cases.robustness import faults as case
 from verification.robustness.kills import (
     Ended,
     KillTrial,
@@ -31,7 +32,6 @@ from verification.robustness.kills import (
 from verification.runs import files, lock
 from verification.runs.files import FolderError, write_atomically
 from verification.runs.lock import locked
-from verification.suite.cases import faults as case
 
 PROC = Path("/proc/self").exists()
 needs_proc = pytest.mark.skipif(

@@ -19,18 +19,19 @@ from hypothesis import HealthCheck, given, settings, strategies as st
 from sam.scene import SceneError, parse_scene, read_scene
 from sam.scene.inputs import open_file
 from sam.scene.load import parse_toml, scene_of
+from verification.cases.case import Outcome, SmallTable
+from verification.cases.robustness import bad_input as case
 from verification.cost.plan import check_needs, plan, plan_lines
+from verification.quantities import Measured
 from verification.robustness.bad_files import ARCHIVE, RUN, lay, mutated, with_pickle
 from verification.robustness.bad_meshes import GOOD, good_meshes, with_mapping
 from verification.robustness.fuzz import KINDS, MAPPINGS, MESHES, MORE_KINDS, STUDIES, bad_input, good_scenes
 from verification.robustness.hostile import MARKUP, SMALL
+from verification.rows import load_rows
 from verification.runs import models
 from verification.runs.archive import ArchiveError, read_archive, write_archive
 from verification.runs.files import FolderError, read_run
 from verification.suite import verify
-from verification.suite.cases import bad_input as case
-from verification.suite.cases.case import Outcome, SmallTable
-from verification.suite.gates import Measured, load_gates
 
 SHARED_FOLDER = settings(
     max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
@@ -308,13 +309,13 @@ def test_markup_and_control_characters_do_no_harm_in_a_report(tmp_path, monkeypa
 
     gate = '[[gate]]\nid = "{0}.one"\ncase = "{0}"\nquantity = "q"\nmetric = "relative"\n'
     gate += 'tolerance = 0.1\nreason = "r"\n'
-    gates = load_gates(gate.format("good") + gate.format("bad"))
+    gates = load_rows(gate.format("good") + gate.format("bad"))
     cases = {
         "good": FakeCase("good", text, text, does=fill),
         "bad": FakeCase("bad", "Bad", "Why?", does=fail),
     }
     monkeypatch.setattr(verify, "all_cases", lambda: cases)
-    monkeypatch.setattr(verify, "load_gates", lambda: gates)
+    monkeypatch.setattr(verify, "load_rows", lambda: gates)
     assert verify.main([], "quick", tmp_path / "out") == 1
     page = (tmp_path / "out" / "other.html").read_text(encoding="utf-8")
     assert "<script>alert" not in page and "<img src=x" not in page and "&lt;script&gt;alert" in page

@@ -37,7 +37,7 @@ def store(tmp_path_factory):
 @pytest.mark.parametrize("name", STORIES)
 def test_a_story_runs_as_it_stands(tmp_path, store, name):
     (programs := tmp_path / "bin").mkdir()
-    for program, words in (("samfem", " -m verification.app.cli"), ("python", "")):
+    for program, words in (("samfem", " -m samfem.cli"), ("python", "")):
         (programs / program).write_text(f'#!/bin/sh\nexec "{sys.executable}"{words} "$@"\n')
         (programs / program).chmod(0o755)
     (folder := tmp_path / "empty").mkdir()

@@ -22,7 +22,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-PACKAGES = ("sam", "fem_reference", "verification")
+PACKAGES = ("samfem", "sam", "fem_reference", "verification")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
 
@@ -54,15 +54,16 @@ BAD = {
     ("sam/kernels/primitives.py", "def f():\n    from sam.kernels import patches"): ".patches",
     (
         "fem_reference/common/contact.py",
-        "def f():\n    from verification.app import cli",
-    ): "verification.app.cli",
+        "def f():\n    from samfem import cli",
+    ): "samfem.cli",
     ("fem_reference/common/contact.py", "from sam.contact.normal import solve_contact"): "sam.contact.normal",
     ("fem_reference/common/contact.py", "from sam import solve"): "sam",
     ("fem_reference/common/contact.py", "def g():\n    import meshio"): "meshio",
     ("fem_reference/common/contact.py", "import fem_reference.spatial.hexahedra"): (
         "fem_reference.spatial.hexahedra"
     ),
-    ("verification/text/console.py", "from verification.app import cli"): "verification.app.cli",
+    ("verification/text/console.py", "from samfem import cli"): "samfem.cli",
+    ("verification/text/console.py", "from verification.suite import verify"): "verification.suite.verify",
 }
 """File and a line too many -> what it must not import."""
 
@@ -215,7 +216,7 @@ def test_verification_uses_what_the_solvers_export():
     found = {
         module: inside_a_solver(path.read_text(encoding="utf-8"))
         for module, path in modules().items()
-        if module.startswith("verification")
+        if module.startswith(("verification", "samfem"))
     }
     assert len(found) > 150
     assert {module: names for module, names in found.items() if names} == {}
@@ -322,7 +323,7 @@ def loaded_by_command(tmp_path_factory) -> dict[str, set[str]]:
     program = "import os, subprocess, sys\nrun = subprocess.run\n"
     program += "def none(words, **how): return run([os.devnull] if '-m' in words else words, **how)\n"
     program += "subprocess.run = none\n"
-    program += "from verification.app.cli import main\ncode = main(sys.argv[1:])\n"
+    program += "from samfem.cli import main\ncode = main(sys.argv[1:])\n"
     program += "print('\\n'.join(sys.modules), file=sys.stderr)\nsys.exit(code)"
     how = {
         "text": True,
@@ -370,6 +371,7 @@ def test_the_scene_loads_no_solver_and_python_users_load_no_pint():
             "sam.contact.normal",
             "fem_reference",
             "verification",
+            "samfem",
         }
     )
 
@@ -378,4 +380,4 @@ def test_the_scene_loads_no_solver_and_python_users_load_no_pint():
 def test_a_solver_loads_no_pictures_and_not_the_other_solver(package):
     loaded = loaded_by(f"import {package}\n{package}.solve")
     other = {"sam": "fem_reference", "fem_reference": "sam.solver"}[package]
-    assert loaded.isdisjoint({"matplotlib", "rich", "jinja2", "verification", other})
+    assert loaded.isdisjoint({"matplotlib", "rich", "jinja2", "verification", "samfem", other})

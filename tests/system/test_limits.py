@@ -13,7 +13,9 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 FUNCTION, MODULE = 100, 800
 FILES = [
-    path for name in ("sam", "fem_reference", "verification", "tests") for path in (ROOT / name).rglob("*.py")
+    path
+    for name in ("samfem", "sam", "fem_reference", "verification", "tests")
+    for path in (ROOT / name).rglob("*.py")
 ]
 
 

@@ -21,8 +21,8 @@ from fem_reference.common import contact, loading
 from sam.plasticity import history, step as plastic_step
 from sam.scene import Status
 from sam.scene.result import LAST, PEAK, UNLOADED
-from verification.app import solving
-from verification.app.cli import main
+from samfem import solving
+from samfem.cli import main
 from verification.runs.files import of_last_load, read_run
 
 

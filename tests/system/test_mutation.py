@@ -11,13 +11,13 @@ import pytest
 
 from sam.kernels.lags import Lags
 from sam.kernels.patches import displacement_coefficients as coefficients
+from verification.cases.robustness import mutation as case
 from verification.robustness.mutants import __main__ as mutation, equivalent, frozen, inject, judge, scope
 from verification.robustness.mutants.changes import Mutant, Number, find
 from verification.robustness.mutants.equivalent import change
 from verification.robustness.mutants.judge import MutantVerdict, forked
 from verification.robustness.mutants.scope import mutants_of
-from verification.suite.cases import mutation as case
-from verification.suite.gates import GateStatus, evaluate, load_gates
+from verification.rows import RowStatus, evaluate, load_rows
 
 TOY = '''"""A toy."""
 from functools import cache
@@ -253,8 +253,8 @@ def judgement(outcome="killed", text="2.0", seconds=0.1):
 
 
 def status(found):
-    gates = [gate for gate in load_gates() if gate.case == "mutation"]
-    return {v.gate.id: v.status for v in evaluate(gates, {"mutation": case.CASES[0].values(found)})}
+    gates = [gate for gate in load_rows() if gate.case == "mutation"]
+    return {v.row.id: v.status for v in evaluate(gates, {"mutation": case.CASES[0].values(found)})}
 
 
 GOOD = {"judged": [judgement()] * 40, "shown": [{"equivalent": True}], "control": [], "lost": {}}
@@ -272,8 +272,8 @@ GOOD = {"judged": [judgement()] * 40, "shown": [{"equivalent": True}], "control"
     ],
 )
 def test_what_is_wrong_turns_its_gate_red(wrong, gate):
-    assert set(status(GOOD).values()) == {GateStatus.PASSED}
-    assert status(GOOD | wrong)[gate] is GateStatus.FAILED
+    assert set(status(GOOD).values()) == {RowStatus.PASSED}
+    assert status(GOOD | wrong)[gate] is RowStatus.FAILED
 
 
 def test_structure_and_rows_are_counted_apart():

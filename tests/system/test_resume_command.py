@@ -14,7 +14,7 @@ import pytest
 from builders import scene_text
 
 from sam.scene.checkpoint import Checkpoint
-from verification.app.cli import main
+from samfem.cli import main
 from verification.runs import checkpoints, files, models
 from verification.runs.archive import read_archive, write_archive
 from verification.runs.files import CHECKPOINT, FolderError, check_target
@@ -125,7 +125,7 @@ def test_killed_then_resumed(solve):
     """
     program = (
         "import os, signal, sys\n"
-        "from verification.app import cli\n"
+        "from samfem import cli\n"
         "from verification.runs import checkpoints\n"
         "class Killed(checkpoints.Writer):\n"
         "    def write(self):\n"

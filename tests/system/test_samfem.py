@@ -16,8 +16,8 @@ from pandas.testing import assert_frame_equal
 
 import sam
 import samfem
-from verification.app import cli
-from verification.app.cli import main
+from samfem import cli
+from samfem.cli import main
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "docs" / "examples").glob("*.py"))
@@ -139,7 +139,7 @@ def test_wrong_input_is_refused_by_name(tmp_path):
 def test_another_distribution_of_the_same_name_is_named(tmp_path, name):
     (tmp_path / name).mkdir()
     (tmp_path / name / "__init__.py").write_text("")
-    found = ended("-c", "import samfem", folder=tmp_path, first=str(tmp_path))
+    found = ended("-c", "import samfem; samfem.solve", folder=tmp_path, first=str(tmp_path))
     assert found.returncode == 1
     assert f"needs its own package {name}" in found.stderr and f"{tmp_path}" in found.stderr
 

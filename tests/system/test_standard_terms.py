@@ -22,7 +22,7 @@ STANDARD = {
 """Private word -> what to write instead."""
 SOURCES = [
     path
-    for folder in ("sam", "fem_reference", "verification", "tests", "docs")
+    for folder in ("samfem", "sam", "fem_reference", "verification", "tests", "docs")
     for path in sorted((ROOT / folder).rglob("*"))
     if path.suffix in (".py", ".md", ".toml") and path != Path(__file__)
 ]

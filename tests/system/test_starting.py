@@ -10,9 +10,9 @@ from builders import scene_text
 
 from sam.scene import Scene, load_scene
 from sam.scene.load import parse_toml
-from verification.app.cli import STARTS, main
-from verification.app.compared import asked
-from verification.app.starting import KINDS, SCENES, json_schema
+from samfem.cli import STARTS, main
+from samfem.compared import asked
+from samfem.starting import KINDS, SCENES, json_schema
 from verification.runs import models
 
 SLOW = ("plastic", "sliding", "running-in")  # seconds to half a minute; a story of the guide solves the first

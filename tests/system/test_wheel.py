@@ -14,13 +14,13 @@ import pytest
 from fake_case import FakeCase
 from setuptools import find_namespace_packages
 
+from verification.cases import all_cases
+from verification.rows import load_rows
 from verification.suite import verify
-from verification.suite.cases import all_cases
-from verification.suite.gates import load_gates
 
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-OWN = ("sam", "fem_reference", "verification")
+OWN = ("samfem", "sam", "fem_reference", "verification")
 LEFT_OUT = "verification/robustness/mutants/"
 OF_SOURCE = ("verification.robustness.mutants", "tests")
 OF_EXTRAS = (
@@ -127,7 +127,7 @@ def test_a_case_that_is_not_run_does_not_stop_the_others(tmp_path, monkeypatch, 
         does=pytest.fail,
     )
     monkeypatch.setattr(verify, "all_cases", lambda: CASES | {"slow": unmet})
-    monkeypatch.setattr(verify, "load_gates", lambda: load_gates(TABLE))
+    monkeypatch.setattr(verify, "load_rows", lambda: load_rows(TABLE))
     assert verify.main(["good", "slow"], "quick", tmp_path / "out") == 0
     assert "slow: not run: install nothing: pip install x" in capsys.readouterr().out
     records = {

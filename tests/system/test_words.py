@@ -22,8 +22,8 @@ from sam.results.advice import advice as words_of
 from sam.scene import Compare, HeightMap, Scene, SceneError, Status, resolved
 from sam.scene.places import OTHER_NAMES
 from sam.scene.section import Section
-from verification.app import comparing
-from verification.app.cli import CLAIMS
+from samfem import comparing
+from samfem.cli import CLAIMS
 from verification.compare.rows import Comparison
 from verification.cost import estimates, plan as plan_module
 from verification.cost.plan import check_needs

@@ -12,15 +12,15 @@ from pydantic import ValidationError
 
 from sam import choose_grid
 from sam.scene import Result, Scene, Status
+from verification.cases.cost.accuracy import CASES, Run, runs_of, subjects
 from verification.cost import accuracy
 from verification.cost.accuracy import NEAREST, missed, solve
 from verification.cost.advice import table
 from verification.cost.choice import Choice, chosen_scene, expected, first_choice
 from verification.cost.plan import plan
+from verification.quantities import Measured
 from verification.reference.hertz import CircularContact
 from verification.runs.models import FEM, SAM, ModelError
-from verification.suite.cases.accuracy import CASES, Run, runs_of, subjects
-from verification.suite.judging import Measured
 
 ELASTIC = {"body": STEEL, "counterbody": SPHERE, "loading": {"force": 0.1}}
 YIELDING = ELASTIC | {"body": STEEL | {"plasticity": PERFECT}, "loading": {"force": 0.02, "steps": 1}}

@@ -9,7 +9,12 @@ import pytest
 from builders import running_in
 
 from sam.scene import load_scene
-from verification.app.cli import main
+from samfem.cli import main
+from verification.cases.case import with_loading
+from verification.cases.cost.work_precision import ADVISED
+from verification.cases.cost.work_precision_problems import PROBLEMS
+from verification.cases.recipes import Resolution, at_ratio
+from verification.cases.sliding.friction import sliding_scene
 from verification.cost import advice
 from verification.cost.advice import advice_of, kind_of
 from verification.cost.advice_rows import (
@@ -31,12 +36,6 @@ from verification.cost.advice_rows import (
 from verification.cost.plan import plan_lines
 from verification.cost.precision import TARGETS
 from verification.runs.models import FEM, FEM_3D, MODELS, SAM
-from verification.suite.cases.case import with_loading
-from verification.suite.cases.friction import sliding_scene
-from verification.suite.cases.plastic import at_ratio
-from verification.suite.cases.resolution import Resolution
-from verification.suite.cases.work_precision import ADVISED
-from verification.suite.cases.work_precision_problems import PROBLEMS
 from verification.text.console import table_lines
 
 SCENES = Path(advice.__file__).parents[1] / "scenes"

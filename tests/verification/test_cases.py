@@ -9,20 +9,21 @@ import pytest
 from made_results import context, red, with_column, with_quantities
 
 from sam.scene import load_scene
+from verification.cases import LEVELS, all_cases
+from verification.cases.case import with_grid, with_mesh
+from verification.cases.hertz.hertz import fem_values, sam_values
 from verification.reference.convergence import fit_order
+from verification.references import contact_of
+from verification.rows import load_rows
 from verification.runs import models
 from verification.runs.sampling import plane_field_on, pressure_on, surface_pressure
-from verification.suite.cases import LEVELS, all_cases
-from verification.suite.cases.case import with_grid, with_mesh
-from verification.suite.cases.hertz import contact_of, fem_values, sam_values
-from verification.suite.gates import load_gates
 from verification.suite.verify import main
 
 CASES = all_cases()
 
 
 def test_gates_and_cases_belong_together():
-    assert {gate.case for gate in load_gates()} == set(CASES)
+    assert {gate.case for gate in load_rows()} == set(CASES)
     assert all(set(case.levels) <= set(LEVELS) for case in CASES.values())
     assert [name for name, case in CASES.items() if not case.levels] == ["peers"]  # needs other programs
 

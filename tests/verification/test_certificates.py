@@ -18,15 +18,22 @@ from sam import choose_grid
 from sam.contact.normal import Search, solve_contact
 from sam.scene import Status
 from sam.scene.residuals import Attempt, residual_table, stagnates, unfinished
+from verification.cases.case import Context
+from verification.cases.certificates import certificates, certificates_scenes, step_cutting, threads
+from verification.cases.certificates.certificates_measures import (
+    by_rule,
+    common,
+    curves_of,
+    of_fem,
+    of_sam,
+    solved,
+)
+from verification.cases.certificates.step_cutting import StepScene
+from verification.cases.recipes import Resolution
 from verification.checks import axisymmetric as fem_checks, cells as cell_checks, conditions as contact_checks
+from verification.rows import RowStatus, evaluate, load_rows
 from verification.runs import models
 from verification.runs.models import FEM, SAM
-from verification.suite.cases import certificates, certificates_scenes, step_cutting, threads
-from verification.suite.cases.case import Context
-from verification.suite.cases.certificates_measures import by_rule, common, curves_of, of_fem, of_sam, solved
-from verification.suite.cases.resolution import Resolution
-from verification.suite.cases.step_cutting import StepScene
-from verification.suite.gates import GateStatus, evaluate, load_gates
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +52,7 @@ def solves(context):
 
 
 def limit(gate: str) -> float:
-    return next(each.tolerance for each in load_gates() if each.id == gate)
+    return next(each.tolerance for each in load_rows() if each.id == gate)
 
 
 def scaled_at(k, factor):
@@ -194,12 +201,12 @@ class TestFem:
 
 def test_gates_turn_red():
     """Every gate of the three cases on an answer beyond it."""
-    gates = [g for g in load_gates() if g.case in ("certificates", "step-cutting", "threads")]
+    gates = [g for g in load_rows() if g.case in ("certificates", "step-cutting", "threads")]
     assert len(gates) == 58
     for gate in gates:
         value = 0.5 * gate.tolerance if gate.metric == "at_least" else 1.1 * gate.tolerance or 1
         measured = certificates.Measured(value, 0 if gate.metric == "equal" else None)
-        assert evaluate([gate], {gate.case: {gate.id: measured}})[0].status is GateStatus.FAILED
+        assert evaluate([gate], {gate.case: {gate.id: measured}})[0].status is RowStatus.FAILED
 
 
 class TestHistories:

@@ -9,6 +9,10 @@ import numpy as np
 import pytest
 from made_results import with_column, with_field
 
+from verification.cases.case import Context
+from verification.cases.certificates.certificates import MEASURED, gated
+from verification.cases.certificates.certificates_measures import OF_GROUP, Conditions, solved
+from verification.cases.certificates.certificates_scenes import coated, rough
 from verification.checks import (
     cells as cell_checks,
     coated as coated_checks,
@@ -18,16 +22,12 @@ from verification.checks import (
 from verification.reference.hertz import CircularContact
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
 from verification.reference.point_loads import cerruti_displacement
+from verification.rows import load_rows
 from verification.runs.models import SAM
-from verification.suite.cases.case import Context
-from verification.suite.cases.certificates import MEASURED, gated
-from verification.suite.cases.certificates_measures import OF_GROUP, Conditions, solved
-from verification.suite.cases.certificates_scenes import coated, rough
-from verification.suite.gates import load_gates
 
 LIMITS = {
     each.id.removeprefix("certificates."): each.tolerance
-    for each in load_gates()
+    for each in load_rows()
     if each.case == "certificates"
 }
 

@@ -10,15 +10,15 @@ from made_results import last_released, with_column, with_field
 
 from fem_reference.spatial import load_steps
 from sam.scene import FrictionMap
+from verification.cases.case import Context, with_loading
+from verification.cases.certificates.certificates_measures import by_rule, of_fem, of_spatial, solved
+from verification.cases.certificates.certificates_scenes import PATCH_CELLS, rough, sliding, yielding_film
 from verification.checks import axisymmetric as fem_checks, spatial as spatial_checks
+from verification.rows import load_rows
 from verification.runs import models
 from verification.runs.models import FEM, FEM_3D
-from verification.suite.cases.case import Context, with_loading
-from verification.suite.cases.certificates_measures import by_rule, of_fem, of_spatial, solved
-from verification.suite.cases.certificates_scenes import PATCH_CELLS, rough, sliding, yielding_film
-from verification.suite.gates import load_gates
 
-LIMITS = {each.id: each.tolerance for each in load_gates()}
+LIMITS = {each.id: each.tolerance for each in load_rows()}
 
 
 def limit(what: str) -> float:

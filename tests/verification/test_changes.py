@@ -5,7 +5,7 @@ import json
 
 import pytest
 
-from verification.app.cli import main
+from samfem.cli import main
 from verification.suite.changes import EQUAL, changes
 
 

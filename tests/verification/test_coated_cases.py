@@ -10,21 +10,23 @@ import pytest
 from made_results import Made, context, red, square_mesh
 
 from sam.scene import load_scene
+from verification.cases import all_cases
+from verification.cases.case import Context
+from verification.cases.coated import coated_sphere, film_limits, film_map, layered, thin_film
+from verification.cases.coated.coated_convergence import coarse_depths
 from verification.figures.coated import Map, PaperCase, change_maps, film_planes, response_errors
+from verification.quantities import Measured
 from verification.reference.layered_errors import Worst
+from verification.rows import load_rows
 from verification.runs import models
 from verification.runs.models import FEM
-from verification.suite.cases import all_cases, coated_sphere, film_limits, film_map, layered, thin_film
-from verification.suite.cases.case import Context
-from verification.suite.cases.coated_convergence import coarse_depths
-from verification.suite.gates import Measured, load_gates
 
 BASE = load_scene("verification/scenes/coated-sphere.toml")
 PAPER = film_map.PAPER_RATIO
 
 
 def gates_of(case: str) -> set[str]:
-    return {gate.id.removeprefix(f"{case}.") for gate in load_gates() if gate.case == case}
+    return {gate.id.removeprefix(f"{case}.") for gate in load_rows() if gate.case == case}
 
 
 # --- response and pavement ----------------------------------------------------------------------------------

@@ -11,12 +11,13 @@ import pytest
 from made_results import Made, context, red, square_mesh
 
 from sam.scene import load_scene
+from verification.cases import all_cases
+from verification.cases.case import Context
+from verification.cases.coated import film_limits, film_map, thin_film
+from verification.cases.coated.film_map import Changes
+from verification.references import contact_of
 from verification.runs import models
 from verification.runs.models import FEM, SAM
-from verification.suite.cases import all_cases, film_limits, film_map, thin_film
-from verification.suite.cases.case import Context
-from verification.suite.cases.film_map import Changes
-from verification.suite.cases.hertz import contact_of
 
 BASE = load_scene("verification/scenes/coated-sphere.toml")
 

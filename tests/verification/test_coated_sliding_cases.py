@@ -15,10 +15,11 @@ from fem_reference.spatial.planner import plan as plan_in_space
 from fem_reference.spatial.tables import plane_table
 from sam.scene import load_scene
 from sam.solver import solve as solve_by_sam
+from verification.cases import all_cases
+from verification.cases.coated import coated_sliding, coated_traction
 from verification.figures.film import in_body
-from verification.suite.cases import all_cases, coated_sliding, coated_traction
-from verification.suite.cases.hertz import contact_of
-from verification.suite.gates import load_gates
+from verification.references import contact_of
+from verification.rows import load_rows
 
 SLIDING = load_scene("verification/scenes/coated-sliding.toml")
 
@@ -95,7 +96,7 @@ class TestCoatedSliding:
     def test_every_gate_has_its_value(self):
         cases = all_cases()
         assert cases["coated-sliding"].levels == ("full",) and cases["film-yield"].levels == ("quick", "full")
-        listed = {gate.id for gate in load_gates() if gate.case == "coated-sliding"}
+        listed = {gate.id for gate in load_rows() if gate.case == "coated-sliding"}
         names = {
             f"coated-sliding.{coated_sliding.spelt(mu, h)}"
             for mu in coated_sliding.FRICTION
@@ -147,7 +148,7 @@ class TestCoatedTraction:
         assert gates(1.0) == set() and gates(1.006) == {"sam-body", "sam-film", "sam-interface"}
 
     def test_every_gate_has_its_value(self):
-        listed = {gate.id for gate in load_gates() if gate.case == "coated-traction"}
+        listed = {gate.id for gate in load_rows() if gate.case == "coated-traction"}
         assert listed == {
             f"coated-traction.{model}-{name}"
             for model in ("sam", "fem")

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from builders import COARSE, scene_text
 
-from verification.app.compared import NOT_COMPARED
+from samfem.compared import NOT_COMPARED
 from verification.compare.rows import COLUMNS
 from verification.figures.compared import curves, history
 from verification.runs.files import read_run

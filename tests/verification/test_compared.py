@@ -9,7 +9,7 @@ from builders import parsed
 from stored import COARSE
 
 from sam.scene import Scene, SceneError, Status, resolved
-from verification.app.compared import asked, compared
+from samfem.compared import asked, compared
 from verification.compare.comparison import compare_scene, names_of_rows
 from verification.compare.rows import COLUMNS
 
@@ -29,16 +29,11 @@ def test_the_frame_and_the_line_say_what_the_rows_say(counted):
     line = f"{len(used)} of {len(used)} agree, closest {closest} at {100 * used[closest]:.0f} % of its "
     line += "tolerance; "
     assert re.fullmatch(re.escape(line) + r"SAM [0-9.]+ s, FEM [0-9.]+ s", found.line)
-    found.check()
 
 
-def test_check_raises_with_every_row_that_fails(counted):
+def test_every_row_that_fails_is_named(counted):
     found = judged({"p_max_Pa": "1e-9 %", "approach_m": 1e-11})
     assert {row.quantity for row in found.failed} == {"p_max_Pa", "approach_m"} and not found.passed
-    with pytest.raises(
-        AssertionError, match=r"(?s)agree.*approach_m: SAM .*p_max_Pa: SAM .* tolerance 1e-11"
-    ):
-        found.check()
 
 
 def test_a_model_that_did_not_converge_is_named_and_nothing_passes(counted):
@@ -47,8 +42,6 @@ def test_a_model_that_did_not_converge_is_named_and_nothing_passes(counted):
         found, fem=replace(found.fem, status=Status.STEP_CUT_LIMIT, message="raise loading.steps")
     )
     assert not worse.passed and worse.line.startswith("fem-axisymmetric ended with step-cut-limit; ")
-    with pytest.raises(AssertionError, match=r"raise loading\.steps"):
-        worse.check()
 
 
 def test_a_tolerance_that_is_given_stands_before_that_of_the_scene_and_that_before_the_default(counted):

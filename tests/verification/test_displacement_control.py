@@ -6,8 +6,8 @@ from dataclasses import replace
 import pytest
 from made_results import context, red, with_quantities
 
+from verification.cases.plastic.displacement_control import CASES
 from verification.runs.models import FEM, SAM
-from verification.suite.cases.displacement_control import CASES
 
 (CASE,) = CASES
 

@@ -19,11 +19,8 @@ from sam.plasticity import outside, points, spectra
 from sam.scene import CounterBody, Scene, plastic_work
 from sam.scene.yield_curve import Linear, Swift, Tabulated
 from tests.system.test_repeated_loading import MELAN, pressed
-from verification.energy import of_fem, of_sam
-from verification.energy.balance import Balance, along_path
-from verification.runs.models import FEM, FEM_3D, SAM, solve
-from verification.suite.cases import energy as case
-from verification.suite.cases.energy_measures import (
+from verification.cases.energy import energy as case
+from verification.cases.energy.energy_measures import (
     compared_gates,
     fem_gates,
     of_cells,
@@ -31,7 +28,10 @@ from verification.suite.cases.energy_measures import (
     of_stress_within,
     sam_gates,
 )
-from verification.suite.cases.resolution import Resolution, resolved_at
+from verification.cases.recipes import Resolution, resolved_at
+from verification.energy import of_fem, of_sam
+from verification.energy.balance import Balance, along_path
+from verification.runs.models import FEM, FEM_3D, SAM, solve
 
 YIELD = 1e9
 PREFIX = "perfect-"

@@ -9,11 +9,11 @@ from matplotlib.text import Text
 from matplotlib.ticker import FixedLocator
 from PIL import Image
 
+from verification.cases.case import Outcome, Plot
 from verification.figures.check import findings
 from verification.figures.maps import FieldPair, MapPeak, plane_maps
 from verification.figures.style import BLUE, VERMILION, Drawing, save, sheet, style
 from verification.suite import pdf, verify
-from verification.suite.cases.case import Outcome, Plot
 
 X = np.linspace(0.0, 10.0, 21)
 

@@ -12,6 +12,9 @@ from fem_reference.axisymmetric.model import build
 from fem_reference.axisymmetric.planner import plan
 from fem_reference.common.schedule import Load
 from sam.scene import load_scene
+from verification.cases.coated import film_words, film_yield
+from verification.cases.coated.film_contacts import FilmContact, SolvedFilm, exact_changes, scene_of
+from verification.quantities import Measured
 from verification.reference.bonded_film import (
     elastic_mises,
     flow_gradient,
@@ -19,10 +22,7 @@ from verification.reference.bonded_film import (
     plastic_strain,
 )
 from verification.reference.hertz import axis_stress
-from verification.suite.cases import film_words, film_yield
-from verification.suite.cases.film_contacts import FilmContact, SolvedFilm, exact_changes, scene_of
-from verification.suite.cases.hertz import contact_of
-from verification.suite.gates import Measured
+from verification.references import contact_of
 
 BASE = load_scene("verification/scenes/film-yield.toml")
 

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
+from verification.cases import all_cases, module_of
+from verification.cases.case import Context, Outcome
 from verification.runs.code_version import version_of_case
 from verification.runs.files import json_text
 from verification.runs.store import Reuse
 from verification.suite import freshness, outcomes
-from verification.suite.cases import all_cases, module_of
-from verification.suite.cases.case import Context, Outcome
 from verification.suite.verify import RanCase, finish
 
 CASE, SCENE = "hertz-sphere", "hertz-sphere.toml"

@@ -11,6 +11,11 @@ from builders import GIVEN, PATH, friction_text as friction, given_pressure, par
 from made_results import Made, red, square_mesh
 
 from sam.scene import UNLOADED, FieldMesh, Friction, load_scene, parse_scene
+from verification.cases import all_cases
+from verification.cases.recipes import Resolution
+from verification.cases.sliding import cyclic, given_traction
+from verification.cases.sliding.friction import COUPLED, DECOUPLED, FIGURE_8, Sliding, compared, sliding_scene
+from verification.cases.sliding.sliding_sphere import crossing, limit_of_root, overtaking
 from verification.compare.comparison import compare_scene
 from verification.compare.sliding_measures import (
     Plane,
@@ -24,12 +29,8 @@ from verification.compare.sliding_measures import (
 )
 from verification.cost.plan import plan, plan_lines
 from verification.reference.hamilton import sliding_stress
+from verification.references import contact_of
 from verification.runs import models
-from verification.suite.cases import all_cases, cyclic, given_traction
-from verification.suite.cases.friction import COUPLED, DECOUPLED, FIGURE_8, Sliding, compared, sliding_scene
-from verification.suite.cases.hertz import contact_of
-from verification.suite.cases.resolution import Resolution
-from verification.suite.cases.sliding_sphere import crossing, limit_of_root, overtaking
 
 CASE = "figure-8-4"
 PREFIX = "mu-0-4-"

@@ -13,17 +13,18 @@ from builders import LINEAR, PERFECT, RUN_IN_STEEL, SWIFT, SWIFT_YIELD, hertz_fo
 
 import sam
 from sam import choose_grid
+from verification.cases import all_cases
+from verification.cases.case import Context, with_loading
+from verification.cases.cost import growth as case
+from verification.cases.cyclic.repeated_loading import P0, pressed
+from verification.cases.cyclic.repeated_sliding import slid
 from verification.cost import estimates, growth
 from verification.cost.growth import Applied, Taken
 from verification.cost.measured import alone, idle_bytes, solve_alone
 from verification.reference.convergence import fit_power
+from verification.rows import judge, load_rows
 from verification.runs.models import FEM, SAM
 from verification.runs.threads import EVERY_LIBRARY as THREADS
-from verification.suite.cases import all_cases, growth as case
-from verification.suite.cases.case import Context, with_loading
-from verification.suite.cases.repeated_loading import P0, pressed
-from verification.suite.cases.repeated_sliding import slid
-from verification.suite.gates import judge, load_gates
 
 CELLS = np.array([1e3, 4e3, 16e3, 64e3])
 MB = 1e6
@@ -215,7 +216,7 @@ def verdicts(found, boxes, place: Path | None = None) -> dict:
         context.save = lambda *_, **__: None
     outcome = case.CASES[0].collect(context, case.Climbed(found, boxes))
     assert place is None or all((place / figure.png).is_file() for figure in outcome.figures)
-    gates = [gate for gate in load_gates() if gate.case == "growth"]
+    gates = [gate for gate in load_rows() if gate.case == "growth"]
     assert {gate.id for gate in gates} == outcome.values.keys()
     return {gate.id: judge(gate, outcome.values[gate.id]) for gate in gates}
 

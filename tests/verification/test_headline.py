@@ -11,9 +11,9 @@ from made_results import context
 from made_studies import GOOD, over_inputs, over_physics
 from page_checks import PageReader, faults_of
 
-from verification.suite.cases import running_in_physics, running_in_sensitivity
-from verification.suite.cases.running_in_statements import BULK, HARDENING, NAMES, STATEMENTS, judge
-from verification.suite.cases.running_in_tables import statements_table
+from verification.cases.running_in import running_in_physics, running_in_sensitivity
+from verification.cases.running_in.running_in_statements import BULK, HARDENING, NAMES, STATEMENTS, judge
+from verification.cases.running_in.running_in_tables import statements_table
 from verification.suite.pages import write_report
 from verification.suite.pages.findings import Evidence, PaperStatements
 from verification.suite.pages.headline import COLUMNS, NOTHING, headline_of

@@ -10,10 +10,10 @@ import pytest
 from made_results import Made, red
 from rounding import close
 
+from verification.cases.published import published
 from verification.reference import hamilton
 from verification.reference.hertz import CircularContact, largest_von_mises
 from verification.reference.indentation import Ghaednia, JacksonGreen, KogutEtsion, onset, residual_share
-from verification.suite.cases import published
 
 RADIUS, MODULUS, YIELD = 105e-6, 210e9 / 0.91, 1e9
 KE, JG = KogutEtsion(0.3), JacksonGreen(0.3, 0.0088)

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from made_results import context, red, with_column, with_quantities
 
+from verification.cases import all_cases
+from verification.cases.case import with_keys, with_mesh
 from verification.runs import models
 from verification.runs.models import FEM
-from verification.suite.cases import all_cases
-from verification.suite.cases.case import with_keys, with_mesh
 
 CASE = "plastic-layer-swift"
 FORGOTTEN = "without the layer"

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from verification.cases.case import Figure
 from verification.suite import lighter as module
-from verification.suite.cases.case import Figure
 from verification.suite.lighter import lighter
 
 

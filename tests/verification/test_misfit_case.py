@@ -16,9 +16,9 @@ import sam
 from sam.kernels import eigenstrain
 from sam.kernels.eigenstrain import eigenstrain_table
 from sam.plasticity import spectra
-from verification.suite.cases import all_cases
-from verification.suite.cases.case import with_loading
-from verification.suite.cases.misfit_images import (
+from verification.cases import all_cases
+from verification.cases.case import with_loading
+from verification.cases.plastic.misfit_images import (
     BY_SYMMETRY,
     CELLS as IMAGE_CELLS,
     NAMES,
@@ -26,7 +26,7 @@ from verification.suite.cases.misfit_images import (
     Images,
     images,
 )
-from verification.suite.cases.misfit_sphere import (
+from verification.cases.plastic.misfit_sphere import (
     AT,
     FREE,
     SIZES,
@@ -39,7 +39,7 @@ from verification.suite.cases.misfit_sphere import (
     on_grid,
     with_law,
 )
-from verification.suite.judging import load_gates
+from verification.rows import load_rows
 
 CASE, SWIFT = "misfit-sphere", "misfit-sphere-swift"
 
@@ -160,7 +160,7 @@ def test_a_solver_with_one_point_in_a_cell_or_another_yield_stress_is_seen(tmp_p
 
 def test_each_coefficient_of_the_image_that_is_1_percent_off_turns_its_gate_red():
     """All 36 of the stress and 6 of the displacement, in either sense."""
-    found, tolerances = zone(IMAGE_CELLS), {gate.id: gate.tolerance for gate in load_gates()}
+    found, tolerances = zone(IMAGE_CELLS), {gate.id: gate.tolerance for gate in load_rows()}
     own = {name.removeprefix("sam-image-"): tolerances[f"{CASE}.{name}"] for name in found.values()}
     limits = np.array([own[BY_SYMMETRY.get(name, name)] for name in (*NAMES, "raised")])
     values = np.array([*found.left, found.largest])

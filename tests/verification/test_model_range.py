@@ -10,8 +10,8 @@ from builders import MODULUS, RADIUS, SPHERE, STEEL, SWIFT, scene_text
 
 import sam
 from sam.scene import Result, Scene, Status
-from verification.app.compared import compared
-from verification.app.comparison_page import Scenes, write_report
+from samfem.compared import compared
+from samfem.comparison_page import Scenes, write_report
 from verification.runs import models
 from verification.runs.files import read_run, read_summary
 from verification.runs.meshes import mesh_names

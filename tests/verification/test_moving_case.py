@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from made_results import Made, red
 
-from verification.suite.cases import all_cases
-from verification.suite.cases.case import FEM_3D, SAM
-from verification.suite.cases.moving_passes import Passes
-from verification.suite.cases.moving_passes_spatial import BECOMES, Both, Found, Passed
-from verification.suite.cases.moving_spatial import LADDER, Grooves, time_at
-from verification.suite.cases.moving_sphere import Hertz, Moving, Start
-from verification.suite.cases.moving_steps import AT, CELLS, FINE, NAMES, STEPS, Steps
+from verification.cases import all_cases
+from verification.cases.case import FEM_3D, SAM
+from verification.cases.moving.moving_passes import Passes
+from verification.cases.moving.moving_passes_spatial import BECOMES, Both, Found, Passed
+from verification.cases.moving.moving_spatial import LADDER, Grooves, time_at
+from verification.cases.moving.moving_sphere import Hertz, Moving, Start
+from verification.cases.moving.moving_steps import AT, CELLS, FINE, NAMES, STEPS, Steps
 
 SPHERE, PASSES, REFINED, SPATIAL = "moving-sphere", "moving-passes", "moving-steps", "moving-passes-spatial"
 KEYS = ("groove", "deepest", "strain")

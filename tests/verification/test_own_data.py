@@ -12,8 +12,8 @@ from own_meshes import ABAQUS, abaqus_mesh, mirrored, write_exodus
 from stored import BOTH
 
 from sam.scene import Scene, SceneError, resolved
-from verification.app.compared import NOT_COMPARED, asked, compared
-from verification.app.refusals import SeveralError
+from samfem.compared import NOT_COMPARED, asked, compared
+from samfem.refusals import SeveralError
 from verification.compare.smooth import CENTRE
 from verification.runs import models
 from verification.runs.files import write_run

@@ -15,11 +15,10 @@ import pytest
 from page_checks import PageReader, broken_links, contrast, faint, faults_of
 
 from sam.scene import load_scene
+from verification.cases import all_cases
 from verification.figures.agreement import agreement
 from verification.figures.check import findings
-from verification.suite.cases import all_cases
-from verification.suite.gates import load_gates
-from verification.suite.judging import families
+from verification.rows import families, load_rows
 from verification.suite.pages import write_report
 from verification.suite.pages.agreement import BEYOND
 from verification.suite.pages.answers import KINDS, RESULT, answers_of, far, kind_of, sentence
@@ -160,7 +159,7 @@ def test_words_stay_words_and_nothing_of_a_formula_is_lost():
 
 
 def test_every_question_asks_for_gates_and_cases_that_there_are():
-    gates, cases = [gate.id for gate in load_gates()], all_cases()
+    gates, cases = [gate.id for gate in load_rows()], all_cases()
     pages = {group.name for group in GROUPS}
     for question in QUESTIONS:
         assert question.page in pages and question.words.endswith("?")
@@ -174,7 +173,7 @@ def test_every_question_asks_for_gates_and_cases_that_there_are():
 
 
 def test_failed_gates_are_told_apart_by_what_they_are_about(results):
-    gates, cases = [gate.id for gate in load_gates()], all_cases()
+    gates, cases = [gate.id for gate in load_rows()], all_cases()
     for name in [name for names in KINDS.values() for name in names]:
         assert any(fnmatch(gate, name) for gate in gates), name
     assert all(any(fnmatch(case, pattern) for case in cases) for pattern, *_ in BEYOND)
@@ -263,7 +262,7 @@ def _gates_of(question):
     """The gates that a question asks for."""
     patterns = [name for part in question.parts for name in getattr(part, "gates", ())]
     patterns += [part.gate for part in question.parts if isinstance(part, Value)]
-    return [gate.id for gate in load_gates() if any(fnmatch(gate.id, pattern) for pattern in patterns)]
+    return [gate.id for gate in load_rows() if any(fnmatch(gate.id, pattern) for pattern in patterns)]
 
 
 def answer_to(results, words):

@@ -11,21 +11,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from verification.cases import all_cases
+from verification.cases.case import Context
+from verification.cases.peers import peers
 from verification.peers import elastic, plastic, problems, running
 from verification.peers.points import PeerPoint, fastest, points_of, ratio, reached
 from verification.peers.programs import aspher, sam as ours
 from verification.peers.reference import between, largest, periodic, profile_error
 from verification.peers.running import SAM, TAMAAS, VARIABLE, Job, Measurement, PeersError
-from verification.suite.cases import all_cases, peers
-from verification.suite.cases.case import Context
-from verification.suite.gates import evaluate, load_gates
+from verification.rows import evaluate, load_rows
 from verification.suite.listing import show_cases
 from verification.suite.verify import main
 
 
 def test_gates_belong_to_values():
     case = all_cases()["peers"]
-    assert case.levels == () and {g.id for g in load_gates() if g.case == "peers"} == {
+    assert case.levels == () and {g.id for g in load_rows() if g.case == "peers"} == {
         *(f"peers.{name}" for name in ("same-solution", "hertz-tamaas", "hertz-contact-mechanics")),
         *(f"peers.{name}" for name in ("rough-contact-mechanics", "step-16", "step-32")),
     }
@@ -267,7 +268,7 @@ class TestRounds:
         assert values["peers.hertz-tamaas"] == pytest.approx(10.0, rel=0.05) and "peers.step-8" in values
         assert any("aspher: not built" in note for note in outcome.notes)
         assert len(outcome.figures) == 3 and len(outcome.tables) == 8
-        red = {v.gate.id for v in evaluate(load_gates(), {"peers": outcome.values}) if v.status.red}
+        red = {v.row.id for v in evaluate(load_rows(), {"peers": outcome.values}) if v.status.red}
         assert {"peers.hertz-tamaas", "peers.hertz-contact-mechanics"} <= red  # ten is not twenty
         assert all(len(row) == len(table.columns) for table in outcome.tables for row in table.rows)
         json.dumps([list(table.rows) for table in outcome.tables])

@@ -16,21 +16,20 @@ from made_results import context, red, with_column, with_quantities
 from scipy.interpolate import LinearNDInterpolator
 
 from sam.scene import FieldMesh
+from verification.cases import all_cases
+from verification.cases.plastic.paper_loop import EULER, STRAIN, STRESS, Law, excess_of, gates
+from verification.cases.plastic.plastic import SPHERES, compared, plots, with_allowance
+from verification.cases.plastic.plastic_convergence import growth
+from verification.cases.plastic.plastic_history import cycles, largest_change
+from verification.cases.published.indentation import curve
+from verification.cases.recipes import Resolution, at_ratio, initial_yield, layer_faces, resolved_at
 from verification.figures.plastic import iso_lines
 from verification.reference.convergence import extrapolate
 from verification.reference.indentation import onset
+from verification.references import contact_of
 from verification.runs import models
 from verification.runs.models import FEM, SAM
-from verification.runs.sampling import rows_of
-from verification.suite.cases import all_cases
-from verification.suite.cases.hertz import contact_of
-from verification.suite.cases.indentation import curve
-from verification.suite.cases.paper_loop import EULER, STRAIN, STRESS, Law, excess_of, gates
-from verification.suite.cases.plastic import SPHERES, at_ratio, compared, initial_yield, plots, with_allowance
-from verification.suite.cases.plastic_convergence import growth
-from verification.suite.cases.plastic_history import cycles, largest_change
-from verification.suite.cases.resolution import Resolution, layer_faces, resolved_at
-from verification.suite.cases.rings import means_of_cells, means_of_line, ring_edges
+from verification.runs.sampling import means_of_cells, means_of_line, ring_edges, rows_of
 
 CASE = "plastic-swift-rigid-4"
 STATES = ("peak", "unloaded")

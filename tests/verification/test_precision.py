@@ -12,6 +12,22 @@ import pytest
 from made_results import red
 
 from sam.scene import load_scene
+from verification.cases.case import Context
+from verification.cases.cost import (
+    work_precision as case,
+    work_precision_problems as problems,
+    work_precision_study as measuring,
+)
+from verification.cases.cost.work_precision_problems import (
+    AXISYMMETRIC,
+    COUPLED,
+    ELLIPSOID,
+    PROBLEMS,
+    SPATIAL,
+    TWICE,
+    loaded,
+)
+from verification.cases.cost.work_precision_study import SolvePoint
 from verification.cost.advice import advice_of
 from verification.cost.advice_rows import NEVER, columns_of, read_rows, table_text
 from verification.cost.precision import (
@@ -28,22 +44,6 @@ from verification.figures.check import findings
 from verification.figures.style import save
 from verification.figures.work_precision import Line, curves, overview
 from verification.runs import models
-from verification.suite.cases import (
-    work_precision as case,
-    work_precision_problems as problems,
-    work_precision_study as measuring,
-)
-from verification.suite.cases.case import Context
-from verification.suite.cases.work_precision_problems import (
-    AXISYMMETRIC,
-    COUPLED,
-    ELLIPSOID,
-    PROBLEMS,
-    SPATIAL,
-    TWICE,
-    loaded,
-)
-from verification.suite.cases.work_precision_study import SolvePoint
 
 SCENES = Path(problems.__file__).parents[2] / "scenes"
 

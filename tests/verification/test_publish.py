@@ -11,11 +11,12 @@ from stored import COARSE
 from test_report import sketch
 
 from sam.scene import Status
-from verification.app import publishing
+from samfem import publishing
+from verification.cases.case import Case, Context, NotDrawnError, Outcome, Plot, with_loading
+from verification.quantities import Measured
+from verification.rows import load_rows
 from verification.runs import models
 from verification.suite import earlier, freshness, outcomes, verify
-from verification.suite.cases.case import Case, Context, NotDrawnError, Outcome, Plot, with_loading
-from verification.suite.gates import Measured, load_gates
 
 NAMES = ("timed", "first", "second")
 GATE = '[[gate]]\nid = "{0}.one"\ncase = "{0}"\nquantity = "one"\nmetric = "relative"\ntolerance = 0.1\n'
@@ -73,7 +74,7 @@ def published(monkeypatch, counted):
     for module in (publishing, freshness):
         monkeypatch.setattr(module, "all_cases", lambda: {name: made.case(name) for name in NAMES})
     for module in (verify, freshness, earlier):
-        monkeypatch.setattr(module, "load_gates", lambda: load_gates("".join(map(GATE.format, NAMES))))
+        monkeypatch.setattr(module, "load_rows", lambda: load_rows("".join(map(GATE.format, NAMES))))
     monkeypatch.setattr(publishing, "Processes", Here)
     monkeypatch.setattr(Here, "started", [])
     return made
@@ -158,9 +159,9 @@ def test_what_stays_is_judged_by_the_gates_of_today_unless_they_measure_somethin
     tmp_path, published, monkeypatch
 ):
     def gates(text):
-        monkeypatch.setattr(verify, "load_gates", lambda: load_gates(text))
+        monkeypatch.setattr(verify, "load_rows", lambda: load_rows(text))
         for module in (freshness, earlier):
-            monkeypatch.setattr(module, "load_gates", lambda: load_gates(text))
+            monkeypatch.setattr(module, "load_rows", lambda: load_rows(text))
 
     run(tmp_path)
     place, table = tmp_path / "out" / "results.json", "".join(map(GATE.format, NAMES))
@@ -209,7 +210,7 @@ def test_scenes_of_a_long_case_are_solved_ahead_and_the_case_says_their_time(
 ):
     cases = {"long": Shared("long", "long", "Is it shared?"), "first": published.case("first")}
     monkeypatch.setattr(publishing, "all_cases", lambda: cases)
-    monkeypatch.setattr(verify, "load_gates", lambda: load_gates("".join(map(GATE.format, cases))))
+    monkeypatch.setattr(verify, "load_rows", lambda: load_rows("".join(map(GATE.format, cases))))
     run(tmp_path)
     order = [name for name, _ in Here.started]
     assert order == ["first", "long", "long", "long"]  # two scenes, and the case
@@ -237,7 +238,7 @@ def test_runs_without_a_converged_result_are_solved_once_too(
     lost = replace(coarse_results[models.SAM], status=Status.NOT_CONVERGED, message="no")
     monkeypatch.setitem(coarse_results, models.SAM, lost)
     monkeypatch.setattr(publishing, "all_cases", lambda: {"lost": Lost("lost", "lost", "Is it lost?")})
-    monkeypatch.setattr(verify, "load_gates", lambda: load_gates(GATE.format("lost")))
+    monkeypatch.setattr(verify, "load_rows", lambda: load_rows(GATE.format("lost")))
     run(tmp_path)
     assert counted == 2 * [models.SAM]  # ahead, and not again by the case
 
@@ -261,7 +262,7 @@ def test_of_a_figure_that_cannot_be_drawn_the_rest_and_the_gates_are_published(
 ):
     cases = {"first": Undrawn("first", "first", "Is it drawn?"), "second": published.case("second")}
     monkeypatch.setattr(publishing, "all_cases", lambda: cases)
-    monkeypatch.setattr(verify, "load_gates", lambda: load_gates("".join(map(GATE.format, cases))))
+    monkeypatch.setattr(verify, "load_rows", lambda: load_rows("".join(map(GATE.format, cases))))
     assert {"first-curve.png", "second-curve.png"} <= run(tmp_path, code=1).keys()
     results = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
     first, second = results["cases"]

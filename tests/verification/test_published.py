@@ -12,9 +12,9 @@ from builders import scene_text
 from fake_case import FakeCase
 from test_report import CASES, TABLE
 
-from verification.app.cli import main
+from samfem.cli import main
+from verification.rows import load_rows
 from verification.suite import verify
-from verification.suite.gates import load_gates
 
 ROOT = Path(__file__).resolve().parents[2]
 TEXTS = {".html", ".json", ".csv", ".xml", ".svg", ".md", ".toml", ".vtu"}
@@ -70,7 +70,7 @@ def test_nothing_that_a_command_writes_names_its_place(tmp_path, monkeypatch):
     monkeypatch.setattr(
         verify, "all_cases", lambda: CASES | {"bad": FakeCase("bad", "Bad", "Is it there?", does=lost)}
     )
-    monkeypatch.setattr(verify, "load_gates", lambda: load_gates(TABLE))
+    monkeypatch.setattr(verify, "load_rows", lambda: load_rows(TABLE))
     monkeypatch.setattr(sys, "argv", ["samfem", "verify", "--out", str(out / "verify")])
     assert main(["verify", "--out", str(out / "verify")]) == 1
     assert len(list(out.rglob("*.json"))) >= 6

@@ -8,8 +8,9 @@ import pytest
 from made_results import Made, red
 
 from sam.scene import FieldMesh
-from verification.suite.cases import all_cases, misfit_cycles
-from verification.suite.cases.repeated_loading import (
+from verification.cases import all_cases
+from verification.cases.cyclic import misfit_cycles
+from verification.cases.cyclic.repeated_loading import (
     NESTED,
     RADIUS,
     STEPS,

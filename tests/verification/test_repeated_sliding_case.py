@@ -8,8 +8,8 @@ import pytest
 from made_results import Made, red
 
 from sam.scene import FieldMesh
-from verification.suite.cases import all_cases
-from verification.suite.cases.repeated_sliding import CELLS, ELEMENTS, FINE, RADIUS, Both
+from verification.cases import all_cases
+from verification.cases.cyclic.repeated_sliding import CELLS, ELEMENTS, FINE, RADIUS, Both
 
 CASE = "repeated-sliding"
 

@@ -12,14 +12,15 @@ import pytest
 from fake_case import FakeCase
 from matplotlib.lines import Line2D
 
-from verification.app.cli import main
+from samfem.cli import main
+from verification.cases.case import Outcome, Plot, SmallTable, View
 from verification.figures import space
 from verification.figures.profiles import Profile, profiles
 from verification.figures.style import Drawing, new_figure, save
+from verification.quantities import Measured
+from verification.rows import load_rows
 from verification.runs.files import FolderError
 from verification.suite import listing, verify
-from verification.suite.cases.case import Outcome, Plot, SmallTable, View
-from verification.suite.gates import Measured, load_gates
 
 TABLE = "".join(
     f'[[gate]]\nid = "{case}.{name}"\ncase = "{case}"\nquantity = "quantity {name}, FEM"\n'
@@ -74,7 +75,7 @@ CASES = {
 def _small_cases(monkeypatch):
     for module in (verify, listing):
         monkeypatch.setattr(module, "all_cases", lambda: CASES)
-        monkeypatch.setattr(module, "load_gates", lambda: load_gates(TABLE))
+        monkeypatch.setattr(module, "load_rows", lambda: load_rows(TABLE))
 
 
 def run(out, *cases, level="quick"):

@@ -9,9 +9,9 @@ from builders import parsed
 from made_results import Made, red, square_mesh
 
 from sam.scene import load_scene
+from verification.cases.rough import rough_film
 from verification.compare import verdicts
 from verification.compare.comparison import compare_scene
-from verification.suite.cases import rough_film
 
 COATED = "[body.coating]\nthickness = '100 nm'\nyoung = '80 GPa'\npoisson = 0.3\n"
 

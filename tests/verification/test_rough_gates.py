@@ -9,10 +9,10 @@ import numpy as np
 
 import sam
 from sam.scene import HeightMap, Result, Scene, load_scene
+from verification.cases.case import with_keys, with_loading
+from verification.cases.rough.rough_contact import SETTINGS, THICK, SolvedAsperities, at, compared
 from verification.compare.rough_measures import Depths, compared_depths
-from verification.suite.cases.case import with_keys, with_loading
-from verification.suite.cases.rough_contact import SETTINGS, THICK, SolvedAsperities, at, compared
-from verification.suite.gates import evaluate, load_gates
+from verification.rows import evaluate, load_rows
 
 
 def made(load=1.0, strain=1.0, dent=1.0, area=1.0):
@@ -40,8 +40,8 @@ def red(sam_result, fem_result, case="rough-contact-0-2"):
     """Which gates of the case are red."""
     found = compared(SolvedAsperities(sam_result, fem_result))
     values = {f"{case}.{name}": value for name, value in found.items()}
-    verdicts = evaluate(load_gates(), {case: values})
-    return {v.gate.id.split(".")[1] for v in verdicts if v.status.red}
+    verdicts = evaluate(load_rows(), {case: values})
+    return {v.row.id.split(".")[1] for v in verdicts if v.status.red}
 
 
 def coarse(case: str) -> Scene:

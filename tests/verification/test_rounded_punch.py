@@ -13,11 +13,11 @@ import fem_reference
 import sam
 from sam.grid.rounded import RoundedPunch as SamPunch
 from sam.planner.refusals import UnsupportedScene
+from verification.cases.hertz.rounded_punch import CASES, Punches
 from verification.compare.comparison import compare_scene
 from verification.reference.convergence import Order
 from verification.reference.rounded_punch import RoundedPunch
 from verification.runs import models
-from verification.suite.cases.rounded_punch import CASES, Punches
 
 FLAT, EDGE, FORCE = 5e-6, 100e-6, 0.05
 PUNCH = {"shape": "rounded-punch", "flat_radius": FLAT, "radius": EDGE}

@@ -12,13 +12,9 @@ from made_results import Made, red as red_gates
 
 import sam
 from sam.scene import load_scene
-from verification.compare.running_in_measures import Limits, Scar, Spread
-from verification.figures import run
-from verification.figures.running_in import comparison, regime_map, six_panels
-from verification.runs.files import write_run
-from verification.suite.cases import running_in, running_in_runs, running_in_wear
-from verification.suite.cases.case import with_grid, with_keys
-from verification.suite.cases.running_in_scenes import (
+from verification.cases.case import with_grid, with_keys
+from verification.cases.running_in import running_in, running_in_runs, running_in_wear
+from verification.cases.running_in.running_in_scenes import (
     Effort,
     reduced,
     renewed,
@@ -26,7 +22,7 @@ from verification.suite.cases.running_in_scenes import (
     with_plasticity,
     with_seed,
 )
-from verification.suite.cases.running_in_statements import (
+from verification.cases.running_in.running_in_statements import (
     BULK,
     HARDENING,
     NAMES,
@@ -35,7 +31,7 @@ from verification.suite.cases.running_in_statements import (
     B,
     judge,
 )
-from verification.suite.cases.running_in_tables import (
+from verification.cases.running_in.running_in_tables import (
     cases_table,
     cost_table,
     fate,
@@ -45,7 +41,11 @@ from verification.suite.cases.running_in_tables import (
     statements_table,
     varied_table,
 )
-from verification.suite.cases.running_in_varied import varied_scenes
+from verification.cases.running_in.running_in_varied import varied_scenes
+from verification.compare.running_in_measures import Limits, Scar, Spread
+from verification.figures import run
+from verification.figures.running_in import comparison, regime_map, six_panels
+from verification.runs.files import write_run
 
 SCENES = {case: load_scene(f"verification/scenes/running-in-{case}.toml") for case in (*NAMES, "curve-c")}
 

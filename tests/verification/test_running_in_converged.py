@@ -12,9 +12,8 @@ from made_histories import as_the_paper_says
 from made_results import context, red
 
 from sam.scene import GridFields, load_scene, resolved
-from verification.figures.check import findings
-from verification.suite.cases import running_in_cells as cells_study, running_in_converged as study
-from verification.suite.cases.running_in_converged import (
+from verification.cases.running_in import running_in_cells as cells_study, running_in_converged as study
+from verification.cases.running_in.running_in_converged import (
     CELLS,
     COARSEST,
     DEFAULT,
@@ -25,7 +24,8 @@ from verification.suite.cases.running_in_converged import (
     VARIATIONS,
     Member,
 )
-from verification.suite.cases.running_in_statements import BULK, NAMES, STATEMENTS
+from verification.cases.running_in.running_in_statements import BULK, NAMES, STATEMENTS
+from verification.figures.check import findings
 
 CASE = study.CASES[0]
 BASE = load_scene("verification/scenes/running-in-bulk.toml")

@@ -7,9 +7,18 @@ from made_results import Made, context, red
 
 from fem_reference.spatial import WornCycle
 from sam.scene import GridFields
+from verification.cases.running_in import running_in_fem as study
+from verification.cases.running_in.running_in_fem import (
+    CELLS,
+    CYCLES,
+    GIVEN,
+    OWN,
+    SIDE,
+    THICK,
+    UNRESOLVED,
+    Solved,
+)
 from verification.figures.check import findings
-from verification.suite.cases import running_in_fem as study
-from verification.suite.cases.running_in_fem import CELLS, CYCLES, GIVEN, OWN, SIDE, THICK, UNRESOLVED, Solved
 
 CASE = study.CASES[0]
 WHAT = ("pressure", "strain", "residual", "volume")

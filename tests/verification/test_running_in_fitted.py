@@ -6,10 +6,10 @@ import pytest
 from made_results import context
 
 from sam.scene import resolved
-from verification.suite.cases import running_in_fitted as fitted
-from verification.suite.cases.running_in_inputs import INPUTS, scene_at
-from verification.suite.cases.running_in_scenes import with_constant
-from verification.suite.cases.running_in_statements import BULK, A
+from verification.cases.running_in import running_in_fitted as fitted
+from verification.cases.running_in.running_in_inputs import INPUTS, scene_at
+from verification.cases.running_in.running_in_scenes import with_constant
+from verification.cases.running_in.running_in_statements import BULK, A
 
 
 @pytest.fixture(scope="module")

@@ -8,8 +8,8 @@ import pytest
 from made_results import Made, red
 
 from sam.scene import Plasticity
-from verification.suite.cases import all_cases
-from verification.suite.cases.running_in_kinematic import (
+from verification.cases import all_cases
+from verification.cases.cyclic.running_in_kinematic import (
     EFFORT,
     FITTED,
     MODULI,

@@ -8,10 +8,10 @@ from made_results import context, red
 from made_studies import GOOD, over_physics, ran
 
 from sam.scene import resolved
+from verification.cases.running_in import running_in_physics as study
+from verification.cases.running_in.running_in_physics import ALL
+from verification.cases.running_in.running_in_statements import BULK, NAMES, STATEMENTS, B
 from verification.figures.check import findings
-from verification.suite.cases import running_in_physics as study
-from verification.suite.cases.running_in_physics import ALL
-from verification.suite.cases.running_in_statements import BULK, NAMES, STATEMENTS, B
 
 CASE = study.CASES[0]
 

@@ -10,12 +10,12 @@ from made_results import Made, context
 from test_running_in_cases import made
 
 from sam.scene import Status
+from verification.cases.running_in import running_in
+from verification.cases.running_in.running_in_scenes import Effort, Reading
+from verification.cases.running_in.running_in_statements import BULK, DUCTILE, NAMES, A, B
+from verification.cases.running_in.running_in_tables import at_rest_from, lost_height_note
 from verification.compare.running_in_measures import Scar
 from verification.figures.running_in_readings import side_by_side
-from verification.suite.cases import running_in
-from verification.suite.cases.running_in_scenes import Effort, Reading
-from verification.suite.cases.running_in_statements import BULK, DUCTILE, NAMES, A, B
-from verification.suite.cases.running_in_tables import at_rest_from, lost_height_note
 
 CASE = running_in.CASES[0]
 TEN = tuple(range(1, 11))

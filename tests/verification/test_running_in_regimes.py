@@ -8,6 +8,14 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from sam.scene import load_scene
+from verification.cases.running_in import running_in_runs
+from verification.cases.running_in.running_in_statements import (
+    BULK,
+    HARDENING,
+    NAMES,
+    A,
+    B,
+)
 from verification.reference.bonded_film import in_plane_strain, plastic_strain
 from verification.reference.regime import (
     Regime,
@@ -17,14 +25,6 @@ from verification.reference.regime import (
     swift,
     tear_pressure,
     thinning,
-)
-from verification.suite.cases import running_in_runs
-from verification.suite.cases.running_in_statements import (
-    BULK,
-    HARDENING,
-    NAMES,
-    A,
-    B,
 )
 
 FILM, BODY = (80e9, 0.3, 2e9 / 3), (210e9, 0.3)

@@ -9,12 +9,12 @@ from made_results import context, red
 from made_studies import over_inputs
 
 from sam.scene import resolved
+from verification.cases.running_in import running_in_sensitivity as study
+from verification.cases.running_in.running_in_deciders import Studied, deciders, least_change, two_most
+from verification.cases.running_in.running_in_inputs import INPUTS, scene_at, wilson
+from verification.cases.running_in.running_in_statements import BULK, DUCTILE, LAST, NAMES, STATEMENTS, A
 from verification.figures.check import findings
 from verification.sensitivity import UNIFORM, design
-from verification.suite.cases import running_in_sensitivity as study
-from verification.suite.cases.running_in_deciders import Studied, deciders, least_change, two_most
-from verification.suite.cases.running_in_inputs import INPUTS, scene_at, wilson
-from verification.suite.cases.running_in_statements import BULK, DUCTILE, LAST, NAMES, STATEMENTS, A
 from verification.surrogate import Surrogate
 
 CASE = study.CASES[0]

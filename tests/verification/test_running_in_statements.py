@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from made_histories import CYCLES, as_the_paper_says, history
 
-from verification.suite.cases.running_in_statements import (
+from verification.cases.running_in.running_in_statements import (
     BULK,
     HARDENING,
     INF,
@@ -18,7 +18,7 @@ from verification.suite.cases.running_in_statements import (
     Statement,
     judge,
 )
-from verification.suite.cases.running_in_tables import findings_note, statements_table
+from verification.cases.running_in.running_in_tables import findings_note, statements_table
 
 
 class TestStatements:

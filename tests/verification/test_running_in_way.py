@@ -8,8 +8,8 @@ import pytest
 from made_results import red
 
 from sam.scene import Result, Status, load_scene
-from verification.suite.cases import all_cases
-from verification.suite.cases.running_in_way import OnWay
+from verification.cases import all_cases
+from verification.cases.running_in.running_in_way import OnWay
 
 CASE = "running-in-way"
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 import pytest
 from made_results import Made, red
 
-from verification.suite.cases import all_cases
-from verification.suite.cases.shakedown_limits import (
+from verification.cases import all_cases
+from verification.cases.cyclic.shakedown_limits import (
     FRICTIONS,
     Found,
     Sides,

@@ -15,8 +15,8 @@ from builders import running_in
 from PIL import Image
 
 from sam.scene import Scene
-from verification.app import viewing
-from verification.app.cli import PICTURES as NAMES
+from samfem import viewing
+from samfem.cli import PICTURES as NAMES
 from verification.figures.space import CannotDrawError, draw, offscreen
 from verification.figures.space.meshes import Found
 from verification.figures.space.pictures import PICTURES, Picture

@@ -10,6 +10,7 @@ import pytest
 from made_results import red
 
 from sam.scene import Status
+from verification.cases.robustness.stability import CASES, Matrix
 from verification.robustness.matrix import elastic, plastic
 from verification.robustness.matrix.checks import within_refinement
 from verification.robustness.matrix.row import Absent, Bench, Cell, Kind, Refused, Right, Row, judge
@@ -17,7 +18,6 @@ from verification.robustness.matrix.rows import TOPICS, all_rows
 from verification.robustness.matrix.scenes import scene_with
 from verification.runs import models
 from verification.runs.models import FEM, FEM_3D, SAM
-from verification.suite.cases.stability import CASES, Matrix
 
 (CASE,) = CASES
 

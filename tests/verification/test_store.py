@@ -188,7 +188,7 @@ def versions(root: Path) -> tuple[str, ...]:
     """Of SAM, of FEM, and of a case that solves by both, one by SAM alone, one that runs commands, one that
     asks the tests and one that reads the advice.
     """
-    cases = (f"verification.suite.cases.{name}" for name in CASE_MODULES)
+    cases = (f"verification.cases.{name}" for name in CASE_MODULES)
     return (
         *(code_version.__wrapped__(model, root) for model in BOTH),
         *(version_of_case.__wrapped__(name, root) for name in cases),
@@ -209,12 +209,12 @@ def untouched(tree) -> tuple[str, ...]:
         ("sam/scene/yield_curve.py", (1, 1, 1, 1, 1, 1, 1)),
         ("fem_reference/common/plasticity.py", (0, 1, 1, 0, 1, 1, 1)),
         ("verification/runs/models.py", (1, 1, 1, 1, 1, 1, 1)),
-        ("verification/suite/cases/case.py", (0, 0, 1, 1, 1, 1, 1)),
-        ("verification/suite/cases/hertz.py", (0, 0, 1, 0, 1, 0, 1)),
-        ("verification/suite/cases/layered.py", (0, 0, 0, 0, 1, 0, 0)),
+        ("verification/cases/case.py", (0, 0, 1, 1, 1, 1, 1)),
+        ("verification/cases/hertz/hertz.py", (0, 0, 1, 0, 1, 0, 1)),
+        ("verification/cases/coated/layered.py", (0, 0, 0, 0, 1, 0, 0)),
         ("verification/figures/style.py", (0, 0, 1, 1, 1, 1, 1)),
         ("verification/figures/space/child.py", (0, 0, 1, 1, 1, 1, 1)),
-        ("verification/app/sweep.py", (0, 0, 0, 0, 1, 0, 0)),
+        ("samfem/sweeping.py", (0, 0, 0, 0, 1, 0, 0)),
         ("verification/data/advice.csv", (0, 0, 0, 0, 1, 0, 1)),
         ("verification/data/table-2.csv", (0, 0, 1, 1, 1, 1, 1)),
         ("verification/robustness/mutants/scope.py", (0, 0, 0, 0, 1, 1, 0)),

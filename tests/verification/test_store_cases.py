@@ -11,11 +11,12 @@ from fake_case import FakeCase
 from stored import BOTH, COARSE, COARSE_KEYS, flipped
 from test_report import sketch
 
+from verification.cases.case import Context, Outcome, Plot
+from verification.quantities import Measured
+from verification.rows import load_rows
 from verification.runs import models, store
 from verification.runs.store import FOLDER, Store
 from verification.suite import outcomes, verify
-from verification.suite.cases.case import Context, Outcome, Plot
-from verification.suite.gates import Measured, load_gates
 from verification.suite.pages import write_report
 
 # the commands
@@ -117,7 +118,7 @@ def small(monkeypatch, counted):
     monkeypatch.setattr(
         verify, "all_cases", lambda: {"small": FakeCase("small", "Small case", "Does it hold?", does=case)}
     )
-    monkeypatch.setattr(verify, "load_gates", lambda: load_gates(GATES.format(0.1)))
+    monkeypatch.setattr(verify, "load_rows", lambda: load_rows(GATES.format(0.1)))
     return case
 
 
@@ -161,7 +162,7 @@ def test_a_case_runs_once_and_its_files_come_back_byte_for_byte(tmp_path, small,
 
 def test_gates_of_a_reused_case_are_judged_anew(tmp_path, small, monkeypatch):
     report_of(tmp_path)
-    monkeypatch.setattr(verify, "load_gates", lambda: load_gates(GATES.format(0.001)))
+    monkeypatch.setattr(verify, "load_rows", lambda: load_rows(GATES.format(0.001)))
     assert report_of(tmp_path, code=1)["gates"][0]["status"] == "failed" and small.runs == 1
 
 

@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
+from verification.cases.running_in.running_in_deciders import PREDICTS
 from verification.sensitivity import UNIFORM, design
-from verification.suite.cases.running_in_deciders import PREDICTS
 from verification.surrogate import surrogate
 
 POINTS, INPUTS = 32, 16

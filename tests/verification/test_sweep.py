@@ -22,9 +22,9 @@ import worker_functions as functions
 from builders import scene_text
 from optional_packages import dask_distributed
 
-from verification.app import executors, sweep
-from verification.app.cli import main
-from verification.app.executors import WORKER_DIED, Failure, Processes, run
+from samfem import executors, sweeping
+from samfem.cli import main
+from samfem.executors import WORKER_DIED, Failure, Processes, run
 from verification.runs import threads
 from verification.runs.files import read_run
 from verification.runs.store import FOLDER
@@ -52,7 +52,7 @@ def folder(folder) -> Path:
 @pytest.fixture
 def no_figure(monkeypatch) -> None:
     """For tests of something else: drawing takes longer than the scenes."""
-    monkeypatch.setattr(sweep, "_draw", lambda _state: None)
+    monkeypatch.setattr(sweeping, "_draw", lambda _state: None)
 
 
 @pytest.fixture(scope="module")
@@ -65,7 +65,7 @@ def pool():
 @pytest.fixture
 def same_worker(monkeypatch, pool) -> None:
     """For tests of something else than the workers."""
-    monkeypatch.setattr(sweep, "_executor", lambda _scheduler, _count: nullcontext(pool))
+    monkeypatch.setattr(sweeping, "_executor", lambda _scheduler, _count: nullcontext(pool))
 
 
 @pytest.fixture(scope="module")
@@ -75,7 +75,7 @@ def calm(tmp_path_factory) -> bytes:
     write_study(place)
     words = ["sweep", str(place / "study.toml"), "--out", str(place / "out"), "--workers", "1", "--no-store"]
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(sweep, "_draw", lambda _state: None)
+        patched.setattr(sweeping, "_draw", lambda _state: None)
         assert main(words) == 0
     return (place / "out" / "sweep.csv").read_bytes()
 
@@ -104,7 +104,7 @@ def test_the_table_is_the_same_with_one_worker_and_with_two(folder, calm, capsys
     assert [row["index"] for row in rows] == ["0", "1", "2", "3"]
     pressures = np.array([float(row["p_max_Pa"]) for row in rows])
     np.testing.assert_allclose(pressures / pressures[0], np.cbrt(np.array(FORCES) / 0.1), rtol=1e-3)  # Hertz
-    assert {path.name for path in Path("two").iterdir()} == {"runs", *sweep.FILES}  # the figure too
+    assert {path.name for path in Path("two").iterdir()} == {"runs", *sweeping.FILES}  # the figure too
     found = read_run(Path("two/runs/2"))
     assert found.quantities["p_max_Pa"] == pressures[2] and found.converged
     assert found.summary["provenance"]["threads"]["OMP_NUM_THREADS"] == "1"
@@ -235,7 +235,7 @@ def test_an_interrupted_sweep_keeps_what_is_finished_and_goes_on_from_there(
     folder, no_figure, samfem, monkeypatch
 ):
     monkeypatch.setenv(FOLDER, str(folder / "store"))
-    write, stopped = sweep.Sweep.write, []
+    write, stopped = sweeping.Sweep.write, []
 
     def write_and_stop(self, always=False):
         write(self, always=True)
@@ -243,7 +243,7 @@ def test_an_interrupted_sweep_keeps_what_is_finished_and_goes_on_from_there(
             stopped.append(True)
             raise KeyboardInterrupt
 
-    monkeypatch.setattr(sweep.Sweep, "write", write_and_stop)
+    monkeypatch.setattr(sweeping.Sweep, "write", write_and_stop)
     said = samfem("sweep", "study.toml", "--out", "out", "--workers", "1", code=130).err
     assert "2 of 4 scenes are finished; the same command goes on from there" in said
     assert [row["index"] for row in table("out")] == ["0", "1"]
@@ -253,7 +253,7 @@ def test_an_interrupted_sweep_keeps_what_is_finished_and_goes_on_from_there(
 
 
 def test_a_killed_worker_costs_a_retry_and_not_the_sweep(folder, no_figure, calm, monkeypatch):
-    monkeypatch.setattr(sweep, "solve_scene", functions.solve_but_die_once)
+    monkeypatch.setattr(sweeping, "solve_scene", functions.solve_but_die_once)
     monkeypatch.setenv(functions.MARKER, str(folder / "marker"))
     record = sweep_of("out", "--no-runs", workers=2)
     assert (folder / "marker").exists()
@@ -262,7 +262,7 @@ def test_a_killed_worker_costs_a_retry_and_not_the_sweep(folder, no_figure, calm
 
 
 def test_a_scene_that_kills_every_worker_is_a_row(folder, no_figure, monkeypatch, capsys):
-    monkeypatch.setattr(sweep, "solve_scene", functions.solve_but_die)
+    monkeypatch.setattr(sweeping, "solve_scene", functions.solve_but_die)
     record = sweep_of("out", "--no-runs", code=1, workers=2)
     assert [row["status"] for row in table("out")] == ["converged", "converged", "failed", "converged"]
     assert table("out")[2]["reason"] == WORKER_DIED
@@ -272,14 +272,14 @@ def test_a_scene_that_kills_every_worker_is_a_row(folder, no_figure, monkeypatch
 
 @pytest.mark.usefixtures("same_worker")
 def test_a_scene_whose_solver_raises_is_a_row(folder, no_figure, monkeypatch):
-    monkeypatch.setattr(sweep, "solve_scene", functions.solve_but_raise)
+    monkeypatch.setattr(sweeping, "solve_scene", functions.solve_but_raise)
     sweep_of("out", "--no-runs", code=1)
     assert [row["status"] for row in table("out")] == ["converged", "converged", "failed", "converged"]
     assert table("out")[2]["reason"] == "ZeroDivisionError: on purpose"
 
 
 def test_a_worker_of_another_version_computes_nothing(folder):
-    outcome = sweep.solve_scene(read_study("study.toml").points[0].scene, "sam", "another")
+    outcome = sweeping.solve_scene(read_study("study.toml").points[0].scene, "sam", "another")
     assert isinstance(outcome, Failure) and "another version" in outcome.reason
 
 
@@ -348,7 +348,7 @@ def test_a_neighbour_of_a_deadly_task_is_not_blamed():
 def test_a_worker_that_is_killed_while_it_sends_its_result_costs_a_retry(tmp_path):
     program = f"""
 import sys
-from verification.app.executors import Processes, run
+from samfem.executors import Processes, run
 from worker_functions import {functions.die_once_while_sending.__name__} as task
 if __name__ == "__main__":
     with Processes(1) as workers:
@@ -369,7 +369,7 @@ def program_with_workers(program: str, *arguments: str) -> subprocess.CompletedP
 def test_workers_end_when_their_parent_is_killed():
     program = """
 import os, sys
-from verification.app.executors import Processes
+from samfem.executors import Processes
 import worker_functions as functions
 if __name__ == "__main__":
     workers = Processes(1)
@@ -431,7 +431,7 @@ def test_a_dask_cluster_that_loses_a_worker_gives_the_same_table(
     folder, no_figure, calm, cluster, monkeypatch
 ):
     address, marker = cluster
-    monkeypatch.setattr(sweep, "solve_scene", functions.solve_but_die_once)
+    monkeypatch.setattr(sweeping, "solve_scene", functions.solve_but_die_once)
     record = sweep_of("dask", "--no-runs", "--scheduler", address)
     assert marker.exists() and record["workers"] == {"kind": "dask", "lost": 1}
     assert record["counts"]["solved"] == 4 and Path("dask/sweep.csv").read_bytes() == calm

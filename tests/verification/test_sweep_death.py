@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 from optional_packages import dask_distributed
 
-from verification.app.executors import Cluster, Failure
+from samfem.executors import Cluster, Failure
 
 
 def cascaded(status, result) -> BaseException:

@@ -11,8 +11,8 @@ from builders import PERFECT, SPHERE, STEEL, scene_text
 from sam import choose_grid
 from sam.scene import Result, Scene, Status
 from samfem import read as samfem_read
-from verification.app.compared import Uncertain
-from verification.app.comparison_page import _uncertainties
+from samfem.compared import Uncertain
+from samfem.comparison_page import _uncertainties
 from verification.cost.plan import plan
 from verification.reference.hertz import CircularContact
 from verification.runs import models

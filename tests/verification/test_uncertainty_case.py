@@ -6,10 +6,10 @@ from dataclasses import replace
 import pytest
 from made_results import context, red
 
-from verification.suite.cases import uncertainty, uncertainty_study as study
-from verification.suite.cases.uncertainty import Found
-from verification.suite.cases.uncertainty_study import Row, covered, of_program, of_textbook
-from verification.suite.judging import Measured
+from verification.cases.cost import uncertainty, uncertainty_study as study
+from verification.cases.cost.uncertainty import Found
+from verification.cases.cost.uncertainty_study import Row, covered, of_program, of_textbook
+from verification.quantities import Measured
 
 CASE = "uncertainty"
 

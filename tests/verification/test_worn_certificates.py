@@ -9,11 +9,11 @@ from made_results import red, with_field
 
 from sam import choose_grid
 from sam.scene import load_scene
+from verification.cases.case import with_keys
+from verification.cases.certificates import worn_certificates as study
+from verification.cases.certificates.certificates_measures import solved
 from verification.checks import cells as cell_checks, conditions as contact_checks, film as film_checks
 from verification.runs.models import SAM
-from verification.suite.cases import worn_certificates as study
-from verification.suite.cases.case import with_keys
-from verification.suite.cases.certificates_measures import solved
 
 CASE = study.CASES[0]
 LOOSE = 1e-4

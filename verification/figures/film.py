@@ -19,7 +19,7 @@ from verification.figures.views import PLANE_AXES, VON_MISES, VON_MISES_LEVELS
 from verification.runs.sampling import peak, plane_field
 
 Found = Any
-"""A contact with its results: `verification.suite.cases.film_contacts.Found`."""
+"""A contact with its results: `verification.cases.coated.film_contacts.Found`."""
 GIGA, MICRO, PERCENT = 1e-9, 1e6, 1e2
 COLOURS = {"elastic": BLACK, "B 945": BLUE, "B 1780": VERMILION}
 BARE, ELASTIC, YIELDS = "bare", "elastic", "yields"

@@ -8,16 +8,11 @@ import numpy as np
 from sam.scene import Result
 from verification.figures.maps import FieldPair, MapPeak, plane_maps, pressure_maps
 from verification.figures.style import Drawing
-from verification.runs.sampling import Tables, plane_field, plane_field_on, pressure_on, surface_pressure
+from verification.runs.sampling import Tables, plane_field, plane_field_on, pressure_map, pressure_on
 
 VON_MISES_LEVELS = np.arange(0.1, 0.95, 0.1)
 VON_MISES = r"$\sigma_\mathrm{vM}/p_0$"
 SURFACE_AXES, PLANE_AXES = ("$x/a$", "$y/a$"), ("$x/a$", "$z/a$")
-
-
-def pressure_map(sam: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """x (nx,), y (ny,) in m and p (nx, ny) in Pa of a SAM result."""
-    return surface_pressure(sam.fields.points, sam.fields.cells["quad"], sam.fields.cell_data["p_Pa"])
 
 
 def compared_pressure(

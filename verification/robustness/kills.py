@@ -22,7 +22,7 @@ from verification.runs.archive import ArchiveError, read_archive
 from verification.runs.files import SUMMARY
 from verification.runs.meshes import FIELDS, STEPS, SURFACE
 
-SAMFEM = (sys.executable, "-m", "verification.app.cli")
+SAMFEM = (sys.executable, "-m", "samfem.cli")
 LIMIT_S = 300.0
 ORPHANS_S = 10.0  # processes that a killed one leaves must end by then
 OF_EVERY_RUN = (SUMMARY, FIELDS, SURFACE, STEPS, "history.csv", "axis.csv", "line.csv", "plane.csv")

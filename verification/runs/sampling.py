@@ -24,6 +24,11 @@ def rows_of(table: Mapping[str, Sequence], state: str, *names: str) -> tuple[np.
     return tuple(np.asarray(table[name], dtype=float)[rows] for name in names)
 
 
+def pressure_map(sam: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """x (nx,), y (ny,) in m and p (nx, ny) in Pa of a SAM result."""
+    return surface_pressure(sam.fields.points, sam.fields.cells["quad"], sam.fields.cell_data["p_Pa"])
+
+
 def surface_pressure(
     points: np.ndarray, quads: np.ndarray, p: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -95,3 +100,33 @@ def surface_nodes(fem: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     order = np.lexsort((points[:, 1], points[:, 0]))
     x, y = np.unique(points[:, 0]), np.unique(points[:, 1])
     return x, y, p[order].reshape(x.size, y.size)
+
+
+SUBDIVIDED = 16  # points of a cell, each way, that are counted into the rings
+
+
+def ring_edges(width: float, reach: float) -> np.ndarray:
+    """Radii from 0 in steps of `width` to the first beyond `reach`, m."""
+    return width * np.arange(int(np.ceil(reach / width)) + 1)
+
+
+def means_of_cells(x: np.ndarray, y: np.ndarray, p: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Ring means of p (nx, ny), uniform on each cell around the centres x (nx,), y (ny,): (n_edges - 1,)."""
+    offsets = (np.arange(SUBDIVIDED) + 0.5) / SUBDIVIDED - 0.5
+    across, along = ((c[:, None] + offsets * (c[1] - c[0])).ravel() for c in (x, y))
+    r = np.hypot(across[:, None], along[None, :])
+    fine = np.repeat(np.repeat(p, SUBDIVIDED, axis=0), SUBDIVIDED, axis=1)
+    counted = np.histogram(r, edges)[0]
+    return np.histogram(r, edges, weights=fine)[0] / counted
+
+
+def means_of_line(r: np.ndarray, p: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Ring means of p linear between the radii r (n,), ascending: (n_edges - 1,). Exact: p r is quadratic
+    (Simpson).
+    """
+    knots = np.union1d(r[r < edges[-1]], edges)
+    middle = (knots[1:] + knots[:-1]) / 2.0
+    ends, inner = (np.interp(at, r, p) * at for at in (knots, middle))
+    parts = np.diff(knots) * (ends[1:] + 4.0 * inner + ends[:-1]) / 6.0
+    total = np.append(0.0, np.cumsum(parts))[np.searchsorted(knots, edges)]
+    return 2.0 * np.diff(total) / np.diff(edges**2)

@@ -25,7 +25,7 @@ from typing import Any
 from sam.scene import CodecError, Progress, Result, Scene, decode, encode, resolved, solved_part
 from verification.runs import models
 from verification.runs.archive import ArchiveError, read_archive, write_archive
-from verification.runs.code_version import code_version, unchanged, version_of_case
+from verification.runs.code_version import code_version, unchanged, version_of_cases
 from verification.runs.provenance import collect
 
 FOLDER = "SAMFEM_STORE"
@@ -301,7 +301,7 @@ def _entry(path: Path) -> Entry:
         kind = who.get("kind")
         what = who.get("model") if kind == RESULT else f"{who.get('case')}, {who.get('level')}"
         if kind == OUTCOME:
-            version = version_of_case(str(who.get("module")))
+            version = version_of_cases()
         else:
             version = code_version(what) if what in models.MODELS else ""
         state = STALE if _is_stale(values, version) else CURRENT

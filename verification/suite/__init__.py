@@ -18,7 +18,7 @@ Where it is
     `changes`     the gates that differ between two reports
 
 Who may use it
-    The command line (`verification.app`) and the tests. It stands on every other room of `verification`
-    but `app`, and asks the solvers only for what `verification.runs.models`, `sam` and `fem_reference`
+    The command line (`samfem`) and the tests. It stands on every other room of `verification`
+    and asks the solvers only for what `verification.runs.models`, `sam` and `fem_reference`
     hand out.
 """

@@ -11,8 +11,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from verification.quantities import Measured
+from verification.rows import Row, RowStatus, judge, load_rows
 from verification.suite.freshness import of_other_code, ran_in
-from verification.suite.judging import Gate, GateStatus, Measured, judge, load_gates
 
 Record = Mapping[str, Any]
 
@@ -67,7 +68,7 @@ def earlier(results: Record, known: Iterable[str], wanted: Iterable[str]) -> Ear
 
 def judged_anew(case: str, kept: Sequence[Record]) -> list[Record]:
     """The gates of a case from what was measured; none where the table asks for something else now."""
-    measured, table = {gate["id"]: gate for gate in kept}, [g for g in load_gates() if g.case == case]
+    measured, table = {gate["id"]: gate for gate in kept}, [g for g in load_rows() if g.case == case]
     if {(g.id, g.metric) for g in table} != {(gate["id"], gate["metric"]) for gate in kept}:
         return []
     if any(gate["error"] is None for gate in kept):
@@ -77,7 +78,7 @@ def judged_anew(case: str, kept: Sequence[Record]) -> list[Record]:
     ]
 
 
-def _holds(gate: Gate, error: float) -> GateStatus:
+def _holds(gate: Row, error: float) -> RowStatus:
     """An error in the gate's metric against its tolerance."""
     one_sided = gate.model_copy(update={"metric": "at_least" if gate.metric == "at_least" else "at_most"})
     return judge(one_sided, Measured(error)).status
@@ -86,5 +87,5 @@ def _holds(gate: Gate, error: float) -> GateStatus:
 def _status(case: Record, gates: Sequence[Record]) -> str:
     """Of a case that came to its end."""
     unread = any(figure["findings"] for figure in case["figures"])
-    red = any(GateStatus(gate["status"]).red for gate in gates)
-    return str(GateStatus.FAILED if unread or red else GateStatus.PASSED)
+    red = any(RowStatus(gate["status"]).red for gate in gates)
+    return str(RowStatus.FAILED if unread or red else RowStatus.PASSED)

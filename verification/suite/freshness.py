@@ -10,9 +10,9 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping
 
-from verification.runs.code_version import version_of_case
-from verification.suite.cases import all_cases, module_of
-from verification.suite.judging import GateStatus, load_gates
+from verification.cases import all_cases
+from verification.rows import RowStatus, load_rows
+from verification.runs.code_version import version_of_cases
 from verification.suite.outcomes import present
 
 JUDGED_BY = ("metric", "tolerance", "quantity", "reason")
@@ -43,7 +43,7 @@ def older(results: Mapping) -> dict[str, str]:
 
 def ran_in(results: Mapping) -> dict[str, Mapping]:
     """The cases of a report that ran, by name."""
-    return {case["name"]: case for case in results["cases"] if case["status"] != GateStatus.NOT_RUN}
+    return {case["name"]: case for case in results["cases"] if case["status"] != RowStatus.NOT_RUN}
 
 
 def _why(name: str, results: Mapping) -> str:
@@ -58,7 +58,7 @@ def of_other_code(name: str, results: Mapping) -> str:
         return "not published"
     if case["failure"]:
         return "it broke off"
-    if case.get("code") != version_of_case(module_of(name)):
+    if case.get("code") != version_of_cases():
         return "the code that it depends on has changed"
     changed = [scene for scene, digest in case["inputs"].items() if digest != _digest(scene)]
     return f"{', '.join(changed)} changed" if changed else ""
@@ -71,4 +71,4 @@ def _digest(scene: str) -> str:
 def _judged(name: str, results: Mapping) -> bool:
     """Whether the gates of a case are those of the table."""
     kept = {g["id"]: tuple(g[key] for key in JUDGED_BY) for g in results["gates"] if g["case"] == name}
-    return kept == {g.id: tuple(getattr(g, key) for key in JUDGED_BY) for g in load_gates() if g.case == name}
+    return kept == {g.id: tuple(getattr(g, key) for key in JUDGED_BY) for g in load_rows() if g.case == name}

@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from verification.cases.case import Figure
 from verification.runs.files import write_atomically
-from verification.suite.cases.case import Figure
 
 PACKED = 4_000  # bytes of a table: packing those beyond saves 1.4 of the 1.9 MB of all, below it nothing
 LARGE = 60_000  # bytes of a picture: those beyond, 26 of 181, are more than half of the bytes of all

@@ -7,8 +7,8 @@ import sys
 from collections.abc import Mapping, Sequence
 from textwrap import fill
 
-from verification.suite.cases import Case, all_cases
-from verification.suite.gates import Gate, load_gates
+from verification.cases import Case, all_cases
+from verification.rows import Row, load_rows
 from verification.text.console import table_lines, unknown
 
 WIDTH = 100
@@ -17,7 +17,7 @@ WIDTH = 100
 
 def show_cases(names: Sequence[str]) -> int:
     """One line a case on stdout, of the named ones (none: of all). Returns 0, or 2 for an unknown name."""
-    known, gates = all_cases(), load_gates()
+    known, gates = all_cases(), load_rows()
     if not _are_known(names, known):
         return 2
     rows = []
@@ -32,7 +32,7 @@ def show_gates(names: Sequence[str]) -> int:
     """Question, gates, tolerances and reasons of the named cases (none: of all) on stdout. Returns 0, or 2 as
     above.
     """
-    known, gates = all_cases(), load_gates()
+    known, gates = all_cases(), load_rows()
     if not _are_known(names, known):
         return 2
     for case in _chosen(names, known):
@@ -61,7 +61,7 @@ def _chosen(names: Sequence[str], known: Mapping[str, Case]) -> list[Case]:
     return [case for case in known.values() if not names or case.name in names]
 
 
-def _limit(gate: Gate) -> str:
+def _limit(gate: Row) -> str:
     """What the gate allows, in words."""
     match gate.metric:
         case "equal":

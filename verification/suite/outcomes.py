@@ -11,11 +11,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from importlib import resources
 
-from verification.runs.code_version import unchanged, version_of_case
+from verification.cases.case import Case, Context, Outcome
+from verification.runs.code_version import unchanged, version_of_cases
 from verification.runs.files import SUMMARY, write_atomically
 from verification.runs.store import OUTCOME, Lookup, Reuse, Store
-from verification.suite.cases import module_of
-from verification.suite.cases.case import Case, Context, Outcome
 
 
 @dataclass(frozen=True)
@@ -35,7 +34,7 @@ def find(store: Store, case: Case, context: Context) -> Lookup:
     """The outcome of a case at the level of the context, if it is there, of this version and of the same
     scenes.
     """
-    found = store.find(_identity(case, context.level), version_of_case(module_of(case.name)), Kept)
+    found = store.find(_identity(case, context.level), version_of_cases(), Kept)
     inputs = found.result.inputs if found.result else {}
     changed = [name for name, content in inputs.items() if present(name) != content]
     if changed:
@@ -66,19 +65,18 @@ def keep(store: Store, case: Case, context: Context, outcome: Outcome, *, second
     """
     if foreign := [name for name in context.inputs if present(name) is None]:
         raise ValueError(f"case {case.name} names as input what is no file of the scenes: {foreign}")
-    module = module_of(case.name)
-    if not unchanged(case=module):
+    if not unchanged():
         return
     places = [path for run in context.runs for path in (context.out / run).iterdir()]
     places += [context.out / name for figure in outcome.figures for name in figure.files]
     kept = [path for path in places if path.is_file() and not path.name.startswith(".")]
     files = {path.relative_to(context.out).as_posix(): path.read_bytes() for path in kept}
     content = Kept(outcome, dict(context.inputs), dict(context.sources), files, seconds)
-    store.put(_identity(case, context.level), version_of_case(module), content, case.title)
+    store.put(_identity(case, context.level), version_of_cases(), content, case.title)
 
 
 def _identity(case: Case, level: str) -> dict:
-    return {"kind": OUTCOME, "case": case.name, "level": level, "module": module_of(case.name)}
+    return {"kind": OUTCOME, "case": case.name, "level": level}
 
 
 def present(name: str) -> bytes | None:

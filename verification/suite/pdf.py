@@ -8,9 +8,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from sam.scene import Progress
+from verification.cases import all_cases
+from verification.cases.case import Context
 from verification.runs.store import Store
-from verification.suite.cases import all_cases
-from verification.suite.cases.case import Context
 from verification.suite.verify import finished
 
 

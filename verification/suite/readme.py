@@ -14,8 +14,8 @@ import textwrap
 from collections.abc import Mapping
 from pathlib import Path
 
+from verification.rows import RowStatus
 from verification.runs.files import FolderError, write_atomically
-from verification.suite.judging import GateStatus
 from verification.suite.pages.headline import headline_of
 from verification.suite.pages.stored import RED, read_stored
 from verification.suite.pages.views import found
@@ -38,7 +38,7 @@ def renewed(text: str, results: Mapping) -> str:
     def row(match: re.Match) -> str:
         printed, unit, name = match.groups()
         gate = gates.get(name)
-        if gate is None or gate["status"] != GateStatus.PASSED:
+        if gate is None or gate["status"] != RowStatus.PASSED:
             state = gate["status"] if gate else "no gate"
             raise ValueError(f"{name}: {state}; the row needs a gate that passed")
         value = gate["error"] * (100 if unit == "%" else 1)

@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 from xml.etree import ElementTree
 
+from verification.rows import LIMITS, RowStatus
 from verification.runs.files import plain
 from verification.runs.tables import csv_text
-from verification.suite.judging import LIMITS, GateStatus
 from verification.text.console import digits
 
 GATE_COLUMNS = tuple("id case quantity metric value expected unit error tolerance status reason note".split())
@@ -49,10 +49,10 @@ def junit_xml(cases: Sequence[Mapping], gates: Sequence[Mapping], name: str = "s
             name=case["name"],
             tests=str(len(own) + bool(case["failure"]) + bad),
             failures=str(
-                sum(gate["status"] in (GateStatus.FAILED, GateStatus.UNCHECKED) for gate in own) + bad
+                sum(gate["status"] in (RowStatus.FAILED, RowStatus.UNCHECKED) for gate in own) + bad
             ),
             errors=str(int(bool(case["failure"]))),
-            skipped=str(sum(gate["status"] == GateStatus.NOT_RUN for gate in own)),
+            skipped=str(sum(gate["status"] == RowStatus.NOT_RUN for gate in own)),
             time=f"{case['seconds'] or 0.0:.3f}",
         )
         if case["failure"]:
@@ -74,9 +74,9 @@ def unreadable(case: Mapping) -> list[str]:
 
 def _testcase(suite: ElementTree.Element, gate: Mapping) -> None:
     test = ElementTree.SubElement(suite, "testcase", classname=gate["case"], name=gate["id"], time="0")
-    if gate["status"] == GateStatus.NOT_RUN:
+    if gate["status"] == RowStatus.NOT_RUN:
         ElementTree.SubElement(test, "skipped", message="the case was not run")
-    elif gate["status"] != GateStatus.PASSED:
+    elif gate["status"] != RowStatus.PASSED:
         ElementTree.SubElement(
             test,
             "failure",
@@ -88,7 +88,7 @@ def _testcase(suite: ElementTree.Element, gate: Mapping) -> None:
 
 def text_rows(gates: Sequence[Mapping]) -> tuple[list[tuple[str, ...]], list[bool]]:
     """(case, gate, error, tolerance, status) of each gate of the cases that ran, and whether it is red."""
-    ran = [gate for gate in gates if gate["status"] != GateStatus.NOT_RUN]
+    ran = [gate for gate in gates if gate["status"] != RowStatus.NOT_RUN]
     rows = []
     for gate in ran:
         rows.append(
@@ -100,7 +100,7 @@ def text_rows(gates: Sequence[Mapping]) -> tuple[list[tuple[str, ...]], list[boo
                 gate["status"],
             )
         )
-    return rows, [gate["status"] != GateStatus.PASSED for gate in ran]
+    return rows, [gate["status"] != RowStatus.PASSED for gate in ran]
 
 
 def origin(solves: Mapping | None) -> str:

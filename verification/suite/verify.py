@@ -17,17 +17,17 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from sam.scene import Progress
+from verification.cases import LEVELS, Case, all_cases
+from verification.cases.case import Context, NotDrawnError, Outcome
+from verification.rows import RowStatus, Verdict, evaluate, load_rows
 from verification.runs import provenance
-from verification.runs.code_version import version_of_case
+from verification.runs.code_version import version_of_cases
 from verification.runs.files import FolderError, plain, write_atomically
 from verification.runs.lock import locked
 from verification.runs.store import Lookup, Reuse, Store
 from verification.suite import outcomes
-from verification.suite.cases import LEVELS, Case, all_cases, module_of
-from verification.suite.cases.case import Context, NotDrawnError, Outcome
 from verification.suite.earlier import Earlier
 from verification.suite.freshness import older
-from verification.suite.judging import GateStatus, Verdict, evaluate, load_gates
 from verification.suite.listing import unknown_cases
 from verification.suite.pages import INDEX, remove_pages, write_report
 from verification.suite.pages.stored import ASKED, ELSEWHERE, NAMED
@@ -107,7 +107,7 @@ def finish(
     results = _judged(ran, known, level=level, stays=stays) | {"command": command}
     for record in results["cases"]:
         record["unmet"] = unmet.get(record["name"], "")
-        if record["status"] == GateStatus.NOT_RUN and not record["unmet"]:
+        if record["status"] == RowStatus.NOT_RUN and not record["unmet"]:
             levels = known[record["name"]].levels
             record["unmet"] = ELSEWHERE[ASKED if level in levels else next(iter(levels), NAMED)]
     _write(results, out, older(results) if stays.cases else {})
@@ -119,7 +119,7 @@ def finish(
     unread = [line for case in results["cases"] for line in unreadable(case)]
     print(*unread, sep="\n", end="\n" * bool(unread))
     print(origin(results["solves"]))
-    print(f"{results['summary'][GateStatus.PASSED]} gates passed, {sum(failing)} failed: {out / INDEX}")
+    print(f"{results['summary'][RowStatus.PASSED]} gates passed, {sum(failing)} failed: {out / INDEX}")
     return 1 if any(failing) or broken or unread else 0
 
 
@@ -215,7 +215,7 @@ def _run(
 def _judged(ran: Mapping[str, RanCase], known: Mapping[str, Case], *, level: str, stays: Earlier) -> dict:
     """results.json, but for how it was asked for."""
     failures = {name: each.failure for name, each in ran.items()}
-    verdicts = evaluate(load_gates(), {name: each.outcome.values for name, each in ran.items()}, failures)
+    verdicts = evaluate(load_rows(), {name: each.outcome.values for name, each in ran.items()}, failures)
     inputs = {name: content for each in ran.values() for name, content in each.context.inputs.items()}
     gates = stays.among(_gate_record(verdict) for verdict in verdicts)
     collected = provenance.collect(inputs)
@@ -224,7 +224,7 @@ def _judged(ran: Mapping[str, RanCase], known: Mapping[str, Case], *, level: str
         "complete": True,
         "level": level,
         "provenance": collected | {"input_sha256": stays.inputs | collected["input_sha256"]},
-        "summary": {status: sum(gate["status"] == status for gate in gates) for status in GateStatus},
+        "summary": {status: sum(gate["status"] == status for gate in gates) for status in RowStatus},
         "solves": _solves(list(ran.values())),
         "cases": [
             stays.cases.get(case.name) or _case_record(case, ran.get(case.name), verdicts)
@@ -282,7 +282,7 @@ def attempt(case: Case, context: Context) -> tuple[Outcome, str]:
 
 def _case_record(case: Case, ran: RanCase | None, verdicts: Sequence[Verdict]) -> dict:
     """For results.json; ran: None for a case that was not chosen."""
-    own = [verdict.status for verdict in verdicts if verdict.gate.case == case.name]
+    own = [verdict.status for verdict in verdicts if verdict.row.case == case.name]
     unread = ran is not None and any(figure.findings for figure in ran.outcome.figures)
     failed = ran is not None and (unread or bool(ran.failure) or any(status.red for status in own))
     reused = ran is not None and ran.source.reused
@@ -291,11 +291,11 @@ def _case_record(case: Case, ran: RanCase | None, verdicts: Sequence[Verdict]) -
         "title": case.title,
         "question": case.question,
         "equations": [list(row) for row in case.equations],
-        "status": str((GateStatus.FAILED if failed else GateStatus.PASSED) if ran else GateStatus.NOT_RUN),
+        "status": str((RowStatus.FAILED if failed else RowStatus.PASSED) if ran else RowStatus.NOT_RUN),
         "failure": ran.failure if ran else "",
         "seconds": ran.seconds if ran else None,
         "reused": asdict(ran.source) if reused else None,
-        "code": version_of_case(module_of(case.name)) if ran else "",
+        "code": version_of_cases() if ran else "",
         "inputs": dict(sorted(provenance.hashes(ran.context.inputs).items())) if ran else {},
         "runs": ran.context.runs if ran else [],
         "sources": _sources(ran.context) if ran else {},
@@ -313,8 +313,8 @@ def _sources(context: Context) -> dict[str, dict]:
 
 
 def _gate_record(verdict: Verdict) -> dict:
-    record = verdict.gate.model_dump() | asdict(verdict)
-    del record["gate"]
+    record = verdict.row.model_dump() | asdict(verdict)
+    del record["row"]
     return plain(record)
 
 

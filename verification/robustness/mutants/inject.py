@@ -19,7 +19,7 @@ from verification.robustness.mutants.changes import FACTOR, Mutant, Number, rewr
 
 ROOT = Path(__file__).resolve().parents[3]
 
-OWN = ("sam", "fem_reference", "verification", "tests")
+OWN = ("samfem", "sam", "fem_reference", "verification", "tests")
 
 
 def put(mutants: Sequence[Mutant], factor: float = FACTOR) -> dict[Mutant, Number]:

@@ -9,8 +9,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatch
 
+from verification.rows import RowStatus
 from verification.runs.store import short
-from verification.suite.judging import GateStatus
 from verification.suite.pages.agreement import BEYOND
 from verification.suite.pages.findings import Evidence, Finding
 from verification.suite.pages.pairs import Pair, number_in
@@ -77,11 +77,11 @@ def _answer(question: Question, evidence: Evidence) -> Answer:
     if not question.parts:
         status = OPEN
     elif not findings:
-        status = str(GateStatus.NOT_RUN)
+        status = str(RowStatus.NOT_RUN)
     elif not any(each.gated for each in findings):
         status = REPORTED
     else:
-        status = str(GateStatus.FAILED if any(each.red for each in findings) else GateStatus.PASSED)
+        status = str(RowStatus.FAILED if any(each.red for each in findings) else RowStatus.PASSED)
     return Answer(question, findings, status, _cost(findings, cases), origins(cases), list(behind))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from verification.suite.judging import families
+from verification.rows import case_files
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ OTHER = Group("other", "Further cases", (), "Cases that stand in no family of th
 
 def group_of(case: str) -> Group:
     """The page of a case."""
-    family = families().get(case)
+    family = case_files()[case].family if case in case_files() else ""
     return next((group for group in GROUPS if family in group.families), OTHER)
 
 

@@ -12,8 +12,8 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from verification.rows import RowStatus
 from verification.runs.files import write_atomically
-from verification.suite.judging import GateStatus
 from verification.suite.pages.answers import Answer, answers_of, far, kind_of, origins, sentence
 from verification.suite.pages.costs import costs_of, table_of
 from verification.suite.pages.findings import Evidence
@@ -218,7 +218,7 @@ def _page(template: str, stored: Stored, **shown: Any) -> str:
     text = environment.get_template(template).render(
         css=css,
         groups=[group for group, _ in _groups(stored)],
-        statuses=GateStatus,
+        statuses=RowStatus,
         results=stored.results,
         stale=stored.stale,
         words=words,

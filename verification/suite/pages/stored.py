@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
-from verification.suite.judging import LIMITS, GateStatus
+from verification.rows import LIMITS, RowStatus
 
 ASKED, NAMED = "asked", "named"
 ELSEWHERE = {
@@ -18,7 +18,7 @@ ELSEWHERE = {
     ASKED: "not asked for",
 }
 """Why a case did not run that nothing kept from it."""
-RED = (GateStatus.FAILED, GateStatus.UNCHECKED)
+RED = (RowStatus.FAILED, RowStatus.UNCHECKED)
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class ShownCase:
     @property
     def failed(self) -> bool:
         """Whether a gate is red, the case broke off, or the results call it failed for another reason."""
-        return bool(self.red or self.case["failure"] or self.case["status"] == GateStatus.FAILED)
+        return bool(self.red or self.case["failure"] or self.case["status"] == RowStatus.FAILED)
 
     @property
     def used(self) -> float:
@@ -99,8 +99,8 @@ def share_used(gate: Mapping) -> float | None:
 
 def read_stored(results: Mapping, stale: Mapping[str, str] | None = None) -> Stored:
     """The cases of results as verify writes them."""
-    ran = [case for case in results["cases"] if case["status"] != GateStatus.NOT_RUN]
-    waiting = [case for case in results["cases"] if case["status"] == GateStatus.NOT_RUN]
+    ran = [case for case in results["cases"] if case["status"] != RowStatus.NOT_RUN]
+    waiting = [case for case in results["cases"] if case["status"] == RowStatus.NOT_RUN]
     return Stored(
         {case["name"]: _shown(case, results) for case in ran},
         [(case["name"], case["title"], case.get("unmet", "")) for case in waiting],

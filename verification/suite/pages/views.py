@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from verification.rows import LIMITS, RowStatus
 from verification.runs.files import SUMMARY
 from verification.runs.store import short
-from verification.suite.judging import LIMITS, GateStatus
 from verification.suite.pages.literature import works_of
 from verification.suite.pages.stored import RED, ShownCase, share_used
 from verification.suite.records import origin
@@ -50,7 +50,7 @@ def case_view(each: ShownCase, look: Look, told: set[str], above: Collection[str
     figures = [figure_view(figure, look) for figure in case["figures"] if figure["png"] not in above]
     return {
         **case,
-        "status": str(GateStatus.FAILED if each.failed else GateStatus.PASSED),
+        "status": str(RowStatus.FAILED if each.failed else RowStatus.PASSED),
         "gates": sorted(each.gates, key=_first_what_failed),
         "red": len(each.red),
         "tightest": tightest(each),

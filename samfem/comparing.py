@@ -1,0 +1,303 @@
+# SPDX-License-Identifier: MIT
+"""The command compare: scenes solved by SAM and a finite-element model, row by row.
+
+Wrong input of any of them raises, with everything that is wrong, before anything is solved or written.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from sam.scene import Problem, Result, Scene, SceneError, either, finer_cells, finer_mesh, read_scene
+from samfem.compared import COMPANION, Compared, Question, Uncertain, agreement, asked, seconds
+from samfem.refusals import Refusals
+from samfem.solving import unconverged, write_solved
+from verification.compare.rows import Comparison
+from verification.compare.verdicts import CLAIM, NOT_JUDGED
+from verification.figures import compare_figures
+from verification.runs import models
+from verification.runs.files import (
+    FIGURES,
+    SUMMARY,
+    FolderError,
+    Run,
+    check_target,
+    clear_run,
+    json_text,
+    write_atomically,
+)
+from verification.runs.lock import locked
+from verification.runs.store import Reuse, Store, default_store
+from verification.runs.tables import csv_text
+from verification.text.console import Progress, digits, print_table
+from verification.text.readable import with_time
+
+COMPARISON, VERDICT = "compare.csv", "verdict.json"
+WRITTEN = (COMPARISON, VERDICT, COMPANION)
+PARTS = {models.SAM: "sam", models.FEM: "fem", models.FEM_3D: "fem"}
+
+
+@dataclass(frozen=True)
+class Options:
+    """Of the command, as its --help says."""
+
+    model: str | None = None
+    out: Path | None = None
+    use_store: bool = True
+    figures: bool = False
+    claim: str | None = None
+    tolerances: Sequence[tuple[str, float | str]] = ()
+    data: Sequence[Path] = ()
+    report: Path | None = None
+    junit: Path | None = None
+    anyway: bool = False
+
+
+@dataclass(frozen=True)
+class Job:
+    """A scene to compare. inputs: name of a file that was read -> its content; folder: of what is written."""
+
+    name: str
+    question: Question
+    folder: Path
+    inputs: dict[str, bytes]
+
+
+def compare(paths: Sequence[Path], **options) -> int:
+    """Solve each scene with SAM and another model, and write DIR/sam, DIR/fem and compare.csv.
+
+    Returns 0 if all converged and every row held. options: see `Options`.
+    """
+    given = Options(**options)
+    jobs = _jobs(paths, given)
+    store, found = default_store() if given.use_store else None, []
+    for job in jobs:
+        with locked(job.folder):
+            found.append(_answered(job, store))
+            _write(job, found[-1], draw=given.figures)
+    if len(jobs) == 1:
+        _show(jobs[0], found[0], figures=given.figures)
+    else:
+        _show_all(jobs, found)
+    _write_pages(jobs, found, given)
+    print(found[0].line if len(jobs) == 1 else _verdict(jobs, found))
+    return max(_judge(each.scene, each.results, each.rows, each.off) for each in found)
+
+
+def _jobs(paths: Sequence[Path], given: Options) -> list[Job]:
+    """The comparisons that are asked for. Raises with everything that is wrong with any of them."""
+    refusals, jobs = Refusals(), []
+    for path in paths:
+        with refusals.kept():
+            name = f"{path.stem}-compare" if given.out is None else path.stem
+            folder = given.out if given.out and len(paths) == 1 else (given.out or Path()) / name
+            jobs.append(_job(path, folder, given))
+    with refusals.kept():
+        if given.data and len(paths) > 1:
+            shown = ", ".join(map(str, given.data))
+            raise SceneError(
+                [Problem("--with", shown, "for one scene only: compare it by itself")], "options"
+            )
+    with refusals.kept():
+        names = [path.stem for path in paths]
+        if twice := sorted({name for name in names if names.count(name) > 1}):
+            raise FolderError(f"{', '.join(twice)}: scenes of one name would be written to one folder")
+    with refusals.kept():
+        _check_pages(given)
+    refusals.raise_any()
+    return jobs
+
+
+def _job(path: Path, folder: Path, given: Options) -> Job:
+    scene, inputs = read_scene(path)
+    how = {"model": given.model, "claim": given.claim, "data": given.data, "anyway": given.anyway}
+    refusals = Refusals()
+    with refusals.kept():
+        question = asked(scene, tolerances=dict(given.tolerances), source=str(path), **how)
+    with refusals.kept():
+        _check_comparison(folder)
+    refusals.raise_any()
+    return Job(path.stem, question, folder, inputs)
+
+
+def _check_comparison(folder: Path) -> None:
+    """Raise FolderError unless the folder is new, empty or of an older comparison."""
+    check_target(folder, also=(*WRITTEN, *PARTS.values()))
+    if (folder / SUMMARY).exists():
+        raise FolderError(
+            f"{folder} holds a single run: give a new or empty folder, or one of an older comparison"
+        )
+    for part in PARTS.values():
+        check_target(folder / part)
+
+
+def _check_pages(given: Options) -> None:
+    """Raise FolderError where a page or a JUnit file cannot be written."""
+    if given.report is not None:
+        from samfem.comparison_page import check_report  # noqa: PLC0415 - loads the suite
+
+        check_report(given.report)
+    if given.junit is not None:
+        above = given.junit.absolute().parent
+        if given.junit.is_dir() or not above.is_dir() or not os.access(above, os.W_OK):
+            raise FolderError(f"--junit {given.junit}: a file in a folder that can be written to")
+
+
+def _answered(job: Job, store: Store | None) -> Compared:
+    """The comparison, each run written to its folder once it is there; what an older one says is removed."""
+    for name in WRITTEN:
+        (job.folder / name).unlink(missing_ok=True)
+    if job.folder.exists():
+        clear_run(job.folder)  # figures of an older comparison
+
+    def solved(model: str, result: Result, source: Reuse) -> None:
+        where = job.folder / PARTS[model]
+        write_solved(job.question.scene, where, result, source=source, inputs=job.inputs)
+
+    with Progress(remaining=True) as progress:
+        return job.question.answer(store=store, progress=progress, solved=solved)
+
+
+def _write(job: Job, found: Compared, *, draw: bool) -> None:
+    """Write the rows, the cost of both models, the verdict on a film, and figures if they are asked for."""
+    if found.film is not None:
+        write_atomically(job.folder / VERDICT, json_text(found.film.content()).encode())
+    table = found.frame
+    text = csv_text(list(table.columns), list(table.itertuples(index=False)))
+    write_atomically(job.folder / COMPARISON, text.encode())
+    content = {
+        "passed": found.passed,
+        "line": found.line,
+        "rows": len(found.rows),
+        "failed": len(found.failed),
+        "model_range": found.range_lines,
+    }
+    content["data"] = {
+        data.name: {"rows": len(rows), "failed": sum(not row.passed for row in rows)}
+        for data, rows in zip(found.data, found.beside, strict=True)
+    }
+    content["cost"] = {each.model: {"seconds": seconds(each), **each.cost} for each in found.results}
+    write_atomically(job.folder / COMPANION, json_text(content).encode())
+    if draw:
+        compare_figures(job.folder, found.solutions)
+
+
+def _write_pages(jobs: Sequence[Job], found: Sequence[Compared], given: Options) -> None:
+    """The page and the JUnit file, if they are asked for."""
+    if given.report is None and given.junit is None:
+        return
+    from samfem.comparison_page import Scenes, junit_of, write_report  # noqa: PLC0415 - loads the suite
+
+    scenes = Scenes(
+        {job.name: each for job, each in zip(jobs, found, strict=True)},
+        {name: content for job in jobs for name, content in job.inputs.items()},
+    )
+    if given.report is not None:
+        print(write_report(scenes, given.report))
+    if given.junit is not None:
+        write_atomically(given.junit, junit_of(scenes))
+        print(given.junit)
+
+
+def _show_all(jobs: Sequence[Job], found: Sequence[Compared]) -> None:
+    """A line for each scene."""
+    rows = [
+        (
+            job.name,
+            agreement(each.rows),
+            *map(with_time, map(seconds, each.results)),
+            "passed" if each.passed else "FAILED",
+        )
+        for job, each in zip(jobs, found, strict=True)
+    ]
+    print_table(("scene", "rows", "SAM", "FEM", ""), rows, red=[not each.passed for each in found])
+
+
+def _verdict(jobs: Sequence[Job], found: Sequence[Compared]) -> str:
+    """How many scenes agree, which do not, and the cost."""
+    wrong = [job.name for job, each in zip(jobs, found, strict=True) if not each.passed]
+    times = [
+        with_time(sum(each)) for each in zip(*(map(seconds, each.results) for each in found), strict=True)
+    ]
+    agree = f"{len(jobs) - len(wrong)} of {len(jobs)} scenes agree" + (
+        f", not {', '.join(wrong)}" if wrong else ""
+    )
+    return f"{agree}; SAM {times[0]}, FEM {times[1]}"
+
+
+def _show(job: Job, found: Compared, *, figures: bool) -> None:
+    """The rows, the verdict on a film, and what was written."""
+    table = found.frame.astype(object).where(found.frame.notna(), None)
+    own = [data.name for data in found.data]
+    cells, red = [], []
+    for row, (_, values) in zip(found.rows, table.iterrows(), strict=True):
+        beside = [cell for name in own for cell in (digits(values[name]), _mark(values, name))]
+        cells.append(
+            (
+                row.quantity,
+                digits(row.sam),
+                digits(row.fem),
+                digits(row.difference, 3),
+                digits(row.tolerance),
+                "passed" if row.passed else "FAILED",
+                *beside,
+            )
+        )
+        red.append("FAILED" in " ".join(cells[-1]))
+    heads = [head for name in own for head in (name, "")]
+    if both := {each.quantity: each for each in found.uncertain}:
+        heads.append("u_num")
+        marks = [both.get(row.quantity) for row in found.rows]
+        cells = [(*row, _around(each)) for row, each in zip(cells, marks, strict=True)]
+    print_table(("quantity", "sam", "fem", "difference", "tolerance", "", *heads), cells, red=red)
+    if found.film is not None:
+        print(found.film.words + ("" if found.claim else NOT_JUDGED))
+    print(job.folder / COMPARISON)
+    if figures:
+        for drawn in sorted((job.folder / FIGURES).iterdir()):
+            print(drawn)
+
+
+def _around(each: Uncertain | None) -> str:
+    """The uncertainty of both models, and whether their difference is larger."""
+    return "" if each is None else f"{digits(each.u_num, 2)}{'' if each.holds else ' exceeded'}"
+
+
+def _mark(values, name: str) -> str:
+    """What became of a row of data, with its difference."""
+    words = {"True": "passed", "False": "FAILED"}.get(values[f"{name}_passed"])
+    return f"{digits(values[f'{name}_difference'], 3)} {words}" if words else "not compared"
+
+
+def _judge(
+    scene: Scene,
+    results: Sequence[Result | Run],
+    rows: Sequence[Comparison],
+    off: Sequence[tuple[str, Comparison]] = (),
+) -> int:
+    """Exit code; what did not hold, and what to change, on stderr. off: rows of data that did not hold."""
+    code, broken = unconverged(results), [row for row in rows if not row.passed]
+    claimed = [row.quantity for row in broken if row.metric == CLAIM]
+    failed = [row.quantity for row in broken if row.metric != CLAIM]
+    if failed and not code:  # else there is something to change first
+        finer = f"to see whether the meshes are too coarse, {_finer(scene)}, and compare again"
+        print(f"samfem: outside the tolerance: {', '.join(failed)}: {finer}", file=sys.stderr)
+    if claimed:
+        print(f"samfem: the film is not negligible: {', '.join(claimed)}", file=sys.stderr)
+    for name in dict.fromkeys(name for name, _ in off):
+        quantities = ", ".join(row.quantity for other, row in off if other == name)
+        print(f"samfem: {name} is outside the tolerance: {quantities}", file=sys.stderr)
+    return 1 if code or failed or claimed or off else 0
+
+
+def _finer(scene: Scene) -> str:
+    """What to refine of both models."""
+    layers = "raise the number of layers in grid" if scene.body.plasticity is not None else ""
+    mesh = (
+        finer_mesh(scene) if scene.patch_surface is None else ""
+    )  # of a rough scene both have the same cells
+    return either(finer_cells(scene), layers, mesh) or "lower grid.extent"

@@ -1,0 +1,372 @@
+# SPDX-License-Identifier: MIT
+"""What `import samfem` gives: the functions, what they return, and what they raise."""
+
+from __future__ import annotations
+
+import html
+import json
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib import import_module
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from pandas import DataFrame
+
+_others = import_module("verification")
+_file = getattr(_others, "__file__", None)
+if _file is None or Path(_file).resolve().parents[1] != Path(__file__).resolve().parents[1]:
+    raise ImportError(
+        f"samfem needs its own package verification, and Python finds another one, {_file or 'a folder'}: "
+        f"uninstall the distribution that it belongs to, or install samfem in an environment of its own"
+    )
+if _words := _others.foreign_package():
+    raise ImportError(_words)
+
+from sam.scene import (  # noqa: E402 - only once they are ours
+    HeightMap as HeightMap,
+    Result,
+    Scene,
+    SceneError as SceneError,
+    load_scene,
+)
+from samfem.compared import COMPANION, Compared, compared  # noqa: E402
+from samfem.refusals import SeveralError as SeveralError  # noqa: E402
+from verification import figures  # noqa: E402
+from verification.compare.own_data import OwnData  # noqa: E402
+from verification.cost.accuracy import solve as solve_family  # noqa: E402
+from verification.runs import files, models  # noqa: E402
+from verification.runs.files import FolderError  # noqa: E402
+from verification.runs.model_range import off_in_words  # noqa: E402
+from verification.runs.models import MODELS, SAM, ModelError  # noqa: E402
+from verification.runs.store import default_store  # noqa: E402
+from verification.runs.study import read_study  # noqa: E402
+from verification.runs.tables import read_any_table  # noqa: E402
+from verification.text.readable import in_working_unit  # noqa: E402
+
+SHOWN = ("p_max_Pa", "contact_radius_m", "approach_m", "peeq_max", "friction_coefficient", "wear_volume_m3")
+"""Quantities of the short representation, those of them that are not zero."""
+
+
+@dataclass(frozen=True, repr=False)
+class Run(files.Run):
+    """A result of one model.
+
+    Attributes
+    ----------
+    scene
+        The scene that was solved, with every default.
+    model, status, converged, message
+        What solved it, and how that ended. Use the quantities only if `converged` is true.
+    quantities
+        Name with SI unit, as "p_max_Pa" -> float, or None where it does not apply.
+    tables
+        Name ("history", "axis", "line", "plane", "surface", ...) -> DataFrame, columns with SI unit.
+    model_range
+        By how much small strains of a flat half-space are off, see `docs/guide/accuracy.md`; or None.
+    cost
+        Times in s, memory in bytes and counters.
+    summary
+        All that summary.json holds: also what was left out and why, the grid or mesh, and the provenance.
+    folder
+        Where the run was written or read; None where neither was done.
+    result
+        What the solver returned, of a run in no folder.
+    """
+
+    result: Result | None = None
+
+    def save(self, folder: str | Path) -> Run:
+        """The run, written to a folder. Raises FolderError where that holds something else."""
+        if self.result is None:
+            raise FolderError(f"the run is in {self.folder}: copy that folder")
+        files.write_run(self.result, self.scene, folder)
+        return _run_in(Path(folder))
+
+    def __repr__(self) -> str:
+        values = self.last_fitting or self.quantities
+        shown = [in_working_unit(name, value, digits=3) for name in SHOWN if (value := values.get(name))]
+        words = ", ".join(f"{name} {value}" for name, value in shown)
+        return f"<samfem.Run {self.model}, {self.status}: {words or 'no load'}{_off(self)}>"
+
+    def _repr_html_(self) -> str:
+        values = self.last_fitting or self.quantities
+        rows = [in_working_unit(name, value) for name, value in values.items() if value is not None]
+        left_out = [(entry["stage"], entry["reason"]) for entry in self.summary["left_out"]]
+        tables = [(name, f"{len(table)} rows: {', '.join(table)}") for name, table in self.tables.items()]
+        off = " ".join(self.range_lines)
+        head = f"{self.summary['title'] or 'scene'} ({self.model}): {self.status}. {self.message} {off}"
+        parts = (("Quantities", rows), ("Left out", left_out), ("Tables", tables))
+        return f"<p><b>{html.escape(head)}</b></p>" + "".join(
+            f"<details{' open' * (of is rows)}><summary>{what}</summary>{_table(of)}</details>"
+            for what, of in parts
+        )
+
+
+@dataclass(frozen=True, repr=False)
+class Comparison:
+    """SAM and a finite-element model on one scene, and own data if they are given.
+
+    Attributes
+    ----------
+    frame
+        A row for each quantity and field: SAM, FEM, their difference, its tolerance and the reason of that;
+        four columns more for own data.
+    sam, fem
+        The two runs.
+    line
+        The verdict on one line.
+    data
+        Name of own data -> what was read of them; empty for a comparison that is read from a folder.
+    """
+
+    frame: DataFrame
+    sam: Run
+    fem: Run
+    line: str
+    data: Mapping[str, OwnData] = field(default_factory=dict)
+
+    @property
+    def failed(self) -> DataFrame:
+        """The rows of the frame that are not within their tolerance, of the models or of own data."""
+        judged = [name for name in self.frame if name == "passed" or name.endswith("_passed")]
+        return self.frame[(self.frame[judged].astype(str) == "False").any(axis=1)]
+
+    @property
+    def passed(self) -> bool:
+        """Whether both models converged and every row is within its tolerance, of own data too."""
+        return self.failed.empty and self.sam.converged and self.fem.converged
+
+    def check(self) -> None:
+        """Raise AssertionError, with every row that is not within its tolerance, unless all are."""
+        if not self.passed:
+            raise AssertionError(f"{self.line}\n{self.failed.to_string(index=False)}")
+
+    def __repr__(self) -> str:
+        return f"<samfem.Comparison {self.line}{_off(self.sam)}>"
+
+    def _repr_html_(self) -> str:
+        line = "; ".join([self.line, *self.sam.range_lines])
+        return f"<p><b>{html.escape(line)}</b></p>{self.frame.to_html(index=False)}"
+
+
+@dataclass(frozen=True, repr=False)
+class Sweep:
+    """A finished sweep.
+
+    Attributes
+    ----------
+    frame
+        A row for each scene: the varied values in SI units, status, reason, quantities and counters.
+    folder
+        Where it is; record: what sweep.json holds.
+    """
+
+    frame: DataFrame
+    folder: Path
+    record: Mapping[str, Any]
+
+    def run(self, index: int) -> Run:
+        """The run of a row, by its index. Raises FolderError where the sweep kept none."""
+        width = len(str(self.record["points"] - 1))
+        return _run_in(self.folder / "runs" / f"{index:0{width}}")
+
+    def __repr__(self) -> str:
+        counts = ", ".join(
+            f"{number} {name.replace('_', ' ')}" for name, number in self.record["counts"].items()
+        )
+        return f"<samfem.Sweep of {len(self.frame)} scenes: {counts}>"
+
+    def _repr_html_(self) -> str:
+        return f"<p><b>{html.escape(repr(self))}</b></p>{self.frame.to_html(index=False, max_rows=20)}"
+
+
+def load(path: str | Path) -> Scene:
+    """The scene in a TOML file. Raises SceneError with every problem of the file."""
+    return load_scene(path)
+
+
+def plan(scene: Scene | str | Path, model: str = SAM) -> Any:
+    """What a model will compute of a scene: grid or mesh, stages with their sizes, what is left out and why.
+
+    Raises ModelError where the model cannot represent the scene.
+    """
+    scene = _scene(scene)
+    models.check(scene, model)
+    return models.plan(scene, model)
+
+
+def solve(scene: Scene | str | Path, model: str = SAM, out: str | Path | None = None) -> Run:
+    """The result of a scene.
+
+    Parameters
+    ----------
+    scene
+        A scene, or the path of its file.
+    model
+        One of `MODELS`: "sam", "fem-axisymmetric", "fem-3d".
+    out
+        Folder to write the run to; nothing is written without it.
+
+    Raises
+    ------
+    SceneError, ModelError, FolderError
+        For a wrong file, a scene that the model cannot represent, a folder that holds something else.
+    """
+    scene = _scene(scene)
+    if model not in MODELS:
+        raise ModelError(f"model = {model!r}, allowed: {', '.join(MODELS)}")
+    if out is not None:
+        files.check_target(Path(out))
+    run = _run_of(solve_family(scene, model), scene)
+    return run if out is None else run.save(out)
+
+
+def compare(
+    scene: Scene | str | Path,
+    model: str | None = None,
+    *,
+    data: Sequence[str | Path] = (),
+    tolerances: Mapping[str, Any] | None = None,
+    claim: str | None = None,
+) -> Comparison:
+    """SAM and a finite-element model on one scene, row by row with tolerances; from the store what it holds.
+
+    Parameters
+    ----------
+    scene
+        A scene, or the path of its file.
+    model
+        The finite-element model; None takes the cheapest that can represent the scene.
+    data
+        Files of own data, as the command compare takes them after --with.
+    tolerances
+        Name of a row -> number or text such as "2 %", in place of those of the scene and the defaults.
+    claim
+        "negligible-film": judged too.
+
+    Raises
+    ------
+    SceneError, ModelError
+        For a wrong scene or wrong data, or a scene that no finite-element model can represent.
+    SeveralError
+        For more than one of these; a ValueError too.
+    """
+    kept = default_store()
+    return _comparison_of(
+        compared(_scene(scene), model=model, data=data, tolerances=tolerances, claim=claim, store=kept)
+    )
+
+
+def sweep(study: str | Path, out: str | Path | None = None, workers: int | None = None) -> Sweep:
+    """The scenes of a study file, solved on this machine into a folder, as `samfem sweep` does.
+
+    Parameters
+    ----------
+    study
+        Path of the study.
+    out
+        The folder; by default that of the command, NAME-sweep.
+    workers
+        Processes; one for each core by default.
+
+    Raises
+    ------
+    SceneError, FolderError
+        For a wrong study or a folder that holds something else.
+    """
+    read_study(Path(study))
+    folder = Path(out or f"{Path(study).stem}-sweep")
+    words = [str(study), "--anyway", "--out", str(folder), *(["--workers", str(workers)] if workers else [])]
+    # a process of its own, as its workers would run the script of the user again
+    ended = subprocess.run([sys.executable, "-m", "samfem.cli", "sweep", *words], capture_output=True)
+    if ended.returncode == 2 or not (folder / "sweep.json").exists():
+        raise FolderError(ended.stderr.decode(errors="replace").strip())
+    return _sweep_in(folder)
+
+
+def read(folder: str | Path) -> Run | Comparison | Sweep:
+    """What a command wrote to a folder: a run, a comparison or a sweep. Raises FolderError for others."""
+    folder = Path(folder)
+    for name, reader in (("sweep.json", _sweep_in), ("compare.csv", _comparison_in)):
+        if (folder / name).exists():
+            return reader(folder)
+    return _run_in(folder)
+
+
+def plot(result: Run | Comparison | Sweep, name: str | None = None) -> dict[str, Figure] | Figure:
+    """The figures of a result by name, or the one of that name, as matplotlib figures.
+
+    Raises KeyError, with the names that there are, for another one.
+    """
+    figures = {key: drawing.figure for key, drawing in _drawings(result).items()}
+    if name is not None and name not in figures:
+        raise KeyError(f"{name!r}: this result has the figures {', '.join(figures)}")
+    return figures if name is None else figures[name]
+
+
+def _drawings(result: Run | Comparison | Sweep) -> Mapping[str, Any]:
+    if isinstance(result, Run):
+        with TemporaryDirectory() as folder:  # the figures look at the meshes too
+            return figures.drawings_of_run(result if result.folder else result.save(folder))
+    if isinstance(result, Comparison):
+        solutions: dict[str, Any] = {"SAM": result.sam, "FEM": result.fem, **result.data}
+        return figures.drawings_of_comparison(solutions)
+    return {"sweep": figures.drawing_of_sweep(result.frame, result.record["study"])}
+
+
+def _off(run: Run) -> str:
+    """By how much the model is off, short; empty where no quantity is off by 1 %."""
+    found = run.model_range or {"quantities": {}, "outside": False}
+    parts = ["outside" * found["outside"], off_in_words(found)]
+    words = ", ".join(filter(None, parts))
+    return f"; model: {words}" if words else ""
+
+
+def _scene(scene: Scene | str | Path) -> Scene:
+    return scene if isinstance(scene, Scene) else load_scene(scene)
+
+
+def _run_of(result: Result, scene: Scene) -> Run:
+    return Run(**vars(files.run_of(result, scene)), result=result)
+
+
+def _run_in(folder: Path) -> Run:
+    return Run(**vars(files.read_run(folder)))
+
+
+def _comparison_of(found: Compared) -> Comparison:
+    sam, fem = (_run_of(result, found.scene) for result in (found.sam, found.fem))
+    return Comparison(found.frame, sam, fem, found.line, {data.name: data for data in found.data})
+
+
+def _comparison_in(folder: Path) -> Comparison:
+    frame = _frame_in(folder / "compare.csv")
+    sam, fem = (_run_in(folder / part) for part in ("sam", "fem"))
+    try:
+        line = json.loads((folder / COMPANION).read_bytes())["line"]
+    except (OSError, ValueError, KeyError, TypeError):
+        raise FolderError(f"{folder / COMPANION} is missing or damaged: run the command again") from None
+    return Comparison(frame, sam, fem, line)
+
+
+def _sweep_in(folder: Path) -> Sweep:
+    return Sweep(_frame_in(folder / "sweep.csv"), folder, json.loads((folder / "sweep.json").read_bytes()))
+
+
+def _frame_in(path: Path) -> DataFrame:
+    try:
+        return read_any_table(path.read_bytes())
+    except (OSError, ValueError) as error:
+        raise FolderError(f"{path} is damaged ({error}): run the command again") from None
+
+
+def _table(rows: Sequence[Sequence[str]]) -> str:
+    """Rows of text as an HTML table."""
+    cells = ("".join(f"<td>{html.escape(str(cell))}</td>" for cell in row) for row in rows)
+    return f"<table>{''.join(f'<tr>{row}</tr>' for row in cells)}</table>"

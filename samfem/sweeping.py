@@ -1,0 +1,384 @@
+# SPDX-License-Identifier: MIT
+"""The command sweep: the scenes of a study, solved by many workers, as one table.
+
+What the store holds is not solved again, and what is solved is kept there as soon as it is finished, so a
+sweep that was killed goes on where it was. The table holds no times: the same study gives the same bytes
+wherever it was solved.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, suppress
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from sam.scene import QUANTITIES, Problem, Result, Scene, SceneError, resolved, spelling
+from samfem.executors import Cluster, Failure, Processes, Workers, run
+from verification.cost.plan import check_needs
+from verification.figures import sensitivity_figure, sweep_figure
+from verification.runs import models
+from verification.runs.code_version import code_version
+from verification.runs.files import (
+    FIGURES,
+    SUMMARY,
+    FolderError,
+    check_target,
+    clear_run,
+    json_text,
+    read_summary,
+    write_atomically,
+    write_run,
+)
+from verification.runs.lock import locked
+from verification.runs.provenance import collect, without_places
+from verification.runs.store import UNCONVERGED, Lookup, Reuse, Store, default_store, identity
+from verification.runs.study import Points, StudyPoint, read_study
+from verification.runs.tables import csv_text
+from verification.sensitivity import indices
+from verification.text.console import Progress, print_table
+
+FORMAT = "samfem sweep 1"
+TABLE, RECORD, RUNS, SENSITIVITY = "sweep.csv", "sweep.json", "runs", "sensitivity.csv"
+FILES, OF_DESIGN = (RECORD, TABLE, "sweep.png"), (SENSITIVITY, "sensitivity.png")
+INDEX_COLUMNS = ("quantity", "key", "index", "value", "low", "high", "samples")
+COUNTERS = ("contact_iterations", "plastic_iterations", "operator_applications", "newton_iterations")
+REFUSED, FAILED = "refused", "failed"
+MOST_SAID = 3
+REST_FACTOR = 4  # the table is not rewritten before this many times the time that the last writing took
+
+
+@dataclass(frozen=True)
+class SolvedPoint:
+    """A result and where it was computed: versions, machine and threads of the worker."""
+
+    result: Result
+    origin: Mapping[str, object]
+
+
+@dataclass
+class Sweep:
+    """What has become of the points so far. rows: index -> row of the table; runs: whether run folders are
+    written.
+    """
+
+    content: Points
+    folder: Path
+    store: Store | None
+    runs: bool
+    rows: dict[int, tuple] = field(default_factory=dict)
+    counts: Counter = field(default_factory=Counter)
+    notes: list[str] = field(default_factory=list)
+    repeats: int = 0
+    provenance: Mapping = field(default_factory=dict)
+    _rest_until: float = 0.0
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        vary = self.content.study.vary
+        return ("index", *vary, "model", "status", "reason", *QUANTITIES, *COUNTERS, "warnings")
+
+    @property
+    def ordered(self) -> list[tuple]:
+        return [self.rows[index] for index in sorted(self.rows)]
+
+    def add(self, point: StudyPoint, result: Result, source: Reuse, origin: Mapping) -> None:
+        """A result, solved or reused."""
+        self.counts["reused" if source.reused else "solved"] += 1
+        self.counts["not_converged"] += not result.converged
+        numbers = [result.quantities.get(name) for name in QUANTITIES] + [
+            result.cost.get(name) for name in COUNTERS
+        ]
+        reason = "" if result.converged else result.message or result.status.advice
+        self._row(point, result.status.value, reason, [*numbers, "; ".join(result.warnings)])
+        place = self.place(point.index)
+        if self.runs and not (source.reused and (place / SUMMARY).exists()):
+            code = {"code_version": code_version(result.model)}
+            write_run(result, point.scene, place, {**self.provenance, **code, **origin, **source.provenance})
+
+    def place(self, index: int) -> Path:
+        """The folder of a run; names of equal length, so that they sort."""
+        return self.folder / RUNS / f"{index:0{len(str(len(self.content.points) - 1))}}"
+
+    def add_without(self, point: StudyPoint, status: str, reason: str) -> None:
+        """A point without a result."""
+        self.counts[status] += 1
+        empty = [*[None] * (len(QUANTITIES) + len(COUNTERS)), ""]
+        self._row(point, status, " ".join(reason.split()), empty)
+
+    def _row(self, point: StudyPoint, status: str, reason: str, last: Sequence) -> None:
+        self.rows[point.index] = (
+            point.index,
+            *point.shown,
+            self.content.study.model,
+            status,
+            reason,
+            *last,
+        )
+
+    def write(self, always: bool = False) -> None:
+        """The table of what is finished, in the order of the index; a long one not after each point."""
+        began = time.monotonic()
+        if always or began >= self._rest_until:
+            write_atomically(self.folder / TABLE, csv_text(self.columns, self.ordered).encode())
+            now = time.monotonic()
+            self._rest_until = now + REST_FACTOR * (now - began)
+
+
+def sweep(
+    path: Path,
+    *,
+    out: Path | None = None,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    runs: bool = True,
+    use_store: bool = True,
+    anyway: bool = False,
+) -> int:
+    """Solve the scenes of a study into a folder; 0 if all converged, else 1 with the first reasons on stderr.
+
+    scheduler: address of a Dask cluster, instead of so many `workers` on this machine (None: one a core);
+    runs: write a folder for each result; use_store: take what the store holds, and keep there what is solved;
+    anyway: also scenes that take longer than a command begins unasked.
+    Raises SceneError or FolderError before anything is made, KeyboardInterrupt that says what is kept.
+    """
+    began = time.monotonic()
+    content = read_study(path)
+    folder = out or Path(f"{path.stem}-sweep")
+    _check_folder(folder)
+    store = default_store() if use_store else None
+    with locked(folder), _executor(scheduler, workers) as executor:
+        seeds = [] if content.study.seed is None else [content.study.seed]
+        state = Sweep(content, folder, store, runs, provenance=collect(content.inputs, seeds))
+        folder.mkdir(parents=True, exist_ok=True)
+        _clear(state)
+        try:
+            _fill(state, executor, anyway)
+        except KeyboardInterrupt:
+            state.write(always=True)
+            kept = f"{len(state.rows)} of {len(content.points)} scenes are finished"
+            again = "the same command goes on from there" if store else "without a store all are solved again"
+            raise KeyboardInterrupt(f"interrupted: {kept}; {again}") from None
+    state.write(always=True)
+    _draw(state)
+    if content.study.design:
+        found = index_rows(state)
+        write_atomically(folder / SENSITIVITY, csv_text(INDEX_COLUMNS, found).encode())
+        rows = [dict(zip(INDEX_COLUMNS, row, strict=True)) for row in found]
+        sensitivity_figure(rows, folder / "sensitivity")
+    described = {"kind": "dask" if scheduler else "processes", "lost": executor.lost}
+    record = _record(state) | {"workers": described, "elapsed_s": time.monotonic() - began}
+    write_atomically(folder / RECORD, json_text(record).encode())
+    return _judge(state)
+
+
+def _executor(scheduler: str | None, count: int | None) -> AbstractContextManager[Workers]:
+    if scheduler is None:
+        return Processes(count or _cores())
+    try:
+        return Cluster(scheduler)
+    except ModuleNotFoundError:
+        allowed = "needs the package distributed: pip install samfem[dask]"
+    except ImportError as error:
+        allowed = (
+            f"needs the package distributed, which cannot be loaded on this machine ({error}): use --workers"
+        )
+    except OSError as error:
+        allowed = (
+            f"the address of a running Dask scheduler with workers, such as tcp://localhost:8786 ({error})"
+        )
+    raise SceneError([Problem("--scheduler", spelling(scheduler), allowed)], "samfem sweep")
+
+
+def _cores() -> int:
+    """Those that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _check_folder(folder: Path) -> None:
+    """Raise FolderError unless the folder is new, empty or of an older sweep."""
+    check_target(folder, also=(*FILES, *OF_DESIGN, RUNS))
+    if (folder / SUMMARY).exists():
+        raise FolderError(
+            f"{folder} holds a single run: give a new or empty folder, or one of an older sweep"
+        )
+
+
+def _clear(state: Sweep) -> None:
+    """Remove the files of an older sweep, sweep.json first, and its runs, but those that the store will give
+    again.
+    """
+    for name in (*FILES, *OF_DESIGN):
+        (state.folder / name).unlink(missing_ok=True)
+    ours = {
+        state.place(point.index).name: point for point in state.content.points if state.runs and state.store
+    }
+    for place in (state.folder / RUNS).glob("[0-9]*"):
+        if place.is_dir() and not place.is_symlink() and not _is_run_of(place, ours.get(place.name), state):
+            clear_run(place)
+            for emptied in (place / FIGURES, place, state.folder / RUNS):
+                with suppress(OSError):  # not there, or something else is in it
+                    emptied.rmdir()
+
+
+def _is_run_of(place: Path, point: StudyPoint | None, state: Sweep) -> bool:
+    """Whether the folder holds the run of a point, by the model and the code of now."""
+    if point is None or point.scene is None:
+        return False
+    try:
+        summary = read_summary(place)
+        found = summary["scene"], summary["model"], summary["provenance"]["code_version"]
+    except (FolderError, KeyError, TypeError):
+        return False
+    model = state.content.study.model
+    return (
+        found == (resolved(point.scene), model, code_version(model)) and summary.get("status") == "converged"
+    )
+
+
+def _fill(state: Sweep, workers: Workers, anyway: bool) -> None:
+    """A row for each point: refused, from the store, or solved."""
+    points, model = state.content.points, state.content.study.model
+    with Progress(remaining=True) as progress:
+        missing = {point.index: point for point in _look_up(state, progress)}
+        if state.rows:
+            state.write(always=True)
+        equal: dict[str, list[int]] = {}
+        for index, point in missing.items():
+            equal.setdefault(json_text(identity(point.scene, model)), []).append(index)
+        same = {indices[0]: indices for indices in equal.values()}
+        tasks = {index: (points[index].scene, model, code_version(model), anyway) for index in same}
+        progress("sweep", 0, len(tasks))
+        for done, (index, outcome, repeats) in enumerate(run(workers, solve_scene, tasks), start=1):
+            state.repeats = repeats
+            for each in same[index]:
+                _take(state, points[each], outcome)
+            state.write()
+            progress("sweep", done, len(tasks))
+
+
+def _look_up(state: Sweep, progress: Progress) -> Iterator[StudyPoint]:
+    """The points that have to be solved; the others become rows."""
+    points, model = state.content.points, state.content.study.model
+    for done, point in enumerate(points, start=1):
+        if point.scene is None:
+            state.add_without(point, REFUSED, point.reason)
+            continue
+        found = _found(state.store, point.scene, model) if state.store else None
+        if found is not None and found.result is not None:
+            state.add(point, found.result, Reuse(True, found.created, found.commit), {})
+        else:
+            if found is not None and found.note:
+                state.notes.append(found.note)
+            yield point
+        progress("looked up in the store", done, len(points))
+    if state.notes:
+        text = (
+            f"{len(state.notes)} results of the store cannot be used and are computed again: {state.notes[0]}"
+        )
+        print(f"samfem: sweep: {text}", file=sys.stderr)
+
+
+def _found(store: Store, scene: Scene, model: str) -> Lookup:
+    """What a store holds of a scene, converged or not."""
+    converged = store.lookup(scene, model)
+    if converged.result is not None:
+        return converged
+    other = store.lookup(scene, model, UNCONVERGED)
+    return converged if other.result is None else other
+
+
+def _take(state: Sweep, point: StudyPoint, outcome: SolvedPoint | Failure) -> None:
+    if isinstance(outcome, Failure):
+        state.add_without(point, FAILED, outcome.reason)
+        return
+    if state.store is not None:
+        state.store.keep(point.scene, outcome.result.model, outcome.result, unconverged=True)
+    state.add(point, outcome.result, Reuse(False), outcome.origin)
+
+
+def solve_scene(scene: Scene, model: str, code: str, anyway: bool = False) -> SolvedPoint | Failure:
+    """In a worker: the result of a scene. A Failure if it raises, or if the worker runs another version of
+    the code.
+    """
+    try:
+        if code_version(model) != code:
+            return Failure(
+                "the worker runs another version of samfem, numpy or scipy: install the same one there"
+            )
+        check_needs(scene, model, anyway=anyway)
+        return SolvedPoint(models.solve(scene, model), _origin())
+    except models.ModelError as error:
+        return Failure(str(error))
+    except MemoryError:
+        return Failure("out of memory: lower grid.cells, grid.layers or fem.cells_per_radius")
+    except Exception as error:  # whatever it is, it is this scene's
+        return Failure(f"{type(error).__name__}: {error}")
+
+
+@cache
+def _origin() -> Mapping[str, object]:
+    found = collect()
+    return {name: found[name] for name in ("versions", "machine", "threads")}
+
+
+def _draw(state: Sweep) -> None:
+    rows = [dict(zip(state.columns, row, strict=True)) for row in state.ordered]
+    sweep_figure(state.content.study, rows, state.folder / "sweep")
+
+
+def index_rows(state: Sweep) -> list[tuple]:
+    """The indices of sensitivity of each quantity that changes over a design, by what moves it most."""
+    study, shares, found = state.content.study, state.content.study.shares(), []
+    columns = dict(zip(state.columns, zip(*state.ordered, strict=True), strict=True))
+    converged = np.array(columns["status"]) == "converged"
+    for name in QUANTITIES:
+        values = np.where(converged, np.array(columns[name], dtype=float), np.nan)
+        for index in indices(study.mode, shares, values, study.seed):
+            numbers = (index.values, *index.bounds, index.count)
+            rows = [
+                (name, key, index.name, *each) for key, *each in zip(study.factors, *numbers, strict=True)
+            ]
+            found += sorted(rows, key=lambda row: -abs(row[3]))
+    return found
+
+
+def _record(state: Sweep) -> dict:
+    study = state.content.study
+    counts = {name: state.counts[name] for name in ("solved", "reused", "not_converged", FAILED, REFUSED)}
+    return {
+        "format": FORMAT,
+        "title": study.title,
+        "study": study.model_dump(mode="json", by_alias=True, exclude_none=True),
+        "seed": study.seed,
+        "model": study.model,
+        "points": len(state.content.points),
+        "counts": counts,
+        "retries": state.repeats,
+        "store": state.store is not None,
+        "not_used_of_store": [without_places(note, state.store.folder) for note in state.notes],
+        "units": {key: axis.si_unit for key, axis in study.vary.items()},
+        "columns": state.columns,
+        "provenance": state.provenance,
+    }
+
+
+def _judge(state: Sweep) -> int:
+    """Exit code; counts on stdout, and the first points without a converged result on stderr."""
+    names = ("solved", "reused", "not_converged", FAILED, REFUSED)
+    print_table(("scenes", *names), [[str(len(state.rows)), *(str(state.counts[name]) for name in names)]])
+    print(state.folder / TABLE)
+    place = state.columns.index("status")
+    bad = [(row[0], row[place], row[place + 1]) for row in state.ordered if row[place] != "converged"]
+    for index, status, reason in bad[:MOST_SAID]:
+        print(f"samfem: sweep: scene {index}: {status}: {reason}", file=sys.stderr)
+    if len(bad) > MOST_SAID:
+        print(f"samfem: sweep: and {len(bad) - MOST_SAID} more, see {state.folder / TABLE}", file=sys.stderr)
+    return 1 if bad else 0

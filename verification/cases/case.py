@@ -1,0 +1,389 @@
+# SPDX-License-Identifier: MIT
+"""What a verification case is, what it may use, and what it hands back."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib import resources
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pydantic import BaseModel
+
+from sam.scene import Body, CounterBody, Grid, Progress, Result, Scene, printable, read_scene
+from verification.figures import space
+from verification.quantities import Measured
+from verification.rows import LEVELS
+from verification.runs.files import write_atomically, write_run
+from verification.runs.models import FEM, FEM_3D, SAM
+from verification.runs.provenance import collect, without_places
+from verification.runs.store import Reuse, Store, solve_or_reuse
+from verification.text.console import number
+
+if TYPE_CHECKING:
+    from verification.figures.style import Drawing
+
+
+@dataclass(frozen=True)
+class Plot:
+    """A drawing that a case asks for. name: of its files, led by that of the case; embedded: see `Figure`."""
+
+    drawing: Drawing
+    name: str
+    title: str
+    alt: str
+    caption: str
+    embedded: bool = True
+
+
+@dataclass(frozen=True)
+class View:
+    """A picture in space that a case asks for.
+
+    run: label of the run that it shows; picture: which one, see `verification.figures.space`; name: of its
+    file, led by that of the case.
+    """
+
+    run: str
+    picture: str
+    name: str
+    title: str
+    alt: str
+    caption: str
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A drawn figure; paths relative to the report's folder, a picture in space has no csv. embedded: shown
+    on the page, not only linked from it; findings: what cannot be read in it, see
+    `verification.figures.check`: the case has failed then.
+    """
+
+    title: str
+    alt: str
+    caption: str
+    png: str
+    csv: str = ""
+    embedded: bool = True
+    findings: tuple[str, ...] = ()
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """The paths that there are."""
+        return tuple(filter(None, (self.png, self.csv)))
+
+
+@dataclass(frozen=True)
+class SmallTable:
+    """Rows for the page, as text."""
+
+    caption: str
+    columns: Sequence[str]
+    rows: Sequence[Sequence[str]]
+
+
+@dataclass
+class Outcome:
+    """What a case returns. values: gate id -> value; setup: (name, number with unit) for the reader."""
+
+    values: dict[str, Measured] = field(default_factory=dict)
+    setup: list[tuple[str, str]] = field(default_factory=list)
+    figures: list[Figure] = field(default_factory=list)
+    tables: list[SmallTable] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+
+class NotDrawnError(Exception):
+    """A figure could not be drawn. outcome: all that was found, with a finding in place of that figure and of
+    those after it.
+    """
+
+    def __init__(self, outcome: Outcome, why: str):
+        super().__init__(why)
+        self.outcome = outcome
+
+
+@dataclass(frozen=True)
+class Case:
+    """A verification case: one question, and the parts of its answer.
+
+    A new case is a subclass that defines `solve` and `measure`, and what else it has to show. Each part gets
+    what `solve` returned; the harness, `run`, calls them, prefixes the ids of the gates and saves the
+    figures.
+
+    equations: (what, formula, source) as used for the independent answer; levels: at which of LEVELS it runs,
+    none: only when it is named; needs: why it cannot run here and what to do, empty if it can; alone: whether
+    it measures times, so that nothing runs beside it and a later run measures again.
+    """
+
+    name: str
+    title: str = ""
+    question: str = ""
+    equations: Sequence[tuple[str, str, str]] = ()
+    levels: Sequence[str] = LEVELS
+    needs: Callable[[], str] = str
+    alone: bool = False
+
+    def published_at(self, level: str) -> bool:
+        """Whether it belongs to what is published: those that otherwise run only when named do too."""
+        return level in self.levels or not self.levels
+
+    def solve(self, context: Context) -> Any:
+        """Everything that the parts below look at."""
+        raise NotImplementedError(self.name)
+
+    def ahead(self, context: Context) -> Iterable[Scene]:
+        """Scenes that SAM may solve beforehand, in any order, where several processes share a case of hours:
+        `solve` then takes the results from the store.
+        """
+        return ()
+
+    def then(self, scene: Scene, result: Result) -> Scene | None:
+        """The scene that `solve` goes on to from one of `ahead` with its result; none where it does not."""
+        return None
+
+    def measure(self, found: Any) -> Mapping[str, Measured | float]:
+        """Row id without the name of the case -> value; a number alone stands for one without an expected
+        value.
+        """
+        raise NotImplementedError(self.name)
+
+    def setup(self, found: Any) -> Iterable[tuple[str, str]]:
+        """The numbers of the case for the reader."""
+        return ()
+
+    def tables(self, found: Any) -> Iterable[SmallTable]:
+        """What the reader may want to look up."""
+        return ()
+
+    def notes(self, found: Any) -> Iterable[str]:
+        """Sentences below the tables."""
+        return ()
+
+    def figures(self, found: Any) -> Iterable[Plot]:
+        """What is drawn."""
+        return ()
+
+    def views(self, found: Any) -> Iterable[View]:
+        """What is drawn in space, where the machine can: see `verification.figures.space`."""
+        return ()
+
+    def run(self, context: Context) -> Outcome:
+        """Solve, and collect the parts."""
+        return self.collect(context, self.solve(context))
+
+    def collect(self, context: Context, found: Any) -> Outcome:
+        """What the parts say of what `solve` returned; the figures are saved.
+
+        Raises NotDrawnError, with all the rest, when a figure cannot be drawn.
+        """
+        setup, tables, notes = (list(part(found)) for part in (self.setup, self.tables, self.notes))
+        outcome = Outcome(self.values(found), setup, [], tables, notes)
+        try:
+            for plot in self.figures(found):
+                outcome.figures.append(context.save(plot))
+            seen, cannot = context.look(self.views(found))
+        except Exception as problem:
+            why = f"not drawn: {context.told(problem)}"
+            outcome.figures += [
+                Figure("Figures that are missing", "", "", f"figures/{self.name}.png", findings=(why,))
+            ]
+            raise NotDrawnError(outcome, why) from problem
+        outcome.figures += seen
+        outcome.notes += cannot
+        return outcome
+
+    def values(self, found: Any) -> dict[str, Measured]:
+        """Row id -> value: what is measured, led by the name of the case."""
+        gates = self.measure(found).items()
+        return {
+            f"{self.name}.{gate}": value if isinstance(value, Measured) else Measured(value)
+            for gate, value in gates
+        }
+
+
+@dataclass
+class Context:
+    """What a case may use: scenes, solvers, and where to put its files.
+
+    out: folder of the report; store: where results are looked up and kept, None to compute all. Filled here:
+    inputs, name -> content of each scene file and of the files it names; runs, folders written; sources: run
+    -> where its result is from; taken_s: what the solves of results from the store took; pdf: draw figures
+    as PDF alone.
+    """
+
+    case: str
+    out: Path
+    level: str
+    progress: Progress
+    inputs: dict[str, bytes] = field(default_factory=dict)
+    runs: list[str] = field(default_factory=list)
+    store: Store | None = None
+    sources: dict[str, Reuse] = field(default_factory=dict)
+    taken_s: float = 0.0
+    pdf: bool = False
+
+    def scene(self, name: str) -> Scene:
+        """The scene of `verification/scenes/<name>.toml`."""
+        with resources.as_file(resources.files("verification").joinpath("scenes", f"{name}.toml")) as path:
+            scene, inputs = read_scene(path)
+        self.inputs |= inputs
+        return scene
+
+    def solve(self, model: str, scene: Scene, label: str, *, demand: bool = True) -> Result:
+        """Solve, or take from the store, and write the run into runs/<case>/<label>.
+
+        RuntimeError when it did not converge, unless not `demand`ed.
+        """
+
+        def progress(stage: str, k: int, n: int) -> None:
+            self.progress(f"{self.case}, {label}: {stage}", k, n)
+
+        result, source = solve_or_reuse(self.store, scene, model, progress)
+        folder = Path("runs", self.case, label)
+        write_run(result, scene, self.out / folder, collect() | source.provenance)
+        self.runs.append(folder.as_posix())
+        self.sources[folder.as_posix()] = source
+        self.taken_s += source.reused * sum(result.cost.get(part) or 0.0 for part in ("setup_s", "solve_s"))
+        if demand and not result.converged:
+            raise RuntimeError(f"{label} ended {result.status}: {result.message}")
+        return result
+
+    def told(self, problem: Exception) -> str:
+        """An error with the line that raised it, in words that may be published."""
+        last = traceback.extract_tb(problem.__traceback__)[-1]
+        where = f"{Path(last.filename).name}, line {last.lineno}"
+        return printable(without_places(f"{type(problem).__name__}: {problem} ({where})", self.out))
+
+    def save(self, plot: Plot) -> Figure:
+        """Write a drawing as figures/<case>-<name>.png with its data, or as PDF, and look whether it can be
+        read.
+        """
+        from verification.figures.check import findings  # noqa: PLC0415 - loads matplotlib
+        from verification.figures.style import save  # noqa: PLC0415 - loads matplotlib
+
+        folder = self.out / "figures"
+        stem = folder / f"{self.case}-{plot.name}"
+        folder.mkdir(parents=True, exist_ok=True)
+        picture, *data = (f"figures/{path.name}" for path in save(plot.drawing, stem, pdf=self.pdf))
+        unread = tuple(findings(plot.drawing.figure))
+        return Figure(plot.title, plot.alt, plot.caption, picture, "".join(data), plot.embedded, unread)
+
+    def look(self, views: Iterable[View]) -> tuple[list[Figure], list[str]]:
+        """Write pictures in space as figures/<case>-<name>.png; a line says why others are missing."""
+        seen = []
+        for view in () if self.pdf else views:
+            path = Path("figures", f"{self.case}-{view.name}.png")
+            try:
+                pictures = space.draw(self.out / "runs" / self.case / view.run, view.picture)
+            except space.CannotDrawError as error:
+                why = str(error)
+                return seen, [f"{why[0].upper()}{why[1:]}."]
+            for picture in pictures.values():
+                (self.out / path).parent.mkdir(parents=True, exist_ok=True)
+                write_atomically(self.out / path, picture)
+                seen.append(Figure(view.title, view.alt, view.caption, path.as_posix()))
+        return seen, []
+
+
+def package_of(extra: str, package: str) -> Callable[[], str]:
+    """For `needs` of a case: how to install a package that only an extra of samfem brings, empty if it is
+    there.
+    """
+
+    def needs() -> str:
+        return "" if find_spec(package) else f'install {package}: pip install "samfem[{extra}]"'
+
+    return needs
+
+
+def with_keys(scene: BaseModel, section: str, **keys) -> Any:
+    """The scene with other keys in one of its sections, which may be one in another: body.coating."""
+    name, _, inner = section.partition(".")
+    old = getattr(scene, name)
+    new = with_keys(old, inner, **keys) if inner else old.model_copy(update=keys)
+    return scene.model_copy(update={name: new})
+
+
+def with_body(scene: Scene, **keys) -> Scene:
+    """The scene with other keys in its [body]."""
+    return with_keys(scene, "body", **keys)
+
+
+def with_grid(scene: Scene, **keys) -> Scene:
+    """The scene with other keys in its [grid]."""
+    return scene.model_copy(update={"grid": (scene.grid or Grid()).model_copy(update=keys)})
+
+
+def with_loading(scene: Scene, **keys) -> Scene:
+    """The scene with other keys in its [loading]."""
+    return with_keys(scene, "loading", **keys)
+
+
+def with_mesh(scene: Scene, cells_per_radius: int) -> Scene:
+    """The scene with another finite-element mesh."""
+    return with_keys(scene, "fem", cells_per_radius=cells_per_radius)
+
+
+def elastic_text(body: Body | CounterBody) -> str:
+    """The elastic constants of a body for the reader."""
+    return f"E = {body.young / 1e9:g} GPa, ν = {body.poisson:g}"
+
+
+def off_text(value: float, reference: float) -> str:
+    """The relative difference of a value from a reference for the reader."""
+    return f"{1e2 * (value / reference - 1.0):+.2f} %"
+
+
+def quantity_rows(
+    shown: Mapping[str, tuple[str, float]], one: Result, other: Result
+) -> list[tuple[str, str, str, str]]:
+    """Quantities of two results side by side, with their difference. shown: name -> (words, factor of the
+    unit).
+    """
+    rows = []
+    for name, (words, unit) in shown.items():
+        a, b = one.quantities[name], other.quantities[name]
+        rows.append((words, number(a * unit, 5), number(b * unit, 5), off_text(a, b) if b else ""))
+    return rows
+
+
+def grid_text(sam: Result, a: float) -> str:
+    """The cells of a SAM result for the reader; a: the contact radius in m, along x."""
+    cells, cell = sam.discretisation["cells"], sam.discretisation["cell_m"][0]
+    return f"{cells[0]} × {cells[1]} cells of {cell * 1e9:.1f} nm (a/{a / cell:.1f})"
+
+
+def mesh_text(fem: Result) -> str:
+    """The mesh of a FEM result for the reader."""
+    return f"{fem.discretisation['elements']} elements, {fem.discretisation['dofs']} degrees of freedom"
+
+
+__all__ = [
+    "FEM",
+    "FEM_3D",
+    "LEVELS",
+    "SAM",
+    "Case",
+    "Context",
+    "Figure",
+    "Measured",
+    "Outcome",
+    "Plot",
+    "SmallTable",
+    "elastic_text",
+    "grid_text",
+    "mesh_text",
+    "number",
+    "off_text",
+    "package_of",
+    "quantity_rows",
+    "with_body",
+    "with_grid",
+    "with_keys",
+    "with_loading",
+    "with_mesh",
+]

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: MIT
+"""The small scenes whose solutions are checked, by group: a gate of the case `certificates` holds for a
+group.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sam.scene import Friction, FrictionMap, Grid, Scene, Surface
+from verification.cases.case import (
+    FEM,
+    FEM_3D,
+    SAM,
+    Context,
+    with_body,
+    with_grid,
+    with_loading,
+    with_mesh,
+)
+from verification.cases.recipes import Resolution, at_ratio, resolved_at
+
+LEVEL = {"quick": Resolution(8, 10), "full": Resolution(12, 20)}
+STEPS, RATIO, PERFECT_RATIO, COEFFICIENT = 5, 4.0, 3.0, 0.2
+FILM_RATIO, FILM_MESH = 2.5, 8
+"""Hertz's p0 over the initial yield stress of the body under the film that yields; elements in the contact
+radius.
+"""
+SPATIAL_MESH, SPATIAL_STEPS, COATED_CELLS = 4, 3, 41
+PATCH, RA, FORCE = 16e-6, 0.04e-6, 0.1
+"""Of the rough patch: side and Ra in m, force in N."""
+PATCH_CELLS = {SAM: 25, FEM_3D: 21}
+LAYERS = 16
+LOW, HIGH = 0.1, 0.4
+"""Coefficients of friction: in quarters of the patch, and of a film that is whole and that has failed."""
+FILM = {
+    "film_thickness": 100e-9,
+    "film_young": 80e9,
+    "film_poisson": 0.3,
+    "film_yield": 2e9 / 3,
+    "strain_limit": 0.0204,
+}
+"""The chemical film of Bosman & Schipper (2011), in SI."""
+WAVES = {"cutoff_long": 16e-6, "cutoff_short": 8e-6, "hurst": 0.8, "seed": 4}
+
+
+def smooth(context: Context) -> dict[str, Scene]:
+    """Elastic, hardening and perfectly plastic; at rest, and one that slides."""
+    swift, perfect = context.scene("plastic-swift-rigid"), context.scene("plastic-perfect")
+    swift, perfect = (
+        with_loading(at_ratio(scene, ratio), steps=STEPS, unload=True)
+        for scene, ratio in ((swift, RATIO), (perfect, PERFECT_RATIO))
+    )
+    elastic = with_body(perfect, plasticity=None).model_copy(update={"solver": type(perfect.solver)()})
+    sliding = swift.model_copy(update={"friction": Friction(coefficient=COEFFICIENT)})
+    found = {"elastic": elastic, "Swift": swift, "perfect": perfect, "Swift, sliding": sliding}
+    return {name: resolved_at(scene, LEVEL[context.level]) for name, scene in found.items()}
+
+
+def coated(context: Context) -> dict[str, Scene]:
+    """Elastic: a soft thin film at rest, and one that slides."""
+    scenes = {"soft film": context.scene("coated-sphere"), "film, sliding": context.scene("coated-sliding")}
+    return {name: with_grid(scene, cells=(COATED_CELLS, COATED_CELLS)) for name, scene in scenes.items()}
+
+
+def yielding_film(context: Context) -> dict[str, Scene]:
+    """Film and body yield, of the axisymmetric FEM."""
+    scene = with_loading(at_ratio(context.scene("film-yield"), FILM_RATIO), steps=SPATIAL_STEPS, unload=True)
+    return {"film that yields": with_mesh(scene, FILM_MESH)}
+
+
+def sliding(context: Context) -> dict[str, Scene]:
+    """Of the three-dimensional FEM: a Swift body, and an elastic one under a film."""
+    swift = with_loading(
+        at_ratio(context.scene("plastic-swift-rigid"), RATIO), steps=SPATIAL_STEPS, unload=True
+    )
+    swift = swift.model_copy(update={"friction": Friction(coefficient=COEFFICIENT)})
+    scenes = {"Swift, sliding": swift}
+    if context.level == "full":
+        scenes["film, sliding"] = context.scene("coated-sliding")
+    return {name: with_mesh(scene, SPATIAL_MESH) for name, scene in scenes.items()}
+
+
+def rough(context: Context, model: str) -> dict[str, Scene]:
+    """A self-affine patch whose border falls off, under a map of friction; of SAM also elastic, or with a
+    film that fails.
+    """
+    base, cells = context.scene("rough-asperities"), PATCH_CELLS[model]
+    grid = Grid(cells=(cells, cells), extent=(PATCH, PATCH), border="relief")
+    layered = grid.model_copy(update={"layers": LAYERS, "depth": 0.5 * LAYERS * PATCH / cells})
+    scene = base.model_copy(update={"surface": Surface(kind="self-affine", ra=RA, **WAVES), "grid": layered})
+    scene = with_loading(scene, force=FORCE, steps=SPATIAL_STEPS, unload=True)
+    side = np.arange(cells) < cells // 2
+    quarters = FrictionMap(np.where(side[:, None] == side, HIGH, LOW), (PATCH, PATCH))
+    slides = scene.model_copy(update={"friction": Friction(law="map", path=quarters)})
+    if model == FEM_3D:
+        return {"rough, Swift": slides} if context.level == "full" else {}
+    elastic = with_body(slides, plasticity=None).model_copy(update={"grid": grid})
+    chemical = scene.model_copy(
+        update={"friction": Friction(law="chemical-film", low=LOW, high=HIGH, **FILM)}
+    )
+    return {"rough, elastic": elastic, "rough, Swift": slides, "rough, film that fails": chemical}
+
+
+def groups(context: Context) -> list[tuple[str, str, str, Scene]]:
+    """(group, name, model, scene) of all that is solved."""
+    found = []
+    for name, scene in smooth(context).items():
+        found.append(("sam", name, SAM, scene))
+        if scene.friction is None:
+            found.append(("fem", name, FEM, scene))
+    for group, model, scenes in (
+        ("fem", FEM, yielding_film(context)),
+        ("coated", SAM, coated(context)),
+        ("rough", SAM, rough(context, SAM)),
+        ("fem-3d", FEM_3D, sliding(context) | rough(context, FEM_3D)),
+    ):
+        found += [(group, name, model, scene) for name, scene in scenes.items()]
+    return found

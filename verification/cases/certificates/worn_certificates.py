@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: MIT
+"""The conditions of a returned solution in the last of 2 and 5 cycles of a body that wears, as in
+`certificates`.
+
+Material has been removed and what was below it has moved up, and the film is as new in each cycle: strains
+are counted from the start of the last cycle, heights from the worn surface.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from sam import choose_grid
+from sam.scene import Checkpoint, CounterBody, Result, Scene
+from verification.cases.case import (
+    SAM,
+    Case,
+    Context,
+    Measured,
+    SmallTable,
+    number,
+    with_grid,
+    with_keys,
+    with_loading,
+)
+from verification.cases.certificates.certificates import NAMES
+from verification.cases.certificates.certificates_measures import by_rule, larger, late, solved
+from verification.cases.running_in.running_in_converged import COARSEST, CUBIC, Member
+from verification.checks import cells as cell_checks, conditions as contact_checks, film as film_checks
+from verification.checks.conditions import surface_of
+
+CYCLES = (2, 5)
+SEED, TOLERANCE = 1, 1e-6
+"""Of wear-converged: the surface that wears most; a rigid plane needs twice the load for as many cells in
+contact, and lets it yield deeper.
+"""
+DEEPER = 14e-6, 19e-6  # m: further faces of layers
+
+
+@dataclass(frozen=True)
+class Worn:
+    """values: condition -> value; volume: worn before the last peak, in m3."""
+
+    values: Mapping[str, float]
+    volume: float
+
+
+class WornCertificates(Case):
+    """One surface after more and more cycles, every condition of its last cycle measured."""
+
+    def solve(self, context: Context) -> dict[int, Worn]:
+        base = context.scene("running-in-bulk")
+        found = {}
+        for cycles in CYCLES:
+            scene = scene_of(base, cycles)
+            result, records = solved(scene, SAM)
+            volume = float(result.tables["cycles"]["wear_volume_m3"][-2])
+            found[cycles] = Worn(conditions_of(scene, result, records), volume)
+        return found
+
+    def measure(self, found: Mapping[int, Worn]) -> dict[str, Measured]:
+        worst: dict[str, float] = {}
+        for each in found.values():
+            worst = larger(worst, each.values)
+        values = {name: Measured(value, 0 if name == "histories" else None) for name, value in worst.items()}
+        least = min(each.volume for each in found.values())
+        return values | {"worn": Measured(least, unit="m³")}
+
+    def tables(self, found: Mapping[int, Worn]) -> Iterator[SmallTable]:
+        names = next(iter(found.values())).values
+        rows = [(NAMES[name], *(f"{each.values[name]:.1e}" for each in found.values())) for name in names]
+        rows.append(
+            ("worn before that cycle [µm³]", *(number(CUBIC * each.volume, 3) for each in found.values()))
+        )
+        yield SmallTable(
+            "Conditions, measured on what was returned of the last cycle",
+            ("condition", *(f"of {cycles} cycles" for cycles in found)),
+            rows,
+        )
+
+
+def scene_of(base: Scene, cycles: int) -> Scene:
+    """The surface below a rigid plane."""
+    scene = Member(SEED, COARSEST, force=2.0).of(base)
+    scene = scene.model_copy(update={"counterbody": CounterBody(shape="flat")})
+    scene = with_grid(scene, depths=(*scene.grid.depths, *DEEPER))
+    return with_loading(with_keys(scene, "solver", tolerance=TOLERANCE), cycles=cycles)
+
+
+def conditions_of(scene: Scene, result: Result, records: Sequence[Checkpoint]) -> dict[str, float]:
+    """All conditions of the last cycle."""
+    before, loaded, end = last_cycle(records)
+    result = lowered(result)
+    values = late(result) | {
+        "load": max(contact_checks.load(scene, result).values()),
+        "displacement": max(
+            *cell_checks.displaced(scene, result, loaded).values(), cell_checks.left(scene, result, [end])
+        ),
+        "friction": contact_checks.slips(scene, result),
+    }
+    values |= by_rule(contact_checks.flow(scene, [before, *loaded], choose_grid(scene).depths))
+    states = (contact_checks.yields(scene, result, state) for state in ("peak", "unloaded"))
+    values["yield"] = max(values["yield"], *states)
+    values["film"] = max(film_checks.states(scene, [since(before, each) for each in loaded]).values())
+    return values
+
+
+def last_cycle(records: Sequence[Checkpoint]) -> tuple[Checkpoint, list[Checkpoint], Checkpoint]:
+    """The record before the last cycle, those of its loading, and that of its end, unloaded and worn."""
+    forces = [record.tree()["state"]["load"]["force"] for record in records]
+    first = max(k for k in range(len(forces) - 1) if forces[k] == 0.0) + 1
+    return records[first - 1], list(records[first:-1]), records[-1]
+
+
+def lowered(result: Result) -> Result:
+    """The result with the heights of its surface less what was worn off, and its approach from the first
+    touch of that surface, as that of a result is from the first touch of the original one.
+    """
+    data = result.fields.cell_data
+    height = np.asarray(data["height_m"]) - np.asarray(data["worn_m"])
+    cells = surface_of(result)[2].size  # of those of the plane y = 0 nothing is asked
+    touch = float(data["height_m"][:cells].max() - height[:cells].max())
+    quantities = result.quantities | {"approach_m": result.quantities["approach_m"] - touch}
+    fields = replace(result.fields, cell_data=data | {"height_m": height})
+    return replace(result, quantities=quantities, fields=fields)
+
+
+def since(before: Checkpoint, now: Checkpoint) -> Any:
+    """A record whose stress and plastic strain are what has come since another one."""
+    start, tree = before.tree(), now.tree()
+    points = {"strain": tree["state"]["points"]["strain"] - start["state"]["points"]["strain"]}
+    state = {**tree["state"], "points": points}
+    last = {**tree["last"], "stress": tree["last"]["stress"] - start["last"]["stress"]}
+    return SimpleNamespace(tree=lambda: {**tree, "state": state, "last": last})
+
+
+CASES = (WornCertificates("worn-certificates"),)

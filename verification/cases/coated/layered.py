@@ -1,0 +1,316 @@
+# SPDX-License-Identifier: MIT
+"""The response of the coated half-space against a solution in many digits, and the stress under a disc on a
+pavement.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.special import j1
+
+from sam.kernels import STRESS, Lags, displacement_coefficients, stress_coefficients
+from sam.layered import LayeredPatches, Layers, Response, normal_compliance
+from verification.cases.case import Case, Context, Measured, Plot, SmallTable, package_of
+from verification.figures.coated import response_errors
+from verification.reference.burmister import interface_stress
+from verification.reference.layered_axisymmetric import CoatedHalfSpace, wave_numbers, wave_pressure_ratio
+from verification.reference.layered_errors import POISSONS, RATIOS, WAVES, Worst, all_points, worst_errors
+
+FEW = 16
+"""Of the points of the whole range, every such is looked at at the quick level; it shares no factor with
+their 25 kh.
+"""
+NAMES = {
+    "c_zz": "normal compliance",
+    "matrix": "normal and tangential compliances",
+    "film": "stresses in the film",
+    "body": "stresses in the body",
+    "jump": "jump of the tractions at the interface",
+}
+FILM, STEEL, THICKNESS = (80e9, 0.3), (210e9, 0.3), 100e-9
+"""(E in Pa, nu) of film and body and the thickness in m: Bosman & Schipper (2011), Table 1."""
+WAVELENGTHS = (1e-6, 2e-6, 5e-6, 10e-6, 20e-6, 50e-6)
+SHORT_WAVE, DEPTHS_OF_A_WAVE = 1e4, (0.0, 0.5, 1.0, 2.0)
+CELLS_OVER_THICKNESS, EQUAL_DEPTHS, LAGS = (0.1, 1.0, 10.0), (0.0, 0.3, 0.9, 1.0, 1.7, 6.0), 9
+
+DISC_RATIOS = (1.0, 10.0, 100.0, 1000.0)
+FOX = {
+    0.5: (0.2845, 0.1006, 0.0237, 0.0051),
+    1.0: (0.6464, 0.2914, 0.0809, 0.0189),
+    2.0: (0.9106, 0.6437, 0.2449, 0.0666),
+}
+"""Radius over thickness -> pressure on the interface below the centre over that on the disc, for DISC_RATIOS;
+nu = 0.5.
+"""
+LAST_DIGIT = 1e-4
+DISC_CELLS = 100
+"""In the radius of the disc."""
+
+
+def points_of(level: str) -> list[tuple[float, float, float, float]]:
+    """(kh, E1/E2, nu1, nu2): all, or every FEW-th of them."""
+    return all_points() if level == "full" else all_points()[::FEW]
+
+
+def worst_of(by_wave: dict[float, dict[str, Worst]]) -> dict[str, Worst]:
+    """The worst errors over all kh; NaN is worse than any number."""
+    worst = {name: Worst() for name in NAMES}
+    for found in by_wave.values():
+        for name, each in found.items():
+            worst[name].update(each.error, each.where)
+    return worst
+
+
+def error_of_equal_materials() -> tuple[float, float]:
+    """Largest error of the coefficients of displacement and stress, over the largest one at that depth, if
+    film = body.
+
+    Against the closed forms of the bare half-space, for cells smaller and larger than the thickness, both
+    loads.
+    """
+    shifts, stresses = [], []
+    for nu in (0.0, 0.3, 0.5):
+        film = LayeredPatches(Layers(2.0, nu, 1.0, 2.0, nu))
+        for cell in CELLS_OVER_THICKNESS:
+            for load in (1, 3):
+                size = LAGS, LAGS, cell, cell
+                for i in (1, 2, 3):
+                    right = displacement_coefficients(Lags(*size), nu, component=i, load=load)
+                    error = np.abs(
+                        film.layers.shear * film.displacement(Lags(*size), component=i, load=load) - right
+                    ).max()
+                    shifts.append(
+                        error / displacement_coefficients(Lags(*size), nu, component=load, load=load).max()
+                    )
+                right = stress_coefficients(Lags(*size), np.array(EQUAL_DEPTHS), nu, load=load)
+                error = np.abs(film.stress(Lags(*size), EQUAL_DEPTHS, load=load, names=STRESS) - right)
+                stresses.append((error.max(axis=(0, 2, 3)) / np.abs(right).max(axis=(0, 2, 3))).max())
+    return float(max(shifts)), float(max(stresses))
+
+
+def short_waves() -> tuple[int, float]:
+    """At kh = 1e4, all moduli: how many components are no finite number, and the largest distance of c_zz
+    from the film's own.
+    """
+    unfinished, off = 0, 0.0
+    for ratio in RATIOS:
+        for nu1, nu2 in POISSONS:
+            response = Response(Layers(ratio, nu1, 1.0, 1.0, nu2), np.array(SHORT_WAVE))
+            values = [response.surface, *(part for z in DEPTHS_OF_A_WAVE for part in response.stress(z))]
+            unfinished += sum(int(np.size(v) - np.isfinite(v).sum()) for v in values)
+            off = max(off, abs(response.surface[0] / (1.0 - nu1) - 1.0))
+    return unfinished, float(off)
+
+
+def wave_ratios(counter: float) -> tuple[np.ndarray, np.ndarray]:
+    """Pressure that flattens a sinusoid of the paper's body over that without film, by SAM's c_zz and in many
+    equations.
+
+    counter: E/(1 - nu^2) of the counter-body in Pa, infinite if rigid; both (WAVELENGTHS,).
+    """
+    k = 2.0 * math.pi / np.array(WAVELENGTHS)
+    film, body = Layers(*FILM, THICKNESS, *STEEL), Layers(*STEEL, THICKNESS, *STEEL)
+    of_counter = 2.0 / (counter * k)
+    ours = (normal_compliance(body, k) + of_counter) / (normal_compliance(film, k) + of_counter)
+    return ours, wave_pressure_ratio(CoatedHalfSpace(*FILM, THICKNESS, *STEEL), WAVELENGTHS, counter)
+
+
+@dataclass(frozen=True)
+class Responses:
+    """points: of the range that are looked at; by_wave: kh -> quantity -> worst error; waves: counter-body ->
+    ratios.
+    """
+
+    points: Sequence
+    by_wave: dict[float, dict[str, Worst]]
+    waves: dict[str, tuple[np.ndarray, np.ndarray]]
+
+    @cached_property
+    def worst(self) -> dict[str, Worst]:
+        """Quantity -> worst error of all wave numbers."""
+        return worst_of(self.by_wave)
+
+
+class LayeredResponse(Case):
+    """Errors over the whole range, the limits of equal materials and short waves, and waves pressed flat."""
+
+    def solve(self, context: Context) -> Responses:
+        points = points_of(context.level)
+        by_wave = {}
+        for kh in sorted({point[0] for point in points}):
+            by_wave[kh] = worst_errors([point for point in points if point[0] == kh])
+            context.progress(f"{self.name}: wave numbers", len(by_wave), len(WAVES))
+        counters = {"rigid": math.inf, "steel": STEEL[0] / (1.0 - STEEL[1] ** 2)}
+        return Responses(points, by_wave, {name: wave_ratios(other) for name, other in counters.items()})
+
+    def measure(self, found: Responses) -> dict[str, Measured | float]:
+        (shift, stress), (unfinished, off) = error_of_equal_materials(), short_waves()
+        ratios = found.waves.values()
+        values = {name.replace("_", "-"): each.error for name, each in found.worst.items()}
+        return values | {
+            "equal-displacement": shift,
+            "equal-stress": stress,
+            "short-wave": off,
+            "short-wave-unfinished": Measured(unfinished, 0),
+            "flattened": max(np.abs(ours / other - 1.0).max() for ours, other in ratios),
+        }
+
+    def setup(self, found: Responses) -> list[tuple[str, str]]:
+        points = f"{len(found.points)} of {len(all_points())}"
+        cells = ", ".join(f"{c:g}" for c in CELLS_OVER_THICKNESS)
+        return [
+            ("Wave number times thickness kh", f"{WAVES[0]:g} to {WAVES[-1]:g}"),
+            ("Ratio of the moduli E₁/E₂", f"{RATIOS[0]:g} to {RATIOS[-1]:g}"),
+            ("Poisson's ratios", ", ".join(f"{a:g}/{b:g}" for a, b in POISSONS) + " (film/body)"),
+            ("Points", f"{points}, eight depths in each, all loads and components"),
+            ("Equal materials", f"cells of {cells} thicknesses, loads along x and z"),
+        ]
+
+    def tables(self, found: Responses) -> Iterator[SmallTable]:
+        rows = [(NAMES[name], f"{each.error:.1e}", each.where) for name, each in found.worst.items()]
+        caption = (
+            "Worst errors against the solution in many digits: compliances relative, the matrix to its "
+            "largest component, stresses and jump to the larger of traction and largest component"
+        )
+        yield SmallTable(caption, ("quantity", "worst error", "where"), rows)
+        rows = [
+            (f"{1e6 * length:g}", *(f"{ours[k]:.5f}" for ours, _ in found.waves.values()))
+            for k, length in enumerate(WAVELENGTHS)
+        ]
+        caption = (
+            "Pressure that flattens a shallow sinusoid of a steel body with a film of 100 nm and 80 GPa, "
+            "over that without it"
+        )
+        yield SmallTable(
+            caption, ("wavelength [µm]", *(f"{name} counter-body" for name in found.waves)), rows
+        )
+
+    def figures(self, found: Responses) -> Iterator[Plot]:
+        waves, each = np.array(list(found.by_wave)), found.by_wave.values()
+        curves = {words: (waves, np.array([e[name].error for e in each])) for name, words in NAMES.items()}
+        yield Plot(
+            response_errors(curves, {"normal compliance": 1e-11, "all others": 1e-9}),
+            "errors",
+            "Worst error over wave number times thickness",
+            "Log-log plot of the worst errors of compliances, stresses and interface jump over kh from 1e-8 "
+            "to 1e4; all lie below their bounds.",
+            "The worst over all moduli, Poisson's ratios and depths at each kh. Dashed: what is allowed. "
+            "Points on the foot: no error at all.",
+        )
+
+
+def disc_by_response(radius: float, ratio: float) -> float:
+    """Pressure on the interface below the centre of a disc over that on it: Hankel integral of SAM's
+    response, nu = 0.5.
+
+    -s_zz/p = int_0^inf f(k) radius J1(k radius) dk with f = -s_zz under the wave; the thickness is 1.
+    """
+    k, weight = wave_numbers(1.0, radius, 40.0)
+    wave = Response(Layers(ratio, 0.5, 1.0, 1.0, 0.5), k).stress(1.0)[0][0, 0]
+    return float(-(weight * wave) @ (radius * j1(k * radius)))
+
+
+def disc_by_cells(radius: float, ratio: float) -> float:
+    """The same by SAM's coefficients: the disc of cells, those on its edge loaded by the share that it
+    covers.
+    """
+    cell, n = radius / DISC_CELLS, DISC_CELLS + 1
+    patches = LayeredPatches(Layers(ratio, 0.5, 1.0, 1.0, 0.5))
+    coefficients = patches.stress(Lags(n, n, cell, cell), [1.0], load=3, names=["33"])[0, 0]
+    times = np.where(np.arange(n) == 0, 1, 2)  # cells at lags of both signs
+    return float(-np.sum(coefficients * covered(DISC_CELLS) * times[:, None] * times[None, :]))
+
+
+def covered(n: int) -> np.ndarray:
+    """Share of the cells (i, j), 0 <= i, j <= n, unit squares around their numbers, in the disc of radius n:
+    (n + 1, n + 1).
+    """
+
+    def quadrant(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Area of the disc in 0..x, 0..y; odd in both. Below y up to where the circle falls below it, then
+        below the circle.
+        """
+        x, y, sign = np.minimum(np.abs(x), n), np.minimum(np.abs(y), n), np.sign(x) * np.sign(y)
+        start = np.minimum(x, np.sqrt(n**2 - y**2))
+        return sign * (start * y + segment(x) - segment(start))
+
+    def segment(x: np.ndarray) -> np.ndarray:
+        return (x * np.sqrt(n**2 - x**2) + n**2 * np.arcsin(x / n)) / 2.0
+
+    edges = np.arange(n + 2) - 0.5
+    return np.diff(np.diff(quadrant(edges[:, None], edges[None, :]), axis=0), axis=1)
+
+
+@dataclass(frozen=True)
+class Disc:
+    """The pressure on the interface below a disc of one radius, for one ratio of the moduli."""
+
+    radius: float
+    ratio: float
+    published: float
+
+    @cached_property
+    def values(self) -> dict[str, float]:
+        """By an own quadrature, and in two ways by SAM."""
+        at = self.radius, self.ratio
+        return {"own": interface_stress(*at), "response": disc_by_response(*at), "cells": disc_by_cells(*at)}
+
+    def off(self, way: str) -> float:
+        """Distance of a way from the own quadrature."""
+        return abs(self.values[way] - self.values["own"])
+
+
+class Pavement(Case):
+    """The disc of Burmister and Fox in three ways."""
+
+    def solve(self, context: Context) -> list[Disc]:
+        return [
+            Disc(radius, ratio, value)
+            for radius, published in FOX.items()
+            for ratio, value in zip(DISC_RATIOS, published, strict=True)
+        ]
+
+    def measure(self, found: list[Disc]) -> dict[str, float]:
+        bare = {r: interface_stress(r, 1.0) / (1.0 - (1.0 + r**2) ** -1.5) for r in FOX}
+        return {
+            "fox": max(abs(each.values["own"] - each.published) / LAST_DIGIT for each in found),
+            **{way: max(each.off(way) for each in found) for way in ("response", "cells")},
+            "bare": max(abs(share - 1.0) for share in bare.values()),
+        }
+
+    def setup(self, found: list[Disc]) -> list[tuple[str, str]]:
+        return [
+            ("Load", "uniform pressure on a disc of radius a; ν = 0.5 in layer and body"),
+            ("Quantity", "−σzz/p at the interface z = h on the axis"),
+            (
+                "Cells",
+                f"{DISC_CELLS} in the radius, those on the edge loaded by the share of them in the disc",
+            ),
+        ]
+
+    def tables(self, found: list[Disc]) -> Iterator[SmallTable]:
+        rows = [
+            (
+                f"{each.radius:g}",
+                f"{each.ratio:g}",
+                f"{each.published:.4f}",
+                *(f"{v:.9f}" for v in each.values.values()),
+            )
+            for each in found
+        ]
+        yield SmallTable(
+            "Pressure on the interface over that on the disc",
+            ("a/h", "E₁/E₂", "table", "own Hankel quadrature", "response of SAM", "cells of SAM"),
+            rows,
+        )
+
+
+CASES = (
+    LayeredResponse("layered-response", needs=package_of("reference", "mpmath")),
+    Pavement("pavement"),
+)

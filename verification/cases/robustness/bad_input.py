@@ -1,0 +1,419 @@
+# SPDX-License-Identifier: MIT
+"""Bad input: what the readers and the command make of scenes, tables, archives and folders that are wrong on
+purpose.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import random
+import re
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import partial
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from sam.scene import Scene, SceneError, parse_scene, read_scene, resolved
+from verification.cases.case import FEM, SAM, Case, Context, Measured, SmallTable
+from verification.compare.own_data import read_data
+from verification.cost.plan import plan, plan_lines
+from verification.robustness.bad_files import ARCHIVE, RUN, SCENE, BadInput, lay
+from verification.robustness.fuzz import (
+    KINDS,
+    MAPPINGS,
+    MESHES,
+    MORE_KINDS,
+    STUDIES,
+    bad_input,
+    good_scenes,
+)
+from verification.runs.archive import ArchiveError, read_archive
+from verification.runs.files import FolderError, json_text, read_run
+from verification.runs.study import read_study
+
+SEED = 20260
+READ = {"quick": 120, "full": 400}
+RUNS = {"quick": 8, "full": 32}
+CAMPAIGN = (
+    "once, by commit 0f8782d: 20000 inputs read (-1000 to 18999), 300 through the command (-150 to 149)"
+)
+"""How often, by what and on which inputs `main` was run for verification/data/bad-input.csv."""
+ALL_KINDS = (*KINDS, *MORE_KINDS)
+MORE = 4  # so many inputs for each one of MORE_KINDS
+LIMIT_S = 2.0  # of processor time for a reader; the usual input takes milliseconds
+MEMORY = 1 << 30  # bytes that a reader may take beyond what the process has
+ADDRESSES = (1 << 30, 2 << 30, 4 << 30, None)  # bytes that a command may take
+STREAMS = ("", "", "", ">&-", "2>&-", ">&- 2>&-")  # what is closed when a command begins
+COMMAND_LIMIT_S = 120.0  # for a command; it starts in a second, and scenes that are solved take a few
+SMALL_S, SMALL_BYTES = 1.0, 400e6  # predicted: scenes that the command solves, larger ones are planned
+MOST_SCENES = 3  # of a study that is solved
+AT_ONCE = 2
+TRACEBACK = re.compile(r"Traceback \(most recent|internal error")
+Snapshot = Mapping[str, tuple]
+
+
+class Hang(BaseException):
+    """Raised in a reader that takes longer than allowed; no Exception, so that none of its handlers takes
+    it.
+    """
+
+
+@dataclass
+class Tally:
+    """counts: (kind, how it ended) -> number; findings: gate -> what was wrong, one text each; slowest:
+    seconds, input.
+    """
+
+    counts: Counter = field(default_factory=Counter)
+    findings: dict[str, list[str]] = field(default_factory=dict)
+    slowest: tuple[float, str] = (0.0, "")
+
+    def found(self, gate: str, text: str) -> None:
+        """Enter what was wrong under its gate."""
+        self.findings.setdefault(gate, []).append(text)
+
+
+def read_all(path: Path, bad: BadInput) -> str:
+    """Read an input as samfem does: "valid" or "refused". Any other error than those of the readers comes
+    out.
+    """
+    try:
+        if bad.kind in (MESHES, MAPPINGS):
+            read_data(path, read_scene(path.parent / SCENE)[0])
+        elif bad.kind == STUDIES:
+            read_study(path)
+        elif bad.kind == ARCHIVE:
+            read_archive(path)
+        elif bad.kind == RUN:
+            read_run(path)
+        else:
+            scene, _ = read_scene(path)
+            lines = plan_lines(content := plan(scene))
+            json_text(content)
+            if not all(character.isprintable() for line in lines for character in line):
+                raise ValueError("the plan holds control characters")
+            if Scene(**resolved(scene)) != scene:
+                raise ValueError("the resolved scene is another one")
+    except (SceneError, ArchiveError, FolderError):
+        return "refused"
+    return "valid"
+
+
+def judge_readers(
+    numbers: Sequence[int], base: Path, reader: Callable[[Path, BadInput], str] = read_all
+) -> Tally:
+    """Lay out inputs of SEED, one after the other, and read each within LIMIT_S and MEMORY."""
+    tally = Tally()
+    before = set(os.listdir())
+    plan(
+        parse_scene(good_scenes()[0].encode(), "scene.toml")
+    )  # what readers load, on a busy machine for seconds
+    for number in numbers:
+        bad = bad_input(SEED, number)
+        with tempfile.TemporaryDirectory(dir=base) as folder:
+            path = lay(bad, Path(folder))
+            began = time.process_time()
+            try:
+                with guarded(LIMIT_S, MEMORY):
+                    end = reader(path, bad)
+            except Hang:
+                end = "hang"
+                tally.found("hangs", f"input {number}, {bad.kind}")
+            except Exception as error:
+                end = "wrong error"
+                tally.found(
+                    "wrong-errors", f"input {number}, {bad.kind}: {type(error).__name__}: {error}"[:200]
+                )
+            taken = time.process_time() - began
+        tally.counts[bad.kind, end] += 1
+        tally.slowest = max(tally.slowest, (taken, f"input {number}, {bad.kind}"))
+    for made in sorted(set(os.listdir()) - before):
+        tally.found("writes-outside", f"{made} appeared in the current folder")
+    return tally
+
+
+@contextmanager
+def guarded(seconds: float, memory: int) -> Iterator[None]:
+    """Raise Hang in the block after so many seconds of processor time, MemoryError beyond so many further
+    bytes. Main thread only.
+    """
+
+    def stop(*_):
+        raise Hang
+
+    limits, handler = resource.getrlimit(resource.RLIMIT_AS), signal.signal(signal.SIGPROF, stop)
+    resource.setrlimit(resource.RLIMIT_AS, (_address_space() + memory, limits[1]))
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        signal.signal(signal.SIGPROF, handler)
+        resource.setrlimit(resource.RLIMIT_AS, limits)
+
+
+def _address_space() -> int:
+    try:
+        return int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[0]) * resource.getpagesize()
+    except OSError:
+        return 4 << 30
+
+
+@dataclass(frozen=True)
+class EndedCommand:
+    """A command that has ended. code: None if it was stopped after COMMAND_LIMIT_S; folders before and
+    after.
+    """
+
+    words: Sequence[str]
+    code: int | None
+    text: str
+    before: Snapshot
+    after: Snapshot
+    seconds: float
+
+
+SAMFEM = (sys.executable, "-m", "samfem.cli")
+
+
+def words_for(bad: BadInput, path: Path, number: int) -> list[str]:
+    """The command for an input: solve or compare what is wrong or small, plan the rest; read what is no scene
+    as --out.
+    """
+    if bad.kind == RUN:
+        return ["solve", "scene.toml", "--out", str(path)]
+    if bad.kind == ARCHIVE:
+        return ["report", str(path)]
+    if bad.kind in (MESHES, MAPPINGS):
+        return ["compare", str(path.parent / SCENE), "--with", str(path), "--out", "out/run"]
+    if bad.kind == STUDIES and _is_small(path, read_study):
+        return ["sweep", str(path), "--workers", "1", "--out", "out/run"]
+    path = path.parent / SCENE if bad.kind == STUDIES else path
+    commands = [["solve", str(path), "--model", (SAM, FEM)[number % 2], "--out", "out/run"]]
+    commands += [
+        ["compare", str(path), "--out", "out/run"],
+        ["plan", str(path)],
+        ["plan", str(path), "--json"],
+    ]
+    return (
+        commands[number // 2 % 4 if number % 3 == 0 else 0] if _is_small(path) else commands[2 + number % 2]
+    )
+
+
+def _is_small(path: Path, read: Callable[[Path], Any] = read_scene) -> bool:
+    """Whether a scene, or those of a study, are solved in no time, as far as can be predicted, or refused."""
+    try:
+        with guarded(LIMIT_S, MEMORY):
+            found = read(path)
+            scenes = [found[0]] if read is read_scene else [each.scene for each in found.points]
+            if len(scenes) > MOST_SCENES:
+                return False
+            models = [model["estimate"] for scene in scenes for model in plan(scene)["models"]]
+    except (Exception, Hang):
+        return True
+    small = all(each["time_s"] < SMALL_S and each["memory_bytes"] < SMALL_BYTES for each in models if each)
+    few = all(scene.loading.cycles * scene.loading.steps <= 20 for scene in scenes)
+    return small and few and all(scene.solver.tolerance > 1e-7 for scene in scenes)
+
+
+def run_command(
+    words: Sequence[str], base: Path, command: Sequence[str] = SAMFEM, how: random.Random | None = None
+) -> EndedCommand:
+    """Run a command in base/cwd with homes of its own, and look at everything in `base` before and after.
+
+    how: draws its address space and what is closed; without it neither is limited.
+    """
+    homes = {"HOME": "home", "TMPDIR": "tmp", "XDG_CACHE_HOME": "home/cache", "SAMFEM_STORE": "cwd/out/store"}
+    homes["MPLCONFIGDIR"] = "cwd/out/matplotlib"  # it keeps a list of fonts
+    for name in ("home", "tmp", "cwd"):
+        (base / name).mkdir(exist_ok=True)
+    environment = (
+        os.environ | {key: str(base / name) for key, name in homes.items()} | {"OMP_NUM_THREADS": "1"}
+    )
+    words = [word.partition("\0")[0] for word in words]  # a system passes no more of it to a program
+    if how is not None:
+        most, closed = how.choice(ADDRESSES), how.choice(STREAMS)
+        limit = f"ulimit -v {most >> 10}; " if most else ""
+        command = ["sh", "-c", f'{limit}exec "$@" {closed}', "sh", *command]
+    before, began = snapshot(base), time.perf_counter()
+    try:
+        done = subprocess.run(
+            [*command, *words],
+            cwd=base / "cwd",
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=COMMAND_LIMIT_S,
+            check=False,
+        )
+        code, text = done.returncode, (done.stdout + done.stderr).decode(errors="replace")
+    except subprocess.TimeoutExpired:
+        code, text = None, ""
+    return EndedCommand(words, code, text, before, snapshot(base), time.perf_counter() - began)
+
+
+def snapshot(base: Path) -> Snapshot:
+    """Everything below a folder: relative path -> (kind and rights, size, time of change of a file's
+    content).
+    """
+    found = {}
+    for above, folders, files in os.walk(base):
+        for name in folders + files:
+            path = os.path.join(above, name)
+            status = os.lstat(path)
+            changing = () if name in folders else (status.st_size, status.st_mtime_ns)
+            found[os.path.relpath(path, base)] = (status.st_mode, *changing)
+    return found
+
+
+def judge_command(
+    ended: EndedCommand, name: str, tally: Tally, kind: str, *, allowed: str = "cwd/out"
+) -> None:
+    """Enter what is wrong with a command that has ended. allowed: the folder that it may change, unless it
+    ends in 2.
+    """
+    what = f"{name}: samfem {' '.join(ended.words)}"[:160]
+    tally.counts[kind, "hang" if ended.code is None else f"exit {ended.code}"] += 1
+    if ended.code is None:
+        tally.found("hangs", what)
+    elif ended.code not in (0, 1, 2):
+        tally.found("exit-codes", f"{what}: {ended.code}")
+    if TRACEBACK.search(ended.text):
+        tally.found("tracebacks", f"{what}: {ended.text.strip().splitlines()[-1]}"[:300])
+    changed = {
+        path
+        for path in ended.before.keys() | ended.after.keys()
+        if ended.before.get(path) != ended.after.get(path)
+    }
+    if ended.code != 2:
+        changed = {path for path in changed if path != allowed and not path.startswith(f"{allowed}/")}
+    if changed:
+        tally.found("writes-outside", f"{what}: {min(changed)}")
+    tally.slowest = max(tally.slowest, (ended.seconds, what))
+
+
+def judge_commands(
+    numbers: Sequence[int], base: Path, command: Sequence[str] = SAMFEM, progress=lambda *_: None
+) -> Tally:
+    """Run the command on inputs of SEED, AT_ONCE at a time, each in a folder of its own."""
+    tally, prepared = Tally(), []
+
+    def drawn(number: int) -> random.Random | None:
+        return random.Random(f"{SEED}/{number}/how") if command is SAMFEM else None
+
+    for number in numbers:
+        folder, bad = base / str(number), bad_input(SEED, number)
+        (folder / "cwd").mkdir(parents=True)
+        path = lay(bad, folder / "cwd" / "out" if bad.kind == RUN else folder / "in")
+        if bad.kind == RUN:
+            lay(bad_input(SEED, tuple(KINDS).index("titles")), folder / "cwd")
+        prepared.append((number, bad, folder, words_for(bad, path, number)))
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        ran = pool.map(lambda each: run_command(each[3], each[2], command, drawn(each[0])), prepared)
+        for done, ((number, bad, _, _), ended) in enumerate(zip(prepared, ran, strict=True), start=1):
+            judge_command(ended, f"input {number}", tally, bad.kind)
+            progress(done, len(prepared))
+    return tally
+
+
+GATES = ("tracebacks", "hangs", "writes-outside", "wrong-errors", "exit-codes")
+
+
+def values_of(tallies: Sequence[Tally]) -> dict[str, Measured]:
+    """The gates: how many inputs ended wrongly, in each way; and of how many kinds there were none at all."""
+    values = {name: sum(len(tally.findings.get(name, ())) for tally in tallies) for name in GATES}
+    values["kinds-left-out"] = len(set(ALL_KINDS) - {kind for kind, _ in tallies[0].counts})
+    return {name: Measured(count, 0) for name, count in values.items()}
+
+
+def counts_table(caption: str, tally: Tally) -> SmallTable:
+    """How the inputs of each kind ended."""
+    ends = sorted({end for _, end in tally.counts})
+    rows = [(kind, *(str(tally.counts[kind, end]) for end in ends)) for kind in ALL_KINDS]
+    total = ("all", *(str(sum(tally.counts[kind, end] for kind in ALL_KINDS)) for end in ends))
+    return SmallTable(caption, ("kind of input", *ends), [*rows, total])
+
+
+class BadInputs(Case):
+    """Inputs read in this process, and the command run on others: (level, tally of the readers, of the
+    command).
+    """
+
+    def solve(self, context: Context) -> tuple[str, Tally, Tally]:
+        reads, runs = READ[context.level], RUNS[context.level]
+        with tempfile.TemporaryDirectory(prefix="samfem-bad-input-") as base:
+            read = judge_readers(range(-reads // MORE, reads), Path(base))
+            stride = range(reads, reads + 5 * runs, 5)  # 5 and the number of kinds have no common factor
+            stride = [*range(-reads // MORE - runs // MORE, -reads // MORE), *stride]
+            progress = partial(context.progress, f"{self.name}: commands")
+            return context.level, read, judge_commands(stride, Path(base), progress=progress)
+
+    def measure(self, found: tuple[str, Tally, Tally]) -> dict[str, Measured]:
+        return values_of(found[1:])
+
+    def setup(self, found: tuple[str, Tally, Tally]) -> list[tuple[str, str]]:
+        _, read, ran = found
+        return [
+            (
+                "Inputs",
+                f"{read.counts.total()} read in one process, {ran.counts.total()} through the command; "
+                f"seed {SEED}",
+            ),
+            (
+                "Limits",
+                f"{LIMIT_S:g} s and {MEMORY / 2**30:g} GiB for a reader; {COMMAND_LIMIT_S:g} s and an "
+                "address space of 1, 2, 4 GiB or any for a command, half of them with closed streams",
+            ),
+            ("Campaign", CAMPAIGN),
+            ("Slowest", f"{read.slowest[0]:.2f} s ({read.slowest[1]}); command {ran.slowest[0]:.1f} s"),
+        ]
+
+    def tables(self, found: tuple[str, Tally, Tally]) -> list[SmallTable]:
+        captions = "Read: valid or refused, with every reason", "Through the command, by exit code"
+        tables = [counts_table(caption, tally) for caption, tally in zip(captions, found[1:], strict=True)]
+        rows = csv.reader(
+            resources.files("verification").joinpath("data", "bad-input.csv").open(encoding="utf-8")
+        )
+        campaign = {"read": Tally(), "run": Tally()}
+        for how, kind, end, count in list(rows)[1:]:
+            campaign[how].counts[kind, end] = int(count)
+        return tables + [counts_table(f"Campaign: {how}", tally) for how, tally in campaign.items()]
+
+    def notes(self, found: tuple[str, Tally, Tally]) -> list[str]:
+        every = (item for tally in found[1:] for item in tally.findings.items())
+        return [f"{gate}: {text}" for gate, texts in every for text in texts][:20]
+
+
+CASES = (BadInputs("bad-input"),)
+
+
+def main(what: str, first: str, last: str) -> None:
+    """Part of a campaign, larger than the case: `read` or `run` the inputs from the first to before the last,
+    and print kinds, ends and findings as a line of JSON.
+    """
+    judge = {"read": judge_readers, "run": judge_commands}[what]
+    with tempfile.TemporaryDirectory(prefix="samfem-bad-input-") as base:
+        tally = judge(range(int(first), int(last)), Path(base))
+    counts = [[*key, count] for key, count in sorted(tally.counts.items())]
+    print(
+        json.dumps(
+            {what: [first, last], "counts": counts, "findings": tally.findings, "slowest": tally.slowest}
+        )
+    )
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

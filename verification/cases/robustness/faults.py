@@ -1,0 +1,335 @@
+# SPDX-License-Identifier: MIT
+"""Faults: solves and sweeps that are killed at random moments, and what else can go wrong while a run writes
+its folder.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import shutil
+import signal
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from verification.cases.case import Case, Context, Measured, SmallTable
+from verification.robustness.kills import (
+    Ended,
+    KillTrial,
+    finish,
+    inspect,
+    killed_solve,
+    killed_sweep,
+    run,
+    start,
+    tables,
+)
+from verification.runs.files import SUMMARY
+
+SEED = 417
+KILLS = {"quick": (6, 4), "full": (100, 50)}  # of a solve, of a sweep, which takes three times as long
+AT_ONCE = 2
+KINDS = ("after a checkpoint", "a worker", "with points finished")
+"""Kills that must have occurred, or the others prove little."""
+GATES = ("broken-files", "early-summaries", "changed-tables", "lost-points", "wrong-endings")
+SCENE = """title = "To be killed"
+[body]
+young = "210 GPa"
+poisson = 0.3
+[body.plasticity]
+law = "swift"
+B = "945 MPa"
+C = 20
+n = 0.121
+[counterbody]
+shape = "sphere"
+radius = "105 um"
+[loading]
+force = "0.17 N"
+steps = 15
+unload = true
+[grid]
+cells = [49, 49]
+[solver]
+tolerance = 1e-5
+"""
+STUDY = """scene = "sphere.toml"
+[vary]
+"loading.force" = { range = ["0.1 N", "0.8 N"], count = 24 }
+"""
+SWEPT = SCENE[: SCENE.index("[body.plasticity]")] + SCENE[SCENE.index("[counterbody]") :].replace(
+    "[49, 49]", "[257, 257]"
+)
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A fault and how it should end. says: what the message must hold; written: whether a summary may be
+    there.
+    """
+
+    name: str
+    make: Callable[[Path, float], tuple[Ended, Path]]
+    codes: tuple[int, ...]
+    says: str
+    written: bool = False
+
+
+def interrupted(base: Path, seconds: float) -> tuple[Ended, Path]:
+    """SIGINT, as from Ctrl-C, once there is a checkpoint."""
+    process = start(["solve", str(base / "scene.toml"), "--out", str(base / "run")], base / "store")
+    _wait_for(base / "run" / "checkpoint.npz", process)
+    process.send_signal(signal.SIGINT)
+    return finish(process), base / "run"
+
+
+def full_disk(base: Path, seconds: float) -> tuple[Ended, Path]:
+    """No file may grow beyond 4 KiB: as on a full disk, writing fails in the middle of a file."""
+    code = "import resource, sys; from samfem.cli import main; "
+    code += "resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)); sys.exit(main())"
+    return run(
+        ["solve", str(base / "scene.toml"), "--out", str(base / "run")],
+        base / "store",
+        command=(sys.executable, "-c", code),
+    ), base / "run"
+
+
+def full_file_system(base: Path, seconds: float) -> tuple[Ended, Path]:
+    """A file system of 64 KiB, mounted for this command alone."""
+    small, kept = base / "small", base / "kept"
+    small.mkdir()
+    command = (
+        "unshare",
+        "--mount",
+        "sh",
+        "-c",
+        (f'mount -t tmpfs -o size=64k none "{small}" && "$@"; code=$?; cp -a "{small}" "{kept}"; exit $code'),
+        "sh",
+        sys.executable,
+        "-m",
+        "samfem.cli",
+    )
+    return run(
+        ["solve", str(base / "scene.toml"), "--out", str(small / "run")], small / "store", command=command
+    ), kept
+
+
+def read_only(base: Path, seconds: float) -> tuple[Ended, Path]:
+    """A folder that cannot be written to; /proc for root, whom rights do not stop."""
+    folder = base / "locked"
+    folder.mkdir(mode=0o500)
+    place = Path("/proc/samfem") if os.access(folder, os.W_OK) else folder / "run"
+    return run(["solve", str(base / "scene.toml"), "--out", str(place)], base / "store"), place
+
+
+def two_runs(base: Path, seconds: float) -> tuple[Ended, Path]:
+    """A second solve into the folder of one that runs."""
+    words = ["solve", str(base / "scene.toml"), "--out", str(base / "run")]
+    first = start(words, base / "store")
+    _wait_for(base / "run" / "checkpoint.npz", first)
+    second = run(words, base / "store")
+    ended = finish(first)
+    if ended.code != 0:
+        return Ended(ended.code, f"the first run: {ended.text}", ended.seconds), base / "run"
+    return second, base / "run"
+
+
+def other_version(base: Path, seconds: float) -> tuple[Ended, Path]:
+    """A folder that another version wrote."""
+    (base / "run").mkdir()
+    (base / "run" / SUMMARY).write_text('{"format": "samfem run 0"}')
+    ended = run(["solve", str(base / "scene.toml"), "--out", str(base / "run")], base / "store")
+    if (base / "run" / SUMMARY).read_text(encoding="utf-8") != '{"format": "samfem run 0"}':
+        return Ended(None, "the summary of the other version was overwritten", ended.seconds), base
+    (base / "run" / SUMMARY).unlink()
+    return ended, base / "run"
+
+
+def other_scene(base: Path, seconds: float) -> tuple[Ended, Path]:
+    """--resume in the folder of another scene's interrupted run."""
+    interrupted(base, seconds)
+    (base / "scene.toml").write_text(SCENE.replace("0.17 N", "0.16 N"))
+    return run(
+        ["solve", str(base / "scene.toml"), "--out", str(base / "run"), "--resume"], base / "store"
+    ), base / "run"
+
+
+FAULTS = (
+    Fault("interrupt (SIGINT)", interrupted, (130,), "--resume"),
+    Fault("full disk: files end at 4 KiB", full_disk, (1,), "free"),
+    Fault("full disk: file system of 64 KiB", full_file_system, (1,), "free"),
+    Fault("folder that cannot be written to", read_only, (1, 2), "cannot"),
+    Fault("two runs into one folder", two_runs, (2,), "is being written by", written=True),
+    Fault("folder of another version", other_version, (2,), "another"),
+    Fault("--resume with another scene's checkpoint", other_scene, (2,), "another scene"),
+)
+
+
+def _wait_for(path: Path, process) -> None:
+    until = time.monotonic() + 60.0
+    while not path.exists() and process.poll() is None and time.monotonic() < until:
+        time.sleep(0.02)
+
+
+def judge_fault(fault: Fault, base: Path, seconds: float) -> tuple[tuple[str, str, str], KillTrial]:
+    """The row of a fault for the reader, and what was wrong with its end."""
+    base.mkdir()
+    (base / "scene.toml").write_text(SCENE)
+    ended, folder = fault.make(base, seconds)
+    trial = KillTrial(fault.name)
+    lines = ended.text.strip().splitlines() or [""]
+    message = next((line for line in reversed(lines) if line.startswith("samfem: error")), lines[-1])
+    if ended.code not in fault.codes or "Traceback" in ended.text:
+        trial.found("wrong-endings", f"{fault.name}: exit code {ended.code}: {message}")
+    elif fault.says not in message:
+        trial.found("wrong-endings", f"{fault.name}: the message does not say {fault.says}: {message}")
+    inspect(folder, trial)
+    if not fault.written and any(folder.rglob(SUMMARY)):
+        trial.found("early-summaries", f"{fault.name}: there is a {SUMMARY}")
+    return (fault.name, str(ended.code), message.replace(str(base), "…")), trial
+
+
+def can_mount() -> bool:
+    """Whether this process may mount a file system of its own."""
+    return os.name == "posix" and os.geteuid() == 0 and shutil.which("unshare") is not None
+
+
+def kill_solves(count: int, base: Path, progress) -> tuple[list[KillTrial], float]:
+    """Trials of solves killed at moments uniform over the time of an undisturbed one, which is returned
+    too.
+    """
+    words = ["solve", str(base / "scene.toml")]
+    ended = run([*words, "--out", str(base / "undisturbed")], base / "store")
+    if ended.code != 0:
+        raise RuntimeError(f"the undisturbed solve ended in {ended.code}: {ended.text[-300:]}")
+    expected, rng = tables(base / "undisturbed"), random.Random(SEED)
+    moments, trials = delays(count, ended.seconds, rng), []
+
+    def trial(k: int) -> KillTrial:
+        with removed(folder := base / f"solve-{k}"):
+            return killed_solve(words, folder, expected, moments[k], base=base)
+
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        for done, found in enumerate(pool.map(trial, range(count)), start=1):
+            trials.append(found)
+            progress("kills of a solve", done, count)
+    return trials, ended.seconds
+
+
+@contextmanager
+def removed(*folders: Path) -> Iterator[None]:
+    """Remove folders after the block: a sweep leaves a gigabyte, its runs and its store."""
+    try:
+        yield
+    finally:
+        for folder in folders:
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+def kill_sweeps(count: int, base: Path, progress) -> list[KillTrial]:
+    """Trials of sweeps killed likewise, the parent and a worker in turns."""
+    words = ["sweep", str(base / "study.toml"), "--workers", "2"]
+    ended = run([*words, "--out", str(base / "sweep")], base / "sweep-store")
+    if ended.code != 0:
+        raise RuntimeError(f"the undisturbed sweep ended in {ended.code}: {ended.text[-300:]}")
+    table, rng, trials = (base / "sweep" / "sweep.csv").read_bytes(), random.Random(SEED + 1), []
+    for k, delay in enumerate(delays(count, ended.seconds, rng)):
+        whom, folder = ("worker", "parent")[k % 2], base / f"sweep-{k}"
+        with removed(folder, base / f"{folder.name}-store"):
+            trials.append(killed_sweep(words, folder, table, delay, whom=whom, rng=rng, base=base))
+        progress("kills of a sweep", k + 1, count)
+    return trials
+
+
+def delays(count: int, seconds: float, rng: random.Random) -> list[float]:
+    """Random moments, one in each of `count` equal parts of a run that takes `seconds`."""
+    return [seconds * (k + rng.random()) / count for k in range(count)]
+
+
+def values_of(trials: Sequence[KillTrial]) -> dict[str, Measured]:
+    """The gates: what was found wrong, and kinds of kills that did not occur."""
+    counts = Counter(gate for trial in trials for gate, texts in trial.findings.items() for _ in texts)
+    missing = sum(not any(kind in trial.how for trial in trials) for kind in KINDS)
+    return {gate: Measured(counts[gate], 0) for gate in GATES} | {"missing-kinds": Measured(missing, 0)}
+
+
+def counts_table(caption: str, trials: Sequence[KillTrial]) -> SmallTable:
+    """How often what was killed, and how often nothing was wrong afterwards."""
+    hows = Counter(trial.how for trial in trials)
+    good = Counter(trial.how for trial in trials if not trial.findings)
+    return SmallTable(
+        caption,
+        ("killed", "times", "ended with equal tables, nothing lost"),
+        [(how, str(hows[how]), str(good[how])) for how in sorted(hows)],
+    )
+
+
+@dataclass(frozen=True)
+class Killed:
+    """Trials of solves (one undisturbed takes `seconds`) and of sweeps, and the other faults with their
+    rows.
+    """
+
+    solves: list[KillTrial]
+    sweeps: list[KillTrial]
+    seconds: float
+    faults: list[tuple[tuple[str, str, str], KillTrial]]
+
+    @property
+    def every(self) -> list[KillTrial]:
+        """All trials."""
+        return [*self.solves, *self.sweeps, *(trial for _, trial in self.faults)]
+
+
+class Faults(Case):
+    """Solves and sweeps killed, then the other faults one by one."""
+
+    def solve(self, context: Context) -> Killed:
+        solves, sweeps = KILLS[context.level]
+
+        def progress(stage: str, done: int, total: int) -> None:
+            context.progress(f"{self.name}: {stage}", done, total)
+
+        with tempfile.TemporaryDirectory(prefix="samfem-faults-") as name:
+            base = Path(name)
+            for file, text in (("scene.toml", SCENE), ("sphere.toml", SWEPT), ("study.toml", STUDY)):
+                (base / file).write_text(text)
+            solved, seconds = kill_solves(solves, base, progress)
+            swept = kill_sweeps(sweeps, base, progress)
+            faults = [fault for fault in FAULTS if fault.make is not full_file_system or can_mount()]
+            judged = [judge_fault(fault, base / f"fault-{k}", seconds) for k, fault in enumerate(faults)]
+        return Killed(solved, swept, seconds, judged)
+
+    def measure(self, found: Killed) -> dict[str, Measured]:
+        return values_of(found.every)
+
+    def setup(self, found: Killed) -> list[tuple[str, str]]:
+        return [
+            (
+                "Kills",
+                f"{len(found.solves)} of a solve of {found.seconds:.1f} s, {len(found.sweeps)} of a sweep of "
+                f"24 scenes; kill -9, seed {SEED}",
+            ),
+            ("Checkpoints", "after each load step"),
+        ]
+
+    def tables(self, found: Killed) -> list[SmallTable]:
+        return [
+            counts_table("Solves", found.solves),
+            counts_table("Sweeps", found.sweeps),
+            SmallTable("Other faults", ("fault", "exit code", "message"), [row for row, _ in found.faults]),
+        ]
+
+    def notes(self, found: Killed) -> list[str]:
+        every = (item for trial in found.every for item in trial.findings.items())
+        return [f"{gate}: {text}" for gate, texts in every for text in texts][:20]
+
+
+CASES = (Faults("faults"),)

@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: MIT
+"""Mutation check: numbers, comparisons and conditions changed one at a time, and what fast tests notice."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from importlib import util
+from pathlib import Path
+
+from verification.cases.case import Case, Context, Measured, SmallTable
+from verification.runs.threads import EVERY_LIBRARY
+
+ROOT = Path(__file__).resolve().parents[3]
+TOOL = "verification.robustness.mutants"
+"""The program that perturbs the numbers: of the source, and not imported here before it is needed."""
+DRAWN = ("number", "comparison", "branch")
+NAMED = 12
+"""Tests that kill most, on the page."""
+
+
+def needs() -> str:
+    """The tests, and what perturbs the numbers, are part of the source, not of the installed package."""
+    if not (ROOT / "tests").is_dir() or util.find_spec(TOOL) is None:
+        return "it asks the tests: run it in a checkout of the source, after `make .venv/.installed`"
+    missing = [name for name in ("pytest", "hypothesis") if util.find_spec(name) is None]
+    return f'install {" and ".join(missing)}: pip install -e ".[test]"' if missing else ""
+
+
+def checked(quick: bool) -> dict:
+    """What `python -m verification.robustness.mutants` finds, in a process of its own: it forks, and replaces
+    code.
+    """
+    with tempfile.TemporaryDirectory(prefix="samfem-mutation-") as base:
+        found = Path(base, "judged.json")
+        words = [
+            sys.executable,
+            "-m",
+            TOOL,
+            "--json",
+            str(found),
+            *(["--quick"] if quick else []),
+        ]
+        environment = os.environ | dict.fromkeys(EVERY_LIBRARY, "1") | {"SAMFEM_STORE": ""}
+        ended = subprocess.run(words, cwd=ROOT, env=environment, capture_output=True, text=True)
+        if not found.is_file():
+            raise RuntimeError(f"the mutation check broke off: {ended.stderr[-400:]}")
+        return json.loads(found.read_text(encoding="utf-8"))
+
+
+def numbers_of_core(found: Mapping) -> list[tuple]:
+    """(mutant, judgement) of each changed number of the core, of which none is left out."""
+    from verification.robustness.mutants import changes, scope  # noqa: PLC0415 - of the source only
+
+    pairs = [(changes.Mutant(**one["mutant"]), one) for one in found["judged"]]
+    return [pair for pair in pairs if scope.whole(pair[0])]
+
+
+def values_of(found: Mapping) -> dict[str, Measured]:
+    """The gates, from the judgements as read back."""
+    from verification.robustness.mutants import scope  # noqa: PLC0415 - of the source only
+
+    core, explained = numbers_of_core(found), scope.constants("explained")
+    outcomes = Counter(one["outcome"] for _, one in core)
+    killed = [one for one in found["judged"] if one["outcome"] == "killed"]
+    unexplained = {
+        mutant.name for mutant, one in core if one["outcome"] == "survived" and mutant.key not in explained
+    }
+    moving = [one for one in found["shown"] if not one["equivalent"]]
+    share = outcomes["killed"] / max(outcomes["killed"] + outcomes["survived"], 1)
+    slowest = max((one["seconds"] for one in killed), default=float("nan"))
+    return {
+        "killed": Measured(share),
+        "unexplained": Measured(len(unexplained.union(found["lost"])), 0),
+        "not-inert": Measured(len(moving)),
+        "rewriting": Measured(len(found["control"])),
+        "slowest-kill": Measured(slowest, unit="s"),
+    }
+
+
+def counts_table(found: Mapping) -> SmallTable:
+    """Numbers of the core by module: all that count, killed, survived, equivalent; those of structure."""
+    counts: Counter = Counter()
+    for mutant, one in numbers_of_core(found):
+        counts[mutant.module, one["outcome"]] += 1
+        counts[mutant.module, mutant.kind] += one["outcome"] != "structure"
+    for one in found["shown"]:
+        counts[one["mutant"]["module"], "equivalent"] += one["equivalent"]
+    for (_, what), count in list(counts.items()):
+        counts["all", what] += count
+
+    def row(name: str) -> tuple[str, ...]:
+        parts = [counts[name, what] for what in ("row", "killed", "survived", "equivalent", "structure")]
+        return (name, *map(str, [parts[1] + parts[2], *parts]))
+
+    columns = (
+        "module",
+        "mutants",
+        "of them table rows",
+        "killed",
+        "survived",
+        "equivalent",
+        "structure, left out",
+    )
+    names = dict.fromkeys([*sorted({name for name, _ in counts} - {"all"}), "all"])
+    return SmallTable("Mutants by module", columns, [row(name) for name in names])
+
+
+def drawn_table(found: Mapping) -> SmallTable:
+    """Comparisons, conditions and the numbers around the core, which are drawn: killed of all, by package."""
+    core, counts = {(mutant.module, mutant.kind) for mutant, _ in numbers_of_core(found)}, Counter()
+    for one in found["judged"]:
+        mutant = one["mutant"]
+        package, kind = ".".join(mutant["module"].split(".")[:2]), mutant["kind"].replace("count", "number")
+        if one["outcome"] != "structure" and (mutant["module"], mutant["kind"]) not in core:
+            for name in (package, "all"):
+                counts[name, kind, "of"] += 1
+                counts[name, kind, "killed"] += one["outcome"] == "killed"
+    names = [*sorted({name for name, *_ in counts} - {"all"}), "all"]
+    rows = [
+        (name, *(f"{counts[name, kind, 'killed']} of {counts[name, kind, 'of']}" for kind in DRAWN))
+        for name in names
+    ]
+    return SmallTable("Drawn mutants, killed", ("package", "numbers", "comparisons", "branches"), rows)
+
+
+def survivors_table(found: Mapping) -> SmallTable:
+    """Every changed number of the core that no test noticed, and why; and what was killed before."""
+    from verification.robustness.mutants import scope  # noqa: PLC0415 - of the source only
+
+    rows = [
+        (
+            f"{mutant.module} {mutant.function}",
+            f"{mutant.text} in {mutant.line}",
+            str(one["asked"]),
+            scope.constants("explained").get(mutant.key, "not explained"),
+        )
+        for mutant, one in numbers_of_core(found)
+        if one["outcome"] == "survived"
+    ]
+    lost = [(*what.rsplit(": ", 1), name) for name, what in found["lost"].items()]
+    rows += [(name, text, "", why) for text, why, name in lost]
+    return SmallTable("Survivors", ("where", "number", "tests asked", "why"), rows)
+
+
+def equivalent_table(found: Mapping) -> SmallTable:
+    """The equivalent mutants: constants that must not matter, and how much they do."""
+    rows = [
+        (
+            f"{one['mutant']['module']} {one['mutant']['function']}",
+            one["mutant"]["text"],
+            one["reason"],
+            f"{one['change']:.2g}",
+            str(one["probes"]),
+        )
+        for one in found["shown"]
+    ]
+    return SmallTable(
+        "Constants that must not change the answer",
+        (
+            "where",
+            "constant",
+            "why it must not matter",
+            "largest change, in tolerances",
+            "solves that run the module",
+        ),
+        rows,
+    )
+
+
+def killers_table(found: Mapping) -> SmallTable:
+    """The tests that kill most."""
+    counts = Counter(one["by"] for one in found["judged"] if one["outcome"] == "killed")
+    return SmallTable(
+        "Tests that kill most", ("test", "mutants"), [(n, str(k)) for n, k in counts.most_common(NAMED)]
+    )
+
+
+class Mutation(Case):
+    """What `checked` finds, at the level quick of a few mutants."""
+
+    def solve(self, context: Context) -> dict:
+        return checked(context.level == "quick") | {"quick": context.level == "quick"}
+
+    def measure(self, found: Mapping) -> dict[str, Measured]:
+        return values_of(found)
+
+    def setup(self, found: Mapping) -> Iterator[tuple[str, str]]:
+        from verification.robustness.mutants import scope  # noqa: PLC0415 - of the source only
+        from verification.robustness.mutants.changes import FACTOR, MORE  # noqa: PLC0415 - of the source only
+
+        errors = Counter(one["error"] for one in found["judged"] if one["outcome"] == "killed")
+        failed = sum(count for error, count in errors.items() if error in ("AssertionError", "Failed"))
+        others = sum(errors.values()) - failed
+        fast = f"{found['tests']} that take less than a second each"
+        yield "Perturbed by", f"a factor {FACTOR}; named counts grow by {MORE}; one at a time"
+        yield (
+            "Drawn beside them",
+            f"{scope.PERCENT} % of the comparisons, conditions and numbers around the core",
+        )
+        yield "Left out as structure", "0, indices, powers, keys, integers that never meet a float"
+        yield "Tests asked", f"{fast}; those that run the function, the fastest first"
+        yield "Killed by", f"{failed} by an assertion, {others} by an error or by the time that they take"
+        yield "Time", f"{found['seconds']:.0f} s"
+        if found["quick"]:
+            yield (
+                "Sample",
+                f"{scope.QUICK_COUNT} mutants of the film's law, seed {scope.SEED}; all of them at level "
+                "full",
+            )
+
+    def tables(self, found: Mapping) -> Iterator[SmallTable]:
+        for table in (counts_table, drawn_table, survivors_table, equivalent_table, killers_table):
+            if (made := table(found)).rows:
+                yield made
+
+
+CASES = (Mutation("mutation", needs=needs, alone=True),)

@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: MIT
+"""The robustness matrix: whether every extreme is right, or an error that says what to change."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from verification.cases.case import FEM, FEM_3D, SAM, Case, Context, Measured, Plot, SmallTable
+from verification.figures.stability import matrix
+from verification.robustness.matrix.row import Bench, Cell, Expectation, Kind, Refused, Right, Row, judge
+from verification.robustness.matrix.rows import TOPICS, all_rows
+
+MODELS = (SAM, FEM, FEM_3D)
+SHORT = {SAM: "SAM", FEM: "FEM\naxisym.", FEM_3D: "FEM\n3D"}
+Judged = Mapping[str, Mapping[str, Cell]]  # row -> model -> cell
+
+
+@dataclass(frozen=True)
+class Matrix:
+    """The rows of a level, and row -> model -> its cell."""
+
+    rows: Sequence[Row]
+    judged: Judged
+    level: str = "full"
+
+    @property
+    def cells(self) -> list[tuple[str, str, Cell]]:
+        """(row, model, cell)."""
+        return [(name, model, cell) for name, each in self.judged.items() for model, cell in each.items()]
+
+
+class Stability(Case):
+    """Every cell of the level."""
+
+    def solve(self, context: Context) -> Matrix:
+        rows, bench, judged = all_rows(context.level), Bench(), {}
+        for k, row in enumerate(rows):
+            context.progress(f"{self.name}: {row.name}", k, len(rows))
+            judged[row.name] = {model: judge(row, model, bench) for model in row.expected}
+        return Matrix(rows, judged, context.level)
+
+    def measure(self, found: Matrix) -> dict[str, Measured]:
+        rows, judged = found.rows, found.judged
+        cells = [(row.expected[model], judged[row.name].get(model)) for row in rows for model in row.expected]
+        topics = set(TOPICS) - {row.topic for row in rows} if found.level == "full" else set()
+        return {
+            "wrong": Measured(sum(cell is not None and cell.kind is Kind.WRONG for _, cell in cells), 0),
+            "rows": Measured(sum(set(row.expected) == set(judged[row.name]) for row in rows), len(rows)),
+            "topics-missing": Measured(len(topics), 0),
+            "errors-explained": Measured(sum(not _explained(expected, cell) for expected, cell in cells), 0),
+        }
+
+    def setup(self, found: Matrix) -> list[tuple[str, str]]:
+        counts = Counter(cell.kind for *_, cell in found.cells)
+        seconds = sum(cell.seconds for *_, cell in found.cells)
+        return [
+            (
+                "Matrix",
+                f"{len(found.rows)} extremes, {sum(counts.values())} cells; {seconds:.0f} s of processor "
+                "time",
+            ),
+            ("Cells", ", ".join(f"{counts[kind]} {kind.value}" for kind in Kind)),
+            (
+                "Beforehand",
+                "each row says what must become of it in each model, and why; a cell that does otherwise is "
+                "wrong",
+            ),
+            ("Always wrong", "another exception, a warning of numpy, a quantity that is not finite"),
+        ]
+
+    def tables(self, found: Matrix) -> list[SmallTable]:
+        return [table(found.rows, found.judged) for table in (matrix_table, right_table, error_table)]
+
+    def notes(self, found: Matrix) -> list[str]:
+        wrong = [each for each in found.cells if each[-1].kind is Kind.WRONG]
+        return [f"Wrong: {name}, {model}: {cell.text}" for name, model, cell in wrong]
+
+    def figures(self, found: Matrix) -> Iterator[Plot]:
+        kinds = {row.name: drawn_as(row, found.judged[row.name]) for row in found.rows}
+        counts = Counter(kind for cells in kinds.values() for kind in cells.values())
+        words = ", ".join(f"{count} {kind}" for kind, count in counts.items())
+        there = {
+            model: name for model, name in SHORT.items() if any(model in cells for cells in kinds.values())
+        }
+        yield Plot(
+            matrix(kinds, there, {row.name: row.what for row in found.rows}),
+            "matrix",
+            "Extremes and what becomes of them",
+            f"A table of coloured cells, a row for each extreme and a column for each model: {words}",
+            "Right: converged and within its bound. All errors are expected and say what to change: the "
+            "solve ended with a reason (a grid or box too small, say), the input is refused, or it is not "
+            "for this model while another one solves it.",
+        )
+
+
+def drawn_as(row: Row, cells: Mapping[str, Cell]) -> dict[str, str]:
+    """Model -> what a cell is, with errors told apart."""
+    solved = any(cell.kind is Kind.RIGHT for cell in cells.values())
+    refusal = "not for this model" if solved else "input refused"
+    words = {}
+    for model, cell in cells.items():
+        expected = row.expected[model]
+        early = isinstance(expected, Refused) and expected.status is None
+        words[model] = cell.kind.value
+        if cell.kind is Kind.ERROR:
+            words[model] = refusal if early else "ended with a reason"
+    return words
+
+
+def _explained(expected: Expectation, cell: Cell | None) -> bool:
+    """Whether an error cell has its reason, and its message words that tell what to change."""
+    if cell is None or cell.kind is not Kind.ERROR:
+        return True
+    return isinstance(expected, Refused) and bool(expected.reason and expected.says and cell.text)
+
+
+def matrix_table(rows: Sequence[Row], judged: Judged) -> SmallTable:
+    """What was expected of each extreme, and what became of it."""
+    shown = [
+        (row.name, row.what, _expected(row), *(_shown(judged[row.name].get(model)) for model in MODELS))
+        for row in rows
+    ]
+    return SmallTable(
+        "The matrix", ("row", "what", "expected, and why", "SAM", "FEM, axisymmetric", "FEM, 3D"), shown
+    )
+
+
+def _expected(row: Row) -> str:
+    """One text where all models are expected to do the same."""
+    words = {model: f"{_verb(expected)}: {expected.reason}" for model, expected in row.expected.items()}
+    if len(set(words.values())) == 1:
+        return next(iter(words.values()))
+    return "; ".join(f"{model} {text}" for model, text in words.items())
+
+
+def _verb(expected: Expectation) -> str:
+    return {Right: "right", Refused: "error"}.get(type(expected), "not applicable")
+
+
+def _shown(cell: Cell | None) -> str:
+    return "" if cell is None else cell.kind.value
+
+
+def right_table(rows: Sequence[Row], judged: Judged) -> SmallTable:
+    """The comparison of each right cell that is nearest to its bound."""
+    shown = []
+    for row in rows:
+        for model, cell in judged[row.name].items():
+            worst = cell.worst
+            if cell.kind is Kind.RIGHT and worst is not None:
+                numbers = f"{worst.error:.2g}", f"{worst.bound:g}", worst.reason
+                shown.append((row.name, model, str(len(cell.deviations)), worst.what, *numbers))
+    return SmallTable(
+        "Right cells",
+        ("row", "model", "comparisons", "nearest to its bound", "error", "bound", "why this bound"),
+        shown,
+    )
+
+
+def error_table(rows: Sequence[Row], judged: Judged) -> SmallTable:
+    """Every error with its text, and why it is right that it is one."""
+    shown = [
+        (row.name, model, cell.text, row.expected[model].reason)
+        for row in rows
+        for model, cell in judged[row.name].items()
+        if cell.kind is Kind.ERROR
+    ]
+    return SmallTable("Errors", ("row", "model", "message", "why it is right"), shown)
+
+
+CASES = (Stability("stability"),)
