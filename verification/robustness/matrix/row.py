@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from math import isfinite
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from pydantic import ValidationError
@@ -23,14 +24,53 @@ from pydantic import ValidationError
 from sam.scene import InputError, Result, Scene, SceneError, Status, problems
 from verification.cost.accuracy import solve
 from verification.runs import models
-from verification.runs.models import ModelError
+from verification.runs.models import FEM, FEM_3D, SAM, ModelError
 
-Make = Callable[[], Scene]
-
-
+RADIUS, FORCE, YOUNG, POISSON = 1e-4, 0.17, 210e9, 0.3
+HERTZ = (0.75 * FORCE * RADIUS * (1 - POISSON**2) / YOUNG) ** (1 / 3)  # contact radius in m
+CELLS, MESH = 33, 8  # over four contact radii; in the contact radius
+BASE = {
+    "title": "Stability",
+    "body": {"young": YOUNG, "poisson": POISSON},
+    "counterbody": {"shape": "sphere", "radius": RADIUS},
+    "loading": {"force": FORCE},
+    "grid": {"cells": (CELLS, CELLS)},
+    "fem": {"cells_per_radius": MESH},
+}
+"""The scene that every row changes: a rigid sphere on steel, small enough for a second in either model."""
+BEYOND = {"solver.beyond_model": True}
+"""Of a contact wider than half the radius of the sphere: small strains of a flat half-space, for the numbers
+alone."""
 TOLERANCE = "the tolerance of the scene"
 """Why a certificate has its bound. A solver stops as near to it as it can: such a comparison tells least of a
 cell."""
+
+
+def changed(table: Mapping, changes: Mapping[str, Any]) -> dict:
+    """The table with other values, by dotted keys; None takes a key or a whole table away."""
+    out = dict(table)
+    for key, value in changes.items():
+        head, _, rest = key.partition(".")
+        if rest:
+            out[head] = changed(out.get(head, {}), {rest: value})
+        elif value is None:
+            out.pop(head, None)
+        else:
+            out[head] = value
+    return out
+
+
+def scene_with(changes: Mapping[str, Any]) -> Scene:
+    """The base with other values. Raises pydantic.ValidationError for what is no scene."""
+    return Scene.model_validate(changed(BASE, changes))
+
+
+def other(scene: Scene, changes: Mapping[str, Any]) -> Scene:
+    """A scene with other values, checked anew; a height map stays what it is."""
+    table = scene.model_dump(exclude_none=True)
+    if scene.surface is not None:
+        table["surface"] = {key: value for key, value in scene.surface if value is not None}
+    return Scene.model_validate(changed(table, changes))
 
 
 class Kind(StrEnum):
@@ -143,14 +183,30 @@ class Absent:
 Expectation = Right | Refused | Absent
 
 
+def both(
+    sam: Expectation, fem: Expectation | None = None, spatial: Expectation | None = None
+) -> dict[str, Expectation]:
+    """Model -> expectation; one for both if there is no other; spatial: where the three-dimensional one is
+    asked.
+    """
+    return {SAM: sam, FEM: fem or sam} | ({FEM_3D: spatial} if spatial else {})
+
+
+def every(expected: Expectation) -> dict[str, Expectation]:
+    """The same of all models."""
+    return dict.fromkeys((SAM, FEM, FEM_3D), expected)
+
+
 @dataclass(frozen=True)
 class Row:
-    """An extreme. topic: of TOPICS; expected: model -> what must become of it; quick: at this level too."""
+    """An extreme. topic: of TOPICS; make: what differs from the base, or what makes the scene; expected:
+    model -> what must become of it; quick: at this level too.
+    """
 
     name: str
     topic: str
     what: str
-    make: Make
+    make: Mapping[str, Any] | Callable[[], Scene]
     expected: Mapping[str, Expectation]
     quick: bool = False
 
@@ -190,7 +246,7 @@ def judge(row: Row, model: str, bench: Bench) -> Cell:
     expected = row.expected[model]
     if isinstance(expected, Absent):
         return Cell(Kind.ABSENT, expected.reason)
-    ended = _solve(row.make, model, bench)
+    ended = _solve(row, model, bench)
     if ended.crash:
         return Cell(Kind.WRONG, ended.crash, seconds=ended.seconds)
     if isinstance(expected, Refused):
@@ -200,10 +256,10 @@ def judge(row: Row, model: str, bench: Bench) -> Cell:
     return Cell(cell.kind, cell.text, cell.deviations, ended.seconds + time.process_time() - began)
 
 
-def _solve(make: Make, model: str, bench: Bench) -> SolveEnd:
+def _solve(row: Row, model: str, bench: Bench) -> SolveEnd:
     began, scene, result, refusal, crash = time.process_time(), None, None, "", ""
     try:
-        scene = make()
+        scene = row.make() if callable(row.make) else scene_with(row.make)
         result = bench.solve(scene, model)
     except ValidationError as error:
         refusal = "; ".join(map(str, problems(error)))
