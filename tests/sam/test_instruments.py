@@ -14,7 +14,7 @@ from sam.scene.inputs import InputError
 from sam.scene.surface import instrument_formats, instruments, processed
 from sam.scene.surface.instrument_child import RefusedError, heights_in
 from sam.scene.surface.map_files import read_named
-from verification.robustness.bad_files import npz
+from verification.robustness.fuzz import npz
 from verification.robustness.hostile import ROUGH
 
 ROWS = [

@@ -14,7 +14,7 @@ from sam.scene.surface.filling import harmonic
 from sam.scene.surface.map_files import read_named
 from sam.scene.surface.measured import fitted_form
 from sam.scene.surface.resampling import resampled
-from verification.robustness.bad_files import npz
+from verification.robustness.fuzz import npz
 from verification.robustness.hostile import ROUGH
 from verification.runs.store import identity
 from verification.scenes.pin import DATA, RECIPE, pin_heights, pin_table
