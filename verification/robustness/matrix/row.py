@@ -228,80 +228,54 @@ class Cell:
         return max(self.deviations, key=lambda each: (each.reason != TOLERANCE, each.share), default=None)
 
 
-@dataclass(frozen=True)
-class SolveEnd:
-    """How a solve ended: with a result, refused unsolved, or with what no user should see. seconds: of
-    processor time.
-    """
-
-    scene: Scene | None = None
-    result: Result | None = None
-    refusal: str = ""
-    crash: str = ""
-    seconds: float = 0.0
-
-
 def judge(row: Row, model: str, bench: Bench) -> Cell:
     """Solve a cell and compare with what the row expects."""
     expected = row.expected[model]
     if isinstance(expected, Absent):
         return Cell(Kind.ABSENT, expected.reason)
-    ended = _solve(row, model, bench)
-    if ended.crash:
-        return Cell(Kind.WRONG, ended.crash, seconds=ended.seconds)
-    if isinstance(expected, Refused):
-        return _judge_error(expected, ended)
-    began = time.process_time()
-    cell = _judge_result(expected, ended, model, bench)
-    return Cell(cell.kind, cell.text, cell.deviations, ended.seconds + time.process_time() - began)
-
-
-def _solve(row: Row, model: str, bench: Bench) -> SolveEnd:
-    began, scene, result, refusal, crash = time.process_time(), None, None, "", ""
+    began, scene, result, text, wrong, found = time.process_time(), None, None, "", "", []
     try:
         scene = row.make() if callable(row.make) else scene_with(row.make)
         result = bench.solve(scene, model)
     except ValidationError as error:
-        refusal = "; ".join(map(str, problems(error)))
+        text = "; ".join(map(str, problems(error)))
     except (SceneError, InputError, ModelError) as error:
-        refusal = str(error)
+        text = str(error)
     except Exception as error:  # whatever else it is, it is wrong
-        crash = f"{type(error).__name__}: {error}"
-    return SolveEnd(scene, result, refusal, crash, time.process_time() - began)
-
-
-def _judge_error(expected: Refused, ended: SolveEnd) -> Cell:
-    result = ended.result
-    if result is not None and result.converged:
-        return Cell(Kind.WRONG, "converged, but an error was expected", seconds=ended.seconds)
-    text = ended.refusal if result is None else f"{result.status}: {result.message}"
-    status = None if result is None else result.status
-    missing = [word for word in expected.says if word not in text]
-    if status is not expected.status:
-        return Cell(Kind.WRONG, f"expected {expected.status or 'a refusal'}: {text}", seconds=ended.seconds)
-    if missing:
-        return Cell(Kind.WRONG, f"the message does not say {missing}: {text}", seconds=ended.seconds)
-    return Cell(Kind.ERROR, text, seconds=ended.seconds)
-
-
-def _judge_result(expected: Right, ended: SolveEnd, model: str, bench: Bench) -> Cell:
-    result = ended.result
+        wrong = f"{type(error).__name__}: {error}"
+    if result is not None and not result.converged:
+        text = f"{result.status}: {result.message}"
+    if isinstance(expected, Refused):
+        wrong = wrong or _wrong_error(expected, result, text)
+        return Cell(Kind.WRONG if wrong else Kind.ERROR, wrong or text, (), time.process_time() - began)
     if result is None:
-        return Cell(Kind.WRONG, f"refused: {ended.refusal}")
-    if not result.converged:
-        return Cell(Kind.WRONG, f"{result.status}: {result.message}")
-    broken = [name for name, value in result.quantities.items() if value is not None and not isfinite(value)]
+        wrong = wrong or f"refused: {text}"
+    elif not result.converged:
+        wrong = text
+    else:
+        wrong, found = _wrong_result(expected, Trial(scene, model, result, bench))
+    return Cell(Kind.WRONG if wrong else Kind.RIGHT, wrong, found, time.process_time() - began)
+
+
+def _wrong_error(expected: Refused, result: Result | None, text: str) -> str:
+    """What is wrong with an error; empty where it is the expected one."""
+    if result is not None and result.converged:
+        return "converged, but an error was expected"
+    if expected.status is not (None if result is None else result.status):
+        return f"expected {expected.status or 'a refusal'}: {text}"
+    missing = [word for word in expected.says if word not in text]
+    return f"the message does not say {missing}: {text}" if missing else ""
+
+
+def _wrong_result(expected: Right, trial: Trial) -> tuple[str, list[Deviation]]:
+    """What is wrong with a converged result, empty where nothing is; and its comparisons."""
+    broken = [name for name, value in trial.quantities.items() if value is not None and not isfinite(value)]
     if broken:
-        return Cell(Kind.WRONG, f"not finite: {', '.join(broken)}")
-    trial = Trial(ended.scene, model, result, bench)
+        return f"not finite: {', '.join(broken)}", []
     try:
         found = [deviation for check in expected.checks for deviation in check(trial)]
     except (RuntimeError, ValueError) as error:
-        return Cell(Kind.WRONG, str(error))
+        return str(error), []
     beyond = [each for each in found if not each.share <= 1.0]
     text = "; ".join(f"{each.what}: {each.error:.3g} > {each.bound:g}" for each in beyond)
-    return Cell(
-        Kind.WRONG if beyond or not found else Kind.RIGHT,
-        text or ("" if found else "nothing was compared"),
-        found,
-    )
+    return text or ("" if found else "nothing was compared"), found
