@@ -26,17 +26,7 @@ import numpy as np
 
 from sam.scene import GridFields, Result, Status
 from verification.robustness import hostile
-from verification.robustness.hostile import (
-    EVERY_KEY,
-    NUMBERS,
-    PLACES,
-    PLASTIC,
-    ROUGH,
-    SMALL,
-    UNITS,
-    VALUES,
-    YIELD,
-)
+from verification.robustness.hostile import EVERY_KEY, NUMBERS, PLACES, PLASTIC, ROUGH, SMALL, UNITS, VALUES
 from verification.runs.archive import DIGEST, VALUES as VALUES_JSON, digest_of
 from verification.runs.meshes import READABLE, mesh_files
 
@@ -73,7 +63,7 @@ class BadInput:
 
 Generator = Callable[[random.Random, str], BadInput]
 AROUND: Mapping[str, File] = {
-    "yield.csv": YIELD,
+    "yield.csv": hostile.YIELD,
     "depth.csv": hostile.DEPTH,
     "sub": Special("folder"),
     "pipe": Special("pipe"),
@@ -493,7 +483,7 @@ def good_scenes() -> tuple[str, ...]:
 
 def _scene(text: str | bytes, kind: str, files: Mapping = ()) -> BadInput:
     content = text if isinstance(text, bytes) else encoded(text)
-    around = {"yield.csv": YIELD, "depth.csv": hostile.DEPTH, HEIGHTS: good_heights()}
+    around = {"yield.csv": hostile.YIELD, "depth.csv": hostile.DEPTH, HEIGHTS: good_heights()}
     return BadInput(kind, {**around, **dict(files), SCENE: content})
 
 
@@ -632,22 +622,24 @@ def _tables(rng: random.Random, kind: str) -> BadInput:
     match rng.randrange(8):
         case 0:
             old = rng.choice((b"peeq", b"yield_stress_Pa", b","))
-            content = YIELD.replace(old, rng.choice((b"x", b"", b";", b"peeq,", b"\t", b'"', b"\xff")))
+            content = hostile.YIELD.replace(
+                old, rng.choice((b"x", b"", b";", b"peeq,", b"\t", b'"', b"\xff"))
+            )
         case 1:
-            content = YIELD.replace(rng.choice((b"0.01", b"1.2e9", b"1e9", b"2e9")), number.encode())
+            content = hostile.YIELD.replace(rng.choice((b"0.01", b"1.2e9", b"1e9", b"2e9")), number.encode())
         case 2:
             count = rng.choice((0, 1, 9_999, 10_001, 100_000))
             content = head + b"".join(b"%d,1e9\n" % k for k in range(count))
         case 3:
             content = b"0.1,1e9\n" * rng.choice((1, 1_000_000))
         case 4:
-            content = YIELD.decode().encode(rng.choice(hostile.CODECS))
+            content = hostile.YIELD.decode().encode(rng.choice(hostile.CODECS))
         case 5:
             content = b'"' + b"x" * rng.choice((10, 200_000)) + rng.choice((b"", b'"\n'))
         case 6:
             content = head + b"0,1e9" + b"," * rng.choice((1, 500_000))
         case _:
-            content = mutated(rng, YIELD)
+            content = mutated(rng, hostile.YIELD)
     return _scene(PLASTIC, kind, {"yield.csv": content})
 
 
@@ -685,9 +677,8 @@ def _mapping(rng: random.Random, kind: str) -> BadInput:
         return with_mapping(kind, mutated(rng, text.encode()).decode(errors="surrogateescape"), good_meshes())
     elif edit == 2:
         line = rng.choice(text.splitlines())
-        text = text.replace(
-            line, rng.choice(("", f"{line}\n{line}", f"x{line}", "stress = ['p_Pa', 'x']")), 1
-        )
+        others = "", f"{line}\n{line}", f"x{line}", "stress = ['p_Pa', 'x']"
+        text = text.replace(line, rng.choice(others), 1)
     for _ in range(rng.randint(0, 2)):
         odd = rng.choice(VALUES), _number(rng), toml_string(rng.choice((*hostile.MARKUP, *UNITS)))
         text = _with_value(rng, text, rng.choice(odd))
@@ -699,12 +690,8 @@ def _study(rng: random.Random, kind: str) -> BadInput:
     text = hostile.STUDY
     for _ in range(rng.choice((0, 1, 1, 2, 3))):
         match = rng.choice(list(re.finditer(r'(?<=")[^"\n]*(?=")|\w+|"[^"\n]*"|\{.*\}', text)))
-        odd = (
-            rng.choice(hostile.OF_STUDIES),
-            rng.choice(VALUES),
-            _number(rng),
-            toml_string(rng.choice(PLACES)),
-        )
+        word, value, number = rng.choice(hostile.OF_STUDIES), rng.choice(VALUES), _number(rng)
+        odd = word, value, number, toml_string(rng.choice(PLACES))
         text = text[: match.start()] + rng.choice(odd) + text[match.end() :]
     scene = rng.choice((SMALL, SMALL, SMALL, rng.choice(good_scenes()))).encode()
     made = mutated(rng, encoded(text)) if rng.random() < 0.1 else encoded(text)

@@ -28,8 +28,8 @@ from verification.runs.threads import EVERY_LIBRARY
 def check(
     quick: bool, modules: Sequence[str], files: Sequence[str], progress: Callable[[str, int, int], None]
 ) -> dict:
-    """{"judged": judgements, "shown": equivalent mutants, "control": names of tests, "lost", "gone": see
-    `frozen.compare`, "tests", "seconds"}; see `scope` for the rest.
+    """{"judged": judgements, "shown": equivalent mutants, "control": tests that fail with numbers as they are
+    and files that cannot be collected, "lost", "gone": see `frozen.compare`, "tests", "seconds"}.
 
     modules, files: only these, if any are named.
     """
@@ -43,8 +43,13 @@ def check(
     if quick:
         numbers = [mutant for mutant in mutants if scope.whole(mutant)]
         mutants, equivalent = random.Random(scope.SEED).sample(numbers, scope.QUICK_COUNT), []
-    rows = frozen.read() if frozen.FILE.is_file() else []
-    killers = {test for row in rows if row["module"] in chosen for test in row["tests"]}
+    rows, names, known = frozen.read(), {mutant.function for mutant in every}, set(scope.modules())
+    killers = {
+        test
+        for row in rows
+        if row["module"] in chosen or (row["module"] not in known and row["function"] in names)
+        for test in row["tests"]
+    }
     answer: dict = {}
 
     def work(items) -> None:
@@ -61,9 +66,10 @@ def check(
         judged = judge.judge(mutants, items, (seen, loaded), lambda done, of: progress("mutants", done, of))
         answer.update(judged=judged, control=control, tests=len(seen), seconds=time.monotonic() - start)
 
-    judge.with_tests(files or (scope.QUICK_FILES if quick else ("test_*.py",)), work)
-    there = {(m.module, m.function) for name in {*scope.modules(), *chosen} for m in scope.mutants_of(name)}
-    lost, gone = frozen.compare(answer["judged"], there) if rows else ({}, [])
+    uncollected = judge.with_tests(files or (scope.QUICK_FILES if quick else ("test_*.py",)), work)
+    answer["control"] += uncollected
+    there = {(m.module, m.function) for name in known.union(chosen) for m in scope.mutants_of(name)}
+    lost, gone = frozen.compare(answer["judged"], there)
     return answer | {"shown": show(equivalent), "lost": lost, "gone": gone}
 
 
@@ -121,7 +127,7 @@ def told(answer: dict) -> int:
         killed, survived = outcomes["killed", core], outcomes["survived", core]
         print(f"{title}: {killed} killed, {survived} survived, {outcomes['structure', core]} structure")
     print(f"{len(answer['shown'])} equivalent, {answer['tests']} fast tests, {answer['seconds']:.0f} s")
-    print("rewriting alone fails:", answer["control"] or "nothing")
+    print("without a change fail:", answer["control"] or "nothing")
     few = outcomes["survived", True] > 0.05 * (outcomes["survived", True] + outcomes["killed", True])
     return int(few or bool(answer["control"]) or bool(answer["lost"]))
 

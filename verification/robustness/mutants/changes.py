@@ -12,8 +12,9 @@ opposite, by itself; each condition of an if, a while or the like is negated.
 from __future__ import annotations
 
 import ast
+import operator
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -70,11 +71,13 @@ class Number:
     def __init__(self, value: int, factor: float):
         self.value, self.factor, self.met = value, factor, False
 
-    def _beside(self, other) -> float | int:
+    def beside(self, other) -> float | int:
+        """What it is in arithmetic with the other operand."""
         kind = getattr(other, "dtype", np.dtype(type(other)) if isinstance(other, float | complex) else None)
-        return self._perturbed() if kind is not None and kind.kind in "fc" else self.value
+        return self.perturbed() if kind is not None and kind.kind in "fc" else self.value
 
-    def _perturbed(self) -> float:
+    def perturbed(self) -> float:
+        """What it is beside a float: noted."""
         self.met = True
         return self.value * self.factor if self.factor != 1.0 else self.value
 
@@ -82,66 +85,46 @@ class Number:
         """The arithmetic of arrays, in place too; in any other function it is itself."""
         others = [value for value in inputs if value is not self]
         if ufunc is np.true_divide:
-            own = self._perturbed()
+            own = self.perturbed()
         else:
-            own = self._beside(others[0]) if others and ufunc in ARITHMETIC else self.value
+            own = self.beside(others[0]) if others and ufunc in ARITHMETIC else self.value
         return getattr(ufunc, method)(*(own if value is self else value for value in inputs), **options)
-
-    def __add__(self, other):
-        return self._beside(other) + other
-
-    def __radd__(self, other):
-        return other + self._beside(other)
-
-    def __sub__(self, other):
-        return self._beside(other) - other
-
-    def __rsub__(self, other):
-        return other - self._beside(other)
-
-    def __mul__(self, other):
-        return self._beside(other) * other
-
-    def __rmul__(self, other):
-        return other * self._beside(other)
-
-    def __truediv__(self, other):
-        return self._perturbed() / other
-
-    def __rtruediv__(self, other):
-        return other / self._perturbed()
 
     def __index__(self):
         return self.value
 
     def __float__(self):
-        return float(self._perturbed())
-
-    def __pow__(self, other):
-        return self.value**other
-
-    def __rpow__(self, other):
-        return other**self.value
+        return float(self.perturbed())
 
     def __neg__(self):
         return Number(-self.value, self.factor)
-
-    def __eq__(self, other):
-        return self.value == other
-
-    def __lt__(self, other):
-        return self.value < other
-
-    def __gt__(self, other):
-        return self.value > other
 
     def __hash__(self):
         return hash(self.value)
 
     def __array__(self, dtype=None, copy=None):
         return np.array(
-            self._perturbed() if dtype is not None and np.dtype(dtype).kind in "fc" else self.value, dtype
+            self.perturbed() if dtype is not None and np.dtype(dtype).kind in "fc" else self.value, dtype
         )
+
+
+def _method(operation: Callable, own: Callable, swapped: bool = False) -> Callable:
+    """An operator of `Number`; own: (number, other operand) -> what stands for the number."""
+
+    def method(self: Number, other):
+        mine = own(self, other)
+        return operation(other, mine) if swapped else operation(mine, other)
+
+    return method
+
+
+for _name, _own in (
+    *((name, Number.beside) for name in ("add", "sub", "mul")),
+    ("truediv", lambda number, other: number.perturbed()),
+    *((name, lambda number, other: number.value) for name in ("pow", "eq", "lt", "gt")),
+):
+    setattr(Number, f"__{_name}__", _method(getattr(operator, _name), _own))
+    setattr(Number, f"__r{_name}__", _method(getattr(operator, _name), _own, swapped=True))
 
 
 def _conditions(node: ast.AST) -> list[ast.expr]:
@@ -160,15 +143,15 @@ class _Finder(ast.NodeVisitor):
         self.parents: list[ast.AST] = []
         self.indices = 0  # of how many subscripts the node is inside
 
-    def _add(self, kind: str, text: str, node, operator: tuple[int, type] | None = None) -> None:
-        """operator: its place among those of a comparison, and what it becomes."""
+    def _add(self, kind: str, text: str, node, change: tuple[int, type] | None = None) -> None:
+        """change: place of an operator among those of a comparison, and what it becomes."""
         path = ".".join(name for name, *_ in self.functions)
         code = next((first for _, first, function in reversed(self.functions) if function), 0)
-        if code or operator is None:
+        if code or change is None:
             line = self.lines[node.lineno - 1].strip()
             mutant = Mutant(self.module, kind, path, self.ordinals[path, kind], text, code, line)
             self.ordinals[path, kind] += 1
-            self.found.append((mutant, node, operator))
+            self.found.append((mutant, node, change))
 
     def generic_visit(self, node: ast.AST) -> None:
         self.parents.append(node)
@@ -188,8 +171,8 @@ class _Finder(ast.NodeVisitor):
 
     def visit_Compare(self, node):
         negated = len(node.ops) == 1 and node in _conditions(self.parents[-1])
-        for place, operator in enumerate(map(type, node.ops)):
-            others = [NEIGHBOUR.get(operator), None if negated else OPPOSITE[operator]]
+        for place, old in enumerate(map(type, node.ops)):
+            others = [NEIGHBOUR.get(old), None if negated else OPPOSITE[old]]
             left, right = [node.left, *node.comparators][place : place + 2]
             for other in filter(None, others):
                 changed = ast.unparse(ast.Compare(left, [other()], [right]))
@@ -284,11 +267,11 @@ class _Rewriter(ast.NodeTransformer):
 
     def visit(self, node):
         changed = self.generic_visit(node)
-        for mutant, operator in self.wanted.get(id(node), ()):
+        for mutant, change in self.wanted.get(id(node), ()):
             if mutant.kind == "comparison":
-                changed.ops[operator[0]] = operator[1]()
+                changed.ops[change[0]] = change[1]()
             elif mutant.kind == "branch":
-                changed = ast.copy_location(ast.UnaryOp(operator[1](), changed), node)
+                changed = ast.copy_location(ast.UnaryOp(change[1](), changed), node)
             else:
                 changed = ast.copy_location(self._number(mutant, ast.literal_eval(node)), node)
         return changed
@@ -309,9 +292,9 @@ def rewritten(
     """The tree of the source with these changed, and the integers by the names that it needs to run."""
     finder, wanted = _Finder(mutants[0].module, source), {}
     finder.visit(tree := ast.parse(source))
-    for mutant, node, operator in finder.found:
+    for mutant, node, change in finder.found:
         if mutant in mutants:
-            wanted.setdefault(id(node), []).append((mutant, operator))
+            wanted.setdefault(id(node), []).append((mutant, change))
     rewriter = _Rewriter(wanted, factor)
     return ast.fix_missing_locations(rewriter.visit(tree)), rewriter.numbers
 

@@ -12,7 +12,7 @@ from importlib import import_module
 
 import numpy as np
 
-from sam.scene import Result, parse_scene
+from sam.scene import Result, Scene
 from verification.robustness.mutants import inject
 from verification.robustness.mutants.changes import Mutant
 from verification.robustness.mutants.judge import forked
@@ -22,176 +22,97 @@ from verification.runs import models
 WITHIN = 10.0
 """A number may change by this many tolerances of its solver."""
 SECONDS = 60.0
-STEEL = '[body]\nyoung = "210 GPa"\npoisson = 0.3\n'
-SPHERE = '[counterbody]\nshape = "sphere"\nradius = "105 um"\n'
-PUNCH = '[counterbody]\nshape = "rounded-punch"\nflat_radius = "5 um"\nradius = "100 um"\n'
-ELASTIC = SPHERE + 'young = "70 GPa"\npoisson = 0.2\n'
-SWIFT = '[body.plasticity]\nlaw = "swift"\nB = "945 MPa"\nC = 20\nn = 0.121\n'
-FILM = '[body.coating]\nthickness = "1 um"\nyoung = "400 GPa"\npoisson = 0.2\n'
-LAW = """[friction]
-law = "chemical-film"
-low = 0.1
-high = 0.4
-film_thickness = "100 nm"
-film_young = "80 GPa"
-film_poisson = 0.3
-film_yield = "0.67 GPa"
-strain_limit = 0.0204
-"""
-MISFIT = """[body.plasticity]
-law = "linear"
-yield_stress = "1 GPa"
-modulus = "10 GPa"
-[loading]
-prescribed = "misfit-sphere"
-depth = "35 um"
-radius = "10 um"
-misfit = 0.02
-profile = "gauss"
-surface = "held"
-steps = 2
-"""
-BACK = """[body.plasticity.kinematic]
-modulus = ["60 GPa", "6 GPa"]
-recovery = [300, 3]
-"""
-ROUGH = """[surface]
-kind = "self-affine"
-ra = "0.1 um"
-cutoff_long = "16 um"
-cutoff_short = "8 um"
-hurst = 0.8
-seed = 1
-"""
+STEEL = {"young": 210e9, "poisson": 0.3}
+SWIFT = {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121}
+YIELDING = STEEL | {"plasticity": SWIFT}
+KINEMATIC = {"kinematic": {"modulus": (60e9, 6e9), "recovery": (300.0, 3.0)}}
+COATED = STEEL | {"coating": {"thickness": 1e-6, "young": 400e9, "poisson": 0.2}}
+LINEAR = STEEL | {"plasticity": {"law": "linear", "yield_stress": 1e9, "modulus": 10e9}}
+SPHERE = {"shape": "sphere", "radius": 105e-6}
+TWO_STEPS, THREE_STEPS = ({"steps": steps, "unload": True} for steps in (2, 3))
+GROWTH = {"prescribed": "misfit-sphere", "depth": 35e-6, "radius": 10e-6, "misfit": 0.02, "steps": 2}
+GROWTH |= {"profile": "gauss", "surface": "held"}
+ELEMENTS = {"fem": {"cells_per_radius": 4}}
 
 
 @dataclass(frozen=True)
 class Probe:
-    """A scene for one solver; tolerance: that of the solver, of which a number may change by ten times,
+    """A scene for one solver, as tables; of the solver's tolerance a number may change by ten times,
     relatively.
     """
 
     name: str
     solver: str
-    text: str
-    tolerance: float
+    tables: Mapping
+
+    @property
+    def tolerance(self) -> float:
+        return self.tables["solver"]["tolerance"] if "solver" in self.tables else 1e-9
 
     def solve(self) -> Result:
-        scene = parse_scene(f'title = "{self.name}"\n{self.text}'.encode(), self.name)
-        result = models.solve(scene, self.solver)
+        result = models.solve(Scene.model_validate({"title": self.name, **self.tables}), self.solver)
         if not result.converged:
             raise ArithmeticError(f"{self.name} ended {result.status}: {result.message}")
         return result
 
 
-def _sam(
-    name: str, text: str, force: str, cells: int, *, tolerance: float, loading: str = "", solver: str = ""
-) -> Probe:
-    loads = f'[loading]\nforce = "{force}"\n{loading}'
-    end = f"[grid]\ncells = [{cells}, {cells}]\n[solver]\ntolerance = {tolerance}\n{solver}"
-    return Probe(name, models.SAM, text + loads + end, tolerance)
+def pressed(body: Mapping, counter: Mapping, force: float, **loading) -> dict:
+    """The tables of a contact."""
+    return {"body": body, "counterbody": counter, "loading": {"force": force, **loading}}
 
 
-PROBES = (
-    _sam(
-        "elastic sphere that slides",
-        STEEL + ELASTIC + "[friction]\ncoefficient = 0.3\n",
-        "0.1 N",
-        49,
-        tolerance=1e-9,
-    ),
-    _sam(
-        "coated half-space that slides",
-        STEEL + FILM + ELASTIC + "[friction]\ncoefficient = 0.2\n",
-        "0.1 N",
-        33,
-        tolerance=1e-8,
-    ),
-    _sam(
-        "plastic sphere",
-        STEEL + SWIFT + SPHERE,
-        "0.17 N",
-        33,
-        tolerance=1e-6,
-        loading="steps = 3\nunload = true\n",
-    ),
-    _sam(
-        "sphere with back-stresses",
-        STEEL + SWIFT + BACK + SPHERE,
-        "0.17 N",
-        17,
-        tolerance=1e-6,
-        loading="steps = 2\nunload = true\n",
-    ),
-    Probe(
-        "punch with a rounded edge",
-        models.SAM,
-        STEEL
-        + PUNCH
-        + '[loading]\napproach = "0.1 um"\n[grid]\ncells = [65, 65]\n[solver]\ntolerance = 1e-9\n',
-        1e-9,
-    ),
-    _sam(
-        "the loops of the paper",
-        STEEL + SWIFT + SPHERE,
-        "0.1 N",
-        17,
-        tolerance=1e-4,
-        loading="steps = 2\n",
-        solver='method = "paper"\n',
-    ),
-    Probe(
-        "running-in",
-        models.SAM,
-        STEEL + SWIFT + '[counterbody]\nshape = "flat"\n' + ROUGH + LAW + "[wear]\nstrain_limit = 0.002\n"
-        '[loading]\nforce = "0.06 N"\nsteps = 2\nunload = true\n'
-        '[grid]\ncells = [24, 24]\nextent = ["16 um", "16 um"]\n'
-        'depths = ["0 um", "0.2 um", "0.4 um", "0.7 um", "1.2 um", "2 um", "3.5 um", "6 um"]\n'
-        'border = "relief"\n'
-        "[solver]\ntolerance = 1e-5\n",
-        1e-5,
-    ),
-    Probe(
-        "plastic sphere of finite elements",
-        models.FEM,
-        STEEL
-        + SWIFT
-        + SPHERE
-        + '[loading]\nforce = "0.17 N"\nsteps = 3\nunload = true\n[fem]\ncells_per_radius = 4\n',
-        1e-9,
-    ),
-    Probe(
-        "finite elements with back-stresses",
-        models.FEM,
-        f"{STEEL}{SWIFT}{BACK}{SPHERE}"
-        '[loading]\nforce = "0.17 N"\nsteps = 2\nunload = true\n[fem]\ncells_per_radius = 4\n',
-        1e-9,
-    ),
-    Probe(
-        "misfit sphere of finite elements",
-        models.FEM,
-        f"{STEEL}{MISFIT}[fem]\ncells_per_radius = 4\n",
-        1e-9,
-    ),
-    Probe(
-        "misfit sphere",
-        models.SAM,
-        f"{STEEL}{MISFIT}[grid]\ncells = [13, 13]\n[solver]\ntolerance = 1e-6\n",
-        1e-6,
-    ),
-    Probe(
-        "coated sphere of finite elements",
-        models.FEM,
-        STEEL + FILM + SPHERE + '[loading]\nforce = "0.1 N"\n[fem]\ncells_per_radius = 4\n',
-        1e-9,
-    ),
-    Probe(
-        "coated sphere of hexahedra that slides",
-        models.FEM_3D,
-        STEEL + FILM + SPHERE + '[friction]\ncoefficient = 0.2\n[loading]\nforce = "0.1 N"\n'
-        "[fem]\ncells_per_radius = 4\nbox = 5\n",
-        1e-9,
-    ),
+def on(cells: int, tolerance: float, **solver) -> dict:
+    """The tables of a square grid."""
+    return {"grid": {"cells": (cells, cells)}, "solver": {"tolerance": tolerance, **solver}}
+
+
+def sliding(coefficient: float) -> dict:
+    """The table of friction."""
+    return {"friction": {"coefficient": coefficient}}
+
+
+ELASTIC = SPHERE | {"young": 70e9, "poisson": 0.2}
+BACK = STEEL | {"plasticity": SWIFT | KINEMATIC}
+PUNCH = {"shape": "rounded-punch", "flat_radius": 5e-6, "radius": 100e-6}
+FILM = {"law": "chemical-film", "low": 0.1, "high": 0.4, "strain_limit": 0.0204}
+FILM |= {"film_thickness": 100e-9, "film_young": 80e9, "film_poisson": 0.3, "film_yield": 0.67e9}
+SURFACE = {"kind": "self-affine", "ra": 1e-7, "cutoff_long": 16e-6, "cutoff_short": 8e-6}
+DEPTHS = (0.0, 0.2e-6, 0.4e-6, 0.7e-6, 1.2e-6, 2e-6, 3.5e-6, 6e-6)
+RUNNING_IN = pressed(YIELDING, {"shape": "flat"}, 0.06, **TWO_STEPS) | {
+    "surface": SURFACE | {"hurst": 0.8, "seed": 1},
+    "friction": FILM,
+    "wear": {"strain_limit": 0.002},
+    "grid": {"cells": (24, 24), "extent": (16e-6, 16e-6), "depths": DEPTHS, "border": "relief"},
+    "solver": {"tolerance": 1e-5},
+}
+BY_APPROACH = {"body": STEEL, "counterbody": PUNCH, "loading": {"approach": 1e-7}}
+GROWING = {"body": LINEAR, "loading": GROWTH}
+PROBES = tuple(
+    Probe(name, solver, tables)
+    for solver, scenes in {
+        models.SAM: {
+            "elastic sphere that slides": pressed(STEEL, ELASTIC, 0.1) | sliding(0.3) | on(49, 1e-9),
+            "coated half-space that slides": pressed(COATED, ELASTIC, 0.1) | sliding(0.2) | on(33, 1e-8),
+            "plastic sphere": pressed(YIELDING, SPHERE, 0.17, **THREE_STEPS) | on(33, 1e-6),
+            "sphere with back-stresses": pressed(BACK, SPHERE, 0.17, **TWO_STEPS) | on(17, 1e-6),
+            "punch with a rounded edge": BY_APPROACH | on(65, 1e-9),
+            "the loops of the paper": pressed(YIELDING, SPHERE, 0.1, steps=2) | on(17, 1e-4, method="paper"),
+            "running-in": RUNNING_IN,
+            "misfit sphere": GROWING | on(13, 1e-6),
+        },
+        models.FEM: {
+            "plastic sphere of elements": pressed(YIELDING, SPHERE, 0.17, **THREE_STEPS) | ELEMENTS,
+            "elements with back-stresses": pressed(BACK, SPHERE, 0.17, **TWO_STEPS) | ELEMENTS,
+            "misfit sphere of elements": GROWING | ELEMENTS,
+            "coated sphere of elements": pressed(COATED, SPHERE, 0.1) | ELEMENTS,
+        },
+        models.FEM_3D: {
+            "coated sphere of hexahedra that slides": pressed(COATED, SPHERE, 0.1)
+            | sliding(0.2)
+            | {"fem": {"cells_per_radius": 4, "box": 5.0}},
+        },
+    }.items()
+    for name, tables in scenes.items()
 )
 
 

@@ -19,7 +19,9 @@ COLUMNS = ("module", "function", "numbers", "comparisons", "branches", "survivor
 
 
 def read() -> list[dict]:
-    """The lines of the table; survivors and tests as lists."""
+    """The lines of the table, none where there is none; survivors and tests as lists."""
+    if not FILE.is_file():
+        return []
     with FILE.open(encoding="utf-8", newline="") as lines:
         return [
             row | {name: json.loads(row[name]) for name in ("survivors", "tests")}
@@ -54,7 +56,7 @@ def rows(judged: Iterable[MutantVerdict]) -> list[dict]:
 
 def write(judged: Iterable[MutantVerdict], modules: Collection[str]) -> None:
     """Replace the lines of these modules by what was judged now."""
-    kept = [row for row in read() if row["module"] not in modules] if FILE.is_file() else []
+    kept = [row for row in read() if row["module"] not in modules]
     with FILE.open("w", encoding="utf-8", newline="") as lines:
         writer = csv.DictWriter(lines, COLUMNS, lineterminator="\n")
         writer.writeheader()

@@ -117,41 +117,40 @@ def _start(task: Callable[[], Any], seconds: float) -> tuple[int, int]:
 
 
 class Session:
-    """Calls `work(items)` in place of running the tests that pytest has collected; items: node id -> test."""
+    """Calls `work(items)` in place of running the tests that pytest has collected; items: node id -> test;
+    failed: files that cannot be collected.
+    """
 
     def __init__(self, work: Callable[[dict[str, pytest.Item]], None]):
-        self.work = work
+        self.work, self.failed = work, []
+
+    def pytest_collectreport(self, report: pytest.CollectReport) -> None:
+        self.failed += [report.nodeid] if report.failed else []
 
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
-        if not session.testsfailed:
-            self.work(few(session.items))
+        self.work(few(session.items))
         return True
 
 
-def with_tests(files: Sequence[str], work: Callable[[dict[str, pytest.Item]], None]) -> None:
-    """Collect the tests of these files of tests/ and call work(items). RuntimeError where that fails."""
+def with_tests(files: Sequence[str], work: Callable[[dict[str, pytest.Item]], None]) -> list[str]:
+    """Collect the tests of these files of tests/, those of the system apart, and call work(items); the files
+    that cannot be collected. RuntimeError where pytest ends otherwise.
+    """
     from hypothesis import Phase, settings
 
     # properties draw the same examples each time, and stop at the first that fails
     phases = (Phase.explicit, Phase.generate)
     settings.register_profile("mutants", derandomize=True, database=None, phases=phases)
     settings.load_profile("mutants")
-    words = [
-        "-s",
-        "-o",
-        "addopts=",
-        "-p",
-        "no:cacheprovider",
-        "-p",
-        "no:terminal",
-        f"--rootdir={inject.ROOT}",
-    ]
-    paths = {
-        path for file in files for path in (inject.ROOT / "tests").rglob(file) if "system" not in path.parts
+    words = "-s -o addopts= -p no:cacheprovider -p no:terminal --continue-on-collection-errors".split()
+    found = {
+        path for file in files for path in (inject.ROOT / "tests").rglob(file) if path.parent.name != "system"
     }
-    code = pytest.main([*words, *map(str, sorted(paths))], plugins=[Session(work)])
-    if code != 0:
+    session = Session(work)
+    code = pytest.main([*words, f"--rootdir={inject.ROOT}", *map(str, sorted(found))], plugins=[session])
+    if code not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):
         raise RuntimeError(f"the tests could not be collected: pytest ended with {code!r}")
+    return session.failed
 
 
 def run(item: pytest.Item, following: pytest.Item | None = None) -> tuple[bool, float, str]:
