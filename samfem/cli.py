@@ -232,7 +232,8 @@ def _add_export_command(commands: Any) -> None:
 
 def _add_verification_commands(commands: Any) -> None:
     verify = _add(commands, "verify", "run verification cases, judge their gates and write the report")
-    verify.add_argument("case", metavar="CASE", nargs="*", help="default: all cases of the level")
+    which = "names, or files of own cases (.toml); default: all cases of the level"
+    verify.add_argument("case", metavar="CASE", nargs="*", help=which)
     verify.add_argument("--level", choices=("quick", "full"), default="quick", help="default: quick")
     place = Path("reports/latest")
     verify.add_argument("--out", metavar="DIR", type=Path, default=place, help=f"default: {place}")
@@ -253,6 +254,8 @@ def _add_verification_commands(commands: Any) -> None:
         "instead list the gates whose values differ from those of an older report; exit code 1 if any does"
     )
     report.add_argument("--against", metavar="OLDER", type=Path, help=older)
+    stands = "with --against: a table (csv) of each older gate and what it is now; exit code 1 if one is lost"
+    report.add_argument("--map", dest="table", metavar="FILE", type=Path, help=stands)
 
 
 def _add_publish_command(commands: Any) -> None:

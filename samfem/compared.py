@@ -13,10 +13,11 @@ from samfem.refusals import Refusals
 from samfem.solving import check
 from verification.compare.comparison import compare_data, compare_scene
 from verification.compare.own_data import OwnData, read_data
-from verification.compare.rows import COLUMNS, Comparison, Solution, table_rows
+from verification.compare.rows import COLUMNS, Solution, table_rows
 from verification.compare.tolerances import Tolerances, tolerances_of
 from verification.compare.verdicts import FilmVerdict, change_rows, claim_rows, verdict
 from verification.cost.accuracy import solve as solve_family
+from verification.judging import Verdict
 from verification.runs import models
 from verification.runs.model_range import range_lines
 from verification.runs.store import Reuse, Store, solve_or_reuse
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
 NOT_COMPARED = "not compared"
 COMPANION = "compare.json"
 """Beside compare.csv: verdict and cost."""
-BESIDE = ("difference", "tolerance")
 """What a table has of the rows of data, besides the value and whether they passed."""
 Solved = Callable[[str, Result, Reuse], None]
 """Told of the result of a model as soon as it is there, and whether it is from the store."""
@@ -70,11 +70,11 @@ class Compared:
     sam: Result
     fem: Result
     sources: tuple[Reuse, Reuse]
-    rows: tuple[Comparison, ...]
+    rows: tuple[Verdict, ...]
     film: FilmVerdict | None = None
     claim: str | None = None
     data: tuple[OwnData, ...] = ()
-    beside: tuple[tuple[Comparison, ...], ...] = ()
+    beside: tuple[tuple[Verdict, ...], ...] = ()
 
     @property
     def results(self) -> tuple[Result, Result]:
@@ -99,9 +99,9 @@ class Compared:
         for data, rows in zip(self.data, self.beside, strict=True):
             of_row = {row.quantity: row for row in rows}
             found = [of_row.get(row.quantity) for row in self.rows]
-            table[data.name] = [row and row.fem for row in found]
-            for column in BESIDE:
-                table[f"{data.name}_{column}"] = [row and getattr(row, column) for row in found]
+            table[data.name] = [row and row.expected for row in found]
+            table[f"{data.name}_difference"] = [row and row.error for row in found]
+            table[f"{data.name}_tolerance"] = [row and row.row.tolerance for row in found]
             table[f"{data.name}_passed"] = [str(row.passed) if row else NOT_COMPARED for row in found]
         return table
 
@@ -112,7 +112,7 @@ class Compared:
         for row in self.rows:
             own = [(each.uncertainty or {}).get(row.quantity, {}).get("u_num") for each in self.results]
             if None not in own:
-                found.append(Uncertain(row.quantity, abs(row.sam - row.fem), *own))
+                found.append(Uncertain(row.quantity, abs(row.value - row.expected), *own))
         return tuple(found)
 
     @property
@@ -121,12 +121,12 @@ class Compared:
         return () if self.sam.model_range is None else tuple(range_lines(self.sam.model_range))
 
     @property
-    def failed(self) -> tuple[Comparison, ...]:
+    def failed(self) -> tuple[Verdict, ...]:
         """The rows of both models outside of their tolerance."""
         return tuple(row for row in self.rows if not row.passed)
 
     @property
-    def off(self) -> tuple[tuple[str, Comparison], ...]:
+    def off(self) -> tuple[tuple[str, Verdict], ...]:
         """Name of the data and row, for each row of data outside of its tolerance."""
         pairs = zip(self.data, self.beside, strict=True)
         return tuple((data.name, row) for data, rows in pairs for row in rows if not row.passed)
@@ -264,9 +264,9 @@ def compared(
     return question.answer(store=store, progress=progress)
 
 
-def agreement(rows: Sequence[Comparison]) -> str:
+def agreement(rows: Sequence[Verdict]) -> str:
     """How many rows agree, and which uses most of its tolerance."""
-    used = {row.difference / row.tolerance: row.quantity for row in rows if row.difference >= 0}
+    used = {row.error / row.row.tolerance: row.quantity for row in rows if row.error >= 0}
     closest = f", closest {used[max(used)]} at {100 * max(used):.0f} % of its tolerance" if used else ""
     return f"{sum(row.passed for row in rows)} of {len(rows)} agree{closest}"
 

@@ -16,9 +16,9 @@ from sam.scene import Problem, Result, Scene, SceneError, either, finer_cells, f
 from samfem.compared import COMPANION, Compared, Question, Uncertain, agreement, asked, seconds
 from samfem.refusals import Refusals
 from samfem.solving import unconverged, write_solved
-from verification.compare.rows import Comparison
 from verification.compare.verdicts import CLAIM, NOT_JUDGED
 from verification.figures import compare_figures
+from verification.judging import Verdict
 from verification.runs import models
 from verification.runs.files import (
     FIGURES,
@@ -239,10 +239,10 @@ def _show(job: Job, found: Compared, *, figures: bool) -> None:
         cells.append(
             (
                 row.quantity,
-                digits(row.sam),
-                digits(row.fem),
-                digits(row.difference, 3),
-                digits(row.tolerance),
+                digits(row.value),
+                digits(row.expected),
+                digits(row.error, 3),
+                digits(row.row.tolerance),
                 "passed" if row.passed else "FAILED",
                 *beside,
             )
@@ -276,13 +276,13 @@ def _mark(values, name: str) -> str:
 def _judge(
     scene: Scene,
     results: Sequence[Result | Run],
-    rows: Sequence[Comparison],
-    off: Sequence[tuple[str, Comparison]] = (),
+    rows: Sequence[Verdict],
+    off: Sequence[tuple[str, Verdict]] = (),
 ) -> int:
     """Exit code; what did not hold, and what to change, on stderr. off: rows of data that did not hold."""
     code, broken = unconverged(results), [row for row in rows if not row.passed]
-    claimed = [row.quantity for row in broken if row.metric == CLAIM]
-    failed = [row.quantity for row in broken if row.metric != CLAIM]
+    claimed = [row.quantity for row in broken if row.row.metric == CLAIM]
+    failed = [row.quantity for row in broken if row.row.metric != CLAIM]
     if failed and not code:  # else there is something to change first
         finer = f"to see whether the meshes are too coarse, {_finer(scene)}, and compare again"
         print(f"samfem: outside the tolerance: {', '.join(failed)}: {finer}", file=sys.stderr)

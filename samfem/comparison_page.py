@@ -11,9 +11,9 @@ from typing import Any
 
 from samfem.compared import Compared, seconds
 from samfem.shown import status_line
-from verification.compare.rows import Comparison
+from verification.compare.rows import metric_of
 from verification.figures import compare_figures
-from verification.rows import RowStatus
+from verification.judging import RowStatus, Verdict
 from verification.runs import provenance
 from verification.runs.files import FIGURES, FolderError, check_place, json_text, plain, write_atomically
 from verification.suite import pages
@@ -97,20 +97,20 @@ def _rows(case: str, found: Compared) -> Iterator[dict[str, Any]]:
             yield _gate(case, f"{data.name}: {row.quantity}", row)
 
 
-def _gate(case: str, name: str, row: Comparison) -> dict[str, Any]:
+def _gate(case: str, name: str, row: Verdict) -> dict[str, Any]:
     unit = row.quantity.split(" ")[0].rpartition("_")[2]
-    status = RowStatus.PASSED if row.passed else RowStatus.FAILED
-    values = {"value": row.sam, "expected": row.fem, "error": row.difference, "tolerance": row.tolerance}
+    values = {"value": row.value, "expected": row.expected, "error": row.error}
     gate: dict[str, Any] = plain(
         {
             "id": name,
             "case": case,
             "quantity": name,
-            "metric": row.metric,
+            "metric": metric_of(row),
             **values,
+            "tolerance": row.row.tolerance,
             "unit": unit if unit in ("Pa", "m", "m2", "N") else "",
-            "status": status,
-            "reason": row.reason,
+            "status": row.status,
+            "reason": row.row.reason,
             "note": "",
         }
     )

@@ -30,12 +30,19 @@ def verify(
         return suite.main(list(case), level, out, progress, store=default_store() if use_store else None)
 
 
-def report(folder: Path, against: Path | None = None, *, single_file: bool = False, pdf: bool = False) -> int:
+def report(
+    folder: Path,
+    against: Path | None = None,
+    *,
+    table: Path | None = None,
+    single_file: bool = False,
+    pdf: bool = False,
+) -> int:
     """Write the pages of a finished report again, or list what changed since an older one, or draw the
-    figures of a report or a run as PDF.
+    figures of a report or a run as PDF. table: of the gates that the older one had and what they are now.
     """
     if against is not None:
-        return show_changes(folder, against)
+        return show_changes(folder, against, table)
     if pdf and (folder / SUMMARY).is_file():
         print(*solve_figures(folder, pdf=True), sep="\n")
         return 0

@@ -7,7 +7,8 @@ import numpy as np
 
 from sam.scene import FieldMesh
 from verification.cases.case import Context
-from verification.rows import evaluate, load_rows
+from verification.judging import evaluate
+from verification.rows import load_rows
 
 
 @dataclass(frozen=True)

@@ -11,27 +11,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sam.scene import Result, Scene
+from verification.judging import Measured
 from verification.runs.models import SAM
 from verification.runs.sampling import peak, pressure_map, pressure_on
 
-
-@dataclass(frozen=True)
-class Measured:
-    """A computed value and its independent answer.
-
-    value, expected: numbers, or arrays of one shape for relative_l2; expected stays None for at_most and
-    at_least; weight: of each entry of the arrays (1 by default); unit: for the reader only.
-    """
-
-    value: object
-    expected: object = None
-    weight: object = None
-    unit: str = ""
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True)
@@ -54,11 +44,14 @@ class Reference:
 
 @dataclass(frozen=True)
 class Solved:
-    """A scene with its reference and the result of each model, by the name of its run."""
+    """A scene with its reference and the result of each model, by the name of its run; frame: of the sweeps
+    of the case, see `verification.cases.sweep`.
+    """
 
     scene: Scene
     reference: Reference | None
     results: dict[str, Result]
+    frame: pd.DataFrame | None = None
 
 
 @dataclass(frozen=True)

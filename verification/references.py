@@ -5,15 +5,19 @@ of the library in `verification.reference`.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
+from functools import cache
 
 import numpy as np
 
 from sam.scene import Scene
 from verification.quantities import Reference
+from verification.reference.coated_sphere import CoatedContact, solve_force
 from verification.reference.elliptic import EllipticContact
 from verification.reference.flat_punch import FlatPunch
 from verification.reference.hertz import CircularContact, axis_stress, effective_modulus, largest_von_mises
+from verification.reference.layered_axisymmetric import CoatedHalfSpace
 from verification.reference.stress import von_mises
 
 
@@ -130,9 +134,38 @@ def flat_punch(scene: Scene) -> Reference:
     )
 
 
+@cache
+def _coated_contact(layers: CoatedHalfSpace, radius: float, force: float, counter: float) -> CoatedContact:
+    return solve_force(layers, radius, force, counter)
+
+
+def coated_contact(scene: Scene) -> CoatedContact:
+    """The elastic contact of a scene with a sphere and a coating, by a spectral solution."""
+    body, film, other = scene.body, scene.body.coating, scene.counterbody
+    layers = CoatedHalfSpace(film.young, film.poisson, film.thickness, body.young, body.poisson)
+    counter = other.young / (1.0 - other.poisson**2) if other.elastic else math.inf
+    return _coated_contact(layers, other.radius, scene.loading.force, counter)
+
+
+def coated_sphere(scene: Scene) -> Reference:
+    """A spectral solution of the contact on a coated half-space."""
+    exact = coated_contact(scene)
+    a, p0 = exact.contact_radius, exact.central_pressure
+    return Reference(
+        {
+            "p-center": p0,
+            "approach": exact.approach,
+            "radius": a,
+            "pressure": lambda x, y: exact.pressure(np.hypot(x, y)),
+        },
+        {"a": a, "p0": p0, "approach": exact.approach},
+    )
+
+
 REFERENCES: Mapping[str, Callable[[Scene], Reference]] = {
     "hertz-sphere": hertz_sphere,
     "hertz-ellipse": hertz_ellipse,
     "flat-punch": flat_punch,
+    "coated-sphere": coated_sphere,
 }
 """Name in a case file -> the answer for a scene."""

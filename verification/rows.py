@@ -1,88 +1,97 @@
 # SPDX-License-Identifier: MIT
-"""A row: what is claimed of a quantity, read from the file of a case, and how a measured value is held
-against it.
-
-What is not finite, not evaluated or not listed fails:
-
-=============  ==============================================  ===========
-metric         error                                           holds when
-=============  ==============================================  ===========
-relative       |v - e| / |e|                                   error <= tolerance
-absolute       |v - e|                                         error <= tolerance
-relative_l2    sqrt(sum w (v - e)^2 / sum w e^2)               error <= tolerance
-at_most        |v|                                             error <= tolerance
-at_least       v                                               error >= tolerance
-equal          |v - e|                                         error = 0 (tolerance = 0)
-=============  ==============================================  ===========
+"""The files of the cases: what each says, and its rows.
 
 A file `verification/cases/<family>/<name>.toml` is a case, or several where it has tables `[cases.NAME]`,
 each of which overrides the keys above it. A row is `name = [metric, tolerance, reason, words]` in a table
 `[rows.KIND]`; its id is `<case>.<name>`. Braces stand for several rows: `"{sam,fem}-radius"` with
 "radius, {SAM,FEM}" are two. A reason "@name" stands in `[reasons]`, an equation "name" in equations.toml.
+
+Where a case has tables `[sweeps.NAME]`, a fifth entry says what a row takes of the points of the sweeps, see
+`Take`: `"order p-max of sam"`, `"share of fem at depth = 3"`, `"limit peeq-max of sam | limit peeq-max of
+fem"` with what it is held against.
 """
 
 from __future__ import annotations
 
-import math
 import re
 import tomllib
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from enum import StrEnum
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
-from importlib import resources
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
-import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from sam.scene import Problem, SceneError, problems, spelling
-from verification.quantities import QUANTITIES, Measured
+from sam.scene import Problem, SceneError, spelling
+from verification.judging import Row
+from verification.quantities import QUANTITIES
 
 LEVELS = ("quick", "full")
-CASES = "verification/cases"
+FOLDER = Path(__file__).resolve().parent / "cases"
 FAMILIES = (
     *("hertz", "plastic", "sliding", "cyclic", "moving", "published", "energy"),
     *("coated", "rough", "film", "running_in"),
     *("limits", "cost", "peers", "certificates", "robustness"),
 )
 """Folders of cases, in the order of the report."""
-KINDS = {
-    "exact": "closed form or quadrature",
-    "published": "published number or formula",
-    "model": "the other model",
-    "program": "another program",
-    "limit": "limit or order under refinement",
-    "bound": "bound",
-}
-"""Kind of a reference -> what it is, for the reader."""
-ROW = "a row is [metric, tolerance, reason, words]; without words its name is a quantity"
+ROW = "a row is [metric, tolerance, reason, words, take]; without words its name is a quantity"
+_TAKE = re.compile(
+    r"(?:([a-z-]+) )??([a-z0-9-]+)(?: of ([a-z0-9/ -]+?))?(?: at (.+))?|([-+.0-9e]+)", re.ASCII
+)
+_AT = re.compile(r"([a-zA-Z0-9_.-]+) (=|<|>|<=|>=) (\S+)")
 
 
-class Row(BaseModel):
-    """What one quantity of a case must reach. quantity: in words; kind: of the reference, see KINDS."""
+class Take(NamedTuple):
+    """What a row takes of the frame of the sweeps: `STATISTIC COLUMN of SWEEP MODEL at AXIS = VALUE, ...`.
+
+    statistic: a name in `verification.cases.sweep.STATISTICS` or of a function beside the file; of: names of
+    sweeps and models; at: (axis, comparison, value); a number alone: what is expected.
+    """
+
+    statistic: str
+    column: str
+    of: tuple[str, ...] = ()
+    at: tuple[tuple[str, str, str], ...] = ()
+    number: float | None = None
+
+    @classmethod
+    def parse(cls, text: str) -> Take:
+        """Raises ValueError for what does not read as one."""
+        found = _TAKE.fullmatch(text.strip())
+        if not found:
+            raise ValueError(f"no take: {text}")
+        statistic, column, of, at, alone = found.groups()
+        if alone or re.fullmatch(r"[0-9.]+", column):
+            return cls("", "", number=float(alone or column))
+        conditions = [_AT.fullmatch(each.strip()) for each in at.split(",")] if at else []
+        read = tuple((c[1], c[2], c[3]) for c in conditions if c)
+        if len(read) < len(conditions):
+            raise ValueError(f"no condition: {at}")
+        return cls(statistic or "value", column, tuple((of or "").split()), read)
+
+
+class SweepFile(BaseModel):
+    """Points at which the scene of a case is solved.
+
+    models: that solve each; axes: key of the scene or recipe -> its values, or name -> the keys and recipes
+    of a value; quick: axes with other values at that level; columns: quantity, or a function beside the
+    file -> "value", "between" (SAM against FEM), or the metric of its error against the reference; size: what
+    is refined, for orders and limits; demand: whether a point that does not converge breaks the case off.
+    """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
-    id: str = Field(pattern=r"^[a-z0-9][a-z0-9.-]*$")
-    case: str = Field(pattern=r"^[a-z0-9][a-z0-9-]*$")
-    quantity: str = Field(min_length=1)
-    metric: Literal["relative", "absolute", "relative_l2", "at_most", "at_least", "equal"]
-    tolerance: float = Field(ge=0.0, allow_inf_nan=False)
-    reason: str = Field(min_length=1)
-    kind: Literal["exact", "published", "model", "program", "limit", "bound"]
+    models: tuple[Literal["sam", "fem", "fem-3d"], ...]
+    axes: dict[str, list | dict[str, dict[str, Any]]] = Field(min_length=1)
+    quick: dict[str, list | dict[str, dict[str, Any]]] = {}
+    columns: dict[str, Literal["value", "between", "relative", "absolute", "relative_l2"]]
+    size: Literal["", "cell", "step"] = ""
+    demand: bool = True
 
-    @field_validator("tolerance", mode="before")
+    @field_validator("models", mode="before")
     @classmethod
-    def _accept_whole_numbers(cls, value: object) -> object:
-        return float(value) if type(value) is int else value
-
-    @model_validator(mode="after")
-    def _equal_has_no_tolerance(self) -> Row:
-        if (self.metric == "equal") != (self.tolerance == 0.0):
-            raise ValueError("the tolerance is 0 for the metric equal, and above 0 for the others")
-        return self
+    def _accept_lists(cls, value: object) -> object:
+        return tuple(value) if isinstance(value, list) else value
 
 
 class CaseFile(BaseModel):
@@ -94,8 +103,10 @@ class CaseFile(BaseModel):
 
     scene: of `verification/scenes`; set: key of the scene, as `loading.force` -> its value here, in SI;
     vary: recipe of `verification.cases.recipes` -> its value; quick: `set` and `vary` that differ at that
-    level; models: that solve it; reference: an independent answer, a name in `verification.references`;
-    figures: kinds of `verification.cases.kinds`; claims: table of rows -> the names in it.
+    level; models: that solve it; values: quantity -> the number that it is held against; reference: an
+    independent answer, a name in `verification.references`; figures: kinds of `verification.cases.kinds`;
+    claims: table of rows -> the names in it without a take; sweeps: its points beside the scene itself;
+    takes: id of a row -> what it takes of them, see `Take`; notes: sentences below the tables.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
@@ -110,27 +121,34 @@ class CaseFile(BaseModel):
     scene: str = ""
     set: dict[str, Any] = {}
     vary: dict[str, Any] = {}
+    values: dict[str, float] = {}
     quick: dict[str, Any] = {}
     models: tuple[Literal["sam", "fem", "fem-3d"], ...] = ()
     reference: str = ""
     figures: tuple[str, ...] = ()
     rows: tuple[Row, ...]
     claims: dict[str, tuple[str, ...]]
+    sweeps: dict[str, SweepFile] = {}
+    takes: dict[str, tuple[Take, ...]] = {}
+    notes: tuple[str, ...] = ()
+
+    @property
+    def own(self) -> bool:
+        """Whether it is a file of a user."""
+        return FOLDER not in self.path.parents
 
 
 @cache
 def case_files() -> Mapping[str, CaseFile]:
     """Name -> case of the suite, in the order of the families and of the names of their files."""
-    folder = Path(str(resources.files("verification"))) / "cases"
-    paths = [path for family in FAMILIES for path in sorted((folder / family).glob("*.toml"))]
+    paths = [path for family in FAMILIES for path in sorted((FOLDER / family).glob("*.toml"))]
     cases = [case for path in paths for case in read_cases(path)]
     return {case.name: case for family in FAMILIES for case in cases if case.family == family}
 
 
 @cache
 def _equations() -> Mapping[str, Sequence[str]]:
-    text = resources.files("verification").joinpath("cases", "equations.toml").read_text(encoding="utf-8")
-    return tomllib.loads(text)
+    return tomllib.loads((FOLDER / "equations.toml").read_text(encoding="utf-8"))
 
 
 def read_cases(path: Path) -> list[CaseFile]:
@@ -155,11 +173,13 @@ def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     """One case of a file. Raises SceneError with every fault of it."""
     faults: list[Problem] = []
     tables = content.pop("rows", {})
+    takes: dict[str, tuple[Take, ...]] = {}
     rows = [
         row
         for table in tables
-        for row in _rows(content["name"], table, tables[table], reasons=reasons, faults=faults)
+        for row in _rows(content["name"], table, tables[table], reasons=reasons, takes=takes, faults=faults)
     ]
+    claims = {table: tuple(n for n, cells in own.items() if len(cells) < 5) for table, own in tables.items()}
     named = [each for each in content.get("equations", ()) if isinstance(each, str)]
     content["equations"] = [_equations().get(e, e) if e in named else e for e in content.get("equations", ())]
     lists = {key: tuple(value) for key, value in content.items() if isinstance(value, list)}
@@ -168,18 +188,23 @@ def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     faults += [Problem("rows", name, "occurs twice") for name in twice]
     try:
         case = CaseFile(
-            **{**content, **lists}, rows=tuple(rows), claims={k: tuple(v) for k, v in tables.items()}
+            **{**content, **lists},
+            rows=tuple(rows),
+            claims={table: names for table, names in claims.items() if names},
+            takes=takes,
         )
     except ValidationError as error:
-        faults += problems(error)
+        faults += _faults(error)
     if faults:
         raise SceneError(faults, str(content["path"]))
     return case
 
 
-def _rows(case: str, table: str, named: Mapping, *, reasons: Mapping, faults: list[Problem]) -> Iterator[Row]:
+def _rows(
+    case: str, table: str, named: Mapping, *, reasons: Mapping, takes: dict, faults: list[Problem]
+) -> Iterator[Row]:
     """The rows of a table, of kind `exact`, or, where two models are held against each other or one against
-    something, `sam/fem`, `sam/exact`; what is wrong with one is added to `faults`.
+    something, `sam/fem`, `sam/exact`; what they take is added to `takes`, what is wrong with one to `faults`.
     """
     model, _, against = table.rpartition("/")
     kind = "model" if against == "fem" else against
@@ -189,8 +214,15 @@ def _rows(case: str, table: str, named: Mapping, *, reasons: Mapping, faults: li
         try:
             metric, tolerance, reason, *words = cells
             reason = reasons[reason[1:]] if reason.startswith("@") else reason
-            said = words or [f"{QUANTITIES[key].words}{of}"]
-            for name, quantity in zip(_braces(key), _braces(*said), strict=True):
+            said, *take = words or [f"{QUANTITIES[key].words}{of}"]
+            names = _braces(key)
+            if take:
+                parts = [each.split(" | ") for each in _braces(*take)]
+                takes |= {
+                    f"{case}.{name}": tuple(map(Take.parse, part))
+                    for name, part in zip(names, parts, strict=True)
+                }
+            for name, quantity in zip(names, _braces(said), strict=True):
                 yield Row(
                     id=f"{case}.{lead}{name}",
                     case=case,
@@ -201,9 +233,17 @@ def _rows(case: str, table: str, named: Mapping, *, reasons: Mapping, faults: li
                     kind=kind,
                 )
         except ValidationError as error:
-            faults += [Problem(f"rows.{table}.{key}.{p.key}", p.value, p.allowed) for p in problems(error)]
+            faults += _faults(error, f"rows.{table}.{key}")
         except (KeyError, TypeError, ValueError, AttributeError):
             faults.append(Problem(f"rows.{table}.{key}", spelling(cells), ROW))
+
+
+def _faults(error: ValidationError, *above: str) -> list[Problem]:
+    """What pydantic says of a file, by key."""
+    return [
+        Problem(".".join((*above, *map(str, item["loc"]))), spelling(item["input"]), item["msg"])
+        for item in error.errors(include_url=False)
+    ]
 
 
 def _braces(text: str) -> list[str]:
@@ -221,141 +261,3 @@ def _braces(text: str) -> list[str]:
 def load_rows() -> tuple[Row, ...]:
     """The rows of all cases of the suite, in their order."""
     return tuple(row for case in case_files().values() for row in case.rows)
-
-
-class RowStatus(StrEnum):
-    """What became of a row."""
-
-    PASSED = "passed"
-    FAILED = "failed"
-    UNCHECKED = "unchecked"
-    NOT_RUN = "not run"
-
-    @property
-    def red(self) -> bool:
-        """Whether it counts as a failure."""
-        return self in (RowStatus.FAILED, RowStatus.UNCHECKED)
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """A row after evaluation. value, expected: None for fields; error: in the gate's metric; note: why it is
-    red.
-    """
-
-    row: Row
-    status: RowStatus
-    value: float | None = None
-    expected: float | None = None
-    error: float | None = None
-    unit: str = ""
-    note: str = ""
-
-
-def _difference(v: np.ndarray, e: np.ndarray, w: np.ndarray) -> float:
-    return float(np.abs(v - e))
-
-
-def _relative(v: np.ndarray, e: np.ndarray, w: np.ndarray) -> float:
-    return float(np.abs(v - e) / np.abs(e))
-
-
-def _relative_l2(v: np.ndarray, e: np.ndarray, w: np.ndarray) -> float:
-    return float(np.sqrt(np.sum(w * (v - e) ** 2) / np.sum(w * e**2)))
-
-
-def _size(v: np.ndarray, e: np.ndarray, w: np.ndarray) -> float:
-    return float(np.abs(v))
-
-
-def _itself(v: np.ndarray, e: np.ndarray, w: np.ndarray) -> float:
-    return float(v)
-
-
-_ERRORS: dict[str, Callable[[np.ndarray, np.ndarray, np.ndarray], float]] = {
-    "relative": _relative,
-    "absolute": _difference,
-    "relative_l2": _relative_l2,
-    "at_most": _size,
-    "at_least": _itself,
-    "equal": _difference,
-}
-
-
-LIMITS = dict.fromkeys(_ERRORS, "<=") | {"at_least": ">=", "equal": "=", "none": "="}
-"""How the error of each metric is held against the tolerance; "none": a value without a gate."""
-
-
-def judge(row: Row, measured: Measured | None, note: str = "") -> Verdict:
-    """Hold a value of a case that was run against its row; `note` says why a value is missing."""
-    if measured is None:
-        return Verdict(row, RowStatus.UNCHECKED, note=note or "the case returned no value for this row")
-    try:
-        error = error_of(row.metric, measured)
-    except (TypeError, ValueError) as problem:
-        return Verdict(row, RowStatus.FAILED, unit=measured.unit, note=str(problem))
-    holds = error >= row.tolerance if row.metric == "at_least" else error <= row.tolerance
-    status = RowStatus.PASSED if holds and math.isfinite(error) else RowStatus.FAILED
-    note = "" if math.isfinite(error) else "not a finite number"
-    value, expected = _scalar(measured.value), _scalar(measured.expected)
-    return Verdict(row, status, value, expected, error, measured.unit, note)
-
-
-def error_of(metric: str, measured: Measured) -> float:
-    """The error in a metric. Raises ValueError when the values do not fit it, TypeError when they are no
-    numbers.
-    """
-    one_sided = metric in ("at_most", "at_least")
-    if measured.value is None or (measured.expected is None) != one_sided:
-        raise ValueError(f"metric {metric} needs a value {'alone' if one_sided else 'and an expected value'}")
-    v = np.asarray(measured.value, dtype=float)
-    e = v if one_sided else np.asarray(measured.expected, dtype=float)
-    w = np.ones_like(v) if measured.weight is None else np.asarray(measured.weight, dtype=float)
-    if not v.shape == e.shape == w.shape:
-        raise ValueError(f"shapes differ: value {v.shape}, expected {e.shape}, weight {w.shape}")
-    if (v.ndim > 0) != (metric == "relative_l2"):
-        raise ValueError(f"metric {metric} does not apply to a value of shape {v.shape}")
-    with np.errstate(all="ignore"):
-        return _ERRORS[metric](v, e, w)
-
-
-def _scalar(value: object) -> float | None:
-    return float(value) if value is not None and np.ndim(value) == 0 else None
-
-
-def evaluate(
-    rows: Sequence[Row],
-    ran: Mapping[str, Mapping[str, Measured]],
-    failures: Mapping[str, str] | None = None,
-) -> list[Verdict]:
-    """All verdicts, in the order of the table.
-
-    ran: case -> id of a row -> value of the cases that were run; failures: case -> why it broke off. Rows of
-    other cases are "not run". A value without a row of its case in the table is a red verdict of its own.
-    """
-    failures = failures or {}
-    verdicts = []
-    for row in rows:
-        if row.case in ran:
-            verdicts.append(judge(row, ran[row.case].get(row.id), failures.get(row.case, "")))
-        else:
-            verdicts.append(Verdict(row, RowStatus.NOT_RUN))
-    listed = {(row.case, row.id) for row in rows}
-    for case, values in ran.items():
-        verdicts += [_without_row(case, name, values[name]) for name in values if (case, name) not in listed]
-    return verdicts
-
-
-def _without_row(case: str, name: str, measured: Measured) -> Verdict:
-    """A value that no row asks for: forgotten in the file of the case or misspelt, and red either way."""
-    row = Row.model_construct(
-        id=name,
-        case=case,
-        quantity=name,
-        metric="none",
-        tolerance=0.0,
-        reason="no row of its case",
-        kind="bound",
-    )
-    note = f"case {case} returned a value that has no gate"
-    return Verdict(row, RowStatus.FAILED, value=_scalar(measured.value), unit=measured.unit, note=note)

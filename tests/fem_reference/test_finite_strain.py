@@ -28,8 +28,8 @@ from fem_reference.finite_strain.kinematics import (
 from fem_reference.finite_strain.material import Hencky
 from sam.scene.yield_curve import Linear, Swift
 from verification.cases.limits import model_limits, model_limits_curves
-from verification.quantities import Measured
-from verification.rows import evaluate, load_rows
+from verification.judging import Measured, evaluate
+from verification.rows import load_rows
 
 YOUNG, POISSON = 200.0, 0.3
 CURVES = {

@@ -14,6 +14,7 @@ from sam.scene.friction import GROWTH_ROWS, Friction, growth_coefficient
 from sam.tribofilm import FilmLaw, FilmState
 from sam.tribofilm.return_map import multiplier
 from verification.cases.film import film_law
+from verification.judging import evaluate
 from verification.reference.bonded_film import (
     in_plane_strain,
     overall_coefficient,
@@ -23,7 +24,7 @@ from verification.reference.bonded_film import (
 from verification.reference.film_flow import Film, FlowPoint, deviator, mises
 from verification.reference.film_tables import growth_coefficients, mean_of, table
 from verification.reference.regime import thinning
-from verification.rows import evaluate, load_rows
+from verification.rows import load_rows
 
 LAW = FilmLaw(80e9, 0.3, 2e9 / 3.0, 0.1, 0.4, np.inf)
 STEEL = 210e9, 0.3

@@ -24,7 +24,7 @@ from verification.cases.hertz.invariances import (
     scaled,
 )
 from verification.cases.hertz.symmetries import blunter, change, contact_of, scenes, turned
-from verification.quantities import Measured
+from verification.judging import Measured
 from verification.runs.models import SAM
 
 CELL = (1e-6, 0.8e-6)

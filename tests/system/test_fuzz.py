@@ -22,7 +22,7 @@ from sam.scene.load import parse_toml, scene_of
 from verification.cases.case import Outcome, SmallTable
 from verification.cases.robustness import bad_input as case
 from verification.cost.plan import check_needs, plan, plan_lines
-from verification.quantities import Measured
+from verification.judging import Measured
 from verification.robustness.fuzz import (
     ARCHIVE,
     KINDS,

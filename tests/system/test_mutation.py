@@ -12,12 +12,13 @@ import pytest
 from sam.kernels.lags import Lags
 from sam.kernels.patches import displacement_coefficients as coefficients
 from verification.cases.robustness import mutation as case
+from verification.judging import RowStatus, evaluate
 from verification.robustness.mutants import __main__ as mutation, equivalent, frozen, inject, judge, scope
 from verification.robustness.mutants.changes import Mutant, Number, find
 from verification.robustness.mutants.equivalent import change
 from verification.robustness.mutants.judge import MutantVerdict, forked
 from verification.robustness.mutants.scope import mutants_of
-from verification.rows import RowStatus, evaluate, load_rows
+from verification.rows import load_rows
 
 TOY = '''"""A toy."""
 from functools import cache

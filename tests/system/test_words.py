@@ -24,9 +24,10 @@ from sam.scene.places import OTHER_NAMES
 from sam.scene.section import Section
 from samfem import comparing
 from samfem.cli import CLAIMS
-from verification.compare.rows import Comparison
+from verification.compare.rows import judged
 from verification.cost import estimates, plan as plan_module
 from verification.cost.plan import check_needs
+from verification.judging import Measured
 from verification.runs import checkpoints, models
 from verification.runs.store import identity
 from verification.runs.study import read_study
@@ -374,7 +375,7 @@ class TestAdviceOfWhatCanBeChanged:
 
 
 class TestJudgement:
-    row = Comparison("p_max_Pa", 1.0, 2.0, "relative", 0.5, 0.01, False, "")
+    row = judged("p_max_Pa", "relative", Measured(1.0, 2.0), (0.01, ""))
 
     @staticmethod
     def result(converged: bool):

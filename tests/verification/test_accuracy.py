@@ -18,7 +18,7 @@ from verification.cost.accuracy import NEAREST, missed, solve
 from verification.cost.advice import table
 from verification.cost.choice import Choice, chosen_scene, expected, first_choice
 from verification.cost.plan import plan
-from verification.quantities import Measured
+from verification.judging import Measured
 from verification.reference.hertz import CircularContact
 from verification.runs.models import FEM, SAM, ModelError
 

@@ -31,7 +31,8 @@ from verification.cases.certificates.certificates_measures import (
 from verification.cases.certificates.step_cutting import StepScene
 from verification.cases.recipes import Resolution
 from verification.checks import axisymmetric as fem_checks, cells as cell_checks, conditions as contact_checks
-from verification.rows import RowStatus, evaluate, load_rows
+from verification.judging import RowStatus, evaluate
+from verification.rows import load_rows
 from verification.runs import models
 from verification.runs.models import FEM, SAM
 

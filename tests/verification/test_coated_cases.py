@@ -13,9 +13,9 @@ from sam.scene import load_scene
 from verification.cases import all_cases
 from verification.cases.case import Context
 from verification.cases.coated import coated_sphere, film_limits, film_map, layered, thin_film
-from verification.cases.coated.coated_convergence import coarse_depths
+from verification.cases.recipes import cells_in_coated_contact
 from verification.figures.coated import Map, PaperCase, change_maps, film_planes, response_errors
-from verification.quantities import Measured
+from verification.judging import Measured
 from verification.reference.layered_errors import Worst
 from verification.rows import load_rows
 from verification.runs import models
@@ -254,7 +254,7 @@ def test_the_grid_of_the_sphere_has_its_cells_and_room_for_both_contacts():
         )
         assert a * grid.cells[0] / grid.extent[0] == pytest.approx(24) and grid.cells[0] % 2 == 1
         assert grid.extent[0] > 2.1 * widest
-        assert coarse_depths(scene, answer).grid.depths[1] == scene.body.coating.thickness
+        assert cells_in_coated_contact(scene, 24).grid.depths[1] == scene.body.coating.thickness
 
 
 # --- figures ------------------------------------------------------------------------------------------------

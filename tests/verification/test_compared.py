@@ -24,7 +24,7 @@ def test_the_frame_and_the_line_say_what_the_rows_say(counted):
     found = judged({"p_max_Pa": 0.5})
     assert tuple(found.frame.columns) == COLUMNS and len(found.frame) == len(found.rows)
     assert found.passed and not found.failed
-    used = {row.quantity: row.difference / row.tolerance for row in found.rows}
+    used = {row.quantity: row.error / row.row.tolerance for row in found.rows}
     closest = max(used, key=used.get)
     line = f"{len(used)} of {len(used)} agree, closest {closest} at {100 * used[closest]:.0f} % of its "
     line += "tolerance; "
@@ -49,13 +49,17 @@ def test_a_tolerance_that_is_given_stands_before_that_of_the_scene_and_that_befo
     base = Scene(**{**resolved(COARSE), "compare": {"tolerances": of_scene}})
     default = {row.quantity: row for row in compared(COARSE).rows}
     rows = {row.quantity: row for row in compared(base, tolerances={"p_max_Pa": "4 %"}).rows}
-    assert rows["p_max_Pa"].tolerance == 0.04 and "argument tolerance" in rows["p_max_Pa"].reason
-    assert rows["approach_m"].tolerance == 0.03 and "[compare] tolerances" in rows["approach_m"].reason
+    assert rows["p_max_Pa"].row.tolerance == 0.04 and "argument tolerance" in rows["p_max_Pa"].row.reason
+    assert (
+        rows["approach_m"].row.tolerance == 0.03 and "[compare] tolerances" in rows["approach_m"].row.reason
+    )
     assert {rows[name] == default[name] for name in set(rows) - set(of_scene)} == {True}
     for name in of_scene:  # the difference stays, and what it would have been is said
-        assert rows[name].difference == default[name].difference
-        assert rows[name].passed == (rows[name].difference <= rows[name].tolerance)
-        assert f"without it {default[name].tolerance:g}: {default[name].reason}" in rows[name].reason
+        assert rows[name].error == default[name].error
+        assert rows[name].passed == (rows[name].error <= rows[name].row.tolerance)
+        assert (
+            f"without it {default[name].row.tolerance:g}: {default[name].row.reason}" in rows[name].row.reason
+        )
 
 
 def test_a_tolerance_of_the_largest_strain_is_not_one_of_its_depth(counted):

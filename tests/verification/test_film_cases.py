@@ -14,7 +14,7 @@ from fem_reference.common.schedule import Load
 from sam.scene import load_scene
 from verification.cases.coated import film_words, film_yield
 from verification.cases.coated.film_contacts import FilmContact, SolvedFilm, exact_changes, scene_of
-from verification.quantities import Measured
+from verification.judging import Measured
 from verification.reference.bonded_film import (
     elastic_mises,
     flow_gradient,

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from verification.cases import all_cases, module_of
+from verification.cases import all_cases
 from verification.cases.case import Context, Outcome
-from verification.runs.code_version import version_of_case
+from verification.runs.code_version import version_of_cases
 from verification.runs.files import json_text
 from verification.runs.store import Reuse
 from verification.suite import freshness, outcomes
@@ -42,7 +42,7 @@ def record(results) -> dict:
 
 
 def test_what_is_as_the_code_is_not_named(report, samfem):
-    assert record(report)["code"] == version_of_case(module_of(CASE))
+    assert record(report)["code"] == version_of_cases()
     assert said_of(samfem, report) == f"{OTHERS} stale, 1 as the code in front of you"
 
 

@@ -21,8 +21,9 @@ from verification.cases.cyclic.repeated_sliding import slid
 from verification.cost import estimates, growth
 from verification.cost.growth import Applied, Taken
 from verification.cost.measured import alone, idle_bytes, solve_alone
+from verification.judging import judge
 from verification.reference.convergence import fit_power
-from verification.rows import judge, load_rows
+from verification.rows import load_rows
 from verification.runs.models import FEM, SAM
 from verification.runs.threads import EVERY_LIBRARY as THREADS
 

@@ -14,12 +14,13 @@ import pytest
 from verification.cases import all_cases
 from verification.cases.case import Context
 from verification.cases.peers import peers
+from verification.judging import evaluate
 from verification.peers import elastic, plastic, problems, running
 from verification.peers.points import PeerPoint, fastest, points_of, ratio, reached
 from verification.peers.programs import aspher, sam as ours
 from verification.peers.reference import between, largest, periodic, profile_error
 from verification.peers.running import SAM, TAMAAS, VARIABLE, Job, Measurement, PeersError
-from verification.rows import evaluate, load_rows
+from verification.rows import load_rows
 from verification.suite.listing import show_cases
 from verification.suite.verify import main
 

@@ -19,7 +19,6 @@ from sam.scene import FieldMesh
 from verification.cases import all_cases
 from verification.cases.plastic.paper_loop import EULER, STRAIN, STRESS, Law, excess_of, gates
 from verification.cases.plastic.plastic import SPHERES, compared, plots, with_allowance
-from verification.cases.plastic.plastic_convergence import growth
 from verification.cases.plastic.plastic_history import cycles, largest_change
 from verification.cases.published.indentation import curve
 from verification.cases.recipes import Resolution, at_ratio, initial_yield, layer_faces, resolved_at
@@ -276,10 +275,6 @@ class TestExtrapolation:
     def test_two_sizes_are_no_ladder(self):
         with pytest.raises(ValueError):
             extrapolate([0.4, 0.2, 0.2], [1.0, 2.0, 3.0])
-
-    def test_growth_sees_models_that_part(self):
-        assert growth(np.array([[0.04, 0.08], [0.02, 0.03], [0.01, 0.015]])) == pytest.approx(0.5, rel=1e-12)
-        assert growth(np.array([[0.04, 0.08], [0.02, 0.03], [0.03, 0.015]])) == pytest.approx(1.5, rel=1e-12)
 
 
 class TestHistory:

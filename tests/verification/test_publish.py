@@ -6,21 +6,19 @@ from concurrent.futures import Executor, Future
 from dataclasses import replace
 
 import pytest
-from fake_case import FakeCase
+from fake_case import FakeCase, row
 from stored import COARSE
 from test_report import sketch
 
 from sam.scene import Status
 from samfem import publishing
 from verification.cases.case import Case, Context, NotDrawnError, Outcome, Plot, with_loading
-from verification.quantities import Measured
-from verification.rows import load_rows
+from verification.judging import Measured
 from verification.runs import models
 from verification.suite import earlier, freshness, outcomes, verify
 
 NAMES = ("timed", "first", "second")
-GATE = '[[gate]]\nid = "{0}.one"\ncase = "{0}"\nquantity = "one"\nmetric = "relative"\ntolerance = 0.1\n'
-GATE += 'reason = "because"\n'
+ROWS = [row(f"{name}.one") for name in NAMES]
 
 
 class Here(Executor):
@@ -74,7 +72,7 @@ def published(monkeypatch, counted):
     for module in (publishing, freshness):
         monkeypatch.setattr(module, "all_cases", lambda: {name: made.case(name) for name in NAMES})
     for module in (verify, freshness, earlier):
-        monkeypatch.setattr(module, "load_rows", lambda: load_rows("".join(map(GATE.format, NAMES))))
+        monkeypatch.setattr(module, "load_rows", lambda: ROWS)
     monkeypatch.setattr(publishing, "Processes", Here)
     monkeypatch.setattr(Here, "started", [])
     return made
@@ -116,8 +114,8 @@ def test_the_longest_begin_and_of_other_code_nothing_is_taken(tmp_path, publishe
     for case in results["cases"]:
         case |= {"seconds": {"second": 9.0, "first": 1.0}.get(case["name"]), "code": "of other code"}
     (tmp_path / "out" / "results.json").write_text(json.dumps(results))
-    monkeypatch.setattr(outcomes, "version_of_case", lambda module: "f" * 64)
-    monkeypatch.setattr(outcomes, "unchanged", lambda case: True)
+    monkeypatch.setattr(outcomes, "version_of_cases", lambda: "f" * 64)
+    monkeypatch.setattr(outcomes, "unchanged", lambda: True)
     published.runs.clear()
     run(tmp_path)
     assert published.runs == ["second", "first", "timed"]
@@ -158,19 +156,18 @@ def test_one_case_of_other_code_runs_again_beside_what_stays_and_a_kill_loses_no
 def test_what_stays_is_judged_by_the_gates_of_today_unless_they_measure_something_else(
     tmp_path, published, monkeypatch
 ):
-    def gates(text):
-        monkeypatch.setattr(verify, "load_rows", lambda: load_rows(text))
-        for module in (freshness, earlier):
-            monkeypatch.setattr(module, "load_rows", lambda: load_rows(text))
+    def gates(**changed):
+        for module in (verify, freshness, earlier):
+            monkeypatch.setattr(module, "load_rows", lambda: [row(ROWS[0].id, **changed), *ROWS[1:]])
 
     run(tmp_path)
-    place, table = tmp_path / "out" / "results.json", "".join(map(GATE.format, NAMES))
-    gates(table.replace("tolerance = 0.1", "tolerance = 0.001", 1))
+    place = tmp_path / "out" / "results.json"
+    gates(tolerance=0.001)
     run(tmp_path, store="new", code=1)
     results = json.loads(place.read_text(encoding="utf-8"))
     assert [case["status"] for case in results["cases"]] == ["failed", "passed", "passed"]
     assert [gate["tolerance"] for gate in results["gates"]] == [0.001, 0.1, 0.1] and len(published.runs) == 3
-    gates(table.replace('"relative"', '"absolute"', 1))
+    gates(metric="absolute")
     run(tmp_path, store="new", code=1)  # a pressure in Pa, 1 % off
     assert published.runs[3:] == ["timed"]
 
@@ -210,7 +207,7 @@ def test_scenes_of_a_long_case_are_solved_ahead_and_the_case_says_their_time(
 ):
     cases = {"long": Shared("long", "long", "Is it shared?"), "first": published.case("first")}
     monkeypatch.setattr(publishing, "all_cases", lambda: cases)
-    monkeypatch.setattr(verify, "load_rows", lambda: load_rows("".join(map(GATE.format, cases))))
+    monkeypatch.setattr(verify, "load_rows", lambda: [row(f"{name}.one") for name in cases])
     run(tmp_path)
     order = [name for name, _ in Here.started]
     assert order == ["first", "long", "long", "long"]  # two scenes, and the case
@@ -238,7 +235,7 @@ def test_runs_without_a_converged_result_are_solved_once_too(
     lost = replace(coarse_results[models.SAM], status=Status.NOT_CONVERGED, message="no")
     monkeypatch.setitem(coarse_results, models.SAM, lost)
     monkeypatch.setattr(publishing, "all_cases", lambda: {"lost": Lost("lost", "lost", "Is it lost?")})
-    monkeypatch.setattr(verify, "load_rows", lambda: load_rows(GATE.format("lost")))
+    monkeypatch.setattr(verify, "load_rows", lambda: [row("lost.one")])
     run(tmp_path)
     assert counted == 2 * [models.SAM]  # ahead, and not again by the case
 
@@ -262,7 +259,7 @@ def test_of_a_figure_that_cannot_be_drawn_the_rest_and_the_gates_are_published(
 ):
     cases = {"first": Undrawn("first", "first", "Is it drawn?"), "second": published.case("second")}
     monkeypatch.setattr(publishing, "all_cases", lambda: cases)
-    monkeypatch.setattr(verify, "load_rows", lambda: load_rows("".join(map(GATE.format, cases))))
+    monkeypatch.setattr(verify, "load_rows", lambda: [row(f"{name}.one") for name in cases])
     assert {"first-curve.png", "second-curve.png"} <= run(tmp_path, code=1).keys()
     results = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
     first, second = results["cases"]

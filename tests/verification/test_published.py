@@ -10,10 +10,9 @@ from pathlib import Path
 import pytest
 from builders import scene_text
 from fake_case import FakeCase
-from test_report import CASES, TABLE
+from test_report import CASES, ROWS
 
 from samfem.cli import main
-from verification.rows import load_rows
 from verification.suite import verify
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -70,7 +69,7 @@ def test_nothing_that_a_command_writes_names_its_place(tmp_path, monkeypatch):
     monkeypatch.setattr(
         verify, "all_cases", lambda: CASES | {"bad": FakeCase("bad", "Bad", "Is it there?", does=lost)}
     )
-    monkeypatch.setattr(verify, "load_rows", lambda: load_rows(TABLE))
+    monkeypatch.setattr(verify, "load_rows", lambda: ROWS)
     monkeypatch.setattr(sys, "argv", ["samfem", "verify", "--out", str(out / "verify")])
     assert main(["verify", "--out", str(out / "verify")]) == 1
     assert len(list(out.rglob("*.json"))) >= 6

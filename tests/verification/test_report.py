@@ -9,24 +9,25 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from fake_case import FakeCase
+from builders import scene_text
+from fake_case import FakeCase, row
 from matplotlib.lines import Line2D
+from stored import COARSE, COARSE_KEYS
 
 from samfem.cli import main
 from verification.cases.case import Outcome, Plot, SmallTable, View
 from verification.figures import space
 from verification.figures.profiles import Profile, profiles
 from verification.figures.style import Drawing, new_figure, save
-from verification.quantities import Measured
-from verification.rows import load_rows
+from verification.judging import Measured
+from verification.references import contact_of
 from verification.runs.files import FolderError
 from verification.suite import listing, verify
 
-TABLE = "".join(
-    f'[[gate]]\nid = "{case}.{name}"\ncase = "{case}"\nquantity = "quantity {name}, FEM"\n'
-    f'metric = "relative"\ntolerance = 0.1\nreason = "because of {name}"\n'
+ROWS = [
+    row(f"{case}.{name}", quantity=f"quantity {name}, FEM", reason=f"because of {name}")
     for case, name in (("good", "one"), ("good", "two"), ("bad", "one"), ("broken", "one"), ("slow", "one"))
-)
+]
 
 
 def drawing():
@@ -75,7 +76,7 @@ CASES = {
 def _small_cases(monkeypatch):
     for module in (verify, listing):
         monkeypatch.setattr(module, "all_cases", lambda: CASES)
-        monkeypatch.setattr(module, "load_rows", lambda: load_rows(TABLE))
+        monkeypatch.setattr(module, "load_rows", lambda: ROWS)
 
 
 def run(out, *cases, level="quick"):
@@ -179,7 +180,7 @@ def test_list_has_one_line_a_case_and_gates_the_rest(tmp_path, monkeypatch, caps
     assert lines[1].split() == ["good", "quick,", "full", "2", "Good", "case"]
     assert main(["verify", "--list", "bad"]) == 0 and len(capsys.readouterr().out.splitlines()) == 2
     assert main(["verify", "--gates"]) == 0
-    assert capsys.readouterr().out.count("because of ") == TABLE.count("because of ")
+    assert capsys.readouterr().out.count("because of ") == len(ROWS)
     assert main(["verify", "good", "--gates"]) == 0
     assert capsys.readouterr().out.splitlines() == [
         "good: Does it hold?",
@@ -390,3 +391,33 @@ def test_published_text_names_no_workplace():
     """Nothing in the templates points outside of the folder of the report."""
     for template in resources.files("verification.suite").joinpath("templates").iterdir():
         assert not re.search(r"https?://(?!doi.org/)|file:|/work|/tmp", template.read_text(encoding="utf-8"))
+
+
+OWN = """
+title = "My contact"
+question = "Do both models give my pressure?"
+scene = "scene.toml"
+models = ["sam"]
+[values]
+p-max = {value}
+[rows."sam/published"]
+p-max = ["relative", 0.05, "measured here to 5 %"]
+"""
+
+
+def test_a_file_of_own_rows_is_verified_by_the_same_rules(tmp_path, monkeypatch, capsys):
+    monkeypatch.undo()
+    (tmp_path / "scene.toml").write_text(scene_text(add=COARSE_KEYS), encoding="utf-8")
+    exact = contact_of(COARSE).peak_pressure
+    for value, code in ((1.01 * exact, 0), (2.0 * exact, 1)):
+        (tmp_path / "my-contact.toml").write_text(OWN.format(value=value), encoding="utf-8")
+        arguments = [str(tmp_path / "my-contact.toml"), "--no-store", "--out", str(tmp_path / "out")]
+        assert main(["verify", *arguments]) == code
+        (gate,) = results(tmp_path / "out")["gates"]
+        assert (
+            gate["id"] == "my-contact.sam-p-max" and gate["kind"] == "published" and gate["expected"] == value
+        )
+    capsys.readouterr()
+    (tmp_path / "my-contact.toml").write_text(OWN.format(value=1).replace("p-max = [", "pmax = ["))
+    assert main(["verify", *arguments]) == 2
+    assert "rows.sam/published.pmax" in capsys.readouterr().err

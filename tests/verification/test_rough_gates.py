@@ -12,7 +12,8 @@ from sam.scene import HeightMap, Result, Scene, load_scene
 from verification.cases.case import with_keys, with_loading
 from verification.cases.rough.rough_contact import SETTINGS, THICK, SolvedAsperities, at, compared
 from verification.compare.rough_measures import Depths, compared_depths
-from verification.rows import evaluate, load_rows
+from verification.judging import evaluate
+from verification.rows import load_rows
 
 
 def made(load=1.0, strain=1.0, dent=1.0, area=1.0):

@@ -7,13 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from builders import scene_text
-from fake_case import FakeCase
+from fake_case import FakeCase, row
 from stored import BOTH, COARSE, COARSE_KEYS, flipped
 from test_report import sketch
 
 from verification.cases.case import Context, Outcome, Plot
-from verification.quantities import Measured
-from verification.rows import load_rows
+from verification.judging import Measured
 from verification.runs import models, store
 from verification.runs.store import FOLDER, Store
 from verification.suite import outcomes, verify
@@ -90,9 +89,6 @@ def test_store_says_when_there_is_none(monkeypatch, samfem):
 
 # whole cases
 
-GATES = '[[gate]]\nid = "small.one"\ncase = "small"\nquantity = "one, FEM"\nmetric = "relative"\n'
-GATES += 'tolerance = {}\nreason = "because"\n'
-
 
 class Small:
     """A case that solves the coarse scene with SAM, draws, and counts its runs."""
@@ -118,7 +114,7 @@ def small(monkeypatch, counted):
     monkeypatch.setattr(
         verify, "all_cases", lambda: {"small": FakeCase("small", "Small case", "Does it hold?", does=case)}
     )
-    monkeypatch.setattr(verify, "load_rows", lambda: load_rows(GATES.format(0.1)))
+    monkeypatch.setattr(verify, "load_rows", lambda: [row("small.one", quantity="one, FEM")])
     return case
 
 
@@ -162,13 +158,13 @@ def test_a_case_runs_once_and_its_files_come_back_byte_for_byte(tmp_path, small,
 
 def test_gates_of_a_reused_case_are_judged_anew(tmp_path, small, monkeypatch):
     report_of(tmp_path)
-    monkeypatch.setattr(verify, "load_rows", lambda: load_rows(GATES.format(0.001)))
+    monkeypatch.setattr(verify, "load_rows", lambda: [row("small.one", quantity="one, FEM", tolerance=0.001)])
     assert report_of(tmp_path, code=1)["gates"][0]["status"] == "failed" and small.runs == 1
 
 
 def test_a_case_of_other_code_runs_again_on_stored_results(tmp_path, small, counted, monkeypatch):
     report_of(tmp_path)
-    monkeypatch.setattr(outcomes, "version_of_case", lambda module: "f" * 64)
+    monkeypatch.setattr(outcomes, "version_of_cases", lambda: "f" * 64)
     assert report_of(tmp_path)["solves"] == {"solved": 0, "reused": 1, "cases": 0, "stale": 1, "damaged": 0}
     assert small.runs == 2 and counted == [models.SAM]
 

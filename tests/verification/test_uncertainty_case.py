@@ -9,7 +9,7 @@ from made_results import context, red
 from verification.cases.cost import uncertainty, uncertainty_study as study
 from verification.cases.cost.uncertainty import Found
 from verification.cases.cost.uncertainty_study import Row, covered, of_program, of_textbook
-from verification.quantities import Measured
+from verification.judging import Measured
 
 CASE = "uncertainty"
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 from importlib import import_module
+from typing import Any
 
 from verification.cases.case import Case
 from verification.cases.compared import Compared
@@ -28,12 +29,12 @@ def all_cases() -> dict[str, Case]:
 
 def case_of(file: CaseFile) -> Case:
     """What runs the case of a file."""
-    said = {key: getattr(file, key) for key in ("title", "question", "equations", "levels")}
+    said: dict[str, Any] = {key: getattr(file, key) for key in ("title", "question", "equations", "levels")}
     if file.scene:
-        return Compared(file.name, **said, file=file)
+        return Compared(file.name, **said, alone=file.own, file=file)
     module = import_module(f"{__name__}.{file.path.parent.name}.{file.path.stem}")
     (case,) = (case for case in module.CASES if case.name == file.name)
-    return replace(case, **said)
+    return replace(case, **said, file=file)
 
 
 __all__ = ["LEVELS", "Case", "all_cases", "case_of"]

@@ -15,8 +15,8 @@ from pydantic import BaseModel
 
 from sam.scene import Body, CounterBody, Grid, Progress, Result, Scene, printable, read_scene
 from verification.figures import space
-from verification.quantities import Measured
-from verification.rows import LEVELS
+from verification.judging import Measured
+from verification.rows import LEVELS, CaseFile
 from verification.runs.files import write_atomically, write_run
 from verification.runs.models import FEM, FEM_3D, SAM
 from verification.runs.provenance import collect, without_places
@@ -110,13 +110,14 @@ class NotDrawnError(Exception):
 class Case:
     """A verification case: one question, and the parts of its answer.
 
-    A new case is a subclass that defines `solve` and `measure`, and what else it has to show. Each part gets
-    what `solve` returned; the harness, `run`, calls them, prefixes the ids of the gates and saves the
-    figures.
+    A new case is a subclass that defines `solve` and `measure`, and what else it has to show. Each part
+    gets what `solve` returned; the harness, `run`, calls them, prefixes the ids of the gates and saves
+    the figures.
 
-    equations: (what, formula, source) as used for the independent answer; levels: at which of LEVELS it runs,
-    none: only when it is named; needs: why it cannot run here and what to do, empty if it can; alone: whether
-    it measures times, so that nothing runs beside it and a later run measures again.
+    equations: (what, formula, source) as used for the independent answer; levels: at which of LEVELS it
+    runs, none: only when it is named; file: that says so; needs: why it cannot run here and what to do,
+    empty if it can; alone: whether it measures times, so that nothing runs beside it and a later run
+    measures again.
     """
 
     name: str
@@ -126,6 +127,7 @@ class Case:
     levels: Sequence[str] = LEVELS
     needs: Callable[[], str] = str
     alone: bool = False
+    file: CaseFile | None = None
 
     def published_at(self, level: str) -> bool:
         """Whether it belongs to what is published: those that otherwise run only when named do too."""
@@ -227,7 +229,11 @@ class Context:
     pdf: bool = False
 
     def scene(self, name: str) -> Scene:
-        """The scene of `verification/scenes/<name>.toml`."""
+        """The scene of `verification/scenes/<name>.toml`, or in a file of a user."""
+        if name.endswith(".toml"):
+            scene, inputs = read_scene(name)
+            self.inputs |= inputs
+            return scene
         with resources.as_file(resources.files("verification").joinpath("scenes", f"{name}.toml")) as path:
             scene, inputs = read_scene(path)
         self.inputs |= inputs

@@ -18,48 +18,50 @@ from verification.cases.case import (
     elastic_text,
     grid_text,
     mesh_text,
-    with_keys,
 )
-from verification.cases.recipes import RECIPES
+from verification.cases.recipes import beside, changed
+from verification.cases.sweep import MODELS, framed, points, ran, tables_of, taken
 from verification.compare.comparison import compare_scene
-from verification.quantities import QUANTITIES, Measured, Solved
+from verification.judging import Measured
+from verification.quantities import QUANTITIES, Reference, Solved
 from verification.references import REFERENCES
 from verification.rows import CaseFile
-from verification.runs.models import FEM, FEM_3D, SAM
+from verification.runs.models import SAM
 from verification.text.console import number
-
-MODELS = {"sam": SAM, "fem": FEM, "fem-3d": FEM_3D}
 
 
 def scene_of(context: Context, file: CaseFile) -> Scene:
-    """The scene of a case at the level of the context: keys set, then recipes applied in their order."""
-    changed = file.quick if context.level == "quick" else {}
-    scene = context.scene(file.scene)
-    for key, value in (file.set | changed.get("set", {})).items():
-        section, _, name = key.rpartition(".")
-        scene = with_keys(scene, section, **{name: tuple(value) if isinstance(value, list) else value})
-    for name, value in (file.vary | changed.get("vary", {})).items():
-        scene = RECIPES[name](scene, value)
-    return scene
+    """The scene of a case at the level of the context: keys set, then recipes applied."""
+    quick = file.quick if context.level == "quick" else {}
+    place = str(file.path.parent / file.scene) if file.scene.endswith(".toml") else file.scene
+    changes = file.set | quick.get("set", {}) | file.vary | quick.get("vary", {})
+    return changed(context.scene(place), changes, file)
 
 
 @dataclass(frozen=True)
 class Compared(Case):
     """The case of a file with a scene."""
 
-    file: CaseFile | None = None
-
     def solve(self, context: Context) -> Solved:
         scene = scene_of(context, self.file)
-        reference = REFERENCES[self.file.reference](scene) if self.file.reference else None
-        results = {run: context.solve(MODELS[run], scene, run.partition("-")[0]) for run in self.file.models}
-        return Solved(scene, reference, {run.partition("-")[0]: each for run, each in results.items()})
+        answer = beside(self.file, self.file.reference, REFERENCES) if self.file.reference else None
+        runs = {run.partition("-")[0]: MODELS[run] for run in self.file.models}
+        results = {run: context.solve(model, scene, run) for run, model in runs.items()}
+        frame = framed(context, self.file, scene) if self.file.sweeps else None
+        given = Reference(self.file.values, {}) if self.file.values else None
+        return Solved(scene, answer(scene) if answer else given, results, frame)
+
+    def ahead(self, context: Context) -> Iterator[Scene]:
+        sweeps = [sweep for sweep in self.file.sweeps.values() if "sam" in sweep.models]
+        base = scene_of(context, self.file) if sweeps else None
+        for sweep in sweeps:
+            yield from (changed(base, changes, self.file) for _, changes in points(sweep, context.level))
 
     def measure(self, found: Solved) -> dict[str, Measured]:
         """The rows of the file: `sam/exact` and the like by the vocabulary, `sam/fem` by the rows of
-        `compare`.
+        `compare`, and what they take of the sweeps.
         """
-        values, difference = {}, None
+        values, difference = taken(self.file, found.frame) if self.file.sweeps else {}, None
         for table, names in self.file.claims.items():
             model, against = table.split("/")
             for name in names:
@@ -77,11 +79,9 @@ class Compared(Case):
 
     def setup(self, found: Solved) -> Iterator[tuple[str, str]]:
         scene, other, loading = found.scene, found.scene.counterbody, found.scene.loading
-        a = (
-            found.reference.units["a"]
-            if found.reference
-            else found.results["sam"].quantities["contact_radius_m"]
-        )
+        a = found.reference.units.get("a", 0.0) if found.reference else 0.0
+        if not a and found.results:
+            a = found.results["sam"].quantities["contact_radius_m"]
         plasticity = scene.body.plasticity
         law = (
             f"; {plasticity.law}, {plasticity.curve().stress(0.0) / 1e6:.1f} MPa at first yield"
@@ -97,8 +97,10 @@ class Compared(Case):
         yield from found.reference.facts if found.reference else ()
         for run, result in found.results.items():
             yield run.upper(), grid_text(result, a) if result.model == SAM else mesh_text(result)
+        yield from ran(self.file, found.frame) if self.file.sweeps else ()
 
     def tables(self, found: Solved) -> Iterator[SmallTable]:
+        yield from tables_of(self.file, found.frame) if self.file.sweeps else ()
         if set(found.results) != {"sam", "fem"}:
             return
         rows = []
@@ -111,13 +113,18 @@ class Compared(Case):
         yield SmallTable("Results", ("quantity", "SAM", "FEM", "difference"), rows)
 
     def figures(self, found: Solved) -> Iterator[Plot]:
-        from verification.cases.kinds import KINDS  # noqa: PLC0415 - loads matplotlib
+        from verification.cases.kinds import KINDS, SWEPT  # noqa: PLC0415 - loads matplotlib
 
         for kind in self.file.figures:
-            yield KINDS[kind](found)
+            name, *words = kind.split()
+            draw = beside(self.file, name, KINDS | SWEPT)
+            yield draw(self.file, found.frame, *words) if name not in KINDS else draw(found)
+
+    def notes(self, found: Solved) -> tuple[str, ...]:
+        return self.file.notes
 
 
 def rows_of_compare(found: Solved) -> dict[str, Any]:
     """Name of a row of `compare` -> the difference of both models."""
     rows = compare_scene(found.scene, *found.results.values())
-    return {row.quantity: row.difference for row in rows}
+    return {row.quantity: row.error for row in rows}

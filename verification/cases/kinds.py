@@ -6,18 +6,28 @@ both models (`verification.quantities.Solved`). Titles and captions follow from 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from itertools import cycle
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from verification.cases.case import Plot
-from verification.figures.maps import FieldPair, pressure_maps
+from verification.cases.sweep import BOTH, fitted, spelt, words_of
+from verification.figures.friction import CYCLES, Curve, curves
+from verification.figures.maps import FieldPair, maps_over_axes, pressure_maps
 from verification.figures.plastic import axis_profiles, compared_peeq, residual_surface
-from verification.figures.profiles import Profile, profiles
+from verification.figures.profiles import Profile, convergence, profiles
+from verification.figures.refinement import refinement
 from verification.figures.style import Drawing
 from verification.figures.views import SURFACE_AXES, VON_MISES, compared_mises, compared_pressure
 from verification.quantities import Solved
+from verification.reference.convergence import extrapolate
 from verification.references import contact_of
+from verification.rows import CaseFile
 from verification.runs.sampling import peak, pressure_map
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 COLUMNS = {
     ("line", "p_Pa"): ("Pressure", "$p/p_0$", "p0"),
@@ -203,3 +213,80 @@ KINDS: Mapping[str, Callable[[Solved], Plot]] = {
     "residual-surface": _residual_surface,
 }
 """Name in a case file -> how it is drawn."""
+
+
+def _orders(file: CaseFile, frame: DataFrame) -> Plot:
+    """The errors of each sweep over the size of the cells, with the orders that rows take of them."""
+    panels, fits = {}, []
+    for (name, model), rows in frame[frame["model"] != BOTH].groupby(["sweep", "model"], sort=False):
+        sweep, title = file.sweeps[name], model.upper() if name == model else f"{model.upper()}, {name}"
+        errors = [column for column, how in sweep.columns.items() if how not in ("value", "between")]
+        curves = {
+            words_of(file, c): (rows["h"].to_numpy(), rows[c].to_numpy(), fitted(file, rows, c))
+            for c in errors
+        }
+        panels[title] = curves
+        fits += [f"{title} {words} {order.order:.2f}" for words, (*_, order) in curves.items() if order]
+    said = f"Observed orders: {', '.join(fits)}."
+    alt = f"Log-log plot of the errors against the cell size with fitted straight lines. {said}"
+    caption = f"Lines: least-squares fits error ~ hᵐ. {said}"
+    return Plot(convergence(panels), "orders", "Error against cell size", alt, caption)
+
+
+def _limits(file: CaseFile, frame: DataFrame, column: str) -> Plot:
+    """A strain over the size of what each sweep refines, with the limit of each model."""
+    panels, labels, off = {}, {}, []
+    for name, rows in frame[frame["model"] != BOTH].groupby("sweep", sort=False):
+        models = rows.groupby("model", sort=False)
+        points = {model.upper(): (own["h"].to_numpy(), own[column].to_numpy()) for model, own in models}
+        panels[name] = {model: (h, v, extrapolate(h, v)) for model, (h, v) in points.items()}
+        labels[name] = "1 / load steps" if file.sweeps[name].size == "step" else "cell or element size / a"
+        sam, fem = (limit.limit for *_, limit in panels[name].values())
+        off.append(f"{name} {1e2 * (sam / fem - 1.0):+.2f} %")
+    words, said = words_of(file, column), f"SAM minus FEM, extrapolated: {', '.join(off)}."
+    alt = f"The {words} of SAM and FEM under refinement with fitted power laws that meet at zero. {said}"
+    caption = f"Lines: limit + c hᵐ fitted to all points. {said}"
+    title = f"{words[0].upper()}{words[1:]} under refinement"
+    return Plot(refinement(panels, labels, f"{words} [%]"), "refinement", title, alt, caption)
+
+
+def _lines(file: CaseFile, frame: DataFrame, y: str, *words: str) -> Plot:
+    """`lines Y over X by SERIES in PANEL`: a column over an axis or a column, each a number or an array; what
+    is expected is dotted.
+    """
+    said = dict(zip(words[::2], words[1::2], strict=True))
+    x, by, panel = said["over"], said.get("by", "model"), said.get("in", "sweep")
+    panels: dict[str, dict[str, Curve]] = {}
+    for (title, name), rows in frame.dropna(subset=[y]).groupby([panel, by], sort=False):
+        for column, series in ((y, spelt(name)), (f"{y} expected", f"{spelt(name)}, expected")):
+            if rows[column].notna().all() if column in rows else False:
+                values = (np.concatenate([np.atleast_1d(each) for each in rows[c]]) for c in (x, column))
+                panels.setdefault(spelt(title), {})[series] = Curve(*values)
+    names = dict.fromkeys(name for series in panels.values() for name in series)
+    plain, dashed = ([n for n in names if n.endswith(", expected") is ends] for ends in (False, True))
+    looks = dict(zip(plain, cycle(CYCLES)))
+    looks |= {n: {"color": looks[n.removesuffix(", expected")]["color"], "linestyle": ":"} for n in dashed}
+    what = words_of(file, y)
+    title = f"{what[0].upper()}{what[1:]}"
+    text = f"Curves of the {what} over {x.replace('.', ' ')}, by {by}; dotted: what is expected."
+    return Plot(curves(panels, x.replace(".", " "), what, looks=looks), y, title, text, text)
+
+
+def _maps(file: CaseFile, frame: DataFrame, z: str, *words: str) -> Plot:
+    """`maps Z over X Y in PANEL`: a column over two axes, with lines of equal values."""
+    (_, x, y, *rest), said = words, words_of(file, z)
+    panels = {}
+    for name, rows in frame.dropna(subset=[z]).groupby(rest[1] if rest else "model", sort=False):
+        table = rows.pivot(index=y, columns=x, values=z)
+        panels[spelt(name)] = (table.columns.to_numpy(), table.index.to_numpy(), table.to_numpy(dtype=float))
+    text = f"Maps of the {said} over {x} and {y}."
+    return Plot(maps_over_axes(panels, (x, y), said), z, f"{said[0].upper()}{said[1:]}", text, text)
+
+
+SWEPT: Mapping[str, Callable[..., Plot]] = {
+    "orders": _orders,
+    "limits": _limits,
+    "lines": _lines,
+    "maps": _maps,
+}
+"""First word of a figure in a case file -> how the frame of its sweeps is drawn; the others are handed on."""

@@ -11,9 +11,10 @@ import math
 from sam.scene import Scene
 from verification.compare.own_data import OwnData
 from verification.compare.rough import NAMES, compare_rough
-from verification.compare.rows import Comparison, Pair, Solution, scalar_row
+from verification.compare.rows import Pair, Solution, scalar_row
 from verification.compare.smooth import CENTRE, centre_row, compare_results, wanted
 from verification.compare.verdicts import CHANGES
+from verification.judging import Verdict
 
 RISE = 1.5  # of an elastic contact of Hertz, the steepest of those that are compared
 ABOUT_THE_ORIGIN = ("p_center_Pa", "p_Pa over the contact")
@@ -22,7 +23,7 @@ GROOVE = (5e-2, "the sum of the plastic strains along the way, about first order
 FORCE = (1e-2, "the load of the scene; data under another load, or of a quarter of the body, are off by it")
 
 
-def compare_scene(scene: Scene, sam: Solution, fem: Solution) -> list[Comparison]:
+def compare_scene(scene: Scene, sam: Solution, fem: Solution) -> list[Verdict]:
     """Every comparison of the results of a scene."""
     if _rough(scene):
         return _of_load(scene, compare_rough(scene, sam, fem), sam, fem)
@@ -32,7 +33,7 @@ def compare_scene(scene: Scene, sam: Solution, fem: Solution) -> list[Comparison
     return _of_load(scene, _of_track(rows, sam, fem) if scene.moves else rows, sam, fem)
 
 
-def _of_track(rows: list[Comparison], sam: Solution, fem: Solution) -> list[Comparison]:
+def _of_track(rows: list[Verdict], sam: Solution, fem: Solution) -> list[Verdict]:
     """The rows of a counter-body that moves: its contact may be off the origin, and it leaves a groove."""
     pair = Pair(sam, fem, float("nan"), punch=False, plastic=False)
     found = [name for name in OF_TRACK if sam.quantities.get(name) is not None]
@@ -42,12 +43,12 @@ def _of_track(rows: list[Comparison], sam: Solution, fem: Solution) -> list[Comp
 
 def compare_data(
     scene: Scene, sam: Solution, fem: Solution, data: OwnData
-) -> tuple[list[Comparison], list[Comparison]]:
+) -> tuple[list[Verdict], list[Verdict]]:
     """Rows that both models have only beside data, and every row of SAM and the data that these have.
 
     The column fem of the second holds the data. What they lack is not compared.
     """
-    between: list[Comparison] = []
+    between: list[Verdict] = []
     found = compare_scene(scene, sam, data)
     for other, rows in ((fem, between), (data, found)):
         if scene.loading.force is not None:
@@ -55,7 +56,7 @@ def compare_data(
             rows.append(scalar_row(pair, "force_N", "relative", FORCE))
         if not _rough(scene):
             rows.append(centre_row(sam, other, fem))
-    own = [row for row in found if math.isfinite(row.fem)]
+    own = [row for row in found if math.isfinite(row.expected)]
     return [row for row in between if row.quantity in {each.quantity for each in own}], own
 
 
@@ -80,7 +81,7 @@ def _kind(scene: Scene) -> dict[str, bool]:
     return {"plastic": plastic, "unloaded": unloaded, "slides": scene.coefficient > 0}
 
 
-def _of_load(scene: Scene, rows: list[Comparison], sam: Solution, fem: Solution) -> list[Comparison]:
+def _of_load(scene: Scene, rows: list[Verdict], sam: Solution, fem: Solution) -> list[Verdict]:
     """The rows of what the scene does not give; where it gives the approach, the force in its place."""
     if scene.loading.prescribed is None and scene.loading.approach is None:
         return rows
@@ -89,5 +90,5 @@ def _of_load(scene: Scene, rows: list[Comparison], sam: Solution, fem: Solution)
         return others
     (own,) = (row for row in rows if row.quantity == "approach_m")
     pair = Pair(sam, fem, float("nan"), punch=False, plastic=False)
-    reason = f"{own.reason}; the force grows with the power {RISE:g} of the approach"
-    return [scalar_row(pair, "force_N", "relative", (RISE * own.tolerance, reason)), *others]
+    reason = f"{own.row.reason}; the force grows with the power {RISE:g} of the approach"
+    return [scalar_row(pair, "force_N", "relative", (RISE * own.row.tolerance, reason)), *others]

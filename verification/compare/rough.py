@@ -14,7 +14,8 @@ import numpy as np
 
 from sam.scene import Scene
 from verification.compare.rough_measures import PatchPressure, Spot, residual_line, spots
-from verification.compare.rows import Comparison, Pair, Solution, field_row, scalar_row
+from verification.compare.rows import Pair, Solution, field_row, scalar_row
+from verification.judging import Verdict
 
 EDGES = "cells and nodes at the edges of spots of a few cells"
 SCALARS = (
@@ -31,7 +32,7 @@ NAMES = (*(row[0] for row in (*SCALARS, FRICTION, STRAIN)), SPOT, PATCH_PRESSURE
 RESIDUAL = (0.25, "a sum of the plastic strains near the surface, first order in the cells of both models")
 
 
-def compare_rough(scene: Scene, sam: Solution, fem: Solution) -> list[Comparison]:
+def compare_rough(scene: Scene, sam: Solution, fem: Solution) -> list[Verdict]:
     """Every comparison of two results of a rough scene; without load the scalars only."""
     plastic, slides = scene.body.plasticity is not None, scene.coefficient > 0.0
     pair = Pair(sam, fem, float("nan"), punch=False, plastic=plastic, slides=slides, spatial=True)

@@ -10,10 +10,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import astuple, dataclass, fields
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
+
+from verification.judging import Measured, Row, Verdict, judge, root_mean_square
 
 Limit = tuple[float, str]
 """A tolerance and its reason."""
@@ -31,21 +33,8 @@ class Solution(Protocol):
     tables: Mapping[str, Mapping[str, Sequence]]
 
 
-@dataclass(frozen=True)
-class Comparison:
-    """One line of compare.csv."""
-
-    quantity: str
-    sam: float
-    fem: float
-    metric: str
-    difference: float
-    tolerance: float
-    passed: bool
-    reason: str
-
-
-COLUMNS = tuple(field.name for field in fields(Comparison))
+COLUMNS = ("quantity", "sam", "fem", "metric", "difference", "tolerance", "passed", "reason")
+"""Of compare.csv."""
 
 
 @dataclass(frozen=True)
@@ -78,9 +67,20 @@ class Pair:
         return NO_RESIDUAL * value if math.isfinite(value) else 0.0
 
 
-def table_rows(rows: Sequence[Comparison]) -> list[tuple]:
+def table_rows(rows: Sequence[Verdict]) -> list[tuple]:
     """The cells of compare.csv, in the order of COLUMNS."""
-    return [astuple(row) for row in rows]
+    return [
+        (
+            *(each.quantity, each.value, each.expected, metric_of(each)),
+            *(each.error, each.row.tolerance, each.passed, each.row.reason),
+        )
+        for each in rows
+    ]
+
+
+def metric_of(verdict: Verdict) -> str:
+    """The metric of a row in words."""
+    return verdict.row.metric.replace("_l2", " L2")
 
 
 def number(value: float | None) -> float:
@@ -88,15 +88,15 @@ def number(value: float | None) -> float:
     return math.nan if value is None else float(value)
 
 
-def scalar_row(pair: Pair, name: str, metric: str, limit: Limit) -> Comparison:
+def scalar_row(pair: Pair, name: str, metric: str, limit: Limit) -> Verdict:
     """The row of a quantity that both results have."""
     a, b = (number(result.quantities.get(name)) for result in (pair.sam, pair.fem))
     floor = pair.floor("approach_m") if "residual" in name else 0.0
     scale = pair.radius if metric == "radii" else max(abs(b), floor)
-    return judged(name, (a, b), metric, _ratio(abs(a - b), scale), limit=limit)
+    return judged(name, metric, Measured(a, b, scale=scale), limit)
 
 
-def field_row(pair: Pair, name: str, sample: Callable, limit: Limit) -> Comparison:
+def field_row(pair: Pair, name: str, sample: Callable, limit: Limit) -> Verdict:
     """The row of a field; sample: from the pair the values of SAM and FEM at the same places, and their
     weights.
     """
@@ -104,22 +104,13 @@ def field_row(pair: Pair, name: str, sample: Callable, limit: Limit) -> Comparis
         a, b, weight = sample(pair)
     except (KeyError, IndexError, ValueError):  # a table or state is missing, or too small to interpolate in
         a = b = weight = np.array([math.nan])
-    total = np.sum(weight)
-    rms = [float(np.sqrt(np.sum(weight * v**2) / total)) if total > 0 else math.nan for v in (a, b, a - b)]
     floor = pair.floor("approach_m" if "uz_m" in name else "mises_max_Pa") if "residual" in name else 0.0
-    return judged(name, (rms[0], rms[1]), "relative L2", _ratio(rms[2], max(rms[1], floor)), limit=limit)
+    scale = max(root_mean_square(b, weight), floor)
+    return judged(name, "relative_l2", Measured(a, b, weight, scale=scale), limit)
 
 
-def _ratio(difference: float, scale: float) -> float:
-    """difference/scale; equal values agree even at zero, and a scale of zero or NaN never passes."""
-    if difference == 0:
-        return 0.0
-    return difference / scale if scale > 0 else math.nan
-
-
-def judged(
-    name: str, values: tuple[float, float], metric: str, difference: float, *, limit: Limit
-) -> Comparison:
-    """A row, which passes where the difference is no more than the tolerance."""
+def judged(name: str, metric: str, measured: Measured, limit: Limit) -> Verdict:
+    """A row of `compare` with its value; limit: its tolerance and the reason."""
     tolerance, reason = limit
-    return Comparison(name, *values, metric, difference, tolerance, bool(difference <= tolerance), reason)
+    said = {"quantity": name, "metric": metric, "tolerance": tolerance, "reason": reason}
+    return judge(Row.model_construct(id=name, case="compare", kind="model", **said), measured)

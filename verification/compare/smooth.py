@@ -15,7 +15,8 @@ import numpy as np
 from scipy.interpolate import RectBivariateSpline, RegularGridInterpolator
 
 from sam.scene import PEAK, UNLOADED
-from verification.compare.rows import Comparison, Pair, Solution, field_row, judged, number, scalar_row
+from verification.compare.rows import Pair, Solution, field_row, judged, number, scalar_row
+from verification.judging import Measured, Verdict
 
 WITHIN = 2.0  # contact radii: the part of line, axis and plane that is compared
 INSIDE_EDGE = 0.8  # of a punch's radius: its pressure is compared up to there
@@ -136,7 +137,7 @@ def compare_results(
     unloaded: bool = False,
     slides: bool = False,
     film: float = 0.0,
-) -> list[Comparison]:
+) -> list[Verdict]:
     """Every comparison of two results of one scene. Without load all fields are zero: scalars only.
 
     shape: of the counter-body; plastic: also the plastic strain; unloaded: also what is left after unloading;
@@ -177,12 +178,11 @@ def _radius(*solutions: Solution) -> float:
     return next((radius for radius in radii if math.isfinite(radius)), math.nan)
 
 
-def centre_row(sam: Solution, other: Solution, fem: Solution) -> Comparison:
+def centre_row(sam: Solution, other: Solution, fem: Solution) -> Verdict:
     """The centre of the pressure on the line y = 0; by it a result that is shifted is seen."""
     pair = Pair(sam, other, _radius(fem, sam), punch=False, plastic=False)
     values = tuple(_centre(solved) for solved in (sam, other))
-    off = abs(values[0] - values[1]) / pair.radius if pair.radius > 0 else math.nan
-    return judged(CENTRE, values, "radii", off, limit=CENTRED)
+    return judged(CENTRE, "radii", Measured(*values, scale=pair.radius), CENTRED)
 
 
 def _centre(solved: Solution) -> float:

@@ -10,8 +10,8 @@ from pydantic import ValidationError
 
 from sam.scene import Compare, Problem, Scene, SceneError, problems, spelling
 from verification.compare.comparison import names_of_rows
-from verification.compare.rows import Comparison
 from verification.compare.verdicts import CLAIM
+from verification.judging import RowStatus, Verdict
 from verification.text.console import unknown
 
 IN_SCENE, ASKED = "[compare] tolerances", "the option or argument tolerance"
@@ -26,17 +26,18 @@ class Tolerances:
     values: Mapping[str, float] = field(default_factory=dict)
     sources: Mapping[str, str] = field(default_factory=dict)
 
-    def judged(self, rows: Sequence[Comparison]) -> list[Comparison]:
+    def judged(self, rows: Sequence[Verdict]) -> list[Verdict]:
         """The rows with these tolerances, and who gave each at the head of its reason."""
         return [self._judged(row) for row in rows]
 
-    def _judged(self, row: Comparison) -> Comparison:
+    def _judged(self, row: Verdict) -> Verdict:
         name = row.quantity.partition(" at ")[0]  # of a spot: without its place
-        if name not in self.values or row.metric == CLAIM:
+        if name not in self.values or row.row.metric == CLAIM:
             return row
         given = self.values[name]
-        reason = f"given by {self.sources[name]}; without it {row.tolerance:g}: {row.reason}"
-        return replace(row, tolerance=given, passed=bool(row.difference <= given), reason=reason)
+        reason = f"given by {self.sources[name]}; without it {row.row.tolerance:g}: {row.row.reason}"
+        changed = row.row.model_copy(update={"tolerance": given, "reason": reason})
+        return replace(row, row=changed, status=RowStatus.PASSED if row.error <= given else RowStatus.FAILED)
 
 
 def tolerances_of(scene: Scene, given: Mapping[str, object], source: str) -> Tolerances:

@@ -8,10 +8,11 @@ changes pressure and stress by less than 5 % (Table 1, Fig. 3).
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 
 from sam.scene import Scene
-from verification.compare.rows import Comparison, Solution, number
+from verification.compare.rows import Solution, judged, number
+from verification.judging import Measured, Verdict
 from verification.reference.coated_changes import breaking_thickness, mises_change, pressure_change
 from verification.text.readable import with_prefix
 
@@ -84,19 +85,17 @@ def breaking_radius(scene: Scene, limit: float = LIMIT) -> float:
     return film.thickness / min(shares)
 
 
-def change_rows(sam: Solution, fem: Solution) -> list[Comparison]:
+def change_rows(sam: Solution, fem: Solution) -> list[Verdict]:
     """The changes by the film of both models against each other."""
     reason = "differences of results with and without the film, whose errors are mostly equal"
     rows = []
     for name in CHANGES:
         a, b = (number(solved.quantities.get(name)) for solved in (sam, fem))
-        rows.append(
-            Comparison(name, a, b, "absolute", abs(a - b), AGREED, bool(abs(a - b) <= AGREED), reason)
-        )
+        rows.append(judged(name, "absolute", Measured(a, b), (AGREED, reason)))
     return rows
 
 
-def claim_rows(claim: FilmVerdict, sam: Solution, fem: Solution) -> list[Comparison]:
+def claim_rows(claim: FilmVerdict, sam: Solution, fem: Solution) -> list[Verdict]:
     """The larger change of both models against the limit: rows of a comparison that is asked to judge the
     claim.
     """
@@ -105,8 +104,9 @@ def claim_rows(claim: FilmVerdict, sam: Solution, fem: Solution) -> list[Compari
         sizes = [abs(number(solved.quantities.get(name))) for solved in (sam, fem)]
         worst = max(sizes) if all(map(math.isfinite, sizes)) else math.nan
         reason = f"negligible: it changes the largest {words} by no more (Bosman & Schipper 2011, section 2)"
-        passed = bool(worst <= claim.limit)
-        rows.append(Comparison(f"size of {name}", *sizes, CLAIM, worst, claim.limit, passed, reason))
+        held = judged(f"size of {name}", "at_most", Measured(worst), (claim.limit, reason))
+        row = held.row.model_copy(update={"metric": CLAIM})
+        rows.append(replace(held, row=row, value=sizes[0], expected=sizes[1]))
     return rows
 
 

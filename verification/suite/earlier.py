@@ -11,8 +11,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from verification.quantities import Measured
-from verification.rows import Row, RowStatus, judge, load_rows
+from verification.judging import Measured, Row, RowStatus, judge
+from verification.rows import load_rows
 from verification.suite.freshness import of_other_code, ran_in
 
 Record = Mapping[str, Any]

@@ -11,7 +11,8 @@ import hashlib
 from collections.abc import Mapping
 
 from verification.cases import all_cases
-from verification.rows import RowStatus, load_rows
+from verification.judging import RowStatus
+from verification.rows import load_rows
 from verification.runs.code_version import version_of_cases
 from verification.suite.outcomes import present
 

@@ -8,7 +8,8 @@ from collections.abc import Mapping, Sequence
 from textwrap import fill
 
 from verification.cases import Case, all_cases
-from verification.rows import Row, load_rows
+from verification.judging import Row
+from verification.rows import load_rows
 from verification.text.console import table_lines, unknown
 
 WIDTH = 100

@@ -14,7 +14,7 @@ import textwrap
 from collections.abc import Mapping
 from pathlib import Path
 
-from verification.rows import RowStatus
+from verification.judging import RowStatus
 from verification.runs.files import FolderError, write_atomically
 from verification.suite.pages.headline import headline_of
 from verification.suite.pages.stored import RED, read_stored

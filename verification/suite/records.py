@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 from xml.etree import ElementTree
 
-from verification.rows import LIMITS, RowStatus
+from verification.judging import LIMITS, RowStatus
 from verification.runs.files import plain
 from verification.runs.tables import csv_text
 from verification.text.console import digits

@@ -17,9 +17,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from sam.scene import Progress
-from verification.cases import LEVELS, Case, all_cases
+from verification.cases import LEVELS, Case, all_cases, case_of
 from verification.cases.case import Context, NotDrawnError, Outcome
-from verification.rows import RowStatus, Verdict, evaluate, load_rows
+from verification.judging import RowStatus, Verdict, evaluate
+from verification.rows import load_rows, read_cases
 from verification.runs import provenance
 from verification.runs.code_version import version_of_cases
 from verification.runs.files import FolderError, plain, write_atomically
@@ -63,14 +64,16 @@ def main(
     store: Store | None = None,
 ) -> int:
     """Run the named cases (none: all of the level), or take them from the store, and write the report into
-    `out`.
+    `out`. A name that ends with .toml is a file of own cases, which then are all that there are.
 
     Returns 0 when every gate of every case that ran held and its figures can be read, 1 when not, 2 for an
     unknown case or level, or a folder that holds something else (nothing is written then). An earlier report
     in `out` is replaced. A case that needs what is not there is not run, with the reason; if that is so for
     all, nothing is written.
     """
-    known = all_cases()
+    files = [each for name in cases if name.endswith(".toml") for each in read_cases(Path(name))]
+    known = {file.name: case_of(file) for file in files} or all_cases()
+    cases = [name for name in cases if not name.endswith(".toml")] or list(known if files else ())
     problem = problem_of(cases, level, known, out)
     if problem:
         print(f"samfem: error: {problem}", file=sys.stderr)
@@ -215,7 +218,8 @@ def _run(
 def _judged(ran: Mapping[str, RanCase], known: Mapping[str, Case], *, level: str, stays: Earlier) -> dict:
     """results.json, but for how it was asked for."""
     failures = {name: each.failure for name, each in ran.items()}
-    verdicts = evaluate(load_rows(), {name: each.outcome.values for name, each in ran.items()}, failures)
+    asked = [row for case in known.values() if case.file for row in case.file.rows] or load_rows()
+    verdicts = evaluate(asked, {name: each.outcome.values for name, each in ran.items()}, failures)
     inputs = {name: content for each in ran.values() for name, content in each.context.inputs.items()}
     gates = stays.among(_gate_record(verdict) for verdict in verdicts)
     collected = provenance.collect(inputs)

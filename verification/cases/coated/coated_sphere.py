@@ -10,27 +10,24 @@ from functools import cached_property
 
 import numpy as np
 
-from sam.scene import Coating, CounterBody, Result, Scene
-from verification.cases.case import FEM, SAM, Case, Context, Plot, SmallTable, with_body, with_grid
+from sam.scene import Result, Scene
+from verification.cases.case import FEM, SAM, Case, Context, Plot, SmallTable
 from verification.cases.hertz.hertz import stress_panels
+from verification.cases.recipes import COUNTERBODIES, coated_scene, resolved_grid
 from verification.figures.coated import Pressures, film_planes, film_pressures
 from verification.figures.profiles import Profile, profiles
 from verification.reference.coated_changes import largest_bare_mises, largest_mises, pressure_change
-from verification.reference.coated_sphere import CoatedContact, solve_force
-from verification.reference.layered_axisymmetric import CoatedHalfSpace
-from verification.references import contact_of
+from verification.reference.coated_sphere import CoatedContact
+from verification.references import coated_contact, contact_of
 from verification.runs.sampling import peak, pressure_map
 
 MODELS = ("SAM", "FEM")
 RATIOS = (80 / 210, 2.0)
 THICKNESSES = (0.1, 0.5, 1.0, 2.0)
 """Over the contact radius without film."""
-COUNTERBODIES = {"rigid": {}, "steel": {"young": 210e9, "poisson": 0.3}}
 QUICK = ((80 / 210, 0.1, "rigid"), (2.0, 0.5, "steel"))
 """(E1/E2, thickness, counter-body) of the quick level, which are drawn at both."""
 CELLS_IN_RADIUS = 48
-ROOM = 1.06
-"""Half a side of the grid over the larger of the contact radii with and without film."""
 QUANTITIES = {
     "center": "p(0)",
     "approach": "approach",
@@ -71,29 +68,7 @@ class Answer:
 
 def answer_of(scene: Scene) -> Answer:
     """The independent answer of a scene with a sphere and a coating."""
-    body, film, other = scene.body, scene.body.coating, scene.counterbody
-    layers = CoatedHalfSpace(film.young, film.poisson, film.thickness, body.young, body.poisson)
-    counter = other.young / (1.0 - other.poisson**2) if other.elastic else math.inf
-    return Answer(solve_force(layers, other.radius, scene.loading.force, counter))
-
-
-def coated_scene(base: Scene, ratio: float, thickness: float, counterbody: str) -> Scene:
-    """The sphere of `base` on another film. ratio: E1/E2; thickness: over the contact radius without film."""
-    other = CounterBody(shape="sphere", radius=base.counterbody.radius, **COUNTERBODIES[counterbody])
-    bare = base.model_copy(update={"counterbody": other})
-    coating = Coating(
-        young=ratio * base.body.young,
-        poisson=base.body.coating.poisson,
-        thickness=thickness * contact_of(bare).contact_radius,
-    )
-    return with_body(bare, coating=coating)
-
-
-def resolved_grid(scene: Scene, contact: CoatedContact, cells: int = CELLS_IN_RADIUS) -> Scene:
-    """The scene on square cells, so many in the contact radius; the contact without film has room as well."""
-    cell = contact.contact_radius / cells
-    count = 2 * math.ceil(ROOM * max(contact.contact_radius, contact.bare.contact_radius) / cell) + 1
-    return with_grid(scene, cells=(count, count), extent=(count * cell, count * cell))
+    return Answer(coated_contact(scene))
 
 
 def errors(result: Result, answer: Answer) -> dict[str, float]:

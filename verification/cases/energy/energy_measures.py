@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from verification.energy.balance import Balance
-from verification.quantities import Measured
+from verification.judging import Measured
 from verification.reference.convergence import fit_order
 
 Ladder = dict[int, Balance]

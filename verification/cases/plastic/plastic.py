@@ -194,7 +194,7 @@ def compared(scene: Scene, sam: Result, fem: Result) -> dict[str, Measured]:
     """The gates: scalars as they are, plastic strains by the rows of `compare`, the pressure on the cells and
     over rings.
     """
-    difference = {row.quantity: row.difference for row in compare_scene(scene, sam, fem)}
+    difference = {row.quantity: row.error for row in compare_scene(scene, sam, fem)}
     scalars = {
         gate: Measured(sam.quantities[name], fem.quantities[name], unit=unit)
         for gate, (name, unit) in GATED_SCALARS.items()

@@ -39,7 +39,7 @@ CORE = {
 """The numerical core, package -> modules: every number of it is changed."""
 AROUND = (
     *("verification.reference", "verification.compare", "verification.uncertainty"),
-    *("verification.rows", "verification.quantities", "verification.references"),
+    *("verification.rows", "verification.judging", "verification.quantities", "verification.references"),
 )
 """Packages and modules of which, as of the comparisons and conditions of the core, PERCENT are drawn."""
 PERCENT, SEED = 33, 417

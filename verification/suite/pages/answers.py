@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatch
 
-from verification.rows import RowStatus
+from verification.judging import RowStatus
 from verification.runs.store import short
 from verification.suite.pages.agreement import BEYOND
 from verification.suite.pages.findings import Evidence, Finding

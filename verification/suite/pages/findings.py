@@ -10,7 +10,7 @@ from fnmatch import fnmatch
 from statistics import median
 from typing import Protocol
 
-from verification.rows import LIMITS
+from verification.judging import LIMITS
 from verification.suite.pages.costs import BOUND, CASE, TARGET, costs_of
 from verification.suite.pages.judged import INPUTS, MEDIAN, PHYSICS, READINGS, Judged
 from verification.suite.pages.pairs import Pair

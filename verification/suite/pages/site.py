@@ -12,7 +12,7 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from verification.rows import RowStatus
+from verification.judging import RowStatus
 from verification.runs.files import write_atomically
 from verification.suite.pages.answers import Answer, answers_of, far, kind_of, origins, sentence
 from verification.suite.pages.costs import costs_of, table_of

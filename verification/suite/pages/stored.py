@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
-from verification.rows import LIMITS, RowStatus
+from verification.judging import LIMITS, RowStatus
 
 ASKED, NAMED = "asked", "named"
 ELSEWHERE = {

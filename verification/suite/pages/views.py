@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from verification.rows import LIMITS, RowStatus
+from verification.judging import LIMITS, RowStatus
 from verification.runs.files import SUMMARY
 from verification.runs.store import short
 from verification.suite.pages.literature import works_of

@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: MIT
+"""Sweeps: the scene of a case solved at points over named axes, a frame with a row for each run, and what the
+rows of the case take of its columns.
+
+A frame has the columns sweep, model ("sam/fem" for what is between both), an axis each, h (size of what is
+refined), converged, the columns of the file with `NAME expected` beside a value, scene and result.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sam.scene import Result, Scene
+from verification.cases.case import Context, SmallTable
+from verification.cases.recipes import beside, changed
+from verification.compare.comparison import compare_scene
+from verification.judging import Measured, error_of
+from verification.quantities import QUANTITIES, Quantity, Reference
+from verification.reference.convergence import Order, extrapolate, fit_order
+from verification.references import REFERENCES, contact_of
+from verification.rows import CaseFile, SweepFile, Take
+from verification.runs.models import FEM, FEM_3D, SAM
+from verification.text.console import number
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+MODELS = {"sam": SAM, "fem": FEM, "fem-3d": FEM_3D}
+BOTH = "sam/fem"
+SIGNS = {"<": operator.lt, ">": operator.gt, "<=": operator.le, ">=": operator.ge}
+
+
+def points(sweep: SweepFile, level: str) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
+    """Of each point: axis -> its value or the name of it, and key of the scene or recipe -> value."""
+    axes = sweep.axes | (sweep.quick if level == "quick" else {})
+    values = [
+        each.items() if isinstance(each, dict) else [(value, {axis: value}) for value in each]
+        for axis, each in axes.items()
+    ]
+    for chosen in product(*values):
+        changes = {key: value for _, own in chosen for key, value in own.items()}
+        yield dict(zip(axes, (name for name, _ in chosen), strict=True)), changes
+
+
+def framed(context: Context, file: CaseFile, base: Scene) -> DataFrame:
+    """All sweeps of a case, solved."""
+    import pandas as pd
+
+    return pd.DataFrame([row for name in file.sweeps for row in _runs(context, file, name, base)])
+
+
+def _runs(context: Context, file: CaseFile, name: str, base: Scene) -> Iterator[dict[str, Any]]:
+    """The rows of one sweep: a row a run, and one for what is between both models."""
+    sweep = file.sweeps[name]
+    every = list(points(sweep, context.level))
+    varied = [axis for axis in every[0][0] if len({spelt(where[axis]) for where, _ in every}) > 1]
+    for where, changes in every:
+        scene = changed(base, changes, file)
+        reference = beside(file, file.reference, REFERENCES)(scene) if file.reference else None
+        row, results = {"sweep": name, **where, "scene": scene}, {}
+        for model in sweep.models:
+            led = [model] if len(file.sweeps) == 1 or name == model else [model, name]
+            label = "-".join([*led, *(spelt(where[axis]) for axis in varied)])
+            result = results[model] = context.solve(MODELS[model], scene, label, demand=sweep.demand)
+            size = size_of(sweep, scene, result, reference)
+            own = row | {"model": model, "result": result, "h": size, "converged": result.converged}
+            for column, how in sweep.columns.items() if result.converged else ():
+                of = beside(file, column, QUANTITIES)
+                if how == "between":
+                    continue
+                if isinstance(of, Quantity):
+                    found = of.against(column, result, reference)
+                else:
+                    found = of(scene, result, reference)
+                found = found if isinstance(found, Measured) else Measured(found)
+                if how == "value":
+                    own |= {column: found.value, f"{column} expected": found.expected}
+                else:
+                    own[column] = error_of(how, found)
+            yield own
+        if between := [column for column, how in sweep.columns.items() if how == "between"]:
+            yield row | {"model": BOTH} | between_models(scene, *results.values(), names=between)
+
+
+def between_models(scene: Scene, sam: Result, fem: Result, *, names: Sequence[str]) -> dict[str, float]:
+    """The differences of both models: relative, or as the row of `compare` says."""
+    rows, values = {row.quantity: row.error for row in compare_scene(scene, sam, fem)}, {}
+    for name in names:
+        between = QUANTITIES[name].between
+        measured = between(scene, sam, fem) if between else None
+        metric = "relative_l2" if measured and np.ndim(measured.value) else "relative"
+        values[name] = error_of(metric, measured) if measured else rows[QUANTITIES[name].row]
+    return values
+
+
+def size_of(sweep: SweepFile, scene: Scene, result: Result, reference: Reference | None) -> float:
+    """Size of a cell or element over the radius of the contact, or of a load step over the load."""
+    if sweep.size == "step":
+        return 1.0 / scene.loading.steps
+    if sweep.size == "cell" and result.model != SAM:
+        return 1.0 / scene.fem.cells_per_radius
+    if sweep.size == "cell":
+        a = reference.units["a"] if reference else contact_of(scene).contact_radius
+        return result.discretisation["cell_m"][0] / a
+    return np.nan
+
+
+def spelt(value: Any) -> str:
+    """A value of an axis in labels, conditions and tables."""
+    if isinstance(value, str):
+        return value
+    return "-".join(map(spelt, value)) if isinstance(value, (list, tuple)) else f"{value:g}"
+
+
+def _single(rows: DataFrame, column: str) -> Measured:
+    """The value at one point, with what is expected there."""
+    if len(rows) != 1:
+        raise ValueError(f"{column}: {len(rows)} points where one is meant")
+    expected = rows.get(f"{column} expected")
+    return Measured(rows[column].iloc[0], None if expected is None else expected.iloc[0])
+
+
+STATISTICS: Mapping[str, Callable[[DataFrame, str], float | Measured]] = {
+    "value": _single,
+    "order": lambda rows, column: fit_order(rows["h"], rows[column]).order,
+    "limit": lambda rows, column: extrapolate(rows["h"], rows[column]).limit,
+    "largest": lambda rows, column: float(np.max(rows[column].to_numpy())),
+    "smallest": lambda rows, column: float(np.min(rows[column].to_numpy())),
+    "first": lambda rows, column: rows[column].iloc[0],
+    "last": lambda rows, column: rows[column].iloc[-1],
+    "ratio": lambda rows, column: rows[column].iloc[0] / rows[column].iloc[-1],
+    "growth": lambda rows, column: float(np.max(rows[column].to_numpy()[1:] / rows[column].to_numpy()[:-1])),
+}
+"""Word of a row -> what it takes of a column: order and limit under refinement; ratio: first over last;
+growth: largest ratio of a value to the one before; nan where one is missing.
+"""
+
+
+def selected(file: CaseFile, frame: DataFrame, take: Take) -> DataFrame:
+    """The rows of the frame that a take is about, of the sweeps that have its column."""
+    hows = [file.sweeps[name].columns.get(take.column) for name in frame["sweep"]]
+    both = frame["model"] == BOTH
+    rows = frame[[how is not None and (how == "between") == own for how, own in zip(hows, both, strict=True)]]
+    for name in take.of:
+        rows = rows[(rows["sweep"] == name) | (rows["model"] == name)]
+    for axis, sign, value in take.at:
+        if sign == "=":
+            rows = rows[[spelt(each) == value for each in rows[axis]]]
+        else:
+            rows = rows[SIGNS[sign](rows[axis].astype(float), float(value))]
+    return rows
+
+
+def evaluated(file: CaseFile, frame: DataFrame, take: Take) -> Measured:
+    """What a take says, with what is expected where the frame has it."""
+    if take.number is not None:
+        return Measured(take.number)
+    found = beside(file, take.statistic, STATISTICS)(selected(file, frame, take), take.column)
+    return found if isinstance(found, Measured) else Measured(found)
+
+
+def taken(file: CaseFile, frame: DataFrame) -> dict[str, Measured]:
+    """Name of a row -> its value, for those of the case that take of its sweeps."""
+    values = {}
+    for row in file.rows:
+        for take in file.takes.get(row.id, ())[:1]:
+            found = evaluated(file, frame, take)
+            against = [evaluated(file, frame, other).value for other in file.takes[row.id][1:]]
+            expected = against[0] if against else found.expected
+            alone = row.metric in ("at_most", "at_least")
+            values[row.id.removeprefix(f"{file.name}.")] = Measured(found.value, None if alone else expected)
+    return values
+
+
+def words_of(file: CaseFile, column: str) -> str:
+    """A column for the reader: of the vocabulary, or what its function says of itself."""
+    of = beside(file, column, QUANTITIES)
+    return of.words if isinstance(of, Quantity) else of.__doc__.strip().splitlines()[0].rstrip(".").lower()
+
+
+def ran(file: CaseFile, frame: DataFrame) -> Iterator[tuple[str, str]]:
+    """The points of each sweep, for the reader."""
+    for name, rows in frame.groupby("sweep", sort=False):
+        sweep = file.sweeps[name]
+        values = ((axis, dict.fromkeys(map(spelt, rows[axis]))) for axis in sweep.axes)
+        said = "; ".join(f"{_plain(axis)} {', '.join(own)}" for axis, own in values)
+        yield f"Points, {', '.join(map(str.upper, sweep.models))}", said
+
+
+def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
+    """A table for each sweep: a line a run, and the observed orders in the last."""
+    for name, rows in frame.groupby("sweep", sort=False):
+        sweep = file.sweeps[name]
+        axes = [axis for axis in sweep.axes if len(set(map(spelt, rows[axis]))) > 1]
+        known = {c: c.removesuffix(" expected") for c in rows if not rows[c].isna().all()}
+        shown = [c for c in rows if known.get(c) in sweep.columns and np.ndim(rows[c].dropna().iloc[0]) == 0]
+        lines = [
+            (*(spelt(row[axis]) for axis in axes), row["model"].upper(), *(number(row[c], 5) for c in shown))
+            for _, row in rows.iterrows()
+        ]
+        for model, own in rows.groupby("model", sort=False):
+            orders = [fitted(file, own, column) for column in shown]
+            if any(orders):
+                cells = (f"order {order.order:.2f}" if order else "" for order in orders)
+                lines.append((*[""] * len(axes), model.upper(), *cells))
+        heads = [words_of(file, known[c]) + ", expected" * c.endswith(" expected") for c in shown]
+        yield SmallTable(f"Points of {name}", (*map(_plain, axes), "model", *heads), lines)
+
+
+def _plain(axis: str) -> str:
+    return axis.replace(".", " ").replace("-", " ").replace("_", " ")
+
+
+def fitted(file: CaseFile, rows: DataFrame, column: str) -> Order | None:
+    """The order that a row of the case takes of a column, in the rows of one model in a sweep."""
+    takes = [take for take, *_ in file.takes.values() if (take.statistic, take.column) == ("order", column)]
+    fits = [own for take in takes if len(own := selected(file, rows, take))]
+    return fit_order(fits[0]["h"], fits[0][column]) if fits else None
