@@ -197,7 +197,7 @@ def test_what_was_killed_before_and_survives_is_named(tmp_path, monkeypatch):
     there = {("m", "f"), ("m", "C.g")}
     assert frozen.compare(before, there) == ({}, [])
     lost, gone = frozen.compare([survivor("f", "x < 2"), survivor("f", "x < 1")], there)
-    assert lost == {"m:f:comparison:0": "x < 2: killed before"} and not gone
+    assert lost == {"m:f:comparison:0": "x < 2: new, or killed before"} and not gone
     # f is found by its name in another module and class, g was merged into h
     there = {("n", "D.f"), ("n", "h")}
     now = [survivor("D.f", "x < 1", "n"), survivor("h", "y < 1", "n")]
@@ -205,6 +205,9 @@ def test_what_was_killed_before_and_survives_is_named(tmp_path, monkeypatch):
     assert not lost and gone == ["m:C.g, 0 numbers, 0 comparisons and 0 branches killed"]
     lost, _ = frozen.compare([*now, survivor("h", "z", "n")], there)
     assert lost == {"n:h:comparison:0": "z: of a function that the table does not have"}
+    (module, function, text), *_ = scope.constants("explained")
+    core = [survivor(function, name, module, "number") for name in (text, "77.0")]
+    assert [*frozen.compare(core, there)[0].values()] == ["77.0: a number of the core that is not explained"]
 
 
 def test_the_frozen_table_and_the_draw_do_not_depend_on_places():
@@ -265,7 +268,6 @@ GOOD = {"judged": [judgement()] * 40, "shown": [{"equivalent": True}], "control"
     ("wrong", "gate"),
     [
         ({"judged": [judgement()] * 9 + [judgement("survived")]}, "mutation.killed"),
-        ({"judged": [judgement()] * 99 + [judgement("survived")]}, "mutation.unexplained"),
         ({"lost": {"sam.contact.normal:f:branch:0": "killed before"}}, "mutation.unexplained"),
         ({"shown": [{"equivalent": False}]}, "mutation.not-inert"),
         ({"control": ["tests/a.py::b"]}, "mutation.rewriting"),
@@ -281,7 +283,7 @@ def test_structure_and_rows_are_counted_apart():
     found = GOOD | {"judged": [judgement(), judgement("structure"), judgement("survived")]}
     found["shown"] = [{"equivalent": True, "mutant": judgement()["mutant"]}]
     assert case.counts_table(found).rows[-1] == ("all", "2", "0", "1", "1", "1", "1")
-    assert case.survivors_table(found).rows[0][3] == "not explained"
+    assert case.survivors_table(found | {"lost": {"m:f": "2: new"}}).rows[0] == ("m:f", "2", "new", "")
 
 
 def test_an_integer_is_perturbed_in_place_and_in_functions_of_arrays():
@@ -310,7 +312,7 @@ def test_the_file_of_a_check_has_what_the_case_reads(tmp_path, monkeypatch):
         equivalent.Shown(mutant, "rounding", 50.0, 2),
     ]
     answer = {"judged": judged, "shown": shown, "control": ["test_b"], "tests": 2, "seconds": 1.0}
-    answer |= {"lost": {}, "gone": []}
+    answer |= {"lost": {mutant.name: "2.0: a number of the core that is not explained"}, "gone": []}
     monkeypatch.setattr(mutation, "check", lambda *_: answer)
     monkeypatch.setattr(sys, "argv", ["mutation", "--json", str(tmp_path / "judged.json")])
     mutation.main()

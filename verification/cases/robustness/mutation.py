@@ -38,14 +38,7 @@ def checked(quick: bool) -> dict:
     """
     with tempfile.TemporaryDirectory(prefix="samfem-mutation-") as base:
         found = Path(base, "judged.json")
-        words = [
-            sys.executable,
-            "-m",
-            TOOL,
-            "--json",
-            str(found),
-            *(["--quick"] if quick else []),
-        ]
+        words = [sys.executable, "-m", TOOL, "--json", str(found), *(["--quick"] if quick else [])]
         environment = os.environ | dict.fromkeys(EVERY_LIBRARY, "1") | {"SAMFEM_STORE": ""}
         ended = subprocess.run(words, cwd=ROOT, env=environment, capture_output=True, text=True)
         if not found.is_file():
@@ -63,20 +56,14 @@ def numbers_of_core(found: Mapping) -> list[tuple]:
 
 def values_of(found: Mapping) -> dict[str, Measured]:
     """The gates, from the judgements as read back."""
-    from verification.robustness.mutants import scope  # noqa: PLC0415 - of the source only
-
-    core, explained = numbers_of_core(found), scope.constants("explained")
-    outcomes = Counter(one["outcome"] for _, one in core)
+    outcomes = Counter(one["outcome"] for _, one in numbers_of_core(found))
     killed = [one for one in found["judged"] if one["outcome"] == "killed"]
-    unexplained = {
-        mutant.name for mutant, one in core if one["outcome"] == "survived" and mutant.key not in explained
-    }
     moving = [one for one in found["shown"] if not one["equivalent"]]
     share = outcomes["killed"] / max(outcomes["killed"] + outcomes["survived"], 1)
     slowest = max((one["seconds"] for one in killed), default=float("nan"))
     return {
         "killed": Measured(share),
-        "unexplained": Measured(len(unexplained.union(found["lost"])), 0),
+        "unexplained": Measured(len(found["lost"]), 0),
         "not-inert": Measured(len(moving)),
         "rewriting": Measured(len(found["control"])),
         "slowest-kill": Measured(slowest, unit="s"),
@@ -130,22 +117,17 @@ def drawn_table(found: Mapping) -> SmallTable:
 
 
 def survivors_table(found: Mapping) -> SmallTable:
-    """Every changed number of the core that no test noticed, and why; and what was killed before."""
+    """What no test noticed and should have, and every other changed number of the core, with the reason."""
     from verification.robustness.mutants import scope  # noqa: PLC0415 - of the source only
 
-    rows = [
-        (
-            f"{mutant.module} {mutant.function}",
-            f"{mutant.text} in {mutant.line}",
-            str(one["asked"]),
-            scope.constants("explained").get(mutant.key, "not explained"),
-        )
+    explained, lost = scope.constants("explained"), found["lost"]
+    rows = [(name, *what.rsplit(": ", 1), "") for name, what in lost.items()]
+    rows += [
+        (mutant.name, f"{mutant.text} in {mutant.line}", explained.get(mutant.key, ""), str(one["asked"]))
         for mutant, one in numbers_of_core(found)
-        if one["outcome"] == "survived"
+        if one["outcome"] == "survived" and mutant.name not in lost
     ]
-    lost = [(*what.rsplit(": ", 1), name) for name, what in found["lost"].items()]
-    rows += [(name, text, "", why) for text, why, name in lost]
-    return SmallTable("Survivors", ("where", "number", "tests asked", "why"), rows)
+    return SmallTable("Survivors", ("where", "what", "why", "tests asked"), rows)
 
 
 def equivalent_table(found: Mapping) -> SmallTable:

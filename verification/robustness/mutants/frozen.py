@@ -12,7 +12,7 @@ from collections.abc import Collection, Iterable
 from pathlib import Path
 
 from verification.robustness.mutants.judge import KILLED, STRUCTURE, SURVIVED, MutantVerdict
-from verification.robustness.mutants.scope import NUMBERS
+from verification.robustness.mutants.scope import NUMBERS, constants, whole
 
 FILE = Path(__file__).with_name("frozen.csv")
 COLUMNS = ("module", "function", "numbers", "comparisons", "branches", "survivors", "tests")
@@ -67,10 +67,11 @@ def write(judged: Iterable[MutantVerdict], modules: Collection[str]) -> None:
 def compare(
     judged: Iterable[MutantVerdict], there: Collection[tuple[str, str]]
 ) -> tuple[dict[str, str], list[str]]:
-    """Name of what survives now and did not when the table was frozen -> what it is; functions that are gone.
+    """Name of what survives unexplained -> what it is; functions of the table that are gone.
 
-    there: (module, function) of all mutants there are now. A function that is not where the table has it is
-    looked for by its name; a mutant of one that was merged into another, by its text.
+    Numbers of the core are explained in `constants.csv`, the others by having survived when the table was
+    frozen. there: (module, function) of all mutants there are now. A function that is not where the table has
+    it is looked for by its name; a mutant of one that was merged into another, by its text.
     """
     rows = {(row["module"], row["function"]): row for row in read()}
     judged, gone = list(judged), {place: row for place, row in rows.items() if place not in there}
@@ -84,12 +85,18 @@ def compare(
     merged = Counter(text for row in gone.values() for text in row["survivors"])
     lost = {}
     for mutant in (one.mutant for one in judged if one.outcome == SURVIVED):
+        if whole(mutant):
+            if mutant.key not in constants("explained"):
+                lost[mutant.name] = f"{mutant.text}: a number of the core that is not explained"
+            continue
         text, known = f"{mutant.kind} {mutant.text}", left.get((mutant.module, mutant.function))
         pool = known if known and known[text] else merged
         if pool[text]:
             pool[text] -= 1
         else:
-            why = "killed before" if known is not None else "of a function that the table does not have"
+            why = (
+                "new, or killed before" if known is not None else "of a function that the table does not have"
+            )
             lost[mutant.name] = f"{mutant.text}: {why}"
     return lost, [
         f"{module}:{function or 'module'}, {row['numbers']} numbers, {row['comparisons']} comparisons and "
