@@ -233,7 +233,8 @@ def judge(row: Row, model: str, bench: Bench) -> Cell:
     expected = row.expected[model]
     if isinstance(expected, Absent):
         return Cell(Kind.ABSENT, expected.reason)
-    began, scene, result, text, wrong, found = time.process_time(), None, None, "", "", []
+    began, scene, result, text, wrong = time.process_time(), None, None, "", ""
+    found: list[Deviation] = []
     try:
         scene = row.make() if callable(row.make) else scene_with(row.make)
         result = bench.solve(scene, model)
