@@ -199,12 +199,13 @@ def test_what_was_killed_before_and_survives_is_named(tmp_path, monkeypatch):
     lost, gone = frozen.compare([survivor("f", "x < 2"), survivor("f", "x < 1")], there)
     assert lost == {"m:f:comparison:0": "x < 2: new, or killed before"} and not gone
     # f is found by its name in another module and class, g was merged into h
-    there = {("n", "D.f"), ("n", "h")}
+    there = {("n", "D.f"), ("n", "h"), ("other", "f")}
     now = [survivor("D.f", "x < 1", "n"), survivor("h", "y < 1", "n")]
     lost, gone = frozen.compare(now, there)
     assert not lost and gone == ["m:C.g, 0 numbers, 0 comparisons and 0 branches killed"]
     lost, _ = frozen.compare([*now, survivor("h", "z", "n")], there)
     assert lost == {"n:h:comparison:0": "z: of a function that the table does not have"}
+    assert frozen.compare([survivor("i", "z", "other")], there)[0] == {}  # of a module that is not frozen
     (module, function, text), *_ = scope.constants("explained")
     core = [survivor(function, name, module, "number") for name in (text, "77.0")]
     assert [*frozen.compare(core, there)[0].values()] == ["77.0: a number of the core that is not explained"]

@@ -71,7 +71,8 @@ def compare(
 
     Numbers of the core are explained in `constants.csv`, the others by having survived when the table was
     frozen. there: (module, function) of all mutants there are now. A function that is not where the table has
-    it is looked for by its name; a mutant of one that was merged into another, by its text.
+    it is looked for by its name; a mutant of one that was merged into another, by its text. Modules of which
+    the table has nothing are not compared.
     """
     rows = {(row["module"], row["function"]): row for row in read()}
     judged, gone = list(judged), {place: row for place, row in rows.items() if place not in there}
@@ -83,11 +84,13 @@ def compare(
                 kept[place] = gone.pop(same[0])
     left = {place: Counter(row["survivors"]) for place, row in kept.items()}
     merged = Counter(text for row in gone.values() for text in row["survivors"])
-    lost = {}
+    frozen, lost = {module for module, _ in kept}, {}
     for mutant in (one.mutant for one in judged if one.outcome == SURVIVED):
         if whole(mutant):
             if mutant.key not in constants("explained"):
                 lost[mutant.name] = f"{mutant.text}: a number of the core that is not explained"
+            continue
+        if mutant.module not in frozen:
             continue
         text, known = f"{mutant.kind} {mutant.text}", left.get((mutant.module, mutant.function))
         pool = known if known and known[text] else merged

@@ -31,7 +31,7 @@ from verification.robustness.mutants.scope import NUMBERS, mutants_of
 WORKERS = 2
 SECONDS = 1.0
 """Of processor time, with what it sets up: a test is fast below it."""
-ALONE, TOGETHER = SECONDS, 15.0
+ALONE, TOGETHER = 2 * SECONDS, 15.0
 """Seconds of processor time that a test may take while observed, which takes longer, and all that one mutant
 meets."""
 ASKED = 5.0
