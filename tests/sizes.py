@@ -1,7 +1,8 @@
-"""What the project weighs, by part: `python -m tests.sizes [REVISION ...]` prints a table for each revision of git.
+"""What the project weighs, by part: `python -m tests.sizes [REVISION ...]`, a table for each revision of
+git.
 
-Lines and characters of .py, .toml, .json, .j2 and of the prose of findings; the share of lines above 100 columns;
-statements of Python without docstrings.
+Lines and characters of .py, .toml, .json, .j2 and of the prose of findings; the share of lines above 100
+columns; statements of Python without docstrings.
 """
 
 import ast

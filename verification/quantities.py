@@ -4,21 +4,43 @@ result.
 
 A quantity is a number or a field. Held against a reference, it is `of` a result of either model beside
 the value or function of the same name in the reference; SAM against finite elements, it is `between` two
-results, where nothing else is said the row of `compare` of that name.
+results, where nothing else is said the row of `compare` of that name; of all runs of a scene it is `whole`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.interpolate import RegularGridInterpolator
 
 from sam.scene import Result, Scene
+from verification.compare import sliding_measures as sliding
+from verification.compare.rough_measures import (
+    Depths,
+    PatchPressure,
+    Spot,
+    compared_depths,
+    relative_l2,
+    residual_line,
+    spots,
+)
+from verification.compare.sliding_measures import Plane
 from verification.judging import Measured
-from verification.runs.models import SAM
-from verification.runs.sampling import peak, pressure_map, pressure_on
+from verification.reference.hertz import CircularContact, effective_modulus
+from verification.reference.stress import von_mises
+from verification.runs.models import FEM_3D, SAM
+from verification.runs.sampling import (
+    means_of_cells,
+    means_of_line,
+    peak,
+    plane_field,
+    pressure_map,
+    pressure_on,
+    ring_edges,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -42,16 +64,30 @@ class Reference:
     facts: tuple[tuple[str, str], ...] = ()
 
 
+def modulus_of(scene: Scene) -> float:
+    """The contact modulus E* in Pa: 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2."""
+    body, other = scene.body, scene.counterbody
+    return effective_modulus(body.young, body.poisson, other.young, other.poisson)
+
+
+def contact_of(scene: Scene) -> CircularContact:
+    """The elastic contact of a scene with a sphere."""
+    return CircularContact(scene.loading.force, scene.counterbody.radius, modulus_of(scene))
+
+
 @dataclass(frozen=True)
 class Solved:
-    """A scene with its reference and the result of each model, by the name of its run; frame: of the sweeps
-    of the case, see `verification.cases.sweep`.
+    """A scene with its reference and the result of each model, by the name of its run; frame: of the
+    sweeps of the case, see `verification.cases.sweep`; coarser: the same with larger cells and elements,
+    and the ratio of the sizes; others: of another scene, likewise by run.
     """
 
     scene: Scene
     reference: Reference | None
     results: dict[str, Result]
     frame: pd.DataFrame | None = None
+    coarser: Sequence[tuple[Result, float]] = ()
+    others: Mapping[str, Result] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -67,36 +103,39 @@ class Values:
 
 @dataclass(frozen=True)
 class Quantity:
-    """words: for the reader, without the model; of: (result, reference) -> number or Values; between:
-    (scene, SAM, FEM) -> Measured; row: of `compare` that holds one model against the other.
+    """words: for the reader, without the model; of: (result, reference) -> number, Values, or Measured where
+    the result has the answer itself; between: (scene, SAM, other result) -> Measured; row: of `compare`, the
+    difference of both models where that alone is held.; whole: of all
+    runs of a scene.
     """
 
     words: str
     unit: str = ""
-    of: Callable[[Result, Reference], float | Values] | None = None
+    of: Callable[[Result, Reference], float | Values | Measured] | None = None
     between: Callable[[Scene, Result, Result], Measured] | None = None
     row: str = ""
+    whole: Callable[[Solved], Measured | float] | None = None
 
     def against(self, name: str, result: Result, reference: Reference | None) -> Measured:
         """The quantity of a result beside the value of its name in the reference; alone where that has
         none.
         """
         found = self.of(result, reference)
+        if isinstance(found, Measured):
+            return found
         expected = reference.values.get(name) if reference else None
         if isinstance(found, Values):
             return Measured(found.values, expected(*found.places), found.weight)
         return Measured(found, expected, unit=self.unit)
 
 
-def _scalar(name: str, words: str, unit: str = "", *, pair: bool = False) -> Quantity:
-    """A quantity of summary.json; pair: SAM against FEM it is the value beside the other, not a row of
-    compare.
-    """
+def _scalar(name: str, words: str, unit: str = "") -> Quantity:
+    """A quantity of summary.json."""
 
-    def between(scene: Scene, sam: Result, fem: Result) -> Measured:
-        return Measured(sam.quantities[name], fem.quantities[name], unit=unit)
+    def between(scene: Scene, sam: Result, other: Result) -> Measured:
+        return Measured(sam.quantities[name], other.quantities[name], unit=unit)
 
-    return Quantity(words, unit, lambda result, _: result.quantities[name], between if pair else None, name)
+    return Quantity(words, unit, lambda result, _: result.quantities[name], between, name)
 
 
 def _load(result: Result, reference: Reference) -> float:
@@ -122,10 +161,144 @@ def _pressure(result: Result, reference: Reference) -> Values:
     return Values((r, 0.0), p, r * np.gradient(r))
 
 
-def _pressure_on_cells(scene: Scene, sam: Result, fem: Result) -> Measured:
-    """Both over the cells of SAM; between nodes p is linear where the body yields, else p^2."""
+def _pressure_on_cells(scene: Scene, sam: Result, other: Result) -> Measured:
+    """Both over the cells of SAM; between other cells p is bilinear, zero beyond the outermost, between nodes
+    linear where the body yields, else p^2; of the three-dimensional model at its nodes.
+    """
+    if other.model == FEM_3D:
+        return Measured(*sliding.nodal_pressures(sam, other))
     x, y, p = pressure_map(sam)
-    return Measured(p, pressure_on(x, y, fem.tables, power=1 if scene.body.plasticity else 2))
+    if other.model == SAM:
+        u, v, field = pressure_map(other)
+        at = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)
+        return Measured(p, RegularGridInterpolator((u, v), field, bounds_error=False, fill_value=0.0)(at))
+    return Measured(p, pressure_on(x, y, other.tables, power=1 if scene.body.plasticity else 2))
+
+
+def _pressure_over_rings(scene: Scene, sam: Result, fem: Result) -> Measured:
+    """Means over rings of a tenth of the elastic contact radius, weighted with their areas."""
+    reach = 1.2 * fem.quantities["contact_radius_m"]
+    edges = ring_edges(0.1 * contact_of(scene).contact_radius, reach)
+    r, p = peak(fem.tables["line"], "x_m", "p_Pa")
+    cells = means_of_cells(*pressure_map(sam), edges)
+    return Measured(cells, means_of_line(r, p, edges), np.diff(edges**2))
+
+
+def _largest_strain(below: bool) -> Callable[[Scene, Result, Result], Measured]:
+    """The largest plastic strain of cells or Gauss points in y = 0, in the layer or below it."""
+
+    def between(scene: Scene, *results: Result) -> Measured:
+        thickness = scene.body.plasticity.layer_thickness
+        pairs = [peak(each.tables["plane"], "z_m", "peeq") for each in results]
+        return Measured(*(float(peeq[(z >= thickness) == below].max()) for z, peeq in pairs))
+
+    return between
+
+
+def _surface_change(scene: Scene, result: Result, other: Result) -> Measured:
+    """Of quantities and of fields along the surface, relative to the largest value of each."""
+    names = ("approach_m", "contact_area_m2", "p_max_Pa"), ("p_Pa", "uz_m", "gap_m")
+    pairs: list[tuple] = [(result.quantities[name], other.quantities[name]) for name in names[0]]
+    pairs += [(peak(result.tables["line"], n)[0], peak(other.tables["line"], n)[0]) for n in names[1]]
+    return Measured(max(float(np.max(np.abs(np.subtract(a, b))) / np.max(np.abs(b))) for a, b in pairs))
+
+
+def _of_second_cycle(of: Callable[..., float | Measured]) -> Callable[[Result, Reference], float | Measured]:
+    """of: (plastic strain at the first peak, in the end, approach at the first peak, at the second)."""
+
+    def found(result: Result, reference: Reference) -> float | Measured:
+        names = ("cycle", "force_N", "approach_m", "peeq_max")
+        cycle, force, approach, peeq = (np.asarray(result.tables["history"][name]) for name in names)
+        first, second = (np.flatnonzero(cycle == k)[np.argmax(force[cycle == k])] for k in (1, 2))
+        return of(float(peeq[first]), float(peeq[-1]), float(approach[first]), float(approach[second]))
+
+    return found
+
+
+def _largest_at_nodes(scene: Scene, sam: Result, fem: Result) -> Measured:
+    """Of the three-dimensional model at its nodes, which are few."""
+    if fem.model != FEM_3D:
+        return Measured(sam.quantities["p_max_Pa"], fem.quantities["p_max_Pa"], unit="Pa")
+    one, other, _ = sliding.nodal_pressures(sam, fem)
+    return Measured(one.max(), other.max(), unit="Pa")
+
+
+def _patch(scene: Scene, sam: Result, fem: Result) -> Measured:
+    """Of a rough patch on the cells that both models have in common, else at the nodes of FEM with their
+    areas.
+    """
+    if scene.patch_surface:
+        return Measured(*(PatchPressure.of(each.tables).p for each in (sam, fem)))
+    return Measured(*sliding.nodal_pressures(sam, fem))
+
+
+def _spots(sam: Result, fem: Result) -> list[Spot]:
+    return spots(*(PatchPressure.of(each.tables) for each in (sam, fem)))
+
+
+def _of_spot(number: int, of: Callable[[Scene, Result, Result, Spot], Measured]) -> Callable:
+    """A quantity of one of the contact spots, which are counted along x; nan where there are fewer."""
+
+    def between(scene: Scene, sam: Result, fem: Result) -> Measured:
+        found = _spots(sam, fem)[number - 1 : number]
+        return of(scene, sam, fem, *found) if found else Measured(np.nan, np.nan)
+
+    return between
+
+
+def strain_below(scene: Scene, sam: Result, fem: Result, spot: Spot) -> tuple[np.ndarray, Measured]:
+    """Depths in m, and the plastic strains there below the centre of a spot."""
+    law = scene.body.plasticity
+    jump = law.layer_thickness if law.layer else 0.0
+    own, other = (Depths.of(each.tables, jump) for each in (sam, fem))
+    z = compared_depths(other, spot.x, spot.radius)
+    return z, Measured(own.below(spot.x, z), other.below(spot.x, z))
+
+
+def _strain(scene: Scene, sam: Result, fem: Result) -> Measured:
+    pairs = (strain_below(scene, sam, fem, spot)[1] for spot in _spots(sam, fem))
+    return Measured(max((relative_l2(p.value, p.expected) for p in pairs), default=np.nan))
+
+
+def _residual(scene: Scene, sam: Result, fem: Result) -> Measured:
+    (x, own), other = residual_line(sam.tables), residual_line(fem.tables)
+    return Measured(own, np.interp(x, *other), unit="m")
+
+
+def _below_film(scene: Scene, sam: Result, fem: Result) -> Measured:
+    """In y = 0 where FEM gives it, from the interface on: SAM linear between its points."""
+    interface, wide = scene.body.coating.thickness * (1.0 - 1e-9), 1.5 * contact_of(scene).contact_radius
+    (x, z, own), (u, w, other) = (plane_field(each.tables, "mises_Pa") for each in (sam, fem))
+    body, columns, rows = z >= interface, np.abs(u) <= wide, (w >= interface) & (w <= z[-1])
+    depths = np.maximum(w[rows], z[body][0])  # the interface to rounding
+    at = np.stack(np.meshgrid(u[columns], depths, indexing="ij"), axis=-1)
+    field = RegularGridInterpolator((x, z[body]), own[:, body])(at)
+    return Measured(field, other[np.ix_(columns, rows)])
+
+
+def _centroid(scene: Scene, sam: Result, fem: Result) -> Measured:
+    a = contact_of(scene).contact_radius
+    first, second = (each.quantities["pressure_centroid_x_m"] / a for each in (sam, fem))
+    return Measured(first, second, unit="a")
+
+
+def _largest(of: Callable[[Scene, Result, Result], Measured]) -> Callable:
+    """The largest value of a field of both models."""
+
+    def between(scene: Scene, sam: Result, fem: Result) -> Measured:
+        found = of(scene, sam, fem)
+        first, second = (float(np.max(np.asarray(each))) for each in (found.value, found.expected))
+        return Measured(first, second, unit="Pa")
+
+    return between
+
+
+def _at_interface(result: Result, reference: Reference) -> Values:
+    """Along y = 0 where the body meets the film."""
+    x, z, field = plane_field(result.tables, "mises_Pa")
+    use = np.abs(x) <= 1.5 * reference.units["a"]
+    (row,) = np.flatnonzero(np.isclose(z, reference.units["h"], rtol=1e-9, atol=0.0))
+    return Values((x[use],), field[use, row])
 
 
 def _mises_on_axis(result: Result, reference: Reference) -> Values:
@@ -135,8 +308,241 @@ def _mises_on_axis(result: Result, reference: Reference) -> Values:
     return Values((z,), mises, np.gradient(z))
 
 
+PATCH = 0.2  # half width, in elastic contact radii, of the hats over which pressures are held against FEM
+STILL = 1e-9  # growth that counts as none in a ratio: thousandths of what the plastic loop resolves
+
+
+def planes(solved: Solved) -> dict[str, Plane]:
+    """Run -> plastic strain in the plane y = 0."""
+    return {name: Plane.of(each, solved.reference.units["a"]) for name, each in solved.results.items()}
+
+
+def _profile(column: bool, words: str) -> Quantity:
+    """The plastic strain over depth, on the axis or in the column where that of FEM is largest."""
+
+    def whole(solved: Solved) -> float:
+        both = planes(solved)
+        x = both["fem"].place_of_maximum() if column else 0.0
+        return sliding.profile_difference(both["sam"], both["fem"], x)
+
+    return Quantity(f"{words}, largest relative difference", whole=whole)
+
+
+def _limit(column: bool, words: str) -> Quantity:
+    """The same of the limits of both models."""
+
+    def whole(solved: Solved) -> float:
+        a, fem = solved.reference.units["a"], planes(solved)["fem"]
+        x = fem.place_of_maximum() if column else 0.0
+        z = sliding.depths_compared(fem, x)
+        one, other = (sliding.limit_of_strain(solved.results, m, a=a, x=x, z=z) for m in ("sam", "fem"))
+        return float(np.abs(one / other - 1.0).max())
+
+    return Quantity(f"{words} without cells and load steps, largest relative difference", whole=whole)
+
+
+def _contour(percent: float, extent: str) -> Quantity:
+    """Depth or length of the part of y = 0 beyond a plastic strain."""
+
+    def whole(solved: Solved) -> Measured:
+        both = planes(solved)
+        sam, fem = sliding.contours((both["sam"], both["fem"]), percent / 100)
+        return Measured(sam and getattr(sam, extent), fem and getattr(fem, extent), unit="a")
+
+    return Quantity(f"{extent} of the part of y = 0 beyond {percent:g} % of plastic strain", "a", whole=whole)
+
+
+def _nodal(solved: Solved, run: str = "sam") -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    return sliding.nodal_pressures(solved.results[run], solved.results["fem"])
+
+
+def _decoupled(solved: Solved) -> float:
+    """Pressure of the decoupled form off FEM over that of the coupled one, at the nodes of FEM."""
+    form, coupled = (sliding.pressure_distance(*_nodal(solved, run)) for run in ("decoupled", "sam"))
+    return form / coupled
+
+
+def _decoupled_hats(solved: Solved) -> float:
+    width, results = PATCH * solved.reference.units["a"], solved.results
+    form, coupled = (
+        sliding.patch_distance(results[run], results["fem"], width) for run in ("decoupled", "sam")
+    )
+    return form / coupled
+
+
+def _component(k: int) -> Quantity:
+    """A stress against the closed form of the reference, in p0."""
+
+    def of(result: Result, reference: Reference) -> float:
+        places, stress = sliding.stresses_inside(result, reference.units["a"])
+        exact = reference.values["stress"](*places)[:, k]
+        return float(np.abs(stress[:, k] / reference.units["p0"] - exact).max())
+
+    return Quantity(f"largest error of {sliding.COMPONENTS[k]} at interior points, in p0", of=of)
+
+
+def _mises_inside(result: Result, reference: Reference) -> float:
+    places, mises = sliding.mises_inside(result, reference.units["a"])
+    exact = von_mises(reference.values["stress"](*places))
+    return float(np.abs(mises / reference.units["p0"] - exact).max())
+
+
+def _added(result: Result, reference: Reference | None) -> float:
+    strain = result.tables["cycles"]["peeq_max"]
+    return float(strain[-1] / strain[0] - 1.0)
+
+
+def _growth(lead: str) -> Callable[[Solved], float]:
+    """Of two runs of a travelling load, the latter of more passes."""
+    return lambda solved: sliding.growth(*(r for n, r in solved.results.items() if n.startswith(lead)))
+
+
+_ON_AXIS = "plastic strain at z >= 0.3 a on the axis"
+_IN_COLUMN = "plastic strain at z >= 0.3 a at the x of the largest"
+_settles, _grows = _growth("below"), _growth("above")
+SLIDING: Mapping[str, Quantity] = {
+    "axis": _profile(False, _ON_AXIS),
+    "column": _profile(True, _IN_COLUMN),
+    "limit-axis": _limit(False, _ON_AXIS),
+    "limit-column": _limit(True, _IN_COLUMN),
+    **{
+        f"contour-{percent:g}-{extent}".replace(".", "-"): _contour(percent, extent)
+        for percent in (0.2, 2.0)
+        for extent in ("depth", "length")
+    },
+    "decoupled": Quantity(
+        "pressure of the decoupled form off FEM over that of the coupled one, L2 at the nodes of FEM",
+        whole=_decoupled,
+    ),
+    "decoupled-hats": Quantity(
+        "the same over hats of 0.2 a, which take both sides of the contact's edge together",
+        whole=_decoupled_hats,
+    ),
+    **{name: _component(k) for k, name in enumerate(sliding.COMPONENTS)},
+    "plane": Quantity(
+        "largest error of the von Mises stress in y = 0 from 0.25 a on, in p0", of=_mises_inside
+    ),
+    "adds": Quantity("plastic strain added by later cycles over that of the first", of=_added),
+    "moved": _scalar("residual_ux_center_m", "residual displacement of the centre along x", "m"),
+    "settles": Quantity("plastic strain that a pass adds anywhere in y = 0, p0/k = 4.4", whole=_settles),
+    "grows": Quantity("plastic strain that a pass adds anywhere in y = 0, p0/k = 4.9", whole=_grows),
+    "apart": Quantity(
+        "growth at p0/k = 4.9 over that at 4.4", whole=lambda s: _grows(s) / max(_settles(s), STILL)
+    ),
+}
+
+
+def ladders(solved: Solved) -> list[dict[int, Result]]:
+    """Of SAM and of finite elements, the runs "sam-N" and "fem-N": N -> result, the finest last."""
+    named = {tuple(name.split("-", 1)): each for name, each in solved.results.items()}
+    return [
+        {int(n): named[model, n] for model, n in named if model == run and n.isdigit()}
+        for run in ("sam", "fem")
+    ]
+
+
+def refined(runs: Mapping[int, Result], value: Callable[[Result], Any]) -> np.ndarray:
+    """The limit of a value in 1/N of second order, of the two finest runs; of a single run its own."""
+    *coarse, fine = (np.asarray(value(runs[n])) for n in sorted(runs))
+    if not coarse:
+        return fine
+    n, m = sorted(runs)[-2:]
+    return fine + (fine - coarse[-1]) / ((m / n) ** 2 - 1)
+
+
+def groove_at(result: Result, places: np.ndarray) -> np.ndarray:
+    """Depth of the groove in m at places along the track."""
+    return np.interp(places, result.tables["track"]["x_m"], result.tables["track"]["uz_m"])
+
+
+def _groove(solved: Solved) -> float:
+    """Difference of the finest runs within a radius of the middle, over the depth."""
+    places = np.linspace(-1.0, 1.0, 81) * solved.reference.units["a"]
+    sam, fem = (groove_at(runs[max(runs)], places) for runs in ladders(solved))
+    return float(np.abs(sam - fem).max() / fem.max())
+
+
+OF_TRACKS: Mapping[str, Callable[[Result], float]] = {
+    "groove in the middle of the track": lambda result: float(groove_at(result, 0.0)),
+    "largest depth of the groove": lambda result: float(result.quantities["groove_deepest_m"]),
+    "largest plastic strain": lambda result: float(result.quantities["peeq_max"]),
+}
+
+
+def _both_refined(words: str, unit: str) -> Quantity:
+    """A value of a track, both models refined."""
+
+    def whole(solved: Solved) -> Measured:
+        sam, fem = (float(refined(runs, OF_TRACKS[words])) for runs in ladders(solved))
+        return Measured(sam, fem, unit=unit)
+
+    return Quantity(f"{words}, both models refined", unit, whole=whole)
+
+
+def of_passes(result: Result, name: str) -> np.ndarray:
+    """The "energy" in J that each pass dissipates, or the largest new "strain" of the steady part."""
+    table, column = {"energy": ("cycles", "dissipated_J"), "strain": ("passes", "new_strain_max")}[name]
+    return np.asarray(result.tables[table][column], dtype=float)
+
+
+def _limits_of_passes(solved: Solved, name: str) -> list[np.ndarray]:
+    return [refined(runs, lambda result: of_passes(result, name)) for runs in ladders(solved)]
+
+
+def _counted(solved: Solved) -> np.ndarray:
+    """Which passes strain more than the floor of the verdict, in all runs of both models."""
+    runs = solved.results.values()
+    return np.all([of_passes(each, "strain") > each.verdict["floor"] for each in runs], axis=0)
+
+
+def _pass(name: str, words: str, *, own: bool = False) -> Quantity:
+    """Largest difference of a pass, over what the first one does, as a later pass strains little and has the
+    error of the strain that has accumulated; own: of a pass that counts, over what itself does.
+    """
+
+    def whole(solved: Solved) -> float:
+        sam, fem = _limits_of_passes(solved, name)
+        if own:
+            return float(np.abs(sam[counted := _counted(solved)] / fem[counted] - 1.0).max())
+        return float(np.abs(sam - fem).max() / fem[0])
+
+    over = "of a pass that counts, over itself" if own else "over the first pass"
+    return Quantity(f"{words}, largest difference of both models {over}", whole=whole)
+
+
+def _verdicts(solved: Solved) -> Measured:
+    return Measured(float(len({each.verdict["class"] for each in solved.results.values()})), 1.0)
+
+
+def _becomes(name: str) -> Quantity:
+    """Whether all runs end with a verdict."""
+
+    def whole(solved: Solved) -> Measured:
+        return Measured(float({each.verdict["class"] for each in solved.results.values()} == {name}), 1.0)
+
+    return Quantity(f"1 if the verdict is {name}", whole=whole)
+
+
+MOVING: Mapping[str, Quantity] = {
+    "groove": Quantity("largest difference of the groove between both models over its depth", whole=_groove),
+    "groove-refined": _both_refined("groove in the middle of the track", "m"),
+    "deepest-refined": _both_refined("largest depth of the groove", "m"),
+    "strain-refined": _both_refined("largest plastic strain", ""),
+    "verdict": Quantity("different verdicts of both models on all grids", whole=_verdicts),
+    "energy": _pass("energy", "energy that a pass dissipates"),
+    "strain": _pass("strain", "largest strain that a pass adds"),
+    "own-energy": _pass("energy", "energy of a pass", own=True),
+    "own-strain": _pass("strain", "largest strain of a pass", own=True),
+    "counted": Quantity(
+        "passes that strain some cell by more than the floor of the verdict, on all grids",
+        whole=lambda solved: float(_counted(solved).sum()),
+    ),
+    "shakes-down": _becomes("shakedown"),
+    "alternates": _becomes("alternating"),
+}
+
 QUANTITIES: Mapping[str, Quantity] = {
-    "p-max": _scalar("p_max_Pa", "largest pressure", "Pa"),
+    "p-max": replace(_scalar("p_max_Pa", "largest pressure", "Pa"), between=_largest_at_nodes),
     "p-center": _scalar("p_center_Pa", "pressure in the centre", "Pa"),
     "approach": _scalar("approach_m", "approach", "m"),
     "radius": _scalar("contact_radius_m", "contact radius", "m"),
@@ -147,8 +553,69 @@ QUANTITIES: Mapping[str, Quantity] = {
     "mises-depth": _scalar("mises_max_depth_m", "depth of the largest von Mises stress", "m"),
     "mises-axis": Quantity("von Mises stress on the axis", "Pa", _mises_on_axis, row="mises_Pa on the axis"),
     "mises-plane": Quantity("von Mises stress in the plane y = 0", "Pa", row="mises_Pa in the plane y = 0"),
-    "peeq-max": _scalar("peeq_max", "largest plastic strain", pair=True),
+    "peeq-max": _scalar("peeq_max", "largest plastic strain"),
+    "peeq-depth": _scalar("peeq_max_depth_m", "depth of the largest plastic strain", "m"),
     "peeq-axis": Quantity("plastic strain on the axis", row="peeq on the axis"),
     "peeq-plane": Quantity("plastic strain in the plane y = 0", row="peeq in the plane y = 0"),
-    "residual-centre": _scalar("residual_uz_center_m", "residual displacement in the centre", "m", pair=True),
+    "residual-centre": _scalar("residual_uz_center_m", "displacement of the centre after unloading", "m"),
+    "residual-mises": _scalar("residual_mises_max_Pa", "largest residual von Mises stress", "Pa"),
+    "pressure-rings": Quantity("mean pressure over rings of a/10", "Pa", between=_pressure_over_rings),
+    "strain-layer": Quantity("largest plastic strain in the layer", between=_largest_strain(below=False)),
+    "strain-below": Quantity("largest plastic strain below the layer", between=_largest_strain(below=True)),
+    "peeq-reloaded": Quantity(
+        "largest plastic strain after the second load, against the first",
+        of=_of_second_cycle(lambda first, last, *_: Measured(last, first)),
+    ),
+    "approach-reloaded": Quantity(
+        "change of the approach at the peak by the second cycle",
+        of=_of_second_cycle(lambda *values: abs(values[3] / values[2] - 1.0)),
+    ),
+    "surface-change": Quantity("largest change of the surface and the contact", between=_surface_change),
+    "applications": Quantity(
+        "applications of the residual-stress operator by SAM",
+        between=lambda scene, sam, fem: Measured(sam.cost["operator_applications"]),
+    ),
+    **SLIDING,
+    **MOVING,
+    "mises-film": _scalar("mises_max_film_Pa", "largest von Mises stress of the film", "Pa"),
+    "mises-body": _scalar("mises_max_substrate_Pa", "largest von Mises stress of the body", "Pa"),
+    "mises-interface": Quantity("von Mises stress of the body along the interface", "Pa", _at_interface),
+    "p-change": _scalar("p_max_change", "change of the largest pressure by the film"),
+    "mises-change": _scalar(
+        "mises_max_change", "change of the largest von Mises stress of the body by the film"
+    ),
+    "nodal-pressure": Quantity("pressure over the cells or nodes", "Pa", between=_patch),
+    "nodal-p-max": Quantity("largest nodal pressure", "Pa", between=_largest(_patch)),
+    "centroid": Quantity("centre of pressure, in contact radii", between=_centroid),
+    "mises-below-film": Quantity(
+        "von Mises stress of the body in y = 0, at the interface and the centres of the elements",
+        between=_below_film,
+    ),
+    "mises-below-film-max": Quantity("largest of these", "Pa", between=_largest(_below_film)),
+    "area": _scalar("contact_area_m2", "contact area", "m²"),
+    "friction": _scalar("friction_coefficient", "coefficient of friction of the whole contact"),
+    "spots": Quantity(
+        "contact spots of the three asperities that bear more than 5 % of the force",
+        between=lambda scene, *both: Measured(len(_spots(*both)), 3),
+    ),
+    **{
+        f"load-{k}": Quantity(
+            f"load of spot {k}",
+            "N",
+            between=_of_spot(k, lambda *of: Measured(of[-1].sam, of[-1].fem, unit="N")),
+        )
+        for k in (1, 2, 3)
+    },
+    **{
+        f"strain-{k}": Quantity(
+            f"plastic strain below spot {k} at z >= 0.3 radii, down to a tenth of the largest",
+            between=_of_spot(k, lambda *of: strain_below(*of)[1]),
+        )
+        for k in (1, 2, 3)
+    },
+    "strain-below-spots": Quantity("plastic strain below a spot, the largest difference", between=_strain),
+    "residual-line": Quantity("displacement along y = 0 after unloading", "m", between=_residual),
+    "reference-residual": Quantity(
+        "error of the surface's shape in the spectral solution", of=lambda _, exact: exact.values["residual"]
+    ),
 }

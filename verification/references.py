@@ -12,24 +12,27 @@ from functools import cache
 import numpy as np
 
 from sam.scene import Scene
-from verification.quantities import Reference
+from verification.quantities import Reference, contact_of, modulus_of
+from verification.reference.coated_changes import (
+    film_contact,
+    largest_bare_mises,
+    largest_mises,
+    mises_change,
+    pressure_change,
+)
 from verification.reference.coated_sphere import CoatedContact, solve_force
+from verification.reference.coated_traction import (
+    coated_sliding_stress,
+    largest_von_mises as coated_traction_mises,
+)
 from verification.reference.elliptic import EllipticContact
 from verification.reference.flat_punch import FlatPunch
-from verification.reference.hertz import CircularContact, axis_stress, effective_modulus, largest_von_mises
+from verification.reference.hamilton import sliding_stress
+from verification.reference.hertz import axis_stress, largest_von_mises
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
+from verification.reference.rounded_punch import RoundedPunch
+from verification.reference.shakedown import upper_bound
 from verification.reference.stress import von_mises
-
-
-def modulus_of(scene: Scene) -> float:
-    """The contact modulus E* in Pa: 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2."""
-    body, other = scene.body, scene.counterbody
-    return effective_modulus(body.young, body.poisson, other.young, other.poisson)
-
-
-def contact_of(scene: Scene) -> CircularContact:
-    """The elastic contact of a scene with a sphere."""
-    return CircularContact(scene.loading.force, scene.counterbody.radius, modulus_of(scene))
 
 
 def elliptic_contact(scene: Scene) -> EllipticContact:
@@ -59,6 +62,7 @@ def hertz_sphere(scene: Scene) -> Reference:
             "mises-depth": depth,
             "pressure": lambda x, y: exact.pressure(np.hypot(x, y)),
             "mises-axis": lambda z: von_mises(stress(z)),
+            "peeq-max": 0.0,
         },
         {"a": a, "p0": p0, "approach": delta},
         {
@@ -134,38 +138,169 @@ def flat_punch(scene: Scene) -> Reference:
     )
 
 
+def rounded_contact(scene: Scene) -> RoundedPunch:
+    """The elastic contact of a scene with a punch with a rounded edge."""
+    other = scene.counterbody
+    return RoundedPunch(scene.loading.force, other.flat_radius, other.radius, modulus_of(scene))
+
+
+def rounded_punch(scene: Scene) -> Reference:
+    """Ciavarella, Hills & Monno (1998); the largest pressure on 4001 places in the edge, within 1e-6; the
+    pressure to the flat end, beyond which it is steeper than any power.
+    """
+    exact, nu = rounded_contact(scene), scene.body.poisson
+    a, b, centre = exact.contact_radius, exact.flat, float(exact.pressure(0.0))
+    largest = float(exact.pressure(np.linspace(b, a, 4001)).max())
+
+    def mises(z: np.ndarray) -> np.ndarray:
+        return von_mises(exact.axis_stress(z, nu))
+
+    return Reference(
+        {
+            "approach": exact.approach,
+            "radius": a,
+            "p-center": centre,
+            "p-max": largest,
+            "pressure": lambda x, y: exact.pressure(np.hypot(x, y)),
+            "mises-axis": mises,
+        },
+        {"a": a, "p0": centre, "approach": exact.approach},
+        {
+            ("line", "p_Pa"): lambda x: exact.pressure(np.abs(x)),
+            ("line", "uz_m"): lambda x: exact.displacement(np.abs(x)),
+            ("axis", "mises_Pa"): mises,
+        },
+        deepest=2.0 * a,
+        inside=b,
+        facts=(
+            ("Contact radius a, flat end b/a", f"{a * 1e6:.5f} µm, {b / a:.5f}"),
+            ("Approach δ", f"{exact.approach * 1e9:.4f} nm"),
+            ("Pressure: centre, largest", f"{centre / 1e9:.4f}, {largest / 1e9:.4f} GPa"),
+        ),
+    )
+
+
 @cache
 def _coated_contact(layers: CoatedHalfSpace, radius: float, force: float, counter: float) -> CoatedContact:
     return solve_force(layers, radius, force, counter)
 
 
+def layers_of(scene: Scene) -> CoatedHalfSpace:
+    """The body with its coating."""
+    film, body = scene.body.coating, scene.body
+    return CoatedHalfSpace(film.young, film.poisson, film.thickness, body.young, body.poisson)
+
+
+def _counter_modulus(scene: Scene) -> float:
+    """E/(1 - nu^2) of the counter-body in Pa, infinite if rigid."""
+    other = scene.counterbody
+    return other.young / (1.0 - other.poisson**2) if other.elastic else math.inf
+
+
 def coated_contact(scene: Scene) -> CoatedContact:
     """The elastic contact of a scene with a sphere and a coating, by a spectral solution."""
-    body, film, other = scene.body, scene.body.coating, scene.counterbody
-    layers = CoatedHalfSpace(film.young, film.poisson, film.thickness, body.young, body.poisson)
-    counter = other.young / (1.0 - other.poisson**2) if other.elastic else math.inf
-    return _coated_contact(layers, other.radius, scene.loading.force, counter)
+    radius, force = scene.counterbody.radius, scene.loading.force
+    return _coated_contact(layers_of(scene), radius, force, _counter_modulus(scene))
 
 
 def coated_sphere(scene: Scene) -> Reference:
-    """A spectral solution of the contact on a coated half-space."""
+    """A spectral solution of the contact on a coated half-space; film and body apart, the body at z >=
+    thickness also without film.
+    """
     exact = coated_contact(scene)
-    a, p0 = exact.contact_radius, exact.central_pressure
+    a, p0, body = exact.contact_radius, exact.central_pressure, largest_mises(exact).value
+
+    @cache
+    def stress(depths: tuple[float, ...]) -> np.ndarray:
+        return exact.stress(0.0, np.array(depths))[0]
+
     return Reference(
         {
             "p-center": p0,
             "approach": exact.approach,
             "radius": a,
             "pressure": lambda x, y: exact.pressure(np.hypot(x, y)),
+            "mises-body": body,
+            "mises-film": largest_mises(exact, film=True).value,
+            "p-change": pressure_change(exact),
+            "mises-change": body / largest_bare_mises(exact).value - 1.0,
+            "residual": exact.residual(),
         },
         {"a": a, "p0": p0, "approach": exact.approach},
+        {
+            ("line", "p_Pa"): lambda x: exact.pressure(np.abs(x)),
+            ("axis", "szz_Pa"): lambda z: stress(tuple(z))[..., 2],
+            ("axis", "sxx_Pa"): lambda z: stress(tuple(z))[..., 0],
+            ("axis", "mises_Pa"): lambda z: von_mises(stress(tuple(z))),
+        },
     )
+
+
+def hamilton(scene: Scene) -> Reference:
+    """Hamilton (1983): stresses over p0, (..., 6), under a given Hertz pressure and traction."""
+    a, p0 = scene.loading.radius, scene.loading.p0
+    unit = {"contact_radius": a, "nu": scene.body.poisson, "friction": scene.coefficient}
+    return Reference(
+        {"stress": lambda x, y, z: sliding_stress(x, y, z, 1.0, **unit)},
+        {"a": a, "p0": p0},
+        facts=(("Radius a of the pressure", f"{a * 1e6:.4f} µm"),),
+    )
+
+
+def travelling_load(scene: Scene) -> Reference:
+    """The shakedown limit below a Hertz pressure that travels."""
+    bound = upper_bound(scene.coefficient, nu=scene.body.poisson)
+    facts = (("Upper bound of p₀/k", f"{bound:.3f}"),)
+    return Reference({}, {"a": scene.loading.radius, "p0": scene.loading.p0}, facts=facts)
+
+
+def coated_traction(scene: Scene) -> Reference:
+    """Given Hertz pressure and traction on a coated half-space: Hankel integrals by quadrature."""
+    load, layers, h = scene.loading, layers_of(scene), scene.body.coating.thickness
+    given = layers, load.p0, load.radius, scene.coefficient
+    film, body = (coated_traction_mises(*given, film=side) for side in (True, False))
+    size = ", ".join(
+        f"{name} {each.value / 1e9:.5g} GPa at x = {each.r / load.radius:+.3f} a, z = {each.z / h:.3f} h"
+        for name, each in (("film", film), ("body", body))
+    )
+
+    def interface(x: np.ndarray) -> np.ndarray:
+        return von_mises(coated_sliding_stress(*given, x=x, z=h)[:, 0])
+
+    return Reference(
+        {"mises-film": film.value, "mises-body": body.value, "mises-interface": interface},
+        {"a": load.radius, "p0": load.p0, "h": h},
+        facts=(("Largest von Mises stress in closed form", size),),
+    )
+
+
+def film_reference(scene: Scene) -> Reference:
+    """What a film changes, by the spectral solution."""
+    elastic, (p, mises) = contact_of(scene), film_changes(scene)
+    units = {"a": elastic.contact_radius, "p0": elastic.peak_pressure, "approach": elastic.approach}
+    return Reference({"p-change": p, "mises-change": mises}, units)
+
+
+def film_changes(scene: Scene) -> tuple[float, float]:
+    """What the film changes, as shares of the contact without it: largest pressure, and largest von Mises
+    stress of the body.
+    """
+    body, film = scene.body, scene.body.coating
+    counter = _counter_modulus(scene) / (body.young / (1.0 - body.poisson**2))
+    thickness = film.thickness / contact_of(scene).contact_radius
+    contact = film_contact(thickness, film.young / body.young, film.poisson, body.poisson, counter=counter)
+    return pressure_change(contact), mises_change(contact)
 
 
 REFERENCES: Mapping[str, Callable[[Scene], Reference]] = {
     "hertz-sphere": hertz_sphere,
     "hertz-ellipse": hertz_ellipse,
     "flat-punch": flat_punch,
+    "rounded-punch": rounded_punch,
     "coated-sphere": coated_sphere,
+    "hamilton": hamilton,
+    "travelling-load": travelling_load,
+    "coated-traction": coated_traction,
+    "film-changes": film_reference,
 }
 """Name in a case file -> the answer for a scene."""

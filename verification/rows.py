@@ -3,8 +3,9 @@
 
 A file `verification/cases/<family>/<name>.toml` is a case, or several where it has tables `[cases.NAME]`,
 each of which overrides the keys above it. A row is `name = [metric, tolerance, reason, words]` in a table
-`[rows.KIND]`; its id is `<case>.<name>`. Braces stand for several rows: `"{sam,fem}-radius"` with
-"radius, {SAM,FEM}" are two. A reason "@name" stands in `[reasons]`, an equation "name" in equations.toml.
+`[rows.KIND]`; its id is `<case>.<name>`; words may be the name of its quantity where the row has another.
+Braces stand for several rows: `"{sam,fem}-radius"` with "radius, {SAM,FEM}" are two. A reason "@name"
+stands in `[reasons]`, an equation "name" in equations.toml.
 
 Where a case has tables `[sweeps.NAME]`, a fifth entry says what a row takes of the points of the sweeps, see
 `Take`: `"order p-max of sam"`, `"share of fem at depth = 3"`, `"limit peeq-max of sam | limit peeq-max of
@@ -103,10 +104,17 @@ class CaseFile(BaseModel):
 
     scene: of `verification/scenes`; set: key of the scene, as `loading.force` -> its value here, in SI;
     vary: recipe of `verification.cases.recipes` -> its value; quick: `set` and `vary` that differ at that
-    level; models: that solve it; values: quantity -> the number that it is held against; reference: an
+    level; models: that solve it; runs: name -> {model, set, vary}, beside these, which need not converge;
+    variants: name -> {words, set, vary} of the scene, each solved and measured by itself if rows or `also`
+    name it; values: quantity -> the number that it is held against; reference: an
     independent answer, a name in `verification.references`; figures: kinds of `verification.cases.kinds`;
-    claims: table of rows -> the names in it without a take; sweeps: its points beside the scene itself;
-    takes: id of a row -> what it takes of them, see `Take`; notes: sentences below the tables.
+    claims: table of rows -> name -> its quantity, of those without a take; sweeps: its points beside the
+    scene itself; takes: id of a row -> what it takes of them, see `Take`; notes: sentences below the
+    tables; views: pictures in space.
+
+    allowance: rows of SAM against FEM that hold the difference over what refinement allows, known from
+    both models at the `coarser` resolution; against: recipe -> value of another scene, solved by the same
+    models, against which rows hold what changes.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
@@ -124,10 +132,17 @@ class CaseFile(BaseModel):
     values: dict[str, float] = {}
     quick: dict[str, Any] = {}
     models: tuple[Literal["sam", "fem", "fem-3d"], ...] = ()
+    runs: dict[str, dict[str, Any]] = {}
+    variants: dict[str, dict[str, Any]] = {}
+    also: tuple[str, ...] = ()
     reference: str = ""
+    coarser: tuple[int, ...] = ()
+    allowance: tuple[str, ...] = ()
+    against: dict[str, Any] = {}
     figures: tuple[str, ...] = ()
+    views: tuple[str, ...] = ()
     rows: tuple[Row, ...]
-    claims: dict[str, tuple[str, ...]]
+    claims: dict[str, dict[str, str]]
     sweeps: dict[str, SweepFile] = {}
     takes: dict[str, tuple[Take, ...]] = {}
     notes: tuple[str, ...] = ()
@@ -159,40 +174,43 @@ def read_cases(path: Path) -> list[CaseFile]:
         raise SceneError([Problem("case file", path.name, str(error))], str(path)) from error
     own, reasons = content.pop("cases", {}), content.pop("reasons", {})
     common = {"name": path.stem.replace("_", "-"), "family": path.parent.name, "path": path}
-    cases = [_merged(content, case | {"name": name}) for name, case in own.items()] if own else [content]
+    cases = [merged(content, case | {"name": name}) for name, case in own.items()] if own else [content]
     return [_case(common | case, reasons) for case in cases]
 
 
-def _merged(first: Mapping, second: Mapping) -> dict:
+def merged(first: Mapping, second: Mapping) -> dict:
     """Nested tables, the second's values before the first's."""
-    both = {k: _merged(first[k], v) if isinstance(v, dict) and k in first else v for k, v in second.items()}
+    both = {k: merged(first[k], v) if isinstance(v, dict) and k in first else v for k, v in second.items()}
     return {**first, **both}
 
 
 def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     """One case of a file. Raises SceneError with every fault of it."""
     faults: list[Problem] = []
-    tables = content.pop("rows", {})
     takes: dict[str, tuple[Take, ...]] = {}
-    rows = [
-        row
-        for table in tables
-        for row in _rows(content["name"], table, tables[table], reasons=reasons, takes=takes, faults=faults)
-    ]
-    claims = {table: tuple(n for n, cells in own.items() if len(cells) < 5) for table, own in tables.items()}
+    variants, tables = content.get("variants", {}), dict[str, dict[str, Any]]()
+    for heads, named in content.pop("rows", {}).items():
+        for head in _braces(heads):
+            tables[head] = tables.get(head, {}) | named
+    more = {"reasons": reasons, "variants": variants, "takes": takes, "faults": faults}
+    rows = [row for table, named in tables.items() for row in _rows(content["name"], table, named, **more)]
     named = [each for each in content.get("equations", ()) if isinstance(each, str)]
     content["equations"] = [_equations().get(e, e) if e in named else e for e in content.get("equations", ())]
     lists = {key: tuple(value) for key, value in content.items() if isinstance(value, list)}
     lists["equations"] = tuple(map(tuple, lists["equations"]))
     twice = sorted({row.id for row in rows if sum(other.id == row.id for other in rows) > 1})
     faults += [Problem("rows", name, "occurs twice") for name in twice]
+    claims = {
+        table: {
+            name: quantity
+            for key, cells in own.items()
+            if len(cells) < 5
+            for name, quantity in zip(_braces(key), _braces(_named(key, cells)), strict=True)
+        }
+        for table, own in tables.items()
+    }
     try:
-        case = CaseFile(
-            **{**content, **lists},
-            rows=tuple(rows),
-            claims={table: names for table, names in claims.items() if names},
-            takes=takes,
-        )
+        case = CaseFile(**{**content, **lists}, rows=tuple(rows), claims=claims, takes=takes)
     except ValidationError as error:
         faults += _faults(error)
     if faults:
@@ -200,29 +218,40 @@ def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     return case
 
 
+def head_of(table: str, variants: Mapping) -> tuple[str, str, str]:
+    """Variant, model and what it is held against, of the name of a table of rows; "" for what it lacks."""
+    first, _, rest = table.partition("/")
+    variant, rest = (first, rest) if first in variants else ("", table)
+    model, _, against = rest.rpartition("/")
+    return variant, model, against
+
+
 def _rows(
-    case: str, table: str, named: Mapping, *, reasons: Mapping, takes: dict, faults: list[Problem]
+    case: str, table: str, named: Mapping, *, reasons: Mapping, variants: Mapping, takes: dict, faults: list
 ) -> Iterator[Row]:
-    """The rows of a table, of kind `exact`, or, where two models are held against each other or one against
-    something, `sam/fem`, `sam/exact`; what they take is added to `takes`, what is wrong with one to `faults`.
+    """The rows of a table, of kind `exact`, or, where two models are held against each other or one
+    against something, `sam/fem`, `sam/exact`, after the name of a variant of the scene if there are; what
+    they take is added to `takes`, what is wrong with one to `faults`.
     """
-    model, _, against = table.rpartition("/")
+    variant, model, against = head_of(table, variants)
     kind = "model" if against == "fem" else against
-    lead = f"{model}-" if model and kind != "model" else ""
-    of = f", {model.upper()}" + " against FEM" * (kind == "model") if model else ""
+    lead = f"{variant}-" * bool(variant) + (f"{model}-" if model and kind != "model" else "")
+    of = f", {variants[variant]['words']}" if variant else ""
+    of += f", {model.upper()}" + " against FEM" * (kind == "model") if model else ""
     for key, cells in named.items():
         try:
             metric, tolerance, reason, *words = cells
             reason = reasons[reason[1:]] if reason.startswith("@") else reason
-            said, *take = words or [f"{QUANTITIES[key].words}{of}"]
-            names = _braces(key)
+            names, of_names, take = _braces(key), _braces(_named(key, cells)), words[1:]
+            alone = not words or words[0] in QUANTITIES
+            said = [f"{QUANTITIES[name].words}{of}" for name in of_names] if alone else _braces(words[0])
             if take:
                 parts = [each.split(" | ") for each in _braces(*take)]
                 takes |= {
                     f"{case}.{name}": tuple(map(Take.parse, part))
                     for name, part in zip(names, parts, strict=True)
                 }
-            for name, quantity in zip(names, _braces(said), strict=True):
+            for name, quantity in zip(names, said, strict=True):
                 yield Row(
                     id=f"{case}.{lead}{name}",
                     case=case,
@@ -244,6 +273,11 @@ def _faults(error: ValidationError, *above: str) -> list[Problem]:
         Problem(".".join((*above, *map(str, item["loc"]))), spelling(item["input"]), item["msg"])
         for item in error.errors(include_url=False)
     ]
+
+
+def _named(name: str, cells: Sequence) -> str:
+    """The quantity of a row, or the names of several."""
+    return cells[3] if len(cells) > 3 and cells[3] in QUANTITIES else name
 
 
 def _braces(text: str) -> list[str]:

@@ -13,8 +13,7 @@ from samfem.cli import main
 from verification.cases.case import with_loading
 from verification.cases.cost.work_precision import ADVISED
 from verification.cases.cost.work_precision_problems import PROBLEMS
-from verification.cases.recipes import Resolution, at_ratio
-from verification.cases.sliding.friction import sliding_scene
+from verification.cases.recipes import Resolution, at_ratio, sliding_scene
 from verification.cost import advice
 from verification.cost.advice import advice_of, kind_of
 from verification.cost.advice_rows import (

@@ -1,94 +1,46 @@
 # SPDX-License-Identifier: MIT
-"""The cases of coated bodies: what they measure is right on made results, and perturbed answers turn their
-gates red.
-"""
+"""Coated and rough contacts: what is read of results that no solver made, scenes of recipes, and figures."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
-from made_results import Made, context, red, square_mesh
+from made_results import Made, square_mesh
 
-from sam.scene import load_scene
-from verification.cases import all_cases
-from verification.cases.case import Context
-from verification.cases.coated import coated_sphere, film_limits, film_map, layered, thin_film
-from verification.cases.recipes import cells_in_coated_contact
-from verification.figures.coated import Map, PaperCase, change_maps, film_planes, response_errors
-from verification.judging import Measured
+from sam.scene import Result, load_scene
+from verification.cases.case import with_keys
+from verification.cases.coated import films, layered
+from verification.cases.recipes import RECIPES
+from verification.compare.rough_measures import Depths, compared_depths
+from verification.figures.coated import change_maps, film_planes, response_errors
+from verification.figures.film import in_body
+from verification.judging import error_of
+from verification.quantities import QUANTITIES
 from verification.reference.layered_errors import Worst
-from verification.rows import load_rows
-from verification.runs import models
+from verification.references import coated_contact, coated_sphere, contact_of
 from verification.runs.models import FEM
 
-BASE = load_scene("verification/scenes/coated-sphere.toml")
-PAPER = film_map.PAPER_RATIO
+SPHERE, SLIDING, ASPERITIES = (
+    load_scene(f"verification/scenes/{name}.toml")
+    for name in ("coated-sphere", "coated-sliding", "rough-asperities")
+)
 
 
-def gates_of(case: str) -> set[str]:
-    return {gate.id.removeprefix(f"{case}.") for gate in load_rows() if gate.case == case}
+def varied(scene, **recipes):
+    for name, value in recipes.items():
+        scene = RECIPES[name.replace("_", "-")](scene, value)
+    return scene
 
 
-# --- response and pavement ----------------------------------------------------------------------------------
-
-
-def test_quick_points_hold_every_wave_number_and_the_ends():
-    few = layered.points_of("quick")
-    assert {point[0] for point in few} == set(layered.WAVES) and len(few) == 100
-    assert {point[1] for point in few} == set(layered.RATIOS)
+# --- layered response -----------------------------------------------------------------------------------
 
 
 def test_a_worst_error_that_is_no_number_stays_the_worst():
     found = {name: Worst(1e-12, "here") for name in layered.NAMES}
     worst = layered.worst_of({1.0: found, 2.0: found | {"film": Worst(math.nan, "there")}, 3.0: found})
     assert math.isnan(worst["film"].error) and worst["film"].where == "there" and worst["jump"].error == 1e-12
-
-
-class Perturbed(layered.Response):
-    """A response off by a share of 1e-8, at the surface and in the film."""
-
-    @property
-    def surface(self):
-        return super().surface * (1 + 1e-8)
-
-    def stress(self, depth):
-        in_plane, out = super().stress(depth)
-        return (in_plane * (1 + 1e-8), out) if depth < self.layers.thickness else (in_plane, out)
-
-
-def response_values(monkeypatch, tmp_path) -> dict:
-    monkeypatch.setattr(layered, "points_of", lambda level: layered.all_points()[3::200])
-    monkeypatch.setattr(layered.LayeredResponse, "figures", lambda self, found: ())
-    return all_cases()["layered-response"].run(context("layered-response", tmp_path)).values
-
-
-def test_a_wrong_response_is_noticed(monkeypatch, tmp_path):
-    values = response_values(monkeypatch, tmp_path)
-    assert red("layered-response", values, whole=True) == set()
-    assert set(values) == {f"layered-response.{name}" for name in gates_of("layered-response")}
-    monkeypatch.setattr("verification.reference.layered_errors.Response", Perturbed)
-    assert red("layered-response", response_values(monkeypatch, tmp_path)) == {
-        "c-zz",
-        "matrix",
-        "film",
-        "jump",
-    }
-
-
-def test_wrong_coefficients_of_equal_materials_and_wrong_waves_are_noticed(monkeypatch, tmp_path):
-    class Off(layered.LayeredPatches):
-        def stress(self, *args, **keys):
-            return super().stress(*args, **keys) * (1 + 1e-9)
-
-        def displacement(self, *args, **keys):
-            return super().displacement(*args, **keys) * (1 + 1e-9)
-
-    monkeypatch.setattr(layered, "LayeredPatches", Off)
-    monkeypatch.setattr(layered, "STEEL", (210e9, 0.3 + 1e-9))
-    right = layered.wave_pressure_ratio
-    monkeypatch.setattr(layered, "wave_pressure_ratio", lambda *args: right(*args) * (1 + 1e-9))
-    wrong = red("layered-response", response_values(monkeypatch, tmp_path))
-    assert wrong == {"equal-displacement", "equal-stress", "flattened"}
 
 
 def test_an_overflow_of_short_waves_is_counted(monkeypatch):
@@ -110,9 +62,7 @@ def test_flattened_sinusoids_have_the_published_ratios():
 
 
 def test_the_cells_of_a_disc_have_its_area():
-    """Closed forms: rounding. Whole cells at the centre, and none beyond the corner of the square around the
-    disc.
-    """
+    """Closed forms: rounding. Whole cells at the centre, none beyond the corner of the square around it."""
     share = layered.covered(20)
     times = np.where(np.arange(21) == 0, 1, 2)
     assert np.sum(share * times[:, None] * times) == pytest.approx(math.pi * 400, rel=1e-13)
@@ -120,180 +70,205 @@ def test_the_cells_of_a_disc_have_its_area():
     assert np.all((share >= -1e-12) & (share <= 1 + 1e-12)) and share == pytest.approx(share.T, abs=1e-12)
 
 
-def test_a_disc_of_cells_converges_to_the_disc(monkeypatch):
-    """Second order: four times the cells, a sixteenth of the error, within the ups and downs of the edge."""
-    exact = layered.interface_stress(1.0, 10.0)
-    found = []
-    for n in (10, 40):
-        monkeypatch.setattr(layered, "DISC_CELLS", n)
-        found.append(abs(layered.disc_by_cells(1.0, 10.0) - exact))
-    assert 8 < found[0] / found[1] < 32
+# --- coated spheres -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "name, wrong, gates",
-    [
-        ("FOX", {1.0: (0.6464, 0.2914, 0.0809, 0.0188)}, {"fox"}),
-        ("interface_stress", lambda radius, ratio: 1.000003 * RIGHT(radius, ratio), {"response", "bare"}),
-        ("disc_by_cells", lambda radius, ratio: 1.001 * RIGHT(radius, ratio), {"cells"}),
-    ],
-)
-def test_a_wrong_pavement_is_noticed(monkeypatch, tmp_path, name, wrong, gates):
-    assert (
-        red("pavement", all_cases()["pavement"].run(context("pavement", tmp_path)).values, whole=True)
-        == set()
-    )
-    monkeypatch.setattr(layered, name, wrong)
-    assert (
-        red("pavement", all_cases()["pavement"].run(context("pavement", tmp_path)).values, whole=True)
-        == gates
-    )
-
-
-RIGHT = layered.interface_stress
-
-
-# --- coated sphere ------------------------------------------------------------------------------------------
-
-
-def made_results(answer, factor: float = 1.0) -> dict[str, Made]:
-    """What both models would return of the spectral solution itself; factor: on every pressure and stress."""
-    contact = answer.contact
+@pytest.mark.parametrize("factor", [1.0, 1.03])
+def test_quantities_of_a_coated_sphere_are_those_of_the_spectral_solution(factor):
+    """What both models would return of it; factor: on every pressure and stress."""
+    scene = varied(SPHERE, film=(80 / 210, 0.5, "rigid"))
+    contact, exact = coated_contact(scene), coated_sphere(scene)
     quantities = {
-        "p_center_Pa": factor * contact.central_pressure,
-        "approach_m": contact.approach,
-        "contact_radius_m": contact.contact_radius,
-        "mises_max_substrate_Pa": factor * answer.mises_body,
-        "mises_max_film_Pa": factor * answer.mises_film,
-        "p_max_change": answer.changes[0],
-        "mises_max_change": answer.changes[1],
+        "p_center_Pa": factor * exact.values["p-center"],
+        "mises_max_substrate_Pa": factor * exact.values["mises-body"],
+        "mises_max_film_Pa": factor * exact.values["mises-film"],
+        "approach_m": exact.values["approach"],
     }
     x = contact.contact_radius * np.linspace(-1.1, 1.1, 45)
     mesh = square_mesh(x, factor * contact.pressure(np.hypot(x[:, None], x[None, :])))
     r = contact.contact_radius * np.linspace(0.0, 1.2, 61)
     line = {"line": {"state": ["peak"] * r.size, "x_m": r, "p_Pa": factor * contact.pressure(r)}}
-    return {"SAM": Made(quantities, fields=mesh), "FEM": Made(quantities, line, model=FEM)}
+    for result in (Made(quantities, fields=mesh), Made(quantities, line, model=FEM)):
+        for name in ("p-center", "mises-body", "mises-film", "pressure", "approach"):
+            metric = "relative_l2" if name == "pressure" else "relative"
+            error = error_of(metric, QUANTITIES[name].against(name, result, exact))
+            assert error == pytest.approx(0.0 if name == "approach" else factor - 1.0, abs=1e-12)
 
 
-def sphere_values(errors: dict) -> dict:
-    values = {
-        f"coated-sphere.{model.lower()}-{name}": Measured(value)
-        for model, found in errors.items()
-        for name, value in found.items()
-    }
-    return values | {"coated-sphere.reference": Measured(0.0)}
+def test_scenes_have_the_cells_the_radius_and_the_interface_that_are_asked_for():
+    for ratio in (0.2, 4.0):
+        scene = varied(SPHERE, film=(ratio, 1.0, "steel"), coated_grid=24)
+        contact, grid = coated_contact(scene), scene.grid
+        assert contact.contact_radius * grid.cells[0] / grid.extent[0] == pytest.approx(24)
+        assert grid.cells[0] % 2 == 1
+        assert grid.extent[0] > 2.1 * max(contact.contact_radius, contact.bare.contact_radius)
+    for counterbody in ("rigid", "steel"):
+        bare = contact_of(varied(SPHERE, film_under=(counterbody, 2e-6, 100e-9, 80 / 210)))
+        assert bare.contact_radius == pytest.approx(2e-6, rel=1e-12)
+        assert bare.peak_pressure == pytest.approx(6.5e9, rel=1e-12)
+    for share in (0.1, 0.2):
+        scene = varied(SLIDING, film_sliding=share)
+        depths, h = np.array(scene.grid.depths), scene.body.coating.thickness
+        inside, a = depths[depths < h], contact_of(SLIDING).contact_radius
+        assert h in depths and scene.grid.cells[0] % 2 == 1 and h - inside[-1] < 1e-5 * a
+        assert np.diff(inside).max() < 0.05 * a
 
 
-def test_measures_of_the_sphere_vanish_on_the_answer_and_see_each_quantity():
-    answer = coated_sphere.answer_of(coated_sphere.coated_scene(BASE, PAPER, 0.5, "rigid"))
-    exact = {name: coated_sphere.errors(result, answer) for name, result in made_results(answer).items()}
-    assert max(max(each.values()) for each in exact.values()) < 1e-12
-    stronger = {name: coated_sphere.errors(each, answer) for name, each in made_results(answer, 1.03).items()}
-    for found in stronger.values():
-        assert [found[name] for name in ("center", "pressure", "mises-body", "mises-film")] == pytest.approx(
-            [0.03] * 4
-        )
-    wrong = {"center", "pressure", "mises-body", "mises-film"}
-    expected = {f"{model}-{name}" for model in ("sam", "fem") for name in wrong} - {
-        "fem-mises-film"
-    }  # 4 % there
-    assert red("coated-sphere", sphere_values(stronger), whole=True) == expected
+def test_a_result_without_changes_is_no_answer():
+    good = Made({"p_max_change": 0.1, "mises_max_change": 0.2})
+    assert films.changes_of(good) == {"p": 0.1, "mises": 0.2}
+    without = replace(good, quantities=good.quantities | {"p_max_change": None})
+    for bad in (replace(good, converged=False), without):
+        with pytest.raises(RuntimeError, match="sam ended"):
+            films.changes_of(bad)
 
 
-def test_a_film_modulus_off_by_one_percent_is_noticed(monkeypatch, tmp_path):
-    """The case itself on one film, SAM and FEM solved; the answer then that of a film stiffer by 1 %."""
-    monkeypatch.setattr(coated_sphere, "QUICK", ((PAPER, 0.5, "rigid"),))
-    monkeypatch.setattr(coated_sphere.CoatedSphere, "figures", lambda self, found: ())
-    monkeypatch.setattr(Context, "solve", lambda self, model, scene, label: solved_once(model, scene))
-    fine, known = coated_sphere.resolved_grid, {}
-    monkeypatch.setattr(
-        coated_sphere, "resolved_grid", lambda scene, contact: fine(scene, contact, 24)
-    )  # faster
+def test_a_limit_that_the_thinnest_film_passes_is_no_number(monkeypatch):
+    def passed(*_, **_by_name):
+        raise ValueError("limit = 0.01 is passed at thickness/a0 = 0.002 already")
 
-    def solved_once(model, scene):
-        if model not in known:
-            known[model] = models.solve(scene, model)
-        return known[model]
-
-    assert (
-        red(
-            "coated-sphere",
-            all_cases()["coated-sphere"].run(context("coated-sphere", tmp_path)).values,
-            whole=True,
-        )
-        == set()
-    )
-    right = coated_sphere.answer_of
-
-    def stiffer(scene):
-        film = scene.body.coating.model_copy(update={"young": 1.01 * scene.body.coating.young})
-        return right(scene.model_copy(update={"body": scene.body.model_copy(update={"coating": film})}))
-
-    monkeypatch.setattr(coated_sphere, "answer_of", stiffer)
-    noticed = red(
-        "coated-sphere", all_cases()["coated-sphere"].run(context("coated-sphere", tmp_path)).values
-    )
-    assert {"sam-center", "sam-approach", "sam-p-change", "sam-mises-body", "sam-mises-change"} <= noticed
-    assert {"fem-center", "fem-approach", "fem-p-change"} <= noticed
+    monkeypatch.setattr(films, "breaking_thickness", passed)
+    assert math.isnan(films.broken_at.__wrapped__(1e-3, "rigid", 0.01, "p"))
 
 
-def test_films_of_the_levels():
-    assert coated_sphere.films("quick") == list(coated_sphere.QUICK)
-    full = coated_sphere.films("full")
-    assert len(full) == 16 and set(coated_sphere.QUICK) <= set(full)
+def patch(n: int, peak: float = 16.0) -> Made:
+    """Pressure of a bump on n x n cells, `peak` in the middle."""
+    x = 1e-6 * (np.arange(n) - (n - 1) / 2)
+    p = np.maximum(0.0, 16.0 - 1e12 * (x[:, None] ** 2 + x[None, :] ** 2))
+    p[n // 2, n // 2] = peak
+    names = {"axis": ("mises_Pa", "sxx_Pa", "szz_Pa"), "line": ("p_Pa", "uz_m", "gap_m")}
+    names["plane"] = ("mises_Pa",)
+    tables = {table: {name: np.ones(5) for name in columns} for table, columns in names.items()}
+    return Made(tables=tables, fields=square_mesh(x, p))
 
 
-def test_the_grid_of_the_sphere_has_its_cells_and_room_for_both_contacts():
-    for ratio, h in ((0.2, 1.0), (4.0, 1.0)):
-        scene = coated_sphere.coated_scene(BASE, ratio, h, "steel")
-        answer = coated_sphere.answer_of(scene)
-        grid = coated_sphere.resolved_grid(scene, answer.contact, 24).grid
-        a, widest = (
-            answer.contact.contact_radius,
-            max(answer.contact.contact_radius, answer.contact.bare.contact_radius),
-        )
-        assert a * grid.cells[0] / grid.extent[0] == pytest.approx(24) and grid.cells[0] % 2 == 1
-        assert grid.extent[0] > 2.1 * widest
-        assert cells_in_coated_contact(scene, 24).grid.depths[1] == scene.body.coating.thickness
+def test_aliases_and_numbers_that_are_not_finite_are_found():
+    result = patch(9)
+    assert films.alias(result, patch(13)) == 0.0 and films.unfinished(result) == 0
+    assert films.alias(result, patch(13, peak=16.16)) == pytest.approx(0.01)
+    result.tables["plane"]["mises_Pa"][2:4] = math.nan, math.inf
+    assert films.unfinished(result) == 2
 
 
-# --- figures ------------------------------------------------------------------------------------------------
+def plane(x, z, field) -> dict:
+    """The table of a field in y = 0."""
+    gx, gz = (grid.ravel() for grid in np.meshgrid(x, z, indexing="ij"))
+    return {"state": ["peak"] * gx.size, "x_m": gx, "z_m": gz, "mises_Pa": field(gx, gz)}
 
 
-def test_figures_hold_their_numbers(tmp_path):
+def test_film_and_body_are_never_mixed():
+    """A field that jumps at the interface and is linear below it, on other points than those of SAM."""
+
+    def field(x, z):
+        return np.where(z < 0.2e-6 * (1.0 - 1e-9), 100.0, 2.0 + 1e6 * (x + 3.0 * z))
+
+    u, w = 1e-6 * (np.arange(-10, 10) + 0.5) / 10, 1e-6 * np.append(0.2, (np.arange(2, 10) + 0.5) / 10)
+    fem = Made({}, {"plane": plane(u, np.union1d(w, [0.05e-6]), field)})
+    found = in_body(fem, np.array([0.0, 0.33e-6]), np.array([0.1e-6, 0.3e-6, 0.61e-6]), 0.2e-6)
+    assert np.isnan(found[:, 0]).all()
+    exact = 2.0 + np.array([[0.0], [0.33]]) + 3.0 * np.array([[0.3, 0.61]])
+    assert found[:, 1:] == pytest.approx(exact, rel=1e-12)
+    scene = with_keys(SLIDING, "body.coating", thickness=0.2e-6)
+    sam = Made({}, {"plane": plane(np.linspace(-1.6e-6, 1.6e-6, 52), np.arange(41) * 0.04e-6, field)})
+    for factor in (1.0, 1.02):
+        scaled = fem.tables["plane"] | {"mises_Pa": factor * fem.tables["plane"]["mises_Pa"]}
+        both = QUANTITIES["mises-below-film"].between(scene, sam, replace(fem, tables={"plane": scaled}))
+        assert np.asarray(both.value) * factor == pytest.approx(both.expected, rel=1e-12)
+        assert both.value.shape == (20, 9)
+
+
+# --- rough contacts -------------------------------------------------------------------------------------
+
+
+def asperities(load=1.0, strain=1.0, dent=1.0) -> Result:
+    """Three spots of constant pressure, bells of strain below, dents; factors on spot 1."""
+    x = np.linspace(-5.5e-6, 5.5e-6, 12)
+    p, z = np.zeros((12, 12)), np.linspace(0.1e-6, 3e-6, 24)
+    for k, value in zip((2, 6, 10), (4e9 * load, 3e9, 2e9), strict=True):
+        p[k - 1 : k + 1, 5:7] = value
+    peeq = np.full((12, 1), 0.01) * np.exp(-(((z - 0.6e-6) / 0.5e-6) ** 2))
+    peeq *= strain
+    xx, yy = np.meshgrid(x, x, indexing="ij")
+    surface = {"x_m": xx.ravel(), "y_m": yy.ravel(), "p_Pa": p.ravel(), "state": ["peak"] * 144}
+    below = plane(x, z, lambda *_: peeq.ravel())
+    uz = np.where(x < -2e-6, dent, 1.0) * 5e-9 * np.cos(x * 1e6) ** 2
+    line = {"x_m": x, "uz_m": uz, "state": ["unloaded"] * 12}
+    tables = {"surface": surface, "plane": below | {"peeq": below["mises_Pa"]}, "line": line}
+    return Result("made", "converged", {}, tables)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "off"),
+    [
+        ({}, {}),
+        ({"load": 1.03}, {"load-1": 0.03, "nodal-pressure": None}),
+        ({"strain": 1.1}, {"strain-1": 0.1, "strain-3": 0.1, "strain-below-spots": 0.1}),
+        ({"dent": 0.7}, {"residual-line": None}),
+        ({"load": 0.0}, {"spots": 1.0, "nodal-pressure": None}),
+    ],
+)
+def test_each_quantity_of_rough_contacts_sees_its_own(wrong, off):
+    names = "spots", "load-1", "load-2", "nodal-pressure", "strain-1", "strain-3"
+    names += "strain-below-spots", "residual-line"
+    fem = asperities(load=0.0) if "spots" in off else asperities()
+    found = {name: QUANTITIES[name].between(ASPERITIES, asperities(**wrong), fem) for name in names}
+    metrics = {name: "relative_l2" if np.ndim(each.value) else "absolute" for name, each in found.items()}
+    metrics |= dict.fromkeys(("load-1", "load-2"), "relative") | {"strain-below-spots": "at_most"}
+    errors = {name: error_of(metrics[name], each) for name, each in found.items()}
+    if "spots" in off:
+        missing = QUANTITIES["load-3"].between(ASPERITIES, fem, fem)
+        assert errors["spots"] == 1.0 and math.isnan(missing.value)
+        return
+    for name, error in errors.items():
+        if name in off and off[name] is None:
+            assert error > 1e-3
+        else:
+            assert error == pytest.approx(off.get(name, 0.0), rel=1e-6, abs=1e-12)
+
+
+def test_asperities_are_where_they_are_asked_for():
+    layer = {"law": "linear", "yield_stress": 2.2e9, "modulus": 20e9}
+    scene = with_keys(ASPERITIES, "body.plasticity", layer_thickness=0.9e-6)
+    scene = varied(scene, layer=layer, friction="map", on_counterbody=True, asperities=24)
+    assert scene.surface is None and scene.counterbody.surface.path.values.shape == (24, 24)
+    assert 0.9e-6 in scene.grid.depths and scene.friction.path.values.shape == (24, 24)
+    assert scene.grid.depths[-1] == 3.6e-6 and scene.body.plasticity.layer.law == "linear"
+
+
+def test_the_strain_on_either_side_of_a_jump_is_found_and_not_between_the_points_beside_it():
+    x, z, jump = np.linspace(-1.0, 1.0, 5), np.arange(0.05, 2.0, 0.1), 0.9
+    strain = np.where(z < jump, 1.0 + z, 0.5 - 0.1 * z)
+    depths = Depths(x, z, strain * np.ones((5, 1)), jump)
+    at_z = np.array([0.1, 0.84, 0.96, 1.5])
+    np.testing.assert_allclose(depths.below(0.0, at_z), [1.1, 1.84, 0.404, 0.35], rtol=1e-9)
+    compared = compared_depths(depths, 0.0, 0.5)
+    assert not ((compared > 0.85 + 1e-9) & (compared < 0.95 - 1e-9)).any() and compared[-1] > 1.5
+    even = Depths(x, z, (1.0 + z) * np.ones((5, 1)))
+    np.testing.assert_allclose(even.below(0.0, at_z), 1.0 + at_z, rtol=1e-9)
+
+
+# --- figures --------------------------------------------------------------------------------------------
+
+
+def test_figures_hold_their_numbers():
     kh = np.geomspace(1e-2, 1e2, 5)
     drawing = response_errors(dict.fromkeys(layered.NAMES.values(), (kh, kh * 1e-15)), {"all": 1e-9})
     assert len(drawing.data["kh"]) == 25 and max(drawing.data["error"]) == pytest.approx(1e-13, abs=0)
     h, e = np.geomspace(0.01, 2.0, 5), np.geomspace(0.1, 10.0, 4)
-    change = np.outer(h, np.log(e))
-    maps = change_maps([Map("one", h, e, change), Map("two", h, e, -change)], PaperCase(PAPER, {"1": 0.1}))
-    assert maps.data["change_percent"] == pytest.approx(
-        100 * np.concatenate([change.ravel(), -change.ravel()])
-    )
-    assert len(maps.figure.axes) == 3
+    change = pd.DataFrame(np.outer(h, np.log(e)), h, e)
+    maps = change_maps({"one": change, "two": -change}, (80 / 210, {"1": 0.1}))
+    expected = 100 * np.concatenate([change.to_numpy().ravel(), -change.to_numpy().ravel()])
+    assert maps.data["change_percent"] == pytest.approx(expected) and len(maps.figure.axes) == 3
 
 
 def test_planes_of_a_coated_body_leave_the_interface_blank():
-    x, z = np.linspace(-2.0, 2.0, 41), np.linspace(0.0, 2.4, 49)
-    gx, gz = (g.ravel() for g in np.meshgrid(x, z, indexing="ij"))
-    jump = np.where(gz < 0.5, 2.0, 1.0)
-    plane = {"state": ["peak"] * gx.size, "x_m": gx, "z_m": gz, "mises_Pa": jump}
-    mirrored = {name: np.asarray(values)[gx >= 0] for name, values in plane.items()}
+    def jump(x, z):
+        return np.where(z < 0.5, 2.0, 1.0)
+
+    own = plane(np.linspace(-2.0, 2.0, 41), np.linspace(0.0, 2.4, 49), jump)
+    half = {name: np.asarray(values)[own["x_m"] >= 0] for name, values in own.items()}
     peak = {"mises_max_depth_m": 0.3, "mises_max_Pa": 2.0}
-    drawing = film_planes(
-        Made(peak, {"plane": plane}),
-        Made(peak, {"plane": mirrored}, model=FEM),
-        (1.0, 1.0),
-        film=0.5,
-        element=0.3,
-    )
+    models = Made(peak, {"plane": own}), Made(peak, {"plane": half}, model=FEM)
+    drawing = film_planes(*models, (1.0, 1.0), film=0.5, element=0.3)
     assert not np.any(np.abs(np.asarray(drawing.data["z/a_0"]) - 0.5) < 0.25 * 0.3)
     assert np.nanmax(np.abs(drawing.data["SAM"] - drawing.data["FEM"])) < 1e-11
-
-
-def test_the_cases_are_known():
-    names = [
-        case.name
-        for case in film_map.CASES + film_limits.CASES + layered.CASES + coated_sphere.CASES + thin_film.CASES
-    ]
-    assert set(names) <= set(all_cases()) and len(names) == 7

@@ -1,21 +1,17 @@
 # SPDX-License-Identifier: MIT
 """A punch with a rounded edge in both models, against its closed form, and what each refuses of it."""
 
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
 import pytest
 from builders import MODULUS, PERFECT, STEEL, scene
-from made_results import red, with_quantities
 
 import fem_reference
 import sam
 from sam.grid.rounded import RoundedPunch as SamPunch
 from sam.planner.refusals import UnsupportedScene
-from verification.cases.hertz.rounded_punch import CASES, Punches
 from verification.compare.comparison import compare_scene
-from verification.reference.convergence import Order
 from verification.reference.rounded_punch import RoundedPunch
 from verification.runs import models
 
@@ -28,33 +24,6 @@ pressed = partial(scene, counterbody=PUNCH, loading={"force": FORCE}, fem={"cell
 @pytest.fixture(scope="module")
 def both():
     return {name: models.solve(pressed(), name) for name in (models.SAM, models.FEM)}
-
-
-class TestTheCase:
-    @pytest.fixture
-    def found(self, both):
-        results = {"SAM": both[models.SAM], "FEM": both[models.FEM]}
-        refined = {n: dict.fromkeys(("approach", "p-center", "p-max"), n**-2.0) for n in (20, 30, 50)}
-        return Punches(pressed(), EXACT, results, refined)
-
-    def test_holds(self, found):
-        assert red("rounded-punch", CASES[0].measure(found)) == set()
-
-    @pytest.mark.parametrize("name", ["approach_m", "p_max_Pa", "contact_radius_m", "p_center_Pa"])
-    def test_sees_a_wrong_quantity_of_either_model(self, found, name):
-        gate = {"approach_m": "approach", "p_max_Pa": "p-max", "contact_radius_m": "radius"}.get(
-            name, "p-center"
-        )
-        for model in ("SAM", "FEM"):
-            wrong = with_quantities(found.results[model], **{name: 1.013})
-            seen = replace(found, results={**found.results, model: wrong})
-            assert red("rounded-punch", CASES[0].measure(seen)) == {f"{model.lower()}-{gate}"}
-
-    def test_sees_a_lost_order(self, found):
-        slow = {n: dict.fromkeys(("approach", "p-center", "p-max"), n**-1.5) for n in found.refined}
-        seen = red("rounded-punch", CASES[0].measure(replace(found, refined=slow)))
-        assert seen == {f"sam-order-{name}" for name in ("approach", "p-center", "p-max")}
-        assert isinstance(found.order("approach"), Order)
 
 
 def test_models_agree_within_the_tolerances_of_compare(both):

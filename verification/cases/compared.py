@@ -1,55 +1,97 @@
 # SPDX-License-Identifier: MIT
-"""A case without code: one scene, solved by the models that its file names, each held against the
-reference, and SAM against finite elements. Everything that is shown follows from the vocabulary.
+"""A case without code: one scene or variants of one, solved by the models that its file names, each held
+against the reference, and SAM against finite elements; and the points of its sweeps. Everything that is shown
+follows from the vocabulary.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import reduce
 from typing import Any
 
-from sam.scene import Scene
+import numpy as np
+
+from sam.scene import Result, Scene
 from verification.cases.case import (
     Case,
     Context,
     Plot,
     SmallTable,
+    View,
     elastic_text,
     grid_text,
     mesh_text,
 )
-from verification.cases.recipes import beside, changed
+from verification.cases.recipes import RECIPES, beside, changed
 from verification.cases.sweep import MODELS, framed, points, ran, tables_of, taken
 from verification.compare.comparison import compare_scene
-from verification.judging import Measured
-from verification.quantities import QUANTITIES, Reference, Solved
+from verification.judging import Measured, error_of
+from verification.quantities import QUANTITIES, Quantity, Reference, Solved, of_passes
 from verification.references import REFERENCES
-from verification.rows import CaseFile
+from verification.rows import CaseFile, head_of, merged
 from verification.runs.models import SAM
 from verification.text.console import number
 
+COUNTED = {
+    "plastic_iterations": "plastic iterations",
+    "operator_applications": "applications of the residual-stress operator",
+    "newton_iterations": "Newton iterations",
+    "step_cuts": "load steps cut",
+    "setup_s": "set-up [s]",
+    "solve_s": "solution [s]",
+}
 
-def scene_of(context: Context, file: CaseFile) -> Scene:
-    """The scene of a case at the level of the context: keys set, then recipes applied."""
+
+def scene_of(context: Context, file: CaseFile, *changes: Mapping[str, Any]) -> Scene:
+    """The scene of a case at the level of the context, changed by a variant and a run of it: keys set, then
+    recipes applied in the order of RECIPES.
+    """
     quick = file.quick if context.level == "quick" else {}
+    said = reduce(merged, ({"set": file.set, "vary": file.vary}, quick, *changes))
     place = str(file.path.parent / file.scene) if file.scene.endswith(".toml") else file.scene
-    changes = file.set | quick.get("set", {}) | file.vary | quick.get("vary", {})
-    return changed(context.scene(place), changes, file)
+    order = list(RECIPES)
+    recipes = sorted(said["vary"], key=lambda name: order.index(name) if name in order else len(order))
+    return changed(context.scene(place), {**said["set"], **{n: said["vary"][n] for n in recipes}}, file)
 
 
 @dataclass(frozen=True)
 class Compared(Case):
-    """The case of a file with a scene."""
+    """The case of a file with a scene. What was solved: variant -> results, "" where there are none."""
 
-    def solve(self, context: Context) -> Solved:
-        scene = scene_of(context, self.file)
-        answer = beside(self.file, self.file.reference, REFERENCES) if self.file.reference else None
-        runs = {run.partition("-")[0]: MODELS[run] for run in self.file.models}
-        results = {run: context.solve(model, scene, run) for run, model in runs.items()}
-        frame = framed(context, self.file, scene) if self.file.sweeps else None
-        given = Reference(self.file.values, {}) if self.file.values else None
-        return Solved(scene, answer(scene) if answer else given, results, frame)
+    def solve(self, context: Context) -> dict[str, Solved]:
+        asked = {head_of(table, self.file.variants)[0] for table in self.file.claims} | {*self.file.also}
+        return {
+            name: self._solved(context, name, self.file.variants.get(name, {}))
+            for name in self.file.variants or [""]
+            if name in asked
+        }
+
+    def _solved(self, context: Context, name: str, variant: Mapping[str, Any]) -> Solved:
+        file, scene = self.file, scene_of(context, self.file, variant)
+        answer = beside(file, file.reference, REFERENCES) if file.reference else None
+        given, results = Reference(file.values, {}) if file.values else None, {}
+        models = {model.partition("-")[0]: MODELS[model] for model in file.models}
+        for run, model in models.items():
+            results[run] = context.solve(model, scene, "-".join(filter(None, (name, run))))
+        for run, said in ({} if "alone" in variant else file.runs | variant.get("runs", {})).items():
+            other, label = scene_of(context, file, variant, said), "-".join(filter(None, (name, run)))
+            results[run] = context.solve(MODELS[said["model"]], other, label, demand=False)
+        frame = framed(context, file, scene) if file.sweeps else None
+        found = Solved(scene, answer(scene) if answer else given, results, frame)
+        if file.against:
+            other = scene_of(context, file, {"vary": file.against})
+            others = {run: context.solve(model, other, f"{run}-other") for run, model in models.items()}
+            return replace(found, others=others)
+        if not file.allowance:
+            return found
+        coarse = scene_of(context, file, {"vary": {"resolution": file.coarser}})
+        cell, larger = (each.grid.extent[0] / each.grid.cells[0] for each in (scene, coarse))
+        ratios = larger / cell, scene.fem.cells_per_radius / coarse.fem.cells_per_radius
+        before = [context.solve(model, coarse, f"{run}-coarser") for run, model in models.items()]
+        return replace(found, coarser=tuple(zip(before, ratios, strict=True)))
 
     def ahead(self, context: Context) -> Iterator[Scene]:
         sweeps = [sweep for sweep in self.file.sweeps.values() if "sam" in sweep.models]
@@ -57,31 +99,40 @@ class Compared(Case):
         for sweep in sweeps:
             yield from (changed(base, changes, self.file) for _, changes in points(sweep, context.level))
 
-    def measure(self, found: Solved) -> dict[str, Measured]:
-        """The rows of the file: `sam/exact` and the like by the vocabulary, `sam/fem` by the rows of
-        `compare`, and what they take of the sweeps.
+    def measure(self, found: Mapping[str, Solved]) -> dict[str, Measured]:
+        """The rows of the file: `sam/exact` and the like by the vocabulary; `sam/fem`, and what is said of
+        both models, by what is between them, where only the difference is held by the rows of `compare`; and
+        what they take of the sweeps.
         """
-        values, difference = taken(self.file, found.frame) if self.file.sweeps else {}, None
+        values: dict[str, Measured] = {}
+        for solved in found.values():
+            values |= taken(self.file, solved.frame) if self.file.sweeps else {}
+        metrics = {row.id.partition(".")[2]: row.metric for row in self.file.rows}
         for table, names in self.file.claims.items():
-            model, against = table.split("/")
-            for name in names:
-                quantity = QUANTITIES[name]
-                if against != "fem":
-                    measured = quantity.against(name, found.results[model], found.reference)
+            variant, model, against = head_of(table, self.file.variants)
+            solved, lead = found[variant], f"{variant}-" * bool(variant)
+            for name, of in names.items():
+                quantity = QUANTITIES[of]
+                if model and against != "fem":
+                    result = solved.results[model]
+                    if quantity.of:
+                        measured = quantity.against(of, result, solved.reference)
+                    else:
+                        measured = quantity.between(solved.scene, result, solved.others[model])
                     alone = against == "bound"
-                    values[f"{model}-{name}"] = Measured(measured.value) if alone else measured
-                elif quantity.between:
-                    values[name] = quantity.between(found.scene, *found.results.values())
+                    values[f"{lead}{model}-{name}"] = Measured(measured.value) if alone else measured
+                elif name in self.file.allowance:
+                    *_, apart, allowed = refinement(solved, quantity)
+                    values[lead + name] = Measured(apart / allowed)
                 else:
-                    difference = difference or rows_of_compare(found)
-                    values[name] = Measured(difference[quantity.row])
+                    values[lead + name] = between(quantity, solved, metrics[lead + name])
         return values
 
-    def setup(self, found: Solved) -> Iterator[tuple[str, str]]:
-        scene, other, loading = found.scene, found.scene.counterbody, found.scene.loading
-        a = found.reference.units.get("a", 0.0) if found.reference else 0.0
-        if not a and found.results:
-            a = found.results["sam"].quantities["contact_radius_m"]
+    def setup(self, found: Mapping[str, Solved]) -> Iterator[tuple[str, str]]:
+        first = next(iter(found.values()))
+        scene, other, loading, units = first.scene, first.scene.counterbody, first.scene.loading, {}
+        units = first.reference.units if first.reference else {}
+        a = units.get("a") or first.results["sam"].quantities["contact_radius_m"] or math.nan
         plasticity = scene.body.plasticity
         law = (
             f"; {plasticity.law}, {plasticity.curve().stress(0.0) / 1e6:.1f} MPa at first yield"
@@ -89,42 +140,182 @@ class Compared(Case):
             else ""
         )
         yield "Half-space", elastic_text(scene.body) + law
-        sizes = ("radius", "radius_x", "radius_y", "flat_radius")
-        size = ", ".join(f"{n.replace('_', ' ')} {v * 1e6:g} µm" for n in sizes if (v := getattr(other, n)))
-        yield other.shape.capitalize(), f"{size}, {elastic_text(other) if other.elastic else 'rigid'}"
-        unloaded = ", then unloaded" * loading.unload
-        yield "Force", f"{loading.force:.5g} N in {loading.steps} equal steps{unloaded}"
-        yield from found.reference.facts if found.reference else ()
-        for run, result in found.results.items():
+        if film := scene.body.coating:
+            yield "Film", f"{elastic_text(film)}, {1e9 * film.thickness:.4g} nm"
+        if other:
+            sizes = ("radius", "radius_x", "radius_y", "flat_radius")
+            size = "".join(
+                f"{n.replace('_', ' ')} {v * 1e6:g} µm, " for n in sizes if (v := getattr(other, n))
+            )
+            yield other.shape.capitalize(), f"{size}{elastic_text(other) if other.elastic else 'rigid'}"
+        again = f", {loading.cycles} times" * (loading.cycles > 1)
+        load = f"{loading.force:.5g} N" if other else f"given, {loading.p0 / 1e9:.4f} GPa in the centre"
+        steps = f"{load} in {loading.steps} equal steps{', then unloaded' * loading.unload}{again}"
+        yield "Force" if other else "Pressure", steps
+        if loading.path:
+            ends = " a to ".join(f"{end[0] / a:g}" for end in (loading.path.start, loading.path.end))
+            yield "Way", f"from {ends} a along x in {loading.path.steps} steps"
+        if self.file.variants:
+            yield "Solved", "; ".join(self.file.variants[name]["words"] for name in found)
+        if any(each.scene.friction for each in found.values()):
+            mu = f"μ = {scene.coefficient:g}; " if scene.friction and scene.friction.law == "constant" else ""
+            yield "Traction", f"{mu}full slip along +x on the body in every step"
+        yield from first.reference.facts if first.reference else ()
+        for run, result in [*first.results.items()][: len(self.file.models) or 1]:
             yield run.upper(), grid_text(result, a) if result.model == SAM else mesh_text(result)
-        yield from ran(self.file, found.frame) if self.file.sweeps else ()
+        yield from ran(self.file, first.frame) if self.file.sweeps else ()
 
-    def tables(self, found: Solved) -> Iterator[SmallTable]:
-        yield from tables_of(self.file, found.frame) if self.file.sweeps else ()
-        if set(found.results) != {"sam", "fem"}:
+    def tables(self, found: Mapping[str, Solved]) -> Iterator[SmallTable]:
+        if self.file.variants:
+            also = {name: found[name] for name in self.file.also}
+            yield _results("Results", self.file, {name: found[name] for name in found if name not in also})
+            for name, solved in found.items():
+                yield from _passes(self.file.variants[name]["words"], solved.results)
+            if also:
+                yield _results("Refinement", self.file, also)
+                yield _differences(self.file, found)
             return
-        rows = []
-        for quantity in QUANTITIES.values():
-            values = [each.quantities.get(quantity.row) for each in found.results.values()]
-            if all(values):
-                off = f"{1e2 * (values[0] / values[1] - 1.0):+.2f} %"
-                words = f"{quantity.words} [{quantity.unit}]" if quantity.unit else quantity.words
-                rows.append((words, *(number(value, 5) for value in values), off))
+        solved = found[""]
+        yield from tables_of(self.file, solved.frame) if self.file.sweeps else ()
+        if set(solved.results) != {"sam", "fem"}:
+            return
+        rows = _side_by_side(*solved.results.values())
         yield SmallTable("Results", ("quantity", "SAM", "FEM", "difference"), rows)
+        costs = [each.cost for each in solved.results.values()]
+        rows = [(words, *(number(cost.get(n), 3) for cost in costs)) for n, words in COUNTED.items()]
+        yield SmallTable("Cost", ("counter", "SAM", "FEM"), rows)
+        if self.file.allowance:
+            named = [QUANTITIES[name] for name in self.file.allowance]
+            rows = [(q.words, *(f"{1e2 * share:.2f} %" for share in refinement(solved, q))) for q in named]
+            columns = "quantity", "uncertainty of SAM", "of FEM", "difference", "largest of 1 % and their sum"
+            yield SmallTable("Refinement uncertainties", columns, rows)
 
-    def figures(self, found: Solved) -> Iterator[Plot]:
-        from verification.cases.kinds import KINDS, SWEPT  # noqa: PLC0415 - loads matplotlib
+    def figures(self, found: Mapping[str, Solved]) -> Iterator[Plot]:
+        from verification.cases.kinds import KINDS, OVER_VARIANTS, SWEPT  # noqa: PLC0415 - loads matplotlib
 
+        words = {name: each["words"] for name, each in self.file.variants.items()}
+        shown = {name: each for name, each in found.items() if name not in self.file.also}
         for kind in self.file.figures:
-            name, *words = kind.split()
-            draw = beside(self.file, name, KINDS | SWEPT)
-            yield draw(self.file, found.frame, *words) if name not in KINDS else draw(found)
+            if kind in OVER_VARIANTS:
+                yield from OVER_VARIANTS[kind](shown, words)
+                continue
+            first, *more = kind.split()
+            draw = beside(self.file, first, KINDS | SWEPT)
+            for name, solved in shown.items():
+                plot = draw(solved) if first in KINDS else draw(self.file, solved.frame, *more)
+                if name:
+                    plot = replace(plot, name=f"{plot.name}-{name}", title=f"{plot.title}, {words[name]}")
+                yield plot
 
-    def notes(self, found: Solved) -> tuple[str, ...]:
+    def notes(self, found: Mapping[str, Solved]) -> tuple[str, ...]:
         return self.file.notes
 
+    def views(self, found: Mapping[str, Solved]) -> Iterator[View]:
+        from verification.cases.kinds import VIEWS  # noqa: PLC0415 - loads matplotlib
 
-def rows_of_compare(found: Solved) -> dict[str, Any]:
-    """Name of a row of `compare` -> the difference of both models."""
-    rows = compare_scene(found.scene, *found.results.values())
-    return {row.quantity: row.error for row in rows}
+        yield from (VIEWS[name] for name in self.file.views)
+
+
+def refinement(found: Solved, quantity: Quantity) -> tuple[float, float, float, float]:
+    """Refinement uncertainties of SAM and FEM, their difference, and what is allowed: 1 %, or both
+    uncertainties where that is more.
+
+    Uncertainty: change from a coarser grid over (ratio - 1), the rest of a first-order error (Roache,
+    Verification and Validation in Computational Science and Engineering, 1998, Eq. 5.10.5.1 without its
+    factor of safety). Fields in the L2 norm, over that of FEM.
+    """
+    sam, fem = found.results.values()
+    both = quantity.between(found.scene, sam, fem)
+    norm = np.linalg.norm
+    rests = []
+    for now, (result, ratio) in zip((both.value, both.expected), found.coarser, strict=True):
+        before = quantity.between(found.scene, sam, result).expected
+        rests.append(
+            float(norm(now - before) / norm(both.expected if np.ndim(now) else before)) / (ratio - 1.0)
+        )
+    apart = float(norm(both.value - both.expected) / norm(both.expected))
+    return *rests, apart, max(0.01, sum(rests))
+
+
+def between(quantity: Quantity, solved: Solved, metric: str) -> Measured:
+    """A quantity of all runs of a scene, or of SAM against finite elements."""
+    if quantity.whole:
+        measured = quantity.whole(solved)
+        return measured if isinstance(measured, Measured) else Measured(measured)
+    pair = solved.results["sam"], solved.results["fem"]
+    by_row = quantity.row and metric == "at_most"
+    if quantity.between and not by_row:
+        return quantity.between(solved.scene, *pair)
+    rows = {row.quantity: row.error for row in compare_scene(solved.scene, *pair)}
+    return Measured(rows[quantity.row])
+
+
+def _results(caption: str, file: CaseFile, found: Mapping[str, Solved]) -> SmallTable:
+    """The quantities of every run."""
+    runs = [(name, run, each) for name, solved in found.items() for run, each in solved.results.items()]
+    shown = [
+        q for q in QUANTITIES.values() if any(each.quantities.get(q.row) is not None for *_, each in runs)
+    ]
+    words = {name: file.variants[name]["words"].replace("mu = ", "μ = ").rpartition(" = ") for name in found}
+    (head,) = {head for head, *_ in words.values()} if len({h for h, *_ in words.values()}) == 1 else ("",)
+    columns = (f"{q.words} [{q.unit}]" if q.unit else q.words for q in shown)
+    rows = [
+        (
+            words[name][2],
+            run.upper() if run in ("sam", "fem") else f"SAM, {run}",
+            *(number(each.quantities.get(q.row), 5) for q in shown),
+        )
+        for name, run, each in runs
+    ]
+    return SmallTable(caption, (head or "variant", "model", *columns), rows)
+
+
+def _passes(words: str, results: Mapping[str, Result]) -> Iterator[SmallTable]:
+    """What each pass of a counter-body that moves does, in every run."""
+    moving = {run: each for run, each in results.items() if "passes" in each.tables}
+    for name, head, scale in (
+        ("strain", "Largest strain that a pass adds [1e-3]", 1e3),
+        ("energy", "Energy that a pass dissipates [nJ]", 1e9),
+    ):
+        rows = [
+            (
+                run,
+                *(number(scale * v) for v in of_passes(each, name)),
+                str((each.verdict or {}).get("class", "")),
+            )
+            for run, each in moving.items()
+        ]
+        if rows:
+            passes = (f"pass {k + 1}" for k in range(len(rows[0]) - 2))
+            yield SmallTable(f"{head}, {words}", ("run", *passes, "verdict"), rows)
+
+
+def _differences(file: CaseFile, found: Mapping[str, Solved]) -> SmallTable:
+    """What rows hold of one variant, in their metric, of every one."""
+    metrics, of = {}, {row.id.partition(".")[2]: row.metric for row in file.rows}
+    for table, names in file.claims.items():
+        variant, model, against = head_of(table, file.variants)
+        if against == "fem" or not model:
+            metrics |= {name: of[f"{variant}-{name}"] for name in names}
+
+    def error(name: str, solved: Solved) -> str:
+        try:
+            return number(error_of(metrics[name], between(QUANTITIES[name], solved, metrics[name])), 3)
+        except (KeyError, ValueError):  # nothing of it in this variant
+            return number(None)
+
+    rows = [
+        (file.variants[name]["words"], *(error(q, solved) for q in metrics)) for name, solved in found.items()
+    ]
+    return SmallTable("What rows hold, of every variant", ("", *(QUANTITIES[q].words for q in metrics)), rows)
+
+
+def _side_by_side(sam: Result, fem: Result) -> list[tuple[str, ...]]:
+    rows = []
+    for quantity in QUANTITIES.values():
+        values = [each.quantities.get(quantity.row) for each in (sam, fem)]
+        if all(values):
+            off = f"{1e2 * (values[0] / values[1] - 1.0):+.2f} %"
+            words = f"{quantity.words} [{quantity.unit}]" if quantity.unit else quantity.words
+            rows.append((words, *(number(value, 5) for value in values), off))
+    return rows

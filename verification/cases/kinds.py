@@ -5,24 +5,30 @@ both models (`verification.quantities.Solved`). Titles and captions follow from 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import cycle
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from verification.cases.case import Plot
+from verification.cases.case import Plot, View
 from verification.cases.sweep import BOTH, fitted, spelt, words_of
-from verification.figures.friction import CYCLES, Curve, curves
+from verification.compare.rough_measures import Depths, PatchPressure, residual_line, spots
+from verification.compare.sliding_measures import SHALLOWEST
+from verification.figures import coated, rough
+from verification.figures.film import sliding_sections
+from verification.figures.friction import CYCLES, LOOKS, Curve, compared_planes, curves, profile_of
 from verification.figures.maps import FieldPair, maps_over_axes, pressure_maps
-from verification.figures.plastic import axis_profiles, compared_peeq, residual_surface
+from verification.figures.moving import grooves, new_strains
+from verification.figures.plastic import PERCENT, axis_profiles, compared_peeq, residual_surface
 from verification.figures.profiles import Profile, convergence, profiles
 from verification.figures.refinement import refinement
 from verification.figures.style import Drawing
 from verification.figures.views import SURFACE_AXES, VON_MISES, compared_mises, compared_pressure
-from verification.quantities import Solved
+from verification.quantities import OF_TRACKS, Solved, ladders, of_passes, planes, refined, strain_below
 from verification.reference.convergence import extrapolate
-from verification.references import contact_of
+from verification.references import REFERENCES, coated_contact, contact_of
 from verification.rows import CaseFile
 from verification.runs.sampling import peak, pressure_map
 
@@ -47,8 +53,12 @@ def _maps(what: str, name: str, draw: Callable[[Solved], Drawing]) -> Callable[[
     return lambda found: Plot(draw(found), name, what[0].upper() + what[1:], alt, alt)
 
 
-def _along(*columns: tuple[str, str], name: str, title: str, until: float) -> Callable[[Solved], Plot]:
-    """Columns of tables on the curves of the reference to `until` times a, with the errors underneath."""
+def _along(
+    *columns: tuple[str, str], name: str, title: str, until: float, pressed: float = np.inf
+) -> Callable[[Solved], Plot]:
+    """Columns of tables on the curves of the reference to `until` times a, the pressure to `pressed` or to
+    where it is compared, with the errors underneath.
+    """
 
     def plot(found: Solved) -> Plot:
         units, curves = found.reference.units, found.reference.curves
@@ -61,7 +71,8 @@ def _along(*columns: tuple[str, str], name: str, title: str, until: float) -> Ca
                 run.upper(): peak(each.tables[table], place, column) for run, each in found.results.items()
             }
             series = {run: (at / a, values / units[unit]) for run, (at, values) in read.items()}
-            end = min(until, found.reference.inside / a) if column == "p_Pa" else until
+            compared = min(until, found.reference.inside / a)
+            end = until if column != "p_Pa" else compared if pressed == np.inf else pressed
 
             def exact(at: np.ndarray) -> np.ndarray:
                 return curves[table, column](at * a) / units[unit]
@@ -70,7 +81,9 @@ def _along(*columns: tuple[str, str], name: str, title: str, until: float) -> Ca
 
         names = ", ".join(COLUMNS[each][0].lower() for each in columns)
         words = f"Curves of {names} of the models on those of the reference, with the errors underneath."
-        return Plot(profiles([panel(*each) for each in columns]), name, title, words, words)
+        film = found.scene.body.coating if columns[0][0] == "axis" else None
+        drawn = profiles([panel(*each) for each in columns], interface=film.thickness / a if film else None)
+        return Plot(drawn, name, title, words, words)
 
     return plot
 
@@ -183,7 +196,169 @@ def _pressure_maps(found: Solved) -> Drawing:
 
 
 def _mises_maps(found: Solved) -> Drawing:
-    return compared_mises(*found.results.values(), found.reference.units["a"], found.reference.units["p0"])
+    units = found.reference.units["a"], found.reference.units["p0"]
+    if not (film := found.scene.body.coating):
+        return compared_mises(*found.results.values(), *units)
+    element = coated_contact(found.scene).bare.contact_radius / found.scene.fem.cells_per_radius
+    return coated.film_planes(*found.results.values(), units, film=film.thickness, element=element)
+
+
+def _spot_pressures(found: Solved) -> Plot:
+    own, fem = (PatchPressure.of(each.tables) for each in found.results.values())
+    words = "Maps of the pressure by SAM and FEM at peak load, and their difference."
+    return Plot(
+        rough.pressures(own.x, own.y, {"SAM": own.p, "FEM": fem.p}, reach=3.2e-6),
+        "pressure",
+        "Pressure of the spots",
+        words,
+        words,
+    )
+
+
+def _spot_strains(found: Solved) -> Plot:
+    """Over depth below the centre of each spot: SAM as a line, FEM at its points."""
+    sam, fem = found.results.values()
+    both, panels = (Depths.of(sam.tables), Depths.of(fem.tables)), {}
+    depths = np.linspace(both[0].z[0], 2e-6, 100), both[1].z[both[1].z <= 2e-6]
+    for spot in spots(*(PatchPressure.of(each.tables) for each in (sam, fem))):
+        first = strain_below(found.scene, sam, fem, spot)[0][0]
+        curves_of = [(z, each.below(spot.x, z)) for z, each in zip(depths, both, strict=True)]
+        panels[f"x = {spot.x * 1e6:.2f} µm"] = (*curves_of, first)
+    words = "Plastic strain over depth below each spot, in y = 0 at peak load: SAM on the points of FEM."
+    caption = f"{words} Grey: too near the surface to be compared."
+    return Plot(rough.below_spots(panels), "strain", "Plastic strain below the spots", words, caption)
+
+
+def _residual_line(found: Solved) -> Plot:
+    lines = (residual_line(each.tables) for each in found.results.values())
+    side = found.scene.patch_surface.path.extent[0]
+    near = ((x[use := np.abs(x) <= side / 2], uz[use]) for x, uz in lines)
+    words = "Change of the heights along y = 0 after unloading, by SAM and FEM."
+    return Plot(rough.residual(*near), "residual", "Residual heights", words, words)
+
+
+def _pressure_line(found: Solved) -> Plot:
+    hertz, series = contact_of(found.scene), {}
+    for run, result in found.results.items():
+        x, p = peak(result.tables["line"], "x_m", "p_Pa")
+        near = np.abs(x) <= 1.4 * hertz.contact_radius
+        series[run.upper()] = Curve(x[near] / hertz.contact_radius, p[near] / hertz.peak_pressure)
+    words = "Pressure on y = 0 of SAM and FEM. The traction acts on the body along +x."
+    drawn = curves({"": series}, "$x/a_0$", "$p/p_0$")
+    return Plot(drawn, "pressure", "Pressure along the sliding direction", words, words)
+
+
+def _mises_below_film(found: Solved) -> Plot:
+    hertz, thickness = contact_of(found.scene), found.scene.body.coating.thickness
+    units = hertz.contact_radius, hertz.peak_pressure
+    words = "Three maps of the von Mises stress of the body below its film: SAM, FEM and their difference."
+    caption = (
+        "From the lower face of the film on; the cross marks the largest value. FEM is linear between its "
+        "lower face and the centres of the elements below."
+    )
+    drawn = sliding_sections(*found.results.values(), units, thickness)
+    return Plot(drawn, "mises", "Von Mises stress in the plane y = 0", words, caption)
+
+
+TOO_NEAR = "too near the surface to be compared, where the strain depends on the mesh."
+
+
+def _strain_planes(found: Solved) -> Plot:
+    """Plastic strain in y = 0 of SAM and the three-dimensional elements, to the depth that is compared."""
+    both = planes(found)
+    a, fem = found.reference.units["a"], found.results["fem"]
+    edge = fem.quantities["contact_radius_m"] / a if found.scene.counterbody else 1.0
+    drawing = compared_planes(both["sam"], both["fem"], ("SAM", "FEM"), edge, strip=SHALLOWEST)
+    alt = "Three maps of the plastic strain over x/a and z/a: SAM, FEM and their difference."
+    caption = f"{alt} Iso-lines in %. The body is pulled along +x. Hatched: {TOO_NEAR}"
+    return Plot(drawing, "plane", "Plastic strain in the plane y = 0", alt, caption)
+
+
+DEEP = 1.4  # radii to which profiles are drawn
+
+
+def _strain_profiles(found: Mapping[str, Solved], words: Mapping[str, str]) -> Iterator[Plot]:
+    """Plastic strain over depth of every run, a panel a variant."""
+    fields = {name: planes(each) for name, each in found.items()}
+    for name, place in (("axis", "on the axis"), ("column", "where it is largest")):
+        panels = {}
+        for variant, runs in fields.items():
+            x = runs["fem"].place_of_maximum() if name == "column" else 0.0
+            order = ("fem", *(run for run in runs if run != "fem"))
+            panels[f"{words[variant]}, x = {x:.2f} a"] = {
+                run.upper() if run in ("sam", "fem") else f"SAM, {run}": profile_of(runs[run], x, DEEP)
+                for run in order
+                if run in ("sam", "fem") or f"SAM, {run}" in LOOKS
+            }
+        drawing = curves(panels, "$z/a$", "plastic strain [%]", (0.0, SHALLOWEST))
+        alt = "Curves of the plastic strain over depth: FEM, SAM on it, other forms of SAM beside it."
+        caption = f"In y = 0 at the peak. Grey: {TOO_NEAR}"
+        yield Plot(drawing, name, f"Plastic strain over depth {place}", alt, caption)
+
+
+def _strain_of_cycles(found: Mapping[str, Solved], words: Mapping[str, str]) -> Iterator[Plot]:
+    """The largest plastic strain over the cycles, of the runs with most of them, a panel a variant."""
+    panels = {}
+    for name, solved in found.items():
+        strains = {run: np.asarray(each.tables["cycles"]["peeq_max"]) for run, each in solved.results.items()}
+        most = max(map(len, strains.values()))
+        panels[words[name]] = {
+            run: Curve(np.arange(1, most + 1), PERCENT * each)
+            for run, each in strains.items()
+            if len(each) == most
+        }
+    series = dict.fromkeys(run for panel in panels.values() for run in panel)
+    looks = dict(zip(series, CYCLES, strict=False))
+    alt = "Curves of the largest plastic strain over the cycles of every run."
+    drawing = curves(panels, "cycle", "largest plastic strain [%]", looks=looks, count=True)
+    yield Plot(drawing, "strain", "Plastic strain over the cycles", alt, alt)
+
+
+def _grooves(found: Solved) -> Plot:
+    """The groove along the track of the finest runs that are compared."""
+    a, path = found.reference.units["a"], found.scene.loading.path
+    length, lines = (path.end[0] - path.start[0]) / a, {}
+    for runs in ladders(found):
+        n = max(runs)
+        x, depth = (np.asarray(runs[n].tables["track"][column]) / a for column in ("x_m", "uz_m"))
+        near = np.abs(x) <= length / 2 + 2.0
+        lines[f"{runs[n].model}, {n} in a"] = x[near] + length / 2, depth[near]
+    words = "Depth of the unloaded surface over the distance from the start, both models; a: radius of Hertz."
+    return Plot(grooves(lines, length), "groove", "Groove of one pass in both models", words, words)
+
+
+def _cost_of_errors(found: Solved) -> Plot:
+    """The largest error of each run against the limit of the two finest of its model, over its time."""
+    series = {}
+    for run in ("sam", "fem"):
+        named = {int(name.rpartition("-")[2]): r for name, r in found.results.items() if f"{run}-" in name}
+        limits = [(of, refined(named, of)) for of in OF_TRACKS.values()]
+        error = [100 * max(abs(of(named[n]) / limit - 1) for of, limit in limits) for n in sorted(named)]
+        series[run.upper()] = Curve(
+            np.array([named[n].cost["cpu_s"] for n in sorted(named)]), np.array(error)
+        )
+    looks = dict(zip(series, CYCLES, strict=False))
+    drawing = curves(
+        {"Cost of an error": series}, "processor time [s]", "error [%]", looks=looks, logarithmic=True
+    )
+    drawing.figure.axes[0].set_xscale("log")
+    words = (
+        "The largest error of groove, depth and strain over the processor time, against the limit of the two "
+        "finest runs of each model in second order; in the same steps along the path."
+    )
+    return Plot(drawing, "cost", "Error and processor time", words, words)
+
+
+def _new_strains(found: Mapping[str, Solved], words: Mapping[str, str]) -> Iterator[Plot]:
+    """What each pass adds, a figure a variant."""
+    for variant, solved in found.items():
+        runs = {name: of_passes(each, "strain") for name, each in solved.results.items()}
+        floors = sorted({float(each.verdict["floor"]) for each in solved.results.values()})
+        text = (
+            f"Largest plastic strain that a pass adds to a cell or element of the steady part of the track, "
+            f"{words[variant]}; below its floor the verdict counts none."
+        )
+        yield Plot(new_strains(runs, floors), f"new-strain-{variant}", "What each pass adds", text, text)
 
 
 _PUNCH = (("line", "p_Pa"), ("line", "uz_m"), ("axis", "mises_Pa"))
@@ -206,11 +381,26 @@ KINDS: Mapping[str, Callable[[Solved], Plot]] = {
     "punch": _along(
         *_PUNCH, name="profiles", title="Pressure, surface and stress under the centre", until=1.5
     ),
+    "rounded-punch": _along(
+        *_PUNCH,
+        name="profiles",
+        title="Pressure, surface and stress under the centre",
+        until=1.5,
+        pressed=1.2,
+    ),
     "loading": _loading,
     "exact-maps": _exact_maps,
     "across": _across,
     "plastic-axis": _plastic_axis,
     "residual-surface": _residual_surface,
+    "strain-planes": _strain_planes,
+    "grooves": _grooves,
+    "cost-of-errors": _cost_of_errors,
+    "spot-pressures": _spot_pressures,
+    "spot-strains": _spot_strains,
+    "residual-line": _residual_line,
+    "pressure-line": _pressure_line,
+    "mises-below-film": _mises_below_film,
 }
 """Name in a case file -> how it is drawn."""
 
@@ -283,10 +473,62 @@ def _maps(file: CaseFile, frame: DataFrame, z: str, *words: str) -> Plot:
     return Plot(maps_over_axes(panels, (x, y), said), z, f"{said[0].upper()}{said[1:]}", text, text)
 
 
+def _at(file: CaseFile, frame: DataFrame, kind: str, *where: str) -> Plot:
+    """`at KIND AXIS VALUE AXIS VALUE`: a figure of one point."""
+    at = dict(zip(where[::2], where[1::2], strict=True))
+    rows = frame[frame["model"] != BOTH]
+    for axis, value in at.items():
+        rows = rows[[spelt(each) == value for each in rows[axis]]]
+    scene, models = rows["scene"].iloc[0], (model.partition("-")[0] for model in rows["model"])
+    reference = REFERENCES[file.reference](scene) if file.reference else None
+    plot = KINDS[kind](Solved(scene, reference, dict(zip(models, rows["result"], strict=True))))
+    name = "-".join((plot.name, *at.values())).replace(".", "-")
+    said = ", ".join(f"{axis.replace('-', ' ')} {value.replace('-', ', ')}" for axis, value in at.items())
+    return replace(plot, name=name, title=f"{plot.title}, {said}")
+
+
+def _film_pressures(file: CaseFile, frame: DataFrame) -> Plot:
+    """Pressure over the radius, a panel for each modulus and counter-body, with that of Hertz."""
+    panels: dict[str, dict] = {}
+    for _, rows in frame.groupby(frame["film"].map(spelt), sort=False):
+        (ratio, thickness, counterbody), scene = rows["film"].iloc[0], rows["scene"].iloc[0]
+        contact = coated_contact(scene)
+        a, p0 = contact.bare.contact_radius, contact.bare.peak_pressure
+        x = contact.contact_radius * np.sin(np.linspace(0.0, np.pi / 2, 201))
+        series = {"reference": (x / a, contact.pressure(x) / p0)}
+        for model, result in zip(rows["model"], rows["result"], strict=True):
+            x, p = peak(result.tables["line"], "x_m", "p_Pa")
+            use = np.flatnonzero((x >= 0.0) & (p > 0.0))[::4]
+            series[model.upper()] = x[use] / a, p[use] / p0
+        panel = panels.setdefault(f"$E_1/E_2$ = {ratio:.3g}, {counterbody}", {})
+        panel[f"$h/a_0$ = {thickness:g}"] = series
+    words = "Pressure over the radius for each film: lines of the spectral solution, points of SAM and FEM."
+    caption = f"{words} Dotted: Hertz, without film. Every fourth cell along y = 0 and every fourth node."
+    title = "Contact pressure with and without film"
+    return Plot(coated.film_pressures(panels), "pressure", title, words, caption)
+
+
 SWEPT: Mapping[str, Callable[..., Plot]] = {
     "orders": _orders,
     "limits": _limits,
     "lines": _lines,
     "maps": _maps,
+    "at": _at,
+    "film-pressures": _film_pressures,
 }
 """First word of a figure in a case file -> how the frame of its sweeps is drawn; the others are handed on."""
+VIEWS: Mapping[str, View] = {
+    "plastic-zone": View(
+        *("sam", "plastic-zone", "zone", "The plastic zone in space"),
+        "The plastic zone of SAM below the sphere, cut open at y = 0: a bowl that is strained most below the "
+        "centre of the contact.",
+        "Plastic strain of SAM at the peak load on the cut and, where the zone reaches it, on the surface.",
+    ),
+}
+"""Name in a case file -> the picture in space."""
+OVER_VARIANTS: Mapping[str, Callable[[Mapping[str, Solved], Mapping[str, str]], Iterator[Plot]]] = {
+    "strain-profiles": _strain_profiles,
+    "strain-of-cycles": _strain_of_cycles,
+    "new-strains": _new_strains,
+}
+"""The same of all variants of a scene, with the words of each."""

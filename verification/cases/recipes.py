@@ -8,20 +8,23 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from sam.scene import Coating, CounterBody, Scene
+from sam.scene import Coating, CounterBody, CounterSurface, Friction, Grid, Loading, Path, Plasticity, Scene
 from verification.cases.case import with_body, with_grid, with_keys, with_loading, with_mesh
 from verification.reference.coated_sphere import CoatedContact
-from verification.reference.hertz import CircularContact
-from verification.references import coated_contact, contact_of
+from verification.reference.hertz import CircularContact, effective_modulus
+from verification.references import coated_contact, contact_of, rounded_contact
 from verification.rows import CaseFile
+from verification.scenes import asperities
 
 REACH = 2.2  # half of the extent: the plastic zone reaches 1.6 a in the surface at 6.2 times the yield stress
 EVEN, DEEPEST = 1.0, 2.2  # layers are even to 1 a; at "even depth" 2.2 they have reached 3.3 a
 GROWTH = 0.75
+FILM_SIDE = 1 - 1e-6  # thicknesses: the side of the interface on which the stresses are those of the film
 ROOM = 1.06  # half a side of the grid over the larger of the contact radii with and without film
 
 
@@ -64,6 +67,12 @@ def layer_faces(cells: int) -> np.ndarray:
     return even + GROWTH * np.maximum(even - EVEN, 0.0) ** 2
 
 
+def with_layer(scene: Scene, law: Mapping[str, str | float]) -> Scene:
+    """The scene with another law of its layer."""
+    content = scene.body.plasticity.model_dump() | {"layer": dict(law)}
+    return with_body(scene, plasticity=Plasticity(**content))
+
+
 def cells_a_side(scene: Scene, n: int) -> Scene:
     """A grid of n by n cells over the extent of the scene."""
     return with_grid(scene, cells=(n, n))
@@ -73,6 +82,13 @@ def depths_over_radius(scene: Scene, depths: Sequence[float]) -> Scene:
     """Output depths, given over the radius of the elastic contact."""
     a = contact_of(scene).contact_radius
     return with_grid(scene, depths=tuple(a * z for z in depths))
+
+
+def grid_over_rounded_punch(scene: Scene, grid: tuple[int, float]) -> Scene:
+    """n by n cells over so many radii of the contact of a punch with a rounded edge; the depths of SAM."""
+    cells, sides = grid
+    side = sides * rounded_contact(scene).contact_radius
+    return scene.model_copy(update={"grid": Grid(cells=(cells, cells), extent=(side, side))})
 
 
 COUNTERBODIES = {"rigid": {}, "steel": {"young": 210e9, "poisson": 0.3}}
@@ -103,16 +119,190 @@ def cells_in_coated_contact(scene: Scene, cells: int) -> Scene:
     return with_grid(resolved_grid(scene, contact, cells), depths=(0.0, h, h + 0.5 * contact.contact_radius))
 
 
+BOX = 6.0  # elastic contact radii: the far field of the point forces is prescribed there
+
+
+def sliding_scene(base: Scene, ratio: float, friction: float, resolution: Resolution) -> Scene:
+    """Loading to p0 = ratio times the initial yield stress with friction, on these grids."""
+    scene = resolved_at(with_loading(at_ratio(base, ratio), unload=False), resolution)
+    scene = with_keys(scene, "fem", box=BOX)
+    return rubbed(scene, {"coefficient": friction}) if friction else scene
+
+
+def rubbed(scene: Scene, friction: Mapping[str, Any] | float | str) -> Scene:
+    """The scene with friction: its keys, its coefficient, or "map": high on the asperity in the middle."""
+    if friction == "map":
+        law = Friction(law="map", path=asperities.friction_map(asperities.CELLS))
+    else:
+        law = Friction(**friction) if isinstance(friction, Mapping) else Friction(coefficient=friction)
+    return scene.model_copy(update={"friction": law})
+
+
+def given_tractions(scene: Scene, friction: float) -> Scene:
+    """The scene with the Hertz pressure of its elastic contact in place of the counter-body, and traction."""
+    elastic, steps = contact_of(scene), scene.loading.steps
+    size = {"p0": elastic.peak_pressure, "radius": elastic.contact_radius}
+    loading = Loading(prescribed="hertz", **size, steps=steps)
+    changed = {"counterbody": None, "loading": loading, "friction": Friction(coefficient=friction)}
+    return scene.model_copy(update=changed)
+
+
+def even_depths(scene: Scene, deepest: float, count: int = 81) -> Scene:
+    """Output depths from 0 to `deepest` radii of a given pressure."""
+    return with_grid(
+        scene, depths=tuple(float(z) * scene.loading.radius for z in np.linspace(0, deepest, count))
+    )
+
+
+WAY, PASS_STEPS, PASS_CELLS = 2.0, 20, 6  # half of the way in radii, its steps, cells in the radius
+BESIDE = (2.0, 1.8, 2.0)  # grid beyond the way of the centre along x, to its sides and in depth, in radii
+
+
+def travelling(scene: Scene, keys: Mapping[str, float]) -> Scene:
+    """A given Hertz pressure of radius 10 um that travels along x in so many passes; over_shear: p0 over the
+    shear yield stress.
+    """
+    radius, (ahead, beside, below) = 1e-5, BESIDE
+    h = radius / PASS_CELLS
+    nx, ny = (2 * round(half * PASS_CELLS) + 1 for half in (WAY + ahead, beside))
+    path = Path(start=(-WAY * radius, 0.0), end=(WAY * radius, 0.0), steps=PASS_STEPS)
+    size = {"p0": keys["over_shear"] * initial_yield(scene) / np.sqrt(3.0), "radius": radius}
+    loading = Loading(prescribed="hertz", **size, path=path, steps=2, unload=True, cycles=int(keys["passes"]))
+    depths = tuple(h * np.arange(round(below * PASS_CELLS) + 1))
+    grid = Grid(cells=(nx, ny), extent=(nx * h, ny * h), depths=depths)
+    return scene.model_copy(update={"counterbody": None, "loading": loading, "grid": grid})
+
+
+BESIDE_TRACK, BEHIND, DEEP = 1.8, 2.2, 3.0  # radii of the grid beside a track, at its ends, and below
+EVEN_TO, LAYER_GROWTH = 1.2, 1.2  # radii down to which layers are as thick as a cell; ratio of deeper ones
+TRACK = 6.0  # radii of a track: three to be steady, one and a half before its end
+TRACK_RATIO = 4.0  # p0 over the initial yield stress
+
+
+def radius_at(scene: Scene, ratio: float = TRACK_RATIO) -> float:
+    """Hertz radius in m of a rigid sphere at p0 = ratio times the initial yield stress."""
+    modulus = scene.body.young / (1 - scene.body.poisson**2)
+    return float(np.pi * ratio * initial_yield(scene) * scene.counterbody.radius / (2 * modulus))
+
+
+def on_track(scene: Scene, keys: Mapping[str, Any]) -> Scene:
+    """The scene with a track along x on a grid of its own. cells, per_radius: cells and steps in a radius;
+    length in radii; ratio: p0 over the yield stress; shift: of the track in cells; back: from its other end;
+    cycles: passes; to_and_fro, or one way.
+    """
+    cells, length, shift = keys["cells"], keys.get("length", TRACK), keys.get("shift", 0.0)
+    ratio = keys.get("ratio", TRACK_RATIO)
+    a = radius_at(scene, ratio)
+    h, faces = a / cells, [0.0]
+    while faces[-1] < DEEP * a:
+        even = len(faces) <= round(EVEN_TO * cells)
+        faces.append(faces[-1] + (h if even else (faces[-1] - faces[-2]) * LAYER_GROWTH))
+    half = length / 2 + BEHIND + abs(shift) / cells
+    count = 2 * int(np.ceil(half * cells)) + 1, 2 * round(BESIDE_TRACK * cells) + 1
+    ends = [(x * a + shift * h, 0.0) for x in (-length / 2, length / 2)]
+    start, end = ends[::-1] if keys.get("back") else ends
+    comes_back = {"return": "to-and-fro" if keys.get("to_and_fro") else "lifted"}
+    path = Path(start=start, end=end, steps=round(length * keys.get("per_radius", 4.0)), **comes_back)
+    force = float(2 / 3 * np.pi * ratio * initial_yield(scene) * a**2)
+    scene = with_loading(scene, force=force, path=path, cycles=keys.get("cycles", 1))
+    return with_grid(scene, cells=count, extent=(count[0] * h, count[1] * h), depths=tuple(faces))
+
+
+KINEMATIC = {"law": "perfect", "yield_stress": 1e9, "kinematic": {"modulus": (20e9,), "recovery": (0.0,)}}
+"""Steel of Prager's law."""
+
+
+def film_sliding(scene: Scene, share: float) -> Scene:
+    """A film of `share` of the contact radius without it under a contact that slides: 16 cells and 10
+    elements in that radius, depths at both sides of the interface.
+    """
+    a = contact_of(scene).contact_radius
+    h, n = share * a, 2 * round(1.6 * 16) + 1
+    even = 0.04 * a * np.arange(round(1.6 / 0.04) + 1)
+    depths = np.union1d(even[np.abs(even - h) > 1e-3 * a], [FILM_SIDE * h, h])
+    scene = with_grid(scene, cells=(n, n), extent=(n * a / 16,) * 2, depths=tuple(map(float, depths)))
+    return with_keys(with_keys(scene, "body.coating", thickness=h), "fem", box=6.0, cells_per_radius=10)
+
+
+def film_dragged(scene: Scene, share: float) -> Scene:
+    """The Hertz pressure of the contact without film in place of the counter-body, on a film of `share` of
+    its radius: 24 cells and 6 elements in that.
+    """
+    hertz = contact_of(scene)
+    a, n = hertz.contact_radius, 2 * round(1.6 * 24) + 1
+    depths = (0.0, 0.25, 0.5, 0.75, FILM_SIDE, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
+    scene = with_keys(scene, "body.coating", thickness=share * a)
+    load = Loading(prescribed="hertz", p0=hertz.peak_pressure, radius=a, steps=1)
+    scene = scene.model_copy(update={"counterbody": None, "loading": load})
+    depths = tuple(z * (share * a) for z in depths)
+    scene = with_grid(scene, cells=(n, n), extent=(n * a / 24,) * 2, depths=depths)
+    return with_keys(scene, "fem", box=6.0, cells_per_radius=6)
+
+
+def film_under(scene: Scene, film: tuple[str, float, float, float]) -> Scene:
+    """A film on a contact of 6.5 GPa. film: counter-body, contact radius without film in m, thickness in m,
+    E1/E2.
+    """
+    (counterbody, radius, thickness, ratio), p0 = film, 6.5e9
+    body, other = scene.body, CounterBody(shape="sphere", radius=1.0, **COUNTERBODIES[counterbody])
+    modulus = effective_modulus(body.young, body.poisson, other.young, other.poisson)
+    curvature = 2.0 * modulus * radius / (math.pi * p0)  # p0 = 2 E* a/(pi R)
+    force = CircularContact.from_peak_pressure(p0, curvature, modulus).force
+    coating = Coating(young=ratio * body.young, poisson=0.3, thickness=thickness)
+    other = other.model_copy(update={"radius": curvature})
+    scene = scene.model_copy(update={"counterbody": other, "loading": Loading(force=force)})
+    return with_body(scene, coating=coating)
+
+
+def on_counterbody(scene: Scene, _: bool) -> Scene:
+    """The heights of the body on the counter-body, and the body smooth."""
+    heights = CounterSurface(kind="file", path=scene.surface.path)
+    return with_keys(scene, "counterbody", surface=heights).model_copy(update={"surface": None})
+
+
+def cells_of_asperities(scene: Scene, cells: int) -> Scene:
+    """The three asperities, and a map of friction, on cells x cells cells; even layers of half a cell, with a
+    face where the hardening law changes.
+    """
+    section = "surface" if scene.surface else "counterbody.surface"
+    scene = with_keys(scene, section, path=asperities.height_map(cells))
+    if scene.friction and scene.friction.law == "map":
+        scene = with_keys(scene, "friction", path=asperities.friction_map(cells))
+    thickness, deep = 0.5 * asperities.SIDE / cells, 3.6e-6
+    if not scene.body.plasticity.layer:
+        return scene.model_copy(update={"grid": Grid(layers=round(deep / thickness), depth=deep)})
+    ends = 0.0, scene.body.plasticity.layer_thickness, deep
+    parts = [np.linspace(a, b, round((b - a) / thickness) + 1) for a, b in pairwise(ends)]
+    faces = *parts[0], *parts[1][1:]
+    return scene.model_copy(update={"grid": Grid(depths=tuple(map(float, faces)))})
+
+
 RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {
+    "layer": with_layer,
     "p0-over-yield": at_ratio,
     "resolution": resolved_at,
     "cells": cells_a_side,
     "depths-over-radius": depths_over_radius,
     "elements": with_mesh,
+    "grid-over-rounded-punch": grid_over_rounded_punch,
     "film": lambda scene, film: coated_scene(scene, *film),
     "cells-in-coated-contact": cells_in_coated_contact,
+    "elastic": lambda scene, on: with_body(scene, plasticity=None) if on else scene,
+    "friction": rubbed,
+    "coupling": lambda scene, on: with_keys(scene, "friction", coupling=on) if scene.friction else scene,
+    "given": given_tractions,
+    "depths": even_depths,
+    "travelling": travelling,
+    "kinematic": lambda scene, _: with_body(scene, plasticity=Plasticity(**KINEMATIC)),
+    "track": on_track,
+    "coated-grid": lambda scene, cells: resolved_grid(scene, coated_contact(scene), cells),
+    "film-under": film_under,
+    "film-sliding": film_sliding,
+    "film-dragged": film_dragged,
+    "on-counterbody": on_counterbody,
+    "asperities": cells_of_asperities,
 }
-"""Name in a case file -> what it does to the scene."""
+"""Name in a case file -> what it does to the scene, in the order in which those of a case are applied."""
 
 
 def beside(file: CaseFile, name: str, known: Mapping[str, Any]) -> Any:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
@@ -87,14 +88,16 @@ def _runs(context: Context, file: CaseFile, name: str, base: Scene) -> Iterator[
             yield row | {"model": BOTH} | between_models(scene, *results.values(), names=between)
 
 
-def between_models(scene: Scene, sam: Result, fem: Result, *, names: Sequence[str]) -> dict[str, float]:
-    """The differences of both models: relative, or as the row of `compare` says."""
+def between_models(scene: Scene, sam: Result, fem: Result, *, names: Sequence[str]) -> dict[str, Any]:
+    """The differences of both models: relative, or as the row of `compare` says; NAME pair: their values."""
     rows, values = {row.quantity: row.error for row in compare_scene(scene, sam, fem)}, {}
     for name in names:
         between = QUANTITIES[name].between
         measured = between(scene, sam, fem) if between else None
         metric = "relative_l2" if measured and np.ndim(measured.value) else "relative"
+        metric = metric if measured is None or measured.expected is not None else "at_most"
         values[name] = error_of(metric, measured) if measured else rows[QUANTITIES[name].row]
+        values[f"{name} pair"] = measured
     return values
 
 
@@ -125,8 +128,14 @@ def _single(rows: DataFrame, column: str) -> Measured:
     return Measured(rows[column].iloc[0], None if expected is None else expected.iloc[0])
 
 
+def _pair(rows: DataFrame, column: str) -> Measured:
+    """Of both models at one point."""
+    return _single(rows, f"{column} pair").value
+
+
 STATISTICS: Mapping[str, Callable[[DataFrame, str], float | Measured]] = {
     "value": _single,
+    "pair": _pair,
     "order": lambda rows, column: fit_order(rows["h"], rows[column]).order,
     "limit": lambda rows, column: extrapolate(rows["h"], rows[column]).limit,
     "largest": lambda rows, column: float(np.max(rows[column].to_numpy())),
@@ -136,8 +145,9 @@ STATISTICS: Mapping[str, Callable[[DataFrame, str], float | Measured]] = {
     "ratio": lambda rows, column: rows[column].iloc[0] / rows[column].iloc[-1],
     "growth": lambda rows, column: float(np.max(rows[column].to_numpy()[1:] / rows[column].to_numpy()[:-1])),
 }
-"""Word of a row -> what it takes of a column: order and limit under refinement; ratio: first over last;
-growth: largest ratio of a value to the one before; nan where one is missing.
+"""Word of a row -> what it takes of a column. pair: the value of SAM beside that of FEM; order, limit: under
+refinement; ratio: first over last; growth: largest ratio of a value to the one before; nan where one is
+missing.
 """
 
 
@@ -173,7 +183,8 @@ def taken(file: CaseFile, frame: DataFrame) -> dict[str, Measured]:
             against = [evaluated(file, frame, other).value for other in file.takes[row.id][1:]]
             expected = against[0] if against else found.expected
             alone = row.metric in ("at_most", "at_least")
-            values[row.id.removeprefix(f"{file.name}.")] = Measured(found.value, None if alone else expected)
+            found = replace(found, expected=None if alone else expected)
+            values[row.id.removeprefix(f"{file.name}.")] = found
     return values
 
 

@@ -132,3 +132,8 @@ def residual_line(tables) -> tuple[np.ndarray, np.ndarray]:
     """x and displacement into the body in m along y = 0 after unloading."""
     x, displacement = rows_of(tables["line"], "unloaded", "x_m", "uz_m")
     return x, displacement
+
+
+def relative_l2(value: np.ndarray, reference: np.ndarray) -> float:
+    """|value - reference|/|reference|."""
+    return float(np.linalg.norm(value - reference) / np.linalg.norm(reference))

@@ -5,14 +5,14 @@ pressures.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
-from sam.scene import Result
-from verification.runs.sampling import plane_field, surface_nodes, surface_pressure
+from sam.scene import UNLOADED, Result
+from verification.runs.sampling import peak, plane_field, rows_of, surface_nodes, surface_pressure
 
 SHALLOWEST = 0.3  # elastic contact radii: above it the plastic strain near the surface depends on the mesh
 SPACING = 0.1  # of the depths compared, in the same
@@ -185,3 +185,61 @@ def patch_distance(result: Result, fem: Result, width: float) -> float:
     weight = np.ones(p.shape)
     weight[:, 0] = 0.5
     return pressure_distance(p, reference, weight)
+
+
+INTERIOR, WIDE = (0.25, 1.5), 1.2  # depths, and |x| and |y|, at which stresses are compared, in contact radii
+COMPONENTS = ("sxx", "syy", "szz", "syz", "sxz", "sxy")
+
+
+def stresses_inside(result: Result, a: float) -> tuple[tuple[np.ndarray, ...], np.ndarray]:
+    """Places (x, y, z) in m and stresses (n, 6) in Pa: of SAM on the axis, of FEM at the centres of its
+    elements.
+    """
+    if "hexahedron" in result.fields.cells:
+        x, y, z = result.fields.points[result.fields.cells["hexahedron"]].mean(axis=1).T
+        stress = np.asarray(result.fields.cell_data["stress_Pa"])
+    else:
+        z, *columns = peak(result.tables["axis"], "z_m", *(f"{name}_Pa" for name in COMPONENTS))
+        x, y, stress = np.zeros(z.size), np.zeros(z.size), np.stack(columns, axis=1)
+    use = _inside(x, z, a) & (np.abs(y) <= WIDE * a)
+    return (x[use], y[use], z[use]), stress[use]
+
+
+def mises_inside(result: Result, a: float) -> tuple[tuple[np.ndarray, ...], np.ndarray]:
+    """Places and von Mises stresses (n,) in Pa of SAM in the plane y = 0."""
+    x, z, mises = peak(result.tables["plane"], "x_m", "z_m", "mises_Pa")
+    use = _inside(x, z, a)
+    return (x[use], np.zeros(use.sum()), z[use]), mises[use]
+
+
+def _inside(x: np.ndarray, z: np.ndarray, a: float) -> np.ndarray:
+    return (z >= INTERIOR[0] * a) & (z <= INTERIOR[1] * a) & (np.abs(x) <= WIDE * a)
+
+
+def limit_of_strain(
+    results: Mapping[str, Result], model: str, *, a: float, x: float, z: np.ndarray
+) -> np.ndarray:
+    """The strain at (x, z) in contact radii, (n,), without cells and load steps: of second order in the one
+    and of first in the other, whose share is much the same on any cells.
+
+    results: "limit-MODEL-COUNT-STEPS" -> of so many cells or elements in the radius; two counts in one step,
+    and one of them in three numbers of steps.
+    """
+    at = {
+        tuple(map(int, name.split("-")[2:])): Plane.of(each, a).at(np.array([x]), z)[0]
+        for name, each in results.items()
+        if name.startswith(f"limit-{model}-")
+    }
+    cells = min(count for count, steps in at if steps > 1)
+    one, some, more = sorted(steps for count, steps in at if count == cells)
+    few, many = sorted(count for count, steps in at if steps == 1)[-2:]
+    in_cells = (many**2 * at[many, 1] - few**2 * at[few, 1]) / (many**2 - few**2)
+    fine, coarse = at[cells, more], at[cells, some]
+    return in_cells * (fine + (fine - coarse) * some / (more - some)) / at[cells, one]
+
+
+def growth(before: Result, after: Result) -> float:
+    """Plastic strain that a cycle adds: largest anywhere in y = 0, where a load travels."""
+    cycles = [len(each.tables["cycles"]["peeq_max"]) for each in (before, after)]
+    one, other = (rows_of(each.tables["plane"], UNLOADED, "peeq")[0] for each in (before, after))
+    return float((other - one).max()) / (cycles[1] - cycles[0])

@@ -6,7 +6,7 @@ film changes.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -20,6 +20,9 @@ from verification.figures.maps import FieldPair, plane_maps
 from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, Columns, Drawing, sheet
 from verification.figures.views import VON_MISES, VON_MISES_LEVELS, peak_of
 from verification.runs.sampling import plane_field, plane_field_on
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 COLOURS = (BLUE, VERMILION, GREEN, ORANGE, BLACK)
 MARKS = ("o", "s", "^", "D", "v")
@@ -63,46 +66,30 @@ def response_errors(
     return Drawing(figure, rows)
 
 
-@dataclass(frozen=True)
-class Pressures:
-    """Pressure over r/a0 in p0 of one film: the curve (r, p) of the reference, and the points (r, p) of each
-    model.
-    """
-
-    label: str
-    exact: tuple[np.ndarray, np.ndarray]
-    points: Mapping[str, tuple[np.ndarray, np.ndarray]]
-
-
 MODEL_MARKS = {"SAM": {"marker": "o", "fillstyle": "none"}, "FEM": {"marker": "x"}}
 
 
-def film_pressures(panels: Mapping[str, Sequence[Pressures]]) -> Drawing:
-    """Pressure profiles under films of one modulus a panel; the bare contact of Hertz dotted."""
+def film_pressures(panels: Mapping[str, Mapping[str, Mapping[str, tuple]]]) -> Drawing:
+    """Pressure over p0 over r/a0 under films of one modulus a panel; panels: title -> film -> "reference" or
+    model -> (r, p); the bare contact of Hertz dotted.
+    """
     rows = Columns("panel", "film", "series", "r_over_a0", "p_over_p0")
-    bare = np.linspace(0.0, 1.0, 401)
-    rows_down = -(-len(panels) // 2)
-    with sheet(8.6, 0.3 + 3.5 * rows_down, (rows_down, 2), sharey="row") as (figure, grid):
+    bare, down = np.linspace(0.0, 1.0, 401), -(-len(panels) // 2)
+    hertz = {"color": "#888888", "linestyle": ":", "linewidth": 1.6, "label": "without film"}
+    with sheet(8.6, 0.3 + 3.5 * down, (down, 2), sharey="row") as (figure, grid):
         for axis, (title, films) in zip(axes := grid.ravel(), panels.items(), strict=False):
-            axis.plot(
-                bare,
-                np.sqrt(1.0 - bare**2),
-                color="#888888",
-                linestyle=":",
-                linewidth=1.6,
-                label="without film",
-            )
-            for film, color in zip(films, COLOURS, strict=False):
-                axis.plot(*film.exact, color=color, linewidth=1.3, label=film.label)
-                for name, points in film.points.items():
-                    axis.plot(*points, color=color, linestyle="none", markersize=4.5, **MODEL_MARKS[name])
-                for name, (r, p) in {"reference": film.exact, **film.points}.items():
-                    rows.add(title, film.label, name, r, p)
+            axis.plot(bare, np.sqrt(1.0 - bare**2), **hertz)
+            for (film, series), color in zip(films.items(), COLOURS, strict=False):
+                for name, (r, p) in series.items():
+                    line = {"linewidth": 1.3, "label": film}
+                    points = {"linestyle": "none", "markersize": 4.5} | MODEL_MARKS.get(name, {})
+                    axis.plot(r, p, color=color, **(line if name == "reference" else points))
+                    rows.add(title, film, name, r, p)
             axis.set(title=title, xlabel="$r/a_0$", xlim=(0.0, None))
             axis.legend(loc="upper right")
         for axis in axes[::2]:  # shared by the panels of a row
             axis.set(ylabel="$p/p_0$", ylim=(0.0, None))
-        _name_the_marks(axes[0], films[0].points)
+        _name_the_marks(axes[0], MODEL_MARKS)
     return Drawing(figure, rows)
 
 
@@ -138,45 +125,28 @@ def film_planes(
     return plane_maps(pair, peaks, VON_MISES_LEVELS, interface=film / a)
 
 
-@dataclass(frozen=True)
-class Map:
-    """Change of a quantity (m, n) over thickness/a0 (m,) and E1/E2 (n,), as a share."""
-
-    title: str
-    thickness: np.ndarray
-    modulus: np.ndarray
-    change: np.ndarray
-
-
-@dataclass(frozen=True)
-class PaperCase:
-    """Where the film of the paper lies: its modulus ratio, and the thickness/a0 of some contact radii, by
-    label.
-    """
-
-    modulus: float
-    places: Mapping[str, float]
-
-
-def change_maps(maps: Sequence[Map], paper: PaperCase) -> Drawing:
+def change_maps(maps: Mapping[str, DataFrame], paper: tuple[float, Mapping[str, float]]) -> Drawing:
     """Heat maps on logarithmic axes with the lines of LIMITS, one colour scale for all, and the film of the
     paper.
+
+    maps: title -> changes as shares over thickness/a0 (index) and E1/E2 (columns); paper: its modulus ratio,
+    and label -> thickness/a0 on some contact radii.
     """
     rows = Columns("map", "thickness_over_a0", "E1_over_E2", "change_percent")
-    largest = 100.0 * max(np.abs(each.change).max() for each in maps)
+    largest = 100.0 * max(np.abs(each.to_numpy()).max() for each in maps.values())
     norm = SymLogNorm(linthresh=1.0, linscale=0.5, vmin=-largest, vmax=largest)
     with sheet(5.0 * len(maps), 4.4, len(maps), sharey=True) as (figure, axes):
-        for axis, each in zip(axes, maps, strict=True):
+        for axis, (title, each) in zip(axes, maps.items(), strict=True):
             mesh = _draw_map(axis, each, norm)
-            _mark_paper(axis, paper)
-            h, e = np.meshgrid(each.thickness, each.modulus, indexing="ij")
-            rows.add(each.title, h.ravel(), e.ravel(), 100.0 * each.change.ravel())
+            axis.set(title=title, xlabel="$h/a_0$, thickness over bare contact radius")
+            _mark_paper(axis, *paper)
+            h, e = np.meshgrid(each.index, each.columns, indexing="ij")
+            rows.add(title, h.ravel(), e.ravel(), 100.0 * each.to_numpy().ravel())
         axes[0].set_ylabel("$E_1/E_2$, film over body")
         bar = figure.colorbar(mesh, ax=axes, label="change by the film [%]", fraction=0.04, pad=0.02)
         ticks = [t for t in (1, 2, 5, 10, 20, 50, 100) if t <= largest]
-        bar.set_ticks(
-            [-t for t in ticks[::-1]] + [0, *ticks], labels=_signed([-t for t in ticks[::-1]] + [0, *ticks])
-        )
+        ticks = [-t for t in ticks[::-1]] + [0, *ticks]
+        bar.set_ticks(ticks, labels=_signed(ticks))
         bar.ax.yaxis.set_minor_locator(NullLocator())
         looks = zip(LIMITS, LINES, strict=True)
         names = [
@@ -192,22 +162,21 @@ def _signed(ticks: Sequence[float]) -> list[str]:
     return [f"{t:+g}".replace("-", "\N{MINUS SIGN}") if t else "0" for t in ticks]
 
 
-def _draw_map(axis: Axes, each: Map, norm: SymLogNorm):
+def _draw_map(axis: Axes, each: DataFrame, norm: SymLogNorm):
     """Colours and lines of LIMITS of either sign, of a bicubic spline through the points over the
     logarithms.
     """
-    spline = RectBivariateSpline(np.log(each.thickness), np.log(each.modulus), 100.0 * each.change)
-    h, e = (np.geomspace(side.min(), side.max(), FINE) for side in (each.thickness, each.modulus))
+    thickness, modulus = each.index.to_numpy(), each.columns.to_numpy()
+    spline = RectBivariateSpline(np.log(thickness), np.log(modulus), 100.0 * each.to_numpy())
+    h, e = (np.geomspace(side.min(), side.max(), FINE) for side in (thickness, modulus))
     percent = spline(np.log(h), np.log(e)).T
-    axis.set(
-        xscale="log", yscale="log", title=each.title, xlabel="$h/a_0$, thickness over bare contact radius"
-    )
+    axis.set(xscale="log", yscale="log")
     mesh = axis.pcolormesh(h, e, percent, shading="gouraud", cmap="RdBu_r", norm=norm, rasterized=True)
     for limit, line in zip(LIMITS, LINES, strict=True):
         levels = [-100 * limit, 100 * limit]
         axis.contour(h, e, percent, levels, colors="black", linestyles=line, linewidths=1.2)
     axis.grid(False)
-    for side, values in ((axis.xaxis, each.thickness), (axis.yaxis, each.modulus)):
+    for side, values in ((axis.xaxis, thickness), (axis.yaxis, modulus)):
         ticks = [t for t in TICKS if values.min() <= 1.001 * t <= 1.002 * values.max()]
         side.set_major_locator(FixedLocator(ticks))
         side.set_major_formatter(FuncFormatter(lambda t, _: f"{t:g}"))
@@ -215,16 +184,8 @@ def _draw_map(axis: Axes, each: Map, norm: SymLogNorm):
     return mesh
 
 
-def _mark_paper(axis: Axes, paper: PaperCase) -> None:
-    places = np.array(list(paper.places.values()))
-    axis.plot(places, np.full(places.size, paper.modulus), **PAPER_LOOK)
-    for label, place in paper.places.items():
-        axis.annotate(
-            label,
-            (place, paper.modulus),
-            xytext=(0, -5),
-            textcoords="offset points",
-            ha="center",
-            va="top",
-            fontsize=7.5,
-        )
+def _mark_paper(axis: Axes, modulus: float, places: Mapping[str, float]) -> None:
+    axis.plot(list(places.values()), [modulus] * len(places), **PAPER_LOOK)
+    look = {"textcoords": "offset points", "ha": "center", "va": "top", "fontsize": 7.5}
+    for label, place in places.items():
+        axis.annotate(label, (place, modulus), xytext=(0, -5), **look)

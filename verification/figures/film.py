@@ -14,35 +14,48 @@ from scipy.interpolate import RegularGridInterpolator
 from sam.scene import Result
 from verification.figures.friction import Curve, curves, peak_at
 from verification.figures.maps import FieldPair, plane_maps
-from verification.figures.style import BLACK, BLUE, GREEN, VERMILION, Drawing, style
+from verification.figures.style import (
+    BLACK,
+    BLUE,
+    EXACT,
+    GREEN,
+    VERMILION,
+    Columns,
+    Drawing,
+    sheet,
+    style,
+    zero_line,
+)
 from verification.figures.views import PLANE_AXES, VON_MISES, VON_MISES_LEVELS
 from verification.runs.sampling import peak, plane_field
 
 Found = Any
-"""A contact with its results: `verification.cases.coated.film_contacts.Found`."""
+"""A contact with its results: `verification.cases.coated.film_yield.SolvedFilm`."""
 GIGA, MICRO, PERCENT = 1e-9, 1e6, 1e2
 COLOURS = {"elastic": BLACK, "B 945": BLUE, "B 1780": VERMILION}
-BARE, ELASTIC, YIELDS = "bare", "elastic", "yields"
-STYLES = {
-    BARE: {"linewidth": 0.9, "linestyle": ":"},
-    ELASTIC: {"linewidth": 1.4, "linestyle": "-"},
-    YIELDS: {"linewidth": 1.4, "linestyle": "--"},
-}
+STYLES = {"bare": (0.9, ":"), "elastic": (1.4, "-"), "yields": (1.4, "--")}
+"""Of the film: width and kind of the line."""
 LIMIT = {"color": GREEN, "linewidth": 1.0, "linestyle": "-."}
-
-
-def looks(bodies: Sequence[str], films: Sequence[str], marker: str | None = None) -> dict[str, dict]:
-    """Colour by body, line by film, keyed as `series` names them."""
-    return {
-        series(body, film): {"color": COLOURS[body], "marker": marker, "markersize": 4, **STYLES[film]}
-        for body in bodies
-        for film in films
-    }
 
 
 def series(body: str, film: str) -> str:
     """The name of a curve."""
-    return f"body {body}, " + ("no film" if film == BARE else f"film {film}")
+    return f"body {body}, " + ("no film" if film == "bare" else f"film {film}")
+
+
+def looks(marker: str | None = None) -> dict[str, dict]:
+    """Of each curve by its name: colour by body, line by film."""
+    return {
+        series(body, film): {
+            "color": color,
+            "marker": marker,
+            "markersize": 4,
+            "linewidth": w,
+            "linestyle": line,
+        }
+        for body, color in COLOURS.items()
+        for film, (w, line) in STYLES.items()
+    }
 
 
 def changes(found: Sequence[Found], limit: float) -> Drawing:
@@ -50,20 +63,16 @@ def changes(found: Sequence[Found], limit: float) -> Drawing:
     um.
     """
     panels: dict[str, dict[str, Curve]] = {}
-    ends = (
-        np.array([min(one.contact.radius for one in found), max(one.contact.radius for one in found)]) * MICRO
-    )
+    radii = [MICRO * one.contact.radius for one in found]
     for k, words in enumerate(("largest pressure", "von Mises in the body")):
         for counter in ("rigid", "steel"):
             panel = panels.setdefault(f"{words}, {counter}", {})
             for kind in dict.fromkeys(one.contact.kind for one in found):
-                ones = [one for one in found if one.contact.counter == counter and one.contact.kind == kind]
-                ones.sort(key=lambda one: one.contact.radius)
-                x = MICRO * np.array([one.contact.radius for one in ones])
-                panel[series(*kind)] = Curve(x, PERCENT * np.array([one.changes[k] for one in ones]))
-            panel["limit"] = Curve(ends, np.full(2, -PERCENT * limit))
-    used = looks(tuple(COLOURS), (ELASTIC, YIELDS), "o") | {"limit": LIMIT}
-    drawing = curves(panels, r"$a_0$ [$\mu$m]", "change [%]", looks=used)
+                ones = [one for one in found if (one.contact.counter, one.contact.kind) == (counter, kind)]
+                points = sorted((MICRO * one.contact.radius, PERCENT * one.changes[k]) for one in ones)
+                panel[series(*kind)] = Curve(*np.array(points).reshape(-1, 2).T)
+            panel["limit"] = Curve(np.array([min(radii), max(radii)]), np.full(2, -PERCENT * limit))
+    drawing = curves(panels, r"$a_0$ [$\mu$m]", "change [%]", looks=looks("o") | {"limit": LIMIT})
     first = drawing.figure.axes[0]
     entries = first.get_legend_handles_labels()
     first.get_legend().remove()
@@ -72,29 +81,21 @@ def changes(found: Sequence[Found], limit: float) -> Drawing:
     return drawing
 
 
-def pressures(found: Sequence[Found]) -> Drawing:
+def pressures(found: Sequence[Found], bare_radius: float) -> Drawing:
     """Pressure in GPa over r/a0: a panel for each contact radius, without film and with each."""
     panels: dict[str, dict[str, Curve]] = {}
-    for one in found:
-        panel, body = panels.setdefault(title(one), {}), one.contact.body
-        if body not in ("elastic", "B 945"):
-            continue
-        panel[series(body, BARE)] = pressure_of(one.bare, one.contact.alone.radius)
-        panel[series(*one.contact.kind)] = pressure_of(one.result, one.contact.radius)
-    used = looks(("elastic", "B 945"), (BARE, ELASTIC, YIELDS))
-    return curves(panels, "$r/a_0$", "pressure [GPa]", looks=used)
+    for one in (one for one in found if one.contact.body != "B 1780"):
+        panel = panels.setdefault(title(one), {})
+        films = ("bare", one.bare, bare_radius), (one.contact.kind[1], one.result, one.contact.radius)
+        for film, result, a in films:
+            r, p = peak(result.tables["line"], "x_m", "p_Pa")
+            panel[series(one.contact.body, film)] = Curve(r[use := r <= 1.4 * a] / a, GIGA * p[use])
+    return curves(panels, "$r/a_0$", "pressure [GPa]", looks=looks())
 
 
 def title(found: Found) -> str:
     """The contact radius of a panel."""
     return rf"$a_0$ = {MICRO * found.contact.radius:g} $\mu$m"
-
-
-def pressure_of(result: Result, a: float, reach: float = 1.4) -> Curve:
-    """Pressure in GPa over r/a at peak load."""
-    r, p = peak(result.tables["line"], "x_m", "p_Pa")
-    use = r <= reach * a
-    return Curve(r[use] / a, GIGA * p[use])
 
 
 def strains(found: Sequence[Found]) -> Drawing:
@@ -103,25 +104,14 @@ def strains(found: Sequence[Found]) -> Drawing:
     """
     panels: dict[str, dict[str, Curve]] = {}
     for one in found:
-        r, strain = one.film_profile
-        use = r <= 1.4 * one.contact.radius
+        (r, strain), a = one.film_profile, one.contact.radius
         panel = panels.setdefault(title(one), {})
-        panel[series(*one.contact.kind)] = Curve(r[use] / one.contact.radius, PERCENT * strain[use])
+        panel[series(*one.contact.kind)] = Curve(r[use := r <= 1.4 * a] / a, PERCENT * strain[use])
         if one.contact.body == "elastic":
             panel["thin film"] = Curve(np.zeros(1), PERCENT * np.array([one.thin_film]))
     marks = {"color": BLACK, "marker": "o", "fillstyle": "none", "linestyle": "none"}
-    used = looks(tuple(COLOURS), (YIELDS,)) | {"thin film": marks}
+    used = looks() | {"thin film": marks}
     return curves(panels, "$r/a_0$", "plastic strain of the film [%]", looks=used)
-
-
-def sliding_pressures(panels: Mapping[str, Mapping[str, Curve]]) -> Drawing:
-    """Pressure along the sliding direction: SAM with and without film, FEM with it."""
-    used = {
-        "SAM": {"color": BLUE, "linewidth": 1.6},
-        "FEM": {"color": VERMILION, "marker": "x", "linestyle": "none", "markersize": 4},
-        "SAM, no film": {"color": BLACK, "linewidth": 1.0, "linestyle": ":"},
-    }
-    return curves(panels, "$x/a_0$", "$p/p_0$", looks=used)
 
 
 def sliding_sections(
@@ -158,3 +148,20 @@ def in_body(
     body = w >= thickness
     at = np.stack(np.meshgrid(x, z, indexing="ij"), axis=-1)
     return RegularGridInterpolator((u, w[body]), values[:, body], bounds_error=False)(at)
+
+
+def thinning_curves(pressure: np.ndarray, curves: Mapping[str, np.ndarray], limit: float) -> Drawing:
+    """pressure in GPa, (n,); curves: name -> thinning in %, (n,), NaN where there is none; limit in %."""
+    rows = Columns("curve", "pressure_GPa", "thinning_percent")
+    with sheet(4.8, 3.2) as (figure, axis):
+        for (name, thinning), (color, line) in zip(
+            curves.items(), ((BLUE, "-"), (VERMILION, "-"), (GREEN, "--")), strict=True
+        ):
+            axis.plot(pressure, thinning, color=color, linestyle=line, linewidth=1.6, label=name)
+            shown = np.isfinite(thinning)
+            rows.add(name, pressure[shown], thinning[shown])
+        axis.axhline(limit, **EXACT, label=f"growth of a cycle, {limit:.2f} %")
+        zero_line(axis)
+        axis.set(xlabel="pressure [GPa]", ylabel="thinning [%]", xlim=(0.0, pressure.max()))
+        axis.legend()
+    return Drawing(figure, rows)

@@ -20,12 +20,11 @@ from verification.figures.views import PLANE_AXES
 
 CONTOURS = (0.2, 2.0)  # % of plastic strain
 REACH = 1.6  # elastic contact radii: half the width of a map
-COUPLED, DECOUPLED, PAPER = "SAM", "SAM, decoupled", "SAM, loop of the paper"
 LOOKS = {
     "FEM": {"color": BLACK, "linewidth": 2.0},
-    COUPLED: {"color": BLUE, "marker": "o", "markersize": 3.5, "fillstyle": "none", "linestyle": "none"},
-    DECOUPLED: {"color": VERMILION, "linewidth": 1.3, "linestyle": "--"},
-    PAPER: {"color": ORANGE, "linewidth": 1.5, "linestyle": ":"},
+    "SAM": {"color": BLUE, "marker": "o", "markersize": 3.5, "fillstyle": "none", "linestyle": "none"},
+    "SAM, decoupled": {"color": VERMILION, "linewidth": 1.3, "linestyle": "--"},
+    "SAM, paper": {"color": ORANGE, "linewidth": 1.5, "linestyle": ":"},
 }
 """The look of FEM and of each form of SAM."""
 CYCLES = (

@@ -113,3 +113,17 @@ def cell_limit(friction: float, h: float, stops: np.ndarray, *, nu: float = 0.3)
     centres = h * np.arange(-round(0.5 / h), round(0.5 / h) + 1)
     depths = h * (np.arange(int(0.2 / h), round(0.7 / h)) + 0.5)
     return float(np.sqrt(2) / max(radius(centre, depth) for centre in centres for depth in depths))
+
+
+def upper_bound(friction: float, *, nu: float = 0.3) -> float:
+    """Upper bound of p0/k at which a perfectly plastic body may shake down below a load that travels.
+
+    Residual stress that a travelling load leaves is the same along x, so it shifts s_xz(x) at each depth by a
+    constant: half the range of s_xz over x is at most k, and at the surface, where the residual s_xz is zero,
+    friction p0 is. Without friction this is the limit of Ponter, Hearle and Johnson, J. Mech. Phys. Solids 33
+    (1985) 339, 4.68; from the Hertz stresses here, in the plane y = 0.
+    """
+    x, z = np.meshgrid(np.linspace(-1.5, 1.5, 301), np.linspace(0.0, 1.5, 151), indexing="ij")
+    shear = sliding_stress(x, 0.0, z, 1.0, contact_radius=1.0, nu=nu, friction=friction)[..., 4]
+    half = float((shear[:, 1:].max(axis=0) - shear[:, 1:].min(axis=0)).max()) / 2.0
+    return 1.0 / max(half, friction)

@@ -6,9 +6,7 @@ pavement.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Iterator
 
 import numpy as np
 from scipy.special import j1
@@ -50,11 +48,6 @@ nu = 0.5.
 LAST_DIGIT = 1e-4
 DISC_CELLS = 100
 """In the radius of the disc."""
-
-
-def points_of(level: str) -> list[tuple[float, float, float, float]]:
-    """(kh, E1/E2, nu1, nu2): all, or every FEW-th of them."""
-    return all_points() if level == "full" else all_points()[::FEW]
 
 
 def worst_of(by_wave: dict[float, dict[str, Worst]]) -> dict[str, Worst]:
@@ -120,78 +113,45 @@ def wave_ratios(counter: float) -> tuple[np.ndarray, np.ndarray]:
     return ours, wave_pressure_ratio(CoatedHalfSpace(*FILM, THICKNESS, *STEEL), WAVELENGTHS, counter)
 
 
-@dataclass(frozen=True)
-class Responses:
-    """points: of the range that are looked at; by_wave: kh -> quantity -> worst error; waves: counter-body ->
-    ratios.
-    """
-
-    points: Sequence
-    by_wave: dict[float, dict[str, Worst]]
-    waves: dict[str, tuple[np.ndarray, np.ndarray]]
-
-    @cached_property
-    def worst(self) -> dict[str, Worst]:
-        """Quantity -> worst error of all wave numbers."""
-        return worst_of(self.by_wave)
-
-
 class LayeredResponse(Case):
     """Errors over the whole range, the limits of equal materials and short waves, and waves pressed flat."""
 
-    def solve(self, context: Context) -> Responses:
-        points = points_of(context.level)
+    def solve(self, context: Context) -> dict[float, dict[str, Worst]]:
+        points = all_points()[:: 1 if context.level == "full" else FEW]
         by_wave = {}
         for kh in sorted({point[0] for point in points}):
             by_wave[kh] = worst_errors([point for point in points if point[0] == kh])
             context.progress(f"{self.name}: wave numbers", len(by_wave), len(WAVES))
-        counters = {"rigid": math.inf, "steel": STEEL[0] / (1.0 - STEEL[1] ** 2)}
-        return Responses(points, by_wave, {name: wave_ratios(other) for name, other in counters.items()})
+        return by_wave
 
-    def measure(self, found: Responses) -> dict[str, Measured | float]:
+    def measure(self, found: dict[float, dict[str, Worst]]) -> dict[str, Measured | float]:
         (shift, stress), (unfinished, off) = error_of_equal_materials(), short_waves()
-        ratios = found.waves.values()
-        values = {name.replace("_", "-"): each.error for name, each in found.worst.items()}
+        counters = math.inf, STEEL[0] / (1.0 - STEEL[1] ** 2)
+        values = {name.replace("_", "-"): each.error for name, each in worst_of(found).items()}
         return values | {
             "equal-displacement": shift,
             "equal-stress": stress,
             "short-wave": off,
             "short-wave-unfinished": Measured(unfinished, 0),
-            "flattened": max(np.abs(ours / other - 1.0).max() for ours, other in ratios),
+            "flattened": max(np.abs(np.divide(*wave_ratios(each)) - 1.0).max() for each in counters),
         }
 
-    def setup(self, found: Responses) -> list[tuple[str, str]]:
-        points = f"{len(found.points)} of {len(all_points())}"
-        cells = ", ".join(f"{c:g}" for c in CELLS_OVER_THICKNESS)
-        return [
-            ("Wave number times thickness kh", f"{WAVES[0]:g} to {WAVES[-1]:g}"),
-            ("Ratio of the moduli E₁/E₂", f"{RATIOS[0]:g} to {RATIOS[-1]:g}"),
-            ("Poisson's ratios", ", ".join(f"{a:g}/{b:g}" for a, b in POISSONS) + " (film/body)"),
-            ("Points", f"{points}, eight depths in each, all loads and components"),
-            ("Equal materials", f"cells of {cells} thicknesses, loads along x and z"),
-        ]
+    def setup(self, found: dict[float, dict[str, Worst]]) -> Iterator[tuple[str, str]]:
+        yield "Wave number times thickness kh", f"{WAVES[0]:g} to {WAVES[-1]:g}"
+        yield "Ratio of the moduli E₁/E₂", f"{RATIOS[0]:g} to {RATIOS[-1]:g}"
+        yield "Poisson's ratios", ", ".join(f"{a:g}/{b:g}" for a, b in POISSONS) + " (film/body)"
+        yield "Points", f"every {FEW}th of {len(all_points())} at the quick level, each at eight depths"
 
-    def tables(self, found: Responses) -> Iterator[SmallTable]:
-        rows = [(NAMES[name], f"{each.error:.1e}", each.where) for name, each in found.worst.items()]
+    def tables(self, found: dict[float, dict[str, Worst]]) -> Iterator[SmallTable]:
+        rows = [(NAMES[name], f"{each.error:.1e}", each.where) for name, each in worst_of(found).items()]
         caption = (
             "Worst errors against the solution in many digits: compliances relative, the matrix to its "
             "largest component, stresses and jump to the larger of traction and largest component"
         )
         yield SmallTable(caption, ("quantity", "worst error", "where"), rows)
-        rows = [
-            (f"{1e6 * length:g}", *(f"{ours[k]:.5f}" for ours, _ in found.waves.values()))
-            for k, length in enumerate(WAVELENGTHS)
-        ]
-        caption = (
-            "Pressure that flattens a shallow sinusoid of a steel body with a film of 100 nm and 80 GPa, "
-            "over that without it"
-        )
-        yield SmallTable(
-            caption, ("wavelength [µm]", *(f"{name} counter-body" for name in found.waves)), rows
-        )
 
-    def figures(self, found: Responses) -> Iterator[Plot]:
-        waves, each = np.array(list(found.by_wave)), found.by_wave.values()
+    def figures(self, found: dict[float, dict[str, Worst]]) -> Iterator[Plot]:
+        waves, each = np.array(list(found)), found.values()
         curves = {words: (waves, np.array([e[name].error for e in each])) for name, words in NAMES.items()}
         yield Plot(
             response_errors(curves, {"normal compliance": 1e-11, "all others": 1e-9}),
@@ -246,68 +206,41 @@ def covered(n: int) -> np.ndarray:
     return np.diff(np.diff(quadrant(edges[:, None], edges[None, :]), axis=0), axis=1)
 
 
-@dataclass(frozen=True)
-class Disc:
-    """The pressure on the interface below a disc of one radius, for one ratio of the moduli."""
-
-    radius: float
-    ratio: float
-    published: float
-
-    @cached_property
-    def values(self) -> dict[str, float]:
-        """By an own quadrature, and in two ways by SAM."""
-        at = self.radius, self.ratio
-        return {"own": interface_stress(*at), "response": disc_by_response(*at), "cells": disc_by_cells(*at)}
-
-    def off(self, way: str) -> float:
-        """Distance of a way from the own quadrature."""
-        return abs(self.values[way] - self.values["own"])
-
-
 class Pavement(Case):
-    """The disc of Burmister and Fox in three ways."""
+    """The disc of Burmister and Fox: their table, and by an own quadrature and in two ways by SAM."""
 
-    def solve(self, context: Context) -> list[Disc]:
-        return [
-            Disc(radius, ratio, value)
-            for radius, published in FOX.items()
-            for ratio, value in zip(DISC_RATIOS, published, strict=True)
-        ]
+    def solve(self, context: Context) -> dict[tuple[float, float], tuple[float, ...]]:
+        ways = interface_stress, disc_by_response, disc_by_cells
+        places = ((radius, ratio) for radius in FOX for ratio in DISC_RATIOS)
+        return {at: tuple(way(*at) for way in ways) for at in places}
 
-    def measure(self, found: list[Disc]) -> dict[str, float]:
-        bare = {r: interface_stress(r, 1.0) / (1.0 - (1.0 + r**2) ** -1.5) for r in FOX}
+    def measure(self, found: dict[tuple[float, float], tuple[float, ...]]) -> dict[str, float]:
+        own, response, cells = np.array(list(found.values())).T
+        bare = [interface_stress(r, 1.0) / (1.0 - (1.0 + r**2) ** -1.5) for r in FOX]
         return {
-            "fox": max(abs(each.values["own"] - each.published) / LAST_DIGIT for each in found),
-            **{way: max(each.off(way) for each in found) for way in ("response", "cells")},
-            "bare": max(abs(share - 1.0) for share in bare.values()),
+            "fox": np.abs(own - np.concatenate(list(FOX.values()))).max() / LAST_DIGIT,
+            "response": np.abs(response - own).max(),
+            "cells": np.abs(cells - own).max(),
+            "bare": np.abs(np.array(bare) - 1.0).max(),
         }
 
-    def setup(self, found: list[Disc]) -> list[tuple[str, str]]:
-        return [
-            ("Load", "uniform pressure on a disc of radius a; ν = 0.5 in layer and body"),
-            ("Quantity", "−σzz/p at the interface z = h on the axis"),
-            (
-                "Cells",
-                f"{DISC_CELLS} in the radius, those on the edge loaded by the share of them in the disc",
-            ),
-        ]
-
-    def tables(self, found: list[Disc]) -> Iterator[SmallTable]:
-        rows = [
-            (
-                f"{each.radius:g}",
-                f"{each.ratio:g}",
-                f"{each.published:.4f}",
-                *(f"{v:.9f}" for v in each.values.values()),
-            )
-            for each in found
-        ]
-        yield SmallTable(
-            "Pressure on the interface over that on the disc",
-            ("a/h", "E₁/E₂", "table", "own Hankel quadrature", "response of SAM", "cells of SAM"),
-            rows,
+    def setup(self, found: dict[tuple[float, float], tuple[float, ...]]) -> Iterator[tuple[str, str]]:
+        yield "Load", "uniform pressure on a disc of radius a; ν = 0.5 in layer and body"
+        yield "Quantity", "−σzz/p at the interface z = h on the axis"
+        yield (
+            "Cells",
+            f"{DISC_CELLS} in the radius, those on the edge loaded by the share of them in the disc",
         )
+
+    def tables(self, found: dict[tuple[float, float], tuple[float, ...]]) -> Iterator[SmallTable]:
+        published = (value for row in FOX.values() for value in row)
+        rows = [
+            (f"{radius:g}", f"{ratio:g}", f"{table:.4f}", *(f"{v:.9f}" for v in values))
+            for ((radius, ratio), values), table in zip(found.items(), published, strict=True)
+        ]
+        ways = "own Hankel quadrature", "response of SAM", "cells of SAM"
+        caption = "Pressure on the interface over that on the disc"
+        yield SmallTable(caption, ("a/h", "E₁/E₂", "table", *ways), rows)
 
 
 CASES = (

@@ -19,11 +19,11 @@ from verification.cases.case import (
     with_keys,
     with_loading,
 )
-from verification.cases.coated.coated_sphere import answer_of
 from verification.cases.cost.uncertainty_study import of_ellipse, of_hertz, plastic, sliding, solved
 from verification.cost.accuracy import solve
 from verification.cost.choice import Choice, chosen_scene, quantities_of
 from verification.cost.estimates import estimate
+from verification.references import coated_contact
 from verification.runs import models
 from verification.runs.models import ModelError
 from verification.runs.store import solve_or_reuse
@@ -89,7 +89,7 @@ def of_finite_elements(context: Context, scene: Scene) -> float:
 
 def of_film(_: Context, scene: Scene) -> float:
     """The largest pressure, by integral transforms."""
-    return answer_of(scene).contact.largest_pressure()[0]
+    return coated_contact(scene).largest_pressure()[0]
 
 
 def subjects(context: Context) -> list[Subject]:

@@ -24,9 +24,7 @@ from verification.cases.case import (
     with_loading,
     with_mesh,
 )
-from verification.cases.coated.coated_sphere import answer_of, coated_scene, resolved_grid
-from verification.cases.recipes import Resolution, at_ratio, resolved_at
-from verification.cases.sliding.friction import BOX
+from verification.cases.recipes import BOX, Resolution, at_ratio, coated_scene, resolved_at, resolved_grid
 from verification.cost.advice_rows import (
     COATED,
     DEEP,
@@ -37,7 +35,7 @@ from verification.cost.advice_rows import (
     SLIDING,
     YIELDING,
 )
-from verification.references import contact_of, elliptic_contact
+from verification.references import coated_contact, contact_of, elliptic_contact
 from verification.scenes.asperities import height_map
 
 COUPLED, DECOUPLED, PAPER, TWICE = "SAM", "SAM, decoupled", "SAM, the paper's loop", "SAM, two grids"
@@ -179,7 +177,7 @@ def on_two_grids(scene: Scene, n: int) -> Scene:
 
 def coated_cells(scene: Scene, n: int) -> Scene:
     """Cells of a/n on a coated contact."""
-    return resolved_grid(scene, answer_of(scene).contact, n)
+    return resolved_grid(scene, coated_contact(scene), n)
 
 
 def smaller_box(scene: Scene, n: int) -> Scene:
@@ -232,7 +230,7 @@ def _elliptic(scene: Scene) -> Mapping[str, float]:
 
 
 def _coated(scene: Scene) -> Mapping[str, float]:
-    return {"p_max_Pa": answer_of(scene).contact.largest_pressure()[0]}
+    return {"p_max_Pa": coated_contact(scene).largest_pressure()[0]}
 
 
 def _loaded(ratio: float) -> Callable[[Scene], Scene]:

@@ -6,28 +6,16 @@ perfect plasticity that settle, or flow in every pass.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from sam.scene import Friction, Plasticity, Result, Scene
-from verification.cases.case import (
-    SAM,
-    Case,
-    Context,
-    Measured,
-    Plot,
-    SmallTable,
-    with_body,
-    with_keys,
-)
-from verification.cases.moving.moving_sphere_scenes import Setting, radius, yield_stress
+from verification.cases.case import SAM, Case, Context, Measured, Plot, SmallTable, with_body, with_keys
+from verification.cases.recipes import initial_yield, on_track
 from verification.figures.moving import new_strains
 
 CELLS = {"quick": 4, "full": 8}  # in the radius
-PASSES, FLOWS = 6, 8  # the latter over perfect plasticity: until each pass strains the body alike
-LARGE = 4  # passes whose new strain is far above the 6e-7 that the plastic iteration leaves
 STEEL = {
     "one-way": (0.0, False),
     "to-and-fro": (0.0, True),
@@ -35,109 +23,80 @@ STEEL = {
     "friction-to-and-fro": (0.2, True),
 }
 """Coefficient of friction, and whether the sphere goes to and fro; with friction at the full level."""
-PERFECT = {"settles": 2.2, "flows": 4.0}
-"""p0 over the yield stress of perfect plasticity."""
-VERDICTS = {"settles": "shakedown", "flows": "alternating"}
+PERFECT = {"settles": (2.2, "shakedown"), "flows": (4.0, "alternating")}
+"""p0 over the yield stress of perfect plasticity, and what becomes of it. It goes on for eight passes, until
+each strains the body alike.
+"""
+LARGE = 4  # passes whose new strain is far above the 6e-7 that the plastic iteration leaves
 
 
-@dataclass(frozen=True)
-class Passes:
-    """Results of steel and of perfect plasticity by name, with the radius in m of each."""
+def scenes(base: Scene, level: str) -> Iterator[tuple[str, Scene]]:
+    """Name and scene of every run."""
+    cells = CELLS[level]
+    for name, (mu, to_and_fro) in STEEL.items():
+        if not mu or level == "full":
+            made = on_track(base, {"cells": cells, "cycles": 6, "to_and_fro": to_and_fro})
+            friction = Friction(coefficient=mu) if mu else None
+            yield name, made.model_copy(update={"friction": friction})
+    law = Plasticity(law="perfect", yield_stress=initial_yield(base))
+    perfect = with_keys(with_body(base, plasticity=law), "solver", verdict=True)
+    for name, (ratio, _) in PERFECT.items():
+        yield name, on_track(perfect, {"cells": cells, "cycles": 8, "ratio": ratio})
 
-    steel: Mapping[str, Result]
-    perfect: Mapping[str, Result]
-    yield_stress: float
-    radius: float
 
-
-def column(result: Result, name: str) -> np.ndarray:
+def column(result: Result, name: str = "new_strain_max") -> np.ndarray:
     """A column of the table of passes."""
     return np.asarray(result.tables["passes"][name], dtype=float)
-
-
-def perfect_of(scene: Scene) -> Scene:
-    """The scene with perfect plasticity at the yield stress of its unstrained body, and a verdict."""
-    law = Plasticity(law="perfect", yield_stress=yield_stress(scene))
-    return with_keys(with_body(scene, plasticity=law), "solver", verdict=True)
 
 
 class MovingPasses(Case):
     """Repeated passes: what each adds."""
 
-    def solve(self, context: Context) -> Passes:
-        scene, cells = context.scene("moving-sphere"), CELLS[context.level]
-        steel, perfect = {}, {}
-        for name, (mu, to_and_fro) in STEEL.items():
-            if mu and context.level == "quick":
-                continue
-            setting = Setting(cells=cells, cycles=PASSES, to_and_fro=to_and_fro)
-            friction = Friction(coefficient=mu) if mu else None
-            made = setting.of(scene).model_copy(update={"friction": friction})
-            steel[name] = context.solve(SAM, made, name)
-        for name, ratio in PERFECT.items():
-            setting = Setting(cells=cells, cycles=FLOWS, ratio=ratio)
-            perfect[name] = context.solve(SAM, setting.of(perfect_of(scene)), f"perfect-{name}")
-        return Passes(steel, perfect, yield_stress(scene), radius(scene))
+    def solve(self, context: Context) -> dict[str, Result]:
+        base = context.scene("moving-sphere")
+        return {
+            name: context.solve(SAM, scene, f"perfect-{name}" if name in PERFECT else name)
+            for name, scene in scenes(base, context.level)
+        }
 
-    def measure(self, found: Passes) -> dict[str, Measured | float]:
-        forth, back = column(found.steel["to-and-fro"], "rolling")[-2:]
-        first = column(found.steel["to-and-fro"], "rolling")[0]
-        settles, flows = (column(found.perfect[name], "new_strain_max") for name in PERFECT)
-        classes = {name: found.perfect[name].verdict["class"] for name in PERFECT}
-        depths = [column(found.steel[name], "groove_m")[-1] for name in ("one-way", "to-and-fro")]
+    def measure(self, found: Mapping[str, Result]) -> dict[str, Measured | float]:
+        first, *_, forth, back = column(found["to-and-fro"], "rolling")
+        settles, flows = (column(found[name]) for name in PERFECT)
+        one_way, to_and_fro = (column(found[name], "groove_m")[-1] for name in ("one-way", "to-and-fro"))
+        verdicts = {name: float(found[name].verdict["class"] == of) for name, (_, of) in PERFECT.items()}
         return {
             "conservative": float((back - forth) / 2 / first),
-            "both-ways": Measured(*depths[::-1], unit="m"),
-            "steady": found.steel["one-way"].quantities["passes_to_steady"],
+            "both-ways": Measured(to_and_fro, one_way, unit="m"),
+            "steady": found["one-way"].quantities["passes_to_steady"],
             "perfect-settles": float(min(one / two for one, two in pairwise(settles[:LARGE]))),
             "perfect-flows": Measured(flows[-1], flows[-2]),
-            **{f"verdict-{name}": Measured(float(of == VERDICTS[name]), 1.0) for name, of in classes.items()},
+            **{f"verdict-{name}": Measured(value, 1.0) for name, value in verdicts.items()},
         }
 
-    def tables(self, found: Passes) -> Iterator[SmallTable]:
-        for runs, passes in ((found.steel, PASSES), (found.perfect, FLOWS)):
-            rows = [
-                (name, *(f"{value:.2e}" for value in column(each, "new_strain_max")))
-                for name, each in runs.items()
-            ]
-            counts = [str(k + 1) for k in range(passes)]
-            body = "Swift steel" if runs is found.steel else "perfect plasticity"
-            yield SmallTable(f"Largest plastic strain that a pass adds, {body}", ("run", *counts), rows)
-        grooves = [
-            (name, *(f"{1e3 * value / found.radius:.3f}" for value in column(each, "groove_m")))
-            for name, each in found.steel.items()
-        ]
-        counts = [str(k + 1) for k in range(PASSES)]
-        yield SmallTable("Groove in the middle, in thousandths of the radius", ("run", *counts), grooves)
+    def tables(self, found: Mapping[str, Result]) -> Iterator[SmallTable]:
+        heads = ("run", *(str(k + 1) for k in range(8)))
+        for caption, name in (("Largest plastic strain", "new_strain_max"), ("Groove in m", "groove_m")):
+            rows = [(run, *(f"{v:.3e}" for v in column(each, name))) for run, each in found.items()]
+            rows = [(*row, *[""] * (len(heads) - len(row))) for row in rows]
+            yield SmallTable(f"{caption} that a pass {'leaves' if 'G' in caption else 'adds'}", heads, rows)
 
-    def notes(self, found: Passes) -> Iterator[str]:
-        for name, each in found.perfect.items():
-            history = each.tables["history"]
+    def notes(self, found: Mapping[str, Result]) -> Iterator[str]:
+        for name, (ratio, _) in PERFECT.items():
+            verdict, history = found[name].verdict, found[name].tables["history"]
             loaded = np.flatnonzero(np.array(history["force_N"]) > 0)[-1]
-            pressure = history["p_max_Pa"][loaded] * np.sqrt(3) / found.yield_stress
             yield (
-                f"Perfect plasticity at p0 = {PERFECT[name]:g} yield stresses: the pressure ends at "
-                f"{pressure:.2f} k, k the shear strength; verdict after {FLOWS} passes: "
-                f"{each.verdict['class']}, since pass {each.verdict['decided_at_cycle']}."
+                f"Perfect plasticity at p0 = {ratio:g} yield stresses: the largest pressure ends at "
+                f"{history['p_max_Pa'][loaded] / 1e9:.3f} GPa; verdict after eight passes: "
+                f"{verdict['class']}, since pass {verdict['decided_at_cycle']}."
             )
 
-    def figures(self, found: Passes) -> Iterator[Plot]:
-        runs = {
-            f"Swift steel, {name.replace('friction-', 'friction, ')}": column(each, "new_strain_max")
-            for name, each in found.steel.items()
-        }
-        ratios = {
-            f"perfect, p0 = {PERFECT[name]:g} yield stresses": each for name, each in found.perfect.items()
-        }
-        runs |= {name: column(each, "new_strain_max") for name, each in ratios.items()}
-        yield Plot(
-            new_strains(runs),
-            "new-strain",
-            "What each pass adds",
-            "Largest new plastic strain over the number of the pass",
-            "Largest plastic strain that a pass adds to a cell of the steady part of the track; no mark "
-            "where it adds none.",
+    def figures(self, found: Mapping[str, Result]) -> Iterator[Plot]:
+        words = (
+            "Largest plastic strain that a pass adds to a cell of the steady part of the track, over the "
+            "number of the pass; no mark where it adds none."
         )
+        drawing = new_strains({name: column(each) for name, each in found.items()})
+        yield Plot(drawing, "new-strain", "What each pass adds", words, words)
 
 
 CASES = (MovingPasses("moving-passes"),)

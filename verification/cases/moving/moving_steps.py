@@ -6,154 +6,105 @@ coarse runs extrapolate to the limit of fine ones, and the uncertainty of a sing
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Result, Scene
 from verification import uncertainty
 from verification.cases.case import SAM, Case, Context, Measured, Plot, SmallTable
-from verification.cases.cyclic.repeated_loading import extrapolated
-from verification.cases.moving.moving_sphere_scenes import Setting, radius
+from verification.cases.recipes import on_track
 from verification.figures.moving import errors_over_counts
+from verification.quantities import refined
 
 STEPS = (1, 2, 4, 8, 16, 32)  # in the radius; the strain has no order before the last three
 CELLS, AT = (6, 8, 12), 8  # in the radius; where the other is varied
-FINE = 8  # steps in the radius where cells are varied
-SINGLE = Setting(cells=10, per_radius=4)  # whose coarsest companion has 4 cells in the contact, the fewest
-NAMES = ("groove_depth_m", "groove_deepest_m", "peeq_max")
+SINGLE = {"cells": 10, "per_radius": 4}  # whose coarsest companion has 4 cells in the contact, the fewest
+NAMES = {"groove": "groove_depth_m", "deepest": "groove_deepest_m", "strain": "peeq_max"}
 
 
-@dataclass(frozen=True)
-class Steps:
-    """By steps and by cells in the radius: steady depth, largest plastic strain of the steady part, and the
-    quantities of NAMES. single: values and uncertainties of these of a single run; radius: in m.
-    """
-
-    by_steps: Mapping[int, tuple[float, ...]]
-    by_cells: Mapping[int, tuple[float, ...]]
-    single: Mapping[str, tuple[float, float]]
-    radius: float
-
-    def limit(self, which: int) -> tuple[float, float]:
-        """Limit and order of the three finest steps."""
-        a, b, c = (self.by_steps[n][which] for n in STEPS[-3:])
-        ratio = (b - a) / (c - b)
-        return c + (c - b) / (ratio - 1), ratio
-
-    def of_cells(self, which: int) -> float:
-        """What the two finest numbers of cells leave to add to those where the steps are varied."""
-        one, two = (self.by_cells[n][which] for n in CELLS[1:])
-        return float(extrapolated(one, two, *CELLS[1:])) - self.by_cells[AT][which]
-
-    def refined(self, name: str) -> float:
-        """Limit of a quantity in steps and cells, by the finest of both."""
-        which = 2 + NAMES.index(name)
-        return self.limit(which)[0] + self.of_cells(which)
-
-    def from_coarse(self, name: str) -> float:
-        """The same by steps of a/4 and a/8, as of first order, and the same cells: those of a/6, a/8 and a/12
-        leave the strain of one cell within 0.6 % of each other, in no order.
-        """
-        which = 2 + NAMES.index(name)
-        return 2 * self.by_steps[8][which] - self.by_steps[4][which] + self.of_cells(which)
-
-
-def values_of(result: Result) -> tuple[float, ...]:
-    """Steady depth in m, the largest plastic strain of the steady part, and the quantities of NAMES."""
+def values_of(result: Result) -> dict[str, float]:
+    """The quantities of NAMES, and "steady": the largest plastic strain of the steady part."""
     track = result.tables["track"]
-    strain = max(p for p, steady in zip(track["peeq_max"], track["steady"], strict=True) if steady)
-    found = (result.quantities[name] for name in NAMES)
-    return result.quantities["groove_depth_m"], float(strain), *map(float, found)
+    steady = max(p for p, steady in zip(track["peeq_max"], track["steady"], strict=True) if steady)
+    return {key: float(result.quantities[name]) for key, name in NAMES.items()} | {"steady": float(steady)}
 
 
-def single(context: Context, scene: Scene) -> dict[str, tuple[float, float]]:
-    """Values and uncertainties of one run, of NAMES."""
+def limit(by_steps: Mapping[int, Mapping[str, float]], key: str) -> tuple[float, float]:
+    """Limit of the three finest steps, and the ratio of the changes, two to the order."""
+    a, b, c = (by_steps[n][key] for n in STEPS[-3:])
+    ratio = (b - a) / (c - b)
+    return c + (c - b) / (ratio - 1), ratio
 
-    def solved(each: Scene, label: str) -> Result:
-        return context.solve(SAM, each, f"single, {label}")
 
-    found = uncertainty.solve(uncertainty.asked_of(SINGLE.of(scene), "moving-sphere.toml"), SAM, solved)
-    return {name: (found.quantities[name], found.uncertainty[name]["u_num"]) for name in NAMES}
+def of_cells(by_cells: Mapping[int, Mapping[str, float]], key: str) -> float:
+    """What the two finest numbers of cells leave to add to those where the steps are varied."""
+    return float(refined(by_cells, lambda values: values[key])) - by_cells[AT][key]
 
 
 class MovingSteps(Case):
     """Refinement of the step along the path, and of the cells."""
 
-    def solve(self, context: Context) -> Steps:
-        scene = context.scene("moving-sphere")
-        by_steps = {
-            n: values_of(context.solve(SAM, Setting(cells=AT, per_radius=n).of(scene), f"steps-{n}"))
-            for n in STEPS
+    def solve(self, context: Context) -> dict[str, Any]:
+        """steps, cells: number in a radius -> values; single: value and uncertainty of one run."""
+        base = context.scene("moving-sphere")
+
+        def at(label: str, **keys: int) -> dict[str, float]:
+            return values_of(context.solve(SAM, on_track(base, keys), label))
+
+        def solved(scene: Scene, label: str) -> Result:
+            return context.solve(SAM, scene, f"single, {label}")
+
+        steps = {n: at(f"steps-{n}", cells=AT, per_radius=n) for n in STEPS}
+        cells = {n: steps[AT] if n == AT else at(f"cells-{n}", cells=n, per_radius=AT) for n in CELLS}
+        asked = uncertainty.asked_of(on_track(base, SINGLE), "moving-sphere.toml")
+        found = uncertainty.solve(asked, SAM, solved)
+        single = {k: (found.quantities[n], found.uncertainty[n]["u_num"]) for k, n in NAMES.items()}
+        return {"steps": steps, "cells": cells, "single": single}
+
+    def measure(self, found: Mapping[str, Any]) -> dict[str, Measured | float]:
+        """Coarse runs are those with steps of a/4 and a/8, as of first order, and the same cells: those of
+        a/6, a/8 and a/12 leave the strain of one cell within 0.6 % of each other, in no order.
+        """
+        steps, cells, values = found["steps"], found["cells"], dict[str, Measured | float]()
+        for key, (value, known) in found["single"].items():
+            exact = limit(steps, key)[0] + of_cells(cells, key)
+            coarse = 2 * steps[8][key] - steps[4][key] + of_cells(cells, key)
+            values |= {f"extrapolated-{key}": Measured(coarse, exact)}
+            values |= {f"covered-{key}": abs(value - exact) / known}
+        return values | {
+            "groove-quarter": Measured(steps[4]["groove"], limit(steps, "groove")[0], unit="m"),
+            "peeq-eighth": Measured(steps[8]["steady"], limit(steps, "steady")[0]),
+            "cells": Measured(cells[8]["groove"], cells[12]["groove"], unit="m"),
         }
-        by_cells = {
-            n: by_steps[FINE]
-            if n == AT
-            else values_of(context.solve(SAM, Setting(cells=n, per_radius=FINE).of(scene), f"cells-{n}"))
-            for n in CELLS
+
+    def tables(self, found: Mapping[str, Any]) -> Iterator[SmallTable]:
+        for name in ("steps", "cells"):
+            keys = found[name][AT]
+            rows = [(str(n), *(f"{each[key]:.5g}" for key in keys)) for n, each in found[name].items()]
+            if name == "steps":
+                rows.append(("limit", *(f"{limit(found[name], key)[0]:.5g}" for key in keys)))
+                rows.append(("ratio of changes", *(f"{limit(found[name], key)[1]:.2f}" for key in keys)))
+            yield SmallTable(f"By the {name} in a contact radius, in m and 1", (f"{name} in a", *keys), rows)
+        rows = [(key, f"{value:.5g}", f"{known:.2g}") for key, (value, known) in found["single"].items()]
+        yield SmallTable("A single run", ("quantity", "value", "uncertainty"), rows)
+
+    def figures(self, found: Mapping[str, Any]) -> Iterator[Plot]:
+        ends = {
+            ("steps", "groove"): limit(found["steps"], "groove")[0],
+            ("steps", "steady"): limit(found["steps"], "steady")[0],
+            ("cells", "groove"): found["cells"][AT]["groove"] + of_cells(found["cells"], "groove"),
         }
-        return Steps(by_steps, by_cells, single(context, scene), radius(scene))
-
-    def measure(self, found: Steps) -> dict[str, Measured | float]:
-        (groove, _), (strain, _) = found.limit(0), found.limit(1)
-        finest = {h: values[0] for h, values in found.by_cells.items()}
-        errors: dict[str, Measured | float] = {}
-        for key, name in (("groove", NAMES[0]), ("deepest", NAMES[1]), ("strain", NAMES[2])):
-            limit, (value, known) = found.refined(name), found.single[name]
-            errors[f"extrapolated-{key}"] = Measured(found.from_coarse(name), limit)
-            errors[f"covered-{key}"] = abs(value - limit) / known
-        return errors | {
-            "groove-quarter": Measured(found.by_steps[4][0], groove, unit="m"),
-            "peeq-eighth": Measured(found.by_steps[8][1], strain),
-            "cells": Measured(finest[8], finest[12], unit="m"),
-        }
-
-    def tables(self, found: Steps) -> Iterator[SmallTable]:
-        for name, values in (("steps", found.by_steps), ("cells", found.by_cells)):
-            rows = [
-                (str(n), f"{1e3 * groove / found.radius:.3f}", f"{1e3 * strain:.3f}")
-                for n, (groove, strain, *_) in values.items()
-            ]
-            columns = (f"{name} in a", "groove, 1e-3 a", "plastic strain, 1e-3")
-            yield SmallTable(f"Steady part by the {name} in a contact radius", columns, rows)
-        rows = []
-        for name, (value, known) in found.single.items():
-            limit = found.refined(name)
-            shares = (found.from_coarse(name) / limit - 1, value / limit - 1, known / limit)
-            rows.append((name, f"{limit:.5g}", *(f"{100 * share:.2f} %" for share in shares)))
-        columns = ("quantity", "refined limit", "coarse runs, extrapolated", "single run", "its uncertainty")
-        yield SmallTable("Against the limit in steps and cells", columns, rows)
-
-    def notes(self, found: Steps) -> Iterator[str]:
-        for which, name in enumerate(("groove", "plastic strain")):
-            limit, ratio = found.limit(which)
-            scale = 1e3 / found.radius if which == 0 else 1e3
-            yield f"Limit of the {name}: {limit * scale:.3f}e-3, by a ratio of {ratio:.2f} of halved steps."
-
-    def figures(self, found: Steps) -> Iterator[Plot]:
-        lines = {}
-        for which, name in enumerate(("steady depth", "plastic strain")):
-            limit, _ = found.limit(which)
-            lines[name] = errors_of(found.by_steps, which, limit)
-        depth = found.by_cells[AT][0] + found.of_cells(0)
-        yield Plot(
-            errors_over_counts(
-                {"steps": lines, "cells": {"steady depth": errors_of(found.by_cells, 0, depth)}}
-            ),
-            "errors",
-            "Error by the step along the path, and by the cells",
-            "Relative errors over the number of steps and of cells in a radius, both logarithmic, falling.",
-            f"Steady part of the track, on cells of a/{AT} (left) and in steps of a/{FINE} (right).",
+        panels: dict[str, dict] = {"steps": {}, "cells": {}}
+        for (name, key), end in ends.items():
+            values = np.array([each[key] for each in found[name].values()])
+            panels[name][key] = np.array(list(found[name])), np.abs(values / end - 1)
+        words = (
+            "Relative errors of the steady part of the track over the number of steps and of cells in a "
+            f"radius, on cells of a/{AT} (left) and in steps of a/{AT} (right)."
         )
-
-
-def errors_of(
-    by_size: Mapping[int, tuple[float, ...]], which: int, limit: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Numbers of steps or cells in a radius, and relative errors of a value."""
-    return np.array(list(by_size)), np.abs(
-        np.array([values[which] for values in by_size.values()]) / limit - 1
-    )
+        title = "Error by the step along the path, and by the cells"
+        yield Plot(errors_over_counts(panels), "errors", title, words, words)
 
 
 CASES = (MovingSteps("moving-steps"),)

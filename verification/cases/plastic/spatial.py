@@ -20,11 +20,10 @@ from verification.cases.case import (
     quantity_rows,
     with_keys,
 )
-from verification.cases.recipes import Resolution
-from verification.cases.sliding.friction import BOX, SCENE, sliding_scene
+from verification.cases.recipes import BOX, Resolution, sliding_scene
 from verification.reference.hertz import CircularContact, effective_modulus
 
-RATIOS = (3.0, 4.0)
+SCENE, RATIOS = "plastic-swift-rigid", (3.0, 4.0)
 # in the elastic contact radius, and the box of the axisymmetric model in it
 ELEMENTS, AXISYMMETRIC, WIDE = 8, 32, 10.0
 HERTZ_ELEMENTS = (4, 6, 8, 12)  # in the contact radius

@@ -10,15 +10,17 @@ rough as the film is thick.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
 import sam
 from sam.contact import stresses, von_mises
 from sam.grid import Window
-from sam.scene import Coating, Result, Scene
+from sam.scene import Result, Scene
 from verification.cases.case import (
     SAM,
     Case,
@@ -26,6 +28,7 @@ from verification.cases.case import (
     Measured,
     Plot,
     SmallTable,
+    elastic_text,
     number,
     with_body,
     with_grid,
@@ -41,114 +44,14 @@ WHITE, WHITE_GRIDS = 2e-6, {"quick": (128,), "full": (128, 256)}  # cut-off in m
 SEEDS = (1, 2, 3, 4, 5)
 PAPER = {"p_max": 6.5e9, "change": -0.015}  # Fig. 3: 6.5 to 6.4 GPa, and 3.55 to 3.5 GPa of von Mises stress
 FILM_YIELD = 0.67e9  # a third of the hardness, Bosman & Schipper (2011), section 4
-SPREAD = (
-    (80e9, 60e-9),
-    (80e9, 100e-9),
-    (80e9, 160e-9),
-    (130e9, 60e-9),
-    (130e9, 100e-9),
-    (130e9, 160e-9),
-)  # Table 2
-CRYSTALLINE = tuple(
-    (share, depth) for share in (0.95, 0.9) for depth in (0.5e-6, 1e-6)
-)  # of Young's modulus, Fig. 4
-
-
-@dataclass(frozen=True)
-class Patches:
-    """The patch of the paper in all its variants.
-
-    smooth, white: grids of the patch under steel, and of the rougher one under a rigid plane; others: by
-    name; seeds, films, layers: rows of their tables, none at the quick level; shown: the scene that is drawn,
-    its coated and bare result.
-    """
-
-    base: Scene
-    smooth: Sequence[Result]
-    white: Sequence[Result]
-    others: Mapping[str, tuple[Scene, Result]]
-    extra: Sequence[SmallTable]
-    shown: tuple[Scene, Result, Result]
-
-
-class RoughFilm(Case):
-    """The patch of the paper on finer and finer grids, a rougher one, other seeds, films and layers; maps and
-    sections.
-    """
-
-    def solve(self, context: Context) -> Patches:
-        base, grids = context.scene(SCENE), GRIDS[context.level]
-        white = WHITE_GRIDS[context.level]
-        others = {"smooth, rigid": rigid(base), "rough, steel": rougher(base, keep_body=True)}
-        smooth = [context.solve(SAM, at(base, n), f"steel-{n}") for n in grids]
-        shown = at(base, grids[1])
-        return Patches(
-            base,
-            smooth,
-            [context.solve(SAM, at(rougher(base), n), f"white-rigid-{n}") for n in white],
-            {n: (scene, context.solve(SAM, at(scene, 128), label(n))) for n, scene in others.items()},
-            [table(context, base) for table in EXTRA[context.level]],
-            (shown, smooth[1], context.solve(SAM, with_body(shown, coating=None), "steel-bare")),
-        )
-
-    def measure(self, found: Patches) -> dict[str, Measured]:
-        return gates(found.smooth, found.white)
-
-    def setup(self, found: Patches) -> list[tuple[str, str]]:
-        scene, first = found.base, found.smooth[0].discretisation
-        body, film, surface = scene.body, scene.body.coating, scene.surface
-        return [
-            (
-                "Film",
-                f"{film.thickness * 1e9:g} nm of {film.young / 1e9:g} GPa on {body.young / 1e9:g} GPa, both "
-                "ν = 0.3",
-            ),
-            (
-                "Surface",
-                f"hard-turned, Ra = {surface.ra * 1e6:g} µm, feed {surface.feed * 1e6:g} µm, seed "
-                f"{surface.seed}",
-            ),
-            ("Shortest wave", f"{surface.cutoff_short * 1e6:g} µm (smooth), {WHITE * 1e6:g} µm (rough)"),
-            ("Patch", "64 × 64 µm, the same surface on every grid; heights fall off at the border"),
-            ("Load", f"{scene.loading.force:g} N, μ = {scene.coefficient:g}, against steel or a rigid plane"),
-            ("Cells in contact", f"{first['contact_cells']} of {64 * 64} on the coarsest grid"),
-        ]
-
-    def tables(self, found: Patches) -> list[SmallTable]:
-        rows = [row("smooth, steel", found.base, each) for each in found.smooth]
-        rows += [row("rough, rigid", rougher(found.base), each) for each in found.white]
-        rows += [row(name, *pair) for name, pair in found.others.items()]
-        return [SmallTable("What the film changes, at equal force", COLUMNS, rows), *found.extra]
-
-    def notes(self, found: Patches) -> list[str]:
-        return [why(found.base, found.smooth[-1], found.white[-1])]
-
-    def figures(self, found: Patches) -> Iterator[Plot]:
-        scene, coated, uncoated = found.shown
-        (x, y, p), (_, _, p_bare) = pressure_map(coated), pressure_map(uncoated)
-        yield Plot(
-            pressures(x, y, p, p_bare),
-            "pressure",
-            "Pressure on the rough patch",
-            "Maps of the pressure with and without the film and their difference: the same spots, slightly "
-            "larger and softer.",
-            "The patch of the paper's Fig. 3a and c, on a surface like theirs. Coated first; difference: "
-            "coated less bare.",
-        )
-        j = int(np.unravel_index(np.argmax(p_bare), p_bare.shape)[1])
-        depths = np.array([z for z in scene.grid.depths if z <= 4e-6])
-        fields = [
-            section(each, p_of, j, depths)
-            for each, p_of in ((scene, p), (with_body(scene, coating=None), p_bare))
-        ]
-        yield Plot(
-            sections(x, depths, *fields, thickness=scene.body.coating.thickness),
-            "mises",
-            "Von Mises stress under the rough patch",
-            "Sections of the von Mises stress under the largest pressure, coated and bare; they differ most "
-            "in the film.",
-            f"At y = {y[j] * 1e6:.1f} µm, where the pressure is largest (Fig. 3b and d). Sliding along +x.",
-        )
+SPREAD = tuple(product((80e9, 130e9), (60e-9, 100e-9, 160e-9)))  # Table 2
+CRYSTALLINE = tuple(product((0.95, 0.9), (0.5e-6, 1e-6)))  # of Young's modulus, Fig. 4
+SMOOTH, ROUGH = "smooth, steel", "rough, rigid"
+COLUMNS = (
+    *("surface, against", "cells", "p_max bare [GPa]", "coated [GPa]", "change", "von Mises bare [GPa]"),
+    *("change of the body's", "von Mises in the film [GPa]", "over its yield stress"),
+    *("radius of the summit [µm]", "claim"),
+)
 
 
 def at(scene: Scene, n: int) -> Scene:
@@ -161,54 +64,145 @@ def rigid(scene: Scene) -> Scene:
     return with_keys(scene, "counterbody", young=None, poisson=None)
 
 
-def rougher(scene: Scene, keep_body: bool = False) -> Scene:
-    """With all waves down to the cut-off WHITE, under a rigid plane."""
-    changed = with_keys(scene, "surface", cutoff_short=WHITE)
-    return changed if keep_body else rigid(changed)
+def rougher(scene: Scene) -> Scene:
+    """With all waves down to the cut-off WHITE."""
+    return with_keys(scene, "surface", cutoff_short=WHITE)
 
 
-def with_film(scene: Scene, **keys) -> Scene:
-    """With another coating."""
-    return with_keys(scene, "body.coating", **keys)
+def with_film(scene: Scene, thickness: float, **keys: float) -> Scene:
+    """With another coating: the depths within the old film spread over its thickness, the others below it."""
+    old, depths = scene.body.coating.thickness, scene.grid.depths
+    inside = [z * thickness / old for z in depths if z <= old]
+    scene = with_grid(scene, depths=(*inside, *(z for z in depths if z > thickness * 1.05)))
+    return with_keys(scene, "body.coating", thickness=thickness, **keys)
 
 
-def label(name: str) -> str:
-    """For a folder."""
-    return name.replace(", ", "-")
+def patches(base: Scene, level: str) -> dict[str, list[Scene]]:
+    """What the surface is like and against what it is pressed -> scenes."""
+    found = {
+        SMOOTH: [at(base, n) for n in GRIDS[level]],
+        ROUGH: [at(rigid(rougher(base)), n) for n in WHITE_GRIDS[level]],
+        "smooth, rigid": [at(rigid(base), 128)],
+        "rough, steel": [at(rougher(base), 128)],
+    }
+    if level == "quick":
+        return found
+    for name, scene in ((SMOOTH, base), (ROUGH, rigid(rougher(base)))):
+        found |= {f"{name}, seed {k}": [at(with_keys(scene, "surface", seed=k), 128)] for k in SEEDS}
+    for young, thickness in SPREAD:
+        name = f"{SMOOTH}, film of {young / 1e9:g} GPa and {thickness * 1e9:g} nm"
+        found[name] = [at(with_film(base, thickness, young=young), 64)]
+    for share, thickness in CRYSTALLINE:
+        layer = {"young": share * base.body.young, "poisson": base.body.poisson}
+        name = f"{SMOOTH}, {thickness * 1e6:g} µm of nano-crystalline steel, E {share - 1:+.0%}"
+        found[name] = [at(with_film(base, thickness, **layer), 64)]
+    return found
 
 
-def gates(smooth: Sequence[Result], white: Sequence[Result]) -> dict[str, Measured]:
-    """The patch of the paper on its coarsest grid, what refinement changes, and the rough patch that breaks
-    the claim.
+@dataclass(frozen=True)
+class Patches:
+    """Of each patch the results on its grids. shown: the scene that is drawn, its coated and bare result."""
+
+    scenes: Mapping[str, Sequence[Scene]]
+    results: Mapping[str, Sequence[Result]]
+    shown: tuple[Scene, Result, Result]
+
+
+class RoughFilm(Case):
+    """The patch of the paper on finer and finer grids, a rougher one, other seeds, films and layers; maps and
+    sections.
     """
-    first, last = smooth[0].quantities, white[-1].quantities
-    values = {"p-max": Measured(first["p_max_bare_Pa"], PAPER["p_max"], unit="Pa")}
-    for name, key in (("p", "p_max_change"), ("mises", "mises_max_change")):
-        changes = [result.quantities[key] for result in smooth]
-        values[f"{name}-change"] = Measured(changes[0], PAPER["change"])
-        values[f"{name}-refined"] = Measured(float(np.ptp(changes)))
-        values[f"{name}-white"] = Measured(abs(last[key]))
-    return values
+
+    def solve(self, context: Context) -> Patches:
+        scenes, results = patches(context.scene(SCENE), context.level), {}
+        for name, on_grids in scenes.items():
+            label = re.sub(r"[^a-z0-9-]+", "-", name.lower()).strip("-")
+            results[name] = [context.solve(SAM, s, f"{label}-{s.grid.cells[0]}") for s in on_grids]
+        shown = scenes[SMOOTH][1]
+        bare = context.solve(SAM, with_body(shown, coating=None), "steel-bare")
+        return Patches(scenes, results, (shown, results[SMOOTH][1], bare))
+
+    def measure(self, found: Patches) -> dict[str, Measured | float]:
+        smooth, last = found.results[SMOOTH], found.results[ROUGH][-1].quantities
+        bare = smooth[0].quantities["p_max_bare_Pa"]
+        values: dict[str, Measured | float] = {"p-max": Measured(bare, PAPER["p_max"], unit="Pa")}
+        for name, key in (("p", "p_max_change"), ("mises", "mises_max_change")):
+            changes = [result.quantities[key] for result in smooth]
+            values[f"{name}-change"] = Measured(changes[0], PAPER["change"])
+            values |= {f"{name}-refined": float(np.ptp(changes)), f"{name}-white": abs(last[key])}
+        return values
+
+    def setup(self, found: Patches) -> Iterator[tuple[str, str]]:
+        scene, first = found.shown[0], found.results[SMOOTH][0].discretisation
+        film, surface = scene.body.coating, scene.surface
+        yield "Half-space", elastic_text(scene.body)
+        yield "Film", f"{film.thickness * 1e9:g} nm, {elastic_text(film)}"
+        roughness = f"Ra = {surface.ra * 1e6:g} µm, feed {surface.feed * 1e6:g} µm, seed {surface.seed}"
+        yield "Surface", f"hard-turned, {roughness}"
+        yield "Shortest wave", f"{surface.cutoff_short * 1e6:g} µm (smooth), {WHITE * 1e6:g} µm (rough)"
+        yield "Patch", "64 × 64 µm, the same surface on every grid; heights fall off at the border"
+        load = f"{scene.loading.force:g} N, μ = {scene.coefficient:g}"
+        yield "Load", f"{load}, against steel or a rigid plane"
+        yield "Cells in contact", f"{first['contact_cells']} of {64 * 64} on the coarsest grid"
+
+    def tables(self, found: Patches) -> Iterator[SmallTable]:
+        rows = [row(name, result) for name, results in found.results.items() for result in results]
+        yield SmallTable("What the film changes, at equal force", COLUMNS, rows)
+
+    def notes(self, found: Patches) -> Iterator[str]:
+        for name, words in ((SMOOTH, "steel"), (ROUGH, "rigid")):
+            result, scene = found.results[name][-1], found.scenes[name][-1]
+            yield (
+                f"Against the {words} plane the largest pressure is curved like that of a sphere with a "
+                f"contact radius of {summit_radius(result) * 1e6:.2g} µm, and the film changes a sphere by "
+                f"{LIMIT:.0%} at one of {breaking_radius(scene) * 1e6:.2g} µm. The change here is "
+                f"{largest_change(result):.1%}: the claim {verdict(result)}."
+            )
+        yield (
+            "The film is negligible where the summits are wide against it, which the sampling of a measured "
+            "surface decides: with waves as short as a few micrometres it is not. Its own stress is beyond "
+            "its yield stress in all of them."
+        )
+
+    def figures(self, found: Patches) -> Iterator[Plot]:
+        scene, coated, uncoated = found.shown
+        (x, y, p), (_, _, p_bare) = pressure_map(coated), pressure_map(uncoated)
+        yield Plot(
+            pressures(x, y, {"coated": p, "bare": p_bare}),
+            "pressure",
+            "Pressure on the rough patch",
+            "Maps of the pressure with and without the film and their difference: the same spots, slightly "
+            "larger and softer.",
+            "The patch of the paper's Fig. 3a and c, on a surface like theirs. Coated first; difference: "
+            "coated less bare.",
+        )
+        j = int(np.unravel_index(np.argmax(p_bare), p_bare.shape)[1])
+        depths = np.array([z for z in scene.grid.depths if z <= 4e-6])
+        bodies = (scene, p), (with_body(scene, coating=None), p_bare)
+        fields = [section(each, p_of, j, depths) for each, p_of in bodies]
+        yield Plot(
+            sections(x, depths, *fields, thickness=scene.body.coating.thickness),
+            "mises",
+            "Von Mises stress under the rough patch",
+            "Sections of the von Mises stress under the largest pressure, coated and bare; they differ most "
+            "in the film.",
+            f"At y = {y[j] * 1e6:.1f} µm, where the pressure is largest (Fig. 3b and d). Sliding along +x.",
+        )
 
 
-COLUMNS = (
-    *(
-        "surface, against",
-        "cells",
-        "p_max bare [GPa]",
-        "coated [GPa]",
-        "change",
-        "von Mises bare [GPa]",
-        "change of the body's",
-    ),
-    *("von Mises in the film [GPa]", "over its yield stress", "radius of the summit [µm]", "claim"),
-)
+def largest_change(result: Result) -> float:
+    """Of pressure and stress by the film, as a share."""
+    return max(abs(result.quantities[key]) for key in ("p_max_change", "mises_max_change"))
 
 
-def row(name: str, scene: Scene, result: Result) -> tuple[str, ...]:
+def verdict(result: Result) -> str:
+    """What becomes of the claim."""
+    return "holds" if largest_change(result) <= LIMIT else "FAILS"
+
+
+def row(name: str, result: Result) -> tuple[str, ...]:
     """One line of the table; the summit is that with the largest pressure."""
     q, cells = result.quantities, result.discretisation["cells"]
-    holds = max(abs(q["p_max_change"]), abs(q["mises_max_change"])) <= LIMIT
     return (
         name,
         f"{cells[0]} × {cells[1]}",
@@ -219,7 +213,7 @@ def row(name: str, scene: Scene, result: Result) -> tuple[str, ...]:
         number(q["mises_max_film_Pa"] * 1e-9, 4),
         f"{q['mises_max_film_Pa'] / FILM_YIELD:.1f}",
         number(summit_radius(result) * 1e6, 3),
-        "holds" if holds else "FAILS",
+        verdict(result),
     )
 
 
@@ -237,76 +231,6 @@ def summit_radius(result: Result) -> float:
     return math.sqrt(-2 * p[i, j] / (along_x + along_y))
 
 
-def why(base: Scene, smooth: Result, white: Result) -> str:
-    """What decides: the size of the summits against the radius of the sphere that breaks the limit."""
-    words = []
-    for name, scene, result in (("steel", base, smooth), ("rigid", rougher(base), white)):
-        q = result.quantities
-        worst = max(abs(q["p_max_change"]), abs(q["mises_max_change"]))
-        broken = worst > LIMIT
-        words.append(
-            f"Against the {name} plane the largest pressure is curved like that of a sphere with a contact "
-            f"radius of {summit_radius(result) * 1e6:.2g} µm, and the film changes a sphere by {LIMIT:.0%} "
-            f"at one of {breaking_radius(scene) * 1e6:.2g} µm. The change here is {worst:.1%}: the claim "
-            f"{'FAILS' if broken else 'holds'}."
-        )
-    return " ".join(words) + (
-        " The film is negligible where the summits are wide against it, which the sampling of a measured "
-        "surface decides: with waves as short as a few micrometres it is not. Its own stress is beyond its "
-        "yield stress in all of them."
-    )
-
-
-def seeds_table(context: Context, base: Scene) -> SmallTable:
-    """The same statistics, other surfaces."""
-    rows = []
-    for name, scene in (("smooth, steel", base), ("rough, rigid", rougher(base))):
-        for seed in SEEDS:
-            drawn = with_keys(scene, "surface", seed=seed)
-            result = context.solve(SAM, at(drawn, 128), f"{label(name)}-seed-{seed}")
-            rows.append((f"{seed}", *row(name, drawn, result)))
-    return SmallTable("Other surfaces of the same roughness", ("seed", *COLUMNS), rows)
-
-
-def films_table(context: Context, base: Scene) -> SmallTable:
-    """The range of films in the paper's Table 2."""
-    rows = []
-    for young, thickness in SPREAD:
-        scene = at(with_film(with_depths(base, thickness), young=young, thickness=thickness), 64)
-        result = context.solve(SAM, scene, f"film-{young / 1e9:g}-{thickness * 1e9:g}")
-        cells = row("smooth, steel", scene, result)
-        rows.append((f"{young / 1e9:g} GPa", f"{thickness * 1e9:g} nm", *cells[4:7], cells[-1]))
-    return SmallTable(
-        "Films as thick and stiff as the literature in the paper's Table 2 has them",
-        ("Young's modulus", "thickness", *COLUMNS[4:7], COLUMNS[-1]),
-        rows,
-    )
-
-
-def layers_table(context: Context, base: Scene) -> SmallTable:
-    """A nano-crystalline layer with a lower Young's modulus in place of the film (Fig. 4)."""
-    rows = []
-    for share, thickness in CRYSTALLINE:
-        layer = Coating(thickness=thickness, young=share * base.body.young, poisson=base.body.poisson)
-        scene = with_depths(base, thickness)
-        scene = at(with_body(scene, coating=layer), 64)
-        result = context.solve(SAM, scene, f"layer-{share:g}-{thickness * 1e9:g}")
-        cells = row("smooth, steel", scene, result)
-        rows.append((f"{share - 1:+.0%}", f"{thickness * 1e6:g} µm", *cells[4:7], cells[-1]))
-    return SmallTable(
-        "A nano-crystalline layer that is softer than the bulk, as its porosity may make it",
-        ("Young's modulus", "thickness", *COLUMNS[4:7], COLUMNS[-1]),
-        rows,
-    )
-
-
-def with_depths(scene: Scene, thickness: float) -> Scene:
-    """With the depths within the old film spread over one of this thickness, the others below it."""
-    old = scene.body.coating.thickness
-    inside = [z * thickness / old for z in scene.grid.depths if z <= old]
-    return with_grid(scene, depths=(*inside, *(z for z in scene.grid.depths if z > thickness * 1.05)))
-
-
 def section(scene: Scene, pressure: np.ndarray, j: int, depths: np.ndarray) -> np.ndarray:
     """Von Mises stress in the row j of cells, (nx, nz) in Pa, of the pressure (nx, ny) and its traction."""
     (nx, ny), (lx, ly) = scene.grid.cells, scene.grid.extent
@@ -318,6 +242,4 @@ def section(scene: Scene, pressure: np.ndarray, j: int, depths: np.ndarray) -> n
     return von_mises(stress)[:, :, 0].T
 
 
-EXTRA = {"quick": (), "full": (seeds_table, films_table, layers_table)}
-"""Tables of the levels besides that of all grids."""
 CASES = (RoughFilm("rough-film"),)

@@ -18,9 +18,9 @@ import numpy as np
 from fem_reference.spatial import WornCycle, worn_cycles
 from sam.scene import Plasticity, Result, Scene, Wear
 from verification.cases.case import SAM, Case, Context, Measured, Plot, SmallTable, with_loading
-from verification.cases.rough.rough_contact import MAP, SCENE, Setting, at, relative_l2
-from verification.compare.rough_measures import Depths, PatchPressure, compared_depths, spots
-from verification.figures.rough_contact import residual
+from verification.cases.recipes import cells_of_asperities, rubbed
+from verification.compare.rough_measures import Depths, PatchPressure, compared_depths, relative_l2, spots
+from verification.figures.rough import residual
 from verification.scenes.asperities import HIGH, LOW, SIDE
 
 CELLS = (32, 48, 64)
@@ -110,7 +110,8 @@ def over_squares(values: np.ndarray) -> np.ndarray:
 
 def scene_of(base: Scene, cells: int) -> Scene:
     """The asperities on cells x cells cells, with back-stresses, friction map and wear."""
-    scene = with_loading(at(base, Setting("", MAP, steps=STEPS), cells), cycles=CYCLES)
+    scene = cells_of_asperities(rubbed(base, "map"), cells)
+    scene = with_loading(scene, steps=STEPS, cycles=CYCLES)
     body = scene.body.model_copy(update={"plasticity": LAW})
     return scene.model_copy(
         update={"body": body, "wear": Wear(strain_limit=np.inf, strain_limit_layer=LIMIT, smoothing_window=0)}
@@ -133,7 +134,7 @@ class RunningInFem(Case):
     """Both models over the cycles on three grids."""
 
     def solve(self, context: Context) -> dict[int, Solved]:
-        base = context.scene(SCENE)
+        base = context.scene("rough-asperities")
         return {cells: solved(context, base, cells) for cells in CELLS}
 
     def measure(self, found: dict[int, Solved]) -> dict[str, Measured]:

@@ -18,12 +18,11 @@ from verification.cases.case import (
     number,
     with_loading,
 )
-from verification.cases.recipes import Resolution
+from verification.cases.recipes import Resolution, sliding_scene
 from verification.cases.running_in.running_in_scenes import (
     Effort,
     reduced,
 )
-from verification.cases.sliding.friction import sliding_scene
 from verification.runs.sampling import surface_pressure
 
 SPHERE, RATIO, LIMIT = "plastic-linear", 6.2, 0.004

@@ -95,14 +95,14 @@ AGREEMENT = (
             Cell(
                 "kinematic steel: largest strain that the first and the fourth pass add, SAM",
                 *PASSES,
-                ("SAM", "12"),
+                ("sam-12",),
                 ("pass 1", "pass 4"),
                 "{} ‰, {} ‰",
             ),
             Cell(
                 "the same, FEM",
                 *PASSES,
-                ("finite elements", "6"),
+                ("fem-6",),
                 ("pass 1", "pass 4"),
                 "{} ‰, {} ‰",
             ),
