@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from verification.cases.running_in.running_in_statements import BULK, HARDENING, A, B
+from verification.cases.running_in.scenes import BULK, HARDENING, A, B
 from verification.compare.running_in_measures import History
 
 CYCLES = np.arange(1, 26)

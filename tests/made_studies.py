@@ -11,10 +11,9 @@ from verification.cases.running_in import (
     running_in_physics as physics_study,
     running_in_sensitivity as inputs_study,
 )
-from verification.cases.running_in.running_in_deciders import Studied
-from verification.cases.running_in.running_in_inputs import INPUTS, scene_at
 from verification.cases.running_in.running_in_physics import ALL, Counter, Physics
-from verification.cases.running_in.running_in_statements import NAMES
+from verification.cases.running_in.running_in_sensitivity import INPUTS, Studied, scene_at
+from verification.cases.running_in.scenes import NAMES
 from verification.sensitivity import UNIFORM, design
 
 POINTS = 40

@@ -79,10 +79,10 @@ def contact_of(scene: Scene) -> CircularContact:
 class Solved:
     """A scene with its reference and the result of each model, by the name of its run; frame: of the
     sweeps of the case, see `verification.cases.sweep`; coarser: the same with larger cells and elements,
-    and the ratio of the sizes; others: of another scene, likewise by run.
+    and the ratio of the sizes; others: of another scene, likewise by run; without a scene the frame is all.
     """
 
-    scene: Scene
+    scene: Scene | None
     reference: Reference | None
     results: dict[str, Result]
     frame: pd.DataFrame | None = None

@@ -30,6 +30,7 @@ from verification.reference.flat_punch import FlatPunch
 from verification.reference.hamilton import sliding_stress
 from verification.reference.hertz import axis_stress, largest_von_mises
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
+from verification.reference.misfit_sphere import GrowingSphere
 from verification.reference.rounded_punch import RoundedPunch
 from verification.reference.shakedown import upper_bound
 from verification.reference.stress import von_mises
@@ -58,6 +59,7 @@ def hertz_sphere(scene: Scene) -> Reference:
             "approach": delta,
             "load": exact.force,
             "radius": a,
+            "area": math.pi * a**2,
             "mises-max": largest,
             "mises-depth": depth,
             "pressure": lambda x, y: exact.pressure(np.hypot(x, y)),
@@ -290,6 +292,14 @@ def film_changes(scene: Scene) -> tuple[float, float]:
     thickness = film.thickness / contact_of(scene).contact_radius
     contact = film_contact(thickness, film.young / body.young, film.poisson, body.poisson, counter=counter)
     return pressure_change(contact), mises_change(contact)
+
+
+def growing_sphere(scene: Scene, shares: tuple[float, ...] = (1.0,)) -> GrowingSphere:
+    """The closed form of a held misfit sphere, with at most one back-stress."""
+    body, loading, back = scene.body, scene.loading, scene.body.plasticity.kinematic
+    law, constants = body.plasticity.curve().stress, (back.modulus[0], back.recovery[0]) if back else ()
+    sphere = loading.misfit, loading.radius, loading.profile
+    return GrowingSphere(body.young, body.poisson, law, *sphere, shares, *constants)
 
 
 REFERENCES: Mapping[str, Callable[[Scene], Reference]] = {

@@ -8,8 +8,8 @@ Braces stand for several rows: `"{sam,fem}-radius"` with "radius, {SAM,FEM}" are
 stands in `[reasons]`, an equation "name" in equations.toml.
 
 Where a case has tables `[sweeps.NAME]`, a fifth entry says what a row takes of the points of the sweeps, see
-`Take`: `"order p-max of sam"`, `"share of fem at depth = 3"`, `"limit peeq-max of sam | limit peeq-max of
-fem"` with what it is held against.
+`Take`: `"order p-max of sam"`, `"share of fem at depth = 3"`, `"limit peeq-max of sam | of fem"` with what it
+is held against. Points that need more than axes are what a function returns, `frame = "NAME"`.
 """
 
 from __future__ import annotations
@@ -46,7 +46,8 @@ class Take(NamedTuple):
     """What a row takes of the frame of the sweeps: `STATISTIC COLUMN of SWEEP MODEL at AXIS = VALUE, ...`.
 
     statistic: a name in `verification.cases.sweep.STATISTICS` or of a function beside the file; of: names of
-    sweeps and models; at: (axis, comparison, value); a number alone: what is expected.
+    sweeps and models; at: (axis, comparison, value). What it is held against follows a bar: a number alone,
+    another take, or `of` and names in place of its own.
     """
 
     statistic: str
@@ -56,8 +57,21 @@ class Take(NamedTuple):
     number: float | None = None
 
     @classmethod
+    def of_row(cls, text: str) -> tuple[Take, ...]:
+        """What a row takes, and what that is held against where it says so. Raises ValueError."""
+        first, *others = text.split(" | ")
+        take = cls.parse(first)
+        held = (
+            cls(take.statistic, take.column, tuple(other.split()[1:]), take.at)
+            if other.startswith("of ")
+            else cls.parse(other)
+            for other in others
+        )
+        return take, *held
+
+    @classmethod
     def parse(cls, text: str) -> Take:
-        """Raises ValueError for what does not read as one."""
+        """One side of a take. Raises ValueError for what does not read as one."""
         found = _TAKE.fullmatch(text.strip())
         if not found:
             raise ValueError(f"no take: {text}")
@@ -76,8 +90,9 @@ class SweepFile(BaseModel):
 
     models: that solve each; axes: key of the scene or recipe -> its values, or name -> the keys and recipes
     of a value; quick: axes with other values at that level; columns: quantity, or a function beside the
-    file -> "value", "between" (SAM against FEM), or the metric of its error against the reference; size: what
-    is refined, for orders and limits; demand: whether a point that does not converge breaks the case off.
+    file -> "value", "between" (SAM against FEM), or the metric of its error against the reference, a list of
+    names for values alone; size: what is refined, for orders and limits; demand: whether a point that does
+    not converge breaks the case off.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
@@ -94,6 +109,11 @@ class SweepFile(BaseModel):
     def _accept_lists(cls, value: object) -> object:
         return tuple(value) if isinstance(value, list) else value
 
+    @field_validator("columns", mode="before")
+    @classmethod
+    def _accept_names(cls, value: object) -> object:
+        return dict.fromkeys(value, "value") if isinstance(value, list) else value
+
 
 class CaseFile(BaseModel):
     """A case as its file says it.
@@ -109,7 +129,8 @@ class CaseFile(BaseModel):
     name it; values: quantity -> the number that it is held against; reference: an
     independent answer, a name in `verification.references`; figures: kinds of `verification.cases.kinds`;
     claims: table of rows -> name -> its quantity, of those without a take; sweeps: its points beside the
-    scene itself; takes: id of a row -> what it takes of them, see `Take`; notes: sentences below the
+    scene itself; frame: function beside the file that returns points instead; setting: (name, number with
+    unit) for the reader; takes: id of a row -> what it takes of them, see `Take`; notes: sentences below the
     tables; views: pictures in space.
 
     allowance: rows of SAM against FEM that hold the difference over what refinement allows, known from
@@ -144,8 +165,10 @@ class CaseFile(BaseModel):
     rows: tuple[Row, ...]
     claims: dict[str, dict[str, str]]
     sweeps: dict[str, SweepFile] = {}
+    frame: str = ""
     takes: dict[str, tuple[Take, ...]] = {}
     notes: tuple[str, ...] = ()
+    setting: tuple[tuple[str, str], ...] = ()
 
     @property
     def own(self) -> bool:
@@ -197,7 +220,7 @@ def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     named = [each for each in content.get("equations", ()) if isinstance(each, str)]
     content["equations"] = [_equations().get(e, e) if e in named else e for e in content.get("equations", ())]
     lists = {key: tuple(value) for key, value in content.items() if isinstance(value, list)}
-    lists["equations"] = tuple(map(tuple, lists["equations"]))
+    lists |= {key: tuple(map(tuple, lists[key])) for key in ("equations", "setting") if key in lists}
     twice = sorted({row.id for row in rows if sum(other.id == row.id for other in rows) > 1})
     faults += [Problem("rows", name, "occurs twice") for name in twice]
     claims = {
@@ -246,11 +269,8 @@ def _rows(
             alone = not words or words[0] in QUANTITIES
             said = [f"{QUANTITIES[name].words}{of}" for name in of_names] if alone else _braces(words[0])
             if take:
-                parts = [each.split(" | ") for each in _braces(*take)]
-                takes |= {
-                    f"{case}.{name}": tuple(map(Take.parse, part))
-                    for name, part in zip(names, parts, strict=True)
-                }
+                sides = map(Take.of_row, _braces(*take))
+                takes |= {f"{case}.{name}": side for name, side in zip(names, sides, strict=True)}
             for name, quantity in zip(names, said, strict=True):
                 yield Row(
                     id=f"{case}.{lead}{name}",

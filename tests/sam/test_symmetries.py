@@ -15,15 +15,19 @@ import sam
 from sam.contact import bodies
 from sam.kernels.patches import displacement_coefficients
 from verification.cases.hertz import symmetries
-from verification.cases.hertz.invariances import (
+from verification.cases.hertz.symmetries import (
     LENGTH_FACTOR,
     SCALED,
     YOUNG_FACTOR,
+    blunter,
+    change,
+    contact_of,
     differences,
     in_units,
     scaled,
+    scenes,
+    turned,
 )
-from verification.cases.hertz.symmetries import blunter, change, contact_of, scenes, turned
 from verification.judging import Measured
 from verification.runs.models import SAM
 

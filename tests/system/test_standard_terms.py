@@ -26,7 +26,7 @@ SOURCES = [
     for path in sorted((ROOT / folder).rglob("*"))
     if path.suffix in (".py", ".md", ".toml") and path != Path(__file__)
 ]
-PUBLIC = ("mutation.not-inert", '"not-inert"', '"lifted"')
+PUBLIC = ("mutation.not-inert", "not-inert", '"lifted"')
 
 
 def private_words(text: str) -> list[str]:

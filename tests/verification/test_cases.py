@@ -10,10 +10,10 @@ from made_results import context, red, with_column, with_quantities
 
 from sam.scene import load_scene
 from verification.cases import LEVELS, all_cases
-from verification.cases.case import with_grid, with_mesh
-from verification.cases.hertz.hertz import fem_values, sam_values
+from verification.cases.case import with_body, with_grid, with_mesh
+from verification.quantities import Solved
 from verification.reference.convergence import fit_order
-from verification.references import contact_of
+from verification.references import hertz_sphere
 from verification.rows import load_rows
 from verification.runs import models
 from verification.runs.sampling import plane_field_on, pressure_on, surface_pressure
@@ -59,14 +59,14 @@ def solved(scene):
     return {name: models.solve(once, name) for name in (models.SAM, models.FEM)}
 
 
-def test_solvers_hold_every_gate_of_their_own(scene, solved):
-    exact = contact_of(scene)
-    values = sam_values(solved[models.SAM], exact, scene) | fem_values(solved[models.FEM], exact, scene)
-    assert red("hertz-sphere", values) == set()
+def measured(scene, solved, **changed):
+    """What the case measures of both models, one of them perhaps changed, on the closed form of a scene."""
+    results = {"sam": solved[models.SAM], "fem": solved[models.FEM]} | changed
+    return CASES["hertz-sphere"].measure({"": Solved(scene, hertz_sphere(scene), results)})
 
 
 @pytest.mark.parametrize(
-    ("quantity", "factor", "gate"),
+    ("quantity", "factor", "row"),
     [
         ("p_max_Pa", 1.0002, "sam-p-max"),
         ("approach_m", 0.9998, "sam-approach"),
@@ -74,34 +74,32 @@ def test_solvers_hold_every_gate_of_their_own(scene, solved):
         ("mises_max_depth_m", 0.994, "sam-mises-depth"),
     ],
 )
-def test_wrong_quantity_turns_its_gate_red(scene, solved, quantity, factor, gate):
+def test_rows_hold_and_a_wrong_quantity_turns_its_row_red(scene, solved, quantity, factor, row):
+    assert red("hertz-sphere", measured(scene, solved)) == set()
     wrong = with_quantities(solved[models.SAM], **{quantity: factor})
-    assert red("hertz-sphere", sam_values(wrong, contact_of(scene), scene)) == {gate}
+    assert red("hertz-sphere", measured(scene, solved, sam=wrong)) == {row}
 
 
-def test_wrong_pressure_map_turns_load_and_pressure_red(scene, solved):
-    sam = solved[models.SAM]
+def test_a_wrong_pressure_a_lost_force_and_a_wrong_stress_turn_red(scene, solved):
+    sam, fem = solved[models.SAM], solved[models.FEM]
     pressure = np.array(sam.fields.cell_data["p_Pa"]) * 1.02
     wrong = replace(sam, fields=replace(sam.fields, cell_data={"p_Pa": pressure}))
-    assert red("hertz-sphere", sam_values(wrong, contact_of(scene), scene)) == {"sam-load", "sam-pressure"}
-
-
-def test_lost_force_and_wrong_stress_of_fem_turn_red(scene, solved):
-    fem = solved[models.FEM]
+    assert red("hertz-sphere", measured(scene, solved, sam=wrong)) == {"sam-load", "sam-pressure", "pressure"}
     wrong = with_column(fem, "axis", "mises_Pa", lambda values: 1.01 * values)
     wrong = replace(wrong, certificate={**fem.certificate, "force_balance": 2e-8})
-    assert red("hertz-sphere", fem_values(wrong, contact_of(scene), scene)) == {"fem-load", "fem-mises-axis"}
+    assert red("hertz-sphere", measured(scene, solved, fem=wrong)) == {
+        "fem-load",
+        "fem-mises-axis",
+        "mises-axis",
+    }
 
 
 def test_softer_body_is_noticed(scene, solved):
     """The closed form of a modulus 0.1 % higher: p0 and approach go with E*^(2/3) and E*^(-2/3), both beyond
     1e-4.
     """
-    stiffer = scene.model_copy(
-        update={"body": scene.body.model_copy(update={"young": scene.body.young * 1.001})}
-    )
-    values = sam_values(solved[models.SAM], contact_of(stiffer), stiffer)
-    assert {"sam-p-max", "sam-approach"} <= red("hertz-sphere", values)
+    stiffer = with_body(scene, young=scene.body.young * 1.001)
+    assert {"sam-p-max", "sam-approach"} <= red("hertz-sphere", measured(stiffer, solved))
 
 
 def test_unconverged_solve_breaks_the_case_off(tmp_path, scene):

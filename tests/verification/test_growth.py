@@ -16,8 +16,8 @@ from sam import choose_grid
 from verification.cases import all_cases
 from verification.cases.case import Context, with_loading
 from verification.cases.cost import growth as case
-from verification.cases.cyclic.repeated_loading import P0, pressed
-from verification.cases.cyclic.repeated_sliding import slid
+from verification.cases.cyclic.repeated import law
+from verification.cases.recipes import even_cells, rubbed
 from verification.cost import estimates, growth
 from verification.cost.growth import Applied, Taken
 from verification.cost.measured import alone, idle_bytes, solve_alone
@@ -85,14 +85,15 @@ def test_memory_is_predicted_within_a_fifth(rung, idle, monkeypatch):
     assert taken.expected.memory_bytes == pytest.approx(taken.memory, rel=0.2)
 
 
-@pytest.mark.parametrize(
-    "repeated",
-    [pressed("chaboche", P0["chaboche"], 9, 4), slid("chaboche", 6)],
-    ids=["pressed", "with traction"],
-)
-def test_memory_of_repeated_loads_is_predicted_within_a_fifth(repeated, idle):
+@pytest.mark.parametrize("slides", [False, True], ids=["pressed", "with traction"])
+def test_memory_of_repeated_loads_is_predicted_within_a_fifth(slides, idle, tmp_path):
     """Four cycles with back-stresses; the zone below a given pressure is wider than below a sphere."""
-    ready = with_loading(repeated, steps=1)
+    given = Context("growth", tmp_path, "quick", lambda *_: None).scene("repeated-hertz")
+    ready = with_loading(law(given, "chaboche"), steps=1, cycles=4)
+    if slides:
+        ready = with_loading(rubbed(even_cells(ready, (6, 2.4, 2.4, 3.0)), {"coefficient": 0.2}), p0=3.8e9)
+    else:
+        ready = even_cells(ready, (9, 1.6, 1.6, 2.0))
     result = solve_alone(ready, SAM)
     taken = result.cost["peak_memory_bytes"] - idle
     said = estimates.estimate(ready, SAM).memory_bytes - estimates.IDLE_BYTES

@@ -12,8 +12,8 @@ from made_studies import GOOD, over_inputs, over_physics
 from page_checks import PageReader, faults_of
 
 from verification.cases.running_in import running_in_physics, running_in_sensitivity
-from verification.cases.running_in.running_in_statements import BULK, HARDENING, NAMES, STATEMENTS, judge
-from verification.cases.running_in.running_in_tables import statements_table
+from verification.cases.running_in.scenes import BULK, HARDENING, NAMES
+from verification.cases.running_in.study import STATEMENTS, judged as judged_on, statements_table
 from verification.suite.pages import write_report
 from verification.suite.pages.findings import Evidence, PaperStatements
 from verification.suite.pages.headline import COLUMNS, NOTHING, headline_of
@@ -56,10 +56,7 @@ def readings():
     said = as_the_paper_says()
     still = {**said, HARDENING: replace(said[HARDENING], volume=0.0 * said[HARDENING].volume)}
     early = {**said, HARDENING: replace(said[HARDENING], volume=said[BULK].volume)}
-    judged = {
-        name: [judge(each, [own] * 3) for each in STATEMENTS]
-        for name, own in (("printed inputs", still), ("renewed", early))
-    }
+    judged = {"printed inputs": judged_on([still] * 3), "renewed": judged_on([early] * 3)}
     setup = [("Second reading", "a soft layer; for curve B: a file")]
     return record(READINGS, [statements_table(judged)], setup=setup)
 
@@ -132,10 +129,7 @@ def test_the_answer_counts_what_the_tables_hold(readings, studies):
 def test_what_finer_cells_refute_is_not_counted_and_named(readings, studies):
     said_so = as_the_paper_says()
     busy = {**said_so, BULK: replace(said_so[BULK], volume=1e-18 * np.arange(1.0, 26.0))}
-    cells = {
-        name: [judge(each, [own]) for each in STATEMENTS]
-        for name, own in (("1 µm", said_so), ("0.5 µm", busy))
-    }
+    cells = {"1 µm": judged_on([said_so]), "0.5 µm": judged_on([busy])}
     finer = record(FINER, [statements_table(cells)])
     text = headline_of(read_stored(stored(readings, *studies, finer))).answer
     assert "1 of these 13 (bulk: worn in the first six cycles) failed on finer cells" in text

@@ -43,8 +43,9 @@ def test_passes_of_both_models_are_held_over_the_first_and_those_that_count_over
     right = passed((4.0, 0.2, 0.03), (6e-3, 3e-4, 4e-5))
     other = passed((4.0, 0.3, 0.03), (6e-3, 6e-4, 4e-5), "settling")
     found = solved({"sam-12": right, "fem-6": other})
-    names = "energy", "strain", "own-energy", "own-strain"
-    values = {name: QUANTITIES[name].whole(found) for name in names}
+    values = {
+        name: QUANTITIES[name].whole(found) for name in ("energy", "strain", "own-energy", "own-strain")
+    }
     assert values == pytest.approx(
         {"energy": 0.025, "strain": 0.05, "own-energy": 1.0 / 3.0, "own-strain": 0.5}, rel=1e-12
     )

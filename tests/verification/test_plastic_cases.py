@@ -11,13 +11,11 @@ import pytest
 from made_results import Made, context, square_mesh
 
 from verification.cases.compared import refinement, scene_of
-from verification.cases.published.indentation import curve
 from verification.cases.recipes import initial_yield, layer_faces
 from verification.figures.plastic import iso_lines
 from verification.judging import error_of
 from verification.quantities import QUANTITIES, Solved
 from verification.reference.convergence import extrapolate
-from verification.reference.indentation import onset
 from verification.references import contact_of
 from verification.rows import case_files
 from verification.runs.sampling import means_of_cells, means_of_line, ring_edges
@@ -157,16 +155,3 @@ class TestExtrapolation:
     def test_two_sizes_are_no_ladder(self):
         with pytest.raises(ValueError):
             extrapolate([0.4, 0.2, 0.2], [1.0, 2.0, 3.0])
-
-
-def test_indentation_counts_resolved_load_steps_within_the_fits_only():
-    """Approach 1 to 30 w_c, load equal to it; the first contacts are a few elements, the last are beyond w* =
-    20.
-    """
-    w = np.arange(1.0, 31.0)
-    unit = onset(1.615, 105e-6, 210e9 / 0.91, 1e9)
-    history = {"approach_m": w * unit.approach, "force_N": w * unit.load, "contact_area_m2": w * unit.area}
-    found = curve(SimpleNamespace(tables={"history": history}), unit)
-    assert found[0] == pytest.approx(np.arange(4.0, 22.0)) and found[1] == pytest.approx(
-        found[0]
-    )  # sqrt(4/30) > 0.35

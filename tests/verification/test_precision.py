@@ -223,8 +223,10 @@ def test_gates_of_the_case_turn_red_when_a_model_becomes_slow_or_errs(studies):
 def test_a_model_that_never_gets_there_counts_with_its_finest_point(studies):
     """0.5/32 = 1.6 %: 3D does not reach 1 %, and needed more than 0.5 * 32^2 s."""
     rubbed = studies[1]
-    assert rubbed.time(SPATIAL, 0.01).value is None
-    assert case.time_ratio(rubbed, SPATIAL, 0.01) == pytest.approx(rubbed.time(COUPLED, 0.01).value / 512.0)
+    assert rubbed.curves[SPATIAL].time(0.01).value is None
+    assert case.time_ratio(rubbed, SPATIAL, 0.01) == pytest.approx(
+        rubbed.curves[COUPLED].time(0.01).value / 512.0
+    )
 
 
 def test_the_ratio_is_taken_at_the_smallest_error_that_both_reach(studies):
@@ -232,7 +234,7 @@ def test_the_ratio_is_taken_at_the_smallest_error_that_both_reach(studies):
     rubbed = studies[1]
     ratio, error = case.faster(rubbed, SPATIAL)
     assert error == pytest.approx(0.5 / 32, rel=0.01)
-    assert ratio == pytest.approx(512.0 / rubbed.time(COUPLED, error).value)
+    assert ratio == pytest.approx(512.0 / rubbed.curves[COUPLED].time(error).value)
     least, most = case.faster_range(rubbed, SPATIAL)
     assert least <= ratio <= most and least < most
     assert math.isnan(case.faster(rubbed, AXISYMMETRIC)[0])  # has no such model
@@ -293,8 +295,8 @@ def test_a_solve_that_breaks_off_or_does_not_converge_is_shown_and_counts_as_no_
     strict = measuring.once(HERTZ, HERTZ.methods[0], scene, 4, solve=lambda *_: bad)
     lenient = measuring.once(HERTZ, replace(HERTZ.methods[0], strict=False), scene, 4, solve=lambda *_: bad)
     assert not strict.values and lenient.values == {"p_max_Pa": 1e9}
-    drawn = measuring.curve(HERTZ.methods[0], [found, strict, lenient], {"p_max_Pa": Reference(2e9, 0.0, "")})
-    assert np.isnan(drawn.errors[:2]).all() and drawn.errors[2] == 0.5 and drawn.time(0.6, 0.0).value == 1.0
+    drawn = measuring.curve([found, strict, lenient], {"p_max_Pa": Reference(2e9, 0.0, "")})
+    assert np.isnan(drawn.errors[:2]).all() and drawn.errors[2] == 0.5 and drawn.time(0.6).value == 1.0
 
 
 def test_repeats_become_their_median():

@@ -8,8 +8,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from sam.scene import load_scene
-from verification.cases.running_in import running_in_runs
-from verification.cases.running_in.running_in_statements import (
+from verification.cases.running_in import running_in
+from verification.cases.running_in.scenes import (
     BULK,
     HARDENING,
     NAMES,
@@ -114,7 +114,7 @@ class TestRegime:
     )
     def test_pressures_that_remove_metal_in_the_five_cases(self, case, removal, softer):
         """Three digits, as they are known."""
-        limits, other = running_in_runs.limits_of(SCENES[case])
+        limits, other = running_in.limits_of(SCENES[case])
         assert (limits.removal / 1e9, other.removal / 1e9) == (
             pytest.approx(removal, abs=5e-3),
             pytest.approx(softer, abs=5e-3),

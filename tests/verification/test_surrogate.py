@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from verification.cases.running_in.running_in_deciders import PREDICTS
+from verification.cases.running_in.running_in_sensitivity import PREDICTS
 from verification.sensitivity import UNIFORM, design
 from verification.surrogate import surrogate
 

@@ -6,9 +6,8 @@ from dataclasses import replace
 import pytest
 from made_results import context, red
 
-from verification.cases.cost import uncertainty, uncertainty_study as study
-from verification.cases.cost.uncertainty import Found
-from verification.cases.cost.uncertainty_study import Row, covered, of_program, of_textbook
+from verification.cases.cost import uncertainty as study
+from verification.cases.cost.uncertainty import Found, Row, covered, of_program, of_textbook
 from verification.judging import Measured
 
 CASE = "uncertainty"
@@ -18,14 +17,14 @@ CASE = "uncertainty"
 def rows(tmp_path_factory) -> list[Row]:
     """The bare elastic problems, whose answers are closed forms."""
     where = context(CASE, tmp_path_factory.mktemp("case"))
-    closed = (study.of_hertz, study.of_ellipse, study.of_rounded)
-    own = [each for each in study.subjects(study=True) if each.truth in closed]
+    closed = ("Hertz", "sliding", "ellipsoid", "rounded")
+    own = [each for each in study.subjects(study=True) if each.kind.startswith(closed)]
     return [row for subject in own for row in study.rows_of(where, subject)]
 
 
 def gates(rows, rule=of_program) -> set[str]:
     found = Found(rows)
-    values = dict(uncertainty.CASES[0].measure(found)) | {"covered": covered(rows, rule)}
+    values = dict(study.CASES[0].measure(found)) | {"covered": covered(rows, rule)}
     return red(CASE, {name: Measured(value) for name, value in values.items()}, whole=True)
 
 
@@ -52,7 +51,7 @@ def test_what_a_doubtful_reference_says_does_not_count(rows):
     assert missed.known, "a reference that shows a miss counts"
     doubtful = Found([row, replace(row, doubt=row.truth)])
     assert doubtful.known == [row] and ("Values that do not count", "1 of 2") <= next(
-        words for words in uncertainty.CASES[0].setup(doubtful) if words[0].startswith("Values")
+        words for words in study.CASES[0].setup(doubtful) if words[0].startswith("Values")
     )
 
 

@@ -3,8 +3,9 @@
 family.
 
 `<family>/<name>.toml` says the title, the question, the equations and what is claimed
-(`verification.rows`). Where it names a scene and models, it needs nothing else; else the module of the
-same name beside it measures: a subclass of `Case` and a tuple `CASES` of its instances.
+(`verification.rows`). Where it names a scene and models, or sweeps, it needs nothing else but functions of
+the module of the same name beside it that it names; else that module measures: a subclass of `Case` and a
+tuple `CASES` of its instances.
 
 Used by the harness of the suite, by the lists of the command line and by tests.
 """
@@ -30,7 +31,7 @@ def all_cases() -> dict[str, Case]:
 def case_of(file: CaseFile) -> Case:
     """What runs the case of a file."""
     said: dict[str, Any] = {key: getattr(file, key) for key in ("title", "question", "equations", "levels")}
-    if file.scene:
+    if file.scene or file.frame:
         return Compared(file.name, **said, alone=file.own, file=file)
     module = import_module(f"{__name__}.{file.path.parent.name}.{file.path.stem}")
     (case,) = (case for case in module.CASES if case.name == file.name)

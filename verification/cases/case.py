@@ -17,7 +17,7 @@ from sam.scene import Body, CounterBody, Grid, Progress, Result, Scene, printabl
 from verification.figures import space
 from verification.judging import Measured
 from verification.rows import LEVELS, CaseFile
-from verification.runs.files import write_atomically, write_run
+from verification.runs.files import plain, write_atomically, write_run
 from verification.runs.models import FEM, FEM_3D, SAM
 from verification.runs.provenance import collect, without_places
 from verification.runs.store import Reuse, Store, solve_or_reuse
@@ -87,13 +87,16 @@ class SmallTable:
 
 @dataclass
 class Outcome:
-    """What a case returns. values: gate id -> value; setup: (name, number with unit) for the reader."""
+    """What a case returns. values: gate id -> value; setup: (name, number with unit) for the reader; data:
+    for the pages, as JSON holds it.
+    """
 
     values: dict[str, Measured] = field(default_factory=dict)
     setup: list[tuple[str, str]] = field(default_factory=list)
     figures: list[Figure] = field(default_factory=list)
     tables: list[SmallTable] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    data: dict[str, Any] = field(default_factory=dict)
 
 
 class NotDrawnError(Exception):
@@ -165,6 +168,10 @@ class Case:
         """Sentences below the tables."""
         return ()
 
+    def data(self, found: Any) -> dict[str, Any]:
+        """What pages read, as JSON holds it: no number is read back from a table or a note."""
+        return {}
+
     def figures(self, found: Any) -> Iterable[Plot]:
         """What is drawn."""
         return ()
@@ -183,7 +190,7 @@ class Case:
         Raises NotDrawnError, with all the rest, when a figure cannot be drawn.
         """
         setup, tables, notes = (list(part(found)) for part in (self.setup, self.tables, self.notes))
-        outcome = Outcome(self.values(found), setup, [], tables, notes)
+        outcome = Outcome(self.values(found), setup, [], tables, notes, plain(self.data(found)))
         try:
             for plot in self.figures(found):
                 outcome.figures.append(context.save(plot))

@@ -70,6 +70,8 @@ class Compared(Case):
         }
 
     def _solved(self, context: Context, name: str, variant: Mapping[str, Any]) -> Solved:
+        if not self.file.scene:
+            return Solved(None, None, {}, framed(context, self.file, None))
         file, scene = self.file, scene_of(context, self.file, variant)
         answer = beside(file, file.reference, REFERENCES) if file.reference else None
         given, results = Reference(file.values, {}) if file.values else None, {}
@@ -79,7 +81,7 @@ class Compared(Case):
         for run, said in ({} if "alone" in variant else file.runs | variant.get("runs", {})).items():
             other, label = scene_of(context, file, variant, said), "-".join(filter(None, (name, run)))
             results[run] = context.solve(MODELS[said["model"]], other, label, demand=False)
-        frame = framed(context, file, scene) if file.sweeps else None
+        frame = framed(context, file, scene) if file.takes else None
         found = Solved(scene, answer(scene) if answer else given, results, frame)
         if file.against:
             other = scene_of(context, file, {"vary": file.against})
@@ -106,7 +108,7 @@ class Compared(Case):
         """
         values: dict[str, Measured] = {}
         for solved in found.values():
-            values |= taken(self.file, solved.frame) if self.file.sweeps else {}
+            values |= taken(self.file, solved.frame) if self.file.takes else {}
         metrics = {row.id.partition(".")[2]: row.metric for row in self.file.rows}
         for table, names in self.file.claims.items():
             variant, model, against = head_of(table, self.file.variants)
@@ -129,10 +131,15 @@ class Compared(Case):
         return values
 
     def setup(self, found: Mapping[str, Solved]) -> Iterator[tuple[str, str]]:
+        yield from self.file.setting
         first = next(iter(found.values()))
-        scene, other, loading, units = first.scene, first.scene.counterbody, first.scene.loading, {}
+        if first.scene is None:
+            return
+        scenes = [first.scene] if first.results else list(first.frame["scene"])
+        scene, other, loading = scenes[0], scenes[0].counterbody, scenes[0].loading
         units = first.reference.units if first.reference else {}
-        a = units.get("a") or first.results["sam"].quantities["contact_radius_m"] or math.nan
+        solved = first.results.get("sam")
+        a = units.get("a") or loading.radius or (solved and solved.quantities["contact_radius_m"]) or math.nan
         plasticity = scene.body.plasticity
         law = (
             f"; {plasticity.law}, {plasticity.curve().stress(0.0) / 1e6:.1f} MPa at first yield"
@@ -149,9 +156,15 @@ class Compared(Case):
             )
             yield other.shape.capitalize(), f"{size}{elastic_text(other) if other.elastic else 'rigid'}"
         again = f", {loading.cycles} times" * (loading.cycles > 1)
-        load = f"{loading.force:.5g} N" if other else f"given, {loading.p0 / 1e9:.4f} GPa in the centre"
+        forces = sorted({each.loading.force for each in scenes} - {None})
+        if loading.misfit:
+            load = f"a sphere that grows, e = {loading.misfit:g} in its centre, radius {1e6 * a:g} µm"
+        elif other:
+            load = f"{' to '.join(f'{force:.5g}' for force in forces[:: max(1, len(forces) - 1)])} N"
+        else:
+            load = f"given, {loading.p0 / 1e9:.4f} GPa in the centre"
         steps = f"{load} in {loading.steps} equal steps{', then unloaded' * loading.unload}{again}"
-        yield "Force" if other else "Pressure", steps
+        yield "Force" if other else "Load", steps
         if loading.path:
             ends = " a to ".join(f"{end[0] / a:g}" for end in (loading.path.start, loading.path.end))
             yield "Way", f"from {ends} a along x in {loading.path.steps} steps"
@@ -166,17 +179,17 @@ class Compared(Case):
         yield from ran(self.file, first.frame) if self.file.sweeps else ()
 
     def tables(self, found: Mapping[str, Solved]) -> Iterator[SmallTable]:
-        if self.file.variants:
+        if self.file.variants or self.file.runs:
             also = {name: found[name] for name in self.file.also}
             yield _results("Results", self.file, {name: found[name] for name in found if name not in also})
             for name, solved in found.items():
-                yield from _passes(self.file.variants[name]["words"], solved.results)
+                yield from _passes(self.file.variants[name]["words"] if name else "", solved.results)
             if also:
                 yield _results("Refinement", self.file, also)
                 yield _differences(self.file, found)
             return
         solved = found[""]
-        yield from tables_of(self.file, solved.frame) if self.file.sweeps else ()
+        yield from tables_of(self.file, solved.frame) if self.file.takes else ()
         if set(solved.results) != {"sam", "fem"}:
             return
         rows = _side_by_side(*solved.results.values())
@@ -256,23 +269,25 @@ def _results(caption: str, file: CaseFile, found: Mapping[str, Solved]) -> Small
     shown = [
         q for q in QUANTITIES.values() if any(each.quantities.get(q.row) is not None for *_, each in runs)
     ]
-    words = {name: file.variants[name]["words"].replace("mu = ", "μ = ").rpartition(" = ") for name in found}
-    (head,) = {head for head, *_ in words.values()} if len({h for h, *_ in words.values()}) == 1 else ("",)
-    columns = (f"{q.words} [{q.unit}]" if q.unit else q.words for q in shown)
+    words = [file.variants[name]["words"].replace("mu = ", "μ = ") if name else "" for name in found]
+    heads = {each.rpartition(" = ")[0] for each in words}
+    said = {n: w.rpartition(" = ")[2] if len(heads) == 1 else w for n, w in zip(found, words, strict=True)}
     rows = [
         (
-            words[name][2],
-            run.upper() if run in ("sam", "fem") else f"SAM, {run}",
+            said[name],
+            run.upper() if run in ("sam", "fem") else f"{'SAM' if each.model == SAM else 'FEM'}, {run}",
             *(number(each.quantities.get(q.row), 5) for q in shown),
         )
         for name, run, each in runs
     ]
+    columns = (f"{q.words} [{q.unit}]" if q.unit else q.words for q in shown)
+    head = heads.pop() if len(heads) == 1 else ""
     return SmallTable(caption, (head or "variant", "model", *columns), rows)
 
 
 def _passes(words: str, results: Mapping[str, Result]) -> Iterator[SmallTable]:
     """What each pass of a counter-body that moves does, in every run."""
-    moving = {run: each for run, each in results.items() if "passes" in each.tables}
+    moving = {run: each for run, each in results.items() if {"passes", "cycles"} <= set(each.tables)}
     for name, head, scale in (
         ("strain", "Largest strain that a pass adds [1e-3]", 1e3),
         ("energy", "Energy that a pass dissipates [nJ]", 1e9),

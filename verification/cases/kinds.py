@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import cycle
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -447,8 +448,9 @@ def _lines(file: CaseFile, frame: DataFrame, y: str, *words: str) -> Plot:
     said = dict(zip(words[::2], words[1::2], strict=True))
     x, by, panel = said["over"], said.get("by", "model"), said.get("in", "sweep")
     panels: dict[str, dict[str, Curve]] = {}
-    for (title, name), rows in frame.dropna(subset=[y]).groupby([panel, by], sort=False):
-        for column, series in ((y, spelt(name)), (f"{y} expected", f"{spelt(name)}, expected")):
+    for (title, key), rows in frame.dropna(subset=[y]).groupby([panel, by], sort=False):
+        name = spelt(key).upper() if by == "model" else spelt(key)
+        for column, series in ((y, name), (f"{y} expected", f"{name}, expected")):
             if rows[column].notna().all() if column in rows else False:
                 values = (np.concatenate([np.atleast_1d(each) for each in rows[c]]) for c in (x, column))
                 panels.setdefault(spelt(title), {})[series] = Curve(*values)
@@ -459,7 +461,7 @@ def _lines(file: CaseFile, frame: DataFrame, y: str, *words: str) -> Plot:
     what = words_of(file, y)
     title = f"{what[0].upper()}{what[1:]}"
     text = f"Curves of the {what} over {x.replace('.', ' ')}, by {by}; dotted: what is expected."
-    return Plot(curves(panels, x.replace(".", " "), what, looks=looks), y, title, text, text)
+    return Plot(curves(panels, x.replace(".", " "), fill(what, 40), looks=looks), y, title, text, text)
 
 
 def _maps(file: CaseFile, frame: DataFrame, z: str, *words: str) -> Plot:

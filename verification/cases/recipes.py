@@ -17,7 +17,7 @@ from sam.scene import Coating, CounterBody, CounterSurface, Friction, Grid, Load
 from verification.cases.case import with_body, with_grid, with_keys, with_loading, with_mesh
 from verification.reference.coated_sphere import CoatedContact
 from verification.reference.hertz import CircularContact, effective_modulus
-from verification.references import coated_contact, contact_of, rounded_contact
+from verification.references import coated_contact, contact_of, growing_sphere, rounded_contact
 from verification.rows import CaseFile
 from verification.scenes import asperities
 
@@ -65,6 +65,32 @@ def layer_faces(cells: int) -> np.ndarray:
     """
     even = np.arange(round(DEEPEST * cells) + 1) / cells
     return even + GROWTH * np.maximum(even - EVEN, 0.0) ** 2
+
+
+def even_cells(scene: Scene, reach: Sequence[float]) -> Scene:
+    """Cubes of a/size for a given pressure, a its radius. reach: size, then in a how far they go along x
+    beyond its path, along y, and down.
+    """
+    size, along, across, below = reach
+    a, path = scene.loading.radius, scene.loading.path
+    h, half = a / size, path.end[0] / a if path else 0.0
+    cells = tuple(2 * round(each * size) + 1 for each in (half + along, across))
+    depths = tuple(h * np.arange(round(below * size) + 1))
+    return with_grid(scene, cells=cells, extent=tuple(n * h for n in cells), depths=depths)
+
+
+def sphere_cells(scene: Scene, size: int) -> Scene:
+    """Cubes of radius/size about the plastic zone of a misfit sphere, one of them at the centre; above, where
+    nothing yields, a layer more. The tolerance is a tenth of the errors that are judged, in single precision.
+    """
+    cell, depth = scene.loading.radius / size, scene.loading.depth
+    half = math.ceil(growing_sphere(scene).zone()[1] / cell) + 2
+    faces = depth + cell * (np.arange(-half, half + 1) + 0.5)
+    faces = np.append(faces[0] - cell, faces)
+    cells = 2 * half + 3
+    depths = (0.0, *(float(z) for z in faces if z > cell / 2))
+    scene = with_grid(scene, cells=(cells, cells), extent=(cells * cell,) * 2, depths=depths)
+    return with_keys(scene, "solver", tolerance=1e-4)
 
 
 def with_layer(scene: Scene, law: Mapping[str, str | float]) -> Scene:
@@ -289,6 +315,9 @@ RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {
     "cells-in-coated-contact": cells_in_coated_contact,
     "elastic": lambda scene, on: with_body(scene, plasticity=None) if on else scene,
     "friction": rubbed,
+    "even-cells": even_cells,
+    "sphere-depth": lambda scene, radii: with_loading(scene, depth=radii * scene.loading.radius),
+    "sphere-cells": sphere_cells,
     "coupling": lambda scene, on: with_keys(scene, "friction", coupling=on) if scene.friction else scene,
     "given": given_tractions,
     "depths": even_depths,
@@ -306,13 +335,14 @@ RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {
 
 
 def beside(file: CaseFile, name: str, known: Mapping[str, Any]) -> Any:
-    """What a name in a case file stands for: of a registry, or a function of the module beside the file."""
-    if name in known:
-        return known[name]
-    if not file.path.with_suffix(".py").exists():
+    """What a name in a case file stands for: a function of the module beside the file, or of a registry."""
+    if file.path.with_suffix(".py").exists():
+        module = import_module(f"verification.cases.{file.path.parent.name}.{file.path.stem}")
+        if own := getattr(module, name.replace("-", "_"), None):
+            return own
+    if name not in known:
         raise KeyError(f"{file.path.name}: {name} is none of {', '.join(known)}")
-    module = import_module(f"verification.cases.{file.path.parent.name}.{file.path.stem}")
-    return getattr(module, name.replace("-", "_"))
+    return known[name]
 
 
 def changed(scene: Scene, changes: Mapping[str, Any], file: CaseFile) -> Scene:

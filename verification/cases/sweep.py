@@ -3,7 +3,8 @@
 rows of the case take of its columns.
 
 A frame has the columns sweep, model ("sam/fem" for what is between both), an axis each, h (size of what is
-refined), converged, the columns of the file with `NAME expected` beside a value, scene and result.
+refined), converged, the columns of the file with `NAME value` and `NAME expected` beside each, scene and
+result. The function that a case names as `frame` returns such rows as mappings.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from verification.compare.comparison import compare_scene
 from verification.judging import Measured, error_of
 from verification.quantities import QUANTITIES, Quantity, Reference
 from verification.reference.convergence import Order, extrapolate, fit_order
-from verification.references import REFERENCES, contact_of
+from verification.references import REFERENCES, hertz_sphere
 from verification.rows import CaseFile, SweepFile, Take
 from verification.runs.models import FEM, FEM_3D, SAM
 from verification.text.console import number
@@ -48,10 +49,13 @@ def points(sweep: SweepFile, level: str) -> Iterator[tuple[dict[str, Any], dict[
         yield dict(zip(axes, (name for name, _ in chosen), strict=True)), changes
 
 
-def framed(context: Context, file: CaseFile, base: Scene) -> DataFrame:
-    """All sweeps of a case, solved."""
+def framed(context: Context, file: CaseFile, base: Scene | None) -> DataFrame:
+    """All sweeps of a case, solved; or what its module returns."""
     import pandas as pd
 
+    if file.frame:
+        rows = beside(file, file.frame, {})(context)
+        return pd.DataFrame([{"sweep": "", "model": "", **row} for row in rows])
     return pd.DataFrame([row for name in file.sweeps for row in _runs(context, file, name, base)])
 
 
@@ -71,20 +75,18 @@ def _runs(context: Context, file: CaseFile, name: str, base: Scene) -> Iterator[
             size = size_of(sweep, scene, result, reference)
             own = row | {"model": model, "result": result, "h": size, "converged": result.converged}
             for column, how in sweep.columns.items() if result.converged else ():
-                of = beside(file, column, QUANTITIES)
                 if how == "between":
                     continue
-                if isinstance(of, Quantity):
-                    found = of.against(column, result, reference)
-                else:
-                    found = of(scene, result, reference)
+                of = beside(file, column, QUANTITIES)
+                named = isinstance(of, Quantity)
+                found = of.against(column, result, reference) if named else of(scene, result, reference)
                 found = found if isinstance(found, Measured) else Measured(found)
-                if how == "value":
-                    own |= {column: found.value, f"{column} expected": found.expected}
-                else:
-                    own[column] = error_of(how, found)
+                own[column] = found.value if how == "value" else error_of(how, found)
+                if np.ndim(found.value) == 0:
+                    own |= {f"{column} value": found.value, f"{column} expected": found.expected}
             yield own
-        if between := [column for column, how in sweep.columns.items() if how == "between"]:
+        between = [column for column, how in sweep.columns.items() if how == "between"]
+        if between and all(result.converged for result in results.values()):
             yield row | {"model": BOTH} | between_models(scene, *results.values(), names=between)
 
 
@@ -103,14 +105,11 @@ def between_models(scene: Scene, sam: Result, fem: Result, *, names: Sequence[st
 
 def size_of(sweep: SweepFile, scene: Scene, result: Result, reference: Reference | None) -> float:
     """Size of a cell or element over the radius of the contact, or of a load step over the load."""
-    if sweep.size == "step":
+    if sweep.size != "cell":
         return 1.0 / scene.loading.steps
-    if sweep.size == "cell" and result.model != SAM:
+    if result.model != SAM:
         return 1.0 / scene.fem.cells_per_radius
-    if sweep.size == "cell":
-        a = reference.units["a"] if reference else contact_of(scene).contact_radius
-        return result.discretisation["cell_m"][0] / a
-    return np.nan
+    return result.discretisation["cell_m"][0] / (reference or hertz_sphere(scene)).units["a"]
 
 
 def spelt(value: Any) -> str:
@@ -124,18 +123,13 @@ def _single(rows: DataFrame, column: str) -> Measured:
     """The value at one point, with what is expected there."""
     if len(rows) != 1:
         raise ValueError(f"{column}: {len(rows)} points where one is meant")
-    expected = rows.get(f"{column} expected")
-    return Measured(rows[column].iloc[0], None if expected is None else expected.iloc[0])
-
-
-def _pair(rows: DataFrame, column: str) -> Measured:
-    """Of both models at one point."""
-    return _single(rows, f"{column} pair").value
+    value, expected = rows.get(f"{column} value", rows[column]), rows.get(f"{column} expected")
+    return Measured(value.iloc[0], None if expected is None else expected.iloc[0])
 
 
 STATISTICS: Mapping[str, Callable[[DataFrame, str], float | Measured]] = {
     "value": _single,
-    "pair": _pair,
+    "pair": lambda rows, column: _single(rows, f"{column} pair").value,
     "order": lambda rows, column: fit_order(rows["h"], rows[column]).order,
     "limit": lambda rows, column: extrapolate(rows["h"], rows[column]).limit,
     "largest": lambda rows, column: float(np.max(rows[column].to_numpy())),
@@ -153,11 +147,15 @@ missing.
 
 def selected(file: CaseFile, frame: DataFrame, take: Take) -> DataFrame:
     """The rows of the frame that a take is about, of the sweeps that have its column."""
-    hows = [file.sweeps[name].columns.get(take.column) for name in frame["sweep"]]
-    both = frame["model"] == BOTH
-    rows = frame[[how is not None and (how == "between") == own for how, own in zip(hows, both, strict=True)]]
+    rows = frame[frame[take.column].notna().groupby(frame["sweep"]).transform("any")]
+    if file.sweeps:
+        hows = [file.sweeps[name].columns.get(take.column) for name in frame["sweep"]]
+        both = [
+            (how == "between") == (model == BOTH) for how, model in zip(hows, frame["model"], strict=True)
+        ]
+        rows = frame[[how is not None and own for how, own in zip(hows, both, strict=True)]]
     for name in take.of:
-        rows = rows[(rows["sweep"] == name) | (rows["model"] == name)]
+        rows = rows[(rows[["sweep", "model"]] == name).any(axis=1)]
     for axis, sign, value in take.at:
         if sign == "=":
             rows = rows[[spelt(each) == value for each in rows[axis]]]
@@ -194,10 +192,14 @@ def words_of(file: CaseFile, column: str) -> str:
     return of.words if isinstance(of, Quantity) else of.__doc__.strip().splitlines()[0].rstrip(".").lower()
 
 
+def _plain(axis: str) -> str:
+    return axis.replace(".", " ").replace("-", " ").replace("_", " ")
+
+
 def ran(file: CaseFile, frame: DataFrame) -> Iterator[tuple[str, str]]:
     """The points of each sweep, for the reader."""
-    for name, rows in frame.groupby("sweep", sort=False):
-        sweep = file.sweeps[name]
+    for name, sweep in file.sweeps.items():
+        rows = frame[frame["sweep"] == name]
         values = ((axis, dict.fromkeys(map(spelt, rows[axis]))) for axis in sweep.axes)
         said = "; ".join(f"{_plain(axis)} {', '.join(own)}" for axis, own in values)
         yield f"Points, {', '.join(map(str.upper, sweep.models))}", said
@@ -206,12 +208,16 @@ def ran(file: CaseFile, frame: DataFrame) -> Iterator[tuple[str, str]]:
 def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
     """A table for each sweep: a line a run, and the observed orders in the last."""
     for name, rows in frame.groupby("sweep", sort=False):
-        sweep = file.sweeps[name]
-        axes = [axis for axis in sweep.axes if len(set(map(spelt, rows[axis]))) > 1]
-        known = {c: c.removesuffix(" expected") for c in rows if not rows[c].isna().all()}
-        shown = [c for c in rows if known.get(c) in sweep.columns and np.ndim(rows[c].dropna().iloc[0]) == 0]
+        axes, shown = [], {c: c.replace("-", " ") for c in rows if c not in ("sweep", "model")}
+        if sweep := file.sweeps.get(name):
+            axes = [axis for axis in sweep.axes if len(set(map(spelt, rows[axis]))) > 1]
+            shown = {column: words_of(file, column) for column in sweep.columns}
+            values = [column for column, how in sweep.columns.items() if how == "value"]
+            shown |= {f"{column} expected": f"{shown[column]}, expected" for column in values}
+        known = {c: rows[c].dropna() for c in shown if c in rows}
+        shown = {c: shown[c] for c, own in known.items() if len(own) and np.ndim(own.iloc[0]) == 0}
         lines = [
-            (*(spelt(row[axis]) for axis in axes), row["model"].upper(), *(number(row[c], 5) for c in shown))
+            (*(spelt(row[axis]) for axis in axes), row["model"].upper(), *(_cell(row[c]) for c in shown))
             for _, row in rows.iterrows()
         ]
         for model, own in rows.groupby("model", sort=False):
@@ -219,12 +225,11 @@ def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
             if any(orders):
                 cells = (f"order {order.order:.2f}" if order else "" for order in orders)
                 lines.append((*[""] * len(axes), model.upper(), *cells))
-        heads = [words_of(file, known[c]) + ", expected" * c.endswith(" expected") for c in shown]
-        yield SmallTable(f"Points of {name}", (*map(_plain, axes), "model", *heads), lines)
+        yield SmallTable(f"Points {name}".strip(), (*map(_plain, axes), "model", *shown.values()), lines)
 
 
-def _plain(axis: str) -> str:
-    return axis.replace(".", " ").replace("-", " ").replace("_", " ")
+def _cell(value: Any) -> str:
+    return value if isinstance(value, str) else number(None if value is None or value != value else value, 5)
 
 
 def fitted(file: CaseFile, rows: DataFrame, column: str) -> Order | None:

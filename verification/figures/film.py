@@ -5,8 +5,8 @@ sections.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
@@ -29,8 +29,9 @@ from verification.figures.style import (
 from verification.figures.views import PLANE_AXES, VON_MISES, VON_MISES_LEVELS
 from verification.runs.sampling import peak, plane_field
 
-Found = Any
-"""A contact with its results: `verification.cases.coated.film_yield.SolvedFilm`."""
+if TYPE_CHECKING:
+    from pandas import DataFrame, Series
+
 GIGA, MICRO, PERCENT = 1e-9, 1e6, 1e2
 COLOURS = {"elastic": BLACK, "B 945": BLUE, "B 1780": VERMILION}
 STYLES = {"bare": (0.9, ":"), "elastic": (1.4, "-"), "yields": (1.4, "--")}
@@ -58,20 +59,18 @@ def looks(marker: str | None = None) -> dict[str, dict]:
     }
 
 
-def changes(found: Sequence[Found], limit: float) -> Drawing:
-    """Changes of the largest pressure and of the body's von Mises stress in % over the contact radius in
-    um.
+def changes(found: DataFrame, limit: float) -> Drawing:
+    """Changes of the largest pressure and of the body's von Mises stress in % over the contact radius in um.
+    found: frame of `verification.cases.coated.film_yield`, as for the others.
     """
     panels: dict[str, dict[str, Curve]] = {}
-    radii = [MICRO * one.contact.radius for one in found]
-    for k, words in enumerate(("largest pressure", "von Mises in the body")):
-        for counter in ("rigid", "steel"):
-            panel = panels.setdefault(f"{words}, {counter}", {})
-            for kind in dict.fromkeys(one.contact.kind for one in found):
-                ones = [one for one in found if (one.contact.counter, one.contact.kind) == (counter, kind)]
-                points = sorted((MICRO * one.contact.radius, PERCENT * one.changes[k]) for one in ones)
-                panel[series(*kind)] = Curve(*np.array(points).reshape(-1, 2).T)
-            panel["limit"] = Curve(np.array([min(radii), max(radii)]), np.full(2, -PERCENT * limit))
+    ends = MICRO * np.array([found["radius"].min(), found["radius"].max()])
+    for name, words in (("p_change", "largest pressure"), ("mises_change", "von Mises in the body")):
+        for counter, ones in found.groupby("counterbody"):
+            panel = panels[f"{words}, {counter}"] = {}
+            for kind, own in ones.sort_values("radius").groupby(["body", "film"], sort=False):
+                panel[series(*kind)] = Curve(*(own[["radius", name]].to_numpy() * (MICRO, PERCENT)).T)
+            panel["limit"] = Curve(ends, np.full(2, -PERCENT * limit))
     drawing = curves(panels, r"$a_0$ [$\mu$m]", "change [%]", looks=looks("o") | {"limit": LIMIT})
     first = drawing.figure.axes[0]
     entries = first.get_legend_handles_labels()
@@ -81,34 +80,39 @@ def changes(found: Sequence[Found], limit: float) -> Drawing:
     return drawing
 
 
-def pressures(found: Sequence[Found], bare_radius: float) -> Drawing:
+def pressures(found: DataFrame, bare_radius: float) -> Drawing:
     """Pressure in GPa over r/a0: a panel for each contact radius, without film and with each."""
     panels: dict[str, dict[str, Curve]] = {}
-    for one in (one for one in found if one.contact.body != "B 1780"):
+    for _, one in found[found["body"] != "B 1780"].iterrows():
         panel = panels.setdefault(title(one), {})
-        films = ("bare", one.bare, bare_radius), (one.contact.kind[1], one.result, one.contact.radius)
-        for film, result, a in films:
+        for film, result, a in (
+            ("bare", one["bare"], bare_radius),
+            (one["film"], one["result"], one["radius"]),
+        ):
             r, p = peak(result.tables["line"], "x_m", "p_Pa")
-            panel[series(one.contact.body, film)] = Curve(r[use := r <= 1.4 * a] / a, GIGA * p[use])
+            panel[series(one["body"], film)] = Curve(r[use := r <= 1.4 * a] / a, GIGA * p[use])
     return curves(panels, "$r/a_0$", "pressure [GPa]", looks=looks())
 
 
-def title(found: Found) -> str:
+def title(one: Series) -> str:
     """The contact radius of a panel."""
-    return rf"$a_0$ = {MICRO * found.contact.radius:g} $\mu$m"
+    return rf"$a_0$ = {MICRO * one['radius']:g} $\mu$m"
 
 
-def strains(found: Sequence[Found]) -> Drawing:
-    """Mean plastic strain over the film's thickness in %, over r/a0: a panel for each contact radius, a curve
-    for each body.
+def strains(found: DataFrame) -> Drawing:
+    """Plastic strain in %, mean of the columns of Gauss points over the film's thickness, over r/a0: a panel
+    for each contact radius, a curve for each body.
     """
     panels: dict[str, dict[str, Curve]] = {}
-    for one in found:
-        (r, strain), a = one.film_profile, one.contact.radius
+    for _, one in found.iterrows():
+        r, z, strain = peak(one["result"].tables["plane"], "x_m", "z_m", "peeq")
+        inside = (z < one["scene"].body.coating.thickness) & (r <= 1.4 * one["radius"])
+        x, column = np.unique(np.round(r[inside] / one["radius"], 9), return_inverse=True)
+        mean = np.bincount(column, strain[inside]) / np.bincount(column)
         panel = panels.setdefault(title(one), {})
-        panel[series(*one.contact.kind)] = Curve(r[use := r <= 1.4 * a] / a, PERCENT * strain[use])
-        if one.contact.body == "elastic":
-            panel["thin film"] = Curve(np.zeros(1), PERCENT * np.array([one.thin_film]))
+        panel[series(one["body"], one["film"])] = Curve(x, PERCENT * mean)
+        if one["body"] == "elastic":
+            panel["thin film"] = Curve(np.zeros(1), np.array([PERCENT * one["thin_film"]]))
     marks = {"color": BLACK, "marker": "o", "fillstyle": "none", "linestyle": "none"}
     used = looks() | {"thin film": marks}
     return curves(panels, "$r/a_0$", "plastic strain of the film [%]", looks=used)

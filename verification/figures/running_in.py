@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The figures of running-in: six panels of a run (Bosman & Schipper 2011, Figs. 13-17), all runs over the
-cycles, regimes.
+cycles, regimes, statements over uncertain inputs, worn volume over the size of cells.
 """
 
 from __future__ import annotations
@@ -22,10 +22,13 @@ from verification.figures.style import (
     BLUE,
     GREEN,
     GREY,
+    GUIDE,
     ORANGE,
+    PURPLE,
     VERMILION,
     Columns,
     Drawing,
+    log_ticks,
     sheet,
 )
 
@@ -61,38 +64,23 @@ def six_panels(scar: Scar, history: History, friction: tuple[float, float]) -> D
         worn.set_title("(a) worn depth" if np.isfinite(depth).any() else f"(a) worn depth: {NO_WEAR}")
         _relief(relief, scar)
         _over_cycles(volume, history.cycle, CUBIC * history.volume, ("(c) wear volume", "volume [µm³]"))
-        _over_cycles(
-            over_cycles,
-            history.cycle,
-            history.friction,
-            ("(d) friction, this surface", "coefficient of friction"),
-        )
-        over_cycles.set_ylim(*_room(friction))
+        words = "(d) friction, this surface", "coefficient of friction"
+        _over_cycles(over_cycles, history.cycle, history.friction, words)
+        room = 0.05 * (friction[1] - friction[0])
+        over_cycles.set_ylim(friction[0] - room, friction[1] + room)
         _local_friction(local, scar, friction)
-        _map(
-            pressure, scar, np.where(scar.in_contact, GIGA * scar.p, np.nan), "pressure [GPa]", cmap="plasma"
-        )
+        touching = np.where(scar.in_contact, GIGA * scar.p, np.nan)
+        _map(pressure, scar, touching, "pressure [GPa]", cmap="plasma")
         pressure.set_title("(f) pressure")
-    return Drawing(figure, _columns(scar))
+    return Drawing(figure, _columns(scar, "worn_m", "p_Pa", "friction"))
 
 
-def _columns(scar: Scar) -> dict[str, np.ndarray]:
-    """One row a cell; the cycles are in cycles.csv of the run."""
+def _columns(scar: Scar, *more: str) -> dict[str, np.ndarray]:
+    """One row a cell; the cycles are in cycles.csv of the run. more: columns beside places and heights."""
     x, y = np.meshgrid(scar.x, scar.y, indexing="ij")
-    fields = {
-        "x_m": x,
-        "y_m": y,
-        "height_m": scar.height,
-        "worn_m": scar.worn,
-        "p_Pa": scar.p,
-        "friction": scar.friction,
-    }
+    fields = {"x_m": x, "y_m": y, "height_m": scar.height}
+    fields |= {name: getattr(scar, name.partition("_")[0]) for name in more}
     return {name: field.ravel() for name, field in fields.items()}
-
-
-def _room(friction: tuple[float, float]) -> tuple[float, float]:
-    low, high = friction
-    return low - 0.05 * (high - low), high + 0.05 * (high - low)
 
 
 def _map(panel: Axes, scar: Scar, field: np.ndarray, label: str, *, cmap: str) -> None:
@@ -168,43 +156,61 @@ def _local_friction(panel: Axes, scar: Scar, friction: tuple[float, float]) -> N
     panel.legend(handles=patches, **place, ncols=3, fontsize=7, handlelength=1.2)
 
 
-PANELS = (
-    ("volume", CUBIC, "wear volume [µm³]"),
-    ("friction", 1.0, "coefficient of friction"),
-    ("sa", 1e9, "Sa [nm]"),
-)
-_EACH = {"color": "#9a9a9a", "linewidth": 0.7}
-_MIDDLE = {"color": BLUE, "linewidth": 1.8}
+COLORS, LINES = (BLUE, VERMILION, GREEN), ("-", "--")
+"""Of the first and of the second name of a line, in order."""
+Lines = Mapping[tuple[str, str], np.ndarray]
+"""Two names of a line -> (n,) its values, a cycle each."""
 
 
-def comparison(runs: Mapping[str, Sequence[History]]) -> Drawing:
-    """Volume, friction and Sa over the cycles, a column for each case: each surface thin, their median
-    thick.
+def over_cycles(
+    panels: Mapping[tuple[str, str], Lines], names: Sequence[str], *, first: int = 0, thick: str = ""
+) -> Drawing:
+    """A row of panels for each quantity, a column for each title, lines over the cycles from the `first` on;
+    colours by the first of the `names` of a line, dashes by the second, unless one of these is drawn `thick`,
+    the others thin.
+
+    panels: (quantity, title) -> its lines.
     """
-    rows = Columns("panel", "case", "cycle", "median", "lowest", "highest", "surfaces")
-    shape, most = (len(PANELS), len(runs)), max(map(len, runs.values()))
-    with sheet(max(0.8 + 2.0 * len(runs), 3.6), 6.2, shape, sharex=True, sharey="row") as (figure, axes):
-        for column, (name, histories) in zip(axes.T, runs.items(), strict=True):
-            cycle = histories[0].cycle
-            for panel, (quantity, scale, _) in zip(column, PANELS, strict=True):
-                values = scale * np.array([getattr(history, quantity) for history in histories])
-                middle, low, high = np.median(values, axis=0), values.min(axis=0), values.max(axis=0)
-                if most > 1:
-                    panel.plot(cycle, values.T, **_EACH)
-                panel.plot(cycle, middle, **_MIDDLE)
-                rows.add(quantity, name, cycle, middle, low, high, len(histories))
-            column[0].set_title(name)
+    numbers = Columns("quantity", "panel", *names, "cycle", "value")
+    rows, titles = (list(dict.fromkeys(parts)) for parts in zip(*panels, strict=True))
+    firsts, seconds = ({key[k]: None for lines in panels.values() for key in lines} for k in (0, 1))
+    colors = dict(zip(firsts, COLORS, strict=False))
+    dashes = dict(zip(firsts if thick else seconds, LINES, strict=False))
+    size = (len(rows), len(titles))
+    with sheet(2.2 * max(3, size[1]), 1.1 + 1.7 * size[0], size, sharex=True, sharey="row") as (figure, axes):
+        for (quantity, title), lines in panels.items():
+            panel = axes[rows.index(quantity), titles.index(title)]
+            for (one, two), values in lines.items():
+                look = {"color": colors[one], "linestyle": dashes[one if thick else two], "linewidth": 1.3}
+                look |= (
+                    ({"linewidth": 2.0} if two == thick else {"linewidth": 0.5, "alpha": 0.4})
+                    if thick
+                    else {}
+                )
+                cycles = np.arange(first, first + len(values))
+                panel.plot(cycles, values, **look)
+                numbers.add(quantity, title, one, two, cycles, values)
+            panel.xaxis.set_major_locator(MaxNLocator(4, integer=True, min_n_ticks=2))
+        for row, quantity in zip(axes, rows, strict=True):
+            row[0].set(ylabel=quantity, ylim=(0.0, None))
+        for column, title in zip(axes.T, titles, strict=True):
+            begin, comma, rest = title.rpartition(", ") if len(title) > LONG_TITLE else (title, "", "")
+            column[0].set_title(f"{begin}{comma.strip()}\n{rest}" if comma else title)
             column[-1].set_xlabel("cycle")
-            column[-1].xaxis.set_major_locator(MaxNLocator(4, integer=True, min_n_ticks=2))
-        for panel, (quantity, _, label) in zip(axes[:, 0], PANELS, strict=True):
-            panel.set_ylabel(label)
-            if quantity != "friction":
-                panel.set_ylim(0.0, None)
-        each = Line2D([], [], **_EACH, label="each surface")
-        middle = Line2D([], [], **_MIDDLE, label=f"median of {most} surfaces" if most > 1 else "one surface")
-        figure.legend(handles=[each, middle] if most > 1 else [middle], loc="outside lower center", ncols=2)
+        named = [
+            Line2D([], [], color=color, linestyle=dashes.get(name, "-"), label=name)
+            for name, color in colors.items()
+        ]
+        if not thick:
+            named += [
+                Line2D([], [], color=BLACK, linestyle=line, label=name) for name, line in dashes.items()
+            ]
+        figure.legend(handles=named, loc="outside lower center", ncols=len(named))
         figure.align_ylabels()
-    return Drawing(figure, rows)
+    return Drawing(figure, numbers)
+
+
+LONG_TITLE = 20  # characters from which a title is broken at its last comma
 
 
 def surface(scar: Scar) -> Drawing:
@@ -219,9 +225,7 @@ def surface(scar: Scar) -> Drawing:
         right.plot(x, height[:, j], color=VERMILION, linewidth=1.2)
         right.set(xlabel=f"$x$ [µm] at $y$ = {y[j]:.3g} µm", ylabel="height [µm]")
         remark(right, f"through the highest place; all heights: {height.min():.2f} to {height.max():.2f} µm")
-    places = np.meshgrid(scar.x, scar.y, indexing="ij")
-    columns = {"x_m": places[0], "y_m": places[1], "height_m": scar.height}
-    return Drawing(figure, {name: values.ravel() for name, values in columns.items()})
+    return Drawing(figure, _columns(scar))
 
 
 def yield_profiles(cases: Mapping[str, Callable[[np.ndarray, float], np.ndarray]], deep: float) -> Drawing:
@@ -245,11 +249,10 @@ STRAINS = {0.0: "Before any plastic strain", 0.01: "After a plastic strain of 1 
 """Plastic strain -> title of its panel."""
 
 
-ZONES = (
-    ("#e3f0e3", "film whole"),
-    ("#fdf1d6", "film failed, metal holds"),
-    ("#f6d9d2", "film broken down, metal removed"),
-)
+ZONES = {"film whole": "#e3f0e3", "film failed, metal holds": "#fdf1d6"}
+ZONES |= {"film broken down, metal removed": "#f6d9d2"}
+DARK = "#555555"
+TOP, STRONG = 12.0, 7.5  # GPa: of the pressure, unless runs reach more, and of the strength
 
 
 def regime_map(
@@ -267,24 +270,20 @@ def regime_map(
     """
     rows = Columns("case", "constant", "strength_GPa", "tears_GPa", "film_GPa", "first_GPa", "last_GPa")
     with sheet(10.6, 4.4, 2, sharey=True) as (figure, (left, right)):
-        top = max([TOP, *(1.1 * GIGA * p for ends in reached.values() for p in ends)])
         _over_friction(left, limits, friction, constants)
-        _over_strength(right, limits, reached, high=friction[1], top=top)
+        _over_strength(right, limits, reached, friction[1])
         for name, values in limits.items():
             for words, one in zip(constants, values, strict=True):
                 ends = reached.get(name, (np.nan,) * 2) if words == constants[0] else (np.nan,) * 2
                 rows.add(name, words, *(GIGA * v for v in (one.strength, one.removal, one.film, *ends)))
-        handles = [*left.get_legend_handles_labels()[0], *_marks(constants)]
+        look = {"color": BLACK, "marker": "o", "linestyle": "none", "markersize": 4}
+        marks = [
+            Line2D([], [], **look, fillstyle=fill, label=f"strength with {words}")
+            for fill, words in zip(("full", "none"), (constants[0], constants[-1]), strict=True)
+        ]
+        handles = [*left.get_legend_handles_labels()[0], *marks]
         figure.legend(handles=handles, loc="outside lower center", ncols=max(4, len(limits)))
     return Drawing(figure, rows)
-
-
-def film_breaks_at(limits: Mapping[str, Sequence[Limits]]) -> float:
-    """The pressure in GPa at which the film breaks down, the same in all cases."""
-    return GIGA * next(iter(limits.values()))[0].film
-
-
-TOP = 12.0  # GPa, unless runs reach more
 
 
 def _over_friction(
@@ -293,63 +292,47 @@ def _over_friction(
     friction: tuple[float, float],
     constants: Sequence[str],
 ) -> None:
-    film = film_breaks_at(limits)
     mu = np.linspace(0.05, 0.6, 200)
-    for look, values in zip(LOOKS, limits.values(), strict=False):
+    for look, (name, values) in zip(LOOKS, limits.items(), strict=False):
         for line, one in zip(("-", ":"), values, strict=False):
             removal = GIGA * one.strength / (np.sqrt(3.0) * mu)
             panel.plot(mu, removal, color=look["color"], linestyle=line, linewidth=1.5)
-    for look, name in zip(LOOKS, limits, strict=False):
         mark = {"color": look["color"], "marker": look["marker"], "markersize": 5}
         panel.plot([], [], **mark, linewidth=1.5, label=name)
+    film = GIGA * next(iter(limits.values()))[0].film
     panel.axhline(film, color=BLACK, linewidth=1.0, linestyle="-.", label="film fails")
+    box = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
+    text = {"rotation": 90, "fontsize": 7.5, "ha": "center", "va": "bottom", "color": DARK, "bbox": box}
     for coefficient, words in zip(friction, ("film whole", "film failed"), strict=True):
-        panel.axvline(coefficient, color="#555555", linewidth=0.8)
-        box = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
-        panel.text(
-            coefficient,
-            0.3,
-            words,
-            rotation=90,
-            fontsize=7.5,
-            ha="center",
-            va="bottom",
-            color="#555555",
-            bbox=box,
-        )
+        panel.axvline(coefficient, color=DARK, linewidth=0.8)
+        panel.text(coefficient, 0.3, words, **text)
     for line, words in zip(("-", ":"), (constants[0], constants[-1]), strict=True):
         panel.plot([], [], color=BLACK, linewidth=1.5, linestyle=line, label=words)
-    panel.set(
-        xlabel="local coefficient of friction", ylabel="pressure [GPa]", xlim=(0.05, 0.6), ylim=(0.0, TOP)
-    )
-    panel.set_title("removed above the line of its case")
-
-
-def _marks(constants: Sequence[str]) -> list[Line2D]:
-    """Entries of the legend for the marks at the foot of the right panel."""
-    look = {"color": BLACK, "marker": "o", "linestyle": "none", "markersize": 4}
-    hollow = f"strength with {constants[-1]}"
-    return [
-        Line2D([], [], **look, label=f"strength with {constants[0]}"),
-        Line2D([], [], **look, fillstyle="none", label=hollow),
-    ]
+    panel.set(xlabel="local coefficient of friction", ylabel="pressure [GPa]")
+    panel.set(xlim=(0.05, 0.6), ylim=(0.0, TOP), title="removed above the line of its case")
 
 
 def _over_strength(
     panel: Axes,
     limits: Mapping[str, Sequence[Limits]],
     reached: Mapping[str, tuple[float, float]],
-    *,
     high: float,
-    top: float,
 ) -> None:
-    _zones(panel, high, film_breaks_at(limits), top)
-    places: list[float] = []
+    top = max([TOP, *(1.1 * GIGA * p for ends in reached.values() for p in ends)])
+    film, strength = GIGA * next(iter(limits.values()))[0].film, np.linspace(0.0, STRONG, 100)
+    edges = [0.0, film, np.minimum(np.maximum(strength / (np.sqrt(3.0) * high), film), top), top]
+    places = ((4.6, 0.5 * film), (5.15, 4.9), (0.2, 11.3))
+    for (words, color), low, upper, (x, y) in zip(ZONES.items(), edges[:-1], edges[1:], places, strict=True):
+        panel.fill_between(strength, low, upper, color=color, linewidth=0.0)
+        side = "center" if x > 1.0 else "left"
+        panel.text(x, y, words, fontsize=8.5, style="italic", ha=side, va="center")
+    panel.axhline(film, color=BLACK, linewidth=1.0, linestyle="-.")
+    before: list[float] = []
     for look, (name, values) in zip(LOOKS, limits.items(), strict=False):
         mark = {"color": look["color"], "marker": look["marker"]}
         x = GIGA * values[0].strength
-        x += 0.12 * sum(abs(x - other) < 0.1 for other in places)  # beside one that is as strong
-        places.append(x)
+        x += 0.12 * sum(abs(x - other) < 0.1 for other in before)  # beside one that is as strong
+        before.append(x)
         if name in reached:
             first, last = (GIGA * p for p in reached[name])
             arrow = {"arrowstyle": "->", "color": look["color"], "linewidth": 1.4}
@@ -357,21 +340,88 @@ def _over_strength(
             panel.plot(x, first, **mark, markersize=5)
         panel.plot(x, 0.15, **mark, markersize=4)
         panel.plot(GIGA * values[-1].strength, 0.15, **mark, markersize=4, fillstyle="none")
-    panel.set(
-        xlabel="yield stress of the surface at its strain limit [GPa]", xlim=(0.0, 7.5), ylim=(0.0, top)
-    )
-    panel.set_title(f"with friction {high:g}: largest pressure, first → last cycle")
+    panel.set(xlabel="yield stress of the surface at its strain limit [GPa]", xlim=(0.0, STRONG))
+    panel.set(ylim=(0.0, top), title=f"with friction {high:g}: largest pressure, first → last cycle")
 
 
-def _zones(panel: Axes, high: float, film: float, top: float) -> None:
-    """The three regimes as colours, and the pressure at which the film fails."""
-    strength = np.linspace(0.0, 7.5, 100)
-    removal = strength / (np.sqrt(3.0) * high)
-    upper = np.maximum(removal, film)
-    panel.fill_between(strength, 0.0, film, color=ZONES[0][0], linewidth=0.0)
-    panel.fill_between(strength, film, np.minimum(upper, top), color=ZONES[1][0], linewidth=0.0)
-    panel.fill_between(strength, np.minimum(upper, top), top, color=ZONES[2][0], linewidth=0.0)
-    for (x, y), (_, words) in zip(((4.6, 0.5 * film), (5.15, 4.9), (0.2, 11.3)), ZONES, strict=True):
-        where = {"ha": "center" if x > 1.0 else "left", "va": "center"}
-        panel.text(x, y, words, fontsize=8.5, style="italic", **where)
-    panel.axhline(film, color=BLACK, linewidth=1.0, linestyle="-.")
+PALE = "#9fc8e3"  # of bars on which bounds are drawn
+
+
+def probabilities(rows: Sequence[tuple[str, int, int, tuple[float, float]]]) -> Drawing:
+    """A bar with its bounds for each statement. rows: words, points at which it holds, points at which it
+    says anything, bounds of the share.
+    """
+    table = Columns("statement", "holds", "of", "low", "high")
+    names, held, of, bounds = (list(each) for each in zip(*rows[::-1], strict=True))
+    value, (low, high) = np.array(held) / np.maximum(of, 1), np.array(bounds).T
+    with sheet(7.2, 0.8 + 0.24 * len(names)) as (figure, axis):
+        axis.barh(names, value, color=PALE, height=0.6)
+        ends = np.maximum([value - low, high - value], 0.0)
+        axis.errorbar(
+            value, range(len(names)), xerr=ends, fmt="none", ecolor=BLACK, elinewidth=1.0, capsize=3
+        )
+        for k, words in enumerate(f"{yes} of {all_}" for yes, all_ in zip(held, of, strict=True)):
+            axis.text(1.02, k, words, va="center", fontsize=8.0, transform=axis.get_yaxis_transform())
+        axis.axvline(0.5, color=BLACK, linewidth=0.6, gid=GUIDE)
+        axis.set(xlabel="share of points at which the statement holds")
+        axis.set(xlim=(0.0, 1.0), ylim=(-0.7, len(names) - 0.3))
+        axis.set_axisbelow(True)
+    table.add(names, held, of, low, high)
+    return Drawing(figure, table)
+
+
+def best_pair(
+    places: Sequence[Sequence[float]],
+    labels: Sequence[str],
+    counts: np.ndarray,
+    logarithmic: Sequence[bool],
+    *,
+    printed: Sequence[float],
+) -> Drawing:
+    """A mark for each point over two inputs, coloured by the number of statements that hold there. printed:
+    the two printed inputs.
+    """
+    table = Columns(*labels, "statements that hold")
+    with sheet(5.6, 4.2) as (figure, axis):
+        marks = axis.scatter(*places, c=counts, cmap="viridis", s=36, edgecolors=BLACK, linewidths=0.4)
+        figure.colorbar(marks, ax=axis, label="statements that hold", ticks=MaxNLocator(integer=True))
+        look = {"color": VERMILION, "markersize": 9, "markeredgewidth": 2, "clip_on": False}
+        axis.plot(*printed, "x", **look, label="printed inputs")
+        axis.set(xlabel=labels[0], ylabel=labels[1], axisbelow=True)
+        for of, scale, yes in zip(
+            (axis.xaxis, axis.yaxis), (axis.set_xscale, axis.set_yscale), logarithmic, strict=True
+        ):
+            if yes:
+                scale("log")
+                log_ticks(of)
+        figure.legend(loc="outside upper left")
+    table.add(*places, counts)
+    return Drawing(figure, table)
+
+
+SURFACES = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, BLACK)
+
+
+def over_cells(volumes: Mapping[str, Mapping[float, Sequence[float]]], default: float) -> Drawing:
+    """A line for each surface through the means, with bars from the smallest to the largest.
+
+    volumes: name of a surface -> cells in the shortest wave -> volumes in um3 of the surface shifted against
+    the cells; default: the cells in the shortest wave that are recommended, marked by a line.
+    """
+    table = Columns("surface", "cells in the shortest wave", "mean V [µm³]", "smallest", "largest")
+    with sheet(6.2, 3.6) as (figure, axis):
+        for (name, of_cells), color in zip(volumes.items(), SURFACES, strict=False):
+            cells = np.array(list(of_cells))
+            mean, low, high = (
+                np.array([of(each) for each in of_cells.values()]) for of in (np.mean, min, max)
+            )
+            axis.plot(cells, mean, color=color, marker="o", markersize=3.5, linewidth=1.2, label=name)
+            ends = mean - low, high - mean
+            axis.errorbar(cells, mean, ends, fmt="none", ecolor=color, elinewidth=2.2)
+            table.add(name, cells, mean, low, high)
+        axis.axvline(default, color=BLACK, linewidth=0.8, linestyle=":", label="recommended")
+        axis.set(xlabel="cells in the shortest wave of the surface", ylabel="worn volume [µm³]", xscale="log")
+        axis.set_ylim(bottom=0.0)
+        log_ticks(axis.xaxis)
+        figure.legend(loc="outside right center")
+    return Drawing(figure, table)

@@ -1,51 +1,34 @@
 # SPDX-License-Identifier: MIT
-"""Every condition of a solution, measured after the solve on what was returned, by `verification.checks`."""
+"""Every condition of a solution, measured after the solve on what was returned, by `verification.checks`: of
+small scenes in groups, for each of which a row holds.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
-from verification.cases.case import FEM_3D, SAM, Case, Context, Measured, Plot, SmallTable, package_of
-from verification.cases.certificates.certificates_measures import OF_GROUP, Conditions, solved
-from verification.cases.certificates.certificates_scenes import (
-    COEFFICIENT,
-    HIGH,
-    LEVEL,
-    LOW,
-    PATCH_CELLS,
-    PERFECT_RATIO,
-    RATIO,
-    SPATIAL_MESH,
-    STEPS,
-    groups,
+import numpy as np
+
+from sam.scene import Friction, FrictionMap, Grid, Scene, Surface
+from verification.cases.case import (
+    FEM,
+    FEM_3D,
+    SAM,
+    Case,
+    Context,
+    Measured,
+    Plot,
+    SmallTable,
+    package_of,
+    with_body,
+    with_grid,
+    with_loading,
+    with_mesh,
 )
-from verification.cases.recipes import Resolution
+from verification.cases.recipes import Resolution, at_ratio, resolved_at
+from verification.checks.certificates import NAMES, OF_GROUP, Conditions, solved
 from verification.figures.residuals import histories
 
-NAMES = {
-    "load": "load: |sum of p - F|/F",
-    "complementarity": "contact: |gap| where p > 0, penetration elsewhere, over the approach",
-    "displacement": "the same on all cells, displacements summed directly over pressure, traction and "
-    "plastic strain",
-    "friction": "friction: |q - μp| over p_max; at nodes of FEM over F",
-    "equilibrium": "equilibrium: nodal forces on free degrees of freedom over F",
-    "yield": "yield: (σ_vM - σ_y)/σ_y",
-    "flow": "flow rule: 2G |Δεᵖ - 3/2 Δγ s/σ_vM| over σ_y0, Δεᵖ without volume, Δγ its length and never "
-    "negative",
-    "consistency": "consistency: |σ_vM - σ_y|/σ_y where Δγ > 0",
-    "surface": "surface: tractions at z = 0 or extrapolated to it less those returned, away from the edge of "
-    "contact, over p_max",
-    "stress": "stress below the surface of elastic SAM, summed directly over pressure and traction, over "
-    "p_max",
-    "fields": "stress and plastic strain of the returned elements less the means of their points, over the "
-    "largest",
-    "interface": "film: jumps of σ_zz, σ_xz, σ_yz over p_max, and of ε_xx, ε_yy, ε_xy over p_max/E",
-    "film": "chemical film where it is whole: its plastic strain, thinning and traction beyond their limits, "
-    "over the limits; cells that have healed",
-    "planes": "planes: force through z = const over the load, less 1",
-    "histories": "histories: steps that were accepted above the residual where they may stop",
-}
 CONTACT, FLOW = ("load", "complementarity", "histories"), ("yield", "flow", "consistency")
 MEASURED = {
     "sam": (*CONTACT, *FLOW, "displacement", "friction", "surface", "stress", "planes"),
@@ -54,7 +37,7 @@ MEASURED = {
     "rough": (*CONTACT, *FLOW, "displacement", "friction", "surface", "stress", "film"),
     "fem-3d": (*CONTACT, *FLOW, "equilibrium", "friction", "fields"),
 }
-"""Conditions of each group of scenes: each is a gate."""
+"""Conditions of each group of scenes: each is a row."""
 TITLES = {
     "sam": "SAM, sphere",
     "fem": "axisymmetric FEM",
@@ -62,105 +45,160 @@ TITLES = {
     "rough": "SAM, rough",
     "fem-3d": "FEM in three dimensions",
 }
-SHORT = {"sam": "SAM", "fem": "FEM", "coated": "SAM", "rough": "SAM", "fem-3d": "FEM 3D"}
+
+LEVEL = {"quick": Resolution(8, 10), "full": Resolution(12, 20)}
+STEPS, RATIO, PERFECT_RATIO, COEFFICIENT = 5, 4.0, 3.0, 0.2
+FILM_RATIO, FILM_MESH = 2.5, 8
+"""Hertz's p0 over the initial yield stress of the body under the film that yields; elements in the contact
+radius.
+"""
+SPATIAL_MESH, SPATIAL_STEPS, COATED_CELLS = 4, 3, 41
+PATCH, RA, FORCE = 16e-6, 0.04e-6, 0.1
+"""Of the rough patch: side and Ra in m, force in N."""
+PATCH_CELLS = {SAM: 25, FEM_3D: 21}
+LAYERS = 16
+LOW, HIGH = 0.1, 0.4
+"""Coefficients of friction: in quarters of the patch, and of a film that is whole and that has failed."""
+FILM = {
+    "film_thickness": 100e-9,
+    "film_young": 80e9,
+    "film_poisson": 0.3,
+    "film_yield": 2e9 / 3,
+    "strain_limit": 0.0204,
+}
+"""The chemical film of Bosman & Schipper (2011), in SI."""
+WAVES = {"cutoff_long": 16e-6, "cutoff_short": 8e-6, "hurst": 0.8, "seed": 4}
 
 
-@dataclass(frozen=True)
-class CertifiedScenes:
-    """found: group -> name of a scene -> what was measured of it."""
+def smooth(context: Context) -> dict[str, Scene]:
+    """Elastic, hardening and perfectly plastic; at rest, and one that slides."""
+    swift, perfect = context.scene("plastic-swift-rigid"), context.scene("plastic-perfect")
+    swift, perfect = (
+        with_loading(at_ratio(scene, ratio), steps=STEPS, unload=True)
+        for scene, ratio in ((swift, RATIO), (perfect, PERFECT_RATIO))
+    )
+    elastic = with_body(perfect, plasticity=None).model_copy(update={"solver": type(perfect.solver)()})
+    sliding = swift.model_copy(update={"friction": Friction(coefficient=COEFFICIENT)})
+    found = {"elastic": elastic, "Swift": swift, "perfect": perfect, "Swift, sliding": sliding}
+    return {name: resolved_at(scene, LEVEL[context.level]) for name, scene in found.items()}
 
-    found: Mapping[str, Mapping[str, Conditions]]
-    resolution: Resolution
+
+def coated(context: Context) -> dict[str, Scene]:
+    """Elastic: a soft thin film at rest, and one that slides."""
+    scenes = {"soft film": context.scene("coated-sphere"), "film, sliding": context.scene("coated-sliding")}
+    return {name: with_grid(scene, cells=(COATED_CELLS, COATED_CELLS)) for name, scene in scenes.items()}
+
+
+def yielding_film(context: Context) -> dict[str, Scene]:
+    """Film and body yield, of the axisymmetric FEM."""
+    scene = with_loading(at_ratio(context.scene("film-yield"), FILM_RATIO), steps=SPATIAL_STEPS, unload=True)
+    return {"film that yields": with_mesh(scene, FILM_MESH)}
+
+
+def sliding(context: Context) -> dict[str, Scene]:
+    """Of the three-dimensional FEM: a Swift body, and an elastic one under a film."""
+    swift = with_loading(
+        at_ratio(context.scene("plastic-swift-rigid"), RATIO), steps=SPATIAL_STEPS, unload=True
+    )
+    swift = swift.model_copy(update={"friction": Friction(coefficient=COEFFICIENT)})
+    scenes = {"Swift, sliding": swift}
+    if context.level == "full":
+        scenes["film, sliding"] = context.scene("coated-sliding")
+    return {name: with_mesh(scene, SPATIAL_MESH) for name, scene in scenes.items()}
+
+
+def rough(context: Context, model: str) -> dict[str, Scene]:
+    """A self-affine patch whose border falls off, under a map of friction; of SAM also elastic, or with a
+    film that fails.
+    """
+    base, cells = context.scene("rough-asperities"), PATCH_CELLS[model]
+    grid = Grid(cells=(cells, cells), extent=(PATCH, PATCH), border="relief")
+    layered = grid.model_copy(update={"layers": LAYERS, "depth": 0.5 * LAYERS * PATCH / cells})
+    scene = base.model_copy(update={"surface": Surface(kind="self-affine", ra=RA, **WAVES), "grid": layered})
+    scene = with_loading(scene, force=FORCE, steps=SPATIAL_STEPS, unload=True)
+    side = np.arange(cells) < cells // 2
+    quarters = FrictionMap(np.where(side[:, None] == side, HIGH, LOW), (PATCH, PATCH))
+    slides = scene.model_copy(update={"friction": Friction(law="map", path=quarters)})
+    if model == FEM_3D:
+        return {"rough, Swift": slides} if context.level == "full" else {}
+    elastic = with_body(slides, plasticity=None).model_copy(update={"grid": grid})
+    chemical = scene.model_copy(
+        update={"friction": Friction(law="chemical-film", low=LOW, high=HIGH, **FILM)}
+    )
+    return {"rough, elastic": elastic, "rough, Swift": slides, "rough, film that fails": chemical}
+
+
+def groups(context: Context) -> list[tuple[str, str, str, Scene]]:
+    """(group, name, model, scene) of all that is solved."""
+    found = []
+    for name, scene in smooth(context).items():
+        found.append(("sam", name, SAM, scene))
+        if scene.friction is None:
+            found.append(("fem", name, FEM, scene))
+    for group, model, scenes in (
+        ("fem", FEM, yielding_film(context)),
+        ("coated", SAM, coated(context)),
+        ("rough", SAM, rough(context, SAM)),
+        ("fem-3d", FEM_3D, sliding(context) | rough(context, FEM_3D)),
+    ):
+        found += [(group, name, model, scene) for name, scene in scenes.items()]
+    return found
+
+
+Found = Mapping[str, Mapping[str, Conditions]]
+"""Group -> name of a scene -> what was measured of it."""
 
 
 class Certificates(Case):
     """Each scene solved with the models that apply, and every condition measured."""
 
-    def solve(self, context: Context) -> CertifiedScenes:
+    def solve(self, context: Context) -> Found:
         found: dict[str, dict[str, Conditions]] = {group: {} for group in MEASURED}
         for group, name, model, scene in groups(context):
             found[group][name] = OF_GROUP[group](scene, *solved(scene, model))
-        return CertifiedScenes(found, LEVEL[context.level])
+        return found
 
-    def measure(self, each: CertifiedScenes) -> dict[str, Measured]:
-        return gated(each.found)
+    def measure(self, found: Found) -> dict[str, Measured]:
+        """The largest value of each condition in each group. ValueError for one that no scene of the group
+        was measured for.
+        """
+        values = {}
+        for group, conditions in MEASURED.items():
+            for what in conditions:
+                measured = [one.values[what] for one in found[group].values() if what in one.values]
+                if not measured:
+                    raise ValueError(f"{group}: no scene has {what}")
+                values[f"{group}-{what}"] = Measured(max(measured), 0 if what == "histories" else None)
+        return values
 
-    def setup(self, each: CertifiedScenes) -> list[tuple[str, str]]:
-        return [
-            (
-                "Spheres",
-                f"rigid, unloaded again: elastic, Swift (p₀/σ_y0 = {RATIO:g}), perfectly plastic "
-                f"({PERFECT_RATIO:g})",
-            ),
-            ("Sliding", f"Swift steel, coefficient {COEFFICIENT:g}, SAM and FEM in three dimensions"),
-            (
-                "Films",
-                "elastic, at rest and sliding, SAM (sliding also FEM in three dimensions); film and body "
-                "that yield, FEM",
-            ),
-            (
-                "Rough",
-                f"self-affine patch with relief, elastic or Swift steel; map of friction ({LOW:g}, "
-                f"{HIGH:g}), chemical film",
-            ),
-            (
-                "Spheres",
-                f"{each.resolution.sam} cells, {each.resolution.fem} elements in the elastic contact radius; "
-                f"{STEPS} load steps",
-            ),
-            (
-                "Others",
-                f"{SPATIAL_MESH} hexahedra in the radius; {PATCH_CELLS[SAM]}² cells, {PATCH_CELLS[FEM_3D]}² "
-                "nodes of a patch",
-            ),
-        ]
+    def setup(self, found: Found) -> Iterator[tuple[str, str]]:
+        yield "Spheres", f"rigid, unloaded again: p₀/σ_y0 = {RATIO:g} (Swift), {PERFECT_RATIO:g} (perfect)"
+        yield "Sliding", f"Swift steel, coefficient {COEFFICIENT:g}, SAM and FEM in three dimensions"
+        yield "Films", "elastic, at rest and sliding; film and body that yield, FEM"
+        yield "Rough", f"self-affine patch with relief; map of friction ({LOW:g}, {HIGH:g}), chemical film"
 
-    def tables(self, each: CertifiedScenes) -> list[SmallTable]:
-        return [table_of(group, scenes) for group, scenes in each.found.items()]
+    def tables(self, found: Found) -> Iterator[SmallTable]:
+        for group, scenes in found.items():
+            rows = []
+            for what in [name for name in NAMES if name in MEASURED[group]]:
+                values = [each.values.get(what) for each in scenes.values()]
+                cells = ("" if v is None else f"{v:.1e}" if v else "0" for v in values)
+                rows.append((NAMES[what], *cells))
+            caption = f"Conditions, measured on what was returned: {TITLES[group]}"
+            yield SmallTable(caption, ("condition", *scenes), rows)
 
-    def figures(self, each: CertifiedScenes) -> Iterator[Plot]:
+    def figures(self, found: Found) -> Iterator[Plot]:
         curves = {
-            f"{name}, {SHORT[group]}": one.curves
-            for group, scenes in each.found.items()
+            f"{name}, {TITLES[group].split(',')[0]}": one.curves
+            for group, scenes in found.items()
             for name, one in scenes.items()
         }
-        yield Plot(
-            histories(curves),
-            "residuals",
-            "Residuals over the iterations",
-            "Semi-logarithmic curves of the residual of each load step, falling to the tolerance of the "
-            "model",
+        words = (
             "Each curve is one attempt at a load step; the dotted line is where it may stop. Elastic SAM: "
             "contact; plastic SAM: yield and flow rule, the contact inside; FEM: forces of Newton's method. "
-            "A residual of exactly zero, as after elastic unloading, has no place on this axis.",
+            "A residual of exactly zero, as after elastic unloading, has no place on this axis."
         )
-
-
-def gated(found: Mapping[str, Mapping[str, Conditions]]) -> dict[str, Measured]:
-    """The largest value of each condition in each group. ValueError for one that no scene of the group was
-    measured for.
-    """
-    values = {}
-    for group, conditions in MEASURED.items():
-        for what in conditions:
-            measured = [one.values[what] for one in found[group].values() if what in one.values]
-            if not measured:
-                raise ValueError(f"{group}: no scene has {what}")
-            values[f"{group}-{what}"] = Measured(max(measured), 0 if what == "histories" else None)
-    return values
-
-
-def table_of(group: str, found: Mapping[str, Conditions]) -> SmallTable:
-    """One row a condition, a column for each scene of a group."""
-    rows = []
-    for what in [name for name in NAMES if name in MEASURED[group]]:
-        values = [each.values.get(what) for each in found.values()]
-        rows.append(
-            (NAMES[what], *("" if value is None else f"{value:.1e}" if value else "0" for value in values))
-        )
-    return SmallTable(
-        f"Conditions, measured on what was returned: {TITLES[group]}", ("condition", *found), rows
-    )
+        yield Plot(histories(curves), "residuals", "Residuals over the iterations", words, words)
 
 
 CASES = (Certificates("certificates", needs=package_of("reference", "mpmath")),)

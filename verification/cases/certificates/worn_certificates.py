@@ -9,7 +9,7 @@ are counted from the start of the last cycle, heights from the worn surface.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -23,15 +23,13 @@ from verification.cases.case import (
     Context,
     Measured,
     SmallTable,
-    number,
     with_grid,
     with_keys,
     with_loading,
 )
-from verification.cases.certificates.certificates import NAMES
-from verification.cases.certificates.certificates_measures import by_rule, larger, late, solved
-from verification.cases.running_in.running_in_converged import COARSEST, CUBIC, Member
+from verification.cases.running_in.running_in_converged import COARSEST, Member
 from verification.checks import cells as cell_checks, conditions as contact_checks, film as film_checks
+from verification.checks.certificates import NAMES, by_rule, larger, late, solved
 from verification.checks.conditions import surface_of
 
 CYCLES = (2, 5)
@@ -42,46 +40,33 @@ contact, and lets it yield deeper.
 DEEPER = 14e-6, 19e-6  # m: further faces of layers
 
 
-@dataclass(frozen=True)
-class Worn:
-    """values: condition -> value; volume: worn before the last peak, in m3."""
-
-    values: Mapping[str, float]
-    volume: float
-
-
 class WornCertificates(Case):
     """One surface after more and more cycles, every condition of its last cycle measured."""
 
-    def solve(self, context: Context) -> dict[int, Worn]:
-        base = context.scene("running-in-bulk")
-        found = {}
+    def solve(self, context: Context) -> dict[int, dict[str, float]]:
+        """Cycles -> condition -> value, and "worn": the volume in m3 before the last peak."""
+        base, found = context.scene("running-in-bulk"), {}
         for cycles in CYCLES:
             scene = scene_of(base, cycles)
             result, records = solved(scene, SAM)
             volume = float(result.tables["cycles"]["wear_volume_m3"][-2])
-            found[cycles] = Worn(conditions_of(scene, result, records), volume)
+            found[cycles] = conditions_of(scene, result, records) | {"worn": volume}
         return found
 
-    def measure(self, found: Mapping[int, Worn]) -> dict[str, Measured]:
+    def measure(self, found: Mapping[int, Mapping[str, float]]) -> dict[str, Measured]:
         worst: dict[str, float] = {}
         for each in found.values():
-            worst = larger(worst, each.values)
+            worst = larger(worst, each)
+        least = min(each["worn"] for each in found.values())
         values = {name: Measured(value, 0 if name == "histories" else None) for name, value in worst.items()}
-        least = min(each.volume for each in found.values())
         return values | {"worn": Measured(least, unit="m³")}
 
-    def tables(self, found: Mapping[int, Worn]) -> Iterator[SmallTable]:
-        names = next(iter(found.values())).values
-        rows = [(NAMES[name], *(f"{each.values[name]:.1e}" for each in found.values())) for name in names]
-        rows.append(
-            ("worn before that cycle [µm³]", *(number(CUBIC * each.volume, 3) for each in found.values()))
-        )
-        yield SmallTable(
-            "Conditions, measured on what was returned of the last cycle",
-            ("condition", *(f"of {cycles} cycles" for cycles in found)),
-            rows,
-        )
+    def tables(self, found: Mapping[int, Mapping[str, float]]) -> Iterator[SmallTable]:
+        names = NAMES | {"worn": "volume worn before that cycle [m³]"}
+        first = next(iter(found.values()))
+        rows = [(names[name], *(f"{each[name]:.1e}" for each in found.values())) for name in first]
+        columns = ("condition", *(f"of {cycles} cycles" for cycles in found))
+        yield SmallTable("Conditions, measured on what was returned of the last cycle", columns, rows)
 
 
 def scene_of(base: Scene, cycles: int) -> Scene:

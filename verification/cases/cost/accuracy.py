@@ -19,11 +19,12 @@ from verification.cases.case import (
     with_keys,
     with_loading,
 )
-from verification.cases.cost.uncertainty_study import of_ellipse, of_hertz, plastic, sliding, solved
+from verification.cases.cost.uncertainty import sliding, solved
+from verification.cases.recipes import at_ratio
 from verification.cost.accuracy import solve
 from verification.cost.choice import Choice, chosen_scene, quantities_of
 from verification.cost.estimates import estimate
-from verification.references import coated_contact
+from verification.references import REFERENCES, coated_contact
 from verification.runs import models
 from verification.runs.models import ModelError
 from verification.runs.store import solve_or_reuse
@@ -95,31 +96,27 @@ def of_film(_: Context, scene: Scene) -> float:
 def subjects(context: Context) -> list[Subject]:
     """Ten scenes; their loads are not those of the table of advice."""
 
-    def closed(truth) -> Callable[[Context, Scene], float]:
-        return lambda where, scene: truth(where, scene)["p_max_Pa"][0]
+    def closed(reference: str) -> Callable[[Context, Scene], float]:
+        return lambda _, scene: float(REFERENCES[reference](scene).values["p-max"])
 
-    sphere, coated = context.scene("hertz-sphere"), context.scene("coated-sphere")
-    ellipse = context.scene("hertz-ellipse").model_copy(update={"grid": None})
-    stiff = with_keys(coated, "body.coating", young=FILM * coated.body.young)
-    swift, elements = "plastic-swift-rigid", of_finite_elements
-    yielding = {
-        "Swift, p0 = 3.5 yield stresses": (swift, 3.5),
-        "Swift, 5": (swift, 5.0),
-        "perfect, 4": ("plastic-perfect", 4.0),
-        "linear, 3.5": ("plastic-linear", 3.5),
-        "Swift, steel on steel, 4": ("plastic-swift-steel", 4.0),
+    sphere, ellipse, coated = map(context.scene, ("hertz-sphere", "hertz-ellipse", "coated-sphere"))
+    found = {
+        "elastic sphere": (with_loading(sphere, force=0.2), closed("hertz-sphere")),
+        "ellipse 3 : 1": (ellipse.model_copy(update={"grid": None}), closed("hertz-ellipse")),
+        "sliding sphere": (sliding(sphere), closed("hertz-sphere")),
+        "soft film": (coated, of_film),
+        "stiff film": (with_keys(coated, "body.coating", young=FILM * coated.body.young), of_film),
     }
-    return [
-        Subject("elastic sphere", with_loading(sphere, force=0.2), closed(of_hertz)),
-        Subject("ellipse 3 : 1", ellipse, closed(of_ellipse)),
-        Subject("sliding sphere", sliding(sphere), closed(of_hertz)),
-        Subject("soft film", coated, of_film),
-        Subject("stiff film", stiff, of_film),
-        *(
-            Subject(name, with_loading(plastic(context, *which), unload=False), elements)
-            for name, which in yielding.items()
-        ),
-    ]
+    for name, file, ratio in (
+        ("Swift, p0 = 3.5 yield stresses", "plastic-swift-rigid", 3.5),
+        ("Swift, 5", "plastic-swift-rigid", 5.0),
+        ("perfect, 4", "plastic-perfect", 4.0),
+        ("linear, 3.5", "plastic-linear", 3.5),
+        ("Swift, steel on steel, 4", "plastic-swift-steel", 4.0),
+    ):
+        scene = with_loading(at_ratio(context.scene(file), ratio), steps=5, unload=False)
+        found[name] = scene.model_copy(update={"grid": None}), of_finite_elements
+    return [Subject(name, *each) for name, each in found.items()]
 
 
 def runs_of(context: Context, subject: Subject, accuracies: Sequence[float]) -> Iterator[Run]:
@@ -213,22 +210,17 @@ class Accuracy(Case):
                 )
 
     def tables(self, found: Sequence[Run]) -> Iterator[SmallTable]:
-        rows = [
-            (
-                run.subject,
-                f"{1e2 * run.asked:g}",
-                "reached" if run.reached else run.why,
-                "-" if run.relative is None else f"{1e2 * run.relative:.2g}",
-                f"{1e2 * run.error:.2g}",
-                run.took,
-                *map(with_time, (run.seconds, run.finest)),
-                *((with_time(run.fixed), f"{run.over_fixed:.2g}") if run.fixed > 0.0 else ("none", "")),
+        rows = []
+        for run in found:
+            said = "reached" if run.reached else run.why
+            relative = "-" if run.relative is None else f"{1e2 * run.relative:.2g}"
+            best = (with_time(run.fixed), f"{run.over_fixed:.2g}") if run.fixed > 0.0 else ("none", "")
+            shown = (run.took, with_time(run.seconds), with_time(run.finest), *best)
+            rows.append(
+                (run.subject, f"{1e2 * run.asked:g}", said, relative, f"{1e2 * run.error:.2g}", *shown)
             )
-            for run in found
-        ]
-        heads = ("scene", "asked [%]", "said", "uncertainty [%]", "true error [%]", "with")
-        times = ("all solves", "the finest", "best fixed grid", "all / best")
-        yield SmallTable("Accuracies", (*heads, *times), rows)
+        columns = "scene|asked [%]|said|uncertainty [%]|true error [%]|with|all solves|the finest"
+        yield SmallTable("Accuracies", f"{columns}|best fixed grid|all / best".split("|"), rows)
 
 
 def medians(found: Sequence[Run]) -> tuple[float, float, float]:

@@ -69,36 +69,45 @@ class Growth(Case):
             "unconverged": late,
         }
 
-    def setup(self, climbed: Climbed) -> list[tuple[str, str]]:
-        return [
-            (
-                "Each point",
-                f"a solve in a process of its own, one thread; median of {growth.REPEATS} below "
-                f"{growth.SHORT_S:g} s",
-            ),
-            (
-                "Memory",
-                "largest resident memory over that of a process that has loaded the model and solved nothing",
-            ),
-            ("Elastic contact", "rigid sphere, one step, over 4a each way, stresses at z = 0 alone"),
-            ("Stresses", "the same with the depths of a user who names none, less the time of the former"),
-            (
-                "Operator",
-                "transform of the strain, product with the stored matrices, back to the cells; single "
-                "precision",
-            ),
-            (
-                "Exponents",
-                f"least squares in log-log ± standard error; contact: from {UPPER_CELLS} cells on",
-            ),
-        ]
+    def setup(self, climbed: Climbed) -> Iterator[tuple[str, str]]:
+        median = f"median of {growth.REPEATS} below {growth.SHORT_S:g} s"
+        yield "Each point", f"a solve in a process of its own, one thread; {median}"
+        over = "over that of a process that has loaded the model and solved nothing"
+        yield "Memory", f"largest resident memory {over}"
+        yield "Elastic contact", "rigid sphere, one step, over 4a each way, stresses at z = 0 alone"
+        depths = "the depths of a user who names none, less the time of the former"
+        yield "Stresses", f"the same with {depths}"
+        stored = "product with the stored matrices, back to the cells; single precision"
+        yield "Operator", f"transform of the strain, {stored}"
+        yield "Exponents", f"least squares in log-log ± standard error; contact: from {UPPER_CELLS} cells on"
 
-    def tables(self, climbed: Climbed) -> list[SmallTable]:
-        return [
-            exponent_table(climbed.powers, climbed.memory),
-            box_table(climbed.boxes),
-            prediction_table(climbed.every),
+    def tables(self, climbed: Climbed) -> Iterator[SmallTable]:
+        rows = [
+            (_NAMES[name][0], of, _NAMES[name][1], f"{power.first:.0f}", f"{power.last:.0f}", str(power))
+            for of, powers in (("processor time", climbed.powers), ("memory", climbed.memory))
+            for name, power in powers.items()
         ]
+        yield SmallTable("Exponents", ("what", "of", "in", "from", "to", "exponent"), rows)
+        unique = {(box.nx, box.ny, box.layers): box for each in climbed.boxes.values() for box in each}
+        rows = [
+            (
+                *(f"{box.nx} × {box.ny} × {box.layers}", f"{box.cells}", f"{box.setup_s:.3g}"),
+                *(f"{1e3 * box.apply_s:.3g}", f"{box.stored / 1e6:.4g}", f"{box.memory / 1e6:.4g}"),
+            )
+            for box in sorted(unique.values(), key=lambda box: box.cells)
+        ]
+        columns = "box|cells|set-up [s]|application [ms]|stored [MB]|memory with the set-up [MB]"
+        yield SmallTable("Residual-stress operator by itself", columns.split("|"), rows)
+        rows = []
+        for each in climbed.every:
+            said, rung = each.expected, each.rung
+            off = f"{1e2 * (said.memory_bytes / each.memory - 1):+.0f} %"
+            memory = (f"{each.memory / 1e6:.4g}", f"{said.memory_bytes / 1e6:.4g}")
+            counted = off if each.memory >= MEMORY_MATTERS else "not counted"
+            time = (f"{each.cpu_s:.3g}", f"{said.time_s:.3g}")
+            rows.append((rung.family, rung.label, *time, *memory, counted))
+        columns = "scene|size|time [s]|predicted [s]|memory [MB]|predicted [MB]|off by"
+        yield SmallTable("Measured, and predicted by samfem plan", columns.split("|"), rows)
 
     def notes(self, climbed: Climbed) -> Iterator[str]:
         yield (
@@ -189,65 +198,6 @@ _NAMES = {
 
 
 _ELEMENTS = (("axisymmetric", "axisymmetric"), ("3D", "spatial"))
-
-
-def exponent_table(powers: Mapping[str, Power], memory: Mapping[str, Power]) -> SmallTable:
-    """The exponents of time and memory."""
-    rows = [(_NAMES[name][0], "processor time", *_cells(name, power)) for name, power in powers.items()]
-    rows += [(_NAMES[name][0], "memory", *_cells(name, power)) for name, power in memory.items()]
-    return SmallTable("Exponents", ("what", "of", "in", "from", "to", "exponent"), rows)
-
-
-def _cells(name: str, power: Power) -> tuple[str, ...]:
-    return _NAMES[name][1], f"{power.first:.0f}", f"{power.last:.0f}", str(power)
-
-
-def box_table(boxes: Mapping[str, Sequence[Applied]]) -> SmallTable:
-    """The operator by itself."""
-    unique = {(box.nx, box.ny, box.layers): box for each in boxes.values() for box in each}
-    rows = [
-        (
-            f"{box.nx} × {box.ny} × {box.layers}",
-            f"{box.cells}",
-            f"{box.setup_s:.3g}",
-            f"{1e3 * box.apply_s:.3g}",
-            f"{box.stored / 1e6:.4g}",
-            f"{box.memory / 1e6:.4g}",
-        )
-        for _, box in sorted(unique.items(), key=lambda item: item[1].cells)
-    ]
-    return SmallTable(
-        "Residual-stress operator by itself",
-        ("box", "cells", "set-up [s]", "application [ms]", "stored [MB]", "memory with the set-up [MB]"),
-        rows,
-    )
-
-
-def prediction_table(taken: Sequence[Taken]) -> SmallTable:
-    """Measured beside predicted, a row a solve."""
-    rows = []
-    for each in taken:
-        said = each.expected
-        rows.append(
-            (
-                each.rung.family,
-                each.rung.label,
-                f"{each.cpu_s:.3g}",
-                f"{said.time_s:.3g}",
-                f"{each.memory / 1e6:.4g}",
-                f"{said.memory_bytes / 1e6:.4g}",
-                _percent(said.memory_bytes, each.memory),
-            )
-        )
-    return SmallTable(
-        "Measured, and predicted by samfem plan",
-        ("scene", "size", "time [s]", "predicted [s]", "memory [MB]", "predicted [MB]", "off by"),
-        rows,
-    )
-
-
-def _percent(expected: float, measured: float) -> str:
-    return f"{1e2 * (expected / measured - 1):+.0f} %" if measured >= MEMORY_MATTERS else "not counted"
 
 
 def _growth(climbed: Climbed) -> dict[str, tuple[str, dict[str, PowerCurve], dict[str, PowerCurve]]]:

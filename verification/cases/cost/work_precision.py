@@ -30,7 +30,6 @@ from verification.cases.cost.work_precision_study import (
     ErrorCurve,
     ProblemStudy,
     Solve,
-    SolvePoint,
     studied,
 )
 from verification.cost import measured
@@ -68,33 +67,19 @@ class WorkPrecision(Case):
     def measure(self, studies: Sequence[ProblemStudy]) -> dict[str, Measured]:
         return gated(studies)
 
-    def setup(self, studies: Sequence[ProblemStudy]) -> list[tuple[str, str]]:
+    def setup(self, studies: Sequence[ProblemStudy]) -> Iterator[tuple[str, str]]:
+        yield "Problems", "; ".join(study.problem.title for study in studies)
         points = (point for study in studies for each in study.points.values() for point in each)
         kernels = [point.kernel_s for point in points if math.isfinite(point.kernel_s)]
-        return [
-            ("Problems", "; ".join(study.problem.title for study in studies)),
-            (
-                "Calibration kernel",
-                f"{median(kernels):.3f} s, from {min(kernels):.3f} to {max(kernels):.3f} s between the "
-                "solves",
-            ),
-            (
-                "Repeats",
-                (
-                    f"Solves of less than {FAST_S:g} s are repeated {REPEATS} times, in rounds with the "
-                    "others; medians count"
-                ),
-            ),
-        ]
+        between = f"from {min(kernels):.3f} to {max(kernels):.3f} s between the solves"
+        yield "Calibration kernel", f"{median(kernels):.3f} s, {between}"
+        repeated = f"repeated {REPEATS} times, in rounds with the others; medians count"
+        yield "Repeats", f"Solves of less than {FAST_S:g} s are {repeated}"
 
-    def tables(self, studies: Sequence[ProblemStudy]) -> list[SmallTable]:
-        tables = [
-            times_table(studies),
-            faster_table(studies),
-            references_table(studies),
-            steps_table(studies),
-        ]
-        return tables + [points_table(study) for study in studies]
+    def tables(self, studies: Sequence[ProblemStudy]) -> Iterator[SmallTable]:
+        for table in (times_table, faster_table, references_table, steps_table):
+            yield table(studies)
+        yield from map(points_table, studies)
 
     def notes(self, studies: Sequence[ProblemStudy]) -> Iterator[str]:
         yield (
@@ -110,7 +95,8 @@ class WorkPrecision(Case):
     def figures(self, studies: Sequence[ProblemStudy]) -> Iterator[Plot]:
         advising = [each for each in studies if each.problem.kind]
         times = {
-            each.problem.kind: {name: each.time(name, 0.01) for name in each.curves} for each in advising
+            each.problem.kind: {name: curve.time(0.01) for name, curve in each.curves.items()}
+            for each in advising
         }
         yield Plot(
             Drawing(overview(times, "1 %").figure, columns_of(advice_rows(studies))),
@@ -123,7 +109,7 @@ class WorkPrecision(Case):
         for study in studies:
             panels = {"resolution": (lines_of(study.curves), study.floor)}
             if study.problem.steps:
-                panels["load steps"] = (lines_of(study.step_curves), study.step_floor)
+                panels["load steps"] = (lines_of(study.step_curves), study.step_curves[COUPLED].floor)
             words = " and ".join(MEASURES[name] for name in study.problem.measures)
             yield Plot(
                 curves(panels, f"error of the {words}"),
@@ -169,10 +155,10 @@ def time_ratio(study: ProblemStudy, other: str, target: float) -> float:
     A method that never reaches it needs more than its finest point took: that time is taken, which is in its
     favour.
     """
-    found = [study.time(name, target).value for name in (COUPLED, TWICE) if name in study.curves]
+    found = [study.curves[name].time(target).value for name in (COUPLED, TWICE) if name in study.curves]
     own, its = (
         min((time for time in found if time is not None), default=None),
-        study.time(other, target).value,
+        study.curves[other].time(target).value,
     )
     if own is None:
         return math.inf
@@ -195,8 +181,8 @@ def faster(study: ProblemStudy, other: str) -> tuple[float, float]:
     if other not in curves or not own or not math.isfinite(ends(other)):
         return math.nan, math.nan
     target = max(ends(other), min(map(ends, own)))
-    times = (study.time(name, target).value for name in own)
-    least, its = min(time for time in times if time is not None), study.time(other, target).value
+    times = (study.curves[name].time(target).value for name in own)
+    least, its = min(time for time in times if time is not None), study.curves[other].time(target).value
     return (math.nan if its is None else its / least), target
 
 
@@ -212,68 +198,30 @@ def growth(errors: np.ndarray, floor: float) -> float:
     return max((b / a for a, b in pairs), default=0.0)
 
 
-@dataclass(frozen=True)
-class Advised:
-    """A method that a user may take. unit, size: of what the advice calls a resolution of 1."""
-
-    curve: ErrorCurve
-    floor: float
-    unit: str
-    size: float
-
-    def time(self, target: float) -> Reached:
-        """Processor time to an error."""
-        return self.curve.time(target, self.floor)
-
-    def kernels(self, target: float) -> float | None:
-        """The same in runs of the calibration kernel."""
-        return self.curve.kernels(target, self.floor).value
-
-    def fineness(self, target: float) -> float | None:
-        """The resolution at an error."""
-        return self.curve.fineness(target, self.floor).value
-
-
 def advice_rows(studies: Sequence[ProblemStudy]) -> list[AdviceRow]:
     """What each error takes, for the methods that a user is advised to take, and the load steps."""
     rows = []
     for study in (each for each in studies if each.problem.kind):
         values = {name: reference.value for name, reference in study.references.items()}
-        unit, size = study.problem.advised(study.scene, values)
-        found = {
-            ADVISED[name]: Advised(curve, study.floor, unit, size)
-            for name, curve in study.curves.items()
-            if name in ADVISED
-        }
+        of_grid = study.problem.advised(study.scene, values)  # what the advice calls a resolution of 1
+        methods = {ADVISED[name]: curve for name, curve in study.curves.items() if name in ADVISED}
+        found = [(name, curve, *of_grid) for name, curve in methods.items()]
         if study.problem.steps:
-            found[LOAD_STEPS] = Advised(study.step_curves[COUPLED], study.step_floor, "load steps", 1.0)
+            found.append((LOAD_STEPS, study.step_curves[COUPLED], "load steps", 1.0))
+        said = study.problem.kind, " and ".join(MEASURES[measure] for measure in study.problem.measures)
         for target in TARGETS:
-            times = [each.time(target).value for name, each in found.items() if name != LOAD_STEPS]
-            least = min((time for time in times if time is not None), default=math.nan)
-            rows += [row_of(study, name, each, target=target, least=least) for name, each in found.items()]
+            every = [curve.time(target).value for curve in methods.values()]
+            least = min((time for time in every if time is not None), default=math.nan)
+            for name, curve, unit, size in found:
+                time = curve.time(target)
+                numbers = (time.value, curve.fineness(target).value, curve.kernels(target))
+                seconds, fineness, kernels = (math.nan if each is None else each for each in numbers)
+                bound = NEVER if time.value is None else BELOW * time.coarsest
+                relative = math.nan if name == LOAD_STEPS else seconds / least
+                steps = study.scene.loading.steps
+                row = (*said, name, target, bound, fineness * size, unit, steps, seconds, kernels, relative)
+                rows.append(AdviceRow(*row))
     return rows
-
-
-def row_of(study: ProblemStudy, name: str, method: Advised, *, target: float, least: float) -> AdviceRow:
-    """What one error takes a method. least: the time of the fastest method, s."""
-    time = method.time(target)
-    seconds, resolution, kernels = (
-        math.nan if value is None else value
-        for value in (time.value, method.fineness(target), method.kernels(target))
-    )
-    return AdviceRow(
-        study.problem.kind,
-        " and ".join(MEASURES[measure] for measure in study.problem.measures),
-        name,
-        target,
-        NEVER if time.value is None else BELOW * time.coarsest,
-        resolution * method.size,
-        method.unit,
-        study.scene.loading.steps,
-        seconds,
-        kernels,
-        math.nan if name == LOAD_STEPS else seconds / least,
-    )
 
 
 def times_table(studies: Sequence[ProblemStudy]) -> SmallTable:
@@ -281,17 +229,11 @@ def times_table(studies: Sequence[ProblemStudy]) -> SmallTable:
     rows = []
     for study in studies:
         for name, found in study.curves.items():
-            cells = [
-                spent(found.time(target, study.floor), found.fineness(target, study.floor))
-                for target in TARGETS
-            ]
-            kernels = found.kernels(0.01, study.floor).value
-            rows.append((study.problem.title, name, *cells, "" if kernels is None else number(kernels, 3)))
-    return SmallTable(
-        "Processor time in s to an error (resolution)",
-        ("problem", "method", *(f"{100.0 * t:g} %" for t in TARGETS), "1 %, in kernels"),
-        rows,
-    )
+            reached, kernels = ((found.time(t), found.fineness(t)) for t in TARGETS), found.kernels(0.01)
+            last = "" if kernels is None else number(kernels, 3)
+            rows.append((study.problem.title, name, *(spent(*each) for each in reached), last))
+    columns = ("problem", "method", *(f"{100.0 * t:g} %" for t in TARGETS), "1 %, in kernels")
+    return SmallTable("Processor time in s to an error (resolution)", columns, rows)
 
 
 def spent(time: Reached, fineness: Reached) -> str:
@@ -318,10 +260,8 @@ def faster_table(studies: Sequence[ProblemStudy]) -> SmallTable:
         "How many times the time of SAM finite elements take at the smallest error that both reach, and that "
         f"is {KNOWN:g} times the uncertainty of the reference. A sphere at rest is a problem in two "
         "dimensions for the axisymmetric model and in three for SAM",
-        (
-            *("problem", "beside", "error", "uncertainty of the reference", "times"),
-            *("with the reference off by its uncertainty", "share of the goal"),
-        ),
+        "problem|beside|error|uncertainty of the reference|times|with the reference off by its uncertainty"
+        "|share of the goal".split("|"),
         rows,
     )
 
@@ -329,41 +269,28 @@ def faster_table(studies: Sequence[ProblemStudy]) -> SmallTable:
 def references_table(studies: Sequence[ProblemStudy]) -> SmallTable:
     """What the errors are measured against."""
     rows = [
-        (
-            study.problem.title,
-            MEASURES[name],
-            number(one.value, 6),
-            f"{100.0 * one.uncertainty:.2g} %",
-            one.origin,
-        )
+        (study.problem.title, MEASURES[q], number(one.value, 6), f"{1e2 * one.uncertainty:.2g} %", one.origin)
         for study in studies
-        for name, one in study.references.items()
+        for q, one in study.references.items()
     ]
     return SmallTable("References", ("problem", "quantity (SI)", "value", "uncertainty", "from"), rows)
 
 
 def steps_table(studies: Sequence[ProblemStudy]) -> SmallTable:
     """Errors over the load steps."""
-    rows = []
-    for study in studies:
-        for name, found in study.step_curves.items() if study.problem.steps else ():
-            for point, error in zip(found.points, found.errors, strict=True):
-                cells = (
-                    f"{100.0 * error:.3g} %",
-                    number(point.cpu_s, 3),
-                    f"{point.counters.get('operator_applications')}",
-                )
-                rows.append((study.problem.title, name, f"{point.resolution}", *cells, point.status))
-    columns = (
-        "problem",
-        "method",
-        "load steps",
-        "error",
-        "processor time [s]",
-        "operator applications",
-        "status",
-    )
-    return SmallTable("Load steps at one resolution, against their extrapolation", columns, rows)
+    rows = [
+        (
+            *(study.problem.title, name, f"{point.resolution}", f"{100.0 * error:.3g} %"),
+            *(number(point.cpu_s, 3), f"{point.counters.get('operator_applications')}", point.status),
+        )
+        for study in studies
+        if study.problem.steps
+        for name, found in study.step_curves.items()
+        for point, error in zip(found.points, found.errors, strict=True)
+    ]
+    columns = "problem|method|load steps|error|processor time [s]|operator applications|status"
+    words = "Load steps at one resolution, against their extrapolation"
+    return SmallTable(words, columns.split("|"), rows)
 
 
 def points_table(study: ProblemStudy) -> SmallTable:
@@ -371,34 +298,16 @@ def points_table(study: ProblemStudy) -> SmallTable:
     rows = []
     for name, found in study.curves.items():
         profiles = study.profile_errors(name) if study.problem.profile else [math.nan] * len(found.points)
-        for point, error, profile in zip(found.points, found.errors, profiles, strict=True):
-            rows.append((name, f"{point.resolution}", *_cells(point, error, profile)))
-    return SmallTable(
-        study.problem.title,
-        (
-            *(
-                "method",
-                study.problem.unit,
-                "error",
-                "axis, L2",
-                "processor time [s]",
-                "spread",
-                "in kernels",
-            ),
-            *("set-up [s]", "solution [s]", "memory [MB]", "counters", "status"),
-        ),
-        rows,
-    )
-
-
-def _cells(point: SolvePoint, error: float, profile: float) -> tuple[str, ...]:
-    counted = ", ".join(
-        f"{name.replace('_', ' ')} {value}" for name, value in point.counters.items() if value
-    )
-    shares = tuple(f"{100.0 * value:.3g} %" if math.isfinite(value) else "" for value in (error, profile))
-    seconds = (number(point.cpu_s, 3), f"{point.spread:.2f}", number(point.kernels, 3))
-    rest = (number(point.setup_s, 3), number(point.solve_s, 3), number(point.peak_memory_bytes / 1e6, 3))
-    return (*shares, *seconds, *rest, counted, point.status)
+        for point, *both in zip(found.points, found.errors, profiles, strict=True):
+            shares = (f"{100.0 * value:.3g} %" if math.isfinite(value) else "" for value in both)
+            numbers = (point.kernels, point.setup_s, point.solve_s, point.peak_memory_bytes / 1e6)
+            cost = (number(point.cpu_s, 3), f"{point.spread:.2f}", *(number(value, 3) for value in numbers))
+            counters = (f"{key.replace('_', ' ')} {value}" for key, value in point.counters.items() if value)
+            row = (name, f"{point.resolution}", *shares, *cost, ", ".join(counters), point.status)
+            rows.append(row)
+    columns = "error|axis, L2|processor time [s]|spread|in kernels|set-up [s]|solution [s]|memory [MB]"
+    columns = ("method", study.problem.unit, *columns.split("|"), "counters", "status")
+    return SmallTable(study.problem.title, columns, rows)
 
 
 def lines_of(found: Mapping[str, ErrorCurve]) -> dict[str, Line]:

@@ -41,23 +41,9 @@ from verification.scenes.asperities import height_map
 COUPLED, DECOUPLED, PAPER, TWICE = "SAM", "SAM, decoupled", "SAM, the paper's loop", "SAM, two grids"
 AXISYMMETRIC, SPATIAL = "FEM, axisymmetric", "FEM, 3D"
 
-ELASTIC_CELLS, ELASTIC_MESHES, ELASTIC_SPATIAL = (
-    (3, 4, 5, 6, 8, 12, 16, 32),
-    (4, 6, 8, 12, 16, 32),
-    (4, 5, 6, 7, 8),
-)
-COATED_CELLS, COATED_MESHES, COATED_SPATIAL = (3, 4, 6, 8, 12, 16, 24), (4, 6, 8, 12, 16, 32), (4, 5, 6)
-PLASTIC_CELLS, PLASTIC_PAPER, PLASTIC_MESHES = (
-    (3, 4, 5, 6, 7, 8, 10, 14, 20),
-    (3, 4, 6, 8, 10),
-    (4, 6, 8, 12, 16, 24, 32),
-)
-SLIDING_CELLS, SLIDING_OTHER, SPATIAL_MESHES = (3, 4, 5, 6, 8, 10, 14), (3, 4, 6, 8, 10), (4, 5, 6, 7, 8)
+SPATIAL_MESHES = (4, 5, 6, 7, 8)
+SLIDING_OTHER = (3, 4, 6, 8, 10)
 TWICE_CELLS = (6, 7, 8, 10, 14)
-ELLIPTIC_CELLS, ELLIPTIC_SPATIAL = (3, 4, 5, 6, 8, 12, 16), (4, 5, 6, 7, 8)
-ROUGH_CELLS, ROUGH_SPATIAL = (16, 20, 24, 32, 48, 64, 96, 192, 384), (16, 24, 32)
-YIELDING_CELLS, YIELDING_SPATIAL = (16, 20, 24, 32, 48, 64), (16, 24, 32)
-WORN_CELLS = (24, 32, 40, 48, 64)
 LOAD_STEPS = (1, 2, 5, 10, 20, 40)
 
 STEPS, ROUGH_STEPS, WORN_STEPS = 5, 2, 4
@@ -109,10 +95,7 @@ class Problem:
     measures: tuple[str, ...]
     methods: tuple[Method, ...]
     unit: str = "cells in a"
-    advised: Callable[[Scene, Mapping[str, float]], tuple[str, float]] = lambda scene, values: (
-        IN_RADIUS,
-        1.0,
-    )
+    advised: Callable[[Scene, Mapping[str, float]], tuple[str, float]] = lambda *_: (IN_RADIUS, 1.0)
     exact: Callable[[Scene], Mapping[str, float]] | None = None
     references: tuple[str, ...] = ()
     tops: int = 4
@@ -188,11 +171,8 @@ def smaller_box(scene: Scene, n: int) -> Scene:
 def asperities(scene: Scene, n: int) -> Scene:
     """The three asperities on n x n cells."""
     surface = scene.surface.model_copy(update={"path": height_map(n)})
-    if scene.body.plasticity is None:
-        grid = None
-    else:
-        side = surface.path.extent[0]
-        grid = Grid(layers=round(DEEPEST / (LAYER * side / n)), depth=DEEPEST)
+    layers = round(DEEPEST / (LAYER * surface.path.extent[0] / n))
+    grid = Grid(layers=layers, depth=DEEPEST) if scene.body.plasticity else None
     return scene.model_copy(update={"surface": surface, "grid": grid})
 
 
@@ -202,18 +182,6 @@ def worn_cells(scene: Scene, n: int) -> Scene:
     at = np.linspace(0.0, faces.size - 1.0, max(round((faces.size - 1) * n * 1e-6 / PATCH), 2) + 1)
     depths = np.interp(at, np.arange(faces.size), faces)
     return with_grid(scene, cells=(n, n), depths=tuple(float(z) for z in depths))
-
-
-def with_steps(
-    at: Callable[[Scene, int], Scene], resolution: int, change: Callable[[Scene], Scene] | None = None
-):
-    """(scene, steps) -> the scene at one resolution in so many load steps."""
-
-    def chosen(scene: Scene, steps: int) -> Scene:
-        scene = with_loading(at(scene, resolution), steps=steps)
-        return change(scene) if change else scene
-
-    return chosen
 
 
 def changed(at: Callable[[Scene, int], Scene], change: Callable[[Scene], Scene]):
@@ -248,24 +216,27 @@ def _elastic(base: Scene) -> Scene:
 def _worn(base: Scene) -> Scene:
     """One cycle on a part of the patch, at the nominal pressure of the whole."""
     share = (PATCH / base.grid.extent[0]) ** 2
-    scene = with_grid(base, extent=(PATCH, PATCH))
-    return with_loading(
-        scene, force=share * base.loading.force, cycles=1, steps=WORN_STEPS, unload_steps=WORN_STEPS
-    )
+    keys = {"cycles": 1, "steps": WORN_STEPS, "unload_steps": WORN_STEPS}
+    return with_loading(with_grid(base, extent=(PATCH, PATCH)), force=share * base.loading.force, **keys)
 
 
 def _steps(
-    change: Callable[[Scene], Scene] | None = None, name: str = COUPLED, strict: bool = True
+    change: Callable[[Scene], Scene] = lambda each: each, name: str = COUPLED, strict: bool = True
 ) -> Method:
-    return Method(name, SAM, LOAD_STEPS, with_steps(plastic_cells, AT_STEPS, change), strict)
+    """Load steps refined at one resolution."""
+
+    def at(scene: Scene, steps: int) -> Scene:
+        return change(with_loading(plastic_cells(scene, AT_STEPS), steps=steps))
+
+    return Method(name, SAM, LOAD_STEPS, at, strict)
 
 
 def _sphere(name: str, ratio: float, kind: str, spatial: Sequence[int] = ()) -> Problem:
     methods = [
-        Method(COUPLED, SAM, PLASTIC_CELLS, plastic_cells),
+        Method(COUPLED, SAM, (3, 4, 5, 6, 7, 8, 10, 14, 20), plastic_cells),
         Method(TWICE, SAM, TWICE_CELLS, on_two_grids),
-        Method(PAPER, SAM, PLASTIC_PAPER, changed(plastic_cells, by_paper), strict=False),
-        Method(AXISYMMETRIC, FEM, PLASTIC_MESHES, with_mesh),
+        Method(PAPER, SAM, (3, 4, 6, 8, 10), changed(plastic_cells, by_paper), strict=False),
+        Method(AXISYMMETRIC, FEM, (4, 6, 8, 12, 16, 24, 32), with_mesh),
     ]
     if spatial:
         methods.append(Method(SPATIAL, FEM_3D, spatial, smaller_box))
@@ -283,11 +254,8 @@ def _sphere(name: str, ratio: float, kind: str, spatial: Sequence[int] = ()) -> 
     )
 
 
-IN_RADIUS, IN_SPOT, IN_WAVE = (
-    "cells in the contact radius",
-    "cells in the mean radius of a spot",
-    "cells in the shortest wave",
-)
+IN_RADIUS, IN_WAVE = "cells in the contact radius", "cells in the shortest wave"
+IN_SPOT = "cells in the mean radius of a spot"
 SPOTS = 3
 
 
@@ -310,9 +278,9 @@ PROBLEMS = (
         loaded,
         ("p_max_Pa",),
         (
-            Method(COUPLED, SAM, ELASTIC_CELLS, elastic_cells),
-            Method(AXISYMMETRIC, FEM, ELASTIC_MESHES, with_mesh),
-            Method(SPATIAL, FEM_3D, ELASTIC_SPATIAL, smaller_box),
+            Method(COUPLED, SAM, (3, 4, 5, 6, 8, 12, 16, 32), elastic_cells),
+            Method(AXISYMMETRIC, FEM, (4, 6, 8, 12, 16, 32), with_mesh),
+            Method(SPATIAL, FEM_3D, (4, 5, 6, 7, 8), smaller_box),
         ),
         exact=_hertz,
     ),
@@ -326,7 +294,7 @@ PROBLEMS = (
         _sliding,
         ("peeq_max",),
         (
-            Method(COUPLED, SAM, SLIDING_CELLS, plastic_cells),
+            Method(COUPLED, SAM, (3, 4, 5, 6, 8, 10, 14), plastic_cells),
             Method(TWICE, SAM, TWICE_CELLS, on_two_grids),
             Method(DECOUPLED, SAM, SLIDING_OTHER, changed(plastic_cells, uncoupled)),
             Method(PAPER, SAM, SLIDING_OTHER, changed(plastic_cells, by_paper), strict=False),
@@ -343,9 +311,9 @@ PROBLEMS = (
         lambda base: coated_scene(base, *FILM),
         ("p_max_Pa",),
         (
-            Method(COUPLED, SAM, COATED_CELLS, coated_cells),
-            Method(AXISYMMETRIC, FEM, COATED_MESHES, with_mesh),
-            Method(SPATIAL, FEM_3D, COATED_SPATIAL, smaller_box),
+            Method(COUPLED, SAM, (3, 4, 6, 8, 12, 16, 24), coated_cells),
+            Method(AXISYMMETRIC, FEM, (4, 6, 8, 12, 16, 32), with_mesh),
+            Method(SPATIAL, FEM_3D, (4, 5, 6), smaller_box),
         ),
         exact=_coated,
     ),
@@ -357,8 +325,8 @@ PROBLEMS = (
         _elastic,
         ("p_max_Pa", "contact_area_m2"),
         (
-            Method(COUPLED, SAM, ROUGH_CELLS, asperities),
-            Method(SPATIAL, FEM_3D, ROUGH_SPATIAL, asperities),
+            Method(COUPLED, SAM, (16, 20, 24, 32, 48, 64, 96, 192, 384), asperities),
+            Method(SPATIAL, FEM_3D, (16, 24, 32), asperities),
         ),
         unit="cells a side",
         advised=_in_spot,
@@ -372,8 +340,8 @@ PROBLEMS = (
         lambda base: loaded(base, ROUGH_STEPS),
         ("p_max_Pa", "contact_area_m2"),
         (
-            Method(COUPLED, SAM, YIELDING_CELLS, asperities),
-            Method(SPATIAL, FEM_3D, YIELDING_SPATIAL, asperities),
+            Method(COUPLED, SAM, (16, 20, 24, 32, 48, 64), asperities),
+            Method(SPATIAL, FEM_3D, (16, 24, 32), asperities),
         ),
         unit="cells a side",
         advised=_in_spot,
@@ -386,7 +354,7 @@ PROBLEMS = (
         "running-in-curve-b",
         _worn,
         ("wear_volume_m3",),
-        (Method(COUPLED, SAM, WORN_CELLS, worn_cells),),
+        (Method(COUPLED, SAM, (24, 32, 40, 48, 64), worn_cells),),
         unit="cells a side",
         advised=_in_wave,
         references=(COUPLED,),
@@ -401,8 +369,8 @@ ELLIPSOID = Problem(
     loaded,
     ("p_max_Pa",),
     (
-        Method(COUPLED, SAM, ELLIPTIC_CELLS, elliptic_cells),
-        Method(SPATIAL, FEM_3D, ELLIPTIC_SPATIAL, with_mesh),
+        Method(COUPLED, SAM, (3, 4, 5, 6, 8, 12, 16), elliptic_cells),
+        Method(SPATIAL, FEM_3D, (4, 5, 6, 7, 8), with_mesh),
     ),
     unit="cells in b",
     exact=_elliptic,

@@ -95,33 +95,35 @@ def _profile(problem: Problem, result: Result) -> tuple[np.ndarray, np.ndarray] 
 
 @dataclass(frozen=True)
 class ErrorCurve:
-    """The points of a method, coarse to fine, with their errors; nan where there is no answer."""
+    """The points of a method, coarse to fine, with their errors, nan where there is no answer; floor: the
+    uncertainty of the references, below which no error is claimed.
+    """
 
-    method: Method
     points: Sequence[SolvePoint]
     errors: np.ndarray
+    floor: float
 
     @property
     def seconds(self) -> np.ndarray:
         """Processor time of each point, s."""
         return np.array([point.cpu_s for point in self.points])
 
-    def reached(self, values: np.ndarray, target: float, floor: float) -> Reached:
+    def reached(self, values: Sequence[float], target: float) -> Reached:
         """`values` where the error is `target`, from the points that cost anything."""
         solved = np.isfinite(self.seconds)
-        return at_error(values[solved], self.errors[solved], target, floor)
+        return at_error(np.asarray(values)[solved], self.errors[solved], target, self.floor)
 
-    def time(self, target: float, floor: float) -> Reached:
+    def time(self, target: float) -> Reached:
         """Processor time to an error."""
-        return self.reached(self.seconds, target, floor)
+        return self.reached(self.seconds, target)
 
-    def fineness(self, target: float, floor: float) -> Reached:
+    def fineness(self, target: float) -> Reached:
         """The resolution at an error."""
-        return self.reached(np.array([float(point.resolution) for point in self.points]), target, floor)
+        return self.reached([float(point.resolution) for point in self.points], target)
 
-    def kernels(self, target: float, floor: float) -> Reached:
+    def kernels(self, target: float) -> float | None:
         """Runs of the calibration kernel to an error."""
-        return self.reached(np.array([point.kernels for point in self.points]), target, floor)
+        return self.reached([point.kernels for point in self.points], target).value
 
 
 @dataclass(frozen=True)
@@ -159,19 +161,14 @@ class ProblemStudy:
         return max(reference.uncertainty for reference in self.references.values())
 
     @cached_property
-    def step_floor(self) -> float:
-        """The same for the load steps."""
-        return max(reference.uncertainty for reference in self.step_references.values())
-
-    @cached_property
     def curves(self) -> Mapping[str, ErrorCurve]:
         """Method -> its curve over the resolutions."""
-        return {m.name: curve(m, self.points[m.name], self.references) for m in self.problem.methods}
+        return {m.name: curve(self.points[m.name], self.references) for m in self.problem.methods}
 
     @cached_property
     def step_curves(self) -> Mapping[str, ErrorCurve]:
         """Method -> its curve over the load steps."""
-        return {m.name: curve(m, self.step_points[m.name], self.step_references) for m in self.problem.steps}
+        return {m.name: curve(self.step_points[m.name], self.step_references) for m in self.problem.steps}
 
     def with_references(self, share: float) -> ProblemStudy:
         """The study against references that are off by a share of their uncertainty."""
@@ -182,10 +179,6 @@ class ProblemStudy:
         other = replace(self)
         other.__dict__["references"] = moved  # in place of what the cached property would compute
         return other
-
-    def time(self, name: str, target: float) -> Reached:
-        """Processor time of a method to an error."""
-        return self.curves[name].time(target, self.floor)
 
     def profile_errors(self, name: str) -> list[float]:
         """L2 distances of the profiles on the axis from the finest of the reference, nan where there is
@@ -284,7 +277,7 @@ def ladder(name: str, points: Sequence[SolvePoint], quantity: str) -> Ladder:
     )
 
 
-def curve(method: Method, points: Sequence[SolvePoint], references: Mapping[str, Reference]) -> ErrorCurve:
+def curve(points: Sequence[SolvePoint], references: Mapping[str, Reference]) -> ErrorCurve:
     """Errors: the largest over the quantities."""
     errors = [
         max(reference.error(point.values.get(name)) for name, reference in references.items())
@@ -292,7 +285,7 @@ def curve(method: Method, points: Sequence[SolvePoint], references: Mapping[str,
         else math.nan
         for point in points
     ]
-    return ErrorCurve(method, points, np.array(errors))
+    return ErrorCurve(points, np.array(errors), max(each.uncertainty for each in references.values()))
 
 
 def profile_distance(own: tuple | None, best: tuple | None) -> float:

@@ -8,199 +8,112 @@ or less: nothing ratchets, and it takes many periods to see that.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sam.scene import Body, Loading, Plasticity, Result, Scene
-from verification.cases.case import (
-    FEM,
-    SAM,
-    Case,
-    Context,
-    Measured,
-    Plot,
-    SmallTable,
-    with_keys,
-    with_mesh,
-)
-from verification.cases.plastic.misfit_sphere import closed_form, on_grid
+from sam.scene import Plasticity, Result, Scene
+from verification.cases.case import Plot, with_body, with_keys, with_loading, with_mesh
+from verification.cases.recipes import sphere_cells
 from verification.figures.friction import CYCLES, Curve, curves
+from verification.judging import Measured
+from verification.quantities import Reference
 from verification.reference.misfit_sphere import PROFILES
+from verification.references import growing_sphere
+from verification.rows import CaseFile
 
-YOUNG, POISSON, YIELD, RADIUS, DEPTH = 210e9, 0.3, 1e9, 1e-5, 3.2
+__all__ = ["even_sphere", "strain_of_periods"]
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+YIELD, MODULUS = 1e9, 160e9
 REACHES = np.linspace(0.3, 3.0, 2701)  # radii at which the exact solution is looked at
-LIMIT = 2 * YIELD * (1 - POISSON) / (YOUNG * float(PROFILES["gauss"](REACHES)[1].max()))
-"""Misfit at the centre below which the elastic range holds a period everywhere, in the end."""
-TOLERANCE = (
-    1e-7  # sets the noise of the verdict: at 1e-6 the periods until it is decided are three times as many
-)
-MODELS = {"sam": SAM, "fem": FEM}
+TOLERANCE = 1e-7
+"""It sets the noise of the verdict: at 1e-6 the periods until it is decided are three times as many."""
 TOLD = 30  # the period after which the number of further periods is read
-RIGHT = 1.5  # times the number that was told, at most
 
 
-@dataclass(frozen=True)
-class Run:
-    """share: of the misfit above the limit; modulus in Pa, recovery: of the back-stress; size: cells and
-    elements in the radius.
+def above_limit(scene: Scene, of: tuple[float, float]) -> Scene:
+    """A share of the misfit above that below which the elastic range holds a period everywhere, in the end,
+    and the recovery of the back-stress.
     """
-
-    share: float
-    modulus: float
-    recovery: float
-    size: int
-    cycles: int
-
-    @property
-    def scene(self) -> Scene:
-        """Held, so that it is exact."""
-        back = {"modulus": (self.modulus,), "recovery": (self.recovery,)}
-        scene = Scene(
-            title=f"Misfit sphere in cycles, {self.share:g} above the limit, recovery {self.recovery:g}",
-            body=Body(
-                young=YOUNG,
-                poisson=POISSON,
-                plasticity=Plasticity(law="perfect", yield_stress=YIELD, kinematic=back),
-            ),
-            loading=Loading(
-                prescribed="misfit-sphere",
-                depth=DEPTH * RADIUS,
-                radius=RADIUS,
-                misfit=LIMIT * (1 + self.share),
-                profile="gauss",
-                surface="held",
-                steps=1,
-                unload=True,
-                cycles=self.cycles,
-            ),
-        )
-        return with_keys(with_mesh(on_grid(scene, self.size), self.size), "solver", tolerance=TOLERANCE)
-
-    def exact(self) -> np.ndarray:
-        """Largest dp and de of each period, (2, cycles)."""
-        sphere = closed_form(self.scene, (1.0, 0.0) * self.cycles)
-        ends = list(sphere.history(REACHES * RADIUS))[1::2]
-        both = np.array([(0 * REACHES, 0 * REACHES), *((each.peeq, 2 * each.plastic) for each in ends)])
-        return np.abs(np.diff(both, axis=0)).max(axis=2).T
+    (share, recovery), body = of, scene.body
+    excess = float(PROFILES["gauss"](REACHES)[1].max())
+    limit = 2 * YIELD * (1 - body.poisson) / (body.young * excess)
+    back = {"modulus": (MODULUS,), "recovery": (recovery,)}
+    law = Plasticity(law="perfect", yield_stress=YIELD, kinematic=back)
+    return with_loading(with_body(scene, plasticity=law), misfit=limit * (1 + share))
 
 
-@dataclass(frozen=True)
-class Found:
-    """A run by both models, and what is exact of it."""
-
-    run: Run
-    exact: np.ndarray
-    results: Mapping[str, Result]
+def even_sphere(scene: Scene, size: int) -> Scene:
+    """On cells and elements of a/size, at the tolerance of a verdict."""
+    return with_keys(with_mesh(sphere_cells(scene, size), size), "solver", tolerance=TOLERANCE)
 
 
-def column(result: Result, name: str) -> list:
-    """Of the table cycles."""
+def cycled_sphere(scene: Scene) -> Reference:
+    """Largest dp and de of each period after the first."""
+    radius = scene.loading.radius
+    ends = list(growing_sphere(scene, (1.0, 0.0) * scene.loading.cycles).history(REACHES * radius))[1::2]
+    both = np.array([(0 * REACHES, 0 * REACHES), *((each.peeq, 2 * each.plastic) for each in ends)])
+    peeq, strain = np.abs(np.diff(both, axis=0)).max(axis=2).T
+    return Reference({"peeq": peeq[1:], "strain": strain[1:]}, {"a": radius})
+
+
+def _column(result: Result, name: str) -> list:
     return list(result.tables["cycles"][name])
 
 
-def decided(result: Result) -> float:
-    """Period since which the verdict is alternating; infinite if it is not."""
-    said = column(result, "verdict")
+def peeq(scene: Scene, result: Result, exact: Reference) -> Measured:
+    """Accumulated strain of each period after the first."""
+    return Measured(np.array(_column(result, "peeq_step_max"))[1:], exact.values["peeq"])
+
+
+def strain(scene: Scene, result: Result, exact: Reference) -> Measured:
+    """Strain that each period after the first leaves: none with Prager's law."""
+    return Measured(np.array(_column(result, "strain_step_max"))[1:], exact.values["strain"])
+
+
+def decided(scene: Scene, result: Result, _: Reference | None) -> float:
+    """Period since which the verdict is alternating."""
+    said = _column(result, "verdict")
     others = [number for number, each in enumerate(said, start=1) if each != "alternating"]
     return 1.0 + max(others, default=0) if not others or others[-1] < len(said) else float("inf")
 
 
-@dataclass(frozen=True, kw_only=True)
-class MisfitCycles(Case):
-    """strains: by name, whose class and strain are held; near: so near to the limit that the class may be
-    undecided at first.
-    """
-
-    strains: Mapping[str, Run]
-    near: Mapping[str, Run]
-
-    def solve(self, context: Context) -> dict[str, Found]:
-        return {
-            name: Found(
-                run,
-                run.exact(),
-                {of: context.solve(model, run.scene, f"{of}-{name}") for of, model in MODELS.items()},
-            )
-            for name, run in (self.strains | self.near).items()
-        }
-
-    def measure(self, found: dict[str, Found]) -> dict[str, Measured | float]:
-        values: dict[str, Measured | float] = {}
-        false = 0
-        for name, each in found.items():
-            for model, result in each.results.items():
-                false += column(result, "verdict").count("ratchetting")
-                if name in self.near:
-                    told = TOLD + (column(result, "periods_to_decide")[TOLD - 1] or 0)
-                    values[f"{model}-{name}-told"] = decided(result) / told
-                    continue
-                values[f"{model}-{name}-class"] = decided(result)
-                for column_name, exact in zip(("peeq_step_max", "strain_step_max"), each.exact, strict=True):
-                    if each.run.recovery or column_name != "strain_step_max":  # of Prager's law it is zero
-                        gate = f"{model}-{name}-{column_name.removesuffix('_step_max')}"
-                        values[gate] = Measured(np.array(column(result, column_name))[1:], exact[1:])
-        return values | {"ratchetting": Measured(float(false), 0.0)}
-
-    def setup(self, found: dict[str, Found]) -> list[tuple[str, str]]:
-        return [
-            ("Body", f"E = {YOUNG / 1e9:g} GPa, ν = {POISSON:g}, σ_y = {YIELD / 1e9:g} GPa, one back-stress"),
-            ("Sphere", f"e = e₀ exp(−r²/a²), limit e₀ = {1e2 * LIMIT:.4f} %, held"),
-        ]
-
-    def tables(self, found: dict[str, Found]) -> Iterator[SmallTable]:
-        rows = [
-            (
-                f"{1e2 * each.run.share:g} %",
-                f"C = {each.run.modulus / 1e9:g} GPa, g = {each.run.recovery:g}",
-                f"{model}, a/{each.run.size}",
-                *(
-                    f"{1e6 * result.verdict[of]:.2f} ({1e6 * exact:.2f})"
-                    for of, exact in zip(
-                        ("peeq_per_period", "strain_per_period"), each.exact[:, -1], strict=True
-                    )
-                ),
-                f"{decided(result):g} of {each.run.cycles}",
-                str((*column(result, "periods_to_decide"), *[""] * TOLD)[TOLD - 1] or ""),
-            )
-            for each in found.values()
-            for model, result in each.results.items()
-        ]
-        columns = (
-            *("above the limit", "back-stress", "model", "dp of the last period in 10⁻⁶ (exact)"),
-            *("de likewise", "alternating since period", f"further periods told after period {TOLD}"),
-        )
-        yield SmallTable("Both models and the exact solution", columns, rows)
-
-    def figures(self, found: dict[str, Found]) -> Iterator[Plot]:
-        panels = {}
-        for each in (one for one in found.values() if one.run.recovery):
-            periods = np.arange(2, each.run.cycles + 1)
-            series = {"exact": Curve(periods, 1e6 * each.exact[1, 1:])} | {
-                of: Curve(periods, 1e6 * np.array(column(result, "strain_step_max")[1:]))
-                for of, result in each.results.items()
-            }
-            panels[f"{1e2 * each.run.share:g} % above the limit"] = series
-        looks = dict(zip(("exact", *MODELS), CYCLES, strict=False))
-        yield Plot(
-            curves(panels, "period", "strain that a period leaves [$10^{-6}$]", looks=looks, count=True),
-            "strain",
-            "Strain that a period leaves",
-            "The largest strain that a period leaves, over the periods: it falls in both models as the exact "
-            "one does.",
-            "Armstrong and Frederick's law: to nothing in the end.",
-        )
+def told(scene: Scene, result: Result, _: Reference | None) -> float:
+    """The same over the number of periods told after thirty."""
+    further = _column(result, "periods_to_decide")
+    return (
+        decided(scene, result, None) / (TOLD + (further[TOLD - 1] or 0)) if len(further) >= TOLD else np.nan
+    )
 
 
-AF, PRAGER = (160e9, 90.0), (160e9, 0.0)
-CASES = (
-    MisfitCycles(
-        "misfit-cycles", strains={"af-20": Run(0.2, *AF, 6, 8), "prager-20": Run(0.2, *PRAGER, 6, 4)}, near={}
-    ),
-    MisfitCycles(
-        "misfit-cycles-near",
-        strains={"af-5": Run(0.05, *AF, 8, 30), "prager-5": Run(0.05, *PRAGER, 8, 4)},
-        near={"near-2": Run(0.02, *AF, 8, 75), "near-1": Run(0.01, *AF, 6, 240)},
-    ),
-)
+def ratchets(scene: Scene, result: Result, _: Reference | None) -> float:
+    """Periods after which it is said to ratchet."""
+    return float(_column(result, "verdict").count("ratchetting"))
+
+
+def total(rows: DataFrame, column: str) -> float:
+    """The sum over all runs."""
+    return float(rows[column].sum())
+
+
+def strain_of_periods(file: CaseFile, frame: DataFrame) -> Plot:
+    """The strain that a period leaves, with Armstrong and Frederick's law."""
+    panels = {}
+    for name, runs in frame[~frame["run"].str.startswith("prager")].groupby("run", sort=False):
+        periods = np.arange(2, runs["strain"].iloc[0].size + 2)
+        series = {"exact": runs["strain expected"].iloc[0]}
+        series |= dict(zip(runs["model"], runs["strain"], strict=True))
+        title = f"{name.rpartition('-')[2]} % above the limit"
+        panels[title] = {of: Curve(periods, 1e6 * values) for of, values in series.items()}
+    words = "Largest strain that a period leaves: it falls in both models as the exact one does."
+    return Plot(
+        curves(
+            *(panels, "period", "strain that a period leaves [$10^{-6}$]"),
+            looks=dict(zip(("exact", "sam", "fem"), CYCLES, strict=False)),
+            count=True,
+        ),
+        *("strain", "Strain that a period leaves", words, words),
+    )

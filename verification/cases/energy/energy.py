@@ -5,14 +5,16 @@ unloading.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
-from functools import partial
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
 
 from sam.scene import Friction, Scene
 from verification.cases.case import (
     FEM,
     FEM_3D,
+    SAM,
     Case,
     Context,
     Measured,
@@ -21,126 +23,111 @@ from verification.cases.case import (
     number,
     with_body,
     with_loading,
-    with_mesh,
-)
-from verification.cases.energy.energy_measures import (
-    Ladder,
-    compared_gates,
-    cycle_gates,
-    fem_gates,
-    of_cells,
-    of_steps,
-    of_stress_within,
-    sam_gates,
 )
 from verification.cases.recipes import Resolution, at_ratio, resolved_at
 from verification.energy import of_fem, of_sam
 from verification.energy.balance import Balance
 from verification.figures.energy import over_path
+from verification.reference.convergence import fit_order
 from verification.references import contact_of
 
-RATIO, FRICTION = 4.0, 0.2
+RATIO = 4.0
 STEPS = (6, 12, 24)  # of the loading; the first for all grids, the coarsest grid for all of them
 CELLS = {"quick": (5, 7, 10), "full": (6, 10, 14)}
 ELEMENTS = {FEM: 16, FEM_3D: 6}
+CONTACTS = {
+    "perfect": ("perfectly plastic", "plastic-perfect", 0.0),
+    "steel": ("Swift steel", "plastic-swift-rigid", 0.0),
+    "sliding": ("Swift steel, μ = 0.2", "plastic-swift-rigid", 0.2),
+}
+"""Title, file of the scene and coefficient of friction of a sphere that yields."""
 # Of a pressure in place, over the yield stress: 1.5 times Melan's limit for Prager's back-stress. Its modulus
 # in Pa: with a tenth of it the mean strain settles for longer.
 ALTERNATING, MODULUS, YIELD = 4.84, 150e9, 1e9
-IN_RADIUS = {"SAM": 5, FEM: 3}  # cells or elements in the radius of that pressure
-COLUMNS = (
-    "contact",
-    "model",
-    "resolution",
-    "steps",
-    "work [nJ]",
-    "stored",
-    "locked",
-    "dissipated",
-    "error of cells",
-    "of steps",
-    "within cells",
-)
+IN_RADIUS = {SAM: 5, FEM: 3}  # cells or elements in the radius of that pressure
+
+Runs = Mapping[tuple[str, int, int], Balance]
+"""Model, cells or elements in the radius, steps -> balance."""
+Found = tuple[Mapping[str, Runs], float]
 
 
-@dataclass(frozen=True)
-class YieldingContact:
-    """A sphere that yields. scene: its file."""
-
-    title: str
-    scene: str
-    friction: float = 0.0
+def of_cells(one: Balance) -> float:
+    """The largest error of the cells over the states."""
+    return float(np.abs(one.error_of_cells).max())
 
 
-CONTACTS = {
-    "perfect": YieldingContact("perfectly plastic", "plastic-perfect"),
-    "steel": YieldingContact("Swift steel", "plastic-swift-rigid"),
-    "sliding": YieldingContact(f"Swift steel, μ = {FRICTION:g}", "plastic-swift-rigid", FRICTION),
-}
+def of_steps(one: Balance) -> float:
+    """The largest error of the steps over the states."""
+    return float(np.abs(one.error_of_steps).max())
 
 
-@dataclass
-class BalanceSolver:
-    """Solves contacts of a case, each balance once, and keeps the rows of the table. a: the elastic contact
-    radius.
+def within(one: Balance) -> float:
+    """The largest plastic work of stresses that vary within the cells over the largest work; 0 in FEM."""
+    return float(np.abs(one.within).max() / np.abs(one.work).max())
+
+
+def pressing(one: Balance) -> float:
+    """What the work F delta of the counter-body differs by from that of the pressure, up to the peak; without
+    friction.
     """
-
-    context: Context
-    rows: list[tuple[str, ...]] = field(default_factory=list)
-
-    @property
-    def cells(self) -> tuple[int, ...]:
-        """SAM's in a."""
-        return CELLS[self.context.level]
-
-    def sam(self, name: str, cells: int, steps: int = STEPS[0]) -> Balance:
-        """The balance of SAM on cells of a/cells."""
-        return self._solved(name, "SAM", cells, steps, balance=of_sam.balance_of)
-
-    def fem(self, name: str, steps: int = STEPS[0], model: str = FEM) -> Balance:
-        """The balance of a finite-element model."""
-        return self._solved(
-            name, model, ELEMENTS[model], steps, balance=partial(of_fem.balance_of, model=model)
-        )
-
-    def sam_ladders(self, name: str) -> tuple[Ladder, Ladder]:
-        """By cells with the fewest steps, and by steps on the coarsest grid."""
-        by_cells = {n: self.sam(name, n) for n in self.cells}
-        first = self.cells[0]
-        return by_cells, {STEPS[0]: by_cells[first]} | {n: self.sam(name, first, n) for n in STEPS[1:]}
-
-    def fem_ladder(self, name: str) -> Ladder:
-        """By steps."""
-        return {n: self.fem(name, n) for n in STEPS}
-
-    def cycles(self, model: str) -> Ladder:
-        """By steps, of a body that alternates."""
-        out, size = {}, IN_RADIUS[model]
-        for steps in STEPS:
-            self.context.progress(f"{self.context.case}, alternating: {model}, {steps} steps", 1, 1)
-            scene = alternating(steps, size)
-            out[steps] = of_sam.balance_of(scene) if model == "SAM" else of_fem.balance_of(scene, model)
-            self.rows.append(row("alternating, Prager", model, size, out[steps]))
-        return out
-
-    def solved(self, values: dict[str, Measured], panels: dict) -> EnergyBalances:
-        """What the parts of a case look at."""
-        return EnergyBalances(values, self.rows, panels, self.cells)
-
-    def _solved(
-        self, name: str, model: str, size: int, steps: int, *, balance: Callable[[Scene], Balance]
-    ) -> Balance:
-        self.context.progress(f"{self.context.case}, {name}: {model}, a/{size}, {steps} steps", 1, 1)
-        found = balance(scene_of(self.context, CONTACTS[name], steps, size))
-        self.rows.append(row(CONTACTS[name].title, model, size, found))
-        return found
+    return abs(one.pressing[one.peak] / one.work[one.peak] - 1)
 
 
-def scene_of(context: Context, contact: YieldingContact, steps: int, size: int) -> Scene:
+def _in_last_cycle(one: Balance, energy: np.ndarray) -> float:
+    """What the last cycle, between two states without force, adds to an energy, over what it dissipates."""
+    before, end = np.flatnonzero(one.force == 0)[-2:]
+    return float((energy[end] - energy[before]) / (one.dissipated[end] - one.dissipated[before]))
+
+
+def cycle(one: Balance) -> float:
+    """The work of a last cycle less what is dissipated, over that; elastic energy and the energy of the
+    back-stresses are to come back.
+    """
+    return abs(_in_last_cycle(one, one.work - one.beyond) - 1)
+
+
+def flow(one: Balance) -> float:
+    """The plastic work of a last cycle less what is dissipated and stored by back-stresses, over the former
+    of the two.
+    """
+    return abs(_in_last_cycle(one, one.flowed - one.back) - 1)
+
+
+def gates(runs: Runs, friction: float) -> dict[str, Measured]:
+    """The rows of a contact: of ladders their finest balance and the order, of both models after the same
+    steps what they have in common.
+    """
+    values: dict[str, Measured] = {}
+
+    def ladder(lead: str, by: Mapping[int, Balance], **errors: Callable[[Balance], float]) -> None:
+        for name, error in errors.items() if len(by) > 1 else ():
+            each = [error(one) for one in by.values()]
+            values[f"{lead}-{name}"] = Measured(each[-1])
+            values[f"{lead}-{name}-order"] = Measured(fit_order([1 / n for n in by], each).order)
+
+    sizes = sorted({n for model, n, _ in runs if model == SAM})
+    in_steps = {"steps": of_steps} | ({} if friction else {"pressing": pressing})
+    ladder("sam", {n: runs[SAM, n, STEPS[0]] for n in sizes}, cells=of_cells, within=within)
+    if sizes and (SAM, sizes[0], STEPS[1]) in runs:
+        ladder("sam", {n: runs[SAM, sizes[0], n] for n in STEPS}, **in_steps)
+    of_fem = next(((model, n) for model, n, _ in runs if model != SAM), None)
+    if of_fem and (*of_fem, STEPS[1]) in runs:
+        ladder("fem", {n: runs[*of_fem, n] for n in STEPS}, **in_steps)
+    if of_fem and sizes:
+        sam, fem = runs[SAM, sizes[-1], STEPS[0]], runs[*of_fem, STEPS[0]]
+        values["fem-cells"] = Measured(of_cells(fem))
+        values["work"] = Measured(sam.work[sam.peak], fem.work[fem.peak], unit="J")
+        values["dissipated"] = Measured(sam.dissipated[-1], fem.dissipated[-1], unit="J")
+        values["locked"] = Measured(sam.elastic[-1], fem.elastic[-1], unit="J")
+    return values
+
+
+def scene_of(context: Context, contact: str, steps: int, size: int) -> Scene:
     """Loaded to RATIO times the yield stress in `steps`, and unloaded; cells or elements of a/size."""
-    scene = with_loading(at_ratio(context.scene(contact.scene), RATIO), steps=steps, unload=True)
+    _, file, friction = CONTACTS[contact]
+    scene = with_loading(at_ratio(context.scene(file), RATIO), steps=steps, unload=True)
     scene = resolved_at(scene, Resolution(size, size))
-    friction = Friction(coefficient=contact.friction) if contact.friction else scene.friction
-    return scene.model_copy(update={"friction": friction})
+    return scene.model_copy(update={"friction": Friction(coefficient=friction)}) if friction else scene
 
 
 def alternating(steps: int, size: int, radius: float = 10e-6) -> Scene:
@@ -159,57 +146,93 @@ def alternating(steps: int, size: int, radius: float = 10e-6) -> Scene:
     )
 
 
+def balanced(context: Context, words: str, scene: Scene, model: str) -> Balance:
+    """The balance of a scene by a model."""
+    context.progress(f"{context.case}, {words}: {model}, {scene.loading.steps} steps", 1, 1)
+    return of_sam.balance_of(scene) if model == SAM else of_fem.balance_of(scene, model)
+
+
 @dataclass(frozen=True)
-class EnergyBalances:
-    """values: of the gates; rows: of the table; panels: title -> balances of SAM and FEM; cells: SAM's in
-    a.
+class Energy(Case):
+    """Yielding contacts on ladders of cells and steps. ladders: contact -> models that take each number of
+    steps, SAM on each number of cells too; once: contact -> models that take the fewest steps, SAM on the
+    finest cells; elastic, cycles: whether elastic contacts, and bodies that alternate, are balanced too.
     """
 
-    values: dict[str, Measured]
-    rows: list[tuple[str, ...]]
-    panels: dict[str, tuple[Balance, Balance | None]]
-    cells: tuple[int, ...]
+    ladders: Mapping[str, tuple[str, ...]] | None = None
+    once: Mapping[str, tuple[str, ...]] | None = None
+    elastic: bool = False
+    cycles: bool = False
 
+    def asked(self, cells: tuple[int, ...]) -> Iterator[tuple[str, str, int, int]]:
+        """Contact, model, cells or elements in the radius and steps of all that is solved."""
+        for contact, models in self.ladders.items():
+            for model in models:
+                size = cells[0] if model == SAM else ELEMENTS[model]
+                yield from ((contact, model, size, n) for n in STEPS)
+                yield from ((contact, model, n, STEPS[0]) for n in cells[1:] if model == SAM)
+        for contact, models in self.once.items():
+            for model in models:
+                yield contact, model, cells[-1] if model == SAM else ELEMENTS[model], STEPS[0]
 
-class Energy(Case):
-    """Elastic contacts to rounding; yielding ones on ladders of cells and steps, one of them also by FEM."""
+    def solve(self, context: Context) -> tuple[dict[str, dict[tuple[str, int, int], Balance]], float]:
+        """Contact -> balances, and 2/5 F delta of Hertz, the work of an elastic contact at rest. Nothing is
+        dissipated by elastic ones: sliding the couplings have to be reciprocal.
+        """
+        cells, found = CELLS[context.level], dict[str, dict[tuple[str, int, int], Balance]]()
+        for contact, *run in self.asked(cells):
+            model, size, steps = run
+            scene = scene_of(context, contact, steps, size)
+            found.setdefault(contact, {})[model, size, steps] = balanced(context, contact, scene, model)
+        for name, contact, model in (
+            ("elastic-rest", "perfect", SAM),
+            ("elastic-sliding", "sliding", SAM),
+            ("elastic-fem", "perfect", FEM),
+        ):
+            if self.elastic:
+                size = cells[-1] if model == SAM else ELEMENTS[model]
+                scene = with_body(scene_of(context, contact, STEPS[0], size), plasticity=None)
+                found[name] = {(model, size, STEPS[0]): balanced(context, name, scene, model)}
+        for model in (SAM, FEM) if self.cycles else ():
+            size, name = IN_RADIUS[model], f"alternating-{'sam' if model == SAM else 'fem'}"
+            found[name] = {
+                (model, size, n): balanced(context, name, alternating(n, size), model) for n in STEPS
+            }
+        exact = contact_of(scene_of(context, "perfect", STEPS[0], cells[-1]))
+        return found, 2 / 5 * exact.force * exact.approach
 
-    def solve(self, context: Context) -> EnergyBalances:
-        solver = BalanceSolver(context)
-        values = _elastic(context, solver.rows)
-        perfect, sliding = solver.sam_ladders("perfect"), solver.sam_ladders("sliding")
-        finest, fem = perfect[0][max(solver.cells)], solver.fem("perfect")
-        values |= _named("perfect", sam_gates(*perfect, 0.0) | compared_gates(finest, fem))
-        values |= _named("sliding", sam_gates(*sliding, FRICTION))
-        panels = {"perfect": (finest, fem), "sliding": (sliding[0][max(solver.cells)], None)}
-        return solver.solved(values, panels)
+    def measure(self, found: Found) -> dict[str, Measured]:
+        balances, hertz = found
+        values: dict[str, Measured] = {}
+        for contact, runs in balances.items():
+            *_, last = runs.values()
+            if contact in CONTACTS:
+                values |= {f"{contact}-{n}": v for n, v in gates(runs, CONTACTS[contact][2]).items()}
+            elif contact.startswith("elastic"):
+                values[contact] = Measured(of_cells(last))
+                if contact != "elastic-sliding":
+                    name = "elastic-sam-work" if contact == "elastic-rest" else "elastic-fem-work"
+                    values[name] = Measured(last.work[last.peak], hertz, unit="J")
+            else:
+                order = fit_order([1 / n for n in STEPS], [flow(one) for one in runs.values()]).order
+                values |= {
+                    f"{contact}-cycle": Measured(cycle(last)),
+                    f"{contact}-cycle-order": Measured(order),
+                }
+        return values
 
-    def measure(self, found: EnergyBalances) -> dict[str, Measured]:
-        return found.values
-
-    def setup(self, found: EnergyBalances) -> list[tuple[str, str]]:
-        return [
-            (
-                "Contacts",
-                f"rigid sphere, p₀ = {RATIO:g} σ_y0 of the elastic contact, loaded in equal steps and "
-                "unloaded",
-            ),
-            ("SAM", f"{', '.join(map(str, found.cells))} cells in the elastic contact radius a"),
-            ("FEM", f"{ELEMENTS[FEM]} elements in a; {ELEMENTS[FEM_3D]} in space"),
-            ("Steps", f"{', '.join(map(str, STEPS))} to the peak"),
-        ]
-
-    def tables(self, found: EnergyBalances) -> Iterator[SmallTable]:
+    def tables(self, found: Found) -> Iterator[SmallTable]:
+        columns = ("contact", "model", "resolution", "steps", "work [nJ]", "stored", "locked", "dissipated")
         yield SmallTable(
             (
                 "Shares of the work at the peak (locked: stored as cold work, and dissipated, after "
                 "unloading); largest errors over the path"
             ),
-            COLUMNS,
-            found.rows,
+            (*columns, "error of cells", "of steps", "within cells"),
+            [row(contact, run, one) for contact, runs in found[0].items() for run, one in runs.items()],
         )
 
-    def notes(self, found: EnergyBalances) -> Iterator[str]:
+    def notes(self, found: Found) -> Iterator[str]:
         yield (
             "The error of the cells is W − E − D with both integrals over the path summed by the trapezoidal "
             "rule. It closes at any number of steps where the discrete operators are reciprocal, as finite "
@@ -221,78 +244,35 @@ class Energy(Case):
             "store a part of the plastic work, and give it back."
         )
 
-    def figures(self, found: EnergyBalances) -> Iterator[Plot]:
-        yield Plot(
-            over_path({CONTACTS[name].title: pair for name, pair in found.panels.items()}),
-            "path",
-            "Energy over the load path",
-            "Stacked areas of dissipated, stored and recoverable energy, and the work of the tractions on "
-            "top of them.",
+    def figures(self, found: Found) -> Iterator[Plot]:
+        panels = {}
+        for contact, (title, *_) in CONTACTS.items():
+            same = {run[0]: one for run, one in found[0].get(contact, {}).items() if run[2] == STEPS[0]}
+            if SAM in same:
+                panels[title] = same[SAM], next((one for model, one in same.items() if model != SAM), None)
+        words = (
             "Work of the tractions (line) and where it is (areas), SAM on its finest grid; crosses: FEM. "
-            "After unloading the work that was not given back is dissipated or stored by residual stress.",
+            "After unloading the work that was not given back is dissipated or stored by residual stress."
         )
+        yield Plot(over_path(panels), "path", "Energy over the load path", words, words)
 
 
-class EnergyFem(Energy):
-    """The finite-element models on the ladder of steps, and against SAM on steel, at rest and sliding; in
-    both a cycle of a body with back-stresses.
-    """
-
-    def solve(self, context: Context) -> EnergyBalances:
-        solver = BalanceSolver(context)
-        values = _named("perfect", fem_gates(solver.fem_ladder("perfect")))
-        steel, fem = solver.sam_ladders("steel"), solver.fem_ladder("steel")
-        finest, same = steel[0][max(solver.cells)], fem[STEPS[0]]
-        values |= _named("steel", sam_gates(*steel, 0.0) | fem_gates(fem) | compared_gates(finest, same))
-        sliding, spatial = solver.sam("sliding", max(solver.cells)), solver.fem("sliding", model=FEM_3D)
-        values |= _named("sliding", compared_gates(sliding, spatial))
-        for name, model in (("sam", "SAM"), ("fem", FEM)):
-            values |= _named(f"alternating-{name}", cycle_gates(solver.cycles(model)))
-        return solver.solved(values, {"steel": (finest, same), "sliding": (sliding, spatial)})
-
-
-def _named(contact: str, values: dict[str, Measured]) -> dict[str, Measured]:
-    """The gates of a contact, led by its name."""
-    return {f"{contact}-{gate}": value for gate, value in values.items()}
-
-
-def _elastic(context: Context, rows: list) -> dict[str, Measured]:
-    """Nothing is dissipated: at rest the work is 2/5 F delta of Hertz, sliding the couplings have to be
-    reciprocal.
-    """
-    cells = max(CELLS[context.level])
-    at_rest, sliding = (
-        with_body(scene_of(context, CONTACTS[name], STEPS[0], cells), plasticity=None)
-        for name in ("perfect", "sliding")
-    )
-    found = {
-        "rest": of_sam.balance_of(at_rest),
-        "sliding": of_sam.balance_of(sliding),
-        "fem": of_fem.balance_of(with_mesh(at_rest, ELEMENTS[FEM]), FEM),
-    }
-    values = {f"elastic-{name}": Measured(of_cells(one)) for name, one in found.items()}
-    exact = contact_of(at_rest)
-    hertz = 2 / 5 * exact.force * exact.approach
-    for name, one in (("sam", found["rest"]), ("fem", found["fem"])):
-        values[f"elastic-{name}-work"] = Measured(one.work[one.peak], hertz, unit="J")
-    rows += [
-        row(f"elastic, μ = {FRICTION * (name == 'sliding'):g}", "SAM", cells, found[name])
-        for name in ("rest", "sliding")
-    ]
-    rows.append(row("elastic, μ = 0", FEM, ELEMENTS[FEM], found["fem"]))
-    return values
-
-
-def row(contact: str, model: str, size: int, one: Balance) -> tuple[str, ...]:
+def row(contact: str, run: tuple[str, int, int], one: Balance) -> tuple[str, ...]:
     """Of the table."""
-    k = one.peak
+    k, (model, size, steps) = one.peak, run
     shares = (one.elastic[k] + one.beyond[k], one.elastic[-1], one.dissipated[-1])
     percent = (f"{1e2 * each / one.work[k]:.2f} %" for each in shares)
-    errors = (number(each(one), 2) for each in (of_cells, of_steps, of_stress_within))
-    return contact, model, f"a/{size}", f"{k}", f"{one.work[k] * 1e9:.5g}", *percent, *errors
+    errors = (number(each(one), 2) for each in (of_cells, of_steps, within))
+    title = CONTACTS[contact][0] if contact in CONTACTS else contact
+    return title, model, f"a/{size}", f"{steps}", f"{one.work[k] * 1e9:.5g}", *percent, *errors
 
 
 CASES = (
-    Energy("energy"),
-    EnergyFem("energy-fem"),
+    Energy("energy", ladders={"perfect": (SAM,), "sliding": (SAM,)}, once={"perfect": (FEM,)}, elastic=True),
+    Energy(
+        "energy-fem",
+        ladders={"perfect": (FEM,), "steel": (SAM, FEM)},
+        once={"sliding": (SAM, FEM_3D)},
+        cycles=True,
+    ),
 )

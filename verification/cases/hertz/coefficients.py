@@ -4,14 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import astuple, dataclass
 
 import numpy as np
 
 from sam.contact import Convolution
 from sam.grid import Window
 from sam.kernels import STRESS, Lags, displacement_coefficients, parity, stress_coefficients
-from verification.cases.case import Case, Context, SmallTable
+from verification.cases.case import Context
 from verification.reference.quadrature import patch_response
 
 HX, HY = 1.0, 0.7
@@ -20,7 +19,6 @@ DEPTHS = (0.02, 0.3, 1.0, 4.0)
 LAGS = ((0, 0), (1, 0), (0, 1), (2, 3), (6, 4))
 DISPLACEMENTS = ("1", "2", "3")
 LOADS = {1: "tangential, along x", 2: "tangential, along y", 3: "normal"}
-GATED = ("stress", "displacement", "dc-fft")
 
 
 def coefficients(load: int, lag: tuple[int, int], z: float, nu: float) -> np.ndarray:
@@ -72,55 +70,10 @@ def convolution_error(load: int) -> float:
     return float(np.abs(fast - slow).max() / np.abs(slow).max())
 
 
-@dataclass(frozen=True)
-class Errors:
-    """Largest errors under one load, relative to the largest component at the same point."""
-
-    stress: float
-    displacement: float
-    convolution: float
-
-
-class Coefficients(Case):
-    """Every component, three loads, above, below and beside the rectangle."""
-
-    def solve(self, context: Context) -> dict[int, Errors]:
-        found = {}
-        for load in LOADS:
-            found[load] = Errors(*worst_errors(load), convolution_error(load))
-            context.progress(f"{self.name}: loads", len(found), len(LOADS))
-        return found
-
-    def measure(self, found: dict[int, Errors]) -> dict[str, float]:
-        return {
-            f"{name}-{load}": value
-            for load, each in found.items()
-            for name, value in zip(GATED, astuple(each), strict=True)
-        }
-
-    def setup(self, found: dict[int, Errors]) -> list[tuple[str, str]]:
-        return [
-            ("Rectangle", f"{HX:g} x {HY:g}, uniform unit traction along x, y or z"),
-            ("Poisson's ratio", ", ".join(f"{nu:g}" for nu in POISSON)),
-            ("Depths", "0 (displacements), " + ", ".join(f"{z:g}" for z in DEPTHS)),
-            ("Lags in cells", ", ".join(map(str, LAGS))),
-        ]
-
-    def tables(self, found: dict[int, Errors]) -> Iterator[SmallTable]:
-        rows = [(LOADS[load], *(f"{e:.1e}" for e in astuple(each))) for load, each in found.items()]
-        against = ("stresses against quadrature", "displacements against quadrature")
-        yield SmallTable(
-            "Largest error, relative to the largest component at the same point",
-            ("load", *against, "DC-FFT against direct sum"),
-            rows,
-        )
-
-    def notes(self, found: dict[int, Errors]) -> Iterator[str]:
-        yield (
-            "The coefficients are those of paper Eq. 5, 20 and 21. As printed, S_113, S_223, S_331 and S_131 "
-            "are wrong, the factor 1/(2π) is missing, and D_33 lacks 1 − ν²; a symbolic derivation from "
-            "Navier's equation replaces them."
-        )
-
-
-CASES = (Coefficients(name="coefficients"),)
+def frame(context: Context) -> Iterator[dict[str, object]]:
+    """The largest errors under each load, relative to the largest component at the same point."""
+    for load, words in LOADS.items():
+        context.progress(f"{context.case}: loads", load, len(LOADS))
+        stress, shift = worst_errors(load)
+        errors = {"stress": stress, "displacement": shift, "dc-fft": convolution_error(load)}
+        yield {"load": load, "direction": words, **errors}

@@ -1,40 +1,37 @@
 # SPDX-License-Identifier: MIT
-"""What turns, moves and scales with a contact: each transformation solved both ways, and the largest
-difference.
+"""What turns, moves and scales with a contact, other units among it: each transformation solved both ways,
+and the largest difference; and what an element patch must not be able to do.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 
 import numpy as np
+from skfem import ElementQuad2, MeshQuad
 
 import sam
+from fem_reference import AxisymmetricSolid, Elastic
 from sam.contact import Contact, Counters, Search, solve_contact
-from sam.grid import CellGrid
-from sam.scene import Friction, Scene
+from sam.scene import Friction, Result, Scene, Solver
 from verification.cases.case import (
+    FEM,
     SAM,
-    Case,
     Context,
-    Measured,
-    SmallTable,
     with_body,
+    with_grid,
     with_keys,
     with_loading,
-)
-from verification.cases.hertz.invariances import (
-    COUNTER,
-    LENGTH_FACTOR,
-    SHORT,
-    YOUNG_FACTOR,
-    differences,
-    in_units,
-    scaled,
+    with_mesh,
 )
 from verification.cases.recipes import Resolution, at_ratio, resolved_at
 
+YOUNG_FACTOR, LENGTH_FACTOR = 7.3e-5, 3.1e4  # no powers of two or ten: rounding differs everywhere
+FAR = 1e-3
+"""solver.tolerance of the solves whose iterations are compared in SAM: residuals of the contact end at 1e-7,
+which rounding moves by 1e-5 of themselves. At 1e-10 it moves them by up to 1e-2, and an iteration more or
+less would be chance.
+"""
 MODULUS, TOLERANCE, COUPLING = 230e9, 1e-11, 0.1  # of the rough contacts; coupling: 2 beta mu
 SHIFT = (7, -12)  # cells
 BLUNTER, RATIO, FRICTION = 2.7, 4.0, 0.2
@@ -45,6 +42,77 @@ POWERS = {
     "contact_area_m2": (0, 2),
     "peeq_max": (0, 0),
 }
+SCALED = {"p_max_Pa": (1, 0), "approach_m": (0, 1), "contact_area_m2": (0, 2), "mises_max_Pa": (1, 0)}
+STRESSES = ("young", "B", "yield_stress", "modulus")
+COUNTER = {SAM: "contact_iterations", FEM: "newton_iterations"}
+SHORT = {SAM: "sam", FEM: "fem"}
+ZERO_MODE = 1e-10  # eigenvalue over the largest: rounding is 1e-16 times a few hundred
+
+
+def scaled(scene: Scene, stress: float, length: float) -> Scene:
+    """The same problem with stresses and lengths in other units."""
+    body = with_stresses(scene.body, stress)
+    if body.plasticity is not None:
+        body = body.model_copy(update={"plasticity": with_stresses(body.plasticity, stress)})
+    other = scene.counterbody.model_copy(update={"radius": scene.counterbody.radius * length})
+    scene = with_loading(scene, force=scene.loading.force * stress * length**2)
+    lengths = {name: getattr(scene.grid, name) for name in ("extent", "depths")}
+    lengths = {name: tuple(each * length for each in values) for name, values in lengths.items() if values}
+    return with_grid(scene.model_copy(update={"body": body, "counterbody": other}), **lengths)
+
+
+def with_stresses(section, factor: float):
+    """A section of a scene with its stresses multiplied."""
+    known = {name: getattr(section, name, None) for name in STRESSES}
+    return section.model_copy(update={name: value * factor for name, value in known.items() if value})
+
+
+def in_units(powers: Mapping[str, tuple[int, int]]) -> dict[str, float]:
+    """The factor of each quantity, from its powers of stress and length."""
+    return {name: YOUNG_FACTOR**p * LENGTH_FACTOR**q for name, (p, q) in powers.items()}
+
+
+def differences(base: Result, other: Result, factors: Mapping[str, float]) -> float:
+    """Largest relative difference of the quantities, after division by their factors."""
+    pairs = ((base.quantities[name], other.quantities[name] / factor) for name, factor in factors.items())
+    return max(abs(found / expected - 1.0) for expected, found in pairs)
+
+
+def zero_modes(element=None) -> int:
+    """Zero eigenvalues of the stiffness of a free patch of 3 x 3 elements that touches the axis."""
+    mesh = MeshQuad.init_tensor(np.linspace(0.0, 1.0, 4), np.linspace(0.0, 1.2, 4))
+    values = np.linalg.eigvalsh(
+        AxisymmetricSolid(mesh, Elastic(1.0, 0.3), element=element).stiffness.toarray()
+    )
+    return int(np.count_nonzero(np.abs(values) < ZERO_MODE * values.max()))
+
+
+def compared(context: Context, model: str, pair: tuple[str, Scene, Scene, Mapping[str, float]]) -> dict:
+    """The largest difference of what `scenes` returns by one model, and the iterations of both."""
+    kind, base, other, factors = pair
+    label = f"{SHORT[model]}-{kind}"
+    results = context.solve(model, base, label), context.solve(model, other, f"{label}-changed")
+    first, second = (result.cost[COUNTER[model]] for result in results)
+    return {
+        "kind": kind,
+        "model": SHORT[model],
+        "difference": differences(*results, factors),
+        "iterations": second,
+        "iterations expected": first,
+    }
+
+
+def units(context: Context) -> Iterator[dict[str, object]]:
+    """One scene in two unit systems by both models, far from convergence again for the iterations of SAM; and
+    the zero modes of an element patch.
+    """
+    scene = with_mesh(with_grid(context.scene("hertz-sphere"), cells=(65, 65)), 16)
+    far = scene.model_copy(update={"solver": Solver(tolerance=FAR)})
+    for model, kind, base in ((SAM, "units", scene), (SAM, "far", far), (FEM, "units", scene)):
+        pair = kind, base, scaled(base, YOUNG_FACTOR, LENGTH_FACTOR), in_units(SCALED)
+        yield {"sweep": "units"} | compared(context, model, pair)
+    for element, name in ((None, "8-node"), (ElementQuad2(), "9-node")):
+        yield {"sweep": "patch", "element": name, "zero-modes": zero_modes(element)}
 
 
 def contact_of(gap: np.ndarray, h: tuple[float, float], force: float, coupling: float = 0.0) -> Contact:
@@ -101,79 +169,17 @@ def blunter(scene: Scene, factor: float) -> Scene:
     return with_keys(stiff, "counterbody", radius=scene.counterbody.radius * factor)
 
 
-@dataclass(frozen=True)
-class Transformed:
-    """A scene and its transform by one model: the largest difference, and the iterations of both."""
-
-    model: str
-    kind: str
-    lost: float
-    iterations: tuple[int, int]
-
-
-@dataclass(frozen=True)
-class Transformations:
-    """grid: of the rough patch; rough: transformation of it -> change of the pressure; solved: the other
-    scenes.
-    """
-
-    grid: CellGrid
-    rough: dict[str, float]
-    solved: list[Transformed]
-
-
-class Symmetries(Case):
+def transformed(context: Context) -> Iterator[dict[str, object]]:
     """A rough patch turned and moved; yielding spheres in other units, blunter, and elastic ones by other
     steps.
     """
-
-    def solve(self, context: Context) -> Transformations:
-        scene = context.scene("rough-patch")
-        grid = sam.choose_grid(scene)
-        rough = turned(sam.plan(scene).problem(Counters()).gap(), (grid.hx, grid.hy), scene.loading.force)
-        solved = []
-        for model, name in SHORT.items():
-            for kind, base, other, factors in scenes(context, model):
-                first = context.solve(model, base, f"{name}-{kind}")
-                second = context.solve(model, other, f"{name}-{kind}-changed")
-                counts = tuple(each.cost[COUNTER[model]] for each in (first, second))
-                solved.append(Transformed(model, kind, differences(first, second, factors), counts))
-        return Transformations(grid, rough, solved)
-
-    def measure(self, found: Transformations) -> dict[str, Measured | float]:
-        values = dict(found.rough)
-        for each in found.solved:
-            name = f"{SHORT[each.model]}-{each.kind}"
-            values[name] = each.lost
-            if each.kind == "units":
-                values[f"{name}-iterations"] = Measured(*reversed(each.iterations))
-        return values
-
-    def setup(self, found: Transformations) -> list[tuple[str, str]]:
-        return [
-            (
-                "Rough patch",
-                f"{found.grid.nx} × {found.grid.ny} cells, elastic, moved by {SHIFT} cells; sliding with 2βμ "
-                f"= {COUPLING:g}",
-            ),
-            ("Yielding", f"perfectly plastic, p₀ = {RATIO:g} σ_y; in SAM sliding with μ = {FRICTION:g}"),
-            ("Units", f"stresses times {YOUNG_FACTOR:g}, lengths times {LENGTH_FACTOR:g}"),
-            ("Similarity", f"E and R times {BLUNTER:g}: equal pressures, strains and approach less by that"),
-            ("Steps", "elastic, in one step and in seven"),
-        ]
-
-    def tables(self, found: Transformations) -> Iterator[SmallTable]:
-        rows = [
-            (f"rough patch, {name.replace('-', ' ')}", "SAM", "-", f"{value:.1e}")
-            for name, value in found.rough.items()
-        ]
-        rows += [
-            (e.kind.replace("-", " "), e.model, " / ".join(map(str, e.iterations)), f"{e.lost:.1e}")
-            for e in found.solved
-        ]
-        yield SmallTable(
-            "Largest change", ("transformation", "model", "iterations before / after", "difference"), rows
-        )
+    scene = context.scene("rough-patch")
+    grid = sam.choose_grid(scene)
+    rough = turned(sam.plan(scene).problem(Counters()).gap(), (grid.hx, grid.hy), scene.loading.force)
+    for kind, value in rough.items():
+        yield {"kind": kind, "model": "sam", "difference": value}
+    for model in SHORT:
+        yield from (compared(context, model, pair) for pair in scenes(context, model))
 
 
 def scenes(context: Context, model: str) -> list[tuple[str, Scene, Scene, dict[str, float]]]:
@@ -190,6 +196,3 @@ def scenes(context: Context, model: str) -> list[tuple[str, Scene, Scene, dict[s
         ("similarity", scene, blunter(scene, BLUNTER), similar),
         ("steps", with_loading(elastic, steps=1), with_loading(elastic, steps=7), same),
     ]
-
-
-CASES = (Symmetries(name="symmetries"),)

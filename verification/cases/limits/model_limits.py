@@ -7,7 +7,7 @@ geometry.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -100,6 +100,11 @@ class ComparedCurves:
     fits: Mapping[str, Mapping[str, Difference]]
     other: Mapping[str, Difference]
 
+    @property
+    def quantities(self) -> dict[str, str]:
+        """Those that any body has -> words."""
+        return {n: words for n, words in QUANTITIES.items() if any(n in each for each in self.fits.values())}
+
 
 class ModelLimits(Case):
     """Both Poisson's ratios; the limits of the first on two meshes."""
@@ -117,41 +122,31 @@ class ModelLimits(Case):
     def measure(self, compared: ComparedCurves) -> dict[str, Measured | float]:
         return small_load() | limits_of(compared) | {"table": off_table(compared)}
 
-    def setup(self, compared: ComparedCurves) -> list[tuple[str, str]]:
-        return [
-            ("Sphere", f"R = {RADIUS * 1e6:g} µm, rigid"),
-            ("Models", "; ".join(MODELS.values()) + ": same elements, same mesh, same load steps"),
-            ("Compared", "at equal force, over the contact radius a of the model with finite strain"),
-            (
-                "Load steps",
-                f"counted from {RESOLVED} elements in the contact radius on; below them the fit runs to no "
-                "difference",
-            ),
-            (
-                "Slope",
-                "of the sphere at the edge of contact, tan(arcsin a/R); its rms over the area of contact is "
-                "0.7 of it",
-            ),
-            ("Limit", f"a/R at which the fit x (c₁ + c₂ x + c₃ x²) to the differences passes {LIMIT:.0%}"),
-        ]
+    def setup(self, compared: ComparedCurves) -> Iterator[tuple[str, str]]:
+        yield "Sphere", f"R = {RADIUS * 1e6:g} µm, rigid"
+        yield "Models", "; ".join(MODELS.values()) + ": same elements, same mesh, same load steps"
+        yield "Compared", "at equal force, over the contact radius a of the model with finite strain"
+        fitted = "in the contact radius on; below them the fit runs to no difference"
+        yield "Load steps", f"counted from {RESOLVED} elements {fitted}"
+        rms = "its rms over the area of contact is 0.7 of it"
+        yield "Slope", f"of the sphere at the edge of contact, tan(arcsin a/R); {rms}"
+        yield "Limit", f"a/R at which the fit x (c₁ + c₂ x + c₃ x²) to the differences passes {LIMIT:.0%}"
 
-    def tables(self, compared: ComparedCurves) -> list[SmallTable]:
-        return [
-            limit_table(compared.fits, compared.other, compared.bodies[0]),
-            curve_table(compared.found, compared.fits),
-        ]
+    def tables(self, compared: ComparedCurves) -> Iterator[SmallTable]:
+        yield limit_table(compared)
+        yield curve_table(compared)
 
     def figures(self, compared: ComparedCurves) -> Iterator[Plot]:
         panels = {
             title: {
-                body: (found[name].x, found[name].values, found[name])
+                body: (fit.x, fit.values, fit)
                 for body, found in compared.fits.items()
-                if name in found
+                if (fit := found.get(name))
             }
-            for name, title in QUANTITIES.items()
+            for name, title in compared.quantities.items()
         }
         yield Plot(
-            drawn({title: series for title, series in panels.items() if series}, LIMIT),
+            drawn(panels, LIMIT),
             "differences",
             "What finite strain and true geometry change",
             "Relative differences at equal force over the contact radius divided by that of the sphere, a "
@@ -190,16 +185,11 @@ class ModelLimitsStated(Case):
             for name, body in zip(ids, FRESH, strict=True)
         }
 
-    def setup(self, found: dict[str, dict[str, Difference]]) -> list[tuple[str, str]]:
-        return [
-            ("Sphere", f"R = {RADIUS * 1e6:g} µm, rigid"),
-            ("Materials", "; ".join(body.name for body in FRESH)),
-            ("Stated", "by samfem plan and solve, from the table of the cases model-limits"),
-            (
-                "Factor",
-                "between stated and measured, once the stated uncertainty is taken off their distance",
-            ),
-        ]
+    def setup(self, found: dict[str, dict[str, Difference]]) -> Iterator[tuple[str, str]]:
+        yield "Sphere", f"R = {RADIUS * 1e6:g} µm, rigid"
+        yield "Materials", "; ".join(body.name for body in FRESH)
+        yield "Stated", "by samfem plan and solve, from the table of the cases model-limits"
+        yield "Factor", "between stated and measured, once the stated uncertainty is taken off their distance"
 
     def tables(self, found: dict[str, dict[str, Difference]]) -> list[SmallTable]:
         rows = [
@@ -278,44 +268,30 @@ def slope_words(fit: Difference) -> str:
     return f"{'> ' if np.isinf(fit.limit()) else ''}{slope(fit.good_to()):.3f}"
 
 
-def limit_table(fits: Mapping[str, Mapping[str, Difference]], other: Mapping, first: Body) -> SmallTable:
+def limit_table(compared: ComparedCurves) -> SmallTable:
     """a/R of LIMIT of each material and quantity, and the slope of the sphere there."""
-    names = [name for name in QUANTITIES if any(name in found for found in fits.values())]
-    rows = []
-    for body, found in fits.items():
-        rows.append([body, *(words(found[name]) if name in found else "" for name in names)])
-        rows.append(
-            [f"{body}: slope there", *(slope_words(found[name]) if name in found else "" for name in names)]
-        )
-    rows.append(
-        [
-            f"{first.name}, {COARSER} elements in a",
-            *(words(other[name]) if name in other else "" for name in names),
-        ]
-    )
-    return SmallTable(
-        (
-            f"a/R at which the small-strain, flat model is off by {LIMIT:.0%}; in brackets by two standard "
-            "errors of the fit"
-        ),
-        ["material", *(QUANTITIES[name] for name in names)],
-        rows,
-    )
+    rows, names = [], compared.quantities
+
+    def row(name: str, found: Mapping[str, Difference], said: Callable[[Difference], str]) -> None:
+        rows.append([name, *(said(found[each]) if each in found else "" for each in names)])
+
+    for body, found in compared.fits.items():
+        row(body, found, words)
+        row(f"{body}: slope there", found, slope_words)
+    row(f"{compared.bodies[0].name}, {COARSER} elements in a", compared.other, words)
+    text = f"a/R at which the small-strain, flat model is off by {LIMIT:.0%}; in brackets by two standard "
+    return SmallTable(f"{text}errors of the fit", ["material", *names.values()], rows)
 
 
-def curve_table(
-    found: Mapping[str, Mapping[str, Curve]], fits: Mapping[str, Mapping[str, Difference]]
-) -> SmallTable:
+def curve_table(compared: ComparedCurves) -> SmallTable:
     """Differences by the fit at some a/R, and the mean pressure of the finite model over E*."""
     rows = []
-    for body, each in fits.items():
-        for x in (0.05, 0.1, 0.15, 0.2, 0.3, 0.4):
-            if x <= 1.02 * each["radius"].x.max():
-                mean = np.interp(x, found[body]["finite"].radius, found[body]["finite"].pressure)
-                cells = [
-                    f"{1e2 * float(each[name](x)):+.1f} %" if name in each else "" for name in QUANTITIES
-                ]
-                rows.append([body, f"{x:g}", f"{slope(x):.3f}", f"{mean:.4f}", *cells])
+    for body, each in compared.fits.items():
+        curve, largest = compared.found[body]["finite"], 1.02 * each["radius"].x.max()
+        for x in (x for x in (0.05, 0.1, 0.15, 0.2, 0.3, 0.4) if x <= largest):
+            mean = np.interp(x, curve.radius, curve.pressure)
+            cells = (f"{1e2 * float(each[n](x)):+.1f} %" if n in each else "" for n in QUANTITIES)
+            rows.append([body, f"{x:g}", f"{slope(x):.3f}", f"{mean:.4f}", *cells])
     return SmallTable(
         "Finite strain over small strain at equal force, less one, by the fits",
         ["material", "a/R", "slope", "p_m/E*, finite strain", *QUANTITIES.values()],

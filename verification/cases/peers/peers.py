@@ -5,7 +5,7 @@ machine.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -76,39 +76,29 @@ class Peers(Case):
     def measure(self, found: ProgramTimes) -> dict[str, float]:
         return found.values
 
-    def setup(self, found: ProgramTimes) -> list[tuple[str, str]]:
+    def setup(self, found: ProgramTimes) -> Iterator[tuple[str, str]]:
         versions = ", ".join(f"{NAMES[name]} {version}" for name, version in found.peers.items())
-        low, high = number(min(found.kernel), 3), number(max(found.kernel), 3)
-        calibration = number(float(np.median(found.kernel)), 3)
-        return [
-            ("Programs", f"SAM and {versions}"),
-            (
-                "Time",
-                "processor time of set-up and solution, one thread, a process a measurement, a smaller "
-                f"problem before it untimed; medians of {found.rounds} rounds, of fewer for what takes more "
-                "than 2 s and 20 s; again: solved a second time in one process, with what the program keeps "
-                "of the first",
-            ),
-            (
-                "Hertz",
-                f"rigid paraboloid, not periodic, a grid of {problems.SIDE:g} a, apex on a cell centre",
-            ),
-            (
-                "Rough",
-                f"self-affine, Hurst exponent {problems.HURST:g}, {problems.LONGEST} to {problems.WAVES} "
-                f"waves on the side, the same surface on each grid, mean pressure {problems.MEAN_PRESSURE:g} "
-                f"E*, rms height {problems.RMS:g} sides",
-            ),
-            (
-                "Step",
-                f"p₀/σ_y = 3, dσ_y/dε_p = {problems.HARDENING:g} E, ν = {problems.POISSON:g}, one load step, "
-                "box 6a × 6a × 2.5a",
-            ),
-            (
-                "Calibration kernel",
-                f"median {calibration} s, from {low} to {high} s over {len(found.kernel)} times in between",
-            ),
-        ]
+        yield "Programs", f"SAM and {versions}"
+        yield (
+            "Time",
+            "processor time of set-up and solution, one thread, a process a measurement, a smaller "
+            f"problem before it untimed; medians of {found.rounds} rounds, of fewer for what takes more "
+            "than 2 s and 20 s; again: solved a second time in one process, with what the program keeps "
+            "of the first",
+        )
+        grid = f"a grid of {problems.SIDE:g} a, apex on a cell centre"
+        yield "Hertz", f"rigid paraboloid, not periodic, {grid}"
+        yield (
+            "Rough",
+            f"self-affine, Hurst exponent {problems.HURST:g}, {problems.LONGEST} to {problems.WAVES} "
+            f"waves on the side, the same surface on each grid, mean pressure {problems.MEAN_PRESSURE:g} "
+            f"E*, rms height {problems.RMS:g} sides",
+        )
+        law = f"dσ_y/dε_p = {problems.HARDENING:g} E, ν = {problems.POISSON:g}"
+        yield "Step", f"p₀/σ_y = 3, {law}, one load step, box 6a × 6a × 2.5a"
+        kernel = (number(of(found.kernel), 3) for of in (np.median, min, max))
+        words = "median {} s, from {} to {} s over {} times in between"
+        yield "Calibration kernel", words.format(*kernel, len(found.kernel))
 
     def tables(self, found: ProgramTimes) -> list[SmallTable]:
         return found.tables
@@ -148,11 +138,9 @@ def hertz(context: Context, found: ProgramTimes) -> None:
         theirs = times[NAMES[name]][1].value if name in found.pythons else None
         found.values[f"hertz-{gate}"] = ratio(theirs, own)  # aspher's times are the target
     at = number(elastic.HERTZ_ERROR, 1)
+    words = "of the largest pressure, and ratios to SAM's time, there and on the same grid"
     found.add(
-        (
-            f"Hertz: time to an error of {at} of the largest pressure, and ratios to SAM's time, there and "
-            "on the same grid"
-        ),
+        f"Hertz: time to an error of {at} {words}",
         ("program", "curve", f"time to {at} [s]", "over SAM's", *(f"on {n}²" for n in elastic.COMPARED)),
         rows,
     )
@@ -182,26 +170,24 @@ def rough(context: Context, found: ProgramTimes) -> None:
         for name, p in each.items():
             over = ratio(p.seconds, each[OURS].seconds if OURS in each else None)
             rows.append((f"{n}²", name, number(p.seconds, 3), number(p.error, 2), number(finite(over), 3)))
-    largest = fast[elastic.ROUGH_SIZES[-1]]
-    theirs, own = (
-        largest[name].seconds if name in largest else None for name in (NAMES[CONTACT_MECHANICS], OURS)
-    )
-    found.values["rough-contact-mechanics"] = ratio(theirs, own)
+    largest, names = fast[elastic.ROUGH_SIZES[-1]], (NAMES[CONTACT_MECHANICS], OURS)
+    times = (largest[name].seconds if name in largest else None for name in names)
+    found.values["rough-contact-mechanics"] = ratio(*times)
     at = number(elastic.ROUGH_ERROR, 1)
     found.add(
-        (f"Rough: each program at the loosest tolerance of its ladder that reaches an error of {at}"),
+        f"Rough: each program at the loosest tolerance of its ladder that reaches an error of {at}",
         ("grid", "program", "time [s]", "error, L2 of the pressure", "over SAM's"),
         rows,
     )
+    also = {"p_max": "of p_max"}
     found.tables.append(
-        points_table(
-            "Rough: all measurements", points, "error, L2", also={"p_max": "of p_max"}, kernel=kernel
-        )
+        points_table("Rough: all measurements", points, "error, L2", also=also, kernel=kernel)
     )
-    series = {}
-    for name in NAMES.values():
-        if sizes := [n for n, each in fast.items() if name in each]:
-            series[name] = (name, np.array(sizes), np.array([fast[n][name].seconds for n in sizes]))
+    series = {
+        name: (name, np.array(sizes), np.array([fast[n][name].seconds for n in sizes]))
+        for name in NAMES.values()
+        if (sizes := [n for n, each in fast.items() if name in each])
+    }
     found.plots.append(
         Plot(
             drawn(series, "cells a side", "processor time [s]", ("cells", "cpu_s")),
@@ -231,29 +217,18 @@ def step(context: Context, found: ProgramTimes) -> None:
         same = fastest(own, cells).get(OURS)
         n, layers = cells
         found.values[f"step-{layers}"] = over = ratio(theirs.seconds, equal[1])
-        rows.append(
-            (
-                f"{layers} × {n} × {n}",
-                number(theirs.seconds, 3),
-                number(theirs.error, 2),
-                f"{number(equal[1], 3)} ({equal[0]})",
-                number(finite(over), 3),
-                number(finite(ratio(theirs.measurement.again, again[1])), 3),
-                number(finite(ratio(theirs.seconds, same and same.seconds)), 3),
-                number(same and same.error, 2),
-            )
+        second, there = (
+            ratio(theirs.measurement.again, again[1]),
+            ratio(theirs.seconds, same and same.seconds),
         )
-    found.add(
-        (
-            "Elastic-plastic step: plastic strain below the apex, relative L2 error, each against what it "
-            "tends to itself"
-        ),
-        (
-            *("cells", "Tamaas [s]", "its error", "SAM at that error [s]", "ratio", "ratio of second solves"),
-            *("ratio on the same cells", "SAM's error there"),
-        ),
-        rows,
-    )
+        ratios = (number(finite(each), 3) for each in (over, second, there))
+        own_time = f"{number(equal[1], 3)} ({equal[0]})"
+        times = (number(theirs.seconds, 3), number(theirs.error, 2), own_time)
+        rows.append((f"{layers} × {n} × {n}", *times, *ratios, number(same and same.error, 2)))
+    columns = "cells|Tamaas [s]|its error|SAM at that error [s]|ratio|ratio of second solves"
+    columns += "|ratio on the same cells|SAM's error there"
+    words = "plastic strain below the apex, relative L2 error, each against what it tends to itself"
+    found.add(f"Elastic-plastic step: {words}", columns.split("|"), rows)
     also = {"largest": "of the largest"}
     found.tables += [
         points_table("Step: all measurements", points, "error, L2", also=also, kernel=kernel),
@@ -327,52 +302,38 @@ def points_table(
     caption: str, points: Sequence[PeerPoint], error: str, *, also: Mapping[str, str], kernel: Sequence[float]
 ) -> SmallTable:
     """A row a measurement; those without an answer say why."""
-    unit = float(np.median(kernel))
-    return SmallTable(
-        caption,
-        (
-            *("curve", "cells", "time [s]", "least, most", "rounds", "set-up [s]", "again [s]", "/ kernel"),
-            *(error, *also.values(), "iterations", "memory [MB]"),
-        ),
-        [_row(p, also, unit) for p in points],
-    )
-
-
-def _row(p: PeerPoint, also: Mapping[str, str], unit: float) -> tuple[str, ...]:
-    m = p.measurement
-    cells = (
-        f"{p.cells}²"
-        if isinstance(p.cells, int)
-        else " × ".join(str(n) for n in (p.cells[1], p.cells[0], p.cells[0]))
-    )
-    if not m.solved:
-        return (p.label, cells, m.failure or "not converged", *("",) * (len(also) + 8))
-    return (
-        *(p.label, cells, number(p.seconds, 3), f"{min(m.cpu_s):.3g}, {max(m.cpu_s):.3g}", str(len(m.cpu_s))),
-        *(number(float(np.median(m.setup_s)), 2), number(finite(m.again), 3)),
-        *(number(p.seconds / unit, 3), number(p.error, 2)),
-        *(number(p.also.get(name), 2) for name in also),
-        *(number(m.record.get("iterations")), f"{m.record['peak_memory_bytes'] / 1e6:.0f}"),
-    )
+    unit, rows = float(np.median(kernel)), []
+    for p in points:
+        m = p.measurement
+        sides = [p.cells] if isinstance(p.cells, int) else [p.cells[1], p.cells[0], p.cells[0]]
+        cells = f"{p.cells}²" if len(sides) == 1 else " × ".join(map(str, sides))
+        if not m.solved:
+            rows.append((p.label, cells, m.failure or "not converged", *("",) * (len(also) + 8)))
+            continue
+        between = f"{min(m.cpu_s):.3g}, {max(m.cpu_s):.3g}"
+        parts = (
+            number(float(np.median(m.setup_s)), 2),
+            number(finite(m.again), 3),
+            number(p.seconds / unit, 3),
+        )
+        errors = (number(p.error, 2), *(number(p.also.get(name), 2) for name in also))
+        rest = (number(m.record.get("iterations")), f"{m.record['peak_memory_bytes'] / 1e6:.0f}")
+        times = (number(p.seconds, 3), between, str(len(m.cpu_s)))
+        rows.append((p.label, cells, *times, *parts, *errors, *rest))
+    columns = "curve|cells|time [s]|least, most|rounds|set-up [s]|again [s]|/ kernel".split("|")
+    return SmallTable(caption, (*columns, error, *also.values(), "iterations", "memory [MB]"), rows)
 
 
 def reference_table(references: Mapping[str, StoredReference]) -> SmallTable:
     """The references of the step."""
     rows = [
-        (
-            NAMES[name],
-            each.text,
-            number(each.peeq_max, 5),
-            number(each.uncertainty, 2),
-            number(each.profile_uncertainty, 2),
-        )
+        (NAMES[name], each.text, number(each.peeq_max, 5), *(number(u, 2) for u in around))
         for name, each in references.items()
+        if (around := (each.uncertainty, each.profile_uncertainty))
     ]
-    return SmallTable(
-        "Step: references, with the distance of the next coarser grid as uncertainty",
-        ("for", "what", "largest strain [σ_y/E]", "uncertainty", "of the profile, L2"),
-        rows,
-    )
+    columns = ("for", "what", "largest strain [σ_y/E]", "uncertainty", "of the profile, L2")
+    words = "Step: references, with the distance of the next coarser grid as uncertainty"
+    return SmallTable(words, columns, rows)
 
 
 def errors_over_time(
@@ -391,17 +352,11 @@ def errors_over_time(
             times, errors = (np.array([getattr(p, of) for p in solved]) for of in ("seconds", "error"))
             series[label] = (own[0].name, times, errors)
     drawing = drawn(series, "processor time [s]", ylabel, ("cpu_s", "error"), target=target, floor=floor)
-    shade = (
-        "Shaded: the uncertainty of the references."
-        if floor
-        else "Dotted: the error whose times are compared."
-    )
+    dotted = "Dotted: the error whose times are compared."
+    shade = "Shaded: the uncertainty of the references." if floor else dotted
+    words = f"{title}: {ylabel} over processor time for {', '.join(series)}."
     return Plot(
-        drawing,
-        name,
-        f"{title}: error over time",
-        (f"{title}: {ylabel} over processor time for {', '.join(series)}."),
-        f"A marker a grid, coarse to fine. {shade}",
+        drawing, name, f"{title}: error over time", words, f"A marker a grid, coarse to fine. {shade}"
     )
 
 

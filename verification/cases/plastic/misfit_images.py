@@ -14,7 +14,6 @@ import numpy as np
 from sam.contact import Counters
 from sam.kernels import Cuboids, Lags
 from sam.plasticity import BoxOperator
-from verification.cases.case import SmallTable
 from verification.reference.misfit_sphere import GrowingSphere
 
 NAMES = ("xx", "yy", "zz", "yz", "xz", "xy")
@@ -67,29 +66,6 @@ class Images:
     def _norms(self, stress: np.ndarray) -> np.ndarray:
         return np.sqrt((stress**2).reshape(6, -1).sum(axis=1)) / self.stress
 
-    def values(self) -> dict[str, float]:
-        """The gates."""
-        found = {
-            f"sam-image-{name}": float(value)
-            for name, value in zip(NAMES, self.left, strict=True)
-            if name not in BY_SYMMETRY
-        }
-        return found | {"sam-image-raised": self.largest}
-
-    def table(self) -> SmallTable:
-        """What each coefficient that is wrong leaves."""
-        rows = [
-            (name, f"{value:.1e}", *(f"{each:.1f}" for each in found))
-            for name, value, found in zip(
-                (*NAMES, "u_z"), (*self.left, self.largest), self.perturbed, strict=True
-            )
-        ]
-        caption = (
-            f"Images of a plastic zone at a depth of {CENTRE:g} a, cells of a/{CELLS}: what is left of each "
-            f"stress (of u_z: over a), and how many times as much with one coefficient {1e2 * SHARE:g} % off"
-        )
-        return SmallTable(caption, ("", "left", *(f"of strain {name}" for name in NAMES)), rows)
-
 
 def images(exact: GrowingSphere, cells: int = CELLS) -> Images:
     """Of the plastic zone of a closed form, on cubes, of its radius over `cells`."""
@@ -133,11 +109,3 @@ def _alone(strain: np.ndarray, faces: np.ndarray, nu: float) -> tuple[np.ndarray
         stress.append(operator.stress(None, operator.response(transformed))[:, 1:])
         moved.append(operator.displacement(transformed))
     return np.array(stress), np.array(moved)
-
-
-def seen(found: Images) -> str:
-    """What the table says, in a sentence."""
-    return (
-        f"Any of the 36 coefficients of the stress and 6 of the displacement that is {1e2 * SHARE:g} % off "
-        f"leaves at least {found.perturbed.min():.1f} times what the cells leave: the gates see each."
-    )

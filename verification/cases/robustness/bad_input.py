@@ -368,33 +368,26 @@ class BadInputs(Case):
     def measure(self, found: tuple[str, Tally, Tally]) -> dict[str, Measured]:
         return values_of(found[1:])
 
-    def setup(self, found: tuple[str, Tally, Tally]) -> list[tuple[str, str]]:
+    def setup(self, found: tuple[str, Tally, Tally]) -> Iterator[tuple[str, str]]:
         _, read, ran = found
-        return [
-            (
-                "Inputs",
-                f"{read.counts.total()} read in one process, {ran.counts.total()} through the command; "
-                f"seed {SEED}",
-            ),
-            (
-                "Limits",
-                f"{LIMIT_S:g} s and {MEMORY / 2**30:g} GiB for a reader; {COMMAND_LIMIT_S:g} s and an "
-                "address space of 1, 2, 4 GiB or any for a command, half of them with closed streams",
-            ),
-            ("Campaign", CAMPAIGN),
-            ("Slowest", f"{read.slowest[0]:.2f} s ({read.slowest[1]}); command {ran.slowest[0]:.1f} s"),
-        ]
+        commands = f"{ran.counts.total()} through the command; seed {SEED}"
+        yield "Inputs", f"{read.counts.total()} read in one process, {commands}"
+        spaces = "an address space of 1, 2, 4 GiB or any for a command, half of them with closed streams"
+        readers = f"{LIMIT_S:g} s and {MEMORY / 2**30:g} GiB for a reader"
+        yield "Limits", f"{readers}; {COMMAND_LIMIT_S:g} s and {spaces}"
+        yield "Campaign", CAMPAIGN
+        slowest = f"{read.slowest[0]:.2f} s ({read.slowest[1]})"
+        yield "Slowest", f"{slowest}; command {ran.slowest[0]:.1f} s"
 
-    def tables(self, found: tuple[str, Tally, Tally]) -> list[SmallTable]:
+    def tables(self, found: tuple[str, Tally, Tally]) -> Iterator[SmallTable]:
         captions = "Read: valid or refused, with every reason", "Through the command, by exit code"
-        tables = [counts_table(caption, tally) for caption, tally in zip(captions, found[1:], strict=True)]
-        rows = csv.reader(
-            resources.files("verification").joinpath("data", "bad-input.csv").open(encoding="utf-8")
-        )
+        yield from map(counts_table, captions, found[1:])
+        kept = resources.files("verification").joinpath("data", "bad-input.csv").read_text(encoding="utf-8")
         campaign = {"read": Tally(), "run": Tally()}
-        for how, kind, end, count in list(rows)[1:]:
+        for how, kind, end, count in list(csv.reader(kept.splitlines()))[1:]:
             campaign[how].counts[kind, end] = int(count)
-        return tables + [counts_table(f"Campaign: {how}", tally) for how, tally in campaign.items()]
+        for how, tally in campaign.items():
+            yield counts_table(f"Campaign: {how}", tally)
 
     def notes(self, found: tuple[str, Tally, Tally]) -> list[str]:
         every = (item for tally in found[1:] for item in tally.findings.items())

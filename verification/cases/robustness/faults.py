@@ -94,31 +94,19 @@ def full_disk(base: Path, seconds: float) -> tuple[Ended, Path]:
     """No file may grow beyond 4 KiB: as on a full disk, writing fails in the middle of a file."""
     code = "import resource, sys; from samfem.cli import main; "
     code += "resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)); sys.exit(main())"
-    return run(
-        ["solve", str(base / "scene.toml"), "--out", str(base / "run")],
-        base / "store",
-        command=(sys.executable, "-c", code),
-    ), base / "run"
+    words = ["solve", str(base / "scene.toml"), "--out", str(base / "run")]
+    return run(words, base / "store", command=(sys.executable, "-c", code)), base / "run"
 
 
 def full_file_system(base: Path, seconds: float) -> tuple[Ended, Path]:
     """A file system of 64 KiB, mounted for this command alone."""
     small, kept = base / "small", base / "kept"
     small.mkdir()
-    command = (
-        "unshare",
-        "--mount",
-        "sh",
-        "-c",
-        (f'mount -t tmpfs -o size=64k none "{small}" && "$@"; code=$?; cp -a "{small}" "{kept}"; exit $code'),
-        "sh",
-        sys.executable,
-        "-m",
-        "samfem.cli",
-    )
-    return run(
-        ["solve", str(base / "scene.toml"), "--out", str(small / "run")], small / "store", command=command
-    ), kept
+    mounted = f'mount -t tmpfs -o size=64k none "{small}" && "$@"; code=$?; '
+    mounted += f'cp -a "{small}" "{kept}"; exit $code'
+    command = ("unshare", "--mount", "sh", "-c", mounted, "sh", sys.executable, "-m", "samfem.cli")
+    words = ["solve", str(base / "scene.toml"), "--out", str(small / "run")]
+    return run(words, small / "store", command=command), kept
 
 
 def read_only(base: Path, seconds: float) -> tuple[Ended, Path]:
@@ -156,9 +144,8 @@ def other_scene(base: Path, seconds: float) -> tuple[Ended, Path]:
     """--resume in the folder of another scene's interrupted run."""
     interrupted(base, seconds)
     (base / "scene.toml").write_text(SCENE.replace("0.17 N", "0.16 N"))
-    return run(
-        ["solve", str(base / "scene.toml"), "--out", str(base / "run"), "--resume"], base / "store"
-    ), base / "run"
+    words = ["solve", str(base / "scene.toml"), "--out", str(base / "run"), "--resume"]
+    return run(words, base / "store"), base / "run"
 
 
 FAULTS = (
@@ -310,22 +297,15 @@ class Faults(Case):
     def measure(self, found: Killed) -> dict[str, Measured]:
         return values_of(found.every)
 
-    def setup(self, found: Killed) -> list[tuple[str, str]]:
-        return [
-            (
-                "Kills",
-                f"{len(found.solves)} of a solve of {found.seconds:.1f} s, {len(found.sweeps)} of a sweep of "
-                f"24 scenes; kill -9, seed {SEED}",
-            ),
-            ("Checkpoints", "after each load step"),
-        ]
+    def setup(self, found: Killed) -> Iterator[tuple[str, str]]:
+        swept = f"{len(found.sweeps)} of a sweep of 24 scenes; kill -9, seed {SEED}"
+        yield "Kills", f"{len(found.solves)} of a solve of {found.seconds:.1f} s, {swept}"
+        yield "Checkpoints", "after each load step"
 
-    def tables(self, found: Killed) -> list[SmallTable]:
-        return [
-            counts_table("Solves", found.solves),
-            counts_table("Sweeps", found.sweeps),
-            SmallTable("Other faults", ("fault", "exit code", "message"), [row for row, _ in found.faults]),
-        ]
+    def tables(self, found: Killed) -> Iterator[SmallTable]:
+        yield counts_table("Solves", found.solves)
+        yield counts_table("Sweeps", found.sweeps)
+        yield SmallTable("Other faults", ("fault", "exit code", "message"), [row for row, _ in found.faults])
 
     def notes(self, found: Killed) -> list[str]:
         every = (item for trial in found.every for item in trial.findings.items())

@@ -38,7 +38,7 @@ def checked(quick: bool) -> dict:
     """
     with tempfile.TemporaryDirectory(prefix="samfem-mutation-") as base:
         found = Path(base, "judged.json")
-        words = [sys.executable, "-m", TOOL, "--json", str(found), *(["--quick"] if quick else [])]
+        words = [sys.executable, "-m", TOOL, "--json", str(found), *["--quick"] * quick]
         environment = os.environ | dict.fromkeys(EVERY_LIBRARY, "1") | {"SAMFEM_STORE": ""}
         ended = subprocess.run(words, cwd=ROOT, env=environment, capture_output=True, text=True)
         if not found.is_file():
@@ -85,17 +85,13 @@ def counts_table(found: Mapping) -> SmallTable:
         parts = [counts[name, what] for what in ("row", "killed", "survived", "equivalent", "structure")]
         return (name, *map(str, [parts[1] + parts[2], *parts]))
 
-    columns = (
-        "module",
-        "mutants",
-        "of them table rows",
-        "killed",
-        "survived",
-        "equivalent",
-        "structure, left out",
-    )
+    columns = "module|mutants|of them table rows|killed|survived|equivalent|structure, left out".split("|")
     names = dict.fromkeys([*sorted({name for name, _ in counts} - {"all"}), "all"])
     return SmallTable("Mutants by module", columns, [row(name) for name in names])
+
+
+def _place(one: Mapping) -> str:
+    return f"{one['mutant']['module']} {one['mutant']['function']}"
 
 
 def drawn_table(found: Mapping) -> SmallTable:
@@ -133,34 +129,18 @@ def survivors_table(found: Mapping) -> SmallTable:
 def equivalent_table(found: Mapping) -> SmallTable:
     """The equivalent mutants: constants that must not matter, and how much they do."""
     rows = [
-        (
-            f"{one['mutant']['module']} {one['mutant']['function']}",
-            one["mutant"]["text"],
-            one["reason"],
-            f"{one['change']:.2g}",
-            str(one["probes"]),
-        )
+        (_place(one), one["mutant"]["text"], one["reason"], f"{one['change']:.2g}", str(one["probes"]))
         for one in found["shown"]
     ]
-    return SmallTable(
-        "Constants that must not change the answer",
-        (
-            "where",
-            "constant",
-            "why it must not matter",
-            "largest change, in tolerances",
-            "solves that run the module",
-        ),
-        rows,
-    )
+    columns = "where|constant|why it must not matter|largest change, in tolerances|solves that run the module"
+    return SmallTable("Constants that must not change the answer", columns.split("|"), rows)
 
 
 def killers_table(found: Mapping) -> SmallTable:
     """The tests that kill most."""
     counts = Counter(one["by"] for one in found["judged"] if one["outcome"] == "killed")
-    return SmallTable(
-        "Tests that kill most", ("test", "mutants"), [(n, str(k)) for n, k in counts.most_common(NAMED)]
-    )
+    rows = [(name, str(count)) for name, count in counts.most_common(NAMED)]
+    return SmallTable("Tests that kill most", ("test", "mutants"), rows)
 
 
 class Mutation(Case):

@@ -52,26 +52,38 @@ class Stability(Case):
             "errors-explained": Measured(sum(not _explained(expected, cell) for expected, cell in cells), 0),
         }
 
-    def setup(self, found: Matrix) -> list[tuple[str, str]]:
+    def setup(self, found: Matrix) -> Iterator[tuple[str, str]]:
         counts = Counter(cell.kind for *_, cell in found.cells)
         seconds = sum(cell.seconds for *_, cell in found.cells)
-        return [
-            (
-                "Matrix",
-                f"{len(found.rows)} extremes, {sum(counts.values())} cells; {seconds:.0f} s of processor "
-                "time",
-            ),
-            ("Cells", ", ".join(f"{counts[kind]} {kind.value}" for kind in Kind)),
-            (
-                "Beforehand",
-                "each row says what must become of it in each model, and why; a cell that does otherwise is "
-                "wrong",
-            ),
-            ("Always wrong", "another exception, a warning of numpy, a quantity that is not finite"),
-        ]
+        cells = f"{sum(counts.values())} cells; {seconds:.0f} s of processor time"
+        yield "Matrix", f"{len(found.rows)} extremes, {cells}"
+        yield "Cells", ", ".join(f"{counts[kind]} {kind.value}" for kind in Kind)
+        wrong = "a cell that does otherwise is wrong"
+        yield "Beforehand", f"each row says what must become of it in each model, and why; {wrong}"
+        yield "Always wrong", "another exception, a warning of numpy, a quantity that is not finite"
 
-    def tables(self, found: Matrix) -> list[SmallTable]:
-        return [table(found.rows, found.judged) for table in (matrix_table, right_table, error_table)]
+    def tables(self, found: Matrix) -> Iterator[SmallTable]:
+        rows = [
+            (row.name, row.what, _expected(row), *(cells[m].kind.value if m in cells else "" for m in MODELS))
+            for row in found.rows
+            if (cells := found.judged[row.name]) is not None
+        ]
+        columns = ("row", "what", "expected, and why", "SAM", "FEM, axisymmetric", "FEM, 3D")
+        yield SmallTable("The matrix", columns, rows)
+        rows = [
+            (name, model, str(len(cell.deviations)), w.what, f"{w.error:.2g}", f"{w.bound:g}", w.reason)
+            for name, model, cell in found.cells
+            if cell.kind is Kind.RIGHT and (w := cell.worst)
+        ]
+        columns = ("row", "model", "comparisons", "nearest to its bound", "error", "bound", "why this bound")
+        yield SmallTable("Right cells", columns, rows)
+        expected = {row.name: row.expected for row in found.rows}
+        rows = [
+            (name, model, cell.text, expected[name][model].reason)
+            for name, model, cell in found.cells
+            if cell.kind is Kind.ERROR
+        ]
+        yield SmallTable("Errors", ("row", "model", "message", "why it is right"), rows)
 
     def notes(self, found: Matrix) -> list[str]:
         wrong = [each for each in found.cells if each[-1].kind is Kind.WRONG]
@@ -116,17 +128,6 @@ def _explained(expected: Expectation, cell: Cell | None) -> bool:
     return isinstance(expected, Refused) and bool(expected.reason and expected.says and cell.text)
 
 
-def matrix_table(rows: Sequence[Row], judged: Judged) -> SmallTable:
-    """What was expected of each extreme, and what became of it."""
-    shown = [
-        (row.name, row.what, _expected(row), *(_shown(judged[row.name].get(model)) for model in MODELS))
-        for row in rows
-    ]
-    return SmallTable(
-        "The matrix", ("row", "what", "expected, and why", "SAM", "FEM, axisymmetric", "FEM, 3D"), shown
-    )
-
-
 def _expected(row: Row) -> str:
     """One text where all models are expected to do the same."""
     words = {model: f"{_verb(expected)}: {expected.reason}" for model, expected in row.expected.items()}
@@ -137,37 +138,6 @@ def _expected(row: Row) -> str:
 
 def _verb(expected: Expectation) -> str:
     return {Right: "right", Refused: "error"}.get(type(expected), "not applicable")
-
-
-def _shown(cell: Cell | None) -> str:
-    return "" if cell is None else cell.kind.value
-
-
-def right_table(rows: Sequence[Row], judged: Judged) -> SmallTable:
-    """The comparison of each right cell that is nearest to its bound."""
-    shown = []
-    for row in rows:
-        for model, cell in judged[row.name].items():
-            worst = cell.worst
-            if cell.kind is Kind.RIGHT and worst is not None:
-                numbers = f"{worst.error:.2g}", f"{worst.bound:g}", worst.reason
-                shown.append((row.name, model, str(len(cell.deviations)), worst.what, *numbers))
-    return SmallTable(
-        "Right cells",
-        ("row", "model", "comparisons", "nearest to its bound", "error", "bound", "why this bound"),
-        shown,
-    )
-
-
-def error_table(rows: Sequence[Row], judged: Judged) -> SmallTable:
-    """Every error with its text, and why it is right that it is one."""
-    shown = [
-        (row.name, model, cell.text, row.expected[model].reason)
-        for row in rows
-        for model, cell in judged[row.name].items()
-        if cell.kind is Kind.ERROR
-    ]
-    return SmallTable("Errors", ("row", "model", "message", "why it is right"), shown)
 
 
 CASES = (Stability("stability"),)

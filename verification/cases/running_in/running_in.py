@@ -2,233 +2,627 @@
 """Running-in: the five cases of Bosman & Schipper (2011), Figs. 13-17, on ten surfaces, against what the
 paper says of them; with the printed inputs, and beside it a second reading of what the paper leaves open.
 
-Gates are for what must be so: sums that agree, cycles that are complete, friction between its two
+Rows are for what must be so: sums that agree, cycles that are complete, friction between its two
 coefficients. What the paper says of its own surface is judged in a table, beside the pressures at which a
 film fails and metal is removed, which decide it.
 """
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Result, Scene
-from verification.cases.case import SAM, Case, Context, Measured, Plot, SmallTable, View
-from verification.cases.running_in.running_in_runs import SHOWN, Key, Readings, RunningInRun, Runs, gates
-from verification.cases.running_in.running_in_scenes import (
+from verification.cases.case import Context, Measured, Plot, SmallTable, View, with_keys
+from verification.cases.running_in.scenes import (
+    BULK,
+    LAST,
     LAYER_ALPHA,
     LITERATURE_B,
+    NAMES,
+    A,
+    B,
     Effort,
     Reading,
-    deeper_after,
-    read_as,
-    reduced,
+    deeper,
+    printed_scenes,
+    renewed,
+    with_constant,
+    with_deviation,
+    with_plasticity,
     with_seed,
 )
-from verification.cases.running_in.running_in_statements import LAST, NAMES, A, B
-from verification.cases.running_in.running_in_tables import (
-    FINDINGS_NOTE,
-    HELD_NOTE,
-    REST_NOTE,
-    cases_table,
-    cost_table,
-    deepened_note,
-    findings_note,
-    lost_height_note,
-    lost_note,
-    new_strain_table,
-    of_case,
-    regimes_table,
+from verification.cases.running_in.study import (
+    CUBIC,
+    EARLY,
+    GIGA,
+    Judged,
+    Run,
+    Study,
+    apart,
+    good,
+    judged,
+    outside,
+    solved,
+    spread,
     statements_table,
-    varied_table,
 )
-from verification.cases.running_in.running_in_varied import varied_scenes
-from verification.compare.running_in_measures import History
-from verification.figures.running_in import comparison, regime_map, six_panels, surface, yield_profiles
-from verification.figures.running_in_readings import side_by_side
+from verification.compare.running_in_measures import History, Limits, Scar
+from verification.figures.running_in import over_cycles, regime_map, six_panels, surface, yield_profiles
+from verification.reference.regime import Regime, regime
 
-FULL = Effort(tuple(NAMES), tuple(range(1, 11)), cycles=LAST, steps=10, cells=64)
+SHOWN = 2  # the seed of the scenes
+FULL = Effort(LAST, steps=10, cells=64, seeds=tuple(range(1, 11)))
 EFFORTS = {
     "quick": {
-        Reading.PRINTED: Effort((B,), (SHOWN,), cycles=3, steps=3, cells=32),
-        Reading.RENEWED: Effort((A,), (SHOWN,), cycles=3, steps=2, cells=32),
+        Reading.PRINTED: Effort(3, 3, 32, (B,), (SHOWN,)),
+        Reading.RENEWED: Effort(3, 2, 32, (A,), (SHOWN,)),
     },
-    "full": {Reading.PRINTED: replace(FULL, varied=True), Reading.RENEWED: FULL},
+    "full": {Reading.PRINTED: FULL, Reading.RENEWED: FULL},
 }
+FIRST_CYCLES = 5  # of running-in; the later ones are steadier
+FIGURES = dict(zip(NAMES, (13, 14, 15, 16, 17), strict=True))
+"""Figures of the paper."""
+DEEP = 2e-6  # m: how far down the yield stress is drawn; the profiles end above
 
 
-class DeeperWhereItYields(Case):
-    """A case whose runs begin again with deeper layers where the plastic zone reaches the last one."""
-
-    def then(self, scene: Scene, result: Result) -> Scene | None:
-        return deeper_after(scene, result)
-
-
-class RunningIn(DeeperWhereItYields):
-    """Every case on every surface in both readings; then what is varied of the printed inputs; gates over all
-    of them, statements over those that converged.
+@dataclass(frozen=True)
+class Found:
+    """efforts: of each reading; bases: reading and material -> its scene on the surface of the file; runs:
+    reading, material and surface -> what ran; varied: on one surface, other assumptions by name.
     """
 
-    def ahead(self, context: Context) -> Iterator[Scene]:
+    efforts: Mapping[Reading, Effort]
+    bases: Mapping[tuple[Reading, str], Scene]
+    runs: Mapping[tuple[Reading, str, int], Run]
+    varied: Mapping[str, Run]
+
+    def of(self, reading: Reading, case: str, *, lost: bool = False) -> dict[int, Run]:
+        """Surface -> the run of a material that converged, or with those that are lost."""
+        own = {seed: one for (of, name, seed), one in self.runs.items() if (of, name) == (reading, case)}
+        return own if lost else good(own)
+
+    def cases(self, reading: Reading) -> dict[str, dict[int, Run]]:
+        """Material -> see `of`, of those with a run that converged."""
+        return {case: runs for case in NAMES if (runs := self.of(reading, case))}
+
+    def limits(self, reading: Reading) -> dict[str, tuple[Limits, Limits]]:
+        """Material -> limits with the constant B of its scene and with that of the literature."""
+        return {case: limits_of(scene) for (of, case), scene in self.bases.items() if of is reading}
+
+    @cached_property
+    def judged(self) -> dict[Reading, list[Judged]]:
+        """The statements of the paper; none with fewer cycles."""
+        return {
+            reading: judged(
+                [
+                    {c: runs[seed].history for c, runs in self.cases(reading).items() if seed in runs}
+                    for seed in effort.seeds
+                ]
+            )
+            for reading, effort in self.efforts.items()
+            if effort.cycles >= LAST
+        }
+
+    @property
+    def named(self) -> dict[str, Run]:
+        """Every run by its name for the reader."""
+        named = {
+            f"{NAMES[case]}, surface {seed}, {of.short}": one for (of, case, seed), one in self.runs.items()
+        }
+        return named | dict(self.varied)
+
+
+def limits_of(scene: Scene) -> tuple[Limits, Limits]:
+    """With the scene's own constant B, and with that of the literature."""
+    return Limits.of(scene), Limits.of(with_constant(scene, LITERATURE_B))
+
+
+def varied_scenes(bases: Mapping[str, Scene], curve_c: Scene) -> dict[str, tuple[str, Scene]]:
+    """Name for the reader -> (label of the run, scene): what the paper leaves open, one at a time."""
+    bulk, own = bases[BULK], bases[B]
+    scenes = {"curve C": ("curve-c", with_plasticity(own, profile=curve_c.body.plasticity.profile))}
+    for scale in (0.8, 1.25):
+        name = f"curve B, deviation × {scale:g}"
+        scenes[name] = f"curve-b-deviation-{scale:g}", with_deviation(own, scale)
+    for case in (BULK, B):
+        name = f"{NAMES[case]}, B = {LITERATURE_B / 1e6:g} MPa"
+        scenes[name] = f"{case}-1280", deeper(with_plasticity(bases[case], B=LITERATURE_B))
+    for window in (0, 3, 7):  # cells; the scenes have 5
+        scenes[f"bulk, window {window}"] = (
+            f"bulk-window-{window}",
+            with_keys(bulk, "wear", smoothing_window=window),
+        )
+    return scenes
+
+
+class RunningIn(Study):
+    """Every material on every surface in both readings; then what is varied of the printed inputs; rows over
+    all of them, statements over those that converged.
+    """
+
+    def scenes(self, context: Context) -> dict[Any, Scene]:
+        found = {}
         for reading, effort in EFFORTS[context.level].items():
-            yield from scenes_of(context, reading, effort)[1].values()
+            printed = printed_scenes(context, effort)
+            found |= {
+                (reading, case, seed): read_as(reading, with_seed(scene, seed))
+                for seed in effort.seeds
+                for case, scene in printed.items()
+            }
+        return found
 
-    def solve(self, context: Context) -> Readings:
-        runs = [read(context, reading, effort) for reading, effort in EFFORTS[context.level].items()]
-        varied = variations(context, runs[0].bases) if runs[0].effort.varied else {}
-        return Readings(runs, varied)
+    def label(self, key: tuple[Reading, str, int]) -> str:
+        reading, case, seed = key
+        return led(reading, f"{case}-seed-{seed}")
 
-    def measure(self, found: Readings) -> dict[str, Measured]:
-        return gates(found.all)
+    def solve(self, context: Context) -> Found:
+        efforts = EFFORTS[context.level]
+        bases = {
+            (reading, case): read_as(reading, scene)
+            for reading, effort in efforts.items()
+            for case, scene in printed_scenes(context, effort).items()
+        }
+        runs, varied = self.runs(context), {}
+        if context.level == "full":
+            own = {case: scene for (reading, case), scene in bases.items() if reading is Reading.PRINTED}
+            others = varied_scenes(own, context.scene("running-in-curve-c"))
+            varied = {name: solved(context, scene, label) for name, (label, scene) in others.items()}
+        return Found(efforts, bases, runs, varied)
 
-    def setup(self, found: Readings) -> list[tuple[str, str]]:
-        printed, renewed = (next(iter(runs.bases.values())) for runs in found.runs)
-        return [*setup_printed(printed, found.runs[0].effort), *setup_renewed(renewed)]
+    def measure(self, found: Found) -> dict[str, Measured]:
+        return measured([*found.runs.values(), *found.varied.values()])
 
-    def tables(self, found: Readings) -> Iterator[SmallTable]:
-        if all(runs.judged for runs in found.runs):
-            yield statements_table({runs.reading.short: runs.judged for runs in found.runs})
-        for runs in found.runs:
-            yield cases_table(runs.reading, runs.histories)
-        yield new_strain_table({runs.reading.short: runs.cycles_tables for runs in found.runs})
-        for runs in found.runs:
-            yield regimes_table(runs.reading, runs.limits, runs.histories, runs.held)
+    def setup(self, found: Found) -> Iterator[tuple[str, str]]:
+        scene, effort = next(iter(found.bases.values())), found.efforts[Reading.PRINTED]
+        film, rough, steel, wear = scene.friction, scene.surface, scene.body.plasticity, scene.wear
+        law = f"σ_y = {steel.B / 1e6:g} MPa ({steel.C:g} + 10⁶ ε)^{steel.n:g}"
+        yield "Body", f"E = {scene.body.young / 1e9:g} GPa, {law}"
+        waves, seeds = f"waves of {rough.cutoff_short * 1e6:g} µm and more", ", ".join(map(str, effort.seeds))
+        yield "Surface", f"hard-turned, Ra = {rough.ra * 1e6:g} µm, {waves}; seeds {seeds}"
+        size = "{0:g} × {0:g} µm, {1} × {1} cells".format(1e6 * scene.grid.extent[0], effort.cells)
+        yield "Patch", f"{size}, {len(scene.grid.depths) - 1} layers, the first 0.1 µm"
+        steps = f"{effort.cycles} cycles of {effort.steps} + {effort.steps} steps, flat steel above"
+        yield "Load", f"{scene.loading.force:g} N, {steps}"
+        fails = f"yields at {film.film_yield / 1e9:.3g} GPa, fails beyond {film.thinning_limit:.2%} a cycle"
+        yield "Film", f"{film.film_thickness * 1e9:g} nm, {fails}"
+        yield "Friction", f"{film.low:g} below a whole film, {film.high:g} where it has failed"
+        limits = f"beyond {wear.strain_limit:.1%} of plastic strain, in a layer 2 % or 5 %"
+        yield "Wear", f"{limits}; window {wear.smoothing_window}"
+        tables = "the layers' yield stress over depth (curve-*.csv, hardening-only.csv)"
+        yield "Assumed", f"{tables}, window and order of smoothing"
+        scene = next(scene for (reading, _), scene in found.bases.items() if reading is Reading.RENEWED)
+        rough, depths = scene.counterbody.surface, scene.grid.depths
+        yield "Second reading", f"{Reading.RENEWED}; for curve B: running-in-renewed.toml"
+        yield "Layer", f"down to 1 µm σ_y with {LAYER_ALPHA:g} ε in place of 10⁶ ε, bulk with the printed 10⁶"
+        waves = f"waves of {1e6 * rough.cutoff_short:g} to {1e6 * rough.cutoff_long:g} µm"
+        yield "Counter-surface", f"{1e9 * rough.sq:g} nm rms, {waves}, another one in each cycle"
+        yield "Grid", f"{len(depths) - 1} layers, to {1e6 * depths[-1]:g} µm"
+
+    def data(self, found: Found) -> dict[str, Any]:
+        return {
+            "statements": {of.short: [one.data for one in each] for of, each in found.judged.items()},
+            "regimes": {of.short: regimes(found, of) for of in found.efforts},
+            "last_cycle": {of.short: last_cycles(found, of) for of in found.efforts},
+        }
+
+    def tables(self, found: Found) -> Iterator[SmallTable]:
+        if len(found.judged) == len(found.efforts):
+            yield statements_table({reading.short: each for reading, each in found.judged.items()})
+        for reading in found.efforts:
+            yield cases_table(found, reading)
+        yield new_strain_table(found)
+        for reading in found.efforts:
+            yield regimes_table(found, reading)
         if found.varied:
-            yield varied_table(found.on_one_surface)
-        yield cost_table(found.groups)
+            yield varied_table(found)
+        yield cost_table(found)
 
-    def notes(self, found: Readings) -> Iterator[str]:
-        for runs in found.runs:
-            if runs.judged:
-                yield findings_note(runs.reading, runs.judged)
-        if found.runs[0].judged:
+    def notes(self, found: Found) -> Iterator[str]:
+        if Reading.PRINTED in found.judged:
             yield FINDINGS_NOTE
             yield REST_NOTE
-        if scars := {name: one.scar for name, one in found.named.items() if one.result.converged}:
+        named = found.named
+        if scars := {name: one.scar for name, one in good(named).items()}:
             yield lost_height_note(scars)
-        if found.deepened:
-            yield deepened_note(found.deepened)
-        if found.lost:
-            yield lost_note({name: one.result for name, one in found.lost.items()})
-        if any(above for runs in found.runs for counts in runs.held.values() for _, above in counts):
+        depths = {key: one.scene.grid.depths for key, one in found.runs.items()}
+        if words := "; ".join(
+            f"{NAMES[case]}, surface {seed}, {of.short}, to {own[-1] * 1e6:g} µm"
+            for (of, case, seed), own in depths.items()
+            if own != found.bases[of, case].grid.depths
+        ):
+            yield (
+                "The plastic zone reached the last layer, and the run was made again with deeper ones: "
+                f"{words}."
+            )
+        if words := "; ".join(
+            f"{name}: {one.result.status} after {len(one.of_cycles('cycle'))} cycles"
+            for name, one in named.items()
+            if not one.result.converged
+        ):
+            yield f"Not converged, and counted as surfaces on which a statement says nothing: {words}."
+        if any(each["held_above"] for of in found.efforts for each in regimes(found, of).values()):
             yield HELD_NOTE
 
-    def figures(self, found: Readings) -> Iterator[Plot]:
-        if not found.cases:
+    def figures(self, found: Found) -> Iterator[Plot]:
+        readings = {
+            of: {c: [one.history for one in r.values()] for c, r in found.cases(of).items()}
+            for of in found.efforts
+        }
+        cases = [case for case in NAMES if any(case in each for each in readings.values())]
+        if not cases:
             return
-        yield Plot(
-            side_by_side(
-                {
-                    NAMES[case]: {runs.reading: of_case(runs.histories, case) for runs in found.runs}
-                    for case in found.cases
-                }
-            ),
-            "readings",
-            "Both readings of the paper over the cycles",
-            "Wear volume and friction over the cycles, a column for each case, a line for each reading.",
-            "Thick: median of the surfaces; thin: each surface.",
+        yield readings_plot(
+            {NAMES[case]: {str(of): own.get(case, []) for of, own in readings.items()} for case in cases}
         )
-        if found.runs[0].shown:
-            yield surface_plot(found.runs[0])
-        for runs in found.runs:
-            yield from plots(runs)
+        for number, reading in enumerate(readings):
+            shown = {case: main_seed(own) for case, own in found.cases(reading).items()}
+            if not shown:
+                continue
+            if not number:
+                case, seed = next(iter(shown.items()))
+                yield surface_plot(seed, found.runs[reading, case, seed].scar)
+            yield yield_plot(found, reading)
+            yield regimes_plot(found, reading)
+            for case, seed in shown.items():
+                one = found.runs[reading, case, seed]
+                yield Plot(
+                    six_panels(one.scar, one.history, one.friction),
+                    led(reading, case),
+                    f"Running-in, {NAMES[case]}, {reading}",
+                    f"Six panels of {NAMES[case]}: worn depth, worn surface, volume and friction over "
+                    "cycles, local friction, pressure.",
+                    f"As the paper's Fig. {FIGURES[case]}, on our surface {seed} alone: its numbers differ "
+                    "from the medians of all surfaces. (a) and (b) after the last cycle, (e) and (f) at its "
+                    "peak; grey: not worn, or no contact.",
+                )
 
-    def views(self, found: Readings) -> Iterator[View]:
-        for runs in found.runs:
-            for case, seed in runs.shown:
+    def views(self, found: Found) -> Iterator[View]:
+        for reading in found.efforts:
+            for case, own in found.cases(reading).items():
                 yield View(
-                    label_of(runs.reading, case, seed),
+                    self.label((reading, case, main_seed(own))),
                     "worn",
-                    f"{led(runs.reading, case)}-worn",
-                    f"Worn surface over the original, {NAMES[case]}, {runs.reading}",
+                    f"{led(reading, case)}-worn",
+                    f"Worn surface over the original, {NAMES[case]}, {reading}",
                     f"The rough surface of {NAMES[case]} in space, coloured by the depth worn; the original "
                     "surface above it is transparent.",
-                    f"As the paper's Fig. {FIGURES[case]}b, on our surface, after the last cycle; "
-                    f"{runs.reading}.",
+                    f"As the paper's Fig. {FIGURES[case]}b, on our surface, after the last cycle; {reading}.",
                 )
 
 
-def setup_printed(scene: Scene, effort: Effort) -> list[tuple[str, str]]:
-    """What all runs have in common, and the second reading changes some of."""
-    film, surface, plasticity, wear = scene.friction, scene.surface, scene.body.plasticity, scene.wear
-    law = f"σ_y = {plasticity.B / 1e6:g} MPa ({plasticity.C:g} + 10⁶ ε)^{plasticity.n:g}"
-    waves = f"waves of {surface.cutoff_short * 1e6:g} µm and more"
-    seeds = ", ".join(map(str, effort.seeds))
-    side, cells = 1e6 * scene.grid.extent[0], f"{effort.cells} × {effort.cells} cells"
-    cycles = f"{effort.cycles} cycles of {effort.steps} + {effort.steps} steps"
-    fails = f"fails beyond {film.thinning_limit:.2%} a cycle"
-    limits = f"beyond {wear.strain_limit:.1%} of plastic strain, in a layer 2 % or 5 %"
-    return [
-        ("Body", f"E = {scene.body.young / 1e9:g} GPa, {law}"),
-        ("Surface", f"hard-turned, Ra = {surface.ra * 1e6:g} µm, {waves}; seeds {seeds}"),
-        ("Patch", f"{side:g} × {side:g} µm, {cells}, {_layers(scene)}, the first 0.1 µm"),
-        ("Load", f"{scene.loading.force:g} N, {cycles}, flat steel above"),
-        ("Film", f"{film.film_thickness * 1e9:g} nm, yields at {film.film_yield / 1e9:.3g} GPa, {fails}"),
-        ("Friction", f"{film.low:g} below a whole film, {film.high:g} where it has failed"),
-        ("Wear", f"{limits}; window {wear.smoothing_window}"),
-        (
-            "Assumed",
-            "the layers' yield stress over depth (curve-*.csv, hardening-only.csv), window and order of "
-            "smoothing",
-        ),
-    ]
+def read_as(reading: Reading, scene: Scene) -> Scene:
+    """The scene in one of the readings."""
+    return renewed(scene) if reading is Reading.RENEWED else scene
 
 
-def setup_renewed(scene: Scene) -> list[tuple[str, str]]:
-    """What the second reading changes, for the reader."""
-    surface = scene.counterbody.surface
-    low, high = (1e6 * cutoff for cutoff in (surface.cutoff_short, surface.cutoff_long))
-    waves = f"waves of {low:g} to {high:g} µm"
-    return [
-        ("Second reading", f"{Reading.RENEWED}; for curve B: running-in-renewed.toml"),
-        ("Layer", f"down to 1 µm σ_y with {LAYER_ALPHA:g} ε in place of 10⁶ ε, bulk with the printed 10⁶"),
-        ("Counter-surface", f"{1e9 * surface.sq:g} nm rms, {waves}, another one in each cycle"),
-        ("Grid", f"{_layers(scene)}, to {1e6 * scene.grid.depths[-1]:g} µm"),
-    ]
+def led(reading: Reading, name: str) -> str:
+    """A name of a file, led by that of the reading unless it is that of the printed inputs."""
+    return name if reading is Reading.PRINTED else f"{reading.short}-{name}"
 
 
-def _layers(scene: Scene) -> str:
-    return f"{len(scene.grid.depths) - 1} layers"
+def main_seed(runs: Mapping[int, Run]) -> int:
+    """The surface that is drawn: that of the scenes, or the first there is."""
+    return SHOWN if SHOWN in runs else next(iter(runs))
 
 
-def plots(runs: Runs) -> Iterator[Plot]:
-    """The figures of one reading: all runs over the cycles, the regimes, and six panels of each case."""
-    reading = runs.reading
-    histories = {NAMES[case]: of_case(runs.histories, case) for case in runs.limits}
-    histories = {name: each for name, each in histories.items() if each}
-    if not histories:
-        return
-    yield Plot(
-        comparison(histories),
-        led(reading, "comparison"),
-        f"Volume, friction and roughness over the cycles, {reading}",
-        "Wear volume, friction and roughness over the cycles, a column of panels for each case.",
+def measured(runs: Sequence[Run]) -> dict[str, Measured]:
+    """Worst of all runs. Sums are over surface.csv of the last cycle, against cycles.csv."""
+    whole = [one for one in runs if one.result.converged]
+    sums: Mapping[str, Callable[[Run], float]] = {
+        "volume": lambda one: one.off,
+        "friction-sum": lambda one: abs(one.scar.coefficient(*one.friction) - one.history.friction[-1]),
+        "protected": lambda one: abs(one.scar.protected_fraction(*one.friction) - one.history.protected[-1]),
+        "load": lambda one: apart(one.scar.force, one.scene.loading.force),
+        "iterations": later_over_early,
+        "friction-range": lambda one: outside(one.history.friction, *one.friction),
+    }
+    counts: Mapping[str, Callable[[Run], int]] = {
+        "cycles": missing_cycles,
+        "falls": lambda one: int((np.diff(one.history.volume, prepend=0.0) < 0.0).sum()),
+        "added": lambda one: int((one.scar.worn < 0.0).sum()),
+        "repeats": restless_cycles,
+    }
+    values = {name: Measured(max(map(of, whole), default=float("nan"))) for name, of in sums.items()}
+    values |= {name: Measured(sum(map(count, whole)), 0) for name, count in counts.items()}
+    return values | {"unconverged": Measured(len(runs) - len(whole), 0)}
+
+
+def iterations_of(result: Result) -> tuple[list[float], list[float]]:
+    """Plastic iterations of each cycle to the fifth (of a short run: of all but the last), and of those after
+    it.
+    """
+    history = result.tables["history"]
+    cycle, iterations = (np.asarray(history[name], dtype=float) for name in ("cycle", "iterations"))
+    per_cycle = [float(iterations[cycle == k].sum()) for k in np.unique(cycle)]
+    split = min(FIRST_CYCLES, len(per_cycle) - 1)
+    return per_cycle[:split], per_cycle[split:]
+
+
+def later_over_early(one: Run) -> float:
+    """Plastic iterations, each with an application of the operator of residual stress: mean of later cycles
+    over the first, where each meets the same counter-surface.
+    """
+    early, later = iterations_of(one.result)
+    return 0.0 if one.renewed else float(np.mean(later) / np.mean(early))
+
+
+def missing_cycles(one: Run) -> int:
+    """Cycles without a row, rows out of order, and numbers that are missing in them."""
+    wanted, cycle = np.arange(1, one.scene.loading.cycles + 1), one.of_cycles("cycle")
+    if not np.array_equal(cycle, wanted):
+        return max(1, abs(wanted.size - cycle.size))
+    return sum(int(np.isnan(one.of_cycles(name)).sum()) for name in one.result.tables["cycles"])
+
+
+def restless_cycles(one: Run) -> int:
+    """Cycles that strain or wear the body after one that did neither, where each meets the same
+    counter-surface.
+    """
+    busy = (one.of_cycles("new_strain_max") != 0.0) | (one.of_cycles("wear_of_cycle_m3") != 0.0)
+    return 0 if one.renewed else int((busy & (np.cumsum(~busy) > 0)).sum())
+
+
+def spreads(groups: Mapping[str, Sequence[Run]], columns: Mapping[str, Callable[[Run], float]]) -> list:
+    """Rows: name, and median and range over its runs of each column."""
+    return [(name, *(spread(map(of, runs)) for of in columns.values())) for name, runs in groups.items()]
+
+
+def cases_table(found: Found, reading: Reading) -> SmallTable:
+    """Median and range over the surfaces."""
+    last = found.efforts[reading].cycles
+    early = min(EARLY, last)
+
+    def at(column: str, cycle: int, scale: float = 1.0) -> Callable[[Run], float]:
+        return lambda one: scale * one.history.at(column, cycle)
+
+    columns = {
+        "V, first [µm³]": at("volume", 1, CUBIC),
+        "V, early": at("volume", early, CUBIC),
+        "V, last": at("volume", last, CUBIC),
+        "μ, first": at("friction", 1),
+        "μ, last": at("friction", last),
+        "Sa, first [nm]": at("sa", 1, 1e9),
+        "Sa, last": at("sa", last, 1e9),
+        "protected, last [%]": at("protected", last, 100.0),
+        "p_max, first [GPa]": at("p_max", 1, GIGA),
+        "p_max, last": at("p_max", last, GIGA),
+    }
+    words = f"median and range over the surfaces; early: after {early} cycles, last: after {last}"
+    groups = {NAMES[case]: list(runs.values()) for case, runs in found.cases(reading).items()}
+    return SmallTable(f"{reading.capitalize()}: {words}", ("case", *columns), spreads(groups, columns))
+
+
+FINDINGS_NOTE = (
+    "The measured surface and the curves of the paper's Fig. 9 are not public: a failed statement is a "
+    "finding."
+)
+REST_NOTE = (
+    "With the printed inputs, a cycle that neither strains nor wears the body is followed by cycles like it "
+    "(gate repeats); from which cycle on that is so is a finding, as nothing in the model bounds it."
+)
+HELD_NOTE = (
+    "Failed cells that bear more than what removes them and yet hold are narrow spots, of a cell or two: "
+    "√3 μ p is the stress at z = 0, the first layer of cells lies below it, where such a spot is held by its "
+    "neighbours. Worn surfaces touch in many of these: there the criterion is one for wider spots, and the "
+    "friction that remains is that of a grid of 1 µm."
+)
+
+
+def last_cycles(found: Found, reading: Reading) -> dict[str, dict[str, list[float]]]:
+    """Material -> of each surface the first cycle from which on no cell strains, NaN if the last one still
+    does, and what the last cycle adds: largest new strain, number of cells that yield, wear in m3.
+    """
+    columns = {"strain": "new_strain_max", "cells": "yielding_cells", "wear_m3": "wear_of_cycle_m3"}
+    return {
+        case: {"rest_from": [at_rest_from(one.of_cycles("new_strain_max")) for one in runs.values()]}
+        | {
+            name: [float(one.of_cycles(column)[-1]) for one in runs.values()]
+            for name, column in columns.items()
+        }
+        for case, runs in found.cases(reading).items()
+    }
+
+
+def at_rest_from(new_strain: np.ndarray) -> float:
+    """The first cycle from which on no cell strains; NaN if the last one still does."""
+    busy = np.flatnonzero(new_strain > 0.0)
+    after = int(busy[-1]) + 1 if busy.size else 0
+    return after + 1.0 if after < new_strain.size else float("nan")
+
+
+def new_strain_table(found: Found) -> SmallTable:
+    """What the last cycle adds."""
+    columns, every = ["case"], {of: last_cycles(found, of) for of in found.efforts}
+    none: dict[str, list[float]] = {"rest_from": [], "strain": [], "cells": [], "wear_m3": []}
+    for of in every:
+        columns += [
+            f"{of.short}: strain anew in",
+            "at rest from cycle",
+            "largest new strain [%]",
+            "cells",
+            "worn [µm³]",
+        ]
+    rows = []
+    for case in (case for case in NAMES if any(case in each for each in every.values())):
+        row = [NAMES[case]]
+        for own in (each.get(case, none) for each in every.values()):
+            row.append(f"{sum(value > 0.0 for value in own['strain'])} of {len(own['strain'])}")
+            row += [spread(own["rest_from"]), spread(own["strain"], 100.0), spread(own["cells"])]
+            row.append(spread(own["wear_m3"], CUBIC))
+        rows.append(row)
+    return SmallTable(
+        "What the last cycle adds: surfaces on which any cell strains plastically again, of the others the "
+        "first cycle from which on none does; median and range of the largest new strain, of the number of "
+        "cells that yield and of the wear of that cycle",
+        columns,
+        rows,
+    )
+
+
+def regimes(found: Found, reading: Reading) -> dict[str, dict[str, Any]]:
+    """Material -> the pressures in Pa at which films fail and metal is removed, the largest in the first
+    cycle, the median of the surfaces, and of all surfaces the cells with a failed film at the last peak and
+    those of them whose pressure removes a wide spot in the first layer.
+    """
+    values = {}
+    for case, (own, other) in found.limits(reading).items():
+        runs = found.of(reading, case).values()
+        failed = [(one.scar.unprotected(*one.friction), one.scar.p) for one in runs]
+        reached = [one.history.at("p_max", 1) for one in runs]
+        values[case] = {
+            "strength": own.strength,
+            "removed_from": own.removal,
+            "with_other_B": other.removal,
+            "first_layer": own.first,
+            "removed_whole": own.removal_whole,
+            "film_fails_from": own.film,
+            "reached": float(np.median(reached)) if reached else float("nan"),
+            "held_above": sum(int((bare & (p > own.first)).sum()) for bare, p in failed),
+            "failed": sum(int(bare.sum()) for bare, _ in failed),
+        }
+    return values
+
+
+def fate(removal: float, film: float, reached: float) -> str:
+    """Of the spots with the largest pressure, in words."""
+    if np.isnan(reached):
+        return "no run converged"
+    if removal <= film:
+        return "every spot whose film fails is removed, unless it is one of few cells"
+    above = f"{GIGA * removal:.2f} GPa"
+    return {
+        Regime.WHOLE: "no film fails",
+        Regime.BARE: f"films fail, traction removes nothing ({GIGA * reached:.2f} < {above})",
+        Regime.REMOVED: f"failed spots are removed above {above} only, films fail from {GIGA * film:.2f}",
+    }[regime(reached, film, removal)]
+
+
+def regimes_table(found: Found, reading: Reading) -> SmallTable:
+    """What decides: the pressures at which films fail and metal is removed, against the largest there is."""
+    rows = []
+    for case, own in regimes(found, reading).items():
+        *pressures, above, failed = own.values()
+        numbers = ("–" if np.isnan(number) else f"{GIGA * number:.2f}" for number in pressures)
+        so = fate(own["removed_from"], own["film_fails_from"], own["reached"])
+        rows.append((NAMES[case], *numbers, f"{above} of {failed}", so))
+    columns = (
+        "case|σ_y(limit) at the surface|removed from, μ high|with the other B|in the first layer of cells"
+    )
+    columns += "|removed from, μ low|film fails from|p_max, first cycle|failed cells above it, last peak|so"
+    words = "pressures in GPa at which films fail and the traction removes metal"
+    return SmallTable(f"What decides, {reading}: {words}", columns.split("|"), rows)
+
+
+def varied_table(found: Found) -> SmallTable:
+    """One surface, other assumptions."""
+    runs = {
+        f"{NAMES[case]} as given": own[SHOWN]
+        for case in NAMES
+        if SHOWN in (own := found.of(Reading.PRINTED, case))
+    }
+    rows = []
+    for name, one in (runs | good(found.varied)).items():
+        history, last = one.history, int(one.history.cycle[-1])
+        volumes = (f"{CUBIC * history.volume_after(cycle):.4g}" for cycle in (1, min(EARLY, last), last))
+        friction = (f"{history.at('friction', cycle):.4f}" for cycle in (1, last))
+        ends = f"{1e9 * history.at('sa', last):.1f}", f"{GIGA * history.at('p_max', last):.2f}"
+        rows.append((name, f"{GIGA * Limits.of(one.scene).removal:.2f}", *volumes, *friction, *ends))
+    columns = (
+        "run|removed from [GPa]|V(1) [µm³]|V(6)|V, last|μ, first|μ, last|Sa, last [nm]|p_max, last [GPa]"
+    )
+    return SmallTable("Other assumptions on the surface of the scenes", columns.split("|"), rows)
+
+
+def cost_table(found: Found) -> SmallTable:
+    """Of the solves of each group, as they were when they were computed; median and range."""
+    groups = {
+        f"{NAMES[case]}, {of.short}": list(runs.values())
+        for case in NAMES
+        for of in found.efforts
+        if (runs := found.of(of, case, lost=True))
+    } | ({"other assumptions": list(found.varied.values())} if found.varied else {})
+
+    def cost(key: str, scale: float = 1.0) -> Callable[[Run], float]:
+        return lambda one: scale * float(one.result.cost.get(key) or 0.0)
+
+    def a_cycle(key: str) -> Callable[[Run], float]:
+        return lambda one: cost(key)(one) / (len(one.of_cycles("cycle")) or np.nan)
+
+    def iterations(part: int) -> Callable[[Run], float]:
+        return lambda one: float(np.mean(iterations_of(one.result)[part] or [np.nan]))
+
+    columns = {
+        "time of a cycle [s]": a_cycle("solve_s"),
+        "CPU [s]": cost("cpu_s"),
+        "memory [MiB]": cost("peak_memory_bytes", 2.0**-20),
+        "operator applications a cycle": a_cycle("operator_applications"),
+        f"plastic iterations a cycle, to the {FIRST_CYCLES}th": iterations(0),
+        "later": iterations(1),
+        "halved steps": cost("step_cuts"),
+    }
+    done = [f"{len(good(dict(enumerate(runs))))} of {len(runs)}" for runs in groups.values()]
+    rows = [(name, of, *rest) for of, (name, *rest) in zip(done, spreads(groups, columns), strict=True)]
+    words = "Cost on one core, median and range of the runs; memory: of the process so far"
+    return SmallTable(words, ("runs", "converged", *columns), rows)
+
+
+def lost_height_note(scars: Mapping[str, Scar]) -> str:
+    """How much of the relief is worn away where most is. scars: by name of the run, at least one."""
+    depths = {name: float(np.nanmax(scar.worn)) for name, scar in scars.items()}
+    lost = {name: depth / float(np.ptp(scars[name].height)) for name, depth in depths.items()}
+    most = max(lost, key=lambda name: lost[name])
+    half, whole = (sum(share > limit for share in lost.values()) for limit in (0.5, 1.0))
+    return (
+        f"Worn depth over relief (highest less lowest place before any wear): above a half in {half} of "
+        f"{len(lost)} runs, above one in {whole}; the most is {lost[most]:.2f}, {1e6 * depths[most]:.3g} of "
+        f"{1e6 * np.ptp(scars[most].height):.3g} µm ({most})."
+        + " How far the flat surface of the model is off below such scars is not known."
+        * (half > 0)
+    )
+
+
+QUANTITIES = {
+    "wear volume [µm³]": ("volume", CUBIC),
+    "coefficient of friction": ("friction", 1.0),
+    "Sa [nm]": ("sa", 1e9),
+}
+"""Rows of the figure of both readings, with the attribute of a history and its scale."""
+
+
+def readings_plot(cases: Mapping[str, Mapping[str, Sequence[History]]]) -> Plot:
+    """Name of a material -> reading -> its histories."""
+    panels = {
+        (row, name): {
+            (reading, surface): values
+            for reading, histories in readings.items()
+            for surface, values in _with_median([scale * getattr(each, of) for each in histories]).items()
+        }
+        for row, (of, scale) in QUANTITIES.items()
+        for name, readings in cases.items()
+    }
+    return Plot(
+        over_cycles(panels, ("reading", "surface"), thick="median", first=1),
+        "readings",
+        "Both readings of the paper over the cycles",
+        "Volume, friction and roughness over the cycles, a column for each case, a line for each reading.",
         "Thick: median of the surfaces; thin: each surface. Sa of the unloaded surface after each cycle.",
     )
-    yield yield_plot(runs)
-    yield regimes_plot(runs, {name: median_pressures(each) for name, each in histories.items()})
-    for case, seed in runs.shown:
-        one = runs.found[case, seed]
-        yield Plot(
-            six_panels(one.scar, one.history, one.friction),
-            led(reading, case),
-            f"Running-in, {NAMES[case]}, {reading}",
-            f"Six panels of {NAMES[case]}: worn depth, worn surface, volume and friction over cycles, "
-            "local friction, pressure.",
-            f"As the paper's Fig. {FIGURES[case]}, on our surface {seed} alone: its numbers differ from the "
-            "medians of all surfaces. (a) and (b) after the last cycle, (e) and (f) at its peak; grey: not "
-            "worn, or no contact.",
-        )
 
 
-def surface_plot(runs: Runs) -> Plot:
+def _with_median(values: Sequence[np.ndarray]) -> dict[str, np.ndarray]:
+    found = {str(k): each for k, each in enumerate(values, start=1)}
+    return found | ({"median": np.median(values, axis=0)} if values else {})
+
+
+def surface_plot(seed: int, scar: Scar) -> Plot:
     """The surface of the scenes before any wear."""
-    case, seed = runs.shown[0]
     return Plot(
-        surface(runs.found[case, seed].scar),
+        surface(scar),
         "surface",
         f"The rough surface before running-in, surface {seed}",
         "Map of the heights of the rough surface, and its profile through the highest place.",
@@ -237,94 +631,39 @@ def surface_plot(runs: Runs) -> Plot:
     )
 
 
-def yield_plot(runs: Runs) -> Plot:
-    """The yield stress over depth of each case."""
+def yield_plot(found: Found, reading: Reading) -> Plot:
+    """The yield stress over depth of each material."""
+    scenes = {NAMES[case]: scene for (of, case), scene in found.bases.items() if of is reading}
     return Plot(
-        yield_profiles(
-            {NAMES[case]: scene.body.plasticity.strength().stress for case, scene in runs.bases.items()}, DEEP
-        ),
-        led(runs.reading, "yield"),
-        f"Yield stress over depth, {runs.reading}",
+        yield_profiles({name: each.body.plasticity.strength().stress for name, each in scenes.items()}, DEEP),
+        led(reading, "yield"),
+        f"Yield stress over depth, {reading}",
         "Curves of the yield stress over depth, one for each case, before any plastic strain and after 1 %.",
         "After the paper's Fig. 9, which has no numbers: the shape of the profiles is from it, their size is "
         "assumed. The line of a case may lie on that of another.",
     )
 
 
-def regimes_plot(runs: Runs, reached: Mapping[str, tuple[float, float]]) -> Plot:
-    """Where films fail and metal is removed. reached: name of a case -> see `median_pressures`."""
-    first = next(iter(runs.good.values()))
-    constants = (first.scene.body.plasticity.B, LITERATURE_B)
+def regimes_plot(found: Found, reading: Reading) -> Plot:
+    """Where films fail and metal is removed."""
+    runs = {case: list(own.values()) for case, own in found.cases(reading).items()}
+    first = next(iter(runs.values()))[0]
+    reached = {
+        NAMES[case]: tuple(float(np.median([one.history.p_max[k] for one in own])) for k in (0, -1))
+        for case, own in runs.items()
+    }
+    constants = (f"B = {each / 1e6:g} MPa" for each in (first.scene.body.plasticity.B, LITERATURE_B))
+    limits = {NAMES[case]: pair for case, pair in found.limits(reading).items()}
     return Plot(
-        regime_map(
-            {NAMES[case]: pair for case, pair in runs.limits.items()},
-            reached,
-            first.friction,
-            tuple(f"B = {constant / 1e6:g} MPa" for constant in constants),
-        ),
-        led(runs.reading, "regimes"),
-        f"Where films fail and metal is removed, {runs.reading}",
+        regime_map(limits, reached, first.friction, tuple(constants)),
+        led(reading, "regimes"),
+        f"Where films fail and metal is removed, {reading}",
         "Map of pressure against friction and against strength: zones where the film is whole, has "
         "failed, and metal is removed.",
         "Lines: √3 μ p = σ_y(limit), above which the traction alone removes the surface. Dash-dotted: "
         "the film fails. Right: full marks at the strength of each case, open ones with the other B; "
         "arrows: median of the surfaces.",
     )
-
-
-def led(reading: Reading, name: str) -> str:
-    """A name of a file, led by that of the reading unless it is that of the printed inputs."""
-    return name if reading is Reading.PRINTED else f"{reading.short}-{name}"
-
-
-def label_of(reading: Reading, case: str, seed: int) -> str:
-    """What the run of a case on a surface is written as."""
-    return led(reading, f"{case}-seed-{seed}")
-
-
-def read(context: Context, reading: Reading, effort: Effort) -> Runs:
-    """Every case in one reading, on every surface."""
-    bases, scenes = scenes_of(context, reading, effort)
-    found = {key: solved(context, scene, label_of(reading, *key)) for key, scene in scenes.items()}
-    return Runs(reading, effort, bases, found)
-
-
-def scenes_of(
-    context: Context, reading: Reading, effort: Effort
-) -> tuple[dict[str, Scene], dict[Key, Scene]]:
-    """Case -> its scene on the surface of the file; and the scene of each run."""
-    printed = {case: reduced(context.scene(f"running-in-{case}"), effort) for case in effort.cases}
-    bases = {case: read_as(reading, scene) for case, scene in printed.items()}
-    runs = itertools.product(effort.seeds, effort.cases)
-    return bases, {(case, seed): read_as(reading, with_seed(printed[case], seed)) for seed, case in runs}
-
-
-def solved(context: Context, scene: Scene, label: str) -> RunningInRun:
-    """A run that may stay unconverged: a gate counts those, and a set of hours does not break off for one of
-    them. Where the plastic zone reaches the last layer it is run again with deeper ones.
-    """
-    result = context.solve(SAM, scene, label, demand=False)
-    below = deeper_after(scene, result)
-    return RunningInRun(scene, result) if below is None else solved(context, below, f"{label}-deeper")
-
-
-def variations(context: Context, bases: Mapping[str, Scene]) -> dict[str, RunningInRun]:
-    """On the surface of the scene: curves that deviate less and more, curve C, the other constant B, windows
-    of smoothing.
-    """
-    scenes = varied_scenes(bases, context.scene)
-    return {name: solved(context, scene, label) for name, (label, scene) in scenes.items()}
-
-
-def median_pressures(histories: Sequence[History]) -> tuple[float, float]:
-    """Largest pressure in Pa in the first and in the last cycle."""
-    return tuple(float(np.median([history.p_max[k] for history in histories])) for k in (0, -1))
-
-
-DEEP = 2e-6
-"""How far down the yield stress is drawn, in m: the profiles end above."""
-FIGURES = dict(zip(NAMES, (13, 14, 15, 16, 17), strict=True))
-"""Figures of the paper."""
 
 
 CASES = (RunningIn("running-in"),)

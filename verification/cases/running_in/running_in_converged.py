@@ -27,17 +27,19 @@ from verification.cases.case import (
     with_keys,
     with_loading,
 )
-from verification.cases.running_in.running_in_scenes import LITERATURE_B, with_plasticity
-from verification.compare.running_in_measures import Scar, Spread
-from verification.figures.wear import over_cells
+from verification.cases.running_in.scenes import LITERATURE_B, with_plasticity
+from verification.cases.running_in.study import CUBIC, spread
+from verification.compare.running_in_measures import Scar
+from verification.figures.running_in import over_cells
 
 SIDE, SHORTEST, SMOOTHED = 25e-6, 8e-6, 5e-6  # m: of the patch, shortest wave, window of smoothing
 CELLS = (25, 45, 75, 135)  # along a side
 COARSEST, VARIED_ON, DEFAULT, FINEST = CELLS
+SIZES = {n: f"{1e6 * SIDE / n:.3g} µm" for n in CELLS}
 SEEDS = (1, 2, 3, 4, 5, 6)
 THIRDS = dict.fromkeys(CELLS, (0, 1, 2)) | {FINEST: (0,)}
 """Cells along a side -> thirds of a cell by which surfaces are shifted; a run on the finest takes most."""
-CYCLES, STEPS, FORCE, CUBIC = 5, 3, 0.15, 1e18
+CYCLES, STEPS, FORCE = 5, 3, 0.15
 FACES = np.array([0.0, 0.3, 0.7, 1.2, 1.8, 2.6, 3.7, 5.2, 7.3, 10.0]) * 1e-6
 FINER = 3  # parts of each layer, and of each load step
 ENOUGH = 50e-18  # m3: surfaces that wear less are reported, and not judged
@@ -68,18 +70,13 @@ class Member:
 
     def of(self, base: Scene) -> Scene:
         """The patch: waves of SHORTEST and more on softer steel than printed, so that most surfaces wear."""
-        window = window_of(self.cells) if self.window is None else self.window
-        scene = with_plasticity(
-            base.model_copy(
-                update={
-                    "surface": shifted(base.surface, self.seed, self.cells, self.thirds / 3),
-                    "grid": Grid(depths=cut(FACES, self.parts)),
-                }
-            ),
-            B=LITERATURE_B,
+        surface, grid = (
+            shifted(base.surface, self.seed, self.cells, self.thirds / 3),
+            Grid(depths=cut(FACES, self.parts)),
         )
-        scene = with_keys(scene, "wear", smoothing_window=window)
-        force = self.force * FORCE
+        scene = with_plasticity(base.model_copy(update={"surface": surface, "grid": grid}), B=LITERATURE_B)
+        window = window_of(self.cells) if self.window is None else self.window
+        scene, force = with_keys(scene, "wear", smoothing_window=window), self.force * FORCE
         return with_loading(scene, force=force, cycles=CYCLES, steps=self.steps, unload_steps=1)
 
 
@@ -106,15 +103,8 @@ def shifted(like: Surface, seed: int, cells: int, shift: float) -> Surface:
     """The surface and its relief, shifted by so many cells along x and y: sums of waves and a polynomial,
     evaluated elsewhere.
     """
-    surface = Surface(
-        kind="self-affine",
-        sq=0.2e-6,
-        cutoff_long=SIDE,
-        cutoff_short=SHORTEST,
-        seed=seed,
-        hurst=like.hurst,
-        anisotropy=like.anisotropy,
-    )
+    waves = {"sq": 0.2e-6, "cutoff_long": SIDE, "cutoff_short": SHORTEST, "hurst": like.hurst}
+    surface = Surface(kind="self-affine", **waves, seed=seed, anisotropy=like.anisotropy)
     x, extent = ((np.arange(cells) + 0.5 - shift) / cells - 0.5) * SIDE, (SIDE, SIDE)
     found = with_relief(heights(surface, x, x, extent), (x, x), extent, mean_deviation(surface, extent))
     return Surface(kind="file", path=HeightMap(found, extent))
@@ -129,9 +119,8 @@ def cut(faces: np.ndarray, parts: int) -> tuple[float, ...]:
 def members() -> list[Member]:
     """Every run, those that cost most last."""
     grids = [Member(seed, cells, thirds) for cells in CELLS for thirds in THIRDS[cells] for seed in SEEDS]
-    return sorted(
-        grids + [of(seed) for of in VARIATIONS.values() for seed in SEEDS], key=lambda one: one.cells
-    )
+    varied = [of(seed) for of in VARIATIONS.values() for seed in SEEDS]
+    return sorted(grids + varied, key=lambda one: one.cells)
 
 
 @dataclass(frozen=True)
@@ -209,7 +198,6 @@ class WearConverged(Case):
         return Found(volumes, lowered, costs, error)
 
     def measure(self, found: Found) -> dict[str, Measured]:
-        finest = np.median([found.mean(seed, FINEST) for seed in SEEDS])
         judged = {
             "heights": [found.heights_off(seed, DEFAULT) for seed in found.worn],
             "layers": [found.left(seed, LAYERS) for seed in found.worn],
@@ -219,31 +207,33 @@ class WearConverged(Case):
             "worn": Measured(len(found.worn)),
             "cells": Measured(len(found.good), unit=f"of {len(SEEDS)} surfaces"),
             **{name: Measured(kth(values, ASKED)) for name, values in judged.items()},
-            "volume": Measured(found.error / finest),
+            "volume": Measured(found.error / np.median([found.mean(seed, FINEST) for seed in SEEDS])),
         }
 
-    def setup(self, found: Found) -> list[tuple[str, str]]:
-        side = 1e6 * SIDE
-        sizes = ", ".join(f"{side / n:.3g} µm ({per_wave(n):.3g} in the shortest wave)" for n in CELLS)
+    def setup(self, found: Found) -> Iterator[tuple[str, str]]:
+        waves = f"waves of {1e6 * SHORTEST:g} µm and more, {FORCE:g} N, {CYCLES} cycles"
+        yield "Patch", f"{1e6 * SIDE:g} × {1e6 * SIDE:g} µm, {waves}"
+        sizes = (f"{size} ({per_wave(n):.3g} in the shortest wave)" for n, size in SIZES.items())
+        yield "Cells", ", ".join(sizes)
         windows = ", ".join(str(window_of(n)) for n in CELLS)
-        waves = f"waves of {1e6 * SHORTEST:g} µm and more"
-        return [
-            ("Patch", f"{side:g} × {side:g} µm, {waves}, {FORCE:g} N, {CYCLES} cycles"),
-            ("Cells", sizes),
-            ("Smoothing", f"{1e6 * SMOOTHED:g} µm: {windows} cells"),
-            ("First layer, load steps", f"{1e6 * FACES[1]:g} µm, {STEPS}; also with each in {FINER} parts"),
-            ("Surfaces", f"{len(SEEDS)}, shifted by 0, 1/3 and 2/3 of a cell along x and y"),
-            (
-                "Body",
-                f"steel of B = {LITERATURE_B / 1e6:g} MPa, removed above a plastic strain of 0.2 %, film and "
-                "friction as in running-in",
-            ),
-        ]
+        yield "Smoothing", f"{1e6 * SMOOTHED:g} µm: {windows} cells"
+        parts = f"{STEPS}; also with each in {FINER} parts"
+        yield "First layer, load steps", f"{1e6 * FACES[1]:g} µm, {parts}"
+        yield "Surfaces", f"{len(SEEDS)}, shifted by 0, 1/3 and 2/3 of a cell along x and y"
+        removed = "removed above a plastic strain of 0.2 %, film and friction as in running-in"
+        yield "Body", f"steel of B = {LITERATURE_B / 1e6:g} MPa, {removed}"
 
     def tables(self, found: Found) -> Iterator[SmallTable]:
         yield cells_table(found)
         yield varied_table(found)
-        yield cost_table(found)
+        totals = {n: np.sum([found.costs[Member(seed, n)] for seed in SEEDS], axis=0) for n in CELLS}
+        rows = []
+        for n, total in totals.items():
+            over = (f"{ratio:.3g}" for ratio in total / totals[COARSEST])
+            rows.append((SIZES[n], f"{window_of(n)}", *(number(v, 3) for v in total), *over))
+        columns = "cells|in the window|processor time [s]|operator applications|time over|applications over"
+        words = "Cost of all surfaces, unshifted; over: that of the coarsest cells"
+        yield SmallTable(words, columns.split("|"), rows)
 
     def notes(self, found: Found) -> Iterator[str]:
         yield (
@@ -251,15 +241,15 @@ class WearConverged(Case):
             f"volume within {TENTH:.0%} at every shift on {len(found.good)} of {len(SEEDS)} surfaces; "
             f"{len(found.worn)} wear more than {CUBIC * ENOUGH:g} µm³."
         )
-        if bad := [seed for seed in found.worn if seed not in found.good]:
-            words = ", ".join(
-                f"{seed} ({found.off(seed, DEFAULT):.0%}; 1 % more load changes it by "
-                f"{found.change(seed, MORE_LOAD):+.0%})"
-                for seed in bad
-            )
+        if words := ", ".join(
+            f"{seed} ({found.off(seed, DEFAULT):.0%}; 1 % more load changes it by "
+            f"{found.change(seed, MORE_LOAD):+.0%})"
+            for seed in found.worn
+            if seed not in found.good
+        ):
             yield f"Not on surface {words}."
-        if little := [seed for seed in SEEDS if seed not in found.worn]:
-            words = ", ".join(f"{seed} ({CUBIC * found.mean(seed, FINEST):.3g} µm³)" for seed in little)
+        little = [seed for seed in SEEDS if seed not in found.worn]
+        if words := ", ".join(f"{seed} ({CUBIC * found.mean(seed, FINEST):.3g} µm³)" for seed in little):
             yield f"Not judged, as hardly anything wears: surface {words}."
 
     def figures(self, found: Found) -> Iterator[Plot]:
@@ -306,26 +296,17 @@ def overlaps(fine: int, coarse: int) -> np.ndarray:
 
 def cells_table(found: Found) -> SmallTable:
     """Volumes and heights of each surface on each size of cells."""
-    rows = []
+    rows, coarser = [], list(SIZES.items())[:-1]
     for seed in SEEDS:
-        row = [f"{seed}"]
-        for cells in CELLS:
-            row.append(Spread.of(CUBIC * found.of_shifts(seed, cells)).text())
-        judged = seed in found.worn
-        row += [f"{found.off(seed, n):.1%}" if judged else "–" for n in CELLS[:-1]]
-        row += [f"{found.heights_off(seed, n):.1%}" if judged else "–" for n in CELLS[:-1]]
-        rows.append(row)
-    sizes = [f"{1e6 * SIDE / n:.3g} µm" for n in CELLS]
+        offs = [of(seed, n) for of in (found.off, found.heights_off) for n, _ in coarser]
+        shown = (f"{value:.1%}" if seed in found.worn else "–" for value in offs)
+        rows.append((f"{seed}", *(spread(found.of_shifts(seed, n), CUBIC) for n in CELLS), *shown))
+    columns = (f"{what}, {size}" for what in ("off", "heights") for _, size in coarser)
     return SmallTable(
         f"Worn volume after {CYCLES} cycles [µm³], median and range of the shifts; off: the shift that is "
         "furthest from the finest cells; heights: root mean square of what residual heights have "
         f"lost less that on the finest cells, in means over {1e6 * SIDE / COARSEST:g} µm, over the latter",
-        (
-            "surface",
-            *(f"V, {size}" for size in sizes),
-            *(f"off, {size}" for size in sizes[:-1]),
-            *(f"heights, {size}" for size in sizes[:-1]),
-        ),
+        ("surface", *(f"V, {size}" for size in SIZES.values()), *columns),
         rows,
     )
 
@@ -334,47 +315,20 @@ def varied_table(found: Found) -> SmallTable:
     """What layers, load steps, load and the old smoothing change, and the uncertainty."""
     rows = []
     for seed in SEEDS:
-        volume, row = found.volumes[Member(seed, DEFAULT)], [f"{seed}"]
-        for name, of in VARIATIONS.items():
-            change = found.change(seed, name)
-            row.append(f"{change:+.1%} ({CUBIC * change * found.volumes[Member(seed, of(seed).cells)]:+.2g})")
-        if seed in found.worn:
-            share, volume = found.uncertainty(seed), volume * (1.0 + found.change(seed, LAYERS))
-            row.append(f"{number(CUBIC * volume, 3)} ± {number(CUBIC * share * volume, 2)} ({share:.0%})")
-        else:
-            row.append("–")
-        rows.append(row)
+        changes = {name: found.change(seed, name) for name in VARIATIONS}
+        without = (found.volumes[Member(seed, of(seed).cells)] for of in VARIATIONS.values())
+        cells = (f"{c:+.1%} ({CUBIC * c * v:+.2g})" for c, v in zip(changes.values(), without, strict=True))
+        share, volume = (
+            found.uncertainty(seed),
+            found.volumes[Member(seed, DEFAULT)] * (1.0 + changes[LAYERS]),
+        )
+        known = f"{number(CUBIC * volume, 3)} ± {number(CUBIC * share * volume, 2)} ({share:.0%})"
+        rows.append((f"{seed}", *cells, known if seed in found.worn else "–"))
     return SmallTable(
         "What else changes the worn volume, and by how many µm³: layers and load steps on cells of "
         f"{1e6 * SIDE / VARIED_ON:.3g} µm, load and smoothing on the recommended ones. V on these with "
         "layers of a third; uncertain by cells and shift, and by what is left of layers and steps, added",
         ("surface", *VARIATIONS, "V [µm³]"),
-        rows,
-    )
-
-
-def cost_table(found: Found) -> SmallTable:
-    """Of all surfaces on each size of cells."""
-    totals = {n: np.sum([found.costs[Member(seed, n)] for seed in SEEDS], axis=0) for n in CELLS}
-    rows = [
-        (
-            f"{1e6 * SIDE / n:.3g} µm",
-            f"{window_of(n)}",
-            *(number(v, 3) for v in total),
-            *(f"{ratio:.3g}" for ratio in total / totals[COARSEST]),
-        )
-        for n, total in totals.items()
-    ]
-    return SmallTable(
-        "Cost of all surfaces, unshifted; over: that of the coarsest cells",
-        (
-            "cells",
-            "in the window",
-            "processor time [s]",
-            "operator applications",
-            "time over",
-            "applications over",
-        ),
         rows,
     )
 

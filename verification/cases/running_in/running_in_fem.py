@@ -17,12 +17,13 @@ import numpy as np
 
 from fem_reference.spatial import WornCycle, worn_cycles
 from sam.scene import Plasticity, Result, Scene, Wear
-from verification.cases.case import SAM, Case, Context, Measured, Plot, SmallTable, with_loading
+from verification.cases.case import SAM, Case, Context, Measured, Plot, SmallTable, with_body, with_loading
 from verification.cases.recipes import cells_of_asperities, rubbed
 from verification.compare.rough_measures import Depths, PatchPressure, compared_depths, relative_l2, spots
 from verification.figures.rough import residual
 from verification.scenes.asperities import HIGH, LOW, SIDE
 
+SCENE = "rough-asperities"
 CELLS = (32, 48, 64)
 SQUARES = 16  # along a side; the rim of a scar bears on single cells, of any size
 CYCLES, STEPS = 3, 2
@@ -71,6 +72,22 @@ class Solved:
         """The same in each cycle."""
         return np.diff(self.worn, axis=0, prepend=0.0 * self.worn[:1])
 
+    @property
+    def cycles(self) -> dict[str, list[tuple[float, ...]]]:
+        """Model -> number of each cycle, volume in um3, largest depth in nm, pressure in GPa, strain in %."""
+        area, own = (SIDE / self.worn.shape[1]) ** 2, self.sam.tables["cycles"]
+        runs = {"SAM": list(zip(self.worn, own["p_max_Pa"], own["peeq_max"], strict=True))}
+        for name, fem in self.fem.items():
+            peaks = (PatchPressure.of(each.tables).p.max() for each in fem)
+            runs[f"FEM, {name}"] = [(c.worn, p, c.peeq_max) for c, p in zip(fem, peaks, strict=True)]
+        return {
+            name: [
+                (k, 1e18 * area * worn.sum(), 1e9 * worn.max(), 1e-9 * pressure, 100 * strain)
+                for k, (worn, pressure, strain) in enumerate(cycles, start=1)
+            ]
+            for name, cycles in runs.items()
+        }
+
     def differences(self, name: str, cycle: int = CYCLES) -> dict[str, float]:
         """SAM off FEM at the peak of the first or the last cycle and after it, see MEASURES.
 
@@ -112,10 +129,8 @@ def scene_of(base: Scene, cells: int) -> Scene:
     """The asperities on cells x cells cells, with back-stresses, friction map and wear."""
     scene = cells_of_asperities(rubbed(base, "map"), cells)
     scene = with_loading(scene, steps=STEPS, cycles=CYCLES)
-    body = scene.body.model_copy(update={"plasticity": LAW})
-    return scene.model_copy(
-        update={"body": body, "wear": Wear(strain_limit=np.inf, strain_limit_layer=LIMIT, smoothing_window=0)}
-    )
+    wear = Wear(strain_limit=np.inf, strain_limit_layer=LIMIT, smoothing_window=0)
+    return with_body(scene, plasticity=LAW).model_copy(update={"wear": wear})
 
 
 def solved(context: Context, base: Scene, cells: int) -> Solved:
@@ -134,7 +149,7 @@ class RunningInFem(Case):
     """Both models over the cycles on three grids."""
 
     def solve(self, context: Context) -> dict[int, Solved]:
-        base = context.scene("rough-asperities")
+        base = context.scene(SCENE)
         return {cells: solved(context, base, cells) for cells in CELLS}
 
     def measure(self, found: dict[int, Solved]) -> dict[str, Measured]:
@@ -148,44 +163,36 @@ class RunningInFem(Case):
                     values[f"shrinks-{prefix}-{what}"] = Measured(max(ratios))
         return values
 
-    def setup(self, found: dict[int, Solved]) -> list[tuple[str, str]]:
-        modulus, recovery = LAW.kinematic.modulus[0], LAW.kinematic.recovery[0]
-        return [
-            (
-                "Half-space",
-                f"σ_y = {LAW.yield_stress / 1e9:g} GPa + {LAW.modulus / 1e9:g} GPa p, a back-stress with "
-                f"C = {modulus / 1e9:g} GPa, γ = {recovery:g}",
-            ),
-            (
-                "Surface",
-                f"three Gaussian asperities on {SIDE * 1e6:g} × {SIDE * 1e6:g} µm under a rigid plane",
-            ),
-            ("Friction", f"μ = {LOW:g}, in the middle {HIGH:g}; q = μp along +x on the body"),
-            (
-                "Cycles",
-                f"{CYCLES} of {STEPS} steps to the peak; removed above a plastic strain of {LIMIT:.1%}",
-            ),
-            ("Cells", ", ".join(f"{n} × {n}" for n in found)),
-        ]
+    def setup(self, found: dict[int, Solved]) -> Iterator[tuple[str, str]]:
+        (modulus, *_), (recovery, *_) = LAW.kinematic.modulus, LAW.kinematic.recovery
+        back = f"a back-stress with C = {modulus / 1e9:g} GPa, γ = {recovery:g}"
+        yield "Half-space", f"σ_y = {LAW.yield_stress / 1e9:g} GPa + {LAW.modulus / 1e9:g} GPa p, {back}"
+        side = f"{SIDE * 1e6:g} × {SIDE * 1e6:g} µm under a rigid plane"
+        yield "Surface", f"three Gaussian asperities on {side}"
+        yield "Friction", f"μ = {LOW:g}, in the middle {HIGH:g}; q = μp along +x on the body"
+        removed = f"removed above a plastic strain of {LIMIT:.1%}"
+        yield "Cycles", f"{CYCLES} of {STEPS} steps to the peak; {removed}"
+        yield "Cells", ", ".join(f"{n} × {n}" for n in found)
 
     def tables(self, found: dict[int, Solved]) -> Iterator[SmallTable]:
         rows = [
-            (
-                f"{cells} × {cells}",
-                str(cycle),
-                name,
-                *(f"{100 * value:.2f} %" for value in each.differences(name, cycle).values()),
-            )
-            for cells, each in found.items()
+            (f"{n} × {n}", str(cycle), name, *(f"{100 * value:.2f} %" for value in off.values()))
+            for n, each in found.items()
             for cycle in (1, CYCLES)
             for name in (OWN, GIVEN)
+            if (off := each.differences(name, cycle))
         ]
-        yield SmallTable(
-            "SAM off FEM: at the peak of a cycle, and unloaded after its removal",
-            ("cells", "cycle", "FEM removes by", *MEASURES.values()),
-            rows,
-        )
-        yield cycles_table(found)
+        words = "SAM off FEM: at the peak of a cycle, and unloaded after its removal"
+        yield SmallTable(words, ("cells", "cycle", "FEM removes by", *MEASURES.values()), rows)
+        rows = [
+            (f"{n} × {n}", name, *(f"{value:.4g}" for value in values))
+            for n, each in found.items()
+            for name, cycles in each.cycles.items()
+            for values in cycles
+        ]
+        columns = "cells|model|cycle|volume [µm³]|largest depth [nm]|p_max [GPa]|largest strain [%]"
+        words = "Each cycle: worn so far, largest pressure and plastic strain at the peak"
+        yield SmallTable(words, columns.split("|"), rows)
 
     def notes(self, found: dict[int, Solved]) -> Iterator[str]:
         grows = [
@@ -204,51 +211,16 @@ class RunningInFem(Case):
 
     def figures(self, found: dict[int, Solved]) -> Iterator[Plot]:
         fine = found[CELLS[-1]]
-        x = PatchPressure.of(fine.sam.tables).x
-        middle = slice(x.size // 2 - 1, x.size // 2 + 1)
-        fem = fine.fem[OWN][-1]
+        x, fem = PatchPressure.of(fine.sam.tables).x, fine.fem[OWN][-1]
         lost = fine.worn[-1] + _surface(fine.sam, "unloaded", "uz_m"), fem.worn + fem.moved
-        lines = [(x, each[:, middle].mean(axis=1)) for each in lost]
+        middle = slice(x.size // 2 - 1, x.size // 2 + 1)
         yield Plot(
-            residual(*lines),
+            residual(*((x, each[:, middle].mean(axis=1)) for each in lost)),
             "lowered",
             f"Surface after {CYCLES} cycles",
             "Change of the heights along y = 0 by wear and plastic strain, of SAM and FEM.",
             "Unloaded, after the last removal, each model by its own plastic strain.",
         )
-
-
-def cycles_table(found: Mapping[int, Solved]) -> SmallTable:
-    """Volume, depth, pressure and strain of each cycle."""
-    rows = []
-    for cells, each in found.items():
-        area, cycles = (SIDE / cells) ** 2, each.sam.tables["cycles"]
-        runs = {
-            "SAM": [
-                (w, p, s) for w, p, s in zip(each.worn, cycles["p_max_Pa"], cycles["peeq_max"], strict=True)
-            ]
-        }
-        runs |= {
-            f"FEM, {name}": [(c.worn, PatchPressure.of(c.tables).p.max(), c.peeq_max) for c in fem]
-            for name, fem in each.fem.items()
-        }
-        for name, cycles_of in runs.items():
-            for number, (worn, pressure, strain) in enumerate(cycles_of, start=1):
-                values = 1e18 * area * worn.sum(), 1e9 * worn.max(), 1e-9 * pressure, 100 * strain
-                rows.append((f"{cells} × {cells}", name, str(number), *(f"{value:.4g}" for value in values)))
-    return SmallTable(
-        "Each cycle: worn so far, largest pressure and plastic strain at the peak",
-        (
-            "cells",
-            "model",
-            "cycle",
-            "volume [µm³]",
-            "largest depth [nm]",
-            "p_max [GPa]",
-            "largest strain [%]",
-        ),
-        rows,
-    )
 
 
 CASES = (RunningInFem("running-in-fem"),)

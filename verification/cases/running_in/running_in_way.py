@@ -11,22 +11,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from sam.scene import Path, Result, Scene
-from verification.cases.case import (
-    SAM,
-    Case,
-    Context,
-    Measured,
-    Plot,
-    SmallTable,
-    with_grid,
-    with_loading,
-)
+from verification.cases.case import SAM, Case, Context, Measured, Plot, SmallTable, with_grid, with_loading
+from verification.cases.running_in.study import outside
 from verification.figures.moving import of_passes
 from verification.runs import models
 
 CELLS, STEPS, PASSES, RISES = 24, 6, 2, 3  # of the small scene: cells of 1 um, steps of one cell
 FEWER = 2  # steps of the one that goes on from the middle of a way
 PRESSED = 1.5  # times the nominal pressure of the scene, for spots of enough cells
+COLUMNS = ("work_J", "friction_mean", "protected_mean", "wear_of_pass_m3", "new_strain_max", "fx_mean_N")
 
 
 @dataclass(frozen=True)
@@ -45,17 +38,11 @@ class OnWay:
 
 def small(scene: Scene, steps: int = STEPS) -> Scene:
     """The scene on few cells, in few passes over a short way of so many steps."""
-    cell = scene.grid.extent[0] / scene.grid.cells[0]
-    share = CELLS / scene.grid.cells[0]
+    cell, share = scene.grid.extent[0] / scene.grid.cells[0], CELLS / scene.grid.cells[0]
     scene = with_grid(scene, cells=(CELLS, CELLS), extent=(CELLS * cell, CELLS * cell))
     path = Path(start=(-steps / 2 * cell, 0.0), end=(steps / 2 * cell, 0.0), steps=steps)
     force = PRESSED * share**2 * scene.loading.force
     return with_loading(scene, force=force, steps=RISES, cycles=PASSES, path=path)
-
-
-def at_rest(scene: Scene) -> Scene:
-    """The scene without its way: a disc that is renewed in place."""
-    return with_loading(scene, path=None)
 
 
 def resumed(scene: Scene) -> tuple[int, float]:
@@ -83,43 +70,35 @@ def an_increment(result: Result) -> float:
     return result.cost["operator_applications"] / len(result.tables["history"]["step"])
 
 
-def missing(found: OnWay) -> int:
-    """Rows and numbers that the table of passes does not have."""
-    passes = found.moving.tables["passes"]
-    names = ("work_J", "friction_mean", "protected_mean", "wear_of_pass_m3", "new_strain_max", "fx_mean_N")
-    numbers = [value for name in names for value in np.asarray(passes[name], dtype=float)]
-    return found.scene.loading.cycles * len(names) - int(np.isfinite(numbers).sum())
-
-
-def outside(found: OnWay) -> float:
-    """How far the coefficient of any pass is outside of the two of the film."""
-    friction, values = found.scene.friction, np.asarray(found.moving.tables["passes"]["friction_mean"])
-    return float(max(friction.low - values.min(), values.max() - friction.high, 0.0))
-
-
 class RunningInOnWay(Case):
     """Film, friction and wear of passes over a way."""
 
     def solve(self, context: Context) -> OnWay:
         scene = context.scene("running-in-way")
-        few = small(scene)
-        own = scene if context.level == "full" else few
+        own = scene if context.level == "full" else small(scene)
         moving = context.solve(SAM, own, "way")
-        return OnWay(own, moving, context.solve(SAM, at_rest(own), "rest"), *resumed(small(scene, FEWER)))
+        rest = context.solve(SAM, with_loading(own, path=None), "rest")
+        return OnWay(own, moving, rest, *resumed(small(scene, FEWER)))
 
     def measure(self, found: OnWay) -> dict[str, Measured | float]:
-        volume = np.sum(found.moving.tables["passes"]["wear_of_pass_m3"])
-        worn = found.moving.tables["surface"]
+        passes, worn, friction = (
+            found.moving.tables["passes"],
+            found.moving.tables["surface"],
+            found.scene.friction,
+        )
+        numbers = np.array([passes[name] for name in COLUMNS], dtype=float)
         last = np.array(worn["state"]) == "unloaded"
         cell = np.prod(found.scene.grid.extent) / np.prod(found.scene.grid.cells)
+        volume = np.asarray(worn["worn_m"])[last].sum() * cell / np.sum(passes["wear_of_pass_m3"])
+        missing = found.scene.loading.cycles * len(COLUMNS) - int(np.isfinite(numbers).sum())
         return {
             "unconverged": Measured(sum(not each.converged for each in (found.moving, found.rest)), 0),
             "increments": an_increment(found.moving) - an_increment(found.rest),
             "resumed": Measured(found.differing, 0),
             "checkpoint": found.growth,
-            "missing": Measured(missing(found), 0),
-            "volume": float(abs(np.asarray(worn["worn_m"])[last].sum() * cell / volume - 1)),
-            "friction-range": outside(found),
+            "missing": Measured(missing, 0),
+            "volume": float(abs(volume - 1)),
+            "friction-range": outside(np.asarray(passes["friction_mean"]), friction.low, friction.high),
         }
 
     def setup(self, found: OnWay) -> Iterator[tuple[str, str]]:
@@ -128,23 +107,19 @@ class RunningInOnWay(Case):
         yield "Way of a pass", f"{1e6 * loading.path.length:g} µm in {loading.path.steps} steps"
 
     def tables(self, found: OnWay) -> Iterator[SmallTable]:
+        shown = ("operator_applications", "contact_iterations", "step_cuts")
         rows = []
         for name, each in (("on a way", found.moving), ("at rest", found.rest)):
-            cost, steps = each.cost, len(each.tables["history"]["step"])
-            numbers = (cost["operator_applications"], cost["contact_iterations"], cost["step_cuts"])
-            rows.append((name, str(steps), *map(str, numbers), f"{an_increment(each):.1f}"))
-        columns = ("run", "load steps", "operator applications", "contact iterations", "halved steps")
-        yield SmallTable("Cost", (*columns, "applications a step"), rows)
+            steps = str(len(each.tables["history"]["step"]))
+            rows.append((name, steps, *(str(each.cost[key]) for key in shown), f"{an_increment(each):.1f}"))
+        columns = "run|load steps|operator applications|contact iterations|halved steps|applications a step"
+        yield SmallTable("Cost", columns.split("|"), rows)
         visits = found.moving.tables["visits"]
+        ways = zip(visits["way_m"], visits["thinning_limit"], visits["visits"], strict=True)
         yield SmallTable(
             "Visits of summits to cells, by the way out of contact",
             ("way up to [µm]", "thinning that the film may take [%]", "visits"),
-            [
-                (f"{1e6 * way:.3g}", f"{100 * limit:.3g}", str(count))
-                for way, limit, count in zip(
-                    visits["way_m"], visits["thinning_limit"], visits["visits"], strict=True
-                )
-            ],
+            [(f"{1e6 * way:.3g}", f"{100 * limit:.3g}", str(count)) for way, limit, count in ways],
         )
 
     def notes(self, found: OnWay) -> Iterator[str]:

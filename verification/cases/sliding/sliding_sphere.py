@@ -5,18 +5,25 @@ form.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq
 
 from sam.contact import stresses, von_mises
 from sam.grid import Window
-from verification.cases.case import Case, Context, Measured, Plot, SmallTable
+from verification.cases.case import Context, Plot
 from verification.figures.profiles import Profile, profiles
-from verification.reference.convergence import fit_order
+from verification.judging import Measured
 from verification.reference.hamilton import largest_von_mises, sliding_stress
+
+__all__ = ["limit_of_crossings"]
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+    from verification.rows import CaseFile
 
 NU = 0.3
 FRICTION = (0.0, 0.1, 0.2, 0.25, 0.3, 0.4, 0.5)
@@ -121,116 +128,37 @@ def overtaking() -> float:
     return brentq(lead, 0.2, 0.5, xtol=1e-6)
 
 
-@dataclass(frozen=True)
-class Stresses:
-    """interior: largest errors (n, 6) of each grid at mu = 0.4; plane: SAM's largest von Mises stress and its
-    depth for each of FRICTION; crossings: friction coefficient at which the edge overtakes, of each grid of
-    `crossing_sizes`.
+def frame(context: Context) -> Iterator[dict[str, object]]:
+    """Six components at interior points at mu = 0.4, where the largest von Mises stress lies as friction
+    grows, and the friction coefficient at which the edge overtakes the interior.
     """
-
-    sizes: Sequence[int]
-    interior: np.ndarray
-    plane: np.ndarray
-    crossing_sizes: np.ndarray
-    crossings: np.ndarray
-
-    @property
-    def limit(self) -> float:
-        """Of the crossings on ever finer cells."""
-        return limit_of_root(1.0 / self.crossing_sizes, self.crossings)
+    for n in ACROSS[context.level]:
+        errors = dict(zip(COMPONENTS, interior_errors(n, 0.4), strict=True))
+        yield {"sweep": "interior", "cells": n} | errors
+    for friction in FRICTION:
+        (largest, depth), places = plane_maximum(72, friction), largest_von_mises(1.0, 1.0, NU, friction)
+        exact = {"mises expected": places[0][0], "mises of the edge expected": places[1][0]}
+        yield {"sweep": "plane", "friction": friction, "mises": largest, "depth": depth} | exact
+    for n in CROSSING[context.level]:
+        yield {"sweep": "crossing", "cells": n, "crossing": crossing(n), "crossing expected": overtaking()}
 
 
-class SlidingSphere(Case):
-    """Six components at interior points, and where the largest von Mises stress lies as friction grows."""
-
-    def solve(self, context: Context) -> Stresses:
-        sizes, crossing_sizes = ACROSS[context.level], np.array(CROSSING[context.level])
-        interior = np.array([interior_errors(n, 0.4) for n in sizes])
-        plane = np.array([plane_maximum(72, friction) for friction in FRICTION])
-        return Stresses(
-            sizes, interior, plane, crossing_sizes, np.array([crossing(n) for n in crossing_sizes])
-        )
-
-    def measure(self, found: Stresses) -> dict[str, Measured | float]:
-        interior, _ = largest_von_mises(1.0, 1.0, NU, FRICTION[0])
-        values = dict(zip(COMPONENTS, found.interior[found.sizes.index(72)], strict=True))
-        return values | {
-            "interior-maximum": Measured(found.plane[0, 0], interior[0], unit="p₀"),
-            "crossing": Measured(found.limit, overtaking()),
-        }
-
-    def setup(self, found: Stresses) -> list[tuple[str, str]]:
-        return [
-            ("Tractions", "p = p₀ √(1 − r²/a²), q = μp along +x, given; no contact is solved"),
-            ("Half-space", f"ν = {NU:g}"),
-            ("Cells across the contact", ", ".join(map(str, found.sizes))),
-            ("Interior points", "every cell over 3a x 3a, z/a = " + ", ".join(f"{z:g}" for z in DEPTHS)),
-        ]
-
-    def tables(self, found: Stresses) -> list[SmallTable]:
-        return [interior_table(found), plane_table(found), crossing_table(found)]
-
-    def figures(self, found: Stresses) -> Iterator[Plot]:
-        yield Plot(
-            profiles(list(depth_panels()), "Hamilton (1983)"),
-            "depth",
-            "Von Mises stress under a sliding sphere, μ = 0.4",
-            "Von Mises stress over depth at three places in the plane of sliding for SAM and Hamilton's "
-            "closed form, which coincide, with the error underneath.",
-            "72 cells across the contact; underneath, SAM minus closed form in % of p₀. At the surface the "
-            "patches err to first order in the cell.",
-        )
+def limit_of_crossings(rows: DataFrame, column: str) -> Measured:
+    """Of the crossings on ever finer cells."""
+    found = limit_of_root(1.0 / rows["cells"].to_numpy(), rows[column].to_numpy())
+    return Measured(found, rows[f"{column} expected"].iloc[0])
 
 
-def interior_table(found: Stresses) -> SmallTable:
-    """The largest error of each component on each grid."""
-    order = fit_order(1.0 / np.array(found.sizes), found.interior.max(axis=1))
-    return SmallTable(
-        (f"Largest error at μ = 0.4 in % of p₀; observed order of the largest {order.order:.2f}"),
-        ("cells across", *COMPONENTS),
-        [
-            (f"{n}", *(f"{100 * e:.4f}" for e in error))
-            for n, error in zip(found.sizes, found.interior, strict=True)
-        ],
-    )
-
-
-def plane_table(found: Stresses) -> SmallTable:
-    """The largest von Mises stress over friction, by SAM and in closed form inside and at the edge."""
-    caption = (
-        "Largest von Mises stress in the plane y = 0 (72 cells across); in the closed form the edge "
-        f"overtakes the interior at μ = {overtaking():.4f}"
-    )
-    rows = [
-        (
-            f"{mu:g}",
-            f"{value:.4f}",
-            f"{depth:.3f}",
-            *(f"{place[0]:.4f}" for place in largest_von_mises(1.0, 1.0, NU, mu)),
-        )
-        for mu, (value, depth) in zip(FRICTION, found.plane, strict=True)
-    ]
-    return SmallTable(
-        caption, ("μ", "SAM, p₀", "depth, a", "closed form: interior, p₀", "closed form: edge, p₀"), rows
-    )
-
-
-def crossing_table(found: Stresses) -> SmallTable:
-    """Where the edge overtakes the interior, on ever finer cells and in the limit."""
-    exact, sizes, crossings = overtaking(), found.crossing_sizes, found.crossings
-    order = fit_order(1.0 / sizes, crossings - exact)
-    values = [*((f"{n}", mu) for n, mu in zip(sizes, crossings, strict=True)), ("limit", found.limit)]
-    return SmallTable(
-        (
-            "Friction coefficient at which the cell on the trailing edge overtakes the interior as the "
-            f"place of the largest von Mises stress; observed order {order.order:.2f}; limit: parabola in "
-            "the root of the cell size"
-        ),
-        ("cells across", "μ", "off"),
-        [
-            *[(name, f"{mu:.4f}", f"{mu - exact:+.4f}") for name, mu in values],
-            ("closed form", f"{exact:.4f}", ""),
-        ],
+def depth(file: CaseFile, found: DataFrame) -> Plot:
+    """Von Mises stress over depth at three places in the plane of sliding."""
+    return Plot(
+        profiles(list(depth_panels()), "Hamilton (1983)"),
+        "depth",
+        "Von Mises stress under a sliding sphere, μ = 0.4",
+        "Von Mises stress over depth at three places in the plane of sliding for SAM and Hamilton's "
+        "closed form, which coincide, with the error underneath.",
+        "72 cells across the contact; underneath, SAM minus closed form in % of p₀. At the surface the "
+        "patches err to first order in the cell.",
     )
 
 
@@ -248,6 +176,3 @@ def depth_panels() -> Iterator[Profile]:
             )
 
         yield Profile(title, "$z/a$", r"$\sigma_\mathrm{vM}/p_0$", exact, series, 1.0, "$p_0$", (0.0, 1.5))
-
-
-CASES = (SlidingSphere(name="sliding-sphere"),)

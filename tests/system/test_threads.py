@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: MIT
+"""The same solve with one thread and with two, each in a process of its own, is the same result."""
+
+import os
+
+import numpy as np
+import pytest
+from builders import PERFECT, hertz_force, running_in, scene
+
+from sam.scene import Status
+from verification.cases.recipes import Resolution, resolved_at
+from verification.cost.measured import solve_alone
+from verification.runs.models import FEM, SAM
+
+CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+two_cores = pytest.mark.skipif(CORES < 2, reason="a second thread on the same core is none to numpy")
+COUNTERS = ("contact_iterations", "plastic_iterations", "newton_iterations", "step_cuts")
+
+
+def twice(of, model=SAM):
+    """Both results, which end alike, and the relative difference that is allowed: of rounding, or of the
+    tolerance where an iteration more or less was taken.
+    """
+    one, two = (solve_alone(of, model, threads) for threads in (1, 2))
+    assert one.status is two.status and one.status in (Status.CONVERGED, Status.UNDER_RESOLVED)
+    same = all(one.cost.get(name) == two.cost.get(name) for name in COUNTERS)
+    return one, two, 1e-10 if same else of.solver.tolerance
+
+
+@two_cores
+@pytest.mark.parametrize("model, mu", [(SAM, None), (SAM, 0.2), (FEM, None)])
+def test_every_number_of_a_load_step_is_that_of_one_thread(model, mu):
+    made = scene(
+        body={"plasticity": PERFECT},
+        loading={"force": hertz_force(4e9), "steps": 1},
+        friction=mu and {"coefficient": mu},
+    )
+    one, two, allowed = twice(resolved_at(made, Resolution(8, 8)), model)
+    largest = {"Pa": one.quantities["p_max_Pa"], "m": one.quantities["approach_m"]}
+    parts = [(one.tables[name], two.tables[name]) for name in ("axis", "line", "plane")]
+    parts += [(getattr(one.fields, kind), getattr(two.fields, kind)) for kind in ("point_data", "cell_data")]
+    for first, second in [*parts, (one.quantities, two.quantities)]:
+        for key, values in first.items():
+            if key != "state" and values is not None:
+                a, b = np.asarray(values, dtype=float), np.asarray(second[key], dtype=float)
+                zero = 1e-9 * largest.get(key.rpartition("_")[2], 0.0)  # less everywhere is rounding
+                size = max(np.nanmax(np.abs(a), initial=0.0), zero / allowed)
+                np.testing.assert_allclose(b, a, rtol=0.0, atol=allowed * size, err_msg=key)
+
+
+@two_cores
+def test_the_same_cells_are_worn_and_lose_their_film():
+    """Where iteration counts differ a load step differs by its tolerance: cycles at random add up to five
+    times that.
+    """
+    one, two, _ = twice(running_in(cycles=3))
+    first, second = (
+        {name: np.asarray(each.tables["surface"][name], dtype=float) for name in ("worn_m", "friction")}
+        for each in (one, two)
+    )
+    assert np.array_equal(first["worn_m"] > 0.0, second["worn_m"] > 0.0) and first["worn_m"].max() > 0.0
+    assert np.array_equal(np.isnan(first["friction"]), np.isnan(second["friction"]))
+    assert np.array_equal(first["friction"] > 0.25, second["friction"] > 0.25)
+    worn = first["worn_m"]
+    np.testing.assert_allclose(second["worn_m"], worn, rtol=0.0, atol=5e-4 * worn.max())

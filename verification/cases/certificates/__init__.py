@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Conditions of the problem, measured on what solvers return."""

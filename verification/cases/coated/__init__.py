@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Elastic and yielding films on a half-space."""

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Error against run time, uncertainty and accuracy."""

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Energy balances of both models."""

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""A counter-body that moves over the surface."""

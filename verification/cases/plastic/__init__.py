@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Spheres that yield the body, loaded and unloaded."""

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Formulas and limits that others published."""

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Extreme and wrong input, killed runs, changed numbers."""

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Full slip along x, elastic and elasto-plastic."""
