@@ -10,10 +10,11 @@ from math import pi, sqrt
 from typing import Any
 
 from sam.scene import Result, Scene
+from verification.quantities import contact_of, modulus_of
 from verification.reference.flat_punch import FlatPunch
 from verification.reference.hertz import largest_von_mises
 from verification.reference.rounded_punch import RoundedPunch
-from verification.references import contact_of, elliptic_contact, modulus_of
+from verification.references import elliptic_contact
 from verification.robustness.matrix.row import TOLERANCE, Check, Deviation, Trial, other
 from verification.runs.models import FEM, SAM
 

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from sam.scene import HeightMap, Scene, Status
+from verification.quantities import contact_of
 from verification.reference.coated_sphere import CoatedContact, solve_force, thin_layer
 from verification.reference.hertz import CircularContact, effective_modulus
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
-from verification.references import contact_of
 from verification.robustness.matrix import checks
 from verification.robustness.matrix.checks import against, as_other_model, balanced, hertz, relative, same_as
 from verification.robustness.matrix.row import (

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from sam.scene import HeightMap, Result, Scene, Status
-from verification.references import modulus_of
+from verification.quantities import modulus_of
 from verification.robustness.matrix.checks import balanced, relative
 from verification.robustness.matrix.row import (
     Check,
