@@ -270,7 +270,7 @@ def kinematic(*, share: float = 1.0, **constants: Any) -> dict[str, Any]:
 
 
 def back_stresses() -> Iterator[Row]:
-    """Laws that are another law in the limit; constants that are none; no form with back-stresses."""
+    """Laws that are another law in the limit; constants that are none; a method without back-stresses."""
 
     def twin(reason: str, as_what: str, bound: float, **constants: Any) -> Right:
         return Right(as_what, [same_as(kinematic(**constants), bound, reason, STRAINED)])
