@@ -591,7 +591,9 @@ QUANTITIES: Mapping[str, Quantity] = {
         "von Mises stress of the body in y = 0, at the interface and the centres of the elements",
         between=_below_film,
     ),
-    "mises-below-film-max": Quantity("largest of these", "Pa", between=_largest(_below_film)),
+    "mises-below-film-max": Quantity(
+        "largest von Mises stress of the body there", "Pa", between=_largest(_below_film)
+    ),
     "area": _scalar("contact_area_m2", "contact area", "m²"),
     "friction": _scalar("friction_coefficient", "coefficient of friction of the whole contact"),
     "spots": Quantity(

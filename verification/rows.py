@@ -39,7 +39,7 @@ ROW = "a row is [metric, tolerance, reason, words, take]; without words its name
 _TAKE = re.compile(
     r"(?:([a-z-]+) )??([a-z0-9-]+)(?: of ([a-z0-9/ -]+?))?(?: at (.+))?|([-+.0-9e]+)", re.ASCII
 )
-_AT = re.compile(r"([a-zA-Z0-9_.-]+) (=|<|>|<=|>=) (\S+)")
+_AT = re.compile(r"([a-zA-Z0-9_.-]+) (=|<|>) (\S+)")
 
 
 class Take(NamedTuple):
@@ -91,8 +91,7 @@ class SweepFile(BaseModel):
     models: that solve each; axes: key of the scene or recipe -> its values, or name -> the keys and recipes
     of a value; quick: axes with other values at that level; columns: quantity, or a function beside the
     file -> "value", "between" (SAM against FEM), or the metric of its error against the reference, a list of
-    names for values alone; size: what is refined, for orders and limits; demand: whether a point that does
-    not converge breaks the case off.
+    names for values alone; size: what is refined, for orders and limits.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
@@ -102,7 +101,6 @@ class SweepFile(BaseModel):
     quick: dict[str, list | dict[str, dict[str, Any]]] = {}
     columns: dict[str, Literal["value", "between", "relative", "absolute", "relative_l2"]]
     size: Literal["", "cell", "step"] = ""
-    demand: bool = True
 
     @field_validator("models", mode="before")
     @classmethod

@@ -11,18 +11,19 @@ from made_results import context
 
 from sam.scene import SceneError
 from verification.cases import case_of
-from verification.cases.kinds import SWEPT
+from verification.cases.kinds import KINDS, OVER_VARIANTS, SWEPT
 from verification.cases.plastic.plastic_convergence import growth_of_norms, limit_of_both
-from verification.cases.sweep import evaluated
+from verification.cases.recipes import RECIPES, beside
+from verification.cases.sweep import STATISTICS, evaluated, words_of
 from verification.judging import evaluate
 from verification.references import contact_of
-from verification.rows import Take, read_cases
+from verification.rows import Take, case_files, read_cases
 
 FILE = """
 title = "Made"
 scene = "hertz-sphere"
 reference = "hertz-sphere"
-figures = ["orders", "lines radius over cells", "maps radius over loading.force cells"]
+figures = ["orders", "lines radius over cells"]
 levels = ["quick"]
 
 [sweeps.made]
@@ -36,7 +37,7 @@ order = ["absolute", 1e-9, "made", "order", "order p-max at loading.force = 0.6 
 late = ["absolute", 1e-9, "made", "order", "order p-max at loading.force = 0.6, cells > 9 | 1.5"]
 point = ["relative", 1e-9, "made", "value at a point", "radius at cells = 17, loading.force = 0.3"]
 "r{1,2}" = ["relative", 1e-9, "made", "radius {1,2}", "last radius of {sam,made} | first radius of sam"]
-bound = ["at_least", 2.5, "made", "value alone", "ratio p-max at cells <= 17, loading.force = 0.3"]
+bound = ["at_least", 2.5, "made", "value alone", "ratio p-max at cells < 33, loading.force = 0.3"]
 {EXTRA}
 """
 
@@ -99,9 +100,9 @@ def test_what_is_no_take_is_refused(made, take):
 
 def test_what_is_shown_follows_from_the_words(made, tmp_path):
     case, found = made()
-    assert [plot.name for plot in case.figures(found)] == ["orders", "radius", "radius"]
+    assert [plot.name for plot in case.figures(found)] == ["orders", "radius"]
     (table,) = case.tables(found)
-    assert table.columns[:4] == ("cells", "loading force", "model", "largest pressure")
+    assert table.columns[:4] == ("cells", "loading force", "model", "largest pressure, relative error")
     assert table.rows[-1][3] == "order 1.50"
     case = replace(case, file=case.file.model_copy(update={"figures": ("limits radius",)}))
     both = pd.concat([found[""].frame, found[""].frame.assign(model="fem")])
@@ -123,3 +124,19 @@ def test_limit_of_both_and_growth_of_norms():
     assert limit_of_both(rows, "peeq-max") == pytest.approx(2.0, rel=1e-6)
     apart = pd.DataFrame({"peeq-axis": [0.04, 0.02, 0.01], "peeq-plane": [0.08, 0.03, 0.015]})
     assert growth_of_norms(apart, "") == pytest.approx(0.5, rel=1e-12)
+
+
+@pytest.mark.parametrize("file", [f for f in case_files().values() if f.takes], ids=lambda file: file.name)
+def test_every_name_of_a_file_with_points_is_known(file):
+    """Recipes, columns, statistics and figures, of a registry or beside the file; a column that is taken."""
+    for sweep in file.sweeps.values():
+        for axes in (sweep.axes, sweep.quick):
+            for axis, values in axes.items():
+                keys = values.values() if isinstance(values, dict) else [{axis: None}]
+                assert all(beside(file, key, RECIPES) for each in keys for key in each if "." not in key)
+        assert all(words_of(file, column) for column in sweep.columns)
+    for take in (take for takes in file.takes.values() for take in takes if take.number is None):
+        assert beside(file, take.statistic, STATISTICS)
+        assert file.frame or take.column in {c for sweep in file.sweeps.values() for c in sweep.columns}
+    known = KINDS | SWEPT | OVER_VARIANTS
+    assert all(beside(file, figure.split()[0], known) for figure in file.figures)

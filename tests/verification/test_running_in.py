@@ -430,9 +430,9 @@ class TestReadings:
         first, *_ = data["statements"]["printed inputs"]
         assert first["holds_on"] == 10 and first["by_median"] == "held" and len(first["values"]) == 10
         assert [each["none_on"] for each in data["statements"]["printed inputs"]].count(1) == 7
-        bulk = data["regimes"]["renewed"][BULK]
+        bulk = data["regimes"]["renewed"]["bulk"]
         assert bulk["reached"] == 5e9 and bulk["removed_from"] == Limits.of(SCENES[BULK]).removal
-        assert data["last_cycle"]["renewed"][A]["rest_from"] == [25.0] * 10
+        assert data["last_cycle"]["renewed"]["curve A"]["rest_from"] == [25.0] * 10
 
     def test_where_the_plastic_zone_reaches_the_last_layer_there_are_more(self, solved):
         found, scenes = solved(shallow={"bulk-seed-7", "renewed-bulk-seed-7", "renewed-bulk-seed-7-deeper"})

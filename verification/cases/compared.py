@@ -294,15 +294,18 @@ def _passes(words: str, results: Mapping[str, Result]) -> Iterator[SmallTable]:
     ):
         rows = [
             (
-                run,
+                {"sam": "SAM", "fem": "finite elements"}.get(run.partition("-")[0], run),
+                run.partition("-")[2],
                 *(number(scale * v) for v in of_passes(each, name)),
                 str((each.verdict or {}).get("class", "")),
             )
             for run, each in moving.items()
         ]
         if rows:
-            passes = (f"pass {k + 1}" for k in range(len(rows[0]) - 2))
-            yield SmallTable(f"{head}, {words}", ("run", *passes, "verdict"), rows)
+            passes = (f"pass {k + 1}" for k in range(len(rows[0]) - 3))
+            yield SmallTable(
+                f"{head}, {words}", ("model", "cells or elements in a", *passes, "verdict"), rows
+            )
 
 
 def _differences(file: CaseFile, found: Mapping[str, Solved]) -> SmallTable:

@@ -20,7 +20,7 @@ from verification.compare.sliding_measures import SHALLOWEST
 from verification.figures import coated, rough
 from verification.figures.film import sliding_sections
 from verification.figures.friction import CYCLES, LOOKS, Curve, compared_planes, curves, profile_of
-from verification.figures.maps import FieldPair, maps_over_axes, pressure_maps
+from verification.figures.maps import FieldPair, pressure_maps
 from verification.figures.moving import grooves, new_strains
 from verification.figures.plastic import PERCENT, axis_profiles, compared_peeq, residual_surface
 from verification.figures.profiles import Profile, convergence, profiles
@@ -464,17 +464,6 @@ def _lines(file: CaseFile, frame: DataFrame, y: str, *words: str) -> Plot:
     return Plot(curves(panels, x.replace(".", " "), fill(what, 40), looks=looks), y, title, text, text)
 
 
-def _maps(file: CaseFile, frame: DataFrame, z: str, *words: str) -> Plot:
-    """`maps Z over X Y in PANEL`: a column over two axes, with lines of equal values."""
-    (_, x, y, *rest), said = words, words_of(file, z)
-    panels = {}
-    for name, rows in frame.dropna(subset=[z]).groupby(rest[1] if rest else "model", sort=False):
-        table = rows.pivot(index=y, columns=x, values=z)
-        panels[spelt(name)] = (table.columns.to_numpy(), table.index.to_numpy(), table.to_numpy(dtype=float))
-    text = f"Maps of the {said} over {x} and {y}."
-    return Plot(maps_over_axes(panels, (x, y), said), z, f"{said[0].upper()}{said[1:]}", text, text)
-
-
 def _at(file: CaseFile, frame: DataFrame, kind: str, *where: str) -> Plot:
     """`at KIND AXIS VALUE AXIS VALUE`: a figure of one point."""
     at = dict(zip(where[::2], where[1::2], strict=True))
@@ -514,7 +503,6 @@ SWEPT: Mapping[str, Callable[..., Plot]] = {
     "orders": _orders,
     "limits": _limits,
     "lines": _lines,
-    "maps": _maps,
     "at": _at,
     "film-pressures": _film_pressures,
 }

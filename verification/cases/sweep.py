@@ -3,7 +3,7 @@
 rows of the case take of its columns.
 
 A frame has the columns sweep, model ("sam/fem" for what is between both), an axis each, h (size of what is
-refined), converged, the columns of the file with `NAME value` and `NAME expected` beside each, scene and
+refined), the columns of the file with `NAME value` and `NAME expected` beside each, scene and
 result. The function that a case names as `frame` returns such rows as mappings.
 """
 
@@ -34,7 +34,15 @@ if TYPE_CHECKING:
 
 MODELS = {"sam": SAM, "fem": FEM, "fem-3d": FEM_3D}
 BOTH = "sam/fem"
-SIGNS = {"<": operator.lt, ">": operator.gt, "<=": operator.le, ">=": operator.ge}
+SIGNS = {"<": operator.lt, ">": operator.gt}
+
+ERRORS = {
+    "value": "",
+    "between": ", SAM against FEM",
+    "relative": ", relative error",
+    "absolute": ", error",
+    "relative_l2": ", relative error in L2",
+}
 
 
 def points(sweep: SweepFile, level: str) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
@@ -67,14 +75,14 @@ def _runs(context: Context, file: CaseFile, name: str, base: Scene) -> Iterator[
     for where, changes in every:
         scene = changed(base, changes, file)
         reference = beside(file, file.reference, REFERENCES)(scene) if file.reference else None
-        row, results = {"sweep": name, **where, "scene": scene}, {}
+        row, results, runs = {"sweep": name, **where, "scene": scene}, {}, []
         for model in sweep.models:
             led = [model] if len(file.sweeps) == 1 or name == model else [model, name]
             label = "-".join([*led, *(spelt(where[axis]) for axis in varied)])
-            result = results[model] = context.solve(MODELS[model], scene, label, demand=sweep.demand)
+            result = results[model] = context.solve(MODELS[model], scene, label)
             size = size_of(sweep, scene, result, reference)
-            own = row | {"model": model, "result": result, "h": size, "converged": result.converged}
-            for column, how in sweep.columns.items() if result.converged else ():
+            own = row | {"model": model, "result": result, "h": size}
+            for column, how in sweep.columns.items():
                 if how == "between":
                     continue
                 of = beside(file, column, QUANTITIES)
@@ -84,10 +92,16 @@ def _runs(context: Context, file: CaseFile, name: str, base: Scene) -> Iterator[
                 own[column] = found.value if how == "value" else error_of(how, found)
                 if np.ndim(found.value) == 0:
                     own |= {f"{column} value": found.value, f"{column} expected": found.expected}
-            yield own
+            runs.append(own)
         between = [column for column, how in sweep.columns.items() if how == "between"]
         if between and all(result.converged for result in results.values()):
-            yield row | {"model": BOTH} | between_models(scene, *results.values(), names=between)
+            both = between_models(scene, *results.values(), names=between)
+            for column in between:
+                pair = both[f"{column} pair"]
+                if pair and np.ndim(pair.value) == 0:
+                    runs[0][column], runs[1][column] = pair.value, pair.expected
+            runs.append(row | {"model": BOTH} | both)
+        yield from runs
 
 
 def between_models(scene: Scene, sam: Result, fem: Result, *, names: Sequence[str]) -> dict[str, Any]:
@@ -133,15 +147,12 @@ STATISTICS: Mapping[str, Callable[[DataFrame, str], float | Measured]] = {
     "order": lambda rows, column: fit_order(rows["h"], rows[column]).order,
     "limit": lambda rows, column: extrapolate(rows["h"], rows[column]).limit,
     "largest": lambda rows, column: float(np.max(rows[column].to_numpy())),
-    "smallest": lambda rows, column: float(np.min(rows[column].to_numpy())),
     "first": lambda rows, column: rows[column].iloc[0],
     "last": lambda rows, column: rows[column].iloc[-1],
     "ratio": lambda rows, column: rows[column].iloc[0] / rows[column].iloc[-1],
-    "growth": lambda rows, column: float(np.max(rows[column].to_numpy()[1:] / rows[column].to_numpy()[:-1])),
 }
 """Word of a row -> what it takes of a column. pair: the value of SAM beside that of FEM; order, limit: under
-refinement; ratio: first over last; growth: largest ratio of a value to the one before; nan where one is
-missing.
+refinement; ratio: first over last; nan where one is missing.
 """
 
 
@@ -211,7 +222,7 @@ def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
         axes, shown = [], {c: c.replace("-", " ") for c in rows if c not in ("sweep", "model")}
         if sweep := file.sweeps.get(name):
             axes = [axis for axis in sweep.axes if len(set(map(spelt, rows[axis]))) > 1]
-            shown = {column: words_of(file, column) for column in sweep.columns}
+            shown = {column: words_of(file, column) + ERRORS[how] for column, how in sweep.columns.items()}
             values = [column for column, how in sweep.columns.items() if how == "value"]
             shown |= {f"{column} expected": f"{shown[column]}, expected" for column in values}
         known = {c: rows[c].dropna() for c in shown if c in rows}

@@ -17,7 +17,7 @@ from matplotlib.patches import Ellipse, Patch
 from matplotlib.ticker import MaxNLocator
 
 from verification.figures.places import edges_of
-from verification.figures.style import BLACK, GREY, Columns, Drawing, new_figure, sheet, style
+from verification.figures.style import BLACK, GREY, Drawing, new_figure, style
 
 SHOWN_SHARE = 0.995
 """Share of the points whose difference lies within the colour limits."""
@@ -250,25 +250,3 @@ def mark_interface(axes: Sequence[Axes], depth: float, across: bool = False) -> 
     """A dashed line where the film ends: at x = depth, or across at y = depth."""
     for axis in axes:
         (axis.axhline if across else axis.axvline)(depth, **_INTERFACE)
-
-
-def maps_over_axes(
-    panels: Mapping[str, tuple[np.ndarray, np.ndarray, np.ndarray]], labels: tuple[str, str], quantity: str
-) -> Drawing:
-    """Values (n, m) over x (m,) and y (n,), whose axes are logarithmic where they are positive; panels: title
-    -> (x, y, values); labels: of x and y.
-    """
-    rows = Columns("panel", "x", "y", "value")
-    both = np.concatenate([values.ravel() for *_, values in panels.values()])
-    with sheet(3.8 * len(panels), 3.4, len(panels), sharey=True) as (figure, axes):
-        for panel, (title, (x, y, values)) in zip(axes, panels.items(), strict=True):
-            limits = {"vmin": np.nanmin(both), "vmax": np.nanmax(both)}
-            mesh = panel.pcolormesh(x, y, np.ma.masked_invalid(values), shading="nearest", **limits)
-            panel.grid(False)
-            panel.set(title=title, xlabel=labels[0])
-            panel.set_xscale("log" if x.min() > 0.0 else "linear")
-            panel.set_yscale("log" if y.min() > 0.0 else "linear")
-            rows.add(title, *(np.ravel(each) for each in np.meshgrid(x, y)), values.ravel())
-        axes[0].set_ylabel(labels[1])
-        figure.colorbar(mesh, ax=axes, label=quantity)
-    return Drawing(figure, rows)

@@ -25,7 +25,7 @@ __all__ = [
     "limit_of_cells",
     "shakes_down",
     "share_of_limit",
-    "strain_of_cycles",
+    "strain_over_first",
 ]
 
 if TYPE_CHECKING:
@@ -99,7 +99,7 @@ def shakes_down(scene: Scene, result: Result, _: Reference | None) -> float:
     return float(result.verdict["class"] == "shakedown")
 
 
-def strain_of_cycles(file: CaseFile, frame: DataFrame) -> Plot:
+def strain_over_first(file: CaseFile, frame: DataFrame) -> Plot:
     """Strain of each cycle over that of the first, below and above the limit."""
     fades = frame["scene"].iloc[0].loading.path is not None
     panels: dict[str, dict[str, Curve]] = {}

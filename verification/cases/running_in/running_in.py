@@ -204,11 +204,13 @@ class RunningIn(Study):
         yield "Grid", f"{len(depths) - 1} layers, to {1e6 * depths[-1]:g} µm"
 
     def data(self, found: Found) -> dict[str, Any]:
-        return {
-            "statements": {of.short: [one.data for one in each] for of, each in found.judged.items()},
-            "regimes": {of.short: regimes(found, of) for of in found.efforts},
-            "last_cycle": {of.short: last_cycles(found, of) for of in found.efforts},
-        }
+        def named(of: Callable[[Found, Reading], Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
+            every = {each.short: of(found, each).items() for each in found.efforts}
+            return {name: {NAMES[case]: own for case, own in values} for name, values in every.items()}
+
+        statements = {of.short: [one.data for one in each] for of, each in found.judged.items()}
+        said = {"statements": statements, "second_reading": str(Reading.RENEWED)}
+        return said | {"regimes": named(regimes), "last_cycle": named(last_cycles)}
 
     def tables(self, found: Found) -> Iterator[SmallTable]:
         if len(found.judged) == len(found.efforts):

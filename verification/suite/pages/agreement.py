@@ -95,14 +95,14 @@ AGREEMENT = (
             Cell(
                 "kinematic steel: largest strain that the first and the fourth pass add, SAM",
                 *PASSES,
-                ("sam-12",),
+                ("SAM", "12"),
                 ("pass 1", "pass 4"),
                 "{} ‰, {} ‰",
             ),
             Cell(
                 "the same, FEM",
                 *PASSES,
-                ("fem-6",),
+                ("finite elements", "6"),
                 ("pass 1", "pass 4"),
                 "{} ‰, {} ‰",
             ),
