@@ -15,7 +15,7 @@ from sam.scene.inputs import InputError
 from sam.scene.surface import processed, readers
 from sam.scene.surface.instrument_child import RefusedError, heights_in
 from sam.scene.surface.readers import read_named
-from verification.robustness.bad_files import npz
+from verification.robustness.fuzz import npz
 
 ROWS = [
     [1.0, 2.0, 4.0, 8.0, -3.0],

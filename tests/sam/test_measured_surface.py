@@ -13,7 +13,7 @@ from sam.scene import Grid, HeightMap, Scene, SceneError, Surface, load_scene, r
 from sam.scene.surface import heights, mean_deviation, patch_of, processed, roughness, roughness_as_read
 from sam.scene.surface.measured import fitted_form, harmonic, resampled
 from sam.scene.surface.readers import read_named
-from verification.robustness.bad_files import npz
+from verification.robustness.fuzz import npz
 from verification.runs.store import identity
 from verification.scenes.pin import DATA, RECIPE, pin_heights, pin_table
 

@@ -15,8 +15,7 @@ import sam
 from sam.scene import HeightMap, Scene, SceneError, load_scene, resolved
 from sam.scene.inputs import InputError
 from sam.scene.surface.readers import read_named
-from verification.robustness.bad_files import npz, with_pickle
-from verification.robustness.bad_surfaces import good_heights, table
+from verification.robustness.fuzz import good_heights, npz, table, with_pickle
 from verification.robustness.hostile import ROUGH
 from verification.runs.store import identity
 

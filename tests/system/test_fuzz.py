@@ -22,12 +22,24 @@ from sam.scene.load import parse_toml, scene_of
 from verification.cases.case import Outcome, SmallTable
 from verification.cases.robustness import bad_input as case
 from verification.cost.plan import check_needs, plan, plan_lines
-from verification.judging import Measured
-from verification.robustness.bad_files import ARCHIVE, RUN, lay, mutated, with_pickle
-from verification.robustness.bad_meshes import GOOD, good_meshes, with_mapping
-from verification.robustness.fuzz import KINDS, MAPPINGS, MESHES, MORE_KINDS, STUDIES, bad_input, good_scenes
-from verification.robustness.hostile import MARKUP, SMALL
-from verification.rows import Row
+from verification.judging import Measured, Row
+from verification.robustness.fuzz import (
+    ARCHIVE,
+    KINDS,
+    MAPPINGS,
+    MESHES,
+    MORE_KINDS,
+    RUN,
+    STUDIES,
+    bad_input,
+    good_meshes,
+    good_scenes,
+    lay,
+    mutated,
+    with_mapping,
+    with_pickle,
+)
+from verification.robustness.hostile import MAPPING, MARKUP, SMALL
 from verification.runs import models
 from verification.runs.archive import ArchiveError, read_archive, write_archive
 from verification.runs.files import FolderError, read_run
@@ -64,7 +76,7 @@ def test_some_inputs_are_valid_and_most_are_not(tmp_path, monkeypatch):
 
 def test_a_good_mesh_is_read_in_each_format(tmp_path):
     for name in good_meshes():
-        text = GOOD.replace("own.vtu", name)
+        text = MAPPING.replace("own.vtu", name)
         text = text if name != "own.vtk" else text[: text.index("mises = ")]
         bad = with_mapping(MESHES, text, good_meshes())
         assert case.read_all(lay(bad, tmp_path / name), bad) == "valid"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The mutation check: which numbers it finds, that they are perturbed where they are used, and that its gates
+"""The mutation check: what it finds, that it is changed where it is used, what is lost, and that its gates
 turn red.
 """
 
@@ -12,11 +12,11 @@ import pytest
 from sam.kernels.patches import Lags, displacement_coefficients as coefficients
 from verification.cases.robustness import mutation as case
 from verification.judging import RowStatus, evaluate
-from verification.robustness.mutants import __main__ as mutation, equivalent, inject, scope
-from verification.robustness.mutants.judge import MutantVerdict, mutants_of
-from verification.robustness.mutants.numbers import Mutant, Number, find
-from verification.robustness.mutants.pool import forked
-from verification.robustness.mutants.probes import change
+from verification.robustness.mutants import __main__ as mutation, equivalent, frozen, inject, judge, scope
+from verification.robustness.mutants.changes import Mutant, Number, find
+from verification.robustness.mutants.equivalent import change
+from verification.robustness.mutants.judge import MutantVerdict, forked
+from verification.robustness.mutants.scope import mutants_of
 from verification.rows import load_rows
 
 TOY = '''"""A toy."""
@@ -45,6 +45,11 @@ def remembered():
 def nested(x):
     half = lambda y: y / 2
     return SCALE * half(x) - 1 + TABLE[1, 2] * 0
+
+def inside(x):
+    if 0 <= x < 2:
+        return "inside"
+    return [k for k in range(3) if k == x] or (x > 5 and not x[x < 7] if x is None else x)
 '''
 
 
@@ -65,8 +70,29 @@ def mutated(toy, text, function, ask):
     return dict(forked([("it", lambda: (inject.put([mutant]), ask())[1])], 10.0))["it"]
 
 
+def test_comparisons_and_conditions_are_found_once():
+    found = {
+        m.name.removeprefix("toy_numbers:"): m.text
+        for m in find("toy_numbers", TOY)
+        if m.function == "inside"
+    }
+    assert found == {
+        "inside:branch:0": "not (0 <= x < 2)",
+        "inside:comparison:0": "0 < x",
+        "inside:comparison:1": "0 > x",
+        "inside:comparison:2": "x <= 2",
+        "inside:comparison:3": "x >= 2",
+        "inside:branch:1": "not (k == x)",
+        "inside:branch:2": "not (x is None)",
+        "inside:comparison:4": "x >= 5",
+        "inside:comparison:5": "x <= 5",
+        "inside:comparison:6": "x <= 7",
+        "inside:comparison:7": "x >= 7",
+    }
+
+
 def test_numbers_are_found_and_structure_is_not():
-    found = {(m.function, m.text, m.kind) for m in find("toy_numbers", TOY)}
+    found = {(m.function, m.text, m.kind) for m in find("toy_numbers", TOY) if m.kind in scope.NUMBERS}
     assert found == {
         ("", "NODES = 4", "count"),
         ("", "SCALE = 2.5", "number"),
@@ -96,11 +122,15 @@ def test_numbers_are_found_and_structure_is_not():
         ("1", "nested", lambda toy: toy.nested(2.0), 1.499),
         ("0.25", "remembered", lambda toy: toy.remembered(), 0.25025),
         ("2", "count", lambda toy: toy.count(3), 7),
+        ("0 < x", "inside", lambda toy: (toy.inside(0), toy.inside(1)), ([0], "inside")),
+        ("x <= 2", "inside", lambda toy: (toy.inside(2), toy.inside(-1)), ("inside", -1)),
+        ("not (k == x)", "inside", lambda toy: toy.inside(2), [0, 1]),
     ],
 )
 def test_number_is_perturbed_where_it_is_used(toy, text, function, ask, expected):
     toy.remembered()
-    assert mutated(toy, text, function, lambda: ask(toy)) == pytest.approx(expected, rel=1e-14)
+    found = mutated(toy, text, function, lambda: ask(toy))
+    assert found == (pytest.approx(expected, rel=1e-14) if isinstance(expected, float) else expected)
 
 
 def test_integer_is_a_number_beside_floats_alone():
@@ -126,16 +156,14 @@ def test_rewriting_alone_changes_no_bit():
         return Response(Layers(1e9, 0.3, 1.0, 2e11, 0.25), np.geomspace(0.01, 10, 9)).surface
 
     def rewritten():
-        inject.put(mutants_of("sam.layered.response"), 1.0)
+        inject.put([m for m in mutants_of("sam.layered.response") if m.kind in scope.NUMBERS], 1.0)
         return spectra()
 
     np.testing.assert_array_equal(dict(forked([("it", rewritten)], 30.0))["it"], spectra())
 
 
 def test_row_of_a_table_is_perturbed_and_forgotten_with_the_fork():
-    rows = [
-        m for m in mutants_of("sam.kernels.patches") if m.kind == "row" and m.place[0] == "displacement 3,F3"
-    ]
+    rows = [m for m in mutants_of("sam.kernels.patches") if m.kind == "row" and "displacement 3,F3" in m.text]
     before = coefficients(Lags(3, 3, 1.0, 1.0), 0.3, z=0.5)
 
     def after(row):
@@ -150,8 +178,50 @@ def test_row_of_a_table_is_perturbed_and_forgotten_with_the_fork():
 
 
 def test_every_constant_that_is_said_to_be_equivalent_or_explained_exists():
-    keys = {mutant.key for names in scope.GROUPS.values() for name in names for mutant in mutants_of(name)}
-    assert set(equivalent.EQUIVALENT) <= keys and set(scope.EXPLAINED) <= keys - set(equivalent.EQUIVALENT)
+    keys = {mutant.key for name in scope.core() for mutant in mutants_of(name)}
+    equal, explained = (scope.constants(which).keys() for which in ("equivalent", "explained"))
+    assert equal and explained and equal <= keys and explained <= keys - equal
+
+
+def survivor(function, text, module="m", kind="comparison", outcome="survived"):
+    by = "tests/a.py::b[1]" if outcome == "killed" else ""
+    return MutantVerdict(Mutant(module, kind, function, 0, text, 1), outcome, by, asked=1)
+
+
+def test_what_was_killed_before_and_survives_is_named(tmp_path, monkeypatch):
+    monkeypatch.setattr(frozen, "FILE", tmp_path / "frozen.csv")
+    before = [survivor("f", "x < 1"), survivor("f", "x < 2", outcome="killed"), survivor("C.g", "y < 1")]
+    frozen.write([*before, survivor("f", "3", kind="number", outcome="structure")], ["m"])
+    assert [row["tests"] for row in frozen.read()] == [[], ["a.py::b"]]
+    there = {("m", "f"), ("m", "C.g")}
+    assert frozen.compare(before, there) == ({}, [])
+    lost, gone = frozen.compare([survivor("f", "x < 2"), survivor("f", "x < 1")], there)
+    assert lost == {"m:f:comparison:0": "x < 2: new, or killed before"} and not gone
+    # f is found by its name in another module and class, g was merged into h
+    there = {("n", "D.f"), ("n", "h"), ("other", "f")}
+    now = [survivor("D.f", "x < 1", "n"), survivor("h", "y < 1", "n")]
+    lost, gone = frozen.compare(now, there)
+    assert not lost and gone == ["m:C.g, 0 numbers, 0 comparisons and 0 branches killed"]
+    lost, _ = frozen.compare([*now, survivor("h", "z", "n")], there)
+    assert lost == {"n:h:comparison:0": "z: of a function that the table does not have"}
+    assert frozen.compare([survivor("i", "z", "other")], there)[0] == {}  # of a module that is not frozen
+    (module, function, text), *_ = scope.constants("explained")
+    core = [survivor(function, name, module, "number") for name in (text, "77.0")]
+    assert [*frozen.compare(core, there)[0].values()] == ["77.0: a number of the core that is not explained"]
+
+
+def test_the_frozen_table_and_the_draw_do_not_depend_on_places():
+    assert {row["module"] for row in frozen.read()} <= set(scope.modules())
+    one = Mutant("verification.compare.rows", "branch", "A.f", 0, "not (x)", 1)
+    moved = Mutant("verification.compare.others", "branch", "f", 3, "not (x)", 70)
+    assert scope.drawn(one) == scope.drawn(moved)
+    drawn = [scope.drawn(m) for name in scope.modules() for m in mutants_of(name) if not scope.whole(m)]
+    assert np.mean(drawn) == pytest.approx(scope.PERCENT / 100, abs=0.03)
+
+
+def test_tests_are_asked_about_what_they_or_their_helpers_import():
+    this = sys.modules[__name__]
+    assert judge.uses(this, {"sam.kernels.patches"}) and not judge.uses(this, {"sam.kernels.eigenstrain"})
 
 
 def test_change_is_that_of_the_worst_column():
@@ -171,9 +241,10 @@ def judgement(outcome="killed", text="2.0", seconds=0.1):
         "module": "sam.contact.normal",
         "kind": "number",
         "function": "f",
+        "ordinal": 0,
         "text": text,
+        "code": 1,
         "line": "x",
-        "place": [1, 2],
     }
     return {
         "mutant": mutant,
@@ -190,14 +261,14 @@ def status(found):
     return {v.row.id: v.status for v in evaluate(gates, {"mutation": case.CASES[0].values(found)})}
 
 
-GOOD = {"judged": [judgement()] * 40, "shown": [{"equivalent": True}], "control": []}
+GOOD = {"judged": [judgement()] * 40, "shown": [{"equivalent": True}], "control": [], "lost": {}}
 
 
 @pytest.mark.parametrize(
     ("wrong", "gate"),
     [
         ({"judged": [judgement()] * 9 + [judgement("survived")]}, "mutation.killed"),
-        ({"judged": [judgement()] * 99 + [judgement("survived")]}, "mutation.unexplained"),
+        ({"lost": {"sam.contact.normal:f:branch:0": "killed before"}}, "mutation.unexplained"),
         ({"shown": [{"equivalent": False}]}, "mutation.not-inert"),
         ({"control": ["tests/a.py::b"]}, "mutation.rewriting"),
         ({"judged": [judgement(seconds=1.2)] * 40}, "mutation.slowest-kill"),
@@ -212,7 +283,7 @@ def test_structure_and_rows_are_counted_apart():
     found = GOOD | {"judged": [judgement(), judgement("structure"), judgement("survived")]}
     found["shown"] = [{"equivalent": True, "mutant": judgement()["mutant"]}]
     assert case.counts_table(found).rows[-1] == ("all", "2", "0", "1", "1", "1", "1")
-    assert case.survivors_table(found).rows[0][3] == "not explained"
+    assert case.survivors_table(found | {"lost": {"m:f": "2: new"}}).rows[0] == ("m:f", "2", "new", "")
 
 
 def test_an_integer_is_perturbed_in_place_and_in_functions_of_arrays():
@@ -231,7 +302,7 @@ def test_the_file_of_a_check_has_what_the_case_reads(tmp_path, monkeypatch):
     """Written by the program and read by the case: a mutant that is killed, one that survives, a constant
     that is equivalent.
     """
-    mutant = Mutant("sam.contact.normal", "number", "f", 1, (3, 4), "2.0", "return 2.0 * x")
+    mutant = Mutant("sam.contact.normal", "number", "f", 1, "2.0", 3, "return 2.0 * x")
     judged = [
         MutantVerdict(mutant, "killed", "test_a", 0.2, "AssertionError", 1),
         MutantVerdict(mutant, "survived", asked=3),
@@ -241,6 +312,7 @@ def test_the_file_of_a_check_has_what_the_case_reads(tmp_path, monkeypatch):
         equivalent.Shown(mutant, "rounding", 50.0, 2),
     ]
     answer = {"judged": judged, "shown": shown, "control": ["test_b"], "tests": 2, "seconds": 1.0}
+    answer |= {"lost": {mutant.name: "2.0: a number of the core that is not explained"}, "gone": []}
     monkeypatch.setattr(mutation, "check", lambda *_: answer)
     monkeypatch.setattr(sys, "argv", ["mutation", "--json", str(tmp_path / "judged.json")])
     mutation.main()

@@ -11,11 +11,10 @@ from made_results import red
 
 from sam.scene import Status
 from verification.cases.robustness.stability import CASES, Matrix
-from verification.robustness.matrix import elastic, plastic
+from verification.robustness.matrix import plastic
 from verification.robustness.matrix.checks import within_refinement
-from verification.robustness.matrix.row import Absent, Bench, Cell, Kind, Refused, Right, Row, judge
+from verification.robustness.matrix.row import Absent, Bench, Cell, Kind, Refused, Right, Row, both, judge
 from verification.robustness.matrix.rows import TOPICS, all_rows
-from verification.robustness.matrix.scenes import scene_with
 from verification.runs import models
 from verification.runs.models import FEM, FEM_3D, SAM
 
@@ -149,7 +148,7 @@ def test_a_value_is_compared_within_the_refinement_uncertainty_of_both(monkeypat
     monkeypatch.setattr(models, "solve", first_order)
     row = replace(
         ROWS["perfect-7.5-chosen-grid"],
-        make=lambda: scene_with({"grid.cells": (33, 33), "fem.cells_per_radius": 24}),
+        make={"grid.cells": (33, 33), "fem.cells_per_radius": 24},
         expected={SAM: Right("", [within_refinement(FEM, "peeq_max", coarser)])},
     )
     cell = judge(row, SAM, Bench())
@@ -183,9 +182,9 @@ def test_an_error_without_reason_turns_red(some):
 
 def test_an_absent_cell_is_not_solved(monkeypatch):
     monkeypatch.setattr(models, "solve", None)
-    row = Row("x", "edge", "x", lambda: None, {FEM: Absent("of the other model")})
+    row = Row("x", "edge", "x", {}, {FEM: Absent("of the other model")})
     assert judge(row, FEM, Bench()) == Cell(Kind.ABSENT, "of the other model")
 
 
 def test_both_models_once():
-    assert elastic.both(Absent("a")) == {SAM: Absent("a"), FEM: Absent("a")}
+    assert both(Absent("a")) == {SAM: Absent("a"), FEM: Absent("a")}

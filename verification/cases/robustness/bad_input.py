@@ -30,15 +30,19 @@ from sam.scene import Scene, SceneError, parse_scene, read_scene, resolved
 from verification.cases.case import FEM, SAM, Case, Context, Measured, SmallTable
 from verification.compare.own_data import read_data
 from verification.cost.plan import plan, plan_lines
-from verification.robustness.bad_files import ARCHIVE, RUN, SCENE, BadInput, lay
 from verification.robustness.fuzz import (
+    ARCHIVE,
     KINDS,
     MAPPINGS,
     MESHES,
     MORE_KINDS,
+    RUN,
+    SCENE,
     STUDIES,
+    BadInput,
     bad_input,
     good_scenes,
+    lay,
 )
 from verification.runs.archive import ArchiveError, read_archive
 from verification.runs.files import FolderError, json_text, read_run

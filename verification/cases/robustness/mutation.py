@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Mutation check: the numbers of the numerical core perturbed one at a time, and whether fast tests
-notice.
-"""
+"""Mutation check: numbers, comparisons and conditions changed one at a time, and what fast tests notice."""
 
 from __future__ import annotations
 
@@ -11,7 +9,7 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from importlib import util
 from pathlib import Path
 
@@ -21,6 +19,7 @@ from verification.runs.threads import EVERY_LIBRARY
 ROOT = Path(__file__).resolve().parents[3]
 TOOL = "verification.robustness.mutants"
 """The program that perturbs the numbers: of the source, and not imported here before it is needed."""
+DRAWN = ("number", "comparison", "branch")
 NAMED = 12
 """Tests that kill most, on the page."""
 
@@ -47,27 +46,24 @@ def checked(quick: bool) -> dict:
         return json.loads(found.read_text(encoding="utf-8"))
 
 
-def key_of(judged: Mapping) -> tuple[str, str, str]:
-    """What names a mutant: module, function and text."""
-    mutant = judged["mutant"]
-    return mutant["module"], mutant["function"], mutant["text"]
+def numbers_of_core(found: Mapping) -> list[tuple]:
+    """(mutant, judgement) of each changed number of the core, of which none is left out."""
+    from verification.robustness.mutants import changes, scope  # noqa: PLC0415 - of the source only
+
+    pairs = [(changes.Mutant(**one["mutant"]), one) for one in found["judged"]]
+    return [pair for pair in pairs if scope.whole(pair[0])]
 
 
 def values_of(found: Mapping) -> dict[str, Measured]:
     """The gates, from the judgements as read back."""
-    from verification.robustness.mutants import scope  # noqa: PLC0415 - of the source only
-
-    outcomes = Counter(one["outcome"] for one in found["judged"])
+    outcomes = Counter(one["outcome"] for _, one in numbers_of_core(found))
     killed = [one for one in found["judged"] if one["outcome"] == "killed"]
-    unexplained = [
-        one for one in found["judged"] if one["outcome"] == "survived" and key_of(one) not in scope.EXPLAINED
-    ]
     moving = [one for one in found["shown"] if not one["equivalent"]]
-    share = len(killed) / max(len(killed) + outcomes["survived"], 1)
+    share = outcomes["killed"] / max(outcomes["killed"] + outcomes["survived"], 1)
     slowest = max((one["seconds"] for one in killed), default=float("nan"))
     return {
         "killed": Measured(share),
-        "unexplained": Measured(len(unexplained), 0),
+        "unexplained": Measured(len(found["lost"]), 0),
         "not-inert": Measured(len(moving)),
         "rewriting": Measured(len(found["control"])),
         "slowest-kill": Measured(slowest, unit="s"),
@@ -75,42 +71,59 @@ def values_of(found: Mapping) -> dict[str, Measured]:
 
 
 def counts_table(found: Mapping) -> SmallTable:
-    """By module: mutants that count, killed, survived; equivalent mutants; integers that are structure."""
-    from verification.robustness.mutants import scope  # noqa: PLC0415 - of the source only
-
+    """Numbers of the core by module: all that count, killed, survived, equivalent; those of structure."""
     counts: Counter = Counter()
-    for one in found["judged"]:
-        counts[one["mutant"]["module"], one["outcome"]] += 1
-        counts[one["mutant"]["module"], one["mutant"]["kind"]] += one["outcome"] != "structure"
+    for mutant, one in numbers_of_core(found):
+        counts[mutant.module, one["outcome"]] += 1
+        counts[mutant.module, mutant.kind] += one["outcome"] != "structure"
     for one in found["shown"]:
         counts[one["mutant"]["module"], "equivalent"] += one["equivalent"]
-    there = {where for where, _ in counts}
-    names = [name for names in scope.GROUPS.values() for name in names if name in there]
+    for (_, what), count in list(counts.items()):
+        counts["all", what] += count
 
-    def row(title: str, modules: Sequence[str]) -> tuple[str, ...]:
-        kinds = ("row", "killed", "survived", "equivalent", "structure")
-        rows, killed, survived, *rest = (sum(counts[name, kind] for name in modules) for kind in kinds)
-        return (title, *map(str, (killed + survived, rows, killed, survived, *rest)))
+    def row(name: str) -> tuple[str, ...]:
+        parts = [counts[name, what] for what in ("row", "killed", "survived", "equivalent", "structure")]
+        return (name, *map(str, [parts[1] + parts[2], *parts]))
 
-    columns = "module|mutants|of them table rows|killed|survived|equivalent|structure, left out"
-    rows = [*[row(name, [name]) for name in names], row("all", names)]
-    return SmallTable("Mutants by module", columns.split("|"), rows)
+    columns = "module|mutants|of them table rows|killed|survived|equivalent|structure, left out".split("|")
+    names = dict.fromkeys([*sorted({name for name, _ in counts} - {"all"}), "all"])
+    return SmallTable("Mutants by module", columns, [row(name) for name in names])
 
 
 def _place(one: Mapping) -> str:
     return f"{one['mutant']['module']} {one['mutant']['function']}"
 
 
+def drawn_table(found: Mapping) -> SmallTable:
+    """Comparisons, conditions and the numbers around the core, which are drawn: killed of all, by package."""
+    core, counts = {(mutant.module, mutant.kind) for mutant, _ in numbers_of_core(found)}, Counter()
+    for one in found["judged"]:
+        mutant = one["mutant"]
+        package, kind = ".".join(mutant["module"].split(".")[:2]), mutant["kind"].replace("count", "number")
+        if one["outcome"] != "structure" and (mutant["module"], mutant["kind"]) not in core:
+            for name in (package, "all"):
+                counts[name, kind, "of"] += 1
+                counts[name, kind, "killed"] += one["outcome"] == "killed"
+    names = [*sorted({name for name, *_ in counts} - {"all"}), "all"]
+    rows = [
+        (name, *(f"{counts[name, kind, 'killed']} of {counts[name, kind, 'of']}" for kind in DRAWN))
+        for name in names
+    ]
+    return SmallTable("Drawn mutants, killed", ("package", "numbers", "comparisons", "branches"), rows)
+
+
 def survivors_table(found: Mapping) -> SmallTable:
-    """Every mutant that no test noticed, and why."""
+    """What no test noticed and should have, and every other changed number of the core, with the reason."""
     from verification.robustness.mutants import scope  # noqa: PLC0415 - of the source only
 
-    rows = []
-    for one in (one for one in found["judged"] if one["outcome"] == "survived"):
-        number = f"{one['mutant']['text']} in {one['mutant']['line'] or one['mutant']['place']}"
-        why = scope.EXPLAINED.get(key_of(one), "not explained")
-        rows.append((_place(one), number, str(one["asked"]), why))
-    return SmallTable("Survivors", ("where", "number", "tests asked", "why"), rows)
+    explained, lost = scope.constants("explained"), found["lost"]
+    rows = [(name, *what.rsplit(": ", 1), "") for name, what in lost.items()]
+    rows += [
+        (mutant.name, f"{mutant.text} in {mutant.line}", explained.get(mutant.key, ""), str(one["asked"]))
+        for mutant, one in numbers_of_core(found)
+        if one["outcome"] == "survived" and mutant.name not in lost
+    ]
+    return SmallTable("Survivors", ("where", "what", "why", "tests asked"), rows)
 
 
 def equivalent_table(found: Mapping) -> SmallTable:
@@ -141,13 +154,17 @@ class Mutation(Case):
 
     def setup(self, found: Mapping) -> Iterator[tuple[str, str]]:
         from verification.robustness.mutants import scope  # noqa: PLC0415 - of the source only
-        from verification.robustness.mutants.numbers import FACTOR, MORE  # noqa: PLC0415 - of the source only
+        from verification.robustness.mutants.changes import FACTOR, MORE  # noqa: PLC0415 - of the source only
 
         errors = Counter(one["error"] for one in found["judged"] if one["outcome"] == "killed")
         failed = sum(count for error, count in errors.items() if error in ("AssertionError", "Failed"))
         others = sum(errors.values()) - failed
         fast = f"{found['tests']} that take less than a second each"
         yield "Perturbed by", f"a factor {FACTOR}; named counts grow by {MORE}; one at a time"
+        yield (
+            "Drawn beside them",
+            f"{scope.PERCENT} % of the comparisons, conditions and numbers around the core",
+        )
         yield "Left out as structure", "0, indices, powers, keys, integers that never meet a float"
         yield "Tests asked", f"{fast}; those that run the function, the fastest first"
         yield "Killed by", f"{failed} by an assertion, {others} by an error or by the time that they take"
@@ -160,7 +177,7 @@ class Mutation(Case):
             )
 
     def tables(self, found: Mapping) -> Iterator[SmallTable]:
-        for table in (counts_table, survivors_table, equivalent_table, killers_table):
+        for table in (counts_table, drawn_table, survivors_table, equivalent_table, killers_table):
             if (made := table(found)).rows:
                 yield made
 

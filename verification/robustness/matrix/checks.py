@@ -10,12 +10,12 @@ from math import pi, sqrt
 from typing import Any
 
 from sam.scene import Result, Scene
-from verification.reference.elliptic import EllipticContact
+from verification.quantities import contact_of, modulus_of
 from verification.reference.flat_punch import FlatPunch
-from verification.reference.hertz import CircularContact, effective_modulus, largest_von_mises
+from verification.reference.hertz import largest_von_mises
 from verification.reference.rounded_punch import RoundedPunch
-from verification.robustness.matrix.row import TOLERANCE, Check, Deviation, Trial
-from verification.robustness.matrix.scenes import other
+from verification.references import elliptic_contact
+from verification.robustness.matrix.row import TOLERANCE, Check, Deviation, Trial, other
 from verification.runs.models import FEM, SAM
 
 COARSE = {SAM: "8 cells of equal pressure in the contact radius", FEM: "8 elements in the contact radius"}
@@ -28,10 +28,20 @@ def relative(what: str, value: float | None, expected: float, bound: float, *, r
     return Deviation(what, error, bound, reason)
 
 
-def modulus_of(scene: Scene) -> float:
-    """E* in Pa of the body without coating and its counter-body."""
-    counter = scene.counterbody
-    return effective_modulus(scene.body.young, scene.body.poisson, counter.young, counter.poisson)
+def against(
+    words: str,
+    expected: Callable[[Trial], Mapping[str, float]],
+    bounds: Mapping[str, float],
+    reason: str = "",
+) -> Check:
+    """Quantities against expected ones, each within its own bound; no reason: it is the size of the cells."""
+
+    def check(trial: Trial) -> Iterator[Deviation]:
+        values, why = expected(trial), reason or COARSE[trial.model]
+        for name, bound in bounds.items():
+            yield relative(f"{name}, {words}", trial.quantities[name], values[name], bound, reason=why)
+
+    return check
 
 
 def hertz(pressure: float = 0.005, approach: float = 0.002, mises: float | None = 0.01) -> Check:
@@ -39,76 +49,56 @@ def hertz(pressure: float = 0.005, approach: float = 0.002, mises: float | None 
     compared).
     """
 
-    def check(trial: Trial) -> Iterator[Deviation]:
-        scene, found = trial.scene, trial.quantities
-        exact = CircularContact(scene.loading.force, scene.counterbody.radius, modulus_of(scene))
-        reason = COARSE[trial.model]
-        yield relative("p0, Hertz", found["p_center_Pa"], exact.peak_pressure, pressure, reason=reason)
-        yield relative("approach, Hertz", found["approach_m"], exact.approach, approach, reason=reason)
-        if mises is not None:
-            largest, _ = largest_von_mises(exact.peak_pressure, exact.contact_radius, scene.body.poisson)
-            yield relative(
-                "largest von Mises stress, Hertz", found["mises_max_Pa"], largest, mises, reason=reason
-            )
+    def expected(trial: Trial) -> dict[str, float]:
+        exact, nu = contact_of(trial.scene), trial.scene.body.poisson
+        largest, _ = largest_von_mises(exact.peak_pressure, exact.contact_radius, nu)
+        return {"p_center_Pa": exact.peak_pressure, "approach_m": exact.approach, "mises_max_Pa": largest}
 
-    return check
+    bounds = {"p_center_Pa": pressure, "approach_m": approach} | ({"mises_max_Pa": mises} if mises else {})
+    return against("Hertz", expected, bounds)
 
 
 def force_of_hertz(trial: Trial) -> Iterator[Deviation]:
     """The force and the largest pressure that a given approach of a sphere takes (Johnson 1985, Eq. 4.23)."""
-    scene, found, reason = trial.scene, trial.quantities, COARSE[trial.model]
-    approach, radius, modulus = scene.loading.approach, scene.counterbody.radius, modulus_of(scene)
+    scene, modulus = trial.scene, modulus_of(trial.scene)
+    approach, radius = scene.loading.approach, scene.counterbody.radius
     force, pressure = 4 / 3 * sqrt(radius * approach) * approach, 2 / pi * sqrt(approach / radius)
-    yield relative("force, Hertz", found["force_N"], modulus * force, 0.003, reason=reason)
-    yield relative("p0, Hertz", found["p_center_Pa"], modulus * pressure, 0.005, reason=reason)
-    yield relative("approach", found["approach_m"], approach, ROUNDING, reason="it is given")
+    expected = {"force_N": modulus * force, "p_center_Pa": modulus * pressure}
+    yield from against("Hertz", lambda _: expected, {"force_N": 0.003, "p_center_Pa": 0.005})(trial)
+    yield relative("approach_m", trial.quantities["approach_m"], approach, ROUNDING, reason="it is given")
 
 
-def ellipse(pressure: float = 0.01, approach: float = 0.005) -> Check:
+def ellipse() -> Check:
     """Elliptic contact in closed form."""
 
-    def check(trial: Trial) -> Iterator[Deviation]:
-        scene, found = trial.scene, trial.quantities
-        exact = EllipticContact(scene.loading.force, *scene.counterbody.radii, modulus_of(scene))
-        yield relative(
-            "p0, elliptic Hertz", found["p_max_Pa"], exact.peak_pressure, pressure, reason=COARSE[trial.model]
-        )
-        yield relative(
-            "approach, elliptic Hertz",
-            found["approach_m"],
-            exact.approach,
-            approach,
-            reason=COARSE[trial.model],
-        )
+    def expected(trial: Trial) -> dict[str, float]:
+        exact = elliptic_contact(trial.scene)
+        return {"p_max_Pa": exact.peak_pressure, "approach_m": exact.approach}
 
-    return check
+    return against("elliptic Hertz", expected, {"p_max_Pa": 0.01, "approach_m": 0.005})
 
 
 def punch(approach: float) -> Check:
     """Flat-ended cylinder in closed form."""
 
-    def check(trial: Trial) -> Iterator[Deviation]:
+    def expected(trial: Trial) -> dict[str, float]:
         scene = trial.scene
         exact = FlatPunch(scene.loading.force, scene.counterbody.radius, modulus_of(scene))
-        reason = "the edge, where the pressure is singular, is one cell wide"
-        yield relative(
-            "approach, Boussinesq", trial.quantities["approach_m"], exact.approach, approach, reason=reason
-        )
+        return {"approach_m": exact.approach}
 
-    return check
+    reason = "the edge, where the pressure is singular, is one cell wide"
+    return against("Boussinesq", expected, {"approach_m": approach}, reason)
 
 
 def rounded_punch() -> Check:
     """Punch with a rounded edge in closed form."""
 
-    def check(trial: Trial) -> Iterator[Deviation]:
-        scene, other = trial.scene, trial.scene.counterbody
-        exact = RoundedPunch(scene.loading.force, other.flat_radius, other.radius, modulus_of(scene))
-        reason = COARSE[trial.model]
-        for name, value in (("approach_m", exact.approach), ("p_center_Pa", float(exact.pressure(0.0)))):
-            yield relative(f"{name}, rounded punch", trial.quantities[name], value, 0.01, reason=reason)
+    def expected(trial: Trial) -> dict[str, float]:
+        scene, counter = trial.scene, trial.scene.counterbody
+        exact = RoundedPunch(scene.loading.force, counter.flat_radius, counter.radius, modulus_of(scene))
+        return {"approach_m": exact.approach, "p_center_Pa": float(exact.pressure(0.0))}
 
-    return check
+    return against("rounded punch", expected, {"approach_m": 0.01, "p_center_Pa": 0.01})
 
 
 def nothing_touches(trial: Trial) -> Iterator[Deviation]:
@@ -122,27 +112,16 @@ def same_as(
 ) -> Check:
     """The same quantities as of the scene with other values, in the same model."""
 
-    def check(trial: Trial) -> Iterator[Deviation]:
-        twin = trial.bench.converged(other(trial.scene, changes), trial.model)
-        for name in names:
-            expected = twin.quantities[name]
-            words = f"{name}, as with {', '.join(f'{key} = {value}' for key, value in changes.items())}"
-            yield relative(words, trial.quantities[name], expected, bound, reason=reason)
+    def twin(trial: Trial) -> Mapping[str, float]:
+        return trial.bench.converged(other(trial.scene, changes), trial.model).quantities
 
-    return check
+    words = f"as with {', '.join(f'{key} = {value}' for key, value in changes.items())}"
+    return against(words, twin, dict.fromkeys(names, bound), reason)
 
 
 def as_other_model(model: str, bounds: Mapping[str, float], reason: str) -> Check:
     """Quantities of another model, each within its own bound."""
-
-    def check(trial: Trial) -> Iterator[Deviation]:
-        twin = trial.bench.converged(trial.scene, model)
-        for name, bound in bounds.items():
-            yield relative(
-                f"{name}, {model}", trial.quantities[name], twin.quantities[name], bound, reason=reason
-            )
-
-    return check
+    return against(model, lambda trial: trial.bench.converged(trial.scene, model).quantities, bounds, reason)
 
 
 def within_refinement(
@@ -154,18 +133,12 @@ def within_refinement(
     times what the step from cells 1.5 times as large changes. coarser: model -> the scene with such cells.
     """
 
-    def uncertainty(trial: Trial, scene: Scene, each: str, fine: Result) -> float:
-        coarse = trial.bench.converged(coarser[each](scene, fine), each)
-        return 2.0 * abs(fine.quantities[name] - coarse.quantities[name])
-
     def check(trial: Trial) -> Iterator[Deviation]:
-        twin = trial.bench.converged(trial.scene, model)
-        difference = abs(trial.quantities[name] - twin.quantities[name])
-        sizes = [
-            uncertainty(trial, trial.scene, each, result)
-            for each, result in ((trial.model, trial.result), (model, twin))
-        ]
-        value = abs(trial.quantities[name])
+        twin, sizes = trial.bench.converged(trial.scene, model), []
+        for each, fine in ((trial.model, trial.result), (model, twin)):
+            coarse = trial.bench.converged(coarser[each](trial.scene, fine), each)
+            sizes.append(2.0 * abs(fine.quantities[name] - coarse.quantities[name]))
+        value, difference = abs(trial.quantities[name]), abs(trial.quantities[name] - twin.quantities[name])
         shares = " + ".join(f"{1e2 * size / value:.2g}" for size in sizes)
         words = f"{name}, {model}, over both refinement uncertainties ({shares} %)"
         yield Deviation(words, difference / sum(sizes), 1.0, "cells 1.5 times as large, first order")
@@ -176,8 +149,25 @@ def within_refinement(
 
 def balanced(trial: Trial) -> Iterator[Deviation]:
     """The force is that of the scene, and the certificate of the contact holds."""
-    certificate, force = trial.result.certificate, trial.scene.loading.force
-    yield relative("force_N", trial.quantities["force_N"], force, ROUNDING, reason="rounding")
-    for name in ("gap_in_contact", "penetration"):
-        if name in certificate:
-            yield Deviation(name, certificate[name], trial.scene.solver.tolerance, TOLERANCE)
+    yield relative(
+        "force_N", trial.quantities["force_N"], trial.scene.loading.force, ROUNDING, reason="rounding"
+    )
+    yield from within_tolerance(trial, "gap_in_contact", "penetration")
+
+
+def residuals_hold(trial: Trial) -> Iterator[Deviation]:
+    """No stress beyond yield, and the flow rule, on the returned fields."""
+    yield from within_tolerance(trial, "yield_excess", "flow_residual")
+
+
+def within_tolerance(trial: Trial, *names: str) -> Iterator[Deviation]:
+    """Those of the certificates that there are."""
+    for name in names:
+        if name in trial.result.certificate:
+            yield Deviation(name, trial.result.certificate[name], trial.scene.solver.tolerance, TOLERANCE)
+
+
+def yields(trial: Trial) -> Iterator[Deviation]:
+    """The extreme is one: there is plastic strain."""
+    none = float(not trial.quantities["peeq_max"] > 0.0)
+    yield Deviation("no plastic strain", none, 0.5, "or the row tests nothing")

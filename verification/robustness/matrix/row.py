@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from math import isfinite
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from pydantic import ValidationError
@@ -23,14 +24,53 @@ from pydantic import ValidationError
 from sam.scene import InputError, Result, Scene, SceneError, Status, problems
 from verification.cost.accuracy import solve
 from verification.runs import models
-from verification.runs.models import ModelError
+from verification.runs.models import FEM, FEM_3D, SAM, ModelError
 
-Make = Callable[[], Scene]
-
-
+RADIUS, FORCE, YOUNG, POISSON = 1e-4, 0.17, 210e9, 0.3
+HERTZ = (0.75 * FORCE * RADIUS * (1 - POISSON**2) / YOUNG) ** (1 / 3)  # contact radius in m
+CELLS, MESH = 33, 8  # over four contact radii; in the contact radius
+BASE = {
+    "title": "Stability",
+    "body": {"young": YOUNG, "poisson": POISSON},
+    "counterbody": {"shape": "sphere", "radius": RADIUS},
+    "loading": {"force": FORCE},
+    "grid": {"cells": (CELLS, CELLS)},
+    "fem": {"cells_per_radius": MESH},
+}
+"""The scene that every row changes: a rigid sphere on steel, small enough for a second in either model."""
+BEYOND = {"solver.beyond_model": True}
+"""Of a contact wider than half the radius of the sphere: small strains of a flat half-space, for the numbers
+alone."""
 TOLERANCE = "the tolerance of the scene"
 """Why a certificate has its bound. A solver stops as near to it as it can: such a comparison tells least of a
 cell."""
+
+
+def changed(table: Mapping, changes: Mapping[str, Any]) -> dict:
+    """The table with other values, by dotted keys; None takes a key or a whole table away."""
+    out = dict(table)
+    for key, value in changes.items():
+        head, _, rest = key.partition(".")
+        if rest:
+            out[head] = changed(out.get(head, {}), {rest: value})
+        elif value is None:
+            out.pop(head, None)
+        else:
+            out[head] = value
+    return out
+
+
+def scene_with(changes: Mapping[str, Any]) -> Scene:
+    """The base with other values. Raises pydantic.ValidationError for what is no scene."""
+    return Scene.model_validate(changed(BASE, changes))
+
+
+def other(scene: Scene, changes: Mapping[str, Any]) -> Scene:
+    """A scene with other values, checked anew; a height map stays what it is."""
+    table = scene.model_dump(exclude_none=True)
+    if scene.surface is not None:
+        table["surface"] = {key: value for key, value in scene.surface if value is not None}
+    return Scene.model_validate(changed(table, changes))
 
 
 class Kind(StrEnum):
@@ -143,14 +183,30 @@ class Absent:
 Expectation = Right | Refused | Absent
 
 
+def both(
+    sam: Expectation, fem: Expectation | None = None, spatial: Expectation | None = None
+) -> dict[str, Expectation]:
+    """Model -> expectation; one for both if there is no other; spatial: where the three-dimensional one is
+    asked.
+    """
+    return {SAM: sam, FEM: fem or sam} | ({FEM_3D: spatial} if spatial else {})
+
+
+def every(expected: Expectation) -> dict[str, Expectation]:
+    """The same of all models."""
+    return dict.fromkeys((SAM, FEM, FEM_3D), expected)
+
+
 @dataclass(frozen=True)
 class Row:
-    """An extreme. topic: of TOPICS; expected: model -> what must become of it; quick: at this level too."""
+    """An extreme. topic: of TOPICS; make: what differs from the base, or what makes the scene; expected:
+    model -> what must become of it; quick: at this level too.
+    """
 
     name: str
     topic: str
     what: str
-    make: Make
+    make: Mapping[str, Any] | Callable[[], Scene]
     expected: Mapping[str, Expectation]
     quick: bool = False
 
@@ -172,80 +228,55 @@ class Cell:
         return max(self.deviations, key=lambda each: (each.reason != TOLERANCE, each.share), default=None)
 
 
-@dataclass(frozen=True)
-class SolveEnd:
-    """How a solve ended: with a result, refused unsolved, or with what no user should see. seconds: of
-    processor time.
-    """
-
-    scene: Scene | None = None
-    result: Result | None = None
-    refusal: str = ""
-    crash: str = ""
-    seconds: float = 0.0
-
-
 def judge(row: Row, model: str, bench: Bench) -> Cell:
     """Solve a cell and compare with what the row expects."""
     expected = row.expected[model]
     if isinstance(expected, Absent):
         return Cell(Kind.ABSENT, expected.reason)
-    ended = _solve(row.make, model, bench)
-    if ended.crash:
-        return Cell(Kind.WRONG, ended.crash, seconds=ended.seconds)
-    if isinstance(expected, Refused):
-        return _judge_error(expected, ended)
-    began = time.process_time()
-    cell = _judge_result(expected, ended, model, bench)
-    return Cell(cell.kind, cell.text, cell.deviations, ended.seconds + time.process_time() - began)
-
-
-def _solve(make: Make, model: str, bench: Bench) -> SolveEnd:
-    began, scene, result, refusal, crash = time.process_time(), None, None, "", ""
+    began, scene, result, text, wrong = time.process_time(), None, None, "", ""
+    found: list[Deviation] = []
     try:
-        scene = make()
+        scene = row.make() if callable(row.make) else scene_with(row.make)
         result = bench.solve(scene, model)
     except ValidationError as error:
-        refusal = "; ".join(map(str, problems(error)))
+        text = "; ".join(map(str, problems(error)))
     except (SceneError, InputError, ModelError) as error:
-        refusal = str(error)
+        text = str(error)
     except Exception as error:  # whatever else it is, it is wrong
-        crash = f"{type(error).__name__}: {error}"
-    return SolveEnd(scene, result, refusal, crash, time.process_time() - began)
-
-
-def _judge_error(expected: Refused, ended: SolveEnd) -> Cell:
-    result = ended.result
-    if result is not None and result.converged:
-        return Cell(Kind.WRONG, "converged, but an error was expected", seconds=ended.seconds)
-    text = ended.refusal if result is None else f"{result.status}: {result.message}"
-    status = None if result is None else result.status
-    missing = [word for word in expected.says if word not in text]
-    if status is not expected.status:
-        return Cell(Kind.WRONG, f"expected {expected.status or 'a refusal'}: {text}", seconds=ended.seconds)
-    if missing:
-        return Cell(Kind.WRONG, f"the message does not say {missing}: {text}", seconds=ended.seconds)
-    return Cell(Kind.ERROR, text, seconds=ended.seconds)
-
-
-def _judge_result(expected: Right, ended: SolveEnd, model: str, bench: Bench) -> Cell:
-    result = ended.result
+        wrong = f"{type(error).__name__}: {error}"
+    if result is not None and not result.converged:
+        text = f"{result.status}: {result.message}"
+    if isinstance(expected, Refused):
+        wrong = wrong or _wrong_error(expected, result, text)
+        return Cell(Kind.WRONG if wrong else Kind.ERROR, wrong or text, (), time.process_time() - began)
     if result is None:
-        return Cell(Kind.WRONG, f"refused: {ended.refusal}")
-    if not result.converged:
-        return Cell(Kind.WRONG, f"{result.status}: {result.message}")
-    broken = [name for name, value in result.quantities.items() if value is not None and not isfinite(value)]
+        wrong = wrong or f"refused: {text}"
+    elif not result.converged:
+        wrong = text
+    else:
+        wrong, found = _wrong_result(expected, Trial(scene, model, result, bench))
+    return Cell(Kind.WRONG if wrong else Kind.RIGHT, wrong, found, time.process_time() - began)
+
+
+def _wrong_error(expected: Refused, result: Result | None, text: str) -> str:
+    """What is wrong with an error; empty where it is the expected one."""
+    if result is not None and result.converged:
+        return "converged, but an error was expected"
+    if expected.status is not (None if result is None else result.status):
+        return f"expected {expected.status or 'a refusal'}: {text}"
+    missing = [word for word in expected.says if word not in text]
+    return f"the message does not say {missing}: {text}" if missing else ""
+
+
+def _wrong_result(expected: Right, trial: Trial) -> tuple[str, list[Deviation]]:
+    """What is wrong with a converged result, empty where nothing is; and its comparisons."""
+    broken = [name for name, value in trial.quantities.items() if value is not None and not isfinite(value)]
     if broken:
-        return Cell(Kind.WRONG, f"not finite: {', '.join(broken)}")
-    trial = Trial(ended.scene, model, result, bench)
+        return f"not finite: {', '.join(broken)}", []
     try:
         found = [deviation for check in expected.checks for deviation in check(trial)]
     except (RuntimeError, ValueError) as error:
-        return Cell(Kind.WRONG, str(error))
+        return str(error), []
     beyond = [each for each in found if not each.share <= 1.0]
     text = "; ".join(f"{each.what}: {each.error:.3g} > {each.bound:g}" for each in beyond)
-    return Cell(
-        Kind.WRONG if beyond or not found else Kind.RIGHT,
-        text or ("" if found else "nothing was compared"),
-        found,
-    )
+    return text or ("" if found else "nothing was compared"), found

@@ -3,17 +3,7 @@
 
 from __future__ import annotations
 
-from verification.robustness.matrix import (
-    back_stress,
-    elastic,
-    films,
-    misfit,
-    moving,
-    plastic,
-    rough,
-    sliding,
-    uncertain,
-)
+from verification.robustness.matrix import elastic, plastic, rough
 from verification.robustness.matrix.row import Row
 
 TOPICS = {
@@ -51,10 +41,13 @@ TOPICS = {
     "uncertainty": "uncertainties and accuracies: too coarse a grid, no load, 0.1 % to a half",
 }
 """Of what there must be rows at level full: name -> in words."""
-_SOURCES = (elastic, films, plastic, back_stress, misfit, moving, sliding, rough, uncertain)
+_SOURCES = (
+    *(elastic.rows, elastic.films, plastic.rows, plastic.back_stresses, plastic.misfits),
+    *(elastic.paths, elastic.friction, rough.rows, elastic.uncertainties),
+)
 
 
 def all_rows(level: str) -> list[Row]:
     """The rows of a level, in the order of the matrix."""
-    found = [row for source in _SOURCES for row in source.rows()]
+    found = [row for source in _SOURCES for row in source()]
     return found if level == "full" else [row for row in found if row.quick]

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Mutants of the numerical core: one number perturbed at a time, and what the fast tests say to it."""
+"""Mutants: one number, comparison or condition changed at a time, and what the fast tests say to it."""

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Mutation check of the numerical core: ``python -m verification.robustness.mutants [--quick] [--module
-NAME]``.
+"""Mutation check: ``python -m verification.robustness.mutants [--quick] [--module NAME]``.
 
-Each number of the core is perturbed by itself, and the fast tests that run it are asked. Exit code 0: at
-least 95 % of the mutants are killed. --json: the judgement of each as a file.
+After a change of module X or of its tests, run ``--module X``: each mutant that survives and did not when
+`frozen.csv` was written is named, and the exit code is 1. A function that moved to another module is found by
+its name: run that module too. Where a survivor is understood, ``--freeze`` writes the lines of X anew.
+
+Exit code 0: nothing is lost, and at least 95 % of the changed numbers of the core are killed. --json: the
+judgement of each as a file.
 """
 
 from __future__ import annotations
@@ -25,46 +28,55 @@ from verification.runs.threads import EVERY_LIBRARY
 def check(
     quick: bool, modules: Sequence[str], files: Sequence[str], progress: Callable[[str, int, int], None]
 ) -> dict:
-    """{"judged": judgements, "shown": equivalent mutants, "control": names of tests, "tests", "seconds"}; see
-    `scope` for the rest.
+    """{"judged": judgements, "shown": equivalent mutants, "control": tests that fail with numbers as they are
+    and files that cannot be collected, "lost", "gone": see `frozen.compare`, "tests", "seconds"}.
 
     modules, files: only these, if any are named.
     """
-    from verification.robustness.mutants import scope
-    from verification.robustness.mutants.equivalent import reason_of, show
-    from verification.robustness.mutants.fasttests import with_tests
-    from verification.robustness.mutants.judge import control, judge, mutants_of, observe
+    from verification.robustness.mutants import frozen, judge, scope
+    from verification.robustness.mutants.equivalent import show
 
-    chosen = list(
-        modules
-        or (scope.QUICK_MODULES if quick else [name for names in scope.GROUPS.values() for name in names])
-    )
-    mutants = [mutant for module in chosen for mutant in mutants_of(module)]
-    equivalent = [mutant for mutant in mutants if reason_of(mutant)]
-    mutants = [mutant for mutant in mutants if not reason_of(mutant)]
+    chosen = list(modules or (scope.QUICK_MODULES if quick else scope.modules()))
+    every = [mutant for module in chosen for mutant in scope.mutants_of(module)]
+    equivalent = [mutant for mutant in every if mutant.key in scope.constants("equivalent")]
+    mutants = [mutant for mutant in every if mutant not in equivalent and scope.drawn(mutant)]
     if quick:
-        mutants, equivalent = random.Random(scope.SEED).sample(mutants, scope.QUICK_COUNT), []
+        numbers = [mutant for mutant in mutants if scope.whole(mutant)]
+        mutants, equivalent = random.Random(scope.SEED).sample(numbers, scope.QUICK_COUNT), []
+    rows, names, known = frozen.read(), {mutant.function for mutant in every}, set(scope.modules())
+    killers = {
+        test
+        for row in rows
+        if row["module"] in chosen or (row["module"] not in known and row["function"] in names)
+        for test in row["tests"]
+    }
     answer: dict = {}
 
     def work(items) -> None:
         start = time.monotonic()
-        seen = observe(items, lambda done, of: progress("tests observed", done, of))
-        judged = judge(mutants, items, seen, lambda done, of: progress("mutants", done, of))
-        answer.update(
-            judged=judged,
-            control=control(chosen, items, seen),
-            tests=len(seen),
-            seconds=time.monotonic() - start,
+        if not files:
+            items = {
+                name: item
+                for name, item in items.items()
+                if frozen.short(name) in killers or judge.uses(item.module, chosen)
+            }
+        seen, loaded, control = judge.observe(
+            chosen, items, lambda done, of: progress("tests observed", done, of)
         )
+        judged = judge.judge(mutants, items, (seen, loaded), lambda done, of: progress("mutants", done, of))
+        answer.update(judged=judged, control=control, tests=len(seen), seconds=time.monotonic() - start)
 
-    with_tests(files or (scope.QUICK_FILES if quick else scope.FILES), work)
-    return answer | {"shown": show(equivalent)}
+    uncollected = judge.with_tests(files or (scope.QUICK_FILES if quick else ("test_*.py",)), work)
+    answer["control"] += uncollected
+    there = {(m.module, m.function) for name in known.union(chosen) for m in scope.mutants_of(name)}
+    lost, gone = frozen.compare(answer["judged"], there)
+    return answer | {"shown": show(equivalent), "lost": lost, "gone": gone}
 
 
 def main() -> int:
-    """Perturb the numbers that are asked for, print what survives, and return the exit code."""
+    """Change what is asked for, and return the exit code."""
     parser = argparse.ArgumentParser(
-        description="Perturb each number of the numerical core and ask the fast tests"
+        description="Change numbers, comparisons and conditions, each by itself, and ask the fast tests"
     )
     parser.add_argument("--quick", action="store_true", help="a sample of a few modules")
     parser.add_argument(
@@ -77,40 +89,51 @@ def main() -> int:
         "--tests", action="append", default=[], help="only this file of tests; may be repeated"
     )
     parser.add_argument("--json", type=Path, help="file for the judgement of each mutant")
+    parser.add_argument("--freeze", action="store_true", help="write what is found into frozen.csv")
+    parser.add_argument("--processes", type=int, default=2)
     words = parser.parse_args()
+    from verification.robustness.mutants import frozen, judge, scope
+
+    judge.WORKERS, terminal = words.processes, os.dup(2)
 
     def progress(what: str, done: int, of: int) -> None:
-        if sys.stderr.isatty() or done == of or done % 100 == 0:
-            print(f"\r{what}: {done}/{of}", end="\n" if done == of else "", file=sys.stderr, flush=True)
+        if done == of or done % 100 == 0:
+            os.write(terminal, f"{what}: {done}/{of}\n".encode())
 
     answer = check(words.quick, words.module, words.tests, progress)
     if words.json:
-        plain = {
-            key: [_plain(one) for one in value] if isinstance(value, list) else value
-            for key, value in answer.items()
-        }
-        words.json.write_text(json.dumps(plain, indent=1))
+        words.json.write_text(json.dumps(answer, indent=1, default=_plain))
+    if words.freeze:
+        frozen.write(answer["judged"], words.module or scope.modules())
+    return told(answer)
+
+
+def told(answer: dict) -> int:
+    """Print what survives and is lost, and return the exit code."""
+    from verification.robustness.mutants import scope
+
     for one in sorted(answer["judged"], key=lambda one: one.mutant.name):
         if one.outcome == "survived":
-            print(f"survived {one.mutant.name}   | {one.mutant.line}   ({one.asked} tests)")
+            print(f"survived {one.mutant.name} {one.mutant.text}   | {one.mutant.line}   ({one.asked} tests)")
     for one in answer["shown"]:
         if not one.equivalent:
             print(f"not equivalent {one.mutant.name}: changes {one.change:.3g} tol. in {one.probes} probes")
-    outcomes = Counter(one.outcome for one in answer["judged"])
-    print(
-        dict(outcomes),
-        f"{len(answer['shown'])} equivalent, {answer['tests']} fast tests, {answer['seconds']:.0f} s",
-    )
-    print("rewriting alone fails:", answer["control"] or "nothing")
-    return int(
-        outcomes["survived"] > 0.05 * (outcomes["survived"] + outcomes["killed"]) or bool(answer["control"])
-    )
+    for what in answer["gone"]:
+        print(f"no longer there: {what}")
+    for name, what in answer["lost"].items():
+        print(f"lost: {name} {what}")
+    outcomes = Counter((one.outcome, scope.whole(one.mutant)) for one in answer["judged"])
+    for title, core in (("numbers of the core", True), ("the others, drawn", False)):
+        killed, survived = outcomes["killed", core], outcomes["survived", core]
+        print(f"{title}: {killed} killed, {survived} survived, {outcomes['structure', core]} structure")
+    print(f"{len(answer['shown'])} equivalent, {answer['tests']} fast tests, {answer['seconds']:.0f} s")
+    print("without a change fail:", answer["control"] or "nothing")
+    few = outcomes["survived", True] > 0.05 * (outcomes["survived", True] + outcomes["killed", True])
+    return int(few or bool(answer["control"]) or bool(answer["lost"]))
 
 
 def _plain(one):
-    """Of a judgement or a constant that was shown, with what it says of itself; names stay as they are."""
-    if isinstance(one, str):
-        return one
+    """Of a judgement or a constant that was shown, with what it says of itself."""
     return asdict(one) | ({"equivalent": one.equivalent} if hasattr(one, "equivalent") else {})
 
 

@@ -10,26 +10,21 @@ import functools
 import gc
 import importlib
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from enum import Enum
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 
-from verification.robustness.mutants.numbers import FACTOR, Mutant, Number, rewritten
+from verification.robustness.mutants.changes import FACTOR, Mutant, Number, rewritten
 
 ROOT = Path(__file__).resolve().parents[3]
 
 OWN = ("samfem", "sam", "fem_reference", "verification", "tests")
 
 
-def source_of(module: str) -> str:
-    """The source of a module."""
-    return Path(importlib.import_module(module).__file__).read_text(encoding="utf-8")
-
-
-def put(mutants: list[Mutant], factor: float = FACTOR) -> dict[str, Number]:
-    """Perturb these numbers of one module, in this process from now on; the integers among them, which record
-    their use.
+def put(mutants: Sequence[Mutant], factor: float = FACTOR) -> dict[Mutant, Number]:
+    """Change these of one module, in this process from now on; the integers among them, which record their
+    use.
 
     A row of a table is perturbed by itself.
     """
@@ -38,21 +33,22 @@ def put(mutants: list[Mutant], factor: float = FACTOR) -> dict[str, Number]:
         _put_row(mutants[0], factor)
         return {}
     module = importlib.import_module(mutants[0].module)
-    tree, numbers = rewritten(source_of(module.__name__), mutants, factor)
-    compiled = compile(tree, module.__file__, "exec")
-    vars(module).update(numbers)
+    file = module.__file__
+    tree, numbers = rewritten(Path(file).read_text(encoding="utf-8"), mutants, factor)
+    compiled, names = compile(tree, file, "exec"), {name: number for name, (_, number) in numbers.items()}
+    vars(module).update(names)
     if any(mutant.code for mutant in mutants):
-        _swap_codes(module.__file__, compiled)
+        _swap_codes(file, compiled)
     if not all(mutant.code for mutant in mutants):
-        _transplant(module, compiled, numbers)
-    return numbers
+        _transplant(module, compiled, names)
+    return dict(numbers.values())
 
 
 def forget(module: str = "") -> None:
-    """Empty what the functions of the solvers, and of this module, remember."""
+    """Empty what the functions of the solvers, the references and this module remember."""
     for wrapper in living(functools._lru_cache_wrapper):
         home = getattr(wrapper, "__module__", None) or ""
-        if home == module or home.split(".")[0] in ("sam", "fem_reference"):
+        if home == module or home.startswith(("sam.", "fem_reference.", "verification.reference.")):
             wrapper.cache_clear()
 
 
@@ -67,9 +63,8 @@ def living(kind: type) -> list:
 def _put_row(mutant: Mutant, factor: float) -> None:
     """Multiply one row of the table that the module's function returns and remembers."""
     table = getattr(importlib.import_module(mutant.module), mutant.function)()
-    (name, k), where = mutant.place, table
-    kind, entry = name.split(" ", 1)
-    rows = where[kind][entry]
+    kind, entry, place = mutant.text.split(" ")
+    rows, k = table[kind][entry], int(place)
     if isinstance(rows, list):
         rows[k] = (*rows[k][:-1], tuple(c * factor for c in rows[k][-1]))
     else:

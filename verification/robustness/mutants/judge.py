@@ -1,34 +1,55 @@
 # SPDX-License-Identifier: MIT
-"""Each mutant against the fast tests that run its code, the fastest first, until one fails."""
+"""Each mutant against the fast tests that run its code, the fastest first, until one fails.
+
+The tests are collected once in this process, and each is run in a fork of it.
+"""
 
 from __future__ import annotations
 
 import functools
 import gc
-from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+import os
+import pickle
+import selectors
+import signal
+import sys
+import time
+from collections import Counter, defaultdict
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from importlib import import_module
-from types import FunctionType
+from types import FunctionType, ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
 
 from verification.robustness.mutants import inject
-from verification.robustness.mutants.fasttests import SECONDS, Seen, TestVerdict, observed, run
-from verification.robustness.mutants.numbers import FACTOR, Mutant, find, rows
-from verification.robustness.mutants.pool import forked
-from verification.robustness.mutants.scope import TABLES
+from verification.robustness.mutants.changes import Mutant
+from verification.robustness.mutants.scope import NUMBERS, mutants_of
 
-ALONE, TOGETHER = 2 * SECONDS, 60.0
+WORKERS = 2
+SECONDS = 1.0
+"""Of processor time, with what it sets up: a test is fast below it."""
+ALONE, TOGETHER = 2 * SECONDS, 15.0
 """Seconds of processor time that a test may take while observed, which takes longer, and all that one mutant
 meets."""
 ASKED = 5.0
 """Seconds that the tests asked about one mutant took together while they were observed, the fastest first."""
-CHUNK = 20
-PACKAGES = ("sam", "fem_reference", "verification/uncertainty")
-"""Folders of what is perturbed."""
+PARAMETERS = 100
 KILLED, SURVIVED, STRUCTURE = "killed", "survived", "structure"
+
+
+@dataclass(frozen=True)
+class Seen:
+    """A test on its own. called: (file, first line) of each function of the changed modules that ran in it;
+    met: the integers that met a float.
+    """
+
+    passed: bool
+    seconds: float
+    called: frozenset[tuple[str, int]]
+    met: frozenset[Mutant]
 
 
 @dataclass(frozen=True)
@@ -45,51 +66,198 @@ class MutantVerdict:
     asked: int = 0
 
 
-def mutants_of(module: str) -> list[Mutant]:
-    """All mutants of a module, and of the table that it reads."""
-    found = find(module, inject.source_of(module))
-    for owner, function in TABLES:
-        if owner == module:
-            read = getattr(import_module(module), function).__wrapped__
-            found += [
-                replace(row, code=read.__code__.co_firstlineno) for row in rows(module, function, read())
-            ]
-    return found
+def forked(tasks: Iterable[tuple[Any, Callable[[], Any]]], seconds: float) -> Iterator[tuple[Any, Any]]:
+    """(name, what the task returned) as they end, each in a fork; None for one that died or took more than
+    `seconds` of processor time, where that is not 0.
+    """
+    running: dict[int, tuple[Any, int, bytearray]] = {}
+    selector, left = selectors.DefaultSelector(), iter(tasks)
+    more = True
+    while more or running:
+        while more and len(running) < WORKERS:
+            task = next(left, None)
+            if task is None:
+                more = False
+                break
+            reading, child = _start(task[1], seconds)
+            running[reading] = (task[0], child, bytearray())
+            selector.register(reading, selectors.EVENT_READ)
+        for key, _ in selector.select() if running else ():
+            name, child, held = running[key.fd]
+            if part := os.read(key.fd, 1 << 16):
+                held += part
+                continue
+            selector.unregister(key.fd)
+            os.close(key.fd)
+            os.waitpid(child, 0)
+            del running[key.fd]
+            yield name, pickle.loads(bytes(held)) if held else None
+
+
+def _start(task: Callable[[], Any], seconds: float) -> tuple[int, int]:
+    reading, writing = os.pipe()
+    child = os.fork()
+    if child:
+        os.close(writing)
+        return reading, child
+    try:
+        os.close(reading)
+        signal.signal(signal.SIGPROF, signal.SIG_DFL)
+        signal.setitimer(signal.ITIMER_PROF, seconds)
+        quiet = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(quiet, 1)
+        os.dup2(quiet, 2)
+        answer = pickle.dumps(task())
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        with os.fdopen(writing, "wb") as pipe:
+            pipe.write(answer)
+    finally:
+        os._exit(0)
+    raise AssertionError("not reached")
+
+
+class Session:
+    """Calls `work(items)` in place of running the tests that pytest has collected; items: node id -> test;
+    failed: files that cannot be collected.
+    """
+
+    def __init__(self, work: Callable[[dict[str, pytest.Item]], None]):
+        self.work, self.failed = work, []
+
+    def pytest_collectreport(self, report: pytest.CollectReport) -> None:
+        self.failed += [report.nodeid] if report.failed else []
+
+    def pytest_runtestloop(self, session: pytest.Session) -> bool:
+        self.work(few(session.items))
+        return True
+
+
+def with_tests(files: Sequence[str], work: Callable[[dict[str, pytest.Item]], None]) -> list[str]:
+    """Collect the tests of these files of tests/, those of the system apart, and call work(items); the files
+    that cannot be collected. RuntimeError where pytest ends otherwise.
+    """
+    from hypothesis import Phase, settings
+
+    # properties draw the same examples each time, and stop at the first that fails
+    phases = (Phase.explicit, Phase.generate)
+    settings.register_profile("mutants", derandomize=True, database=None, phases=phases)
+    settings.load_profile("mutants")
+    words = "-s -o addopts= -p no:cacheprovider -p no:terminal --continue-on-collection-errors".split()
+    found = {
+        path for file in files for path in (inject.ROOT / "tests").rglob(file) if path.parent.name != "system"
+    }
+    session = Session(work)
+    code = pytest.main([*words, f"--rootdir={inject.ROOT}", *map(str, sorted(found))], plugins=[session])
+    if code not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):
+        raise RuntimeError(f"the tests could not be collected: pytest ended with {code!r}")
+    return session.failed
+
+
+def run(item: pytest.Item, following: pytest.Item | None = None) -> tuple[bool, float, str]:
+    """Run one test with what it sets up and, unless the following one shares it, takes down: whether it
+    passed, processor seconds, kind of the error.
+
+    Without pytest's reports: to show why a test failed takes it longer than most of the tests do.
+    """
+    state, error, start = item.session._setupstate, "", time.process_time()
+    item._initrequest()
+    try:
+        try:
+            state.setup(item)
+            item.runtest()
+        finally:
+            state.teardown_exact(following)
+    except pytest.skip.Exception:
+        pass
+    except (Exception, pytest.fail.Exception) as failure:
+        error = type(failure).__name__
+    return not error, time.process_time() - start, error
+
+
+def few(items: Iterable[pytest.Item]) -> dict[str, pytest.Item]:
+    """Node id -> test; of a test with more than PARAMETERS sets of them, that many, evenly drawn."""
+    functions = defaultdict(list)
+    for item in items:
+        functions[item.nodeid.partition("[")[0]].append(item)
+    drawn = (ones[:: -(-len(ones) // PARAMETERS)] for ones in functions.values())
+    return {item.nodeid: item for ones in drawn for item in ones}
+
+
+def uses(test: ModuleType, modules: Collection[str], tests: tuple[str, ...] = ()) -> bool:
+    """Whether a module of tests, or a helper that it imports, imports one of the modules or a name of one."""
+    for value in list(vars(test).values()):
+        owner = value.__name__ if isinstance(value, ModuleType) else getattr(value, "__module__", None)
+        if owner in modules:
+            return True
+        helper = sys.modules.get(owner) if isinstance(owner, str) and owner not in tests else None
+        if (getattr(helper, "__file__", None) or "").startswith(f"{inject.ROOT}/tests/"):
+            if uses(helper, modules, (*tests, test.__name__, owner)):
+                return True
+    return False
 
 
 def prepare() -> None:
-    """Before forks that perturb: what they look up, and memory that they need not copy."""
+    """Before forks that change the program: what they look up, and memory that they need not copy."""
     for kind in (FunctionType, functools._lru_cache_wrapper):
         inject.living(kind)
     gc.freeze()
 
 
-def observe(items: Mapping[str, pytest.Item], progress: Callable[[int, int], None]) -> dict[str, Seen]:
-    """What each test runs and takes, on its own in a fork that remembers nothing; without those that are slow
-    or fail.
+def observe(
+    modules: Sequence[str], items: Mapping[str, pytest.Item], progress: Callable[[int, int], None]
+) -> tuple[dict[str, Seen], frozenset[Mutant], list[str]]:
+    """What each test runs and takes, without those that are slow or fail; the integers that meet a float when
+    their module is loaded; the tests that fail by the fault of the rewriting.
+
+    All modules are rewritten with every number as it is, and each test is run on its own, in a fork that
+    remembers nothing.
     """
     prepare()
-    packages = tuple(f"{inject.ROOT / name}/" for name in PACKAGES)
+    files = frozenset(import_module(name).__file__ for name in modules)
 
-    def alone(item: pytest.Item) -> Seen:
+    def alone(item: pytest.Item, numbers: Mapping) -> Seen:
         inject.forget()
-        return observed(item, packages)
+        called: set = set()
+        sys.settrace(lambda frame, event, argument: called.add(frame.f_code))
+        try:
+            passed, seconds, _ = run(item)
+        finally:
+            sys.settrace(None)
+        own = {(code.co_filename, code.co_firstlineno) for code in called if code.co_filename in files}
+        return Seen(
+            passed, seconds, frozenset(own), frozenset(m for m, number in numbers.items() if number.met)
+        )
 
-    tasks = ((name, lambda item=item: alone(item)) for name, item in items.items())
-    seen = {}
-    for done, (name, answer) in enumerate(forked(tasks, ALONE), start=1):
-        progress(done, len(items))
-        if answer is not None and answer.passed:
-            seen[name] = answer
-    return seen
+    def all_of_them():
+        numbers: dict = {}
+        for module in modules:
+            if whole := [m for m in mutants_of(module) if m.kind in NUMBERS and m.kind != "row"]:
+                numbers |= inject.put(whole, 1.0)
+        loaded = frozenset(mutant for mutant, number in numbers.items() if number.met)
+        for number in numbers.values():
+            number.met = False
+        answers = {}
+        tasks = ((name, lambda item=item: alone(item, numbers)) for name, item in items.items())
+        for done, (name, answer) in enumerate(forked(tasks, ALONE), start=1):
+            progress(done, len(items))
+            answers[name] = answer
+        return answers, loaded
+
+    ((_, (answers, loaded)),) = forked([("rewritten", all_of_them)], 0.0)
+    failing = [name for name, answer in answers.items() if answer is not None and not answer.passed]
+    plain = forked([(name, lambda name=name: run(items[name])[0]) for name in failing], ALONE)
+    seen = {name: answer for name, answer in answers.items() if answer is not None and answer.passed}
+    return seen, loaded, [name for name, passed in plain if passed]
 
 
-def askable(mutant: Mutant, seen: Mapping[str, Seen]) -> list[str]:
-    """Tests that run the function of the mutant, any of the module's if it is outside of one; the fastest
-    first.
+def askable(mutant: Mutant, seen: Mapping[str, Seen], loaded: Collection[Mutant]) -> list[str]:
+    """Tests in which the integer meets a float; those that run the function of any other mutant, or any of
+    the module if it is outside of one. The fastest first.
     """
     file = import_module(mutant.module).__file__
-    if mutant.code:
+    if mutant.integer and mutant not in loaded:
+        chosen = [name for name, test in seen.items() if mutant in test.met]
+    elif mutant.code:
         chosen = [name for name, test in seen.items() if (file, mutant.code) in test.called]
     else:
         chosen = [name for name, test in seen.items() if any(where == file for where, _ in test.called)]
@@ -97,60 +265,40 @@ def askable(mutant: Mutant, seen: Mapping[str, Seen]) -> list[str]:
     return chosen[: int(np.searchsorted(np.cumsum([seen[name].seconds for name in chosen]), ASKED)) + 1]
 
 
-def ask(
-    mutants: list[Mutant], factor: float, names: Sequence[str], items: Mapping[str, pytest.Item]
-) -> MutantVerdict:
+def ask(mutant: Mutant, names: Sequence[str], items: Mapping[str, pytest.Item]) -> MutantVerdict:
     """In a fork: the mutant put in, then the tests. A test that fails but is not fast does not count."""
     try:
-        numbers = inject.put(mutants, factor)
+        inject.put([mutant])
     except Exception as error:
-        return MutantVerdict(mutants[0], KILLED, "loading the module", 0.0, type(error).__name__)
+        return MutantVerdict(mutant, KILLED, "loading the module", 0.0, type(error).__name__)
     for k, name in enumerate(names):
         following = items[names[k + 1]] if k + 1 < len(names) else None
-        verdict: TestVerdict = run(items[name], following)
-        if not verdict.passed and verdict.seconds < SECONDS:
-            return MutantVerdict(mutants[0], KILLED, name, verdict.seconds, verdict.error, k + 1)
-    met = not numbers or any(number.met for number in numbers.values())
-    return MutantVerdict(mutants[0], SURVIVED if met or not names else STRUCTURE, asked=len(names))
+        passed, seconds, error = run(items[name], following)
+        if not passed and seconds < SECONDS:
+            return MutantVerdict(mutant, KILLED, name, seconds, error, k + 1)
+    outcome = SURVIVED if names or not mutant.integer else STRUCTURE
+    return MutantVerdict(mutant, outcome, asked=len(names))
 
 
 def judge(
     mutants: Iterable[Mutant],
     items: Mapping[str, pytest.Item],
-    seen: Mapping[str, Seen],
+    observed: tuple[Mapping[str, Seen], frozenset[Mutant]],
     progress: Callable[[int, int], None],
 ) -> list[MutantVerdict]:
     """The judgements as they come; asked first are the tests that killed most in the same module."""
     prepare()
     mutants = list(mutants)
     kills: Counter[tuple[str, str]] = Counter()
+    judged = []
 
     def tasks():
         for mutant in mutants:
-            names = sorted(askable(mutant, seen), key=lambda name: -kills[mutant.module, name])
-            yield mutant, lambda mutant=mutant, names=names: ask([mutant], FACTOR, names, items)
+            names = sorted(askable(mutant, *observed), key=lambda name: -kills[mutant.module, name])
+            yield mutant, lambda mutant=mutant, names=names: ask(mutant, names, items)
 
-    judged = []
     for done, (mutant, answer) in enumerate(forked(tasks(), TOGETHER), start=1):
         judged.append(answer or MutantVerdict(mutant, KILLED, "out of time", 0.0, "Timeout"))
         kills[mutant.module, judged[-1].by] += judged[-1].outcome == KILLED
         progress(done, len(mutants))
     return judged
-
-
-def control(modules: Iterable[str], items: Mapping[str, pytest.Item], seen: Mapping[str, Seen]) -> list[str]:
-    """All modules rewritten with every number as it is: the tests that fail then, by the fault of the
-    rewriting.
-    """
-
-    def failing(names: Sequence[str]) -> list[str]:
-        for module in modules:
-            if mutants := [mutant for mutant in mutants_of(module) if mutant.kind != "row"]:
-                inject.put(mutants, 1.0)
-        return [name for name in names if not run(items[name]).passed]
-
-    prepare()
-    names = list(seen)
-    chunks = [names[k : k + CHUNK] for k in range(0, len(names), CHUNK)]
-    answers = forked([(chunk, lambda chunk=chunk: failing(chunk)) for chunk in chunks], CHUNK * ALONE)
-    return [name for chunk, failed in answers for name in (chunk if failed is None else failed)]

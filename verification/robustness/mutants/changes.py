@@ -1,0 +1,311 @@
+# SPDX-License-Identifier: MIT
+"""The mutants of a module: numbers, comparisons and conditions of its source, which changes some of them.
+
+Perturbed by a factor 1.001 are, each by itself: every float; every integer that is an operand of + - * / and
+meets a float there, which only the run tells (`Number`); every row of a table. Structure, and left as it is:
+0, indices and slices, powers, keys of dictionaries, operands of // and %, arguments and limits that are
+integers, integers that only ever meet integers. A named integer, NAME = 24 in a module or a class, is a
+count: it grows by 2, as some have to stay even. In functions, < becomes <= and any other comparison its
+opposite, by itself; each condition of an if, a while or the like is negated.
+"""
+
+from __future__ import annotations
+
+import ast
+import operator
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+ARITHMETIC = (np.add, np.subtract, np.multiply)
+FACTOR = 1.001
+MORE = 2
+HOOK = "_perturbed_number_"
+"""Begins the names under which a rewritten module finds its `Number`; one underscore, as a class changes
+names with two."""
+NEIGHBOUR = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt}
+OPPOSITE = {ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Gt: ast.LtE, ast.GtE: ast.Lt} | {
+    one: other
+    for pair in ((ast.Eq, ast.NotEq), (ast.Is, ast.IsNot), (ast.In, ast.NotIn))
+    for one, other in (pair, pair[::-1])
+}
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One change. kind: "number", "count", "row", "comparison" or "branch"; function: qualified name, "" at
+    the level of the module; ordinal: among those of its kind in the function; text: what is changed, or what
+    a comparison becomes; code: file line where the code begins; line: of the source.
+    """
+
+    module: str
+    kind: str
+    function: str
+    ordinal: int
+    text: str
+    code: int
+    line: str = ""
+
+    @property
+    def name(self) -> str:
+        return f"{self.module}:{self.function or 'module'}:{self.kind}:{self.ordinal}"
+
+    @property
+    def integer(self) -> bool:
+        """Whether it is a `Number`, of which the run tells whether it is structure."""
+        return self.kind == "number" and self.text.rpartition(" ")[2].lstrip("-").isdigit()
+
+    @property
+    def key(self) -> tuple[str, str, str]:
+        """What a list of constants calls it."""
+        return self.module, self.function, self.text
+
+
+class Number:
+    """An integer that is perturbed where it meets a float, and in each true division; anywhere else it is
+    itself.
+    """
+
+    def __init__(self, value: int, factor: float):
+        self.value, self.factor, self.met = value, factor, False
+
+    def beside(self, other) -> float | int:
+        """What it is in arithmetic with the other operand."""
+        kind = getattr(other, "dtype", np.dtype(type(other)) if isinstance(other, float | complex) else None)
+        return self.perturbed() if kind is not None and kind.kind in "fc" else self.value
+
+    def perturbed(self) -> float:
+        """What it is beside a float: noted."""
+        self.met = True
+        return self.value * self.factor if self.factor != 1.0 else self.value
+
+    def __array_ufunc__(self, ufunc, method, *inputs, **options):
+        """The arithmetic of arrays, in place too; in any other function it is itself."""
+        others = [value for value in inputs if value is not self]
+        if ufunc is np.true_divide:
+            own = self.perturbed()
+        else:
+            own = self.beside(others[0]) if others and ufunc in ARITHMETIC else self.value
+        return getattr(ufunc, method)(*(own if value is self else value for value in inputs), **options)
+
+    def __index__(self):
+        return self.value
+
+    def __float__(self):
+        return float(self.perturbed())
+
+    def __neg__(self):
+        return Number(-self.value, self.factor)
+
+    def __hash__(self):
+        return hash(self.value)
+
+    def __array__(self, dtype=None, copy=None):
+        return np.array(
+            self.perturbed() if dtype is not None and np.dtype(dtype).kind in "fc" else self.value, dtype
+        )
+
+
+def _method(operation: Callable, own: Callable, swapped: bool = False) -> Callable:
+    """An operator of `Number`; own: (number, other operand) -> what stands for the number."""
+
+    def method(self: Number, other):
+        mine = own(self, other)
+        return operation(other, mine) if swapped else operation(mine, other)
+
+    return method
+
+
+for _name, _own in (
+    *((name, Number.beside) for name in ("add", "sub", "mul")),
+    ("truediv", lambda number, other: number.perturbed()),
+    *((name, lambda number, other: number.value) for name in ("pow", "eq", "lt", "gt")),
+):
+    setattr(Number, f"__{_name}__", _method(getattr(operator, _name), _own))
+    setattr(Number, f"__r{_name}__", _method(getattr(operator, _name), _own, swapped=True))
+
+
+def _conditions(node: ast.AST) -> list[ast.expr]:
+    """What decides in an if, a while, an assertion, a conditional expression or a comprehension."""
+    return [node.test] if hasattr(node, "test") else getattr(node, "ifs", [])
+
+
+class _Finder(ast.NodeVisitor):
+    """Collects the mutants of a module, each with its node and the operator or value that takes its place."""
+
+    def __init__(self, module: str, source: str):
+        self.module, self.lines = module, source.splitlines()
+        self.found: list[tuple[Mutant, ast.AST, tuple[int, type] | None]] = []
+        self.ordinals: Counter[tuple[str, str]] = Counter()
+        self.functions: list[tuple[str, int, bool]] = []  # qualified name, first line, whether a function
+        self.parents: list[ast.AST] = []
+        self.indices = 0  # of how many subscripts the node is inside
+
+    def _add(self, kind: str, text: str, node, change: tuple[int, type] | None = None) -> None:
+        """change: place of an operator among those of a comparison, and what it becomes."""
+        path = ".".join(name for name, *_ in self.functions)
+        code = next((first for _, first, function in reversed(self.functions) if function), 0)
+        if code or change is None:
+            line = self.lines[node.lineno - 1].strip()
+            mutant = Mutant(self.module, kind, path, self.ordinals[path, kind], text, code, line)
+            self.ordinals[path, kind] += 1
+            self.found.append((mutant, node, change))
+
+    def generic_visit(self, node: ast.AST) -> None:
+        self.parents.append(node)
+        for test in _conditions(node):
+            if not isinstance(test, ast.Constant):
+                self._add("branch", f"not ({ast.unparse(test)})", test, (0, ast.Not))
+        super().generic_visit(node)
+        self.parents.pop()
+
+    def visit_Subscript(self, node):
+        self.parents.append(node)
+        self.visit(node.value)
+        self.indices += 1
+        self.visit(node.slice)
+        self.indices -= 1
+        self.parents.pop()
+
+    def visit_Compare(self, node):
+        negated = len(node.ops) == 1 and node in _conditions(self.parents[-1])
+        for place, old in enumerate(map(type, node.ops)):
+            others = [NEIGHBOUR.get(old), None if negated else OPPOSITE[old]]
+            left, right = [node.left, *node.comparators][place : place + 2]
+            for other in filter(None, others):
+                changed = ast.unparse(ast.Compare(left, [other()], [right]))
+                self._add("comparison", changed, node, (place, other))
+        self.generic_visit(node)
+
+    def _inside(self, node, name: str, function: bool) -> None:
+        first = min([node.lineno, *(d.lineno for d in getattr(node, "decorator_list", ()))])
+        if function:
+            for default in (
+                *node.args.defaults,
+                *node.args.kw_defaults,
+            ):  # evaluated where the function is made
+                if default is not None:
+                    self.visit(default)
+        self.functions.append((name, first, function))
+        self.parents.append(node)
+        for part in node.body if isinstance(node.body, list) else [node.body]:
+            self.visit(part)
+        self.parents.pop()
+        self.functions.pop()
+
+    def visit_FunctionDef(self, node):
+        self._inside(node, node.name, True)
+
+    def visit_Lambda(self, node):
+        self._inside(node, "<lambda>", True)
+
+    def visit_ClassDef(self, node):
+        self._inside(node, node.name, False)
+
+    def visit_Dict(self, node):
+        self.parents.append(node)
+        for value in node.values:
+            self.visit(value)
+        self.parents.pop()
+
+    def visit_UnaryOp(self, node):
+        if isinstance(node.op, ast.USub) and isinstance(node.operand, ast.Constant):
+            self._number(node, node.operand.value)
+        else:
+            self.generic_visit(node)
+
+    def visit_Constant(self, node):
+        self._number(node, node.value)
+
+    def _number(self, node, value) -> None:
+        if type(value) not in (int, float, complex) or value == 0 or self.indices:
+            return
+        running = any(function for *_, function in self.functions)
+        kind = "number" if type(value) is not int else self._kind_of_integer(node, running)
+        if kind:
+            name = "" if running else self._assigned(node)
+            self._add(kind, f"{name} = {ast.unparse(node)}" if name else ast.unparse(node), node)
+
+    def _kind_of_integer(self, node, running: bool) -> str:
+        parent = self.parents[-1]
+        if isinstance(parent, ast.BinOp | ast.AugAssign):
+            return "number" if isinstance(parent.op, ast.Add | ast.Sub | ast.Mult | ast.Div) else ""
+        if running:
+            return ""
+        if self._assigned(node):
+            return "count"
+        return "number" if isinstance(parent, ast.Tuple | ast.List) else ""
+
+    def _assigned(self, node) -> str:
+        """The name that a number of a module or a class is assigned to, by itself or in a row of names."""
+        above = self.parents[-2:] if isinstance(self.parents[-1], ast.Tuple) else self.parents[-1:]
+        if not isinstance(above[0], ast.Assign | ast.AnnAssign):
+            return ""
+        targets = above[0].targets if isinstance(above[0], ast.Assign) else [above[0].target]
+        if len(above) == 1:
+            return ast.unparse(targets[0])
+        if isinstance(targets[0], ast.Tuple):
+            return ast.unparse(targets[0].elts[above[1].elts.index(node)])
+        return ""
+
+
+def find(module: str, source: str) -> list[Mutant]:
+    """All mutants of a module's source, in the order of the source."""
+    finder = _Finder(module, source)
+    finder.visit(ast.parse(source))
+    return [mutant for mutant, *_ in finder.found]
+
+
+class _Rewriter(ast.NodeTransformer):
+    """Puts into a tree what takes the place of nodes; numbers: name in the module -> mutant, `Number`."""
+
+    def __init__(self, wanted: dict[int, list[tuple]], factor: float):
+        self.wanted, self.factor = wanted, factor
+        self.numbers: dict[str, tuple[Mutant, Number]] = {}
+
+    def visit(self, node):
+        changed = self.generic_visit(node)
+        for mutant, change in self.wanted.get(id(node), ()):
+            if mutant.kind == "comparison":
+                changed.ops[change[0]] = change[1]()
+            elif mutant.kind == "branch":
+                changed = ast.copy_location(ast.UnaryOp(change[1](), changed), node)
+            else:
+                changed = ast.copy_location(self._number(mutant, ast.literal_eval(node)), node)
+        return changed
+
+    def _number(self, mutant: Mutant, value: complex) -> ast.expr:
+        if mutant.kind == "count":
+            return ast.Constant(value + (MORE if self.factor != 1.0 else 0))
+        if not isinstance(value, int):
+            return ast.Constant(value * self.factor)
+        name = f"{HOOK}{len(self.numbers)}"
+        self.numbers[name] = mutant, Number(value, self.factor)
+        return ast.Name(name, ast.Load())
+
+
+def rewritten(
+    source: str, mutants: Sequence[Mutant], factor: float = FACTOR
+) -> tuple[ast.Module, dict[str, tuple[Mutant, Number]]]:
+    """The tree of the source with these changed, and the integers by the names that it needs to run."""
+    finder, wanted = _Finder(mutants[0].module, source), {}
+    finder.visit(tree := ast.parse(source))
+    for mutant, node, change in finder.found:
+        if mutant in mutants:
+            wanted.setdefault(id(node), []).append((mutant, change))
+    rewriter = _Rewriter(wanted, factor)
+    return ast.fix_missing_locations(rewriter.visit(tree)), rewriter.numbers
+
+
+def rows(module: str, function: str, table: dict, code: int) -> Iterator[Mutant]:
+    """The rows of a table kind -> entry -> rows; function: by whose execution a test is known to read it."""
+    places = (
+        (f"{kind} {entry} {k}", row)
+        for kind, entries in table.items()
+        for entry, lines in entries.items()
+        for k, row in enumerate(lines if isinstance(lines, list) else lines.items())
+    )
+    for ordinal, (text, row) in enumerate(places):
+        yield Mutant(module, "row", function, ordinal, text, code, str(row))
