@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from sam.scene import Scene, load_scene, parse_scene
-from verification.robustness.bad_surfaces import good_heights
+from verification.robustness.fuzz import good_heights
 from verification.robustness.hostile import ROUGH
 
 STEEL = {"young": 210e9, "poisson": 0.3}

@@ -15,7 +15,6 @@ from fake_case import FakeCase
 from setuptools import find_namespace_packages
 
 from verification.cases import all_cases
-from verification.rows import load_rows
 from verification.suite import verify
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -61,7 +60,7 @@ def test_the_wheel_has_every_file_of_the_packages_but_the_mutation_check():
     assert left_out and all(name.startswith(LEFT_OUT) for name in left_out)
     assert {name.split("/")[0] for name in in_wheel()} == set(OWN)
     assert {
-        "verification/suite/gates/hertz.toml",
+        "verification/cases/hertz/hertz.toml",
         "verification/suite/templates/index.html.j2",
     } <= in_wheel()
 
@@ -117,7 +116,7 @@ def test_a_case_without_its_extra_is_not_run_and_says_what_to_install(case, tmp_
 
 def test_a_case_that_is_not_run_does_not_stop_the_others(tmp_path, monkeypatch, capsys):
     """The page and results.json have the reason; nothing of it is red."""
-    from test_report import CASES, TABLE  # noqa: PLC0415 - found once its folder is collected
+    from test_report import CASES, ROWS  # noqa: PLC0415 - found once its folder is collected
 
     unmet = FakeCase(
         "slow",
@@ -127,7 +126,7 @@ def test_a_case_that_is_not_run_does_not_stop_the_others(tmp_path, monkeypatch, 
         does=pytest.fail,
     )
     monkeypatch.setattr(verify, "all_cases", lambda: CASES | {"slow": unmet})
-    monkeypatch.setattr(verify, "load_rows", lambda: load_rows(TABLE))
+    monkeypatch.setattr(verify, "load_rows", lambda: ROWS)
     assert verify.main(["good", "slow"], "quick", tmp_path / "out") == 0
     assert "slow: not run: install nothing: pip install x" in capsys.readouterr().out
     records = {
