@@ -205,10 +205,10 @@ class PaperStatements:
         if best := judged.most_at_a_point:
             words = "hold together at the best of its points, which is no bound"
             found.append((INPUTS, words, f"{best} {every}"))
-        if best := max(judged.physics.values(), default=0):
+        if best := max((count for count, _ in judged.physics.values()), default=0):
             words = (
                 f"hold on one surface under the best of {len(judged.physics)} ways to harden and to load it "
-                f"({judged.physics[()]} on the same surface under the way of the paper)"
+                f"({judged.physics[()][0]} on the same surface under the way of the paper)"
             )
             found.append((PHYSICS, words, f"{best} {every}"))
         for name, words, value in found:

@@ -20,6 +20,7 @@ from verification.suite.pages.judged import (
     INPUTS,
     NOT_RUN,
     OLDER,
+    OPEN,
     PHYSICS,
     READINGS,
     Judged,
@@ -54,7 +55,6 @@ UNTESTED = (
     "That curve C is very close to curve B, so that the paper's Fig. 15 stands for both: curve C runs on one "
     "surface (case running-in, other assumptions), and no statement asks for it."
 )
-MANY = 2  # of what is equal that is named
 NOTHING = "none of those studied"
 GIGA = 1e-9
 COLUMNS = (
@@ -90,11 +90,6 @@ class Headline:
         """The statements, and what its columns mean."""
         caption = "What the paper says of its Figures 13 to 17, and on what each statement depends"
         return {"caption": caption, "columns": COLUMNS, "rows": self.rows, "note": MEANING}
-
-    @property
-    def files(self) -> set[str]:
-        """Of the figures, which need not be shown a second time."""
-        return {each["png"] for each in self.pictures}
 
 
 def headline_of(stored: Stored) -> Headline | None:
@@ -206,13 +201,11 @@ def _of_physics(judged: Judged) -> Iterator[str]:
     if not judged.physics:
         yield judged.missing(PHYSICS)
         return
-    most = max(judged.physics.values())
-    best = [each for each, count in judged.physics.items() if count == most]
-    more = f" and {len(best) - MANY} more" if len(best) > MANY else ""
+    counts = {each: count for each, (count, _) in judged.physics.items()}
+    best = [each for each, count in counts.items() if count == max(counts.values())]
     yield (
-        f"On one surface under each of {len(judged.physics)} ways to harden and to load it, {most} hold "
-        f"together at best, with {' or '.join(map(in_words, best[:MANY]))}{more}; under the way of the paper "
-        f"{judged.physics[()]}."
+        f"On one surface under each of {len(counts)} ways to harden and to load it, {counts[best[0]]} hold "
+        f"together at best, with {in_words(best, 'and')}; under the way of the paper {counts[()]}."
     )
     yield judged.note(PHYSICS, "One surface")
 
@@ -226,8 +219,9 @@ def _of_failed(judged: Judged) -> Iterator[str]:
         removed = ", ".join(f"{GIGA * own['removed_from']:.2f} ({name})" for name, own in regimes.items())
         films = min(own["film_fails_from"] for own in regimes.values())
         yield (
-            f"Under a failed film metal is removed where the pressure is above {removed} GPa; films fail from "
-            f"{GIGA * films:.2f} GPa, and the first cycle reaches {GIGA * max(reached):.2f} GPa (median)."
+            f"Under a failed film metal is removed where the pressure is above {removed} GPa; films fail "
+            f"from {GIGA * films:.2f} GPa, and the first cycle reaches {GIGA * max(reached):.2f} GPa "
+            "(median)."
         )
     if judged.verdicts and judged.chances and judged.physics:
         never = [words for words in judged.statements if _remedy(judged, words) == NOTHING]
@@ -272,8 +266,8 @@ def _row(judged: Judged, words: str) -> tuple[str, ...]:
         says = chance["of"] and f"{100 * chance['holds'] / chance['of']:.0f} % ({low:.0f} to {high:.0f})"
         share, decided = says or "says nothing", "; ".join(chance["words"]) or "not resolved"
     if judged.physics:
-        silent = len(judged.silent[words])
-        physics = f"{len(judged.under[words])} of {len(judged.physics)}"
+        silent = len(judged.under(words, OPEN))
+        physics = f"{len(judged.under(words))} of {len(judged.physics)}"
         physics += f", says nothing under {silent}" * bool(silent)
     text = f"{words} ({verdicts[0]['measure']} {verdicts[0]['asked']})" if verdicts else words
     text += f"; follows from: {FOLLOWS[words]}" if words in FOLLOWS else ""
@@ -287,10 +281,8 @@ def _remedy(judged: Judged, words: str) -> str:
     if printed:
         return ""
     found = ["the second reading"] * any(others)
-    if under := judged.under.get(words):
-        few = [each for each in under if len(each) == len(under[0])]
-        more = f" or {len(few) - MANY} more" if len(few) > MANY else ""
-        found.append(" or ".join(map(in_words, few[:MANY])) + more)
+    if under := judged.under(words):
+        found.append(in_words([each for each in under if len(each) == len(under[0])], "or"))
     if (chance := judged.chances.get(words)) and chance["holds"]:
         found.append(f"other inputs, {chance['holds']} of {chance['of']} points")
     return "; ".join(found) or (NOTHING if judged.chances and judged.physics else "")

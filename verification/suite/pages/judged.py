@@ -31,17 +31,17 @@ FOLLOWS = {
 where nine tenths wear in 6 cycles, 15 of the other 19 wear at less than a twentieth of that rate. The second
 follows in words only: a difference of 0.001 is asked of it, and of that one a ratio of 0.999.
 """
-HARDENING = {
-    "isotropic": "isotropic hardening",
+WORDS = {
     "half and half": "half kinematic hardening",
     "kinematic": "kinematic hardening",
-}
-COUNTER = {
-    "the same plane in place": "a plane",
+    "alternating": "alternating friction",
     "in place, rough, new in each cycle": "a rough counter-surface, new in each cycle",
     "moves, rough, the same in each pass": "a rough counter-body that moves, the same in each pass",
     "moves, rough, new in each pass": "a rough counter-body that moves, new in each pass",
 }
+"""Of hardening, friction and counter-body, other than those of the paper -> for the reader."""
+PLAIN = "that of the paper"
+MANY = 2  # of what is equal that is named
 Physics = tuple[str, ...]
 """What one physics changes of that of the paper."""
 
@@ -120,35 +120,19 @@ class Judged:
         return max((each["hold"] for each in self.said(INPUTS, "best")), default=0)
 
     @cached_property
-    def _every(self) -> list[Physics]:
-        """In the order of the verdicts of a statement; the first is that of the paper."""
-        every = self.said(PHYSICS, "physics")
-        return [_changes(each, every[0]) for each in every]
-
-    @cached_property
-    def physics(self) -> dict[Physics, int]:
-        """Each physics -> how many hold under it together; the fewest changes first."""
-        counts = [each["held"] for each in self.said(PHYSICS, "physics")]
-        return dict(sorted(zip(self._every, counts, strict=True), key=lambda pair: len(pair[0])))
-
-    @cached_property
-    def under(self) -> dict[str, list[Physics]]:
-        """Under which physics each holds, the fewest changes first."""
-        return self._physics_of(HELD)
-
-    @cached_property
-    def silent(self) -> dict[str, list[Physics]]:
-        """Under which physics each says nothing, or a run is missing."""
-        return self._physics_of(OPEN)
-
-    def _physics_of(self, verdict: str) -> dict[str, list[Physics]]:
-        return {
-            said["statement"]: sorted(
-                (each for each, of in zip(self._every, said["verdicts"], strict=True) if of == verdict),
-                key=len,
-            )
-            for said in self.said(PHYSICS, "statements")
+    def physics(self) -> dict[Physics, tuple[int, Mapping[str, str]]]:
+        """Each physics, the fewest changes first -> how many hold under it together, and each verdict."""
+        every, statements = self.said(PHYSICS, "physics"), self.said(PHYSICS, "statements")
+        verdicts = {each["statement"]: each["verdicts"] for each in statements}
+        found = {
+            _changes(each, every[0]): (each["held"], {words: own[k] for words, own in verdicts.items()})
+            for k, each in enumerate(every)
         }
+        return dict(sorted(found.items(), key=lambda pair: len(pair[0])))
+
+    def under(self, words: str, verdict: str = HELD) -> list[Physics]:
+        """Where a statement has a verdict; not decided: it says nothing, or a run is missing."""
+        return [each for each, (_, verdicts) in self.physics.items() if verdicts[words] == verdict]
 
 
 def held(found: Mapping) -> bool:
@@ -163,10 +147,11 @@ def counted(statements: Sequence[Mapping]) -> str:
     return f"{_count(statements)}, of {len(statements)}{more}"
 
 
-def in_words(physics: Physics) -> str:
-    """For the reader."""
-    *first, last = physics or ("that of the paper",)
-    return " and ".join(filter(None, (", ".join(first), last)))
+def in_words(several: Sequence[Physics], join: str) -> str:
+    """The first of them for the reader, and how many more there are."""
+    parts = ((", ".join(each[:-1]), each[-1]) for each in (each or (PLAIN,) for each in several[:MANY]))
+    named = (" and ".join(filter(None, each)) for each in parts)
+    return f"{' or '.join(named)}{f' {join} {len(several) - MANY} more' if len(several) > MANY else ''}"
 
 
 def _count(statements: Iterable[Mapping]) -> str:
@@ -179,9 +164,5 @@ def _by_words(every: Mapping[str, Sequence[Mapping]]) -> dict[str, Sequence[Mapp
 
 
 def _changes(physics: Mapping, of_paper: Mapping) -> Physics:
-    words = {
-        "hardening": HARDENING[physics["hardening"]],
-        "sign": f"{physics['sign']} friction",
-        "counter": COUNTER[physics["counter"]],
-    }
-    return tuple(text for key, text in words.items() if physics[key] != of_paper[key])
+    keys = (key for key in ("hardening", "sign", "counter") if physics[key] != of_paper[key])
+    return tuple(WORDS[physics[key]] for key in keys)
