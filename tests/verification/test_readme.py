@@ -29,7 +29,7 @@ def changed(results, **gates):
 
 
 def test_the_readme_is_that_of_the_published_pages(published):
-    """Of a report of an older version all but the answer about running-in, for which its cases have no data."""
+    """Of a report of an older version all but the answer about running-in: its cases have no data."""
     texts = [renewed(README, published), README]
     if not any("data" in case for case in published["cases"]):
         texts = [re.sub(r"\n- \[Does the model of running-in.*?(?=\n<!--)", "", t, flags=re.S) for t in texts]

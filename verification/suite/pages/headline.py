@@ -57,16 +57,8 @@ UNTESTED = (
 )
 NOTHING = "none of those studied"
 GIGA = 1e-9
-COLUMNS = (
-    "Fig.",
-    "statement of the paper",
-    "printed inputs",
-    "second reading",
-    "share of points (90 %)",
-    "decided by",
-    "holds under",
-    "what makes it hold",
-)
+COLUMNS = "Fig.|statement of the paper|printed inputs|second reading|share of points (90 %)".split("|")
+COLUMNS += ["decided by", "holds under", "what makes it hold"]
 
 
 @dataclass(frozen=True)
@@ -99,11 +91,19 @@ def headline_of(stored: Stored) -> Headline | None:
         return Headline(f"The studies of running-in in this report were {OLDER.format('have')}.")
     if not judged.statements:
         return None
+    depends = {
+        "Inputs that the paper leaves open": _of_inputs(judged),
+        "Hardening and loading": _of_physics(judged),
+        "Statements that fail with the printed inputs": _of_failed(judged),
+        "Not judged": (UNTESTED,),
+        "Size of the cells": (judged.note(FINER, "Verdicts"), judged.note(FINER, "One surface")),
+        "Wear in the last cycles": _of_last_cycles(judged),
+    }
     ran = {name: each.case for name in (INPUTS, PHYSICS) if (each := judged.case(name))}
     tables = ran[INPUTS]["tables"] if judged.chances else ()
     return Headline(
         " ".join(_of_readings(judged)),
-        [(on, text) for on, said in _depends(judged).items() if (text := " ".join(filter(None, said)))],
+        [(on, text) for on, said in depends.items() if (text := " ".join(filter(None, said)))],
         [_row(judged, words) for words in judged.statements],
         [
             figure
@@ -114,18 +114,6 @@ def headline_of(stored: Stored) -> Headline | None:
         next((each for each in tables if each["caption"].startswith("Fitted")), {}),
         judged.note(INPUTS, "Fitted"),
     )
-
-
-def _depends(judged: Judged) -> dict[str, Iterator[str]]:
-    """What the answer may depend on -> sentences of what each does."""
-    return {
-        "Inputs that the paper leaves open": _of_inputs(judged),
-        "Hardening and loading": _of_physics(judged),
-        "Statements that fail with the printed inputs": _of_failed(judged),
-        "Not judged": iter((UNTESTED,)),
-        "Size of the cells": iter((judged.note(FINER, "Verdicts"), judged.note(FINER, "One surface"))),
-        "Wear in the last cycles": _of_last_cycles(judged),
-    }
 
 
 def _of_readings(judged: Judged) -> Iterator[str]:
@@ -150,7 +138,12 @@ def _of_readings(judged: Judged) -> Iterator[str]:
         f"{count - len(own)} of the {count} follow from others: of the {len(own)} independent ones {first} "
         "hold" + "".join(f", in the second reading {more}" for more in others) + "."
     )
-    if coarse := [words for words in judged.refuted if words in own and held(own[words][0])]:
+    coarse = [
+        words
+        for words, (coarsest, *_, finest) in judged.found(FINER).items()
+        if words in own and held(own[words][0]) and held(coarsest) and not held(finest)
+    ]
+    if coarse:
         yield (
             f"With the printed inputs {len(coarse)} of these {first} ({'; '.join(coarse)}) failed on finer "
             "cells where those were tried, on one surface; not counting such, "
@@ -169,8 +162,7 @@ def _of_inputs(judged: Judged) -> Iterator[str]:
         return
     own, likely = chances.keys() - FOLLOWS.keys(), judged.likely
     least, most = (pick(known, key=lambda words: known[words]) for pick in (min, max))
-    ran = judged.case(INPUTS)
-    runs = dict(ran.case["setup"]).get("Runs", "") if ran else ""
+    runs = dict(judged.stored.ran[INPUTS].case["setup"]).get("Runs", "")
     yield (
         f"{len(likely)} of {len(chances)} statements ({len(own.intersection(likely))} of the {len(own)} "
         f"independent ones) hold at more than half of the points, {judged.sure} of them also by the lower "
@@ -185,10 +177,9 @@ def _of_inputs(judged: Judged) -> Iterator[str]:
         )
     else:
         yield "None depends on an input beyond chance."
-    resolved = 100 * judged.said(INPUTS, "resolved")
     yield (
-        f"Of the others the study does not tell: it resolves changes of {resolved:.0f} % and more between "
-        "the halves of a range."
+        "Of the others the study does not tell: it resolves changes of "
+        f"{100 * judged.said(INPUTS, 'resolved'):.0f} % and more between the halves of a range."
     )
     if best := judged.most_at_a_point:
         yield (
@@ -214,7 +205,7 @@ def _of_failed(judged: Judged) -> Iterator[str]:
     """From which pressures on the model removes metal, and whether what fails with the printed inputs
     holds under anything.
     """
-    regimes = next(iter(judged.said(READINGS, "regimes").values()), {})
+    regimes: Mapping = next(iter(judged.said(READINGS, "regimes").values()), {})
     if reached := [own["reached"] for own in regimes.values() if own["reached"] is not None]:
         removed = ", ".join(f"{GIGA * own['removed_from']:.2f} ({name})" for name, own in regimes.items())
         films = min(own["film_fails_from"] for own in regimes.values())
@@ -241,7 +232,7 @@ def _of_last_cycles(judged: Judged) -> Iterator[str]:
             f"{100 * STILL:g} % to the worn volume, where linear wear adds 20 %, in {own} of {of} runs "
             f"({'; '.join(f'{counter}: {k} of {n}' for counter, (k, n) in on.items())})."
         )
-    last = next(iter(judged.said(READINGS, "last_cycle").values()), {})
+    last: Mapping = next(iter(judged.said(READINGS, "last_cycle").values()), {})
     if rests := [cycle for own in last.values() for cycle in own["rest_from"]]:
         busy = rests.count(None)
         yield (
@@ -256,9 +247,9 @@ def _of_last_cycles(judged: Judged) -> Iterator[str]:
 def _row(judged: Judged, words: str) -> tuple[str, ...]:
     verdicts, chance = judged.verdicts.get(words, ()), judged.chances.get(words)
     readings = [
-        f"{one['by_median']}, {one['holds_on']} of {one['of']}" + f", none on {none}" * bool(none)
-        for one in verdicts
-        for none in [one["none_on"]]
+        f"{each['by_median']}, {each['holds_on']} of {each['of']}"
+        + f", none on {each['none_on']}" * bool(each["none_on"])
+        for each in verdicts
     ]
     share, decided, physics = NOT_RUN, NOT_RUN, NOT_RUN
     if chance:

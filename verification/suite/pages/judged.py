@@ -40,7 +40,6 @@ WORDS = {
     "moves, rough, new in each pass": "a rough counter-body that moves, new in each pass",
 }
 """Of hardening, friction and counter-body, other than those of the paper -> for the reader."""
-PLAIN = "that of the paper"
 MANY = 2  # of what is equal that is named
 Physics = tuple[str, ...]
 """What one physics changes of that of the paper."""
@@ -87,16 +86,15 @@ class Judged:
         every = (*readings, self.said(INPUTS, "statements"), self.said(PHYSICS, "statements"))
         return {each["statement"]: each["figure"] for each in next(filter(None, every), ())}
 
+    def found(self, case: str) -> dict[str, Sequence[Mapping]]:
+        """What was found of each in each reading, or on each size of cells."""
+        every = self.said(case, "statements").values()
+        return {each[0]["statement"]: each for each in zip(*every, strict=True)}
+
     @cached_property
     def verdicts(self) -> dict[str, Sequence[Mapping]]:
         """What was found in each reading."""
-        return _by_words(self.said(READINGS, "statements"))
-
-    @cached_property
-    def refuted(self) -> list[str]:
-        """Those that hold on the coarsest cells of the study of them, and on its finest do not."""
-        found = _by_words(self.said(FINER, "statements"))
-        return [words for words, (first, *_, last) in found.items() if held(first) and not held(last)]
+        return self.found(READINGS)
 
     @cached_property
     def chances(self) -> dict[str, Mapping]:
@@ -149,7 +147,10 @@ def counted(statements: Sequence[Mapping]) -> str:
 
 def in_words(several: Sequence[Physics], join: str) -> str:
     """The first of them for the reader, and how many more there are."""
-    parts = ((", ".join(each[:-1]), each[-1]) for each in (each or (PLAIN,) for each in several[:MANY]))
+    parts = (
+        (", ".join(each[:-1]), each[-1])
+        for each in (each or ("that of the paper",) for each in several[:MANY])
+    )
     named = (" and ".join(filter(None, each)) for each in parts)
     return f"{' or '.join(named)}{f' {join} {len(several) - MANY} more' if len(several) > MANY else ''}"
 
@@ -157,10 +158,6 @@ def in_words(several: Sequence[Physics], join: str) -> str:
 def _count(statements: Iterable[Mapping]) -> str:
     found = Counter(each["by_median"] for each in statements)
     return ", ".join(f"{found[verdict]} {verdict}" for verdict in VERDICTS)
-
-
-def _by_words(every: Mapping[str, Sequence[Mapping]]) -> dict[str, Sequence[Mapping]]:
-    return {found[0]["statement"]: found for found in zip(*every.values(), strict=True)}
 
 
 def _changes(physics: Mapping, of_paper: Mapping) -> Physics:
