@@ -12,7 +12,7 @@ from typing import Protocol
 
 from verification.judging import LIMITS
 from verification.suite.pages.costs import BOUND, CASE, TARGET, costs_of
-from verification.suite.pages.judged import INPUTS, PHYSICS, READINGS, Judged, counted
+from verification.suite.pages.judged import INPUTS, OLDER, PHYSICS, READINGS, Judged, counted
 from verification.suite.pages.pairs import Pair
 from verification.suite.pages.stored import RED, ShownCase, Stored
 from verification.suite.pages.views import LIMIT_SIGNS
@@ -192,6 +192,8 @@ class PaperStatements:
     def find(self, evidence: Evidence) -> Iterator[Finding]:
         """One for each reading of the paper by the median of the surfaces, and for each study that ran."""
         judged, found = Judged(evidence.stored), []
+        if cases := judged.older:
+            yield Finding(f"from studies that were {OLDER.format('have')}", "No number", cases, gated=False)
         for reading, said in judged.said(READINGS, "statements").items():
             words = f"{SAID.get(reading, reading)}, by the median of the surfaces"
             found.append((READINGS, words, counted(said)))

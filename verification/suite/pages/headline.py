@@ -65,7 +65,7 @@ COLUMNS += ["decided by", "holds under", "what makes it hold"]
 class Headline:
     """What the page of running-in begins with. answer: by the readings of the paper; depends: on what that
     depends, and what each of it does; rows: of the table of statements; pictures: figures as in results.json;
-    fitted: a table, empty without, and fitted_note what it would mean.
+    fitted: a table, empty without, and fitted_note what it would mean. Of an older version only the answer.
     """
 
     answer: str
@@ -87,7 +87,7 @@ class Headline:
 def headline_of(stored: Stored) -> Headline | None:
     """The headline, if any of the cases judged the statements of the paper."""
     judged = Judged(stored)
-    if judged.is_older:
+    if judged.older:
         return Headline(f"The studies of running-in in this report were {OLDER.format('have')}.")
     if not judged.statements:
         return None

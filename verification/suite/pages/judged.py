@@ -74,10 +74,10 @@ class Judged:
         return f"{STUDIES[case]} (case {case}) {why}."
 
     @property
-    def is_older(self) -> bool:
-        """Whether studies ran, and none of them with a version that gives pages its data."""
-        ran = [each for name in STUDIES if (each := self.case(name))]
-        return bool(ran) and not any("data" in each.case for each in ran)
+    def older(self) -> tuple[ShownCase, ...]:
+        """The studies that ran, where none of them did with a version that gives pages its data."""
+        ran = tuple(each for name in STUDIES if (each := self.case(name)))
+        return () if any("data" in each.case for each in ran) else ran
 
     @cached_property
     def statements(self) -> dict[str, str]:
