@@ -5,7 +5,7 @@ constants of the back-stresses, and what both dissipate and store in a unit volu
 How a model uses them (return mapping, tangent) is its own. The power of the stress is
 s : d eps_p = sigma_y dp + sum X_k : d eps_p. Each back-stress X_k = 2/3 C a_k
 stores W = C/3 a_k : a_k and dissipates the rest, dD = 2/3 g C a_k : a_k dp. Along a constant direction N, in
-which a = b a_0 + i N with b = exp(-g t), i = (1 - b)/g (see `sam.plasticity.kinematic`), the integrals over a
+which a = b a_0 + i N with b = exp(-g t), i = (1 - b)/g (see `sam.plasticity.flow`), the integrals over a
 step are, with u = g dp, A = a_0 : a_0, B = a_0 : N and N : N = 3/2,
 
     D = 2/3 g C [ (1 - b^2)/(2 g) A + i^2 B + 3/2 dp^3 phi(u) ],                                           (a)
