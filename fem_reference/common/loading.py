@@ -15,8 +15,8 @@ import numpy as np
 
 from fem_reference.common.contact import EQUILIBRIUM, Equilibrium
 from fem_reference.common.linear import NO_WORK, Work
-from fem_reference.common.messages import MOST_CUTS
 from fem_reference.common.model import ContactModel
+from fem_reference.common.refusals import MOST_CUTS
 from fem_reference.common.schedule import Load, Schedule, Target
 from sam.scene.result import Attempt, Progress
 

@@ -14,10 +14,9 @@ from typing import Any, Self, TypeVar
 
 import numpy as np
 
-from fem_reference.common.bodies import Bodies, Elastic
-from fem_reference.common.coating import coating_of, expected_radius
+from fem_reference.common.bodies import Bodies, Elastic, coating_of, expected_radius
 from fem_reference.common.hertz import Scales, peak_force, relative_moduli, required
-from fem_reference.common.messages import Advice, advice_of
+from fem_reference.common.refusals import Advice, advice_of
 from fem_reference.common.schedule import Schedule, Sliding, schedule_of
 from sam.scene.result import NO_FORCE, LeftOut, Stage, left_out_of
 from sam.scene.schema import Scene

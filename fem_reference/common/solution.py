@@ -9,22 +9,20 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
 from fem_reference.common.arrays import Array
-from fem_reference.common.bare import Solved, coated_quantities, recorded_steps, solved_steps
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.linear import NO_WORK
-from fem_reference.common.loading import Step, run
+from fem_reference.common.loading import Progressed, Step, run
 from fem_reference.common.model import ContactModel
-from fem_reference.common.periods import element_fields, verdict_summary
 from fem_reference.common.plan import Plan
 from fem_reference.common.recovery import Peak, exceeded_strain
-from fem_reference.common.tables import peak_steps, step_tables
+from fem_reference.common.tables import element_fields, peak_steps, step_tables, verdict_summary
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.result import (
     COST,
@@ -42,8 +40,90 @@ from sam.scene.result import (
 )
 from sam.scene.schema import Scene
 
+M = TypeVar("M", bound=ContactModel)
 
-class Strained(Protocol):
+
+@dataclass(frozen=True)
+class Pair:
+    """The steps of the coated contact and those of the bare one; None: not begun."""
+
+    coated: Progressed | None = None
+    bare: Progressed | None = None
+
+
+@dataclass(frozen=True)
+class Solved(Generic[M]):
+    """The model of a plan and its steps; of a coated one also those of the bare contact, no steps if the
+    coated one failed.
+    """
+
+    model: M
+    steps: list[Step]
+    bare_model: M | None = None
+    bare_steps: list[Step] = field(default_factory=list)
+
+
+Keeping = Callable[..., None]
+"""Called with a record, its part that goes on, the steps before that part and those after it."""
+
+
+def coated_then_bare(
+    coated: M, bare: M, begin: Pair, *, progress: Progress | None, keep: Keeping
+) -> Solved[M]:
+    """The steps of the coated contact, then, unless it failed, those of the bare one on the same mesh for
+    comparison: the same up to the last peak if the body can yield; of an elastic one the peak is enough.
+    """
+    schedule, later = coated.plan.schedule, bare.plan.schedule
+
+    def counted(first: int, last: int) -> Progress | None:
+        return progress and (lambda stage, done, total: progress(stage, first + done, first + total + last))
+
+    steps = run(
+        coated,
+        schedule,
+        progress=counted(0, later.loading_steps),
+        keep=lambda now: keep(Pair(now), now, 0, len(later.targets)),
+        begin=begin.coated,
+    )
+    if not steps[-1].state.converged:
+        return Solved(coated, steps, bare)
+    finished = Progressed(coated.virgin(), (), steps)
+    bare_steps = run(
+        bare,
+        later.with_forces({(step.cycle, step.number): step.state.force for step in steps}),
+        progress=counted(schedule.loading_steps, 0),
+        keep=lambda now: keep(Pair(finished, now), now, len(steps), 0),
+        begin=begin.bare,
+    )
+    return Solved(coated, steps, bare, bare_steps)
+
+
+Measure = Callable[[M, Any], dict[str, float]]
+"""p_max_Pa, mises_max_film_Pa and mises_max_substrate_Pa of a model in a state."""
+
+
+def coated_quantities(solved: Solved[M], peak: Any, measure: Measure[M]) -> dict[str, float | None]:
+    """The quantities of a coated scene alone, none of any other. peak: the state that is reported.
+
+    Relative changes are (coated - bare)/bare at equal force; None without a load, or if the bare contact
+    did not converge.
+    """
+    if solved.bare_model is None:
+        return {}
+    coated = measure(solved.model, peak)
+    values: dict[str, float | None] = {
+        name: coated[name] for name in ("mises_max_film_Pa", "mises_max_substrate_Pa")
+    }
+    if not solved.bare_steps or not solved.bare_steps[-1].state.converged:
+        return values
+    bare = measure(solved.bare_model, solved.bare_steps[-1].state)
+    values |= {"p_max_bare_Pa": bare["p_max_Pa"], "mises_max_bare_Pa": bare["mises_max_substrate_Pa"]}
+    for change, name in (("p_max_change", "p_max_Pa"), ("mises_max_change", "mises_max_substrate_Pa")):
+        values[change] = coated[name] / bare[name] - 1.0 if bare[name] else None
+    return values
+
+
+class Peeq(Protocol):
     """Stresses of a state, of which the accumulated plastic strain is asked."""
 
     @property
@@ -52,8 +132,7 @@ class Strained(Protocol):
 
 
 P = TypeVar("P", bound=Plan)
-M = TypeVar("M", bound=ContactModel)
-S = TypeVar("S", bound=Strained)
+S = TypeVar("S", bound=Peeq)
 Quantities = dict[str, float | None]
 CONDITIONS = ("force_balance", "tension", "penetration", "gap_in_contact")
 
@@ -117,18 +196,25 @@ def solve(
     model = method.build(plan)
     clock.ready()
 
-    def keep(now: object, done: int, total: int) -> None:
+    def keep(now: object, part: Progressed, before: int = 0, after: int = 0) -> None:
         if checkpoint:
+            done = before + len(part.steps)
+            total = done + len(part.targets) + after
             checkpoint(Checkpoint.of(plan.model, now, done=done, total=total, cost=clock.times()))
 
-    solved = solved_steps(
-        model,
-        method.build,
-        progress=progress,
-        keep=keep if checkpoint else None,
-        start=start,
-        strained=partial(method.peeq_max, model),
-    )
+    if plan.bare is not None:
+        pair = start.record(Pair) if start else Pair()
+        solved = coated_then_bare(model, method.build(plan.bare), pair, progress=progress, keep=keep)
+    else:
+        steps = run(
+            model,
+            plan.schedule,
+            progress=progress,
+            keep=lambda now: keep(now, now),
+            begin=start.record(Progressed) if start else None,
+            strained=partial(method.peeq_max, model),
+        )
+        solved = Solved(model, steps)
     return result_of(method, solved, clock)
 
 
@@ -138,7 +224,8 @@ def load_steps(method: Method[P, M, S], scene: Scene, record: Checkpoint | None)
     model = method.build(plan)
     if record is None:
         return model, run(model, plan.schedule)
-    return model, recorded_steps(record, coated=plan.bare is not None)
+    now = record.record(Progressed) if plan.bare is None else record.record(Pair).coated
+    return model, [] if now is None else now.steps
 
 
 def result_of(method: Method[P, M, S], solved: Solved[M], clock: Clock) -> Result:
@@ -171,7 +258,7 @@ def result_of(method: Method[P, M, S], solved: Solved[M], clock: Clock) -> Resul
         left_out=plan.left_out,
         discretisation=method.discretisation(model),
         certificate=certificate(model, states[first]),
-        cost=cost(solved.all_steps, method.setups, clock),
+        cost=cost(solved.steps + solved.bare_steps, method.setups, clock),
         message="; ".join(filter(None, (message, steps[-1].state.ending))),
         warnings=method.warnings(model),
         verdict=verdict_summary(model, steps),
@@ -219,7 +306,7 @@ def verdict(method: Method[P, M, S], solved: Solved[M], peak: S) -> Status:
     return judge(solved.bare_model, solved.bare_steps, last)
 
 
-def judge(model: ContactModel, steps: Sequence[Step], peak: Strained) -> Status:
+def judge(model: ContactModel, steps: Sequence[Step], peak: Peeq) -> Status:
     """Status of the load steps of one contact; the mesh is judged at the largest contact, `peak` are its
     stresses.
     """

@@ -27,7 +27,7 @@ from fem_reference.spatial.hexahedra import on_grid
 from fem_reference.spatial.planner import plan
 from fem_reference.spatial.recovery import largest_peeq, stresses
 from fem_reference.spatial.rough import RoughModel, build, on_mesh, surface_table
-from fem_reference.spatial.tables import plane_table
+from fem_reference.spatial.solution import plane_table
 from sam.scene.result import Table
 from sam.scene.schema import Scene
 
