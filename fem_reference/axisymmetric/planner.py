@@ -13,7 +13,7 @@ import numpy as np
 from fem_reference.axisymmetric.misfit import MisfitSphere
 from fem_reference.common.arrays import Array
 from fem_reference.common.bodies import Elastic, coating_of, expected_radius, yielded_radius
-from fem_reference.common.hertz import Scales, kinks_of, plastic_radius, relative_moduli, required, scales
+from fem_reference.common.hertz import kinks_of, plastic_radius, relative_moduli, required, scales
 from fem_reference.common.mesh_lines import (
     CLOSEST,
     GROWTH,
@@ -23,7 +23,7 @@ from fem_reference.common.mesh_lines import (
     marched,
     uniform_then_growing,
 )
-from fem_reference.common.plan import Plan, shared_fields, stages_of, with_bare_contact
+from fem_reference.common.plan import Plan, planned, stages_of
 from fem_reference.common.refusals import (
     box_problems,
     coating_problems,
@@ -53,27 +53,15 @@ BEYOND_ZONE = 1.1
 class AxisymmetricPlan(Plan):
     """What the axisymmetric model solves of a scene; see `fem_reference.common.plan.Plan`.
 
-    Attributes
-    ----------
-    r, z : (n,) arrays
-        Mesh lines of each body.
-    punch : bool
-        The counter-body is a flat-ended cylinder.
-    flat, opening : float
-        The gap is opening (r - flat)^2/2 beyond a flat end, and zero below that; not used of a punch.
-    edge : float
-        Radius up to which the mesh resolves a smooth contact.
-    interface : float or None
-        Depth of the lower face of the coating, also where the material of the half-space takes its place.
-    misfit : MisfitSphere or None
-        A misfit strain in place of the counter-body.
+    r, z: (n,) mesh lines of each body; punch: the counter-body is a flat-ended cylinder; flat, opening: the
+    gap is opening (r - flat)^2/2 beyond a flat end, and zero below that, not used of a punch; edge: radius up
+    to which the mesh resolves a smooth contact; misfit: a misfit strain in place of the counter-body.
     """
 
     r: Array
     z: Array
     punch: bool
     edge: float
-    interface: float | None
     misfit: MisfitSphere | None = None
     flat: float = 0.0
     opening: float = 1.0
@@ -117,45 +105,42 @@ def plan(scene: Scene) -> AxisymmetricPlan:
     ['mesh', 'contact search', 'stresses at the Gauss points']
     """
     check(scene)
-    units = scales(scene)
-    misfit = misfit_of(scene)
-    r, z = choose_lines(scene) if misfit is None else lines_about(scene, misfit)
-    fields = shared_fields(scene, units)
-    coating, bodies = fields["bodies"].coating, len(fields["bodies"].elastic)
-    columns, rows = r.size - 1, z.size - 1
+    units, fem, counter, misfit = scales(scene), scene.fem, scene.counterbody, misfit_of(scene)
+    if misfit is None:
+        r, z = choose_lines(scene)
+    else:
+        r, z = sphere_lines(fem.cells_per_radius, fem.box, core_about(scene, misfit), misfit.depth)
+    bodies, columns, rows = 2 if counter is not None and counter.elastic else 1, r.size - 1, z.size - 1
     nodes = (columns + 1) * (rows + 1) + columns * (rows + 1) + rows * (columns + 1)
-    elements, unknowns = bodies * columns * rows, 2 * bodies * nodes
-    stages = _meshes(scene, {"elements": elements, "bodies": bodies, "unknowns": unknowns}, columns * rows)
-    points = 4 * columns * rows
+    elements, unknowns, points = bodies * columns * rows, 2 * bodies * nodes, 4 * columns * rows
+    where = "contact radius" if misfit is None else "radius of the sphere"
+    reason = f"{fem.cells_per_radius} cells in the {where}, box of {fem.box:g} radii"
+    size = {"elements": elements, "bodies": bodies, "unknowns": unknowns}
+    stages = [Stage("mesh", True, reason, size)]
+    if bodies > 1:
+        words = "elastic: that of the body, turned over"
+        stages.append(Stage("mesh of the counter-body", True, words, {"elements": columns * rows}))
     stresses = Stage("stresses at the Gauss points", True, "at peak load", {"points": points})
-    made = AxisymmetricPlan(
+    opening = 1.0  # the units are those of a sphere but for a rounded edge
+    if counter is not None and counter.shape == ROUNDED:
+        opening = units.length / required(counter.radius) / units.strain
+    return planned(
+        AxisymmetricPlan,
+        scene,
+        units,
         model=MODEL,
-        **fields,
         r=r,
         z=z,
         punch=is_punch(scene),
         edge=np.inf if is_punch(scene) or misfit is not None else choose_core(scene).radius,
-        interface=None if coating is None else coating.thickness,
         misfit=misfit,
         flat=flat_end(scene),
-        opening=opening(scene, units),
+        opening=opening,
         elements=elements,
         unknowns=unknowns,
         points=points,
         stages=stages_of(scene, stages, stresses),
     )
-    return with_bare_contact(made, scene)
-
-
-def _meshes(scene: Scene, size: dict[str, int], elements: int) -> list[Stage]:
-    """The stages of the mesh; elements: of one body."""
-    where = "radius of the sphere" if scene.loading.misfit_sphere else "contact radius"
-    reason = f"{scene.fem.cells_per_radius} cells in the {where}, box of {scene.fem.box:g} radii"
-    stages = [Stage("mesh", True, reason, size)]
-    if size["bodies"] > 1:
-        words = "elastic: that of the body, turned over"
-        stages.append(Stage("mesh of the counter-body", True, words, {"elements": elements}))
-    return stages
 
 
 def left_out(scene: Scene) -> list[LeftOut]:
@@ -209,13 +194,20 @@ def check(scene: Scene) -> None:
         problems.append(Problem("counterbody.surface.kind", spelling(scene.counter_surface.kind), words))
     problems += running_in_problems(scene)
     refuse(problems)
-    refuse([*coating_problems(scene), *_edge_problems(scene)])  # these need the contact radius of a shape
-    misfit = misfit_of(scene)
-    if misfit is not None:
-        refuse(_held_problems(scene, misfit))
-        refuse(
-            box_problems(scene, core_about(scene, misfit) + 1.0 / scene.fem.cells_per_radius, "misfit sphere")
-        )
+    problems, end = coating_problems(scene), flat_end(scene)  # these need the contact radius of a shape
+    if end and 0.0 < 1.0 - end < NARROWEST:
+        words = f"more: the contact ends {1.0 - end:.2g} of its radius beyond the flat end, the mesh allows "
+        words += f'{NARROWEST:g}; or shape = "punch"'
+        problems.append(Problem("counterbody.radius", spelling(required(scene.counterbody).radius), words))
+    refuse(problems)
+    if (misfit := misfit_of(scene)) is not None:
+        zone = _zone(scene, misfit)
+        if not misfit.free and zone >= misfit.depth:  # it would change the tractions that hold the surface
+            least = zone * scales(scene).length
+            words = f'with surface = "held" more than {least:g} m is allowed, the radius of the plastic zone'
+            refuse([Problem("loading.depth", spelling(scene.loading.depth), words)])
+        reach = core_about(scene, misfit) + 1.0 / scene.fem.cells_per_radius
+        refuse(box_problems(scene, reach, "misfit sphere"))
     elif scene.body.plasticity is not None or scene.body.coating is not None:
         core, kind = choose_core(scene), "coated" if scene.body.plasticity is None else "plastic"
         reach = max(core.radius, core.depth) + 1.0 / scene.fem.cells_per_radius
@@ -232,23 +224,9 @@ def misfit_of(scene: Scene) -> MisfitSphere | None:
     return MisfitSphere(elastic, depth, required(loading.profile), free=loading.surface == "free")
 
 
-def opening(scene: Scene, units: Scales) -> float:
-    """Curvature of the gap in the units of the model, which are those of a sphere but for a rounded edge."""
-    counter = scene.counterbody
-    if counter is None or counter.shape != ROUNDED:
-        return 1.0
-    return units.length / required(counter.radius) / units.strain
-
-
 def core_about(scene: Scene, sphere: MisfitSphere) -> float:
     """Radius of the uniform part of the mesh about a misfit sphere."""
     return max(ELASTIC_CORE, BEYOND_ZONE * _zone(scene, sphere))
-
-
-def lines_about(scene: Scene, sphere: MisfitSphere) -> tuple[Array, Array]:
-    """(r, z) mesh lines about a misfit sphere."""
-    fem = scene.fem
-    return sphere_lines(fem.cells_per_radius, fem.box, core_about(scene, sphere), sphere.depth)
 
 
 def _zone(scene: Scene, sphere: MisfitSphere) -> float:
@@ -258,26 +236,6 @@ def _zone(scene: Scene, sphere: MisfitSphere) -> float:
         return 0.0
     limit = plasticity.strength().stress(sphere.depth * units.length, 0.0)
     return sphere.zone(float(limit) / units.pressure)
-
-
-def _edge_problems(scene: Scene) -> list[Problem]:
-    """A rounded edge so sharp that its part in contact is too small for a mesh."""
-    end = flat_end(scene)
-    if end == 0.0 or not 0.0 < 1.0 - end < NARROWEST:
-        return []
-    words = f"more: the contact ends {1.0 - end:.2g} of its radius beyond the flat end, the mesh allows "
-    words += f'{NARROWEST:g}; or shape = "punch"'
-    return [Problem("counterbody.radius", spelling(required(scene.counterbody).radius), words)]
-
-
-def _held_problems(scene: Scene, sphere: MisfitSphere) -> list[Problem]:
-    """A plastic zone that reaches a held surface, whose tractions it would change."""
-    zone = _zone(scene, sphere)
-    if sphere.free or zone < sphere.depth:
-        return []
-    least = zone * scales(scene).length
-    words = f'with surface = "held" more than {least:g} m is allowed, the radius of the plastic zone'
-    return [Problem("loading.depth", spelling(scene.loading.depth), words)]
 
 
 def sphere_lines(cells_per_radius: int, box: float, core: float, depth: float) -> tuple[Array, Array]:

@@ -14,7 +14,7 @@ from fem_reference.common.arrays import Array
 from fem_reference.common.bodies import coating_of, expected_radius, yielded_radius
 from fem_reference.common.hertz import Scales, contact_modulus, kinks_of, plastic_radius, required, scales
 from fem_reference.common.mesh_lines import Sizes, coated_depths, grow, uniform_then_growing
-from fem_reference.common.plan import Plan, shared_fields, slide, stages_of, with_bare_contact
+from fem_reference.common.plan import Plan, planned, slide, stages_of
 from fem_reference.common.refusals import (
     box_problems,
     coating_problems,
@@ -45,22 +45,10 @@ DEPTH = 1.2
 class SpatialPlan(Plan):
     """What the three-dimensional model solves of a scene; see `fem_reference.common.plan.Plan`.
 
-    Attributes
-    ----------
-    lines : Lines
-        Planes of the mesh.
-    core : tuple of float
-        (low x, high x, high y) of the uniform part of the mesh.
-    curvature : tuple of float
-        Curvatures of the gap along x and y; zero under a patch, which has a gap of its own.
-    weights : (nx + 1, ny + 1) array
-        Local coefficient of friction over the largest one, at the surface nodes.
-    radius : float
-        Semi-axis along x of the elastic contact at the peak, in m, infinite below a plane.
-    interface : float or None
-        Depth of the lower face of the coating, also where the material of the half-space takes its place.
-    patch : Patch or None
-        The rough surface; None if the body is smooth.
+    lines: planes of the mesh; core: (low x, high x, high y) of its uniform part; curvature: of the gap along
+    x and y, zero under a patch, which has a gap of its own; weights: (nx + 1, ny + 1) local coefficient of
+    friction over the largest one, at the surface nodes; radius: semi-axis along x of the elastic contact at
+    the peak, in m, infinite below a plane; patch: the rough surface, None if the body is smooth.
     """
 
     lines: Lines
@@ -68,7 +56,6 @@ class SpatialPlan(Plan):
     curvature: tuple[float, float]
     weights: Array
     radius: float
-    interface: float | None
     patch: Patch | None = None
 
     @property
@@ -118,46 +105,36 @@ def plan(scene: Scene) -> SpatialPlan:
         x, y = (line / units.length for line in patch.centres)
         core = float(x[0]), float(x[-1]), float(y[-1])
     elements, nodes = (int(np.prod([n + k for n in lines.shape])) for k in (0, 1))
-    fields = shared_fields(scene, units)
-    coating = fields["bodies"].coating
-    made = SpatialPlan(
+    words = (
+        "half of the body, y >= 0" if lines.half else "the whole body: the scene is not symmetric to y = 0"
+    )
+    mesh = [Stage("mesh", True, words, {"elements": elements, "unknowns": 3 * nodes})]
+    for name in () if patch is None else ("surface", "counter"):
+        if (surface := getattr(patch, name)) is not None:
+            words = f'[{surface.table}], kind "{surface.kind}", at the nodes of the patch'
+            stage = f"{name} heights".replace("counter", "counter-surface")
+            mesh.append(Stage(stage, True, words, {"nodes": list(required(patch).cells)}))
+    stresses = Stage("stresses in the elements", True, "at peak load", {"points": 8 * elements})
+    stages = stages_of(scene, mesh, stresses)
+    if scene.friction is not None and not scene.friction.coupling:
+        words = "friction.coupling = false is a choice of the semi-analytical model: a continuum is always"
+        stages += (Stage("decoupled traction", False, f"{words} coupled"),)
+    return planned(
+        SpatialPlan,
+        scene,
+        units,
         model=MODEL,
-        **fields,
         lines=lines,
         core=core,
         curvature=curvature,
         weights=friction_weights(scene, lines, units),
         radius=contact_axis(scene),
-        interface=None if coating is None else coating.thickness,
         patch=patch,
         elements=elements,
         unknowns=3 * nodes,
         points=8 * elements,
-        stages=_stages(scene, lines, patch),
+        stages=stages,
     )
-    return with_bare_contact(made, scene)
-
-
-def _stages(scene: Scene, lines: Lines, patch: Patch | None) -> tuple[Stage, ...]:
-    """All stages, with sizes from the mesh."""
-    elements, nodes = (int(np.prod([n + k for n in lines.shape])) for k in (0, 1))
-    words = (
-        "half of the body, y >= 0" if lines.half else "the whole body: the scene is not symmetric to y = 0"
-    )
-    stages = [Stage("mesh", True, words, {"elements": elements, "unknowns": 3 * nodes})]
-    if patch is not None:
-        for surface, name in ((patch.surface, ""), (patch.counter, "counter-")):
-            if surface is not None:
-                words = f'[{surface.table}], kind "{surface.kind}", at the nodes of the patch'
-                stages.append(Stage(f"{name}surface heights", True, words, {"nodes": list(patch.cells)}))
-    stresses = Stage("stresses in the elements", True, "at peak load", {"points": 8 * elements})
-    found = stages_of(scene, stages, stresses)
-    if scene.friction is None or scene.friction.coupling:
-        return found
-    words = (
-        "friction.coupling = false is a choice of the semi-analytical model: a continuum is always coupled"
-    )
-    return (*found, Stage("decoupled traction", False, words))
 
 
 def left_out(scene: Scene) -> list[LeftOut]:
