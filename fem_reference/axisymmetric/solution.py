@@ -209,11 +209,6 @@ def _discretisation(model: Model) -> dict[str, object]:
     }
 
 
-def _warnings(model: Model) -> tuple[str, ...]:
-    """What a reader of the result must know."""
-    return (SINGULAR,) if model.plan.punch else ()
-
-
 METHOD = solution.Method(
     setups="factorizations",
     plan=plan,
@@ -228,5 +223,5 @@ METHOD = solution.Method(
     field_mesh=field_mesh,
     surface=surface_grid,
     discretisation=_discretisation,
-    warnings=_warnings,
+    warnings=lambda model: (SINGULAR,) if model.plan.punch else (),
 )

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -87,14 +87,8 @@ def coating_problems(scene: Scene) -> list[Problem]:
     if not least <= coating.thickness <= most:
         allowed = f"from {least:.3g} to {most:.3g} m for this contact and fem.box = {spelling(scene.fem.box)}"
         problems.append(Problem("body.coating.thickness", spelling(coating.thickness), allowed))
-    return problems or _too_stiff_a_coating(scene)
-
-
-def _too_stiff_a_coating(scene: Scene) -> list[Problem]:
-    """A coating that makes the contact so small that elements as small would be too many."""
-    share, coating = expected_radius(scene), scene.body.coating
-    if coating is None or share >= SMALLEST:
-        return []
+    if problems or (share := expected_radius(scene)) >= SMALLEST:
+        return problems
     words = (
         f"less: the contact would have {share:.2g} of the radius without film, the mesh allows {SMALLEST:g}"
     )
@@ -177,24 +171,16 @@ def advice_of(scene: Scene) -> Advice:
     levels off there, while the coating is sheared until small strains mean nothing.
     """
     coating, mu = scene.body.coating, scene.coefficient
-    advice = Advice({status: message_of(scene, status) for status in Status})
-    if coating is None:
-        return advice
-    if coating.young > scene.body.young:
+    advice = {status: message_of(scene, status) for status in Status}
+    if coating is not None and coating.young > scene.body.young:
         words = f"if the film is too thin and stiff for the digits of a double, {SOFTER}"
-        advice = _with(advice, Status.NOT_CONVERGED, words)
-    if coating.yield_stress is None:
-        return advice
+        advice[Status.NOT_CONVERGED] += f"; {words}"
+    if coating is None or coating.yield_stress is None:
+        return Advice(advice)
     words = f"the film flows, with a plastic strain beyond {FLOWED:g}"
     if mu > 0.0:
         most = coating.yield_stress / (np.sqrt(3.0) * mu)
         words = f"the film carries no pressure beyond {most:.4g} Pa with friction.coefficient = {mu:g}"
-        advice = _with(advice, Status.STEP_CUT_LIMIT, words)
+        advice[Status.STEP_CUT_LIMIT] += f"; {words}"
     remedies = either("raise body.coating.yield_stress", less_load(scene), less_friction(scene))
-    return replace(advice, flows=f"{words}: {remedies}")
-
-
-def _with(advice: Advice, status: Status, words: str) -> Advice:
-    """The advice with more words for one status."""
-    more = {status: f"{advice.by_status[status]}; {words}"}
-    return replace(advice, by_status={**advice.by_status, **more})
+    return Advice(advice, flows=f"{words}: {remedies}")

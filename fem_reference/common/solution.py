@@ -332,6 +332,10 @@ def quantities_of(
     peak, s = states[first], fields[first]
     mises_max, mises_depth = method.largest_mises(s)
     peeq_max, peeq_depth = method.largest_peeq(s)
+    strain = None  # of a body that has not yielded
+    if peak.history is not None:
+        peeq = peak.history.peeq * model.scales.strain
+        strain = exceeded_strain(peeq.ravel(), model.body.weights.ravel())
     values: Quantities = {
         "approach_m": None if model.prescribed else peak.approach * model.scales.displacement,
         "p_max_Pa": model.largest_pressure(peak),
@@ -341,7 +345,7 @@ def quantities_of(
         "peeq_max_depth_m": peeq_depth,
         "friction_coefficient": model.friction(peak),
         "wear_volume_m3": 0.0,
-        "peeq_p95": _exceeded_strain(model, peak),
+        "peeq_p95": strain,
         **method.contact_quantities(model, peak),
     }
     if UNLOADED in states:
@@ -349,14 +353,6 @@ def quantities_of(
         values["residual_mises_max_Pa"] = method.largest_mises(after)[0]
         values |= method.residual_quantities(model, states[UNLOADED], after)
     return {name: values.get(name) for name in QUANTITIES}
-
-
-def _exceeded_strain(model: ContactModel, state: Equilibrium) -> float | None:
-    """See `sam.scene.result.EXCEEDING`; None of a body that has not yielded."""
-    if state.history is None:
-        return None
-    peeq = state.history.peeq * model.scales.strain
-    return exceeded_strain(peeq.ravel(), model.body.weights.ravel())
 
 
 def certificate(model: ContactModel, state: Equilibrium) -> dict[str, float]:

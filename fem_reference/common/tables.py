@@ -62,8 +62,11 @@ def step_tables(model: ContactModel, steps: Sequence[Step], peeq_max: Strained) 
             signs = [int(np.sign(step.state.load.ratio)) for step in peaks]
             found = {**found, FRICTION_SIGN: signs}
         if model.plan.dissipates:
-            found = {**found, DISSIPATED: dissipated_in(cycles, steps)}
-        out["cycles"] = {**found, **verdict_columns_of(model, steps, cycles)}
+            spent = [sum(step.dissipated for step in steps if step.cycle == cycle) for cycle in cycles]
+            found = {**found, DISSIPATED: spent}  # J
+        if (judging := model.plan.judging) is not None:
+            found = {**found, **verdict_columns(cycles, verdicts_of(model, steps, judging), judging.period)}
+        out["cycles"] = found
     return out
 
 
@@ -104,11 +107,6 @@ def cycles_table(model: ContactModel, peaks: Sequence[Step], peeq_max: Strained)
         **{name: [0.0] * len(peaks) for name in ("wear_volume_m3", "sa_m", "sq_m")},
     }
     return {name: values.get(name, [None] * len(peaks)) for name in CYCLES}
-
-
-def dissipated_in(cycles: Sequence[int], steps: Sequence[Step]) -> list[float]:
-    """The energy in J that each cycle dissipated."""
-    return [sum(step.dissipated for step in steps if step.cycle == cycle) for cycle in cycles]
 
 
 def peak_steps(steps: Sequence[Step]) -> list[Step]:
@@ -229,16 +227,6 @@ def _added(before: History, after: History, unit: float) -> Period:
     tensor = np.zeros((6, strain.shape[1]))
     tensor[:3], tensor[3 : len(strain)] = strain[:3], strain[3:] / 2.0
     return Period(unit * (after.peeq - before.peeq).ravel(), norm_of(tensor), tensor)
-
-
-def verdict_columns_of(
-    model: ContactModel, steps: Sequence[Step], cycles: Sequence[int]
-) -> dict[str, list[Any]]:
-    """The last columns of the table cycles, of a scene that is judged; nothing of others."""
-    judging = model.plan.judging
-    if judging is None:
-        return {}
-    return verdict_columns(cycles, verdicts_of(model, steps, judging), judging.period)
 
 
 def verdict_summary(model: ContactModel, steps: Sequence[Step]) -> Mapping[str, Any] | None:

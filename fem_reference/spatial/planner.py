@@ -116,6 +116,7 @@ def plan(scene: Scene) -> SpatialPlan:
             mesh.append(Stage(stage, True, words, {"nodes": list(required(patch).cells)}))
     stresses = Stage("stresses in the elements", True, "at peak load", {"points": 8 * elements})
     stages = stages_of(scene, mesh, stresses)
+    below_plane = scene.counterbody is not None and scene.counterbody.radii is None
     if scene.friction is not None and not scene.friction.coupling:
         words = "friction.coupling = false is a choice of the semi-analytical model: a continuum is always"
         stages += (Stage("decoupled traction", False, f"{words} coupled"),)
@@ -128,7 +129,7 @@ def plan(scene: Scene) -> SpatialPlan:
         core=core,
         curvature=curvature,
         weights=friction_weights(scene, lines, units),
-        radius=contact_axis(scene),
+        radius=np.inf if below_plane else semi_axes(curvatures(scene))[0] * scales(scene).length,
         patch=patch,
         elements=elements,
         unknowns=3 * nodes,
@@ -183,7 +184,8 @@ def check(scene: Scene) -> None:
     refuse(problems)
     refuse(coating_problems(scene))  # these need the contact radius of a shape that is allowed
     if not rough:  # half of a rough patch is less than the smallest box
-        refuse(box_problems(scene, uniform_depth(scene), "contact"))
+        reach = DEPTH * _grown(scene) + 1.0 / scene.fem.cells_per_radius
+        refuse(box_problems(scene, reach, "contact"))
 
 
 def _combinations(scene: Scene) -> list[Problem]:
@@ -221,14 +223,6 @@ def semi_axes(curvature: tuple[float, float]) -> tuple[float, float]:
     return (along_y / along_x) ** (1.0 / 3.0), (along_x / along_y) ** (1.0 / 3.0)
 
 
-def contact_axis(scene: Scene) -> float:
-    """Semi-axis along x of the elastic contact by Hertz in m, infinite below a plane."""
-    counter = scene.counterbody
-    if counter is not None and counter.radii is None:
-        return float(np.inf)
-    return semi_axes(curvatures(scene))[0] * scales(scene).length
-
-
 def friction_weights(scene: Scene, lines: Lines, units: Scales) -> Array:
     """(nx + 1, ny + 1) coefficient of friction over the largest one: of the map's cell that holds the node,
     or the nearest.
@@ -245,11 +239,6 @@ def friction_weights(scene: Scene, lines: Lines, units: Scales) -> Array:
 def _grown(scene: Scene) -> float:
     """Estimate of the largest contact radius over that of Hertz."""
     return max(plastic_radius(scene) or 1.0, expected_radius(scene), yielded_radius(scene))
-
-
-def uniform_depth(scene: Scene) -> float:
-    """Depth of the uniform part of the mesh, at most."""
-    return DEPTH * _grown(scene) + 1.0 / scene.fem.cells_per_radius
 
 
 def choose_lines(scene: Scene) -> tuple[Lines, tuple[float, float, float]]:
