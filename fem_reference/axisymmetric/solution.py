@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Axisymmetric finite-element solution of a scene: contact of a sphere or a flat punch with a half-space."""
+"""Axisymmetric finite-element solution of a scene: contact of a sphere or a flat punch with a half-space.
+Tables and fields are in SI units, with the columns of sam.scene.result.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The bodies of a contact in the units of a model."""
+"""The bodies of a contact in the units of a model, and estimates of the contact of a coated one, which set
+meshes, never a result.
+"""
 
 from __future__ import annotations
 

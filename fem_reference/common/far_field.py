@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Displacements on the outer boundary of a mesh: those of the point forces that balance the contact on the
-half-space.
+half-space, of Boussinesq and Cerruti.
 """
 
 from __future__ import annotations

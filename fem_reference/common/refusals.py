@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What no finite-element model can represent. Loads no numerical library but numpy."""
+"""What no finite-element model can represent, and what to change when a solve ends badly: nothing that is set
+already, nothing that the scene has not. Loads no numerical library but numpy.
+"""
 
 from __future__ import annotations
 

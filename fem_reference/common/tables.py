@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Tables that the models of both geometries share, in SI units, with the columns of sam.scene.result."""
+"""Tables that the models of both geometries share, in SI units, with the columns of sam.scene.result, and the
+verdict on repeated loading, from the plastic histories of the unloaded states that end the periods.
+"""
 
 from __future__ import annotations
 

@@ -281,6 +281,10 @@ UNLOADED = 0.01
 class Patch:
     """A rough body in SI units and the counter-body above it; None of a surface that is smooth.
 
+    The surface nodes of the patch are the centres of the scene's cells, so that a node stands for a cell: its
+    height, its local coefficient of friction. Beyond the patch the surface is free. The whole body is
+    modelled, its unit of length is half of the longer side.
+
     cells: (nx, ny); sides: (Lx, Ly); relief: the border of the patch is that of a relief in a plane; radii:
     of the counter-body along x and y, None if it is flat; strip: of a rough counter-body that moves.
     """

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Three-dimensional finite-element solution of a scene: a rigid counter-body on a smooth or rough body, or
-given tractions.
+given tractions. Tables and fields are in SI units, with the columns of sam.scene.result.
 """
 
 from __future__ import annotations
