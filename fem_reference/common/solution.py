@@ -98,31 +98,6 @@ def coated_then_bare(
     return Solved(coated, steps, bare, bare_steps)
 
 
-Measure = Callable[[M, Any], dict[str, float]]
-"""p_max_Pa, mises_max_film_Pa and mises_max_substrate_Pa of a model in a state."""
-
-
-def coated_quantities(solved: Solved[M], peak: Any, measure: Measure[M]) -> dict[str, float | None]:
-    """The quantities of a coated scene alone, none of any other. peak: the state that is reported.
-
-    Relative changes are (coated - bare)/bare at equal force; None without a load, or if the bare contact
-    did not converge.
-    """
-    if solved.bare_model is None:
-        return {}
-    coated = measure(solved.model, peak)
-    values: dict[str, float | None] = {
-        name: coated[name] for name in ("mises_max_film_Pa", "mises_max_substrate_Pa")
-    }
-    if not solved.bare_steps or not solved.bare_steps[-1].state.converged:
-        return values
-    bare = measure(solved.bare_model, solved.bare_steps[-1].state)
-    values |= {"p_max_bare_Pa": bare["p_max_Pa"], "mises_max_bare_Pa": bare["mises_max_substrate_Pa"]}
-    for change, name in (("p_max_change", "p_max_Pa"), ("mises_max_change", "mises_max_substrate_Pa")):
-        values[change] = coated[name] / bare[name] - 1.0 if bare[name] else None
-    return values
-
-
 class Peeq(Protocol):
     """Stresses of a state, of which the accumulated plastic strain is asked."""
 
@@ -166,15 +141,6 @@ class Method(Generic[P, M, S]):
     of_path: Callable[
         [M, Sequence[Step], Mapping[str, Equilibrium], Mapping[str, S]], tuple[dict[str, Table], Quantities]
     ] = lambda *_of_states: ({}, {})
-
-    def in_layers(self, model: M, state: Equilibrium) -> dict[str, float]:
-        """Return the largest values of a coated contact that are compared."""
-        s = self.stresses(model, state)
-        return {
-            "p_max_Pa": model.largest_pressure(state),
-            "mises_max_film_Pa": self.largest_in_layer(s, True)[0],
-            "mises_max_substrate_Pa": self.largest_in_layer(s, False)[0],
-        }
 
     def peeq_max(self, model: M, state: Equilibrium) -> float:
         """Return the largest accumulated plastic strain of a state, as in the quantities."""
@@ -244,7 +210,7 @@ def result_of(method: Method[P, M, S], solved: Solved[M], clock: Clock) -> Resul
     status, message = plan.advice.outcome(verdict(method, solved, fields[first]), peeq)
     of_steps = step_tables(model, steps, partial(method.peeq_max, model))
     quantities = quantities_of(method, model, states, fields)
-    quantities |= coated_quantities(solved, states[first], method.in_layers)
+    quantities |= coated_quantities(method, solved, states[first])
     of_path, found = method.of_path(model, steps, states, fields)
     history = {**of_steps.pop("history"), **of_path.pop("history", {})}
     return Result(
@@ -263,6 +229,27 @@ def result_of(method: Method[P, M, S], solved: Solved[M], clock: Clock) -> Resul
         warnings=method.warnings(model),
         verdict=verdict_summary(model, steps),
     )
+
+
+def coated_quantities(method: Method[P, M, S], solved: Solved[M], peak: Equilibrium) -> Quantities:
+    """The quantities of a coated scene alone, none of any other. peak: the state that is reported.
+
+    Relative changes are (coated - bare)/bare at equal force; None without a load, or if the bare contact
+    did not converge.
+    """
+    if solved.bare_model is None:
+        return {}
+    of_coated = method.stresses(solved.model, peak)
+    film, substrate = (method.largest_in_layer(of_coated, coating)[0] for coating in (True, False))
+    values: Quantities = {"mises_max_film_Pa": film, "mises_max_substrate_Pa": substrate}
+    if not solved.bare_steps or not (state := solved.bare_steps[-1].state).converged:
+        return values
+    p_max = solved.bare_model.largest_pressure(state)
+    mises_max = method.largest_in_layer(method.stresses(solved.bare_model, state), False)[0]
+    values |= {"p_max_bare_Pa": p_max, "mises_max_bare_Pa": mises_max}
+    values["p_max_change"] = solved.model.largest_pressure(peak) / p_max - 1.0 if p_max else None
+    values["mises_max_change"] = substrate / mises_max - 1.0 if mises_max else None
+    return values
 
 
 class Clock:
