@@ -15,7 +15,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import qmc, rankdata
 
 LEVELS = 4  # of Morris: shares 0, 1/3, 2/3, 1
 RESAMPLES, CONFIDENCE = 1000, 0.9  # of the bootstrap over trajectories or pairs
@@ -46,6 +45,8 @@ def design(method: str, factors: int, samples: int, seed: int) -> np.ndarray:
         return np.concatenate([_trajectory(rng, factors) for _ in range(samples)])
     power = max(samples - 1, 0).bit_length()  # the sequence is balanced at powers of two
     width = factors if method == UNIFORM else 2 * factors
+    from scipy.stats import qmc  # noqa: PLC0415 - 0.4 s, for designs alone
+
     points = qmc.Sobol(width, rng=rng).random_base2(power)[:samples]
     if method == UNIFORM:
         return points
@@ -121,6 +122,8 @@ def _total(samples: np.ndarray) -> np.ndarray:
 
 def _ranked(samples: np.ndarray) -> np.ndarray:
     """Spearman's correlation of the first column with each of the others; 0 where that one does not vary."""
+    from scipy.stats import rankdata  # noqa: PLC0415 - 0.4 s, for designs alone
+
     ranks = rankdata(samples, axis=0)
     away = ranks - ranks.mean(axis=0)
     scale = np.sqrt((away**2).sum(axis=0))

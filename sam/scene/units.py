@@ -171,9 +171,19 @@ def _registry() -> Any:
     return pint.UnitRegistry(non_int_type=Decimal, cache_folder=None)
 
 
+PLAIN = ("m", "N", "Pa", "s")
+PREFIXES = {"": 0, "n": -9, "u": -6, "\N{MICRO SIGN}": -6, "m": -3, "k": 3, "M": 6, "G": 9}
+"""Powers of ten."""
+
+
 @lru_cache(maxsize=1000)
 def _factor(text: str, unit: str) -> Decimal | None:
-    """How many `unit` are in one `text`; None for an unknown unit or another dimension."""
+    """How many `unit` are in one `text`; None for an unknown unit or another dimension. What is a unit with a
+    prefix needs no pint.
+    """
+    prefix = text.removesuffix(unit) if unit in PLAIN and text.endswith(unit) else None
+    if prefix in PREFIXES:
+        return Decimal(1).scaleb(PREFIXES[prefix])
     registry = _registry()
     try:
         factor: Decimal = registry.Quantity(Decimal(1), registry.Unit(text)).to(unit).magnitude

@@ -149,7 +149,7 @@ def test_a_comparison_has_the_groove(both):
     rows = {row.quantity: row for row in compare_scene(scene, other, fem)}
     assert not {"p_center_Pa", "p_Pa over the contact"} & set(rows)
     for name in ("groove_depth_m", "groove_deepest_m"):
-        assert (rows[name].sam, rows[name].fem) == (other.quantities[name], fem.quantities[name])
+        assert (rows[name].value, rows[name].expected) == (other.quantities[name], fem.quantities[name])
         for factor, passes in ((1.04, True), (1.06, False)):
             changed = replace(fem, quantities={**fem.quantities, name: factor * fem.quantities[name]})
             found = {row.quantity: row.passed for row in compare_scene(scene, changed, fem)}

@@ -4,6 +4,7 @@
 import difflib
 import subprocess
 import sys
+from decimal import Decimal
 from fractions import Fraction
 
 import pytest
@@ -23,6 +24,7 @@ from sam.scene import (
     load_scene,
     parse_scene,
     resolved,
+    units,
 )
 
 
@@ -245,3 +247,12 @@ def test_units_are_read_where_there_is_no_proc():
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
     assert (done.stdout.split(), done.returncode) == (["105000", "False"], 0), done.stderr
+
+
+@pytest.mark.parametrize("unit", units.PLAIN)
+def test_a_prefix_is_the_factor_of_pint(unit):
+    registry = units._registry()
+    for prefix, power in units.PREFIXES.items():
+        quantity = registry.Quantity(Decimal(1), registry.Unit(f"{prefix}{unit}"))
+        assert quantity.to(unit).magnitude == Decimal(10) ** power == units._factor(f"{prefix}{unit}", unit)
+    assert units._factor("Pa", "m") is None and units._factor("inch", "m") == Decimal("0.0254")

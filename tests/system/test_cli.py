@@ -21,7 +21,7 @@ import fem_reference.axisymmetric.planner
 import fem_reference.spatial.planner
 import sam.planner.make
 from sam.contact.convolution import half_length
-from sam.scene import LeftOut, Status
+from sam.scene import LeftOut
 from samfem.cli import main
 from verification.cost.plan import plan
 from verification.robustness.kills import hears_interrupts
@@ -326,10 +326,6 @@ def test_progress_is_quiet_at_first_and_then_says_where_it_is(capsys, monkeypatc
 def test_tables_are_aligned_and_keep_brackets(capsys):
     print_table(("quantity", "sam"), [("[red]x", digits(1 / 3)), ("y", digits(None))])
     assert capsys.readouterr().out == "quantity  sam\n[red]x    0.333333\ny         -\n"
-
-
-def test_statuses_say_what_to_change():
-    assert all(bool(status.advice) != (status is Status.CONVERGED) for status in Status)
 
 
 @pytest.mark.parametrize(

@@ -13,18 +13,28 @@ from page_checks import PageReader, faults_of
 
 from verification.cases.running_in import running_in_physics, running_in_sensitivity
 from verification.cases.running_in.scenes import BULK, HARDENING, NAMES
-from verification.cases.running_in.study import STATEMENTS, judged as judged_on, statements_table
+from verification.cases.running_in.study import STATEMENTS, judged as judged_on
+from verification.runs.files import plain
 from verification.suite.pages import write_report
 from verification.suite.pages.findings import Evidence, PaperStatements
-from verification.suite.pages.headline import COLUMNS, NOTHING, headline_of
-from verification.suite.pages.judged import COUNTER, FINER, INPUTS, NOT_RUN, PHYSICS, READINGS, Judged
-from verification.suite.pages.statements import FOLLOWS
+from verification.suite.pages.headline import COLUMNS, MEANING, NOTHING, headline_of
+from verification.suite.pages.judged import (
+    FINER,
+    FOLLOWS,
+    INPUTS,
+    NOT_RUN,
+    PHYSICS,
+    READINGS,
+    WORDS,
+    Judged,
+    counted,
+)
 from verification.suite.pages.stored import read_stored
 
 NEVER = "hardening: still wears slowly"
 
 
-def record(name, tables, notes=(), setup=()):
+def record(name, data, tables=(), notes=(), setup=()):
     """A case that ran, as in results.json."""
     shown = [
         {"caption": t.caption, "columns": list(t.columns), "rows": [list(r) for r in t.rows]} for t in tables
@@ -42,7 +52,20 @@ def record(name, tables, notes=(), setup=()):
         }
         for own in ("probabilities", "two-inputs", "volume")
     ]
-    return {"name": name, "seconds": 1.0, "tables": shown, "figures": figures, **words, **lists}
+    return (
+        {"name": name, "seconds": 1.0, "tables": shown, "figures": figures, "data": plain(data)}
+        | words
+        | lists
+    )
+
+
+def older(case):
+    """The same case of a version that gave pages no data."""
+    return {key: value for key, value in case.items() if key != "data"}
+
+
+def statements(**judged):
+    return {"statements": {name: [one.data for one in each] for name, each in judged.items()}}
 
 
 def stored(*cases):
@@ -56,9 +79,8 @@ def readings():
     said = as_the_paper_says()
     still = {**said, HARDENING: replace(said[HARDENING], volume=0.0 * said[HARDENING].volume)}
     early = {**said, HARDENING: replace(said[HARDENING], volume=said[BULK].volume)}
-    judged = {"printed inputs": judged_on([still] * 3), "renewed": judged_on([early] * 3)}
-    setup = [("Second reading", "a soft layer; for curve B: a file")]
-    return record(READINGS, [statements_table(judged)], setup=setup)
+    found = statements(**{"printed inputs": judged_on([still] * 3), "renewed": judged_on([early] * 3)})
+    return record(READINGS, found | {"second_reading": "a soft layer"})
 
 
 @pytest.fixture(scope="module")
@@ -71,7 +93,9 @@ def studies(tmp_path_factory):
         for (_, name), one in found.runs.items():
             if name == HARDENING:
                 one.history = replace(one.history, volume=0.0 * one.history.volume)
-        records.append(record(case.name, case.tables(found), case.notes(found), case.setup(found)))
+        records.append(
+            record(case.name, *(part(found) for part in (case.data, case.tables, case.notes, case.setup)))
+        )
     return records
 
 
@@ -90,20 +114,30 @@ def test_each_statement_has_a_row_with_what_decides_it_and_what_makes_it_hold(re
     assert failed["holds under"] == "0 of 24" and failed["share of points (90 %)"].startswith("0 %")
     assert rows["curve B: still wears linearly"]["holds under"] == "1 of 24"
     assert rows["hardening: wears as much as bulk"]["what makes it hold"] == "the second reading"
-    (good,) = Judged(read_stored(stored(*studies))).under["curve B: still wears linearly"]
-    assert GOOD.hardening in good.words and GOOD.sign in good.words and COUNTER[GOOD.counter] in good.words
+    (good,) = Judged(read_stored(stored(*studies))).under("curve B: still wears linearly")
+    assert good == tuple(WORDS[each] for each in (GOOD.hardening, GOOD.sign, GOOD.counter))
 
 
-def test_every_counter_body_of_the_study_has_words():
-    assert set(COUNTER) == set(running_in_physics.Counter)
+def test_every_other_physics_of_the_study_has_words():
+    plain, *others = running_in_physics.ALL
+    assert set(WORDS) == {key for each in others for key in each} - set(plain)
 
 
 def test_physics_without_a_run_are_said_to_say_nothing(readings, studies):
     inputs, physics = copy.deepcopy(studies)
-    table = next(each for each in physics["tables"] if each["columns"][1] == "statement")
-    table["rows"][0][2:4] = "IH (K)", "(IHK)"
+    physics["data"]["statements"][0]["verdicts"][2:6] = ["not decided"] * 4
     (row, *_) = headline_of(read_stored(stored(readings, inputs, physics))).rows
     assert row[6] == "20 of 24, says nothing under 4"
+
+
+def test_statements_are_counted_by_the_median_and_without_those_that_follow():
+    later, first = next(iter(FOLLOWS.items()))
+    found = [(first, "held"), (later, "held"), ("even", "failed"), ("soft", "not decided")]
+    said = [{"statement": words, "by_median": verdict} for words, verdict in found]
+    assert counted(said) == (
+        "2 held, 1 failed, 1 not decided, of 4; of the 3 independent ones 1 held, 1 failed, 1 not decided"
+    )
+    assert counted(said[2:]) == "0 held, 1 failed, 1 not decided, of 2"
 
 
 def said(headline):
@@ -129,8 +163,7 @@ def test_the_answer_counts_what_the_tables_hold(readings, studies):
 def test_what_finer_cells_refute_is_not_counted_and_named(readings, studies):
     said_so = as_the_paper_says()
     busy = {**said_so, BULK: replace(said_so[BULK], volume=1e-18 * np.arange(1.0, 26.0))}
-    cells = {"1 µm": judged_on([said_so]), "0.5 µm": judged_on([busy])}
-    finer = record(FINER, [statements_table(cells)])
+    finer = record(FINER, statements(coarse=judged_on([said_so]), fine=judged_on([busy])))
     text = headline_of(read_stored(stored(readings, *studies, finer))).answer
     assert "1 of these 13 (bulk: worn in the first six cycles) failed on finer cells" in text
     assert text.endswith("not counting such, 12 of 15 hold.")
@@ -152,14 +185,24 @@ def test_a_statement_that_follows_from_another_holds_where_that_one_does():
             assert below.value(friction) < 0.0
 
 
-def test_the_pressures_that_remove_metal_are_said(readings, studies):
-    columns = ["case", "removed from, μ high", "film fails from", "p_max, first cycle", "so"]
-    rows = [["bulk", "5.29", "3.42", "7.14", ""], ["hard", "9.87", "3.42", "10.2", ""]]
-    table = {"caption": "What decides, with the printed inputs: pressures", "columns": columns, "rows": rows}
-    decided = {**readings, "tables": [*readings["tables"], table]}
-    text = said(headline_of(read_stored(stored(decided, *studies))))
-    assert "above 5.29 (bulk), 9.87 (hard) GPa; films fail from 3.42 GPa" in text
-    assert "reaches 10.2 GPa (median)" in text
+def test_the_pressures_that_remove_metal_and_the_last_cycles_are_said(readings, studies):
+    regimes = {
+        "bulk": {"removed_from": 5.29e9, "film_fails_from": 3.42e9, "reached": 7.14e9},
+        "hard": {"removed_from": 9.87e9, "film_fails_from": 3.5e9, "reached": 10.2e9},
+        "lost": {"removed_from": 2.0e9, "film_fails_from": 3.5e9, "reached": None},
+    }
+
+    def text(*rest_from):
+        last = {"bulk": {"rest_from": [3.0]}, "hard": {"rest_from": rest_from}}
+        found = {name: {"printed inputs": own} for name, own in (("regimes", regimes), ("last_cycle", last))}
+        return said(
+            headline_of(read_stored(stored({**readings, "data": readings["data"] | found}, *studies)))
+        )
+
+    assert "above 5.29 (bulk), 9.87 (hard), 2.00 (lost) GPa; films fail from 3.42 GPa" in text()
+    assert "reaches 10.20 GPa (median)" in text()
+    assert "anew in the last cycle in 1 of 3 runs" in text(None, 7.0)
+    assert "no cell strains anew in the last cycle in any of 2 runs" in text(7.0)
 
 
 def test_a_study_that_did_not_run_is_said_not_to_have_run(readings, studies):
@@ -168,11 +211,29 @@ def test_a_study_that_did_not_run_is_said_not_to_have_run(readings, studies):
     assert all(f"(case {name}) did not run." in text for name in (INPUTS, PHYSICS))
     assert {row[4] for row in found.rows} == {row[6] for row in found.rows} == {NOT_RUN}
     assert found.fitted == {} and found.pictures == [] and headline_of(read_stored(stored())) is None
-    short = record(INPUTS, [])
+    short = record(INPUTS, {})
+    assert headline_of(read_stored(stored(short))) is None
     assert "was made without" in said(headline_of(read_stored(stored(readings, short))))
     (_, of_physics) = studies
     found = headline_of(read_stored(stored(of_physics)))
     assert {row[2] for row in found.rows} == {NOT_RUN} and len(found.rows) == len(STATEMENTS)
+
+
+def test_studies_of_an_older_version_have_to_run_again(readings, studies, tmp_path):
+    inputs, physics = studies
+    text = said(headline_of(read_stored(stored(older(readings), inputs, older(physics)))))
+    for name in (READINGS, PHYSICS):
+        assert f"(case {name}) was made by an older version and has to run again." in text
+    results = stored(*map(older, (readings, inputs, physics)))
+    found = headline_of(read_stored(results))
+    assert found.answer.endswith("made by an older version and have to run again.")
+    assert not [*found.depends, *found.rows]
+    (none,) = PaperStatements().find(Evidence(read_stored(results), []))
+    assert none.value == "No number" and [each.name for each in none.cases] == [READINGS, INPUTS, PHYSICS]
+    write_report(results, tmp_path)
+    for name in ("running-in.html", "index.html"):
+        page = PageReader((tmp_path / name).read_text(encoding="utf-8"))
+        assert faults_of(page) == [] and found.answer in page.text and MEANING[:40] not in page.text
 
 
 def test_the_index_and_the_page_begin_with_it(readings, studies, tmp_path):
@@ -183,7 +244,7 @@ def test_the_index_and_the_page_begin_with_it(readings, studies, tmp_path):
     found = headline_of(read_stored(results))
     assert faults_of(page) == faults_of(index) == []
     for each in (page, index):
-        assert found.answer[:80] in each.text and NEVER in each.text
+        assert found.answer[:80] in each.text and NEVER in each.text and MEANING[:40] in each.text
     assert page.text.index(found.question) < page.text.index("Closest to its limit")
     (*_, most, under) = PaperStatements().find(Evidence(read_stored(results), []))
     assert most.value == under.value == "15 of 17"

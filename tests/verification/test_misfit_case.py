@@ -63,7 +63,7 @@ def test_a_solver_with_one_point_in_a_cell_or_another_yield_stress_is_seen(tmp_p
 def test_each_coefficient_of_the_image_that_is_1_percent_off_turns_its_gate_red():
     """All 36 of the stress and 6 of the displacement, in either sense."""
     found, tolerances = zone(IMAGE_CELLS), {gate.id: gate.tolerance for gate in load_rows()}
-    own = {name.removeprefix("sam-image-"): tolerances[f"{CASE}.{name}"] for name in found.values()}
+    own = {name: tolerances[f"{CASE}.sam-image-{name}"] for name in ("xx", "zz", "xz", "xy", "raised")}
     limits = np.array([own[BY_SYMMETRY.get(name, name)] for name in (*NAMES, "raised")])
     values = np.array([*found.left, found.largest])
     assert (values < limits).all() and (found.perturbed * values[:, None] > limits[:, None]).all()

@@ -29,7 +29,6 @@ from verification.suite.pages.literature import works
 from verification.suite.pages.mathml import formula, with_scripts
 from verification.suite.pages.pairs import Pair, pairs_of, tabled
 from verification.suite.pages.questions import QUESTIONS
-from verification.suite.pages.statements import statements_of
 from verification.suite.pages.stored import read_stored
 from verification.suite.pages.views import brief
 
@@ -340,31 +339,6 @@ def table_of(*columns, rows, caption="What it says. A note", name="running-in"):
     case["tables"] = [{"caption": caption, "columns": columns, "rows": rows}]
     source = {"commit": "abc", "time_utc": "2026-01-01", "input_sha256": {}}
     return read_stored({"provenance": source, "cases": [case], "gates": []})
-
-
-def test_statements_are_counted_for_each_reading_and_rule():
-    head = ("Fig.", "statement of the paper", "asked")
-    each = ("holds on", "by the median", "by agreement")
-    rows = [
-        [
-            "13",
-            "worn",
-            "≥ 1",
-            *("2", "5 of 5", "held by 2 IQR", "held"),
-            *("0", "0 of 5", "failed", "failed"),
-        ],
-        ["14", "even", "≥ 1", *("0", "1 of 5", "failed", "not decided"), *("0", "5 of 5", "held", "held")],
-    ]
-    columns = (*head, "printed: median (range)", *each, "soft layer: median (range)", *each)
-    (found,) = statements_of(table_of(*columns, rows=rows))
-    assert found.counts == [
-        ("printed, by the median", "1 held, 1 failed, 0 not decided, of 2"),
-        ("printed, by agreement", "1 held, 0 failed, 1 not decided, of 2"),
-        ("soft layer, by the median", "1 held, 1 failed, 0 not decided, of 2"),
-        ("soft layer, by agreement", "1 held, 1 failed, 0 not decided, of 2"),
-    ]
-    (found,) = statements_of(table_of(*head, "verdict", "what decides it", rows=[[*"abc", "held", "x"]]))
-    assert found.counts == [("verdict", "1 held, 0 failed, 0 not decided, of 1")]
 
 
 def test_literature_has_what_the_equations_name():

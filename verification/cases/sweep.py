@@ -90,8 +90,9 @@ def _runs(context: Context, file: CaseFile, name: str, base: Scene) -> Iterator[
                 found = of.against(column, result, reference) if named else of(scene, result, reference)
                 found = found if isinstance(found, Measured) else Measured(found)
                 own[column] = found.value if how == "value" else error_of(how, found)
+                own[f"{column} expected"] = found.expected
                 if np.ndim(found.value) == 0:
-                    own |= {f"{column} value": found.value, f"{column} expected": found.expected}
+                    own[f"{column} value"] = found.value
             runs.append(own)
         between = [column for column, how in sweep.columns.items() if how == "between"]
         if between and all(result.converged for result in results.values()):

@@ -13,8 +13,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import log
 
-from scipy.optimize import brentq
-
 FACTOR = 3.0  # that of Roache for an assumed order; case uncertainty measures what it covers
 # The same for load steps, whose error falls smoothly: 72 of 72 values of case uncertainty-study are covered,
 # and 48 of 48 of two spheres that are not in it (5 to 37 steps), U/error 1.06 to 3.7; 1.5 covers 97 %.
@@ -58,6 +56,8 @@ def order_seen(values: Sequence[float], sizes: Sequence[float]) -> float | None:
 
     if excess(ORDERS[0]) * excess(ORDERS[1]) > 0.0:
         return None
+    from scipy.optimize import brentq  # noqa: PLC0415 - 0.2 s, for three members alone
+
     return float(brentq(excess, *ORDERS))
 
 

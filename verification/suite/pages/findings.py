@@ -12,9 +12,8 @@ from typing import Protocol
 
 from verification.judging import LIMITS
 from verification.suite.pages.costs import BOUND, CASE, TARGET, costs_of
-from verification.suite.pages.judged import INPUTS, MEDIAN, PHYSICS, READINGS, Judged
+from verification.suite.pages.judged import INPUTS, OLDER, PHYSICS, READINGS, Judged, counted
 from verification.suite.pages.pairs import Pair
-from verification.suite.pages.statements import statements_of
 from verification.suite.pages.stored import RED, ShownCase, Stored
 from verification.suite.pages.views import LIMIT_SIGNS
 from verification.text.console import number
@@ -23,11 +22,10 @@ NORMALISED = " over the larger of "
 """Such an error is no share of the quantity, but of what the refinement leaves."""
 UNGATED = "no gate"
 SAID = {
-    "as printed": "with the printed inputs",
     "printed inputs": "with the printed inputs",
     "renewed": "in the second reading (a weakly hardening layer, a counter-surface renewed in each cycle)",
 }
-"""Readings of the paper that its table names in short."""
+"""Readings of the paper -> for the reader."""
 
 
 @dataclass(frozen=True)
@@ -193,34 +191,30 @@ class PaperStatements:
 
     def find(self, evidence: Evidence) -> Iterator[Finding]:
         """One for each reading of the paper by the median of the surfaces, and for each study that ran."""
-        judged = Judged(evidence.stored)
-        for table in statements_of(evidence.stored):
-            for words, count in table.counts if table.case is judged.case(READINGS) else ():
-                reading, _, rule = words.partition(", ")
-                if rule == MEDIAN:
-                    words = f"{SAID.get(reading, reading)}, {rule} of the surfaces"
-                    yield Finding(words, count, (table.case,), gated=False)
-        for count, words, name in (
-            (
-                judged.chances and judged.likely,
+        judged, found = Judged(evidence.stored), []
+        if cases := judged.older:
+            yield Finding(f"from studies that were {OLDER.format('have')}", "No number", cases, gated=False)
+        for reading, said in judged.said(READINGS, "statements").items():
+            words = f"{SAID.get(reading, reading)}, by the median of the surfaces"
+            found.append((READINGS, words, counted(said)))
+        every = f"of {len(judged.statements)}"
+        if judged.likely:
+            words = (
                 "hold at more than half of the points of the study over the inputs that the paper leaves "
-                f"open, {judged.sure} of them also by the lower bound",
-                INPUTS,
-            ),
-            (
-                judged.fitted and judged.most_at_a_point,
-                "hold together at the best of its points, which is no bound",
-                INPUTS,
-            ),
-            (
-                max(judged.physics.values(), default=0),
+                f"open, {judged.sure} of them also by the lower bound"
+            )
+            found.append((INPUTS, words, f"{len(judged.likely)} {every}"))
+        if best := judged.most_at_a_point:
+            words = "hold together at the best of its points, which is no bound"
+            found.append((INPUTS, words, f"{best} {every}"))
+        if best := max((count for count, _ in judged.physics.values()), default=0):
+            words = (
                 f"hold on one surface under the best of {len(judged.physics)} ways to harden and to load it "
-                f"({judged.plain} on the same surface under the way of the paper)",
-                PHYSICS,
-            ),
-        ):
-            if case := judged.case(name) if count else None:
-                yield Finding(words, f"{count} of {len(judged.statements)}", (case,), gated=False)
+                f"({judged.physics[()][0]} on the same surface under the way of the paper)"
+            )
+            found.append((PHYSICS, words, f"{best} {every}"))
+        for name, words, value in found:
+            yield Finding(words, value, (evidence.stored.ran[name],), gated=False)
 
 
 def percent(value: float) -> str:

@@ -1,18 +1,32 @@
 # SPDX-License-Identifier: MIT
 """The headline of the pages: whether this model of running-in predicts what the paper says.
 
-It also tells on what that depends. Nothing is said here that no table of a case holds; where a study did not
-run, that is said.
+It also tells on what that depends. Nothing is said here that the data or the notes of a case do not hold;
+where a study did not run, that is said.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from verification.suite.pages.judged import FINER, INPUTS, NOT_RUN, PHYSICS, READINGS, Chance, Judged, Verdict
-from verification.suite.pages.statements import FOLLOWS
+from verification.cases.running_in.scenes import LAST
+from verification.cases.running_in.study import STILL
+from verification.suite.pages.judged import (
+    FINER,
+    FOLLOWS,
+    HELD,
+    INPUTS,
+    NOT_RUN,
+    OLDER,
+    OPEN,
+    PHYSICS,
+    READINGS,
+    Judged,
+    held,
+    in_words,
+)
 from verification.suite.pages.stored import Stored
 
 QUESTION = "Does this model of running-in predict what its authors say, and on what does that depend?"
@@ -37,41 +51,29 @@ MEANING = (
 """Of the columns and the words of the table."""
 PICTURES = ((INPUTS, "probabilities"), (INPUTS, "two-inputs"), (PHYSICS, "volume"))
 """Case and name of the figures of the headline."""
-STUDIES = {
-    READINGS: "The comparison of both readings",
-    INPUTS: "The study over the inputs",
-    PHYSICS: "The study over hardening and loading",
-}
 UNTESTED = (
     "That curve C is very close to curve B, so that the paper's Fig. 15 stands for both: curve C runs on one "
     "surface (case running-in, other assumptions), and no statement asks for it."
 )
-MANY = 2  # of what is equal that is named
-COLUMNS = (
-    "Fig.",
-    "statement of the paper",
-    "printed inputs",
-    "second reading",
-    "share of points (90 %)",
-    "decided by",
-    "holds under",
-    "what makes it hold",
-)
+NOTHING = "none of those studied"
+GIGA = 1e-9
+COLUMNS = "Fig.|statement of the paper|printed inputs|second reading|share of points (90 %)".split("|")
+COLUMNS += ["decided by", "holds under", "what makes it hold"]
 
 
 @dataclass(frozen=True)
 class Headline:
     """What the page of running-in begins with. answer: by the readings of the paper; depends: on what that
     depends, and what each of it does; rows: of the table of statements; pictures: figures as in results.json;
-    fitted: a table, empty without, and fitted_note what it would mean.
+    fitted: a table, empty without, and fitted_note what it would mean. Of an older version only the answer.
     """
 
     answer: str
-    depends: Sequence[tuple[str, str]]
-    rows: Sequence[Sequence[str]]
-    pictures: Sequence[Mapping]
-    fitted: Mapping
-    fitted_note: str
+    depends: Sequence[tuple[str, str]] = ()
+    rows: Sequence[Sequence[str]] = ()
+    pictures: Sequence[Mapping] = ()
+    fitted: Mapping = field(default_factory=dict)
+    fitted_note: str = ""
     question: str = QUESTION
     page: str = f"{PAGE}.html"
 
@@ -81,121 +83,120 @@ class Headline:
         caption = "What the paper says of its Figures 13 to 17, and on what each statement depends"
         return {"caption": caption, "columns": COLUMNS, "rows": self.rows, "note": MEANING}
 
-    @property
-    def files(self) -> set[str]:
-        """Of the figures, which need not be shown a second time."""
-        return {each["png"] for each in self.pictures}
-
 
 def headline_of(stored: Stored) -> Headline | None:
     """The headline, if any of the cases judged the statements of the paper."""
     judged = Judged(stored)
+    if judged.older:
+        return Headline(f"The studies of running-in in this report were {OLDER.format('have')}.")
     if not judged.statements:
         return None
+    depends = {
+        "Inputs that the paper leaves open": _of_inputs(judged),
+        "Hardening and loading": _of_physics(judged),
+        "Statements that fail with the printed inputs": _of_failed(judged),
+        "Not judged": (UNTESTED,),
+        "Size of the cells": (judged.note(FINER, "Verdicts"), judged.note(FINER, "One surface")),
+        "Wear in the last cycles": _of_last_cycles(judged),
+    }
+    ran = {name: each.case for name in (INPUTS, PHYSICS) if (each := judged.case(name))}
+    tables = ran[INPUTS]["tables"] if judged.chances else ()
     return Headline(
-        " ".join(_of_readings(judged) if judged.verdicts else _missing(judged, READINGS)),
-        [(on, text) for on, said in depends(judged).items() if (text := " ".join(filter(None, said)))],
+        " ".join(_of_readings(judged)),
+        [(on, text) for on, said in depends.items() if (text := " ".join(filter(None, said)))],
         [_row(judged, words) for words in judged.statements],
-        list(_pictures(judged)),
-        judged.fitted,
+        [
+            figure
+            for case, name in PICTURES
+            for figure in ran.get(case, {}).get("figures", ())
+            if figure["png"].endswith(f"{case}-{name}.png")
+        ],
+        next((each for each in tables if each["caption"].startswith("Fitted")), {}),
         judged.note(INPUTS, "Fitted"),
     )
 
 
-def depends(judged: Judged) -> dict[str, Iterator[str]]:
-    """What the answer may depend on -> sentences of what each does."""
-    return {
-        "Inputs that the paper leaves open": (
-            _of_inputs(judged) if judged.chances else _missing(judged, INPUTS)
-        ),
-        "Hardening and loading": _of_physics(judged) if judged.physics else _missing(judged, PHYSICS),
-        "Statements that fail with the printed inputs": _of_failed(judged),
-        "Not judged": iter((UNTESTED,)),
-        "Size of the cells": iter((judged.note(FINER, "Verdicts"), judged.note(FINER, "One surface"))),
-        "Wear in the last cycles": _of_last_cycles(judged),
-    }
-
-
-def _missing(judged: Judged, case: str) -> Iterator[str]:
-    where = "was made without what the statements ask for" if judged.case(case) else NOT_RUN
-    yield f"{STUDIES[case]} (case {case}) {where}."
-
-
 def _of_readings(judged: Judged) -> Iterator[str]:
-    count = len(judged.statements)
-    readings = list(zip(*judged.verdicts.values(), strict=True))
-    (held, agreed), *others = [_counted(each) for each in readings]
-    yield "Yes." if held == count else "In part." if held else "No."
+    if not judged.verdicts:
+        yield judged.missing(READINGS)
+        return
+    count, readings = len(judged.statements), list(zip(*judged.verdicts.values(), strict=True))
+    (first, agreed), *others = [
+        (sum(map(held, each)), sum(one["by_agreement"] == HELD for one in each)) for each in readings
+    ]
+    yield "Yes." if first == count else "In part." if first else "No."
+    second = judged.said(READINGS, "second_reading")
     yield (
-        f"With the printed inputs, {held} of its {count} statements on five materials hold by the median of "
+        f"With the printed inputs, {first} of its {count} statements on five materials hold by the median of "
         f"the surfaces, {agreed} on at least 80 % of them"
-        + "".join(f"; in a second reading ({_second(judged)}) {more} and {of}" for more, of in others)
+        + "".join(f"; in a second reading ({second}) {more} and {of}" for more, of in others)
         + "."
     )
     own = {words: each for words, each in judged.verdicts.items() if words not in FOLLOWS}
-    held, *others = (sum(each.held for each in of) for of in zip(*own.values(), strict=True))
+    first, *others = (sum(map(held, each)) for each in zip(*own.values(), strict=True))
     yield (
-        f"{count - len(own)} of the {count} follow from others: of the {len(own)} independent ones {held} "
+        f"{count - len(own)} of the {count} follow from others: of the {len(own)} independent ones {first} "
         "hold" + "".join(f", in the second reading {more}" for more in others) + "."
     )
-    if coarse := [words for words in judged.refuted if words in own and own[words][0].held]:
+    coarse = [
+        words
+        for words, (coarsest, *_, finest) in judged.found(FINER).items()
+        if words in own and held(own[words][0]) and held(coarsest) and not held(finest)
+    ]
+    if coarse:
         yield (
-            f"With the printed inputs {len(coarse)} of these {held} ({'; '.join(coarse)}) failed on finer "
+            f"With the printed inputs {len(coarse)} of these {first} ({'; '.join(coarse)}) failed on finer "
             "cells where those were tried, on one surface; not counting such, "
-            f"{held - len(coarse)} of {len(own)} hold."
+            f"{first - len(coarse)} of {len(own)} hold."
         )
-
-
-def _second(judged: Judged) -> str:
-    return judged.setup(READINGS, "Second reading").partition(";")[0]
-
-
-def _counted(verdicts: Sequence[Verdict]) -> tuple[int, int]:
-    return sum(each.held for each in verdicts), sum(each.agreed == "held" for each in verdicts)
 
 
 def _of_inputs(judged: Judged) -> Iterator[str]:
     chances = judged.chances
-    known = {words: each.percent for words, each in chances.items() if each.percent is not None}
+    if not chances:
+        yield judged.missing(INPUTS)
+        return
+    known = {words: each["holds"] / each["of"] for words, each in chances.items() if each["of"]}
     if not known:
         yield "No statement says anything at any point."
         return
-    own = chances.keys() - FOLLOWS.keys()
-    likely = sum(known.get(words, 0.0) > 50.0 for words in own)
+    own, likely = chances.keys() - FOLLOWS.keys(), judged.likely
     least, most = (pick(known, key=lambda words: known[words]) for pick in (min, max))
+    runs = dict(judged.stored.ran[INPUTS].case["setup"]).get("Runs", "")
     yield (
-        f"{judged.likely} of {len(chances)} statements ({likely} of the {len(own)} independent ones) hold at "
-        f"more than half of the points, {judged.sure} of them also by the lower bound "
-        f"({judged.setup(INPUTS, 'Runs').partition(':')[0]}): from "
-        f"{known[least]:.0f} % ({least}) to {known[most]:.0f} % ({most})."
+        f"{len(likely)} of {len(chances)} statements ({len(own.intersection(likely))} of the {len(own)} "
+        f"independent ones) hold at more than half of the points, {judged.sure} of them also by the lower "
+        f"bound ({runs.partition(':')[0]}): from "
+        f"{100 * known[least]:.0f} % ({least}) to {100 * known[most]:.0f} % ({most})."
     )
-    deciding = [each.deciders[0].partition(":")[0] for each in chances.values() if each.deciders]
-    if deciding:
-        first = Counter(deciding)
-        named = ", ".join(f"{name} ({count})" for name, count in first.most_common(3))
+    if deciding := [each["deciders"][0]["input"] for each in chances.values() if each["deciders"]]:
+        named = ", ".join(f"{name} ({count})" for name, count in Counter(deciding).most_common(3))
         yield (
             f"{len(deciding)} of all {len(chances)} depend{'s' * (len(deciding) == 1)} on an input beyond "
             f"chance, first on {named}."
         )
     else:
         yield "None depends on an input beyond chance."
-    if seen := judged.setup(INPUTS, "Resolved"):
-        yield f"Of the others the study does not tell: it resolves {seen}."
-    if judged.fitted:
+    yield (
+        "Of the others the study does not tell: it resolves changes of "
+        f"{100 * judged.said(INPUTS, 'resolved'):.0f} % and more between the halves of a range."
+    )
+    if best := judged.most_at_a_point:
         yield (
-            f"At the best of the points {judged.most_at_a_point} hold together (fitted), which is no bound: "
+            f"At the best of the points {best} hold together (fitted), which is no bound: "
             "nothing between the points was tried."
         )
 
 
 def _of_physics(judged: Judged) -> Iterator[str]:
-    most = max(judged.physics.values())
-    best = [each for each, count in judged.physics.items() if count == most]
-    named = " or ".join(each.words for each in best[:MANY])
-    more = f" and {len(best) - MANY} more" if len(best) > MANY else ""
+    if not judged.physics:
+        yield judged.missing(PHYSICS)
+        return
+    counts = {each: count for each, (count, _) in judged.physics.items()}
+    best = [each for each, count in counts.items() if count == max(counts.values())]
     yield (
-        f"On one surface under each of {len(judged.physics)} ways to harden and to load it, {most} "
-        f"hold together at best, with {named}{more}; under the way of the paper {judged.plain}."
+        f"On one surface under each of {len(counts)} ways to harden and to load it, {counts[best[0]]} hold "
+        f"together at best, with {in_words(best, 'and')}; under the way of the paper {counts[()]}."
     )
     yield judged.note(PHYSICS, "One surface")
 
@@ -204,20 +205,19 @@ def _of_failed(judged: Judged) -> Iterator[str]:
     """From which pressures on the model removes metal, and whether what fails with the printed inputs
     holds under anything.
     """
-    table = judged.table(READINGS, "so", "What decides")  # that of the printed inputs is the first
-    rows = [dict(zip(table["columns"], row, strict=True)) for row in table.get("rows", ())]
-    if rows:
-        removed = ", ".join(f"{row['removed from, μ high']} ({row['case']})" for row in rows)
-        films, reached = ([row[name] for row in rows] for name in ("film fails from", "p_max, first cycle"))
+    regimes: Mapping = next(iter(judged.said(READINGS, "regimes").values()), {})
+    if reached := [own["reached"] for own in regimes.values() if own["reached"] is not None]:
+        removed = ", ".join(f"{GIGA * own['removed_from']:.2f} ({name})" for name, own in regimes.items())
+        films = min(own["film_fails_from"] for own in regimes.values())
         yield (
             f"Under a failed film metal is removed where the pressure is above {removed} GPa; films fail "
-            f"from {min(films, key=float)} GPa, and the first cycle reaches {max(reached, key=float)} GPa "
+            f"from {GIGA * films:.2f} GPa, and the first cycle reaches {GIGA * max(reached):.2f} GPa "
             "(median)."
         )
     if judged.verdicts and judged.chances and judged.physics:
         never = [words for words in judged.statements if _remedy(judged, words) == NOTHING]
         yield (
-            f"{_listed(never)} under nothing that was studied."
+            f"{len(never)} hold{'s' * (len(never) == 1)} ({'; '.join(never)}) under nothing that was studied."
             if never
             else "Each holds under something that was studied."
         )
@@ -225,66 +225,55 @@ def _of_failed(judged: Judged) -> Iterator[str]:
 
 def _of_last_cycles(judged: Judged) -> Iterator[str]:
     """Whether the last cycles wear."""
-    still = judged.note(PHYSICS, "Cycles ")
-    if still:
-        yield f"In the study over hardening and loading c{still[1:]}"
-    table = judged.table(READINGS, "at rest from cycle")
-    if table:
-        column = 1  # of the printed inputs: on how many surfaces cells strain anew
-        busy, of = (sum(int(row[column].split()[k]) for row in table["rows"]) for k in (0, 2))
+    if on := judged.said(PHYSICS, "wear_goes_on"):
+        own, of = map(sum, zip(*on.values(), strict=True))
         yield (
-            f"With the printed inputs cells strain anew in the last cycle in {busy} of {of} runs: under the "
-            "same plane a cycle without new strain is followed by cycles like it."
+            f"In the study over hardening and loading cycles {LAST - 4} to {LAST} add more than "
+            f"{100 * STILL:g} % to the worn volume, where linear wear adds 20 %, in {own} of {of} runs "
+            f"({'; '.join(f'{counter}: {k} of {n}' for counter, (k, n) in on.items())})."
+        )
+    last: Mapping = next(iter(judged.said(READINGS, "last_cycle").values()), {})
+    if rests := [cycle for own in last.values() for cycle in own["rest_from"]]:
+        busy = rests.count(None)
+        yield (
+            f"With the printed inputs cells strain anew in the last cycle in {busy} of {len(rests)} runs: "
+            "under the same plane a cycle without new strain is followed by cycles like it."
             if busy
             else "With the printed inputs wear has ended because no cell strains anew in the last cycle in "
-            f"any of {of} runs: a cycle that neither strains nor wears is followed by cycles like it."
+            f"any of {len(rests)} runs: a cycle that neither strains nor wears is followed by cycles like it."
         )
 
 
-NOTHING = "none of those studied"
-
-
 def _row(judged: Judged, words: str) -> tuple[str, ...]:
-    verdicts = judged.verdicts.get(words, [])
-    readings = [each.text for each in verdicts] + [NOT_RUN] * (2 - len(verdicts))
-    chance = judged.chances.get(words, Chance())
-    decided = "; ".join(chance.deciders) or (NOT_RUN if chance.text == NOT_RUN else "not resolved")
-    physics = f"{len(judged.under[words])} of {len(judged.physics)}" if judged.physics else NOT_RUN
-    if silent := judged.silent.get(words):
-        physics += f", says nothing under {silent}"
-    made = "" if verdicts and verdicts[0].held else _remedy(judged, words)
-    asked = judged.asked.get(words)
-    text = f"{words} ({asked})" if asked else words
+    verdicts, chance = judged.verdicts.get(words, ()), judged.chances.get(words)
+    readings = [
+        f"{each['by_median']}, {each['holds_on']} of {each['of']}"
+        + f", none on {each['none_on']}" * bool(each["none_on"])
+        for each in verdicts
+    ]
+    share, decided, physics = NOT_RUN, NOT_RUN, NOT_RUN
+    if chance:
+        low, high = (100 * (end or 0.0) for end in chance["bounds"])
+        says = chance["of"] and f"{100 * chance['holds'] / chance['of']:.0f} % ({low:.0f} to {high:.0f})"
+        share, decided = says or "says nothing", "; ".join(chance["words"]) or "not resolved"
+    if judged.physics:
+        silent = len(judged.under(words, OPEN))
+        physics = f"{len(judged.under(words))} of {len(judged.physics)}"
+        physics += f", says nothing under {silent}" * bool(silent)
+    text = f"{words} ({verdicts[0]['measure']} {verdicts[0]['asked']})" if verdicts else words
     text += f"; follows from: {FOLLOWS[words]}" if words in FOLLOWS else ""
-    return judged.statements[words], text, *readings, chance.text, decided, physics, made
+    readings += [NOT_RUN] * (2 - len(readings))
+    return judged.statements[words], text, *readings, share, decided, physics, _remedy(judged, words)
 
 
 def _remedy(judged: Judged, words: str) -> str:
     """What makes a statement hold that fails with the printed inputs, empty where it holds."""
-    printed, *others = judged.verdicts.get(words, [Verdict()])
-    if printed.held:
+    printed, *others = map(held, judged.verdicts.get(words, ({"by_median": ""},)))
+    if printed:
         return ""
-    found = ["the second reading"] if any(each.held for each in others) else []
-    under = judged.under.get(words, [])
-    if under:
-        few = [each for each in under if len(each.changes) == len(under[0].changes)]
-        more = f" or {len(few) - MANY} more" if len(few) > MANY else ""
-        found.append(" or ".join(each.words for each in few[:MANY]) + more)
-    chance = judged.chances.get(words, Chance())
-    if chance.possible:
-        found.append(f"other inputs, {chance.points} points")
-    if found:
-        return "; ".join(found)
-    return NOTHING if judged.chances and judged.physics else ""
-
-
-def _listed(words: Sequence[str]) -> str:
-    return f"{len(words)} hold{'s' * (len(words) == 1)} ({'; '.join(words)})"
-
-
-def _pictures(judged: Judged) -> Iterator[Mapping]:
-    for case, name in PICTURES:
-        ran = judged.case(case)
-        for figure in ran.case["figures"] if ran else ():
-            if figure["png"].endswith(f"{case}-{name}.png"):
-                yield figure
+    found = ["the second reading"] * any(others)
+    if under := judged.under(words):
+        found.append(in_words([each for each in under if len(each) == len(under[0])], "or"))
+    if (chance := judged.chances.get(words)) and chance["holds"]:
+        found.append(f"other inputs, {chance['holds']} of {chance['of']} points")
+    return "; ".join(found) or (NOTHING if judged.chances and judged.physics else "")

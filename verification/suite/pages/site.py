@@ -163,16 +163,18 @@ def _group_page(
 ) -> str:
     told: set[str] = set()
     headline = headline_of(stored) if group.name == PAGE else None
+    pictures = headline.pictures if headline else ()
+    shown = {each["png"] for each in pictures}
     long = len(cases) > MANY_CASES or sum(len(each.case["figures"]) for each in cases) > MANY_FIGURES
     return _page(
         "group.html.j2",
         stored,
         headline=headline,
-        pictures=[figure_view(each, look) for each in headline.pictures] if headline else [],
+        pictures=[figure_view(each, look) for each in pictures],
         answers=[each for each in answers if each.question.page == group.name and not _told(each, headline)],
         group=group,
         long=long,
-        cases=[case_view(each, look, told, headline.files if headline else ()) for each in cases],
+        cases=[case_view(each, look, told, shown) for each in cases],
         waiting=[row for row in stored.waiting if group_of(row[0]) == group],
         origins=origins(cases),
     )
