@@ -118,7 +118,7 @@ PROBES: dict[str, dict[str, Namer]] = {
     },
     "fem_reference": {
         "half_plane": "plane mesh",
-        "lines.rounded_lines": "lines of a rounded edge",
+        "rounded_lines": "lines of a rounded edge",
         "hexahedra.block": lambda a: "half block" if a["lines"].half else "whole block",
         "Solid.__init__": lambda a: "coated solid" if a["coating"] else "solid",
         "ContactProblem.__init__": lambda a: "two bodies" if len(a["blocks"]) > 1 else "one body",
@@ -127,7 +127,7 @@ PROBES: dict[str, dict[str, Namer]] = {
         "History.virgin": "plastic history",
         "contact.equilibrium": "contact search",
         "without_contact": lambda a: "given pressure" if a["load"].force else "unloading by Newton",
-        "point_force.cerruti": "tangential far field",
+        "far_field.cerruti": "tangential far field",
         "layered_force.normal": "layered far field",
         "layered_force.tangential": "layered tangential far field",
         "model.hertz_forces": "forces of a given pressure",

@@ -18,9 +18,9 @@ from fem_reference.axisymmetric.problem import Block, ContactProblem
 from fem_reference.common.arrays import Array, Bools
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.hertz import hertz_pressure
-from fem_reference.common.messages import FEWEST_ELEMENTS
 from fem_reference.common.model import HERTZ_GROWTH, PLASTIC_GROWTH, ContactModel, material
 from fem_reference.common.plasticity import History
+from fem_reference.common.refusals import FEWEST_ELEMENTS
 from fem_reference.common.schedule import Load
 
 REACH = 1.3

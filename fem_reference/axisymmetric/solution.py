@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Axisymmetric finite-element solution of a scene: contact of a sphere or a flat punch with a half-space."""
+"""Axisymmetric finite-element solution of a scene: contact of a sphere or a flat punch with a half-space.
+Tables and fields are in SI units, with the columns of sam.scene.result.
+"""
 
 from __future__ import annotations
 
@@ -7,24 +9,95 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from fem_reference.axisymmetric import recovery, tables
+from fem_reference.axisymmetric import recovery
 from fem_reference.axisymmetric.model import Model, build
 from fem_reference.axisymmetric.planner import plan
 from fem_reference.axisymmetric.recovery import Stresses
 from fem_reference.common import solution
+from fem_reference.common.arrays import Array
 from fem_reference.common.contact import Equilibrium
+from fem_reference.common.elasticity import mises
 from fem_reference.common.far_field import WORDS, kind_of
 from fem_reference.common.loading import Step
 from fem_reference.common.solution import Quantities
-from fem_reference.common.tables import stacked
+from fem_reference.common.tables import columns, stacked
 from sam.scene.checkpoint import Checkpoint, Keep
-from sam.scene.result import Progress, Result, Table
+from sam.scene.result import AXIS, LINE, PLANE, FieldMesh, GridFields, Progress, Result, Table
 from sam.scene.schema import Scene
 
 SINGULAR = (
     "punch: the pressure is singular at the edge; "
     "p_max_Pa, mises_max_Pa, peeq_max and their depths depend on the mesh"
 )
+
+
+def axis_table(state: str, s: Stresses) -> Table:
+    """Stresses and strains under the apex; x and y are both radial there."""
+    rr, tt, zz, _ = s.axis
+    return columns(AXIS, [state, s.axis_z, s.axis_peeq, mises(s.axis), rr, tt, zz, 0.0, 0.0, 0.0])
+
+
+def line_table(state: str, model: Model, equilibrium: Equilibrium) -> Table:
+    """Surface nodes from the axis to the outer boundary; x is r. Beside a punch, under a given pressure:
+    gap NaN.
+    """
+    unit, problem, r = model.scales, model.problem, model.surface
+    uz = [
+        problem.body(equilibrium.u, i)[block.solid.boundary_dofs("surface", 1)]
+        for i, block in enumerate(problem.blocks)
+    ]
+    gap = model.initial_gap(r) + np.sum(uz, axis=0) - equilibrium.approach
+    gap[np.isinf(gap) | model.prescribed] = np.nan
+    pressure = model.nodal_pressure(equilibrium) * unit.pressure
+    values = [state, r * unit.length, pressure, 0.0, gap * unit.displacement, uz[0] * unit.displacement]
+    # tangential displacement and plastic shear belong to friction
+    return columns(LINE, [*values, np.nan, np.nan])
+
+
+def plane_table(state: str, s: Stresses) -> Table:
+    """Gauss points, element by element."""
+    return columns(PLANE, [state, s.r.ravel(), s.z.ravel(), s.peeq.ravel(), mises(s.gauss).ravel()])
+
+
+def field_mesh(model: Model, equilibrium: Equilibrium, s: Stresses) -> FieldMesh:
+    """The body in the plane y = 0: pressure at the corner nodes, stresses and strains in the elements."""
+    unit, mesh = model.scales, model.body.basis.mesh
+    points = mesh.p
+    pressure = np.zeros(points.shape[1])
+    on_surface = np.flatnonzero(points[1] == 0.0)
+    on_surface = on_surface[np.argsort(points[0, on_surface])]
+    pressure[on_surface] = model.nodal_pressure(equilibrium)[::2] * unit.pressure
+    u = model.problem.body(equilibrium.u, 0) * unit.displacement
+    ur, uz = (u[dofs] for dofs in model.body.basis.nodal_dofs)
+    stress = s.in_elements(s.gauss)
+    cell_data = {"mises_Pa": mises(stress), "stress_Pa": six(stress)}
+    if s.plastic_strain is not None:
+        cell_data |= {"peeq": s.in_elements(s.peeq), "plastic_strain": six(s.in_elements(s.plastic_strain))}
+    return FieldMesh(
+        points=np.stack([points[0], np.zeros(points.shape[1]), points[1]], axis=1) * unit.length,
+        cells={"quad": mesh.t.T.copy()},
+        point_data={"p_Pa": pressure, "uz_m": uz, "displacement_m": np.stack([ur, 0 * ur, uz], axis=1)},
+        cell_data=cell_data,
+    )
+
+
+def surface_grid(model: Model, equilibrium: Equilibrium) -> GridFields:
+    """The surface nodes, a line along r in y = 0: pressure, displacement and, where it is finite, the gap."""
+    unit, line = model.scales, line_table("", model, equilibrium)
+    dofs = (model.body.boundary_dofs("surface", component) for component in (0, 1))
+    ur, uz = (model.problem.body(equilibrium.u, 0)[each] * unit.displacement for each in dofs)
+    points = {"p_Pa": np.asarray(line["p_Pa"]), "displacement_m": np.stack([ur, 0 * ur, uz])}
+    if np.isfinite(line["gap_m"]).all():
+        points["gap_m"] = np.asarray(line["gap_m"])
+    flat = {name: values[..., None, None] for name, values in points.items()}
+    return GridFields(np.asarray(line["x_m"]), np.zeros(1), np.zeros(1), flat)
+
+
+def six(tensor: Array) -> Array:
+    """(n, 6), order 11 22 33 23 13 12, of (rr, tt, zz, rz) (4, n) in the plane y = 0."""
+    rr, tt, zz, rz = tensor
+    zero = np.zeros_like(rr)
+    return np.stack([rr, tt, zz, zero, rz, zero], axis=1)
 
 
 def solve(
@@ -113,9 +186,9 @@ def _tables(
 ) -> dict[str, Table]:
     """Tables of the states."""
     return {
-        "axis": stacked([tables.axis_table(name, fields[name]) for name in states]),
-        "line": stacked([tables.line_table(name, model, states[name]) for name in states]),
-        "plane": stacked([tables.plane_table(name, fields[name]) for name in states]),
+        "axis": stacked([axis_table(name, fields[name]) for name in states]),
+        "line": stacked([line_table(name, model, states[name]) for name in states]),
+        "plane": stacked([plane_table(name, fields[name]) for name in states]),
     }
 
 
@@ -138,11 +211,6 @@ def _discretisation(model: Model) -> dict[str, object]:
     }
 
 
-def _warnings(model: Model) -> tuple[str, ...]:
-    """What a reader of the result must know."""
-    return (SINGULAR,) if model.plan.punch else ()
-
-
 METHOD = solution.Method(
     setups="factorizations",
     plan=plan,
@@ -154,8 +222,8 @@ METHOD = solution.Method(
     contact_quantities=_contact_quantities,
     residual_quantities=_residual_quantities,
     tables=_tables,
-    field_mesh=tables.field_mesh,
-    surface=tables.surface_grid,
+    field_mesh=field_mesh,
+    surface=surface_grid,
     discretisation=_discretisation,
-    warnings=_warnings,
+    warnings=lambda model: (SINGULAR,) if model.plan.punch else (),
 )

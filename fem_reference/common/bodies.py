@@ -1,10 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""The bodies of a contact in the units of a model."""
+"""The bodies of a contact in the units of a model, and estimates of the contact of a coated one, which set
+meshes, never a result.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+
+from fem_reference.common.hertz import DECAY, Scales, largest_mises, relative_moduli, scales
+from sam.scene.schema import Scene
 from sam.scene.yield_curve import Kinks, Strength
 
 EVEN = Kinks()
@@ -68,3 +74,53 @@ class Bodies:
     def without_coating(self) -> Bodies:
         """The same with the material of the half-space in place of its coating."""
         return replace(self, coating=None)
+
+
+def coating_of(scene: Scene, units: Scales) -> Coating | None:
+    """The coating in the units of the model."""
+    coating = scene.body.coating
+    if coating is None:
+        return None
+    return Coating(coating.thickness / units.length, coating.young / units.modulus, coating.poisson)
+
+
+def expected_radius(scene: Scene) -> float:
+    """Estimate of the contact radius of a smooth elastic contact with the coating over that without it
+    (Hertz).
+
+    a^3 is as the compliance, that of the coating's material in the share 1 - exp(-DECAY h/a) and of the
+    body's in the rest; by bisection between the radii on either material alone. 1 without a coating, for a
+    punch and a given pressure.
+    """
+    units = scales(scene)
+    coating = coating_of(scene, units)
+    smooth = scene.counterbody is not None and scene.counterbody.shape != "punch"
+    if coating is None or not smooth or units.peak_force == 0.0:
+        return 1.0
+    body = (1.0 - scene.body.poisson**2) / relative_moduli(scene)[0]
+    other = (1.0 - coating.poisson**2) / coating.young - body  # compliances over 1/E* of the bare contact
+    low, high = sorted((1.0, float(np.cbrt(1.0 + other))))
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        share = -np.expm1(-DECAY * coating.thickness / middle)
+        low, high = (middle, high) if 1.0 + other * share > middle**3 else (low, middle)
+    return high
+
+
+def yielded_radius(scene: Scene) -> float:
+    """Estimate of the contact radius over Hertz's when the coating flows: mean pressure 3 Y in its share of
+    the contact.
+    """
+    coating, units = scene.body.coating, scales(scene)
+    if (
+        coating is None
+        or coating.yield_stress is None
+        or scene.counterbody is None
+        or units.peak_force == 0.0
+    ):
+        return 1.0
+    peak = 1.5 * units.peak_force / np.pi * units.pressure
+    if largest_mises(coating.poisson) * peak <= coating.yield_stress:
+        return 1.0
+    flowing = max(1.0, float(np.sqrt(2.0 / 9.0 * peak / coating.yield_stress)))
+    return 1.0 - (flowing - 1.0) * float(np.expm1(-DECAY * coating.thickness / units.length))

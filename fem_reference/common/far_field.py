@@ -1,15 +1,68 @@
 # SPDX-License-Identifier: MIT
 """Displacements on the outer boundary of a mesh: those of the point forces that balance the contact on the
-half-space.
+half-space, of Boussinesq and Cerruti.
 """
 
 from __future__ import annotations
 
 from importlib import import_module
 
+import numpy as np
+
 from fem_reference.common.arrays import Array
 from fem_reference.common.bodies import Coating, Elastic
-from fem_reference.common.point_force import boussinesq
+
+
+def boussinesq(force: float, body: Elastic, r: Array, z: Array) -> Array:
+    """Displacements (u_r, u_z) of the half-space z >= 0 under `force` along +z at the origin.
+
+    Johnson, Contact Mechanics (1985), Eq. (3.18a, c); with R^2 = r^2 + z^2 and G = E / (2 (1 + nu)):
+
+        u_r = F / (4 pi G) [ r z / R^3 - (1 - 2 nu) r / (R (R + z)) ]
+        u_z = F / (4 pi G) [ z^2 / R^3 + 2 (1 - nu) / R ]
+
+    r, z: (n,) in m, not both zero; force in N, body.young in Pa (or any consistent units). Returns (2, n)
+    in m.
+    """
+    young, poisson = body.young, body.poisson
+    R = np.hypot(r, z)
+    factor = force * (1.0 + poisson) / (2.0 * np.pi * young)
+    u_r = factor * (r * z / R**3 - (1.0 - 2.0 * poisson) * r / (R * (R + z)))  # Johnson, Eq. (3.18a)
+    u_z = factor * (z**2 / R**3 + 2.0 * (1.0 - poisson) / R)  # Johnson, Eq. (3.18c)
+    return np.stack([u_r, u_z])
+
+
+def cerruti(force: float, body: Elastic, points: Array) -> Array:
+    """Displacements (u_x, u_y, u_z) of the half-space z >= 0 under `force` along +x at the origin of its
+    surface.
+
+    Johnson, Contact Mechanics (1985), Eq. (3.75); with R^2 = x^2 + y^2 + z^2 and G = E / (2 (1 + nu)):
+
+        u_x = F / (4 pi G) [ 1/R + x^2/R^3 + (1 - 2 nu) (1/(R + z) - x^2 / (R (R + z)^2)) ]
+        u_y = F / (4 pi G) [ x y/R^3 - (1 - 2 nu) x y / (R (R + z)^2) ]
+        u_z = F / (4 pi G) [ x z/R^3 + (1 - 2 nu) x / (R (R + z)) ]
+
+    points: x, y, z (3, n) in m, not all zero; force in N, body.young in Pa (or any consistent units).
+    Returns (3, n) in m.
+    """
+    (x, y, z), young, poisson = points, body.young, body.poisson
+    R = np.sqrt(x**2 + y**2 + z**2)
+    soft, over = 1.0 - 2.0 * poisson, 1.0 / (R * (R + z) ** 2)
+    u_x = 1.0 / R + x**2 / R**3 + soft * (1.0 / (R + z) - x**2 * over)  # Johnson, Eq. (3.75)
+    u_y = x * y / R**3 - soft * x * y * over
+    u_z = x * z / R**3 + soft * x / (R * (R + z))
+    return force * (1.0 + poisson) / (2.0 * np.pi * young) * np.stack([u_x, u_y, u_z])
+
+
+def slanted(load: tuple[float, float], body: Elastic, points: Array) -> Array:
+    """Displacements (3, n) under the forces `load` along z and x at the origin; points: (3, n)."""
+    x, y, z = points
+    r = np.hypot(x, y)
+    u_r, u_z = boussinesq(load[0], body, r, z)
+    outward = np.stack([x, y]) / np.where(r > 0.0, r, 1.0)
+    u = np.stack([*(u_r * outward), u_z])
+    return u + cerruti(load[1], body, points) if load[1] else u
+
 
 WORDS = {
     "half-space": "displacements of the point force on the outer boundary",

@@ -137,7 +137,7 @@ def peak_force(scene: Scene) -> float:
 
 def force_of_approach(scene: Scene, approach: float) -> float:
     """Estimate of the force in N at an approach in m: of Hertz, with the share of the coating as in
-    `fem_reference.common.coating`; of a body that yields at most 3 yield stresses on a^2 = 2 R approach.
+    `fem_reference.common.bodies`; of a body that yields at most 3 yield stresses on a^2 = 2 R approach.
 
     The yield stress is that at Tabor's representative strain 0.2 a/R.
     """

@@ -15,8 +15,8 @@ import numpy as np
 
 from fem_reference.common.contact import EQUILIBRIUM, Equilibrium
 from fem_reference.common.linear import NO_WORK, Work
-from fem_reference.common.messages import MOST_CUTS
 from fem_reference.common.model import ContactModel
+from fem_reference.common.refusals import MOST_CUTS
 from fem_reference.common.schedule import Load, Schedule, Target
 from sam.scene.result import Attempt, Progress
 
@@ -127,13 +127,10 @@ def run(
 def repeated(steps: list[Step], cycles: int) -> list[Step]:
     """The steps of an elastic body's first cycle, and those of the later ones, which are equal to it."""
     again = [
-        replace(step, work=NO_WORK, attempts=(), note=_joined(step.note, ELASTIC_CYCLE)) for step in steps
+        replace(step, work=NO_WORK, attempts=(), note="; ".join(filter(None, (step.note, ELASTIC_CYCLE))))
+        for step in steps
     ]
     return steps + [replace(step, cycle=cycle) for cycle in range(2, cycles + 1) for step in again]
-
-
-def _joined(*notes: str) -> str:
-    return "; ".join(note for note in notes if note)
 
 
 def climb(model: ContactModel, forces: Sequence[float], state: Equilibrium) -> list[Step]:

@@ -14,10 +14,9 @@ from typing import Any, Self, TypeVar
 
 import numpy as np
 
-from fem_reference.common.bodies import Bodies, Elastic
-from fem_reference.common.coating import coating_of, expected_radius
+from fem_reference.common.bodies import Bodies, Elastic, coating_of, expected_radius
 from fem_reference.common.hertz import Scales, peak_force, relative_moduli, required
-from fem_reference.common.messages import Advice, advice_of
+from fem_reference.common.refusals import Advice, advice_of
 from fem_reference.common.schedule import Schedule, Sliding, schedule_of
 from sam.scene.result import NO_FORCE, LeftOut, Stage, left_out_of
 from sam.scene.schema import Scene
@@ -31,48 +30,24 @@ from sam.scene.verdict import (
     reason_without,
 )
 
-TRACTION = "tangential traction"
+TRACTION, RETURN_MAP = "tangential traction", "return mapping and plastic history"
+LATER_CYCLES, ONE_STEP = "cycles after the first", "elastic: in one step"
 AnyPlan = TypeVar("AnyPlan", bound="Plan")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Plan:
-    """What a finite-element model solves of a scene.
+    """What a finite-element model solves of a scene, in the units of `scales` but where another is named.
 
-    Attributes
-    ----------
-    model : str
-        Name of the model in a result.
-    scales : Scales
-        Units of all that follows but where another unit is named.
-    force : float
-        Normal force at the peak in N.
-    bodies : Bodies
-        Elastic constants, coating and yield curves.
-    prescribed : bool
-        The pressure of Hertz, or a misfit strain, is given instead of a counter-body.
-    schedule : Schedule
-        The loads, one after the other.
-    sliding : Sliding
-        Coefficient and direction of friction, path of the load.
-    cells_per_radius : int
-        Elements in the radius of Hertz, as the scene has them.
-    fine_cells_per_radius : float
-        The same of the mesh, which a contact smaller than that of Hertz makes finer.
-    expected : float
-        Estimate of the radius of the elastic contact at the peak.
-    elements, unknowns, points : int
-        Size of the mesh: elements and degrees of freedom of all bodies, Gauss points of the half-space.
-    stages : tuple of Stage
-        What runs, with its size, and what does not, with the reason.
-    advice : Advice
-        What to change, by status.
-    judging : Judging or None
-        How repeated loading is judged; None without a verdict.
-    dissipates : bool
-        Whether the energy that each cycle dissipates is asked for.
-    bare : Plan or None
-        The contact without its coating on the same mesh, for comparison; None where there is no coating.
+    force: normal force at the peak in N; prescribed: the pressure of Hertz, or a misfit strain, is given
+    instead of a counter-body; cells_per_radius: elements in the radius of Hertz, as the scene has them;
+    fine_cells_per_radius: the same of the mesh, which a contact smaller than that of Hertz makes finer;
+    expected: estimate of the radius of the elastic contact at the peak; interface: depth of the lower face
+    of the coating, also where the material of the half-space takes its place; elements, unknowns, points:
+    elements and degrees of freedom of all bodies, Gauss points of the half-space; stages: what runs, with
+    its size, and what does not, with the reason; judging: how repeated loading is judged, None without a
+    verdict; dissipates: the energy that each cycle dissipates is asked for; bare: the contact without its
+    coating on the same mesh, for comparison.
     """
 
     model: str
@@ -85,6 +60,7 @@ class Plan:
     cells_per_radius: int
     fine_cells_per_radius: float
     expected: float
+    interface: float | None
     elements: int
     unknowns: int
     points: int
@@ -107,25 +83,33 @@ class Plan:
         return left_out_of(self.stages)
 
 
-def shared_fields(scene: Scene, units: Scales) -> dict[str, Any]:
-    """The fields that every plan has, but name, stages and the bare contact."""
-    sliding = slide(scene, units.length)
-    bodies, cells = bodies_of(scene, units), scene.fem.cells_per_radius
+def planned(kind: type[AnyPlan], scene: Scene, units: Scales, **own: Any) -> AnyPlan:
+    """The plan of a scene; own: what a geometry has of its own. With a coating there is a second one for
+    the bare contact: the same mesh, up to the last peak.
+    """
+    sliding, bodies = slide(scene, units.length), bodies_of(scene, units)
     expected = 1.0 if scene.patch_surface is not None else expected_radius(scene)
-    return {
-        "scales": units,
-        "force": peak_force(scene) if scene.loading.approach is None else units.force,
-        "bodies": bodies,
-        "prescribed": scene.loading.prescribed is not None,
-        "schedule": steps_of(scene, units, bodies, sliding),
-        "sliding": sliding,
-        "cells_per_radius": cells,
-        "fine_cells_per_radius": cells / min(1.0, expected),
-        "expected": expected,
-        "advice": advice_of(scene),
-        "judging": judging_of(scene),
-        "dissipates": counts_dissipation(scene),
-    }
+    plan = kind(
+        scales=units,
+        force=peak_force(scene) if scene.loading.approach is None else units.force,
+        bodies=bodies,
+        prescribed=scene.loading.prescribed is not None,
+        schedule=steps_of(scene, units, bodies, sliding),
+        sliding=sliding,
+        cells_per_radius=scene.fem.cells_per_radius,
+        fine_cells_per_radius=scene.fem.cells_per_radius / min(1.0, expected),
+        expected=expected,
+        interface=None if bodies.coating is None else bodies.coating.thickness,
+        advice=advice_of(scene),
+        judging=judging_of(scene),
+        dissipates=counts_dissipation(scene),
+        **own,
+    )
+    if bodies.coating is None:
+        return plan
+    bodies = bodies.without_coating()
+    schedule = steps_of(scene, units, bodies, sliding).of_bare_contact(not bodies.yields)
+    return replace(plan, bare=replace(plan, bodies=bodies, schedule=schedule, expected=1.0))
 
 
 def slide(scene: Scene, length: float) -> Sliding:
@@ -150,15 +134,6 @@ def bodies_of(scene: Scene, units: Scales) -> Bodies:
     return bodies
 
 
-def with_bare_contact(plan: AnyPlan, scene: Scene) -> AnyPlan:
-    """The plan of a coated scene with that of the bare contact: the same mesh, up to the last peak."""
-    if plan.bodies.coating is None:
-        return plan
-    bodies = plan.bodies.without_coating()
-    schedule = steps_of(scene, plan.scales, bodies, plan.sliding).of_bare_contact(not bodies.yields)
-    return replace(plan, bare=replace(plan, bodies=bodies, schedule=schedule, expected=1.0))
-
-
 def steps_of(scene: Scene, units: Scales, bodies: Bodies, sliding: Sliding) -> Schedule:
     """The load schedule of a scene for these bodies."""
     elastic, unit = not bodies.yields, units.displacement
@@ -170,101 +145,86 @@ def stages_of(scene: Scene, mesh: Sequence[Stage], stresses: Stage) -> tuple[Sta
 
     mesh: the first stages; stresses: the last one of the contact, whose size has the Gauss points.
     """
-    coating, yields = scene.body.coating, _yields(scene)
-    stages = list(mesh)
+    coating, yields, stages = scene.body.coating, _kind(scene)[0], list(mesh)
+    solving, bare = _solving(scene, stresses), []
     if coating is not None:
         kind = "elastic" if coating.yield_stress is None else "perfectly plastic"
         words = f"{kind}, two elements or more through its thickness"
         stages.append(Stage("film elements", True, words, {"thickness_m": coating.thickness}))
+        words = "the same contact without the film, for comparison"
+        bare = [Stage("bare body", True, words, {"steps": _steps(scene)})]
+    if scene.loading.force == 0.0:
+        solving, bare = ([Stage(each.stage, False, NO_FORCE) for each in some] for some in (solving, bare))
+    stages += [*solving, stresses]
+    if yields and not reason_without(scene):
+        words = "strains of the unloaded body after each period"
+        stages.append(Stage(VERDICT, True, words, {"periods": periods_of(scene)}))
+    return (*stages, *bare, *(Stage(stage, False, reason) for stage, reason in _left_out(scene)))
+
+
+def _kind(scene: Scene) -> tuple[bool, int, bool]:
+    """Whether the body or its coating yields, its back-stresses at any depth at most, and whether the
+    traction changes its sign from cycle to cycle.
+    """
+    coating, plasticity, friction = scene.body.coating, scene.body.plasticity, scene.friction
+    yields = plasticity is not None or (coating is not None and coating.yield_stress is not None)
+    alternating = friction is not None and scene.coefficient > 0.0 and friction.direction == "alternating"
+    return yields, 0 if plasticity is None else plasticity.back_stresses, alternating
+
+
+def _solving(scene: Scene, stresses: Stage) -> list[Stage]:
+    """What runs in the load steps."""
+    (yields, back_stresses, alternating), loading = _kind(scene), scene.loading
     solving = [_load(scene), *_moving(scene)]
     if scene.coefficient:
         solving.append(Stage(TRACTION, True, "full slip: q = coefficient p along x, in every iteration"))
     if yields:
         reason = "backward Euler, in the iterations of the contact"
-        reason += scene.body.plasticity.of_layer if scene.body.plasticity is not None else ""
-        solving.append(Stage("return mapping and plastic history", True, reason, stresses.size))
-        if count := _back_stresses(scene):
-            words = "exact along a constant direction of flow"
-            solving.append(Stage("back-stresses", True, words, {"back_stresses": count}))
-        solving += _cycles(scene, "each starts from the strain that the others left")
-    elif _alternating(scene):
-        solving += _cycles(scene, "the traction turns round")
-    if scene.loading.unload:
-        words = (
-            "in one step if that strains nothing, else in equal ones" if yields else "elastic: in one step"
-        )
-        steps = (scene.loading.unload_steps or scene.loading.steps) if yields else 1
+        reason += "" if scene.body.plasticity is None else scene.body.plasticity.of_layer
+        solving.append(Stage(RETURN_MAP, True, reason, stresses.size))
+    if back_stresses:
+        words = "exact along a constant direction of flow"
+        solving.append(Stage("back-stresses", True, words, {"back_stresses": back_stresses}))
+    if loading.cycles > 1 and (yields or alternating):
+        words = "each starts from the strain that the others left" if yields else "the traction turns round"
+        solving.append(Stage(LATER_CYCLES, True, words, {"cycles": loading.cycles}))
+    if loading.unload:
+        some = "in one step if that strains nothing, else in equal ones"
+        words, steps = (some, loading.unload_steps or loading.steps) if yields else (ONE_STEP, 1)
         solving.append(Stage("unloading", True, words, {"steps": steps}))
-    stages += [*_needs_force(scene, solving), stresses]
-    if yields and not reason_without(scene):
-        words = "strains of the unloaded body after each period"
-        stages.append(Stage(VERDICT, True, words, {"periods": periods_of(scene)}))
-    if coating is not None:
-        words = "the same contact without the film, for comparison"
-        stages += _needs_force(scene, [Stage("bare body", True, words, {"steps": _steps(scene)})])
-    return (*stages, *(Stage(stage, False, reason) for stage, reason in _left_out(scene, yields)))
+    return solving
 
 
-def _left_out(scene: Scene, yields: bool) -> list[tuple[str, str]]:
+def _left_out(scene: Scene) -> list[tuple[str, str]]:
     """Stages that the scene does not need, with the reason."""
-    coating = scene.body.coating
-    out = [] if coating else [("film elements", "no [body.coating]")]
-    if not scene.coefficient:
-        out.append((TRACTION, "friction.coefficient is 0" if scene.friction else "no [friction]"))
-    out.append(("worn geometry", "no [wear]"))
-    if not yields:
-        more = ", no body.coating.yield_stress" if coating else ""
-        reason = f"the body is elastic: no [body.plasticity]{more}"
-        out.append(("return mapping and plastic history", reason))
-    elif not _back_stresses(scene):
-        out.append(("back-stresses", "no [body.plasticity.kinematic]"))
-    if scene.counterbody is not None and not scene.counterbody.elastic:
-        words = "rigid: no counterbody.young and counterbody.poisson"
-        out.append(("mesh of the counter-body", words))
-    if scene.solver.extrapolate:
-        out.append(("extrapolation", "solver.extrapolate is a method of the semi-analytical model"))
-    if not scene.loading.unload:
-        out.append(("unloading", "loading.unload is false"))
-    elif not yields:
-        out.append(("unloading steps", "elastic: unloading in one step is exact"))
-    if not yields and scene.loading.cycles > 1 and not _alternating(scene):
-        out.append(("cycles after the first", "elastic: every cycle equals the first"))
-    if reason := reason_without(scene):
-        out.append((VERDICT, reason))
-    return out
-
-
-def _yields(scene: Scene) -> bool:
-    """Whether the body or its coating has a yield stress."""
-    coating = scene.body.coating
-    return scene.body.plasticity is not None or (coating is not None and coating.yield_stress is not None)
-
-
-def _back_stresses(scene: Scene) -> int:
-    """How many there are at most at any depth."""
-    plasticity = scene.body.plasticity
-    return 0 if plasticity is None else plasticity.back_stresses
-
-
-def _alternating(scene: Scene) -> bool:
-    """Whether the traction changes its sign from cycle to cycle."""
-    friction = scene.friction
-    return friction is not None and scene.coefficient > 0.0 and friction.direction == "alternating"
-
-
-def _loaded(scene: Scene) -> bool:
-    """Whether there is any load: a given pressure, an approach, or a force above zero."""
-    return scene.loading.force != 0.0
+    (yields, back_stresses, alternating), coating = _kind(scene), scene.body.coating
+    more = ", no body.coating.yield_stress" if coating else ""
+    rigid = scene.counterbody is not None and not scene.counterbody.elastic
+    again = not yields and scene.loading.cycles > 1 and not alternating
+    unload, reason = scene.loading.unload, reason_without(scene)
+    found = (
+        (not coating, "film elements", "no [body.coating]"),
+        (not scene.coefficient, TRACTION, "friction.coefficient is 0" if scene.friction else "no [friction]"),
+        (True, "worn geometry", "no [wear]"),
+        (not yields, RETURN_MAP, f"the body is elastic: no [body.plasticity]{more}"),
+        (yields and not back_stresses, "back-stresses", "no [body.plasticity.kinematic]"),
+        (rigid, "mesh of the counter-body", "rigid: no counterbody.young and counterbody.poisson"),
+        (
+            scene.solver.extrapolate,
+            "extrapolation",
+            "solver.extrapolate is a method of the semi-analytical model",
+        ),
+        (not unload, "unloading", "loading.unload is false"),
+        (unload and not yields, "unloading steps", "elastic: unloading in one step is exact"),
+        (again, LATER_CYCLES, "elastic: every cycle equals the first"),
+        (reason, VERDICT, reason or ""),
+    )
+    return [(stage, why) for left_out, stage, why in found if left_out]
 
 
 def _steps(scene: Scene) -> int:
     """Load steps of a cycle, those along the path included; none without load."""
-    return (scene.loading.steps + scene.strokes.count) * _loaded(scene)
-
-
-def _needs_force(scene: Scene, stages: list[Stage]) -> list[Stage]:
-    """The stages, none of which runs without force."""
-    return stages if _loaded(scene) else [Stage(each.stage, False, NO_FORCE) for each in stages]
+    return (scene.loading.steps + scene.strokes.count) * (scene.loading.force != 0.0)
 
 
 def _load(scene: Scene) -> Stage:
@@ -289,9 +249,3 @@ def _moving(scene: Scene) -> list[Stage]:
     words = f"the gap moves over the body, {way}; {where}"
     size = {"passes": strokes.cycles, "steps": strokes.count, "step_m": path.length / strokes.count}
     return [Stage("moving counter-body", True, words, size)]
-
-
-def _cycles(scene: Scene, reason: str) -> list[Stage]:
-    """Further cycles that are not equal to the first."""
-    cycles = scene.loading.cycles
-    return [Stage("cycles after the first", True, reason, {"cycles": cycles})] if cycles > 1 else []

@@ -1,13 +1,27 @@
 # SPDX-License-Identifier: MIT
-"""What no finite-element model can represent. Loads no numerical library but numpy."""
+"""What no finite-element model can represent, and what to change when a solve ends badly: nothing that is set
+already, nothing that the scene has not. Loads no numerical library but numpy.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
-from fem_reference.common.coating import expected_radius
+import numpy as np
+
+from fem_reference.common.bodies import expected_radius
 from fem_reference.common.hertz import scales
-from sam.scene.remedies import either, larger_box, less_load
+from sam.scene.remedies import (
+    either,
+    finer_cells,
+    finer_mesh,
+    larger_box,
+    less_friction,
+    less_load,
+    more_steps,
+)
+from sam.scene.result import Status
 from sam.scene.schema import Scene
 from sam.scene.section import Problem, spelling
 
@@ -75,14 +89,8 @@ def coating_problems(scene: Scene) -> list[Problem]:
     if not least <= coating.thickness <= most:
         allowed = f"from {least:.3g} to {most:.3g} m for this contact and fem.box = {spelling(scene.fem.box)}"
         problems.append(Problem("body.coating.thickness", spelling(coating.thickness), allowed))
-    return problems or _too_stiff_a_coating(scene)
-
-
-def _too_stiff_a_coating(scene: Scene) -> list[Problem]:
-    """A coating that makes the contact so small that elements as small would be too many."""
-    share, coating = expected_radius(scene), scene.body.coating
-    if coating is None or share >= SMALLEST:
-        return []
+    if problems or (share := expected_radius(scene)) >= SMALLEST:
+        return problems
     words = (
         f"less: the contact would have {share:.2g} of the radius without film, the mesh allows {SMALLEST:g}"
     )
@@ -97,3 +105,84 @@ def box_problems(scene: Scene, reach: float, contact: str) -> list[Problem]:
     radii = "radii" if scene.loading.misfit_sphere else "Hertz radii"
     words = f"more than {reach:.3g} {radii} for this {contact}: {remedies}"
     return [Problem("fem.box", spelling(scene.fem.box), words)]
+
+
+MOST_CUTS = 6
+"""A step is halved so many times at most: into 64 parts."""
+FLOWED = 1.0
+"""Accumulated plastic strain of a coating beyond which a small-strain solution means nothing."""
+SOFTER = "raise body.coating.thickness, or lower body.coating.young"
+FEWEST_ELEMENTS = 4
+"""Elements in the contact radius below which a result is called under-resolved (pressure in the centre off
+by 1 %).
+"""
+FEWEST_NODES = 28
+"""Nodes in contact, all spots of a rough patch together, below which a result is called under-resolved: as
+many as a spot of three elements in the radius has.
+"""
+
+
+def message_of(scene: Scene, status: Status) -> str:
+    """What to change for a status, in words; empty for a converged solve."""
+    rough = scene.patch_surface is not None
+    match status:
+        case Status.NOT_CONVERGED if rough:
+            full = f"{less_load(scene)} if all of it touches"
+            return f"the contact iteration did not settle: {either(finer_cells(scene), full)}"
+        case Status.NOT_CONVERGED:
+            return "the contact iteration did not settle: change fem.cells_per_radius"
+        case Status.CONTACT_AT_GRID_EDGE:
+            return f"the contact reaches the edge of the fine mesh: {less_load(scene)}"
+        case Status.UNDER_RESOLVED if rough:
+            return f"fewer than {FEWEST_NODES} surface nodes in contact: {finer_cells(scene)}"
+        case Status.UNDER_RESOLVED:
+            return f"fewer than {FEWEST_ELEMENTS} elements in the contact radius: {finer_mesh(scene)}"
+        case Status.PLASTIC_ZONE_AT_GRID_EDGE:
+            return (
+                f"the plastic zone reaches the outer boundary: {either(larger_box(scene), less_load(scene))}"
+            )
+        case Status.STEP_CUT_LIMIT:
+            what = either(more_steps(scene), less_load(scene))
+            return f"a load step did not converge, halved {MOST_CUTS} times: {what}"
+    return status.advice  # of a status that no solve here ends in
+
+
+@dataclass(frozen=True)
+class Advice:
+    """What to change when a solve ends in a status, in words. flows: of a coating that yields without
+    limit, if it can.
+    """
+
+    by_status: Mapping[Status, str]
+    flows: str | None = None
+
+    def outcome(self, status: Status, peeq: float) -> tuple[Status, str]:
+        """Status and message of a solve, as given, unless the coating flows without limit; peeq: the
+        largest at the peak.
+        """
+        if self.flows is not None and status is Status.CONVERGED and peeq > FLOWED:
+            return Status.NOT_CONVERGED, self.flows
+        return status, self.by_status[status]
+
+
+def advice_of(scene: Scene) -> Advice:
+    """The advice of a scene.
+
+    A coating that yields carries no traction beyond yield_stress/sqrt(3), that is with friction no pressure
+    beyond this over the coefficient. A larger pressure that is given has no equilibrium; that of a contact
+    levels off there, while the coating is sheared until small strains mean nothing.
+    """
+    coating, mu = scene.body.coating, scene.coefficient
+    advice = {status: message_of(scene, status) for status in Status}
+    if coating is not None and coating.young > scene.body.young:
+        words = f"if the film is too thin and stiff for the digits of a double, {SOFTER}"
+        advice[Status.NOT_CONVERGED] += f"; {words}"
+    if coating is None or coating.yield_stress is None:
+        return Advice(advice)
+    words = f"the film flows, with a plastic strain beyond {FLOWED:g}"
+    if mu > 0.0:
+        most = coating.yield_stress / (np.sqrt(3.0) * mu)
+        words = f"the film carries no pressure beyond {most:.4g} Pa with friction.coefficient = {mu:g}"
+        advice[Status.STEP_CUT_LIMIT] += f"; {words}"
+    remedies = either("raise body.coating.yield_stress", less_load(scene), less_friction(scene))
+    return Advice(advice, flows=f"{words}: {remedies}")

@@ -9,22 +9,20 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
 from fem_reference.common.arrays import Array
-from fem_reference.common.bare import Solved, coated_quantities, recorded_steps, solved_steps
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.linear import NO_WORK
-from fem_reference.common.loading import Step, run
+from fem_reference.common.loading import Progressed, Step, run
 from fem_reference.common.model import ContactModel
-from fem_reference.common.periods import element_fields, verdict_summary
 from fem_reference.common.plan import Plan
 from fem_reference.common.recovery import Peak, exceeded_strain
-from fem_reference.common.tables import peak_steps, step_tables
+from fem_reference.common.tables import element_fields, peak_steps, step_tables, verdict_summary
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.result import (
     COST,
@@ -42,8 +40,65 @@ from sam.scene.result import (
 )
 from sam.scene.schema import Scene
 
+M = TypeVar("M", bound=ContactModel)
 
-class Strained(Protocol):
+
+@dataclass(frozen=True)
+class Pair:
+    """The steps of the coated contact and those of the bare one; None: not begun."""
+
+    coated: Progressed | None = None
+    bare: Progressed | None = None
+
+
+@dataclass(frozen=True)
+class Solved(Generic[M]):
+    """The model of a plan and its steps; of a coated one also those of the bare contact, no steps if the
+    coated one failed.
+    """
+
+    model: M
+    steps: list[Step]
+    bare_model: M | None = None
+    bare_steps: list[Step] = field(default_factory=list)
+
+
+Keeping = Callable[..., None]
+"""Called with a record, its part that goes on, the steps before that part and those after it."""
+
+
+def coated_then_bare(
+    coated: M, bare: M, begin: Pair, *, progress: Progress | None, keep: Keeping
+) -> Solved[M]:
+    """The steps of the coated contact, then, unless it failed, those of the bare one on the same mesh for
+    comparison: the same up to the last peak if the body can yield; of an elastic one the peak is enough.
+    """
+    schedule, later = coated.plan.schedule, bare.plan.schedule
+
+    def counted(first: int, last: int) -> Progress | None:
+        return progress and (lambda stage, done, total: progress(stage, first + done, first + total + last))
+
+    steps = run(
+        coated,
+        schedule,
+        progress=counted(0, later.loading_steps),
+        keep=lambda now: keep(Pair(now), now, 0, len(later.targets)),
+        begin=begin.coated,
+    )
+    if not steps[-1].state.converged:
+        return Solved(coated, steps, bare)
+    finished = Progressed(coated.virgin(), (), steps)
+    bare_steps = run(
+        bare,
+        later.with_forces({(step.cycle, step.number): step.state.force for step in steps}),
+        progress=counted(schedule.loading_steps, 0),
+        keep=lambda now: keep(Pair(finished, now), now, len(steps), 0),
+        begin=begin.bare,
+    )
+    return Solved(coated, steps, bare, bare_steps)
+
+
+class Peeq(Protocol):
     """Stresses of a state, of which the accumulated plastic strain is asked."""
 
     @property
@@ -52,8 +107,7 @@ class Strained(Protocol):
 
 
 P = TypeVar("P", bound=Plan)
-M = TypeVar("M", bound=ContactModel)
-S = TypeVar("S", bound=Strained)
+S = TypeVar("S", bound=Peeq)
 Quantities = dict[str, float | None]
 CONDITIONS = ("force_balance", "tension", "penetration", "gap_in_contact")
 
@@ -88,15 +142,6 @@ class Method(Generic[P, M, S]):
         [M, Sequence[Step], Mapping[str, Equilibrium], Mapping[str, S]], tuple[dict[str, Table], Quantities]
     ] = lambda *_of_states: ({}, {})
 
-    def in_layers(self, model: M, state: Equilibrium) -> dict[str, float]:
-        """Return the largest values of a coated contact that are compared."""
-        s = self.stresses(model, state)
-        return {
-            "p_max_Pa": model.largest_pressure(state),
-            "mises_max_film_Pa": self.largest_in_layer(s, True)[0],
-            "mises_max_substrate_Pa": self.largest_in_layer(s, False)[0],
-        }
-
     def peeq_max(self, model: M, state: Equilibrium) -> float:
         """Return the largest accumulated plastic strain of a state, as in the quantities."""
         return self.largest_peeq(self.stresses(model, state))[0] if state.yielded else 0.0
@@ -117,18 +162,25 @@ def solve(
     model = method.build(plan)
     clock.ready()
 
-    def keep(now: object, done: int, total: int) -> None:
+    def keep(now: object, part: Progressed, before: int = 0, after: int = 0) -> None:
         if checkpoint:
+            done = before + len(part.steps)
+            total = done + len(part.targets) + after
             checkpoint(Checkpoint.of(plan.model, now, done=done, total=total, cost=clock.times()))
 
-    solved = solved_steps(
-        model,
-        method.build,
-        progress=progress,
-        keep=keep if checkpoint else None,
-        start=start,
-        strained=partial(method.peeq_max, model),
-    )
+    if plan.bare is not None:
+        pair = start.record(Pair) if start else Pair()
+        solved = coated_then_bare(model, method.build(plan.bare), pair, progress=progress, keep=keep)
+    else:
+        steps = run(
+            model,
+            plan.schedule,
+            progress=progress,
+            keep=lambda now: keep(now, now),
+            begin=start.record(Progressed) if start else None,
+            strained=partial(method.peeq_max, model),
+        )
+        solved = Solved(model, steps)
     return result_of(method, solved, clock)
 
 
@@ -138,7 +190,8 @@ def load_steps(method: Method[P, M, S], scene: Scene, record: Checkpoint | None)
     model = method.build(plan)
     if record is None:
         return model, run(model, plan.schedule)
-    return model, recorded_steps(record, coated=plan.bare is not None)
+    now = record.record(Progressed) if plan.bare is None else record.record(Pair).coated
+    return model, [] if now is None else now.steps
 
 
 def result_of(method: Method[P, M, S], solved: Solved[M], clock: Clock) -> Result:
@@ -157,7 +210,7 @@ def result_of(method: Method[P, M, S], solved: Solved[M], clock: Clock) -> Resul
     status, message = plan.advice.outcome(verdict(method, solved, fields[first]), peeq)
     of_steps = step_tables(model, steps, partial(method.peeq_max, model))
     quantities = quantities_of(method, model, states, fields)
-    quantities |= coated_quantities(solved, states[first], method.in_layers)
+    quantities |= coated_quantities(method, solved, states[first])
     of_path, found = method.of_path(model, steps, states, fields)
     history = {**of_steps.pop("history"), **of_path.pop("history", {})}
     return Result(
@@ -171,11 +224,32 @@ def result_of(method: Method[P, M, S], solved: Solved[M], clock: Clock) -> Resul
         left_out=plan.left_out,
         discretisation=method.discretisation(model),
         certificate=certificate(model, states[first]),
-        cost=cost(solved.all_steps, method.setups, clock),
+        cost=cost(solved.steps + solved.bare_steps, method.setups, clock),
         message="; ".join(filter(None, (message, steps[-1].state.ending))),
         warnings=method.warnings(model),
         verdict=verdict_summary(model, steps),
     )
+
+
+def coated_quantities(method: Method[P, M, S], solved: Solved[M], peak: Equilibrium) -> Quantities:
+    """The quantities of a coated scene alone, none of any other. peak: the state that is reported.
+
+    Relative changes are (coated - bare)/bare at equal force; None without a load, or if the bare contact
+    did not converge.
+    """
+    if solved.bare_model is None:
+        return {}
+    of_coated = method.stresses(solved.model, peak)
+    film, substrate = (method.largest_in_layer(of_coated, coating)[0] for coating in (True, False))
+    values: Quantities = {"mises_max_film_Pa": film, "mises_max_substrate_Pa": substrate}
+    if not solved.bare_steps or not (state := solved.bare_steps[-1].state).converged:
+        return values
+    p_max = solved.bare_model.largest_pressure(state)
+    mises_max = method.largest_in_layer(method.stresses(solved.bare_model, state), False)[0]
+    values |= {"p_max_bare_Pa": p_max, "mises_max_bare_Pa": mises_max}
+    values["p_max_change"] = solved.model.largest_pressure(peak) / p_max - 1.0 if p_max else None
+    values["mises_max_change"] = substrate / mises_max - 1.0 if mises_max else None
+    return values
 
 
 class Clock:
@@ -219,7 +293,7 @@ def verdict(method: Method[P, M, S], solved: Solved[M], peak: S) -> Status:
     return judge(solved.bare_model, solved.bare_steps, last)
 
 
-def judge(model: ContactModel, steps: Sequence[Step], peak: Strained) -> Status:
+def judge(model: ContactModel, steps: Sequence[Step], peak: Peeq) -> Status:
     """Status of the load steps of one contact; the mesh is judged at the largest contact, `peak` are its
     stresses.
     """
@@ -245,6 +319,10 @@ def quantities_of(
     peak, s = states[first], fields[first]
     mises_max, mises_depth = method.largest_mises(s)
     peeq_max, peeq_depth = method.largest_peeq(s)
+    strain = None  # of a body that has not yielded
+    if peak.history is not None:
+        peeq = peak.history.peeq * model.scales.strain
+        strain = exceeded_strain(peeq.ravel(), model.body.weights.ravel())
     values: Quantities = {
         "approach_m": None if model.prescribed else peak.approach * model.scales.displacement,
         "p_max_Pa": model.largest_pressure(peak),
@@ -254,7 +332,7 @@ def quantities_of(
         "peeq_max_depth_m": peeq_depth,
         "friction_coefficient": model.friction(peak),
         "wear_volume_m3": 0.0,
-        "peeq_p95": _exceeded_strain(model, peak),
+        "peeq_p95": strain,
         **method.contact_quantities(model, peak),
     }
     if UNLOADED in states:
@@ -262,14 +340,6 @@ def quantities_of(
         values["residual_mises_max_Pa"] = method.largest_mises(after)[0]
         values |= method.residual_quantities(model, states[UNLOADED], after)
     return {name: values.get(name) for name in QUANTITIES}
-
-
-def _exceeded_strain(model: ContactModel, state: Equilibrium) -> float | None:
-    """See `sam.scene.result.EXCEEDING`; None of a body that has not yielded."""
-    if state.history is None:
-        return None
-    peeq = state.history.peeq * model.scales.strain
-    return exceeded_strain(peeq.ravel(), model.body.weights.ravel())
 
 
 def certificate(model: ContactModel, state: Equilibrium) -> dict[str, float]:

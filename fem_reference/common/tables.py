@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Tables that the models of both geometries share, in SI units, with the columns of sam.scene.result."""
+"""Tables that the models of both geometries share, in SI units, with the columns of sam.scene.result, and the
+verdict on repeated loading, from the plastic histories of the unloaded states that end the periods.
+"""
 
 from __future__ import annotations
 
@@ -8,10 +10,33 @@ from typing import Any
 
 import numpy as np
 
+from fem_reference.common.arrays import Array
+from fem_reference.common.contact import Equilibrium
 from fem_reference.common.loading import Step, Strained
 from fem_reference.common.model import ContactModel
-from fem_reference.common.periods import loops_of, verdict_columns_of
-from sam.scene.result import CYCLES, DISSIPATED, FRICTION_SIGN, HISTORY, Table, residual_table
+from fem_reference.common.plasticity import History
+from sam.scene.result import (
+    BACK_STRESS,
+    CYCLES,
+    DISSIPATED,
+    FRICTION_SIGN,
+    HISTORY,
+    LOOPS,
+    Table,
+    residual_table,
+)
+from sam.scene.verdict import (
+    Judging,
+    Period,
+    Verdict,
+    cell_fields,
+    last_period,
+    loop_places,
+    norm_of,
+    summary,
+    verdict_columns,
+    verdict_on,
+)
 
 
 def columns(names: Sequence[str], values: Sequence[Any]) -> dict[str, Any]:
@@ -39,8 +64,11 @@ def step_tables(model: ContactModel, steps: Sequence[Step], peeq_max: Strained) 
             signs = [int(np.sign(step.state.load.ratio)) for step in peaks]
             found = {**found, FRICTION_SIGN: signs}
         if model.plan.dissipates:
-            found = {**found, DISSIPATED: dissipated_in(cycles, steps)}
-        out["cycles"] = {**found, **verdict_columns_of(model, steps, cycles)}
+            spent = [sum(step.dissipated for step in steps if step.cycle == cycle) for cycle in cycles]
+            found = {**found, DISSIPATED: spent}  # J
+        if (judging := model.plan.judging) is not None:
+            found = {**found, **verdict_columns(cycles, verdicts_of(model, steps, judging), judging.period)}
+        out["cycles"] = found
     return out
 
 
@@ -83,12 +111,132 @@ def cycles_table(model: ContactModel, peaks: Sequence[Step], peeq_max: Strained)
     return {name: values.get(name, [None] * len(peaks)) for name in CYCLES}
 
 
-def dissipated_in(cycles: Sequence[int], steps: Sequence[Step]) -> list[float]:
-    """The energy in J that each cycle dissipated."""
-    return [sum(step.dissipated for step in steps if step.cycle == cycle) for cycle in cycles]
-
-
 def peak_steps(steps: Sequence[Step]) -> list[Step]:
     """The last step towards the peak of each cycle that came to it."""
     peaks = {step.cycle: step for step in steps if not step.unloads}
     return [step for step in peaks.values() if step.state.converged]
+
+
+AXISYMMETRIC = [0, 1, 2, 4]
+"""Where rr, tt, zz, rz are among six components in the plane y = 0."""
+
+
+def _yield_strain(model: ContactModel) -> Array:
+    """Initial yield stress over Young's modulus at each Gauss point, (n,)."""
+    if model.problem.material is None:
+        raise ValueError("the body does not yield")
+    found: Array = model.scales.strain * model.problem.material.yield_strain.ravel()
+    return found
+
+
+def verdicts_of(model: ContactModel, steps: Sequence[Step], judging: Judging) -> list[Verdict]:
+    """After each period that was finished: of the steps of a contact whose body yields."""
+    histories, periods = _periods_of(model, steps, judging)
+    strain, volume = _yield_strain(model), model.body.weights.ravel() * model.scales.length**3 / model.part
+    return [
+        verdict_on(periods[:number], after.peeq.ravel(), strain, judging, volume=volume)
+        for number, after in enumerate(histories, start=1)
+    ]
+
+
+def _periods_of(
+    model: ContactModel, steps: Sequence[Step], judging: Judging
+) -> tuple[list[History], list[Period]]:
+    """The histories at the ends of the periods that were finished, and what each period added."""
+    last = {
+        target.cycle: target.number
+        for target in model.plan.schedule.targets
+        if not target.unloads or not judging.loaded
+    }
+    ends = {
+        step.cycle: step.state.history
+        for step in steps
+        if step.state.converged and step.number >= last[step.cycle] and step.unloads is not judging.loaded
+    }
+    found = [ends[cycle] for cycle in sorted(ends) if cycle % judging.period == 0]
+    histories = [each for each in found if each is not None]
+    if not histories:
+        return [], []
+    unit = model.scales.strain
+    states = [History.virgin(histories[0].peeq.shape, len(histories[0].plastic_strain)), *histories]
+    return histories, [_added(before, after, unit) for before, after in zip(states, histories, strict=False)]
+
+
+def loops_of(model: ContactModel, steps: Sequence[Step]) -> dict[str, list[Any]]:
+    """The table loops: stress and plastic strain of three Gauss points over the last period; nothing before
+    that ends, or where nothing is judged.
+    """
+    judging = model.plan.judging
+    histories, periods = ([], []) if judging is None else _periods_of(model, steps, judging)
+    if judging is None or len(periods) < 2 or len(periods) < model.plan.schedule.cycles // judging.period:
+        return {}
+    cycles, unit = last_period(judging, model.plan.schedule.cycles), model.scales
+    end = max(step.number for step in steps if step.cycle == cycles.start - 1)
+    wanted = [
+        step for step in steps if step.cycle in cycles or (step.cycle, step.number) == (cycles.start - 1, end)
+    ]
+    coordinates = model.body.points.reshape(len(model.body.points), -1) * unit.length
+    x, *across, z = coordinates
+    y = across[0] if across else 0 * x
+    rows = []
+    for number, at in enumerate(loop_places(periods[-2].accumulated, histories[-2].peeq.ravel()), start=1):
+        for step in wanted:
+            stress = _six_at(model.stress(step.state) * unit.pressure, at)
+            if (history := step.state.history) is None:
+                continue
+            strain = _six_at(history.plastic_strain * unit.strain, at) / np.array([1, 1, 1, 2, 2, 2])
+            peeq = unit.strain * float(history.peeq.ravel()[at])
+            values = (number, x[at], y[at], z[at], step.cycle, step.number, peeq)
+            rows.append((*values, *stress.tolist(), *strain.tolist()))
+    return {name: [row[k] for row in rows] for k, name in enumerate(LOOPS)}
+
+
+def _six_at(field: Array, at: int) -> Array:
+    """Six components of a field (n, n_elements, n_points) at a point; in axial symmetry y is around."""
+    found, values = np.zeros(6), field.reshape(len(field), -1)[:, at]
+    found[AXISYMMETRIC if len(values) == 4 else slice(None)] = values
+    return found
+
+
+def element_fields(model: ContactModel, state: Equilibrium, steps: Sequence[Step]) -> dict[str, Array]:
+    """Fields of repeated loading in the elements of the half-space, (n,) or (n, 6): back-stresses of a state,
+    and of the last period its strains and the classes. Means over the Gauss points, of the class the highest.
+    """
+    material, judging, weights = model.problem.material, model.plan.judging, model.body.weights
+    out: dict[str, Array] = {}
+    if material is None or state.history is None:
+        return out
+    if material.back_stresses:
+        back = material.back_stress(state.history) * model.scales.pressure
+        out[BACK_STRESS] = np.zeros((len(weights), 6))
+        mean = (back * weights).sum(axis=-1) / weights.sum(axis=-1)
+        out[BACK_STRESS][:, AXISYMMETRIC if len(back) == 4 else slice(None)] = mean.T
+    histories, periods = ([], []) if judging is None else _periods_of(model, steps, judging)
+    if judging is None or not periods:
+        return out
+    for name, values in cell_fields(
+        periods, histories[-1].peeq.ravel(), _yield_strain(model), judging
+    ).items():
+        points = values.reshape(weights.shape)
+        mean = (points * weights).sum(axis=-1) / weights.sum(axis=-1)
+        out[name] = points.max(axis=-1) if name == "class" else mean
+    return out
+
+
+def _added(before: History, after: History, unit: float) -> Period:
+    """What a period added; the shears of a strain stand for twice the tensor."""
+    strain = unit * (after.plastic_strain - before.plastic_strain).reshape(len(after.plastic_strain), -1)
+    tensor = np.zeros((6, strain.shape[1]))
+    tensor[:3], tensor[3 : len(strain)] = strain[:3], strain[3:] / 2.0
+    return Period(unit * (after.peeq - before.peeq).ravel(), norm_of(tensor), tensor)
+
+
+def verdict_summary(model: ContactModel, steps: Sequence[Step]) -> Mapping[str, Any] | None:
+    """What a result says of repeated loading; None where nothing is judged, or no period was finished."""
+    judging = model.plan.judging
+    if judging is None:
+        return None
+    found = verdicts_of(model, steps, judging)
+    return (
+        summary(found, judging.period, judging.floor * float(_yield_strain(model).min())) if found else None
+    )

@@ -15,8 +15,8 @@ import numpy as np
 from fem_reference.common.arrays import Array, Bools, Integers
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.hertz import hertz_pressure
-from fem_reference.common.messages import FEWEST_ELEMENTS
 from fem_reference.common.model import HERTZ_GROWTH, PLASTIC_GROWTH, ContactModel, material
+from fem_reference.common.refusals import FEWEST_ELEMENTS
 from fem_reference.common.schedule import Load
 from fem_reference.spatial.hexahedra import HexSolid, block, on_grid
 from fem_reference.spatial.lines import Lines

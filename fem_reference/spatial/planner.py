@@ -5,15 +5,16 @@ library but numpy.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from fem_reference.common.arrays import Array
-from fem_reference.common.coating import coating_of, expected_radius, yielded_radius
-from fem_reference.common.hertz import Scales, kinks_of, plastic_radius, required, scales
-from fem_reference.common.mesh_lines import Sizes, coated_depths, uniform_then_growing
-from fem_reference.common.plan import Plan, shared_fields, slide, stages_of, with_bare_contact
+from fem_reference.common.bodies import coating_of, expected_radius, yielded_radius
+from fem_reference.common.hertz import Scales, contact_modulus, kinks_of, plastic_radius, required, scales
+from fem_reference.common.mesh_lines import Sizes, coated_depths, grow, uniform_then_growing
+from fem_reference.common.plan import Plan, planned, slide, stages_of
 from fem_reference.common.refusals import (
     box_problems,
     coating_problems,
@@ -23,10 +24,10 @@ from fem_reference.common.refusals import (
     shape_problems,
 )
 from fem_reference.spatial.lines import GROWTH, Lines, two_sided
-from fem_reference.spatial.patch import Patch, choose_patch, rough_lines, rough_scales
 from sam.scene.result import LeftOut, Stage
 from sam.scene.schema import Scene
 from sam.scene.section import Problem, spelling
+from sam.scene.surface import CounterSurface, Strip, Surface
 
 MODEL = "fem-3d"
 ALLOWS = "the three-dimensional finite-element model allows"
@@ -44,22 +45,10 @@ DEPTH = 1.2
 class SpatialPlan(Plan):
     """What the three-dimensional model solves of a scene; see `fem_reference.common.plan.Plan`.
 
-    Attributes
-    ----------
-    lines : Lines
-        Planes of the mesh.
-    core : tuple of float
-        (low x, high x, high y) of the uniform part of the mesh.
-    curvature : tuple of float
-        Curvatures of the gap along x and y; zero under a patch, which has a gap of its own.
-    weights : (nx + 1, ny + 1) array
-        Local coefficient of friction over the largest one, at the surface nodes.
-    radius : float
-        Semi-axis along x of the elastic contact at the peak, in m, infinite below a plane.
-    interface : float or None
-        Depth of the lower face of the coating, also where the material of the half-space takes its place.
-    patch : Patch or None
-        The rough surface; None if the body is smooth.
+    lines: planes of the mesh; core: (low x, high x, high y) of its uniform part; curvature: of the gap along
+    x and y, zero under a patch, which has a gap of its own; weights: (nx + 1, ny + 1) local coefficient of
+    friction over the largest one, at the surface nodes; radius: semi-axis along x of the elastic contact at
+    the peak, in m, infinite below a plane; patch: the rough surface, None if the body is smooth.
     """
 
     lines: Lines
@@ -67,7 +56,6 @@ class SpatialPlan(Plan):
     curvature: tuple[float, float]
     weights: Array
     radius: float
-    interface: float | None
     patch: Patch | None = None
 
     @property
@@ -117,46 +105,37 @@ def plan(scene: Scene) -> SpatialPlan:
         x, y = (line / units.length for line in patch.centres)
         core = float(x[0]), float(x[-1]), float(y[-1])
     elements, nodes = (int(np.prod([n + k for n in lines.shape])) for k in (0, 1))
-    fields = shared_fields(scene, units)
-    coating = fields["bodies"].coating
-    made = SpatialPlan(
+    words = (
+        "half of the body, y >= 0" if lines.half else "the whole body: the scene is not symmetric to y = 0"
+    )
+    mesh = [Stage("mesh", True, words, {"elements": elements, "unknowns": 3 * nodes})]
+    for name in () if patch is None else ("surface", "counter"):
+        if (surface := getattr(patch, name)) is not None:
+            words = f'[{surface.table}], kind "{surface.kind}", at the nodes of the patch'
+            stage = f"{name} heights".replace("counter", "counter-surface")
+            mesh.append(Stage(stage, True, words, {"nodes": list(required(patch).cells)}))
+    stresses = Stage("stresses in the elements", True, "at peak load", {"points": 8 * elements})
+    stages = stages_of(scene, mesh, stresses)
+    below_plane = scene.counterbody is not None and scene.counterbody.radii is None
+    if scene.friction is not None and not scene.friction.coupling:
+        words = "friction.coupling = false is a choice of the semi-analytical model: a continuum is always"
+        stages += (Stage("decoupled traction", False, f"{words} coupled"),)
+    return planned(
+        SpatialPlan,
+        scene,
+        units,
         model=MODEL,
-        **fields,
         lines=lines,
         core=core,
         curvature=curvature,
         weights=friction_weights(scene, lines, units),
-        radius=contact_axis(scene),
-        interface=None if coating is None else coating.thickness,
+        radius=np.inf if below_plane else semi_axes(curvatures(scene))[0] * scales(scene).length,
         patch=patch,
         elements=elements,
         unknowns=3 * nodes,
         points=8 * elements,
-        stages=_stages(scene, lines, patch),
+        stages=stages,
     )
-    return with_bare_contact(made, scene)
-
-
-def _stages(scene: Scene, lines: Lines, patch: Patch | None) -> tuple[Stage, ...]:
-    """All stages, with sizes from the mesh."""
-    elements, nodes = (int(np.prod([n + k for n in lines.shape])) for k in (0, 1))
-    words = (
-        "half of the body, y >= 0" if lines.half else "the whole body: the scene is not symmetric to y = 0"
-    )
-    stages = [Stage("mesh", True, words, {"elements": elements, "unknowns": 3 * nodes})]
-    if patch is not None:
-        for surface, name in ((patch.surface, ""), (patch.counter, "counter-")):
-            if surface is not None:
-                words = f'[{surface.table}], kind "{surface.kind}", at the nodes of the patch'
-                stages.append(Stage(f"{name}surface heights", True, words, {"nodes": list(patch.cells)}))
-    stresses = Stage("stresses in the elements", True, "at peak load", {"points": 8 * elements})
-    found = stages_of(scene, stages, stresses)
-    if scene.friction is None or scene.friction.coupling:
-        return found
-    words = (
-        "friction.coupling = false is a choice of the semi-analytical model: a continuum is always coupled"
-    )
-    return (*found, Stage("decoupled traction", False, words))
 
 
 def left_out(scene: Scene) -> list[LeftOut]:
@@ -205,7 +184,8 @@ def check(scene: Scene) -> None:
     refuse(problems)
     refuse(coating_problems(scene))  # these need the contact radius of a shape that is allowed
     if not rough:  # half of a rough patch is less than the smallest box
-        refuse(box_problems(scene, uniform_depth(scene), "contact"))
+        reach = DEPTH * _grown(scene) + 1.0 / scene.fem.cells_per_radius
+        refuse(box_problems(scene, reach, "contact"))
 
 
 def _combinations(scene: Scene) -> list[Problem]:
@@ -243,14 +223,6 @@ def semi_axes(curvature: tuple[float, float]) -> tuple[float, float]:
     return (along_y / along_x) ** (1.0 / 3.0), (along_x / along_y) ** (1.0 / 3.0)
 
 
-def contact_axis(scene: Scene) -> float:
-    """Semi-axis along x of the elastic contact by Hertz in m, infinite below a plane."""
-    counter = scene.counterbody
-    if counter is not None and counter.radii is None:
-        return float(np.inf)
-    return semi_axes(curvatures(scene))[0] * scales(scene).length
-
-
 def friction_weights(scene: Scene, lines: Lines, units: Scales) -> Array:
     """(nx + 1, ny + 1) coefficient of friction over the largest one: of the map's cell that holds the node,
     or the nearest.
@@ -267,11 +239,6 @@ def friction_weights(scene: Scene, lines: Lines, units: Scales) -> Array:
 def _grown(scene: Scene) -> float:
     """Estimate of the largest contact radius over that of Hertz."""
     return max(plastic_radius(scene) or 1.0, expected_radius(scene), yielded_radius(scene))
-
-
-def uniform_depth(scene: Scene) -> float:
-    """Depth of the uniform part of the mesh, at most."""
-    return DEPTH * _grown(scene) + 1.0 / scene.fem.cells_per_radius
 
 
 def choose_lines(scene: Scene) -> tuple[Lines, tuple[float, float, float]]:
@@ -296,3 +263,82 @@ def choose_lines(scene: Scene) -> tuple[Lines, tuple[float, float, float]]:
     else:
         z = coated_depths(coating.thickness, box, Sizes(size, size, (depth, depth)), growth=GROWTH)
     return Lines(x, y[y >= 0.0] if half else y, z, half), core
+
+
+UNIFORM_DEPTH = 0.2
+"""Depth over the shorter side of a patch of square cells down to which elements are cubes; spots of a few
+asperities take a tenth.
+"""
+DEPTH_GROWTH = 1.6
+"""Ratio of neighbouring elements below the cubes; 1.2 changes pressures and loads of spots by 3e-4."""
+SIDE_GROWTH = 2.2
+"""Ratio of neighbouring elements beside the patch; 1.4 changes pressures and loads of spots by 3e-4."""
+UNLOADED = 0.01
+"""Unit of displacement over that of length when there is no force: arbitrary, as nothing is deformed."""
+
+
+@dataclass(frozen=True)
+class Patch:
+    """A rough body in SI units and the counter-body above it; None of a surface that is smooth.
+
+    The surface nodes of the patch are the centres of the scene's cells, so that a node stands for a cell: its
+    height, its local coefficient of friction. Beyond the patch the surface is free. The whole body is
+    modelled, its unit of length is half of the longer side.
+
+    cells: (nx, ny); sides: (Lx, Ly); relief: the border of the patch is that of a relief in a plane; radii:
+    of the counter-body along x and y, None if it is flat; strip: of a rough counter-body that moves.
+    """
+
+    surface: Surface | None
+    counter: CounterSurface | None
+    cells: tuple[int, int]
+    sides: tuple[float, float]
+    relief: bool
+    radii: tuple[float, float] | None
+    strip: Strip | None = None
+
+    @property
+    def centres(self) -> tuple[Array, Array]:
+        """x (nx,) and y (ny,) of the cells."""
+        x, y = (
+            ((np.arange(n) + 0.5) / n - 0.5) * side for n, side in zip(self.cells, self.sides, strict=True)
+        )
+        return x, y
+
+
+def choose_patch(scene: Scene) -> Patch:
+    """The patch of a rough scene: cells and sides of a file, or those that the scene gives."""
+    cells, sides = scene.patch
+    relief = scene.grid is not None and scene.grid.border == "relief"
+    radii = required(scene.counterbody).radii
+    return Patch(scene.surface, scene.counter_surface, cells, sides, relief, radii, scene.counter_strip)
+
+
+def rough_scales(scene: Scene, patch: Patch) -> Scales:
+    """Units of a rough contact: half of the longer side, and the displacement that makes the force 4/3, as
+    of a sphere; or the approach that is given.
+    """
+    modulus, length = contact_modulus(scene), 0.5 * max(patch.sides)
+    if scene.loading.approach is not None:
+        return Scales(length, scene.loading.approach, modulus, 4.0 / 3.0)
+    force = required(scene.loading.force)
+    displacement = 0.75 * force / (modulus * length) if force > 0.0 else UNLOADED * length
+    return Scales(length, displacement, modulus, 4.0 / 3.0 if force > 0.0 else 0.0)
+
+
+def rough_lines(patch: Patch, unit: float, box: float, *, marks: Sequence[float] | Array = ()) -> Lines:
+    """Mesh planes through the centres of the cells, growing from there to the box, of so many half sides.
+
+    unit: of length, in m; marks: depths in this unit that are planes too, see `uniform_then_growing`.
+    Elements next to the surface are as high as the shorter side of a cell, or lower above a mark.
+    """
+    x, y = (_widened(line / unit, box) for line in patch.centres)
+    size = min(side / n for side, n in zip(patch.sides, patch.cells, strict=True)) / unit
+    depth = UNIFORM_DEPTH * (min(patch.cells) - 1) * size
+    return Lines(x, y, uniform_then_growing(size, depth, box, growth=DEPTH_GROWTH, marks=marks), half=False)
+
+
+def _widened(core: Array, box: float) -> Array:
+    """Equidistant lines continued by growing ones over `box` beyond both ends."""
+    outside = grow(0.0, box, core[1] - core[0], SIDE_GROWTH)
+    return np.concatenate([core[0] - outside[::-1], core, core[-1] + outside])

@@ -27,10 +27,9 @@ from scipy.sparse.linalg import LinearOperator
 from fem_reference.common.arrays import Array, Bools, Integers
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.contact import NotDefiniteError, Response
-from fem_reference.common.far_field import coating_effect
+from fem_reference.common.far_field import coating_effect, slanted
 from fem_reference.common.linear import Counted, Kept
 from fem_reference.common.plasticity import History, Material
-from fem_reference.common.point_force import slanted
 from fem_reference.common.schedule import Load
 from fem_reference.spatial.hexahedra import HexSolid
 from fem_reference.spatial.multigrid import Preconditioner, UnsolvedError, solve

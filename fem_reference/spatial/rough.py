@@ -13,15 +13,14 @@ from scipy import ndimage
 
 from fem_reference.common.arrays import Array, Bools
 from fem_reference.common.contact import Equilibrium
-from fem_reference.common.messages import FEWEST_NODES
 from fem_reference.common.model import material
+from fem_reference.common.refusals import FEWEST_NODES
 from fem_reference.common.schedule import Load
 from fem_reference.common.tables import columns, stacked
 from fem_reference.spatial.area import area_of_spots
 from fem_reference.spatial.hexahedra import HexSolid, block
 from fem_reference.spatial.model import Model, surface_nodes
-from fem_reference.spatial.patch import Patch
-from fem_reference.spatial.planner import SpatialPlan
+from fem_reference.spatial.planner import Patch, SpatialPlan
 from fem_reference.spatial.problem import Candidates, SlidingProblem
 from sam.scene.result import COUNTER_HEIGHT, SURFACE, Table
 from sam.scene.surface import Surface, heights, mean_deviation, with_relief

@@ -153,7 +153,10 @@ def path_results(
     """
     track, solved = Track(model), [step for step in steps if step.state.converged]
     driven = [track.driven(step.state) for step in solved]
-    found: dict[str, Table] = {"history": _history(driven)}
+    columns_of = zip(PATH_HISTORY, ("way", "force", "offset"), strict=True)
+    found: dict[str, Table] = {
+        "history": {name: [getattr(each, part) for each in driven] for name, part in columns_of}
+    }
     cycles = sorted({step.cycle for step in solved})
     ways = {c: [d for d, step in zip(driven, solved, strict=True) if step.cycle == c] for c in cycles}
     values: dict[str, float | None] = {}
@@ -165,33 +168,21 @@ def path_results(
         if track.along_x and UNLOADED in states:
             found["track"] = _track(track, states[UNLOADED], fields[UNLOADED])
             found["cross"] = _cross(track, states[UNLOADED], fields[UNLOADED])
-            values |= _lengths(track, track.groove(states[UNLOADED]))
+            groove = track.groove(states[UNLOADED])  # of the last pass
+            values |= {
+                "groove_depth_m": groove.depth,
+                "groove_deepest_m": groove.deepest,
+                "groove_deepest_x_m": float(track.ends[0, 0] + track.direction[0] * groove.deepest_at),
+                "shoulder_start_m": groove.at_start,
+                "shoulder_end_m": groove.at_end,
+                "shoulder_side_m": groove.beside,
+                "transient_length_m": groove.transient,
+            }
             values["passes_to_steady"] = passes_to_steady(passes["new_strain_max"])
-    return found, {name: _number(values.get(name)) for name in PATH_QUANTITIES}
-
-
-def _number(value: float | None) -> float | None:
-    """None of what is not a number."""
-    return None if value is None or np.isnan(value) else float(value)
-
-
-def _lengths(track: Track, groove: Groove) -> dict[str, float | None]:
-    """Quantities of the groove of the last pass."""
-    return {
-        "groove_depth_m": groove.depth,
-        "groove_deepest_m": groove.deepest,
-        "groove_deepest_x_m": float(track.ends[0, 0] + track.direction[0] * groove.deepest_at),
-        "shoulder_start_m": groove.at_start,
-        "shoulder_end_m": groove.at_end,
-        "shoulder_side_m": groove.beside,
-        "transient_length_m": groove.transient,
+    numbers = {
+        name: float(value) for name, value in values.items() if value is not None and not np.isnan(value)
     }
-
-
-def _history(driven: Sequence[Driven]) -> Table:
-    """Last columns of the history."""
-    values = [(each.way, each.force, each.offset) for each in driven]
-    return {name: [value[k] for value in values] for k, name in enumerate(PATH_HISTORY)}
+    return found, {name: numbers.get(name) for name in PATH_QUANTITIES}
 
 
 def _sense(driven: Sequence[Driven]) -> int:
@@ -217,7 +208,7 @@ def _passes(track: Track, steps: Sequence[Step], ways: Mapping[int, Sequence[Dri
     rows, before = [], np.zeros(track.model.elements.shape)
     for cycle, driven in ways.items():
         last = [step.state for step in steps if step.cycle == cycle][-1]
-        peeq, lengths = _peeq(track.model, last), (nan,) * 4
+        peeq, lengths = stresses(track.model, last).peeq, (nan,) * 4
         if track.along_x and last.force == 0.0:
             groove = track.groove(last)
             lengths = groove.middle, groove.at_start, groove.at_end, groove.beside
@@ -228,11 +219,6 @@ def _passes(track: Track, steps: Sequence[Step], ways: Mapping[int, Sequence[Dri
         rows.append((cycle, _sense(driven), *lengths, float(added.max(initial=0.0)), *_mean(track, driven)))
         before = peeq
     return {name: [row[k] for row in rows] for k, name in enumerate(PASSES)}
-
-
-def _peeq(model: Model, state: Equilibrium) -> Array:
-    """(nx, ny, nz) accumulated plastic strain of the elements."""
-    return stresses(model, state).peeq
 
 
 def _track(track: Track, state: Equilibrium, s: Stresses) -> Table:

@@ -27,7 +27,7 @@ from fem_reference.spatial.hexahedra import on_grid
 from fem_reference.spatial.planner import plan
 from fem_reference.spatial.recovery import largest_peeq, stresses
 from fem_reference.spatial.rough import RoughModel, build, on_mesh, surface_table
-from fem_reference.spatial.tables import plane_table
+from fem_reference.spatial.solution import plane_table
 from sam.scene.result import Table
 from sam.scene.schema import Scene
 
@@ -106,23 +106,13 @@ def worn_cycles(scene: Scene, depths: Sequence[Array] | None = None) -> list[Wor
         peak = [step.state for step in steps if not step.unloads][-1]
         depth = own_depth(model, state, limits) if depths is None else depths[cycle - 1]
         worn = worn + depth
-        tables, strain = _at_peak(model, peak)
+        fields = stresses(model, peak)
+        tables = {"surface": surface_table("peak", model, peak), "plane": plane_table("peak", fields)}
         model, state = lowered(model, state, depth)
-        found.append(WornCycle(tables, strain, worn, _moved(model, state)))
+        uz = state.u[model.body.basis.nodal_dofs[2][model.surface]] * model.scales.displacement
+        moved = uz[np.isfinite(model.initial_gap)].reshape(worn.shape)
+        found.append(WornCycle(tables, largest_peeq(fields)[0], worn, moved))
     return found
-
-
-def _at_peak(model: RoughModel, peak: Equilibrium) -> tuple[dict[str, Table], float]:
-    """The tables of a cycle, and its largest strain."""
-    fields = stresses(model, peak)
-    tables = {"surface": surface_table("peak", model, peak), "plane": plane_table("peak", fields)}
-    return tables, largest_peeq(fields)[0]
-
-
-def _moved(model: RoughModel, state: Equilibrium) -> Array:
-    """(nx, ny) displacement in m of the surface into the body at the nodes of the patch."""
-    found: Array = state.u[model.body.basis.nodal_dofs[2][model.surface]] * model.scales.displacement
-    return found[np.isfinite(model.initial_gap)].reshape(model.heights.shape)
 
 
 def columns_of_points(model: RoughModel) -> Integers:

@@ -15,8 +15,8 @@ from fem_reference import spatial
 from fem_reference.common import loading
 from fem_reference.common.bodies import Coating, Elastic
 from fem_reference.common.elasticity import mises
+from fem_reference.common.far_field import slanted
 from fem_reference.common.layered_force import slanted_pair
-from fem_reference.common.point_force import slanted
 from fem_reference.common.schedule import Load
 from fem_reference.spatial import recovery
 from fem_reference.spatial.model import build

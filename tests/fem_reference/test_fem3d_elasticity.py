@@ -12,8 +12,8 @@ from skfem.models.elasticity import lame_parameters, linear_elasticity
 from fem_reference.axisymmetric.model import hertz_forces as ring_forces
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.elasticity import mises, stiffness_tensor
+from fem_reference.common.far_field import cerruti, slanted
 from fem_reference.common.plasticity import J2, CurveInUnits, History
-from fem_reference.common.point_force import cerruti, slanted
 from fem_reference.spatial.hexahedra import HexSolid, block
 from fem_reference.spatial.lines import Lines, two_sided
 from fem_reference.spatial.multigrid import Preconditioner, rigid_modes

@@ -11,18 +11,17 @@ from builders import SPHERE, SWIFT as STEEL, scene as small_scene
 
 import fem_reference
 import fem_reference.spatial
-from fem_reference.axisymmetric import lines
+from fem_reference.axisymmetric import planner
 from fem_reference.axisymmetric.model import build
 from fem_reference.axisymmetric.planner import plan
 from fem_reference.common import layered_force
-from fem_reference.common.bodies import Coating, Elastic
-from fem_reference.common.coating import expected_radius
+from fem_reference.common.bodies import Coating, Elastic, expected_radius
+from fem_reference.common.far_field import boussinesq, cerruti
 from fem_reference.common.layered_force import amplitudes, normal, tangential
 from fem_reference.common.loading import run
 from fem_reference.common.mesh_lines import Sizes, coated_depths
-from fem_reference.common.messages import advice_of
 from fem_reference.common.plasticity import J2, History, Parts
-from fem_reference.common.point_force import boussinesq, cerruti
+from fem_reference.common.refusals import advice_of
 from sam.scene.result import COLUMNS, QUANTITIES, Status
 from sam.scene.schema import Scene
 from sam.scene.yield_curve import Linear, Swift
@@ -432,7 +431,7 @@ def test_no_film_no_layered_force(monkeypatch):
     def unwanted(*_args):
         raise AssertionError
 
-    for module, name in ((layered_force, "normal"), (lines, "coated_lines"), (lines, "coated_core")):
+    for module, name in ((layered_force, "normal"), (planner, "coated_lines"), (planner, "coated_core")):
         monkeypatch.setattr(module, name, unwanted)
     data = scene(cells=4).model_dump()
     data["body"]["coating"] = None

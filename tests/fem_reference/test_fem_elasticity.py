@@ -11,11 +11,11 @@ from skfem import BilinearForm, ElementQuad2, MeshQuad
 from skfem.helpers import ddot, sym_grad
 
 from fem_reference.axisymmetric.elements import AxisymmetricSolid, half_plane, surface_weights
-from fem_reference.axisymmetric.lines import Core, punch_lines, smooth_lines
+from fem_reference.axisymmetric.planner import Core, punch_lines, smooth_lines
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.elasticity import mises, stiffness_tensor
+from fem_reference.common.far_field import boussinesq
 from fem_reference.common.mesh_lines import grow
-from fem_reference.common.point_force import boussinesq
 
 YOUNG, POISSON = 2.5, 0.3
 SHEAR = YOUNG / (2 * (1 + POISSON))

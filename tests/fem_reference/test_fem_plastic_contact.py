@@ -11,9 +11,8 @@ import pytest
 from builders import scene as small_scene
 
 import fem_reference
-from fem_reference.axisymmetric.lines import Core
 from fem_reference.axisymmetric.model import Model, build
-from fem_reference.axisymmetric.planner import plan
+from fem_reference.axisymmetric.planner import Core, plan
 from fem_reference.axisymmetric.problem import ContactProblem
 from fem_reference.axisymmetric.recovery import stresses
 from fem_reference.common import contact
@@ -280,7 +279,7 @@ def test_plastic_zone_at_the_edge_is_a_status():
 
 
 def test_contact_beyond_the_fine_mesh_is_a_status(monkeypatch):
-    monkeypatch.setattr("fem_reference.axisymmetric.lines.plastic_core", lambda radius: Core(1.1, 0.8))
+    monkeypatch.setattr("fem_reference.axisymmetric.planner.plastic_core", lambda radius: Core(1.1, 0.8))
     assert fem_reference.solve(scene("perfect", 4.0)).status is Status.CONTACT_AT_GRID_EDGE
 
 

@@ -12,7 +12,7 @@ from builders import RADIUS, scene as small_scene
 from rounding import close
 
 import fem_reference
-from fem_reference.axisymmetric import lines
+from fem_reference.axisymmetric import planner
 from fem_reference.common.contact import ActiveSet
 from sam.scene.result import COLUMNS, COST, QUANTITIES, Status
 
@@ -142,7 +142,7 @@ def test_status_under_resolved(shape):
 
 
 def test_status_contact_at_the_edge_of_the_fine_mesh(monkeypatch):
-    monkeypatch.setattr(lines, "ELASTIC", lines.Core(radius=0.9))
+    monkeypatch.setattr(planner, "ELASTIC", planner.Core(radius=0.9))
     result = fem_reference.solve(scene())
     assert result.status is Status.CONTACT_AT_GRID_EDGE and "loading.force" in result.message
 

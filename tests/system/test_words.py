@@ -16,7 +16,7 @@ import pytest
 from builders import CHEMICAL_FILM, HARDENING, parsed, scene_text
 
 import sam
-from fem_reference.common.messages import advice_of, message_of
+from fem_reference.common.refusals import advice_of, message_of
 from sam.planner.make import remedies_of
 from sam.results.tables import advice as words_of
 from sam.scene import Compare, HeightMap, Scene, SceneError, Status, resolved
