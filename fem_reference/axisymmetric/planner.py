@@ -264,9 +264,7 @@ class Core:
 
 
 IN_ROUNDING = 4.0
-"""Elements in a contact radius over those in its part beyond a flat end: with 8 there the largest pressure
-errs by xxx.
-"""
+"""Elements in a contact radius over those in its part beyond a flat end."""
 ELASTIC = Core()
 """The largest von Mises stress of Hertz is at the depth 0.48."""
 
