@@ -221,6 +221,8 @@ def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     lists |= {key: tuple(map(tuple, lists[key])) for key in ("equations", "setting") if key in lists}
     twice = sorted({row.id for row in rows if sum(other.id == row.id for other in rows) > 1})
     faults += [Problem("rows", name, "occurs twice") for name in twice]
+    if not content.get("sweeps") and not content.get("frame"):
+        faults += [Problem("rows", name, "its fifth entry takes of sweeps: there are none") for name in takes]
     claims = {
         table: {
             name: quantity

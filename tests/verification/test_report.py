@@ -418,6 +418,14 @@ def test_a_file_of_own_rows_is_verified_by_the_same_rules(tmp_path, monkeypatch,
             gate["id"] == "my-contact.sam-p-max" and gate["kind"] == "published" and gate["expected"] == value
         )
     capsys.readouterr()
-    (tmp_path / "my-contact.toml").write_text(OWN.format(value=1).replace("p-max = [", "pmax = ["))
-    assert main(["verify", *arguments]) == 2
-    assert "rows.sam/published.pmax" in capsys.readouterr().err
+    for old, new, said in (
+        ('p-max = ["', 'pmax = ["', "rows.sam/published.pmax"),
+        ('"scene.toml"', '"scne.toml"', 'scene = "scne.toml": one of my-contact.toml, scene.toml'),
+        ('models = ["sam"]', 'models = ["sam"]\nreference = "hertz"', "hertz-sphere"),
+        ('models = ["sam"]', 'models = ["sam"]\nfigures = ["maps"]', 'figures = "maps"'),
+        ("sam/published", "fem/published", "models names it"),
+        ('5 %"]', '5 %"]\nown = ["at_most", 1, "because", "in my words"]', 'rows.sam/published = "own"'),
+    ):
+        (tmp_path / "my-contact.toml").write_text(OWN.format(value=1).replace(old, new), encoding="utf-8")
+        assert main(["verify", *arguments]) == 2
+        assert said in (text := capsys.readouterr().err) and "my-contact.toml" in text

@@ -183,6 +183,7 @@ def test_rows_of_models_take_their_words_from_the_vocabulary(tmp_path):
         ('"because of b"', '""', "reason"),
         ('"@known"', '"@unknown"', "rows.exact.a"),
         ('"quantity a"]', '"quantity a", "value a", "more"]', "rows.exact.a"),
+        ('"quantity a"]', '"quantity a", "value a"]', "takes of sweeps"),
         ("[rows.exact]", "[rows.roughly]", "kind"),
         ("{SAM,FEM}", "{SAM}", "rows.exact.{sam,fem}-b"),
         ('"{sam,fem}-b"', '"{a,fem-b}"', "occurs twice"),

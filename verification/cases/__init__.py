@@ -17,9 +17,12 @@ from functools import cache
 from importlib import import_module
 from typing import Any
 
+from sam.scene import Problem, SceneError, spelling
 from verification.cases.case import Case
 from verification.cases.compared import Compared
-from verification.rows import LEVELS, CaseFile, case_files
+from verification.quantities import QUANTITIES
+from verification.references import REFERENCES
+from verification.rows import FOLDER, LEVELS, CaseFile, case_files
 
 
 @cache
@@ -31,11 +34,40 @@ def all_cases() -> dict[str, Case]:
 def case_of(file: CaseFile) -> Case:
     """What runs the case of a file."""
     said: dict[str, Any] = {key: getattr(file, key) for key in ("title", "question", "equations", "levels")}
+    if file.own:
+        _check(file)
     if file.scene or file.frame:
         return Compared(file.name, **said, alone=file.own, file=file)
     module = import_module(f"{__name__}.{file.path.parent.name}.{file.path.stem}")
     (case,) = (case for case in module.CASES if case.name == file.name)
     return replace(case, **said, file=file)
+
+
+def _check(file: CaseFile) -> None:
+    """Raises SceneError with every name in a file of a user that stands for nothing."""
+    from verification.cases.kinds import KINDS, SWEPT  # noqa: PLC0415 - loads matplotlib
+
+    own = file.scene.endswith(".toml")
+    there = (file.path.parent / file.scene if own else FOLDER.parent / f"scenes/{file.scene}.toml").is_file()
+    scenes = [path.name for path in sorted(file.path.parent.glob("*.toml"))]
+    named = [] if there else [("scene", file.scene, scenes)]
+    named += [("reference", file.reference, [*REFERENCES])] if file.reference else []
+    named += [("figures", kind.partition(" ")[0], [*KINDS, *SWEPT]) for kind in file.figures]
+    claims = [(table, of) for table, names in file.claims.items() for of in names.values()]
+    named += [(f"rows.{table}", of, [*QUANTITIES]) for table, of in claims]
+    faults = [
+        Problem(key, spelling(name), f"one of {', '.join(known)}")
+        for key, name, known in named
+        if name not in known
+    ]
+    missing = {"sam", "fem"} - {model.partition("-")[0] for model in file.models}
+    faults += [
+        Problem(f"rows.{table}", ", ".join(gone), "models names it")
+        for table in file.claims
+        if (gone := missing & set(table.split("/")))
+    ]
+    if faults:
+        raise SceneError(faults, str(file.path))
 
 
 __all__ = ["LEVELS", "Case", "all_cases", "case_of"]
