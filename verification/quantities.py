@@ -515,12 +515,16 @@ def _verdicts(solved: Solved) -> Measured:
 
 
 def _becomes(name: str) -> Quantity:
-    """Whether all runs end with a verdict."""
+    """Whether a run, or all runs, end with a verdict."""
 
     def whole(solved: Solved) -> Measured:
         return Measured(float({each.verdict["class"] for each in solved.results.values()} == {name}), 1.0)
 
-    return Quantity(f"1 if the verdict is {name}", whole=whole)
+    return Quantity(
+        f"1 if the verdict is {name}",
+        of=lambda result, _: float(result.verdict["class"] == name),
+        whole=whole,
+    )
 
 
 MOVING: Mapping[str, Quantity] = {
@@ -537,6 +541,7 @@ MOVING: Mapping[str, Quantity] = {
         "passes that strain some cell by more than the floor of the verdict, on all grids",
         whole=lambda solved: float(_counted(solved).sum()),
     ),
+    "class": Quantity("verdict", of=lambda result, _: result.verdict["class"]),
     "shakes-down": _becomes("shakedown"),
     "alternates": _becomes("alternating"),
 }

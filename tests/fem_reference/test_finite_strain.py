@@ -27,8 +27,8 @@ from fem_reference.finite_strain.kinematics import (
 )
 from fem_reference.finite_strain.material import Hencky
 from sam.scene.yield_curve import Linear, Swift
-from verification.cases.limits import model_limits, model_limits_curves
-from verification.judging import Measured, evaluate
+from verification.cases.limits import model_limits
+from verification.judging import evaluate
 from verification.rows import load_rows
 
 YOUNG, POISSON = 200.0, 0.3
@@ -270,28 +270,6 @@ class TestLimit:
         assert fit.limit() == np.inf and fit.good_to() == 0.4 and model_limits.words(fit) == "> 0.40"
 
     @pytest.mark.parametrize(
-        ("gate", "good", "bad"),
-        [
-            ("model-limits.pressure-limit", 0.165, 0.14),
-            ("model-limits.radius-limit", 0.32, 0.28),
-            ("model-limits.approach-limit", 0.375, 0.28),
-            ("model-limits-plastic.pressure-limit", 0.42, 0.38),
-            ("model-limits-plastic.radius-limit", 0.42, 0.38),
-            ("model-limits-plastic.approach-limit", 0.42, 0.38),
-            ("model-limits-plastic.strain-limit", 0.14, 0.06),
-            ("model-limits-plastic.perfect-limit", 0.22, 0.15),
-            ("model-limits.table", 1e-4, 0.01),
-            ("model-limits-plastic.table", 1e-4, 0.01),
-            ("model-limits-stated.elastic", 1.1, 2.5),
-            ("model-limits-stated.yields", 1.0, np.inf),
-            *((f"model-limits.{name}-mesh", 1e-3, 0.02) for name in ("pressure", "radius", "approach")),
-            *((f"model-limits-plastic.{name}-mesh", 1e-3, -0.05) for name in model_limits.QUANTITIES),
-        ],
-    )
-    def test_a_smaller_limit_or_another_mesh_turns_its_gate_red(self, gate, good, bad):
-        assert red({gate: Measured(good)}) == set() and red({gate: Measured(bad)}) == {gate}
-
-    @pytest.mark.parametrize(
         ("factor", "red_gates"), [(0.97, set()), (0.9, {"model-limits-plastic.hardness"})]
     )
     def test_another_plateau_of_the_mean_pressure_turns_red(self, factor, red_gates):
@@ -342,6 +320,6 @@ def test_a_load_step_that_is_lost_is_no_point_of_a_curve(monkeypatch):
     def lost(model, _shares):
         return [Step(replace(model.virgin(), converged=False), NO_WORK)]
 
-    monkeypatch.setattr(model_limits_curves, "load_to", lost)
+    monkeypatch.setattr(model_limits, "load_to", lost)
     with pytest.raises(RuntimeError, match=r"finite strain, true sphere: step 1 of 20 did not converge"):
         model_limits.loaded(model_limits.ELASTIC[0], 4, "finite")

@@ -8,6 +8,7 @@ import pytest
 from made_results import with_column, with_field
 
 from sam import choose_grid
+from verification.cases import all_cases
 from verification.cases.case import Context
 from verification.cases.certificates import certificates as case
 from verification.cases.recipes import Resolution
@@ -18,7 +19,6 @@ from verification.checks import (
     film as film_checks,
 )
 from verification.checks.certificates import OF_GROUP, Conditions, by_rule, solved
-from verification.reference.hertz import CircularContact
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
 from verification.reference.point_loads import cerruti_displacement
 from verification.rows import load_rows
@@ -51,13 +51,15 @@ def test_all_conditions_hold(solves, name):
 
 def test_what_no_scene_was_measured_for_is_no_success():
     """And the largest value of a group counts."""
-    found = {group: {"a": Conditions(dict.fromkeys(names, 0.0))} for group, names in case.MEASURED.items()}
+    own, found = all_cases()["certificates"], {group: {"a": Conditions({})} for group in case.TITLES}
+    for group, what in own.asked():
+        found[group]["a"].values[what] = 0.0
     found["rough"]["b"] = Conditions({"load": 1.0})
-    measured = case.CASES[0].measure(found)
+    measured = own.measure(found)
     assert measured["rough-load"].value == 1.0 and set(measured) == set(LIMITS)
     del found["coated"]["a"].values["interface"]
     with pytest.raises(ValueError, match="coated: no scene has interface"):
-        case.CASES[0].measure(found)
+        own.measure(found)
 
 
 # --- perturbed answers: (scene, result, records) -> the same, of which something is wrong ---
@@ -186,14 +188,13 @@ CHECKS = {
 }
 P, Q, S = ("cell_data", "p_Pa"), ("cell_data", "qx_Pa"), ("point_data", "stress_Pa")
 STRAINS = range(6)
+SLIDES, PATCH = "film, sliding", "rough, Swift"
 WRONG = [
     ("Swift", "load", field(*P, 1.001)),
     ("Swift", "load", largest_pressure(-1.0)),
     ("Swift", "complementarity", column("line", "uz_m", 1.0001)),
     ("elastic", "displacement", largest_pressure(1.001)),
     ("elastic", "stress", field(*S, 1.00001)),
-    *(("Swift", "displacement", material("strain", 1.01, k, all_states=True)) for k in STRAINS),
-    *(("Swift", "displacement, unloaded", material("strain", 1.01, k, all_states=True)) for k in STRAINS),
     ("Swift", "yield", column("plane", "peeq", 0.99)),
     ("Swift", "yield, unloaded, in tables", column("plane", "mises_Pa", more=5e9)),
     ("Swift", "surface, unloaded, in tables", column("axis", "szz_Pa", more=0.1, of="p_max_Pa")),
@@ -203,29 +204,26 @@ WRONG = [
     ("Swift", "flow", material("peeq", 1.001)),
     ("Swift", "surface", field(*S, 1.2)),
     ("Swift", "planes", field(*S, 1.2)),
-    *((name, "load", field(*P, 1.00001)) for name in ("film, sliding", "rough, Swift")),
-    *((name, "friction", field(*Q, 1.00001)) for name in ("film, sliding", "rough, Swift")),
-    *(
-        (name, "complementarity", column("line", "uz_m", 1.00001))
-        for name in ("film, sliding", "rough, Swift")
-    ),
-    *((n, "surface", field(*S, 1.00001, k)) for n in ("film, sliding", "rough, elastic") for k in (2, 4)),
-    *((n, "displacement", film_of(key)) for n in COATED for key in ("young", "poisson", "thickness")),
+    *((name, "load", field(*P, 1.00001)) for name in (SLIDES, PATCH)),
+    *((name, "friction", field(*Q, 1.00001)) for name in (SLIDES, PATCH)),
+    *((name, "complementarity", column("line", "uz_m", 1.00001)) for name in (SLIDES, PATCH)),
+    *((n, "surface", field(*S, 1.00001, k)) for n in (SLIDES, "rough, elastic") for k in (2, 4)),
+    *((SLIDES, "displacement", film_of(key)) for key in ("young", "poisson", "thickness")),
     ("soft film", "displacement", field(*P, 1.0000001)),
-    *(("film, sliding", "interface", jump_of(k)) for k in STRAINS),
-    *((name, "displacement", field("cell_data", "height_m", 1.0001)) for name in ROUGH),
-    *((name, "complementarity", column("surface", "height_m", 1.0001)) for name in ROUGH),
-    *((name, "displacement", decoupled) for name in ROUGH),
-    *(("rough, Swift", "displacement", material("strain", 1.05, k, all_states=True)) for k in STRAINS),
+    *((SLIDES, "interface", jump_of(k)) for k in STRAINS),
+    (PATCH, "displacement", field("cell_data", "height_m", 1.0001)),
+    (PATCH, "complementarity", column("surface", "height_m", 1.0001)),
+    (PATCH, "displacement", decoupled),
     *(
-        ("rough, Swift", "displacement, unloaded", material("strain", 1.05, k, all_states=True))
+        (name, f"displacement{state}", material("strain", factor, k, all_states=True))
+        for name, factor in (("Swift", 1.01), (PATCH, 1.05))
+        for state in ("", ", unloaded")
         for k in STRAINS
     ),
     *(("rough, elastic", "stress", field(*S, 1.001, k)) for k in STRAINS),
-    ("rough, Swift", "flow", material("peeq", 1.0001)),
-    ("rough, Swift", "flow", material("strain", 1.0001)),
-    ("rough, Swift", "consistency", material("stress", 1.0001)),
-    ("rough, Swift", "yield in the box", material("stress", 1.0001)),
+    (PATCH, "flow", material("peeq", 1.0001)),
+    (PATCH, "consistency", material("stress", 1.0001)),
+    (PATCH, "yield in the box", material("stress", 1.0001)),
 ]
 
 
@@ -235,10 +233,6 @@ def test_a_perturbed_answer_is_seen(solves, name, what, change):
     limit = LIMITS[f"{GROUP[name]}-{what.partition(',')[0].removesuffix(' in the box')}"]
     coarse = 2.5 if what in ("surface", "planes") and name in SPHERES else 1.0
     assert CHECKS[what](*solves[name]) <= coarse * limit < CHECKS[what](*change(*solves[name]))
-
-
-def test_a_load_is_off_by_its_factor(solves):
-    assert CHECKS["load"](*field(*P, 1.001)(*solves["Swift"])) == pytest.approx(1e-3, rel=1e-6)
 
 
 @pytest.mark.parametrize("name", ["Swift", "soft film", "rough, Swift"])
@@ -285,23 +279,17 @@ class TestFilm:
 
         assert changed(more)["flow"] > LIMITS["rough-film"]
 
-    def test_a_cell_that_should_have_failed(self, changed):
+    def test_cells_that_should_have_failed(self, changed):
         """The one under the largest pressure, which has failed in the last step: the film does not bear its
-        traction.
+        traction; and all of them, which heals one.
         """
 
         def whole(pressure, state):
             state["failed"][np.unravel_index(pressure.argmax(), pressure.shape)] = False
 
         found = changed(whole)
-        assert (
-            found["traction"] > LIMITS["rough-film"]
-            and max(found["flow"], found["limit"]) < LIMITS["rough-film"]
-        )
-
-    def test_all_cells_whole(self, changed):
-        found = changed(lambda pressure, state: state["failed"].fill(False))
-        assert found["healed"] >= 1 and found["traction"] > 0
+        assert max(found["flow"], found["limit"]) < LIMITS["rough-film"] < found["traction"]
+        assert changed(lambda pressure, state: state["failed"].fill(False))["healed"] >= 1
 
     def test_a_thinning_beyond_the_limit(self, solves):
         scene, _, records = solves["rough, film that fails"]
@@ -322,15 +310,6 @@ class TestFormulas:
     """Sums over cells against solutions of their own."""
 
     line = (np.arange(41) - 20) / 16
-
-    def test_love(self):
-        """A Hertz pressure moves the surface as Hertz says, to the order of the cells squared."""
-        x = self.line
-        r = np.hypot(x[:, None], x[None, :])
-        hertz = CircularContact(1.0, 1.0, 1.0)
-        p = hertz.pressure(hertz.contact_radius * r)
-        u = cell_checks.half_space(1.0, 0.0, x, x, p=p, q=0 * p, cell=(1 / 16, 1 / 16)) * hertz.contact_radius
-        assert u[20, 20] == pytest.approx(float(hertz.displacement(0.0)), rel=5e-3)
 
     def test_cerruti(self):
         """Far from one cell, as a point force; beside it odd in x."""

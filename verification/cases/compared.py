@@ -31,7 +31,7 @@ from verification.compare.comparison import compare_scene
 from verification.judging import Measured, error_of
 from verification.quantities import QUANTITIES, Quantity, Reference, Solved, of_passes
 from verification.references import REFERENCES
-from verification.rows import CaseFile, head_of, merged
+from verification.rows import CaseFile, merged
 from verification.runs.models import SAM
 from verification.text.console import number
 
@@ -62,7 +62,7 @@ class Compared(Case):
     """The case of a file with a scene. What was solved: variant -> results, "" where there are none."""
 
     def solve(self, context: Context) -> dict[str, Solved]:
-        asked = {head_of(table, self.file.variants)[0] for table in self.file.claims} | {*self.file.also}
+        asked = {claim.variant for claim in self.file.claims} | {*self.file.also}
         return {
             name: self._solved(context, name, self.file.variants.get(name, {}))
             for name in self.file.variants or [""]
@@ -81,7 +81,7 @@ class Compared(Case):
         for run, said in ({} if "alone" in variant else file.runs | variant.get("runs", {})).items():
             other, label = scene_of(context, file, variant, said), "-".join(filter(None, (name, run)))
             results[run] = context.solve(MODELS[said["model"]], other, label, demand=False)
-        frame = framed(context, file, scene) if file.takes else None
+        frame = framed(context, file, scene) if file.taken else None
         found = Solved(scene, answer(scene) if answer else given, results, frame)
         if file.against:
             other = scene_of(context, file, {"vary": file.against})
@@ -107,27 +107,23 @@ class Compared(Case):
         what they take of the sweeps.
         """
         values: dict[str, Measured] = {}
-        for solved in found.values():
-            values |= taken(self.file, solved.frame) if self.file.takes else {}
-        metrics = {row.id.partition(".")[2]: row.metric for row in self.file.rows}
-        for table, names in self.file.claims.items():
-            variant, model, against = head_of(table, self.file.variants)
-            solved, lead = found[variant], f"{variant}-" * bool(variant)
-            for name, of in names.items():
-                quantity = QUANTITIES[of]
-                if model and against != "fem":
-                    result = solved.results[model]
-                    if quantity.of:
-                        measured = quantity.against(of, result, solved.reference)
-                    else:
-                        measured = quantity.between(solved.scene, result, solved.others[model])
-                    alone = against == "bound"
-                    values[f"{lead}{model}-{name}"] = Measured(measured.value) if alone else measured
-                elif name in self.file.allowance:
-                    *_, apart, allowed = refinement(solved, quantity)
-                    values[lead + name] = Measured(apart / allowed)
+        for claim in self.file.claims:
+            solved, quantity = found[claim.variant], QUANTITIES.get(claim.quantity)
+            if claim.take:
+                measured = taken(self.file, solved.frame, claim)
+            elif claim.model and claim.against != "fem":
+                result = solved.results[claim.model]
+                if quantity.of:
+                    measured = quantity.against(claim.quantity, result, solved.reference)
                 else:
-                    values[lead + name] = between(quantity, solved, metrics[lead + name])
+                    measured = quantity.between(solved.scene, result, solved.others[claim.model])
+                measured = Measured(measured.value) if claim.against == "bound" else measured
+            elif claim.quantity in self.file.allowance:
+                *_, apart, allowed = refinement(solved, quantity)
+                measured = Measured(apart / allowed)
+            else:
+                measured = between(quantity, solved, claim.row.metric)
+            values[claim.name] = measured
         return values
 
     def setup(self, found: Mapping[str, Solved]) -> Iterator[tuple[str, str]]:
@@ -189,7 +185,7 @@ class Compared(Case):
                 yield _differences(self.file, found)
             return
         solved = found[""]
-        yield from tables_of(self.file, solved.frame) if self.file.takes else ()
+        yield from tables_of(self.file, solved.frame) if self.file.taken else ()
         if set(solved.results) != {"sam", "fem"}:
             return
         rows = _side_by_side(*solved.results.values())
@@ -216,12 +212,11 @@ class Compared(Case):
             draw = beside(self.file, first, KINDS | SWEPT)
             for name, solved in shown.items():
                 plot = draw(solved) if first in KINDS else draw(self.file, solved.frame, *more)
+                if plot is None:  # too few points at this level
+                    continue
                 if name:
                     plot = replace(plot, name=f"{plot.name}-{name}", title=f"{plot.title}, {words[name]}")
                 yield plot
-
-    def notes(self, found: Mapping[str, Solved]) -> tuple[str, ...]:
-        return self.file.notes
 
     def views(self, found: Mapping[str, Solved]) -> Iterator[View]:
         from verification.cases.kinds import VIEWS  # noqa: PLC0415 - loads matplotlib
@@ -308,11 +303,7 @@ def _passes(words: str, results: Mapping[str, Result]) -> Iterator[SmallTable]:
 
 def _differences(file: CaseFile, found: Mapping[str, Solved]) -> SmallTable:
     """What rows hold of one variant, in their metric, of every one."""
-    metrics, of = {}, {row.id.partition(".")[2]: row.metric for row in file.rows}
-    for table, names in file.claims.items():
-        variant, model, against = head_of(table, file.variants)
-        if against == "fem" or not model:
-            metrics |= {name: of[f"{variant}-{name}"] for name in names}
+    metrics = {c.quantity: c.row.metric for c in file.claims if c.against == "fem" or not c.model}
 
     def error(name: str, solved: Solved) -> str:
         try:

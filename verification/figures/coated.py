@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Figures of coated bodies: errors of their response, pressure under films of all thicknesses, maps of what a
+"""Figures of coated bodies: pressure under films of all thicknesses, maps of what a
 film changes.
 """
 
@@ -25,45 +25,15 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 COLOURS = (BLUE, VERMILION, GREEN, ORANGE, BLACK)
-MARKS = ("o", "s", "^", "D", "v")
 CLEAR = 0.25
 """Of an element; the Gauss points of eight-node elements are 0.21 of it from its edges."""
 PAPER_LOOK = {"color": GREEN, "marker": "o", "markersize": 4, "linewidth": 1.8}
 FINE = 200
 """Points of each side of a map that is drawn."""
 TICKS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10)
-FLOOR = 1e-17
-"""Errors below it are drawn on it."""
 LIMITS = (0.01, 0.05)
 LINES = ("--", "-")
 """Changes whose lines a map carries, and their look."""
-
-
-def response_errors(
-    curves: Mapping[str, tuple[np.ndarray, np.ndarray]], bounds: Mapping[str, float]
-) -> Drawing:
-    """Errors over kh, log-log; curves: name -> (kh, error); bounds: words -> what is allowed."""
-    rows = Columns("quantity", "kh", "error")
-    with sheet(7.2, 4.0) as (figure, axis):
-        for (name, (kh, error)), color, mark in zip(curves.items(), COLOURS, MARKS, strict=True):
-            axis.loglog(
-                kh,
-                np.maximum(error, FLOOR),
-                color=color,
-                marker=mark,
-                markersize=4,
-                linewidth=1.0,
-                label=name,
-            )
-            rows.add(name, kh, error)
-        for name, bound in bounds.items():
-            axis.axhline(bound, color="#555555", linestyle="--", linewidth=1.0)
-            axis.text(
-                kh.max(), bound, f"allowed: {name}", ha="right", va="bottom", fontsize=8, color="#555555"
-            )
-        axis.set(xlabel="wave number times thickness $kh$", ylabel="worst error", ylim=(FLOOR / 2, 1e-8))
-        figure.legend(loc="outside right upper")
-    return Drawing(figure, rows)
 
 
 MODEL_MARKS = {"SAM": {"marker": "o", "fillstyle": "none"}, "FEM": {"marker": "x"}}

@@ -5,8 +5,6 @@ approach.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
@@ -15,7 +13,7 @@ from sam.scene import Result
 from verification.figures.iso_numbers import readable
 from verification.figures.maps import FieldPair, plane_maps
 from verification.figures.profiles import Profile, draw_profile, profile_rows, profiles
-from verification.figures.style import EXACT, FEM, SAM, Columns, Drawing, new_figure, sheet, style
+from verification.figures.style import EXACT, FEM, SAM, Drawing, new_figure, style
 from verification.figures.views import PLANE_AXES, peak_of
 from verification.reference.hertz import CircularContact
 from verification.runs.sampling import plane_field, plane_field_on, rows_of
@@ -125,19 +123,3 @@ def _hertz_curve(panel: Axes, hertz: CircularContact) -> None:
         MICRO * hertz.approach * share ** (2 / 3), hertz.force * share, **EXACT, label="elastic (Hertz)"
     )
     panel.set(title="Load and approach", xlabel=r"approach [$\mu$m]", ylabel="force [N]")
-
-
-def curves_on_axis(
-    results: Mapping[str, Result], a: float, looks: Sequence[Mapping], deep: float = 1.5
-) -> Drawing:
-    """Plastic strain in % under the centre at the peak, one curve a result."""
-    rows = Columns("series", "z_over_a", "peeq_percent")
-    with sheet(6.0, 3.6) as (figure, panel):
-        for (name, result), look in zip(results.items(), looks, strict=True):
-            z, peeq = rows_of(result.tables["axis"], "peak", "z_m", "peeq")
-            use = z <= deep * a
-            panel.plot(z[use] / a, PERCENT * peeq[use], **look, label=name)
-            rows.add(name, z[use] / a, PERCENT * peeq[use])
-        panel.set(xlabel="$z/a$", ylabel="plastic strain [%]")
-        panel.legend()
-    return Drawing(figure, rows)

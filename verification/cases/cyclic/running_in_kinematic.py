@@ -92,14 +92,6 @@ class RunningInKinematic(Case):
             ),
         }
 
-    def setup(self, found: Found) -> Iterator[tuple[str, str]]:
-        yield "Materials", "; ".join(found.runs)
-        yield "Hardening", "assumed: one curve of first loading, isotropic, by back-stresses, and by halves"
-        yield "Back-stresses", f"C = {', '.join(f'{c / 1e9:g}' for c in MODULI)} GPa"
-        yield "Their recovery", ", ".join(f"{g:g}" for g in RECOVERY)
-        yield "Patch", f"{EFFORT.cells} × {EFFORT.cells} cells of 1 µm, one surface, printed inputs"
-        yield "Cycles", f"{EFFORT.cycles} of {EFFORT.steps} steps up and down"
-
     def tables(self, found: Found) -> Iterator[SmallTable]:
         rows = []
         for name, way, run in found.every:
@@ -140,13 +132,13 @@ class RunningInKinematic(Case):
             if all(total[-1] > 0 for total in worn.values()):
                 panels[name] = {way: Curve(cycles, total / total[-1]) for way, total in worn.items()}
         looks = dict(zip(SHARES, CYCLES, strict=False))
+        words = (
+            "Wear up to each cycle over that of all cycles, for the materials that wear and three ways to "
+            "harden. Linear wear would be a straight line: it slows down in each of them."
+        )
         yield Plot(
             curves(panels, "cycle", "wear over that of all cycles", looks=looks, count=True),
-            "wear",
-            "Wear up to each cycle",
-            "Wear up to each cycle over that of all cycles, for the materials that wear and three ways to "
-            "harden: it slows down in each of them.",
-            "Linear wear would be a straight line. Materials that do not wear are left out.",
+            *("wear", "Wear up to each cycle", words, words),
         )
 
 
