@@ -10,13 +10,13 @@ from made_results import context, red, with_column, with_quantities
 
 from sam.scene import load_scene
 from verification.cases import LEVELS, all_cases
-from verification.cases.case import with_body, with_grid, with_mesh
+from verification.cases.case import with_grid, with_mesh
 from verification.quantities import Solved
 from verification.reference.convergence import fit_order
 from verification.references import hertz_sphere
 from verification.rows import load_rows
 from verification.runs import models
-from verification.runs.sampling import plane_field_on, pressure_on, surface_pressure
+from verification.runs.sampling import plane_field_on, surface_pressure
 from verification.suite.verify import main
 
 CASES = all_cases()
@@ -94,14 +94,6 @@ def test_a_wrong_pressure_a_lost_force_and_a_wrong_stress_turn_red(scene, solved
     }
 
 
-def test_softer_body_is_noticed(scene, solved):
-    """The closed form of a modulus 0.1 % higher: p0 and approach go with E*^(2/3) and E*^(-2/3), both beyond
-    1e-4.
-    """
-    stiffer = with_body(scene, young=scene.body.young * 1.001)
-    assert {"sam-p-max", "sam-approach"} <= red("hertz-sphere", measured(stiffer, solved))
-
-
 def test_unconverged_solve_breaks_the_case_off(tmp_path, scene):
     case = context("test", tmp_path)
     coarse = with_grid(scene, extent=(5e-6, 5e-6))  # smaller than the contact
@@ -132,20 +124,8 @@ class TestOrder:
         with pytest.raises(ValueError):
             fit_order([0.4, 0.2, 0.1], error)
 
-    def test_two_cell_sizes_are_no_order(self):
-        with pytest.raises(ValueError):
-            fit_order([0.4, 0.2, 0.2], [1.0, 0.5, 0.5])
-
 
 class TestSampling:
-    def test_pressure_map_is_that_of_the_cells(self, solved):
-        """x first, centres symmetric about the apex, and the load of the scene."""
-        fields = solved[models.SAM].fields
-        x, y, p = surface_pressure(fields.points, fields.cells["quad"], fields.cell_data["p_Pa"])
-        assert x.shape == y.shape == (129,) and p.shape == (129, 129)
-        assert np.allclose(x, -x[::-1], rtol=0.0, atol=1e-18) and p.argmax() == 64 * 129 + 64
-        assert p.sum() * (x[1] - x[0]) * (y[1] - y[0]) == pytest.approx(0.65, rel=1e-12)
-
     def test_unequal_cells_keep_their_directions(self):
         nodes = np.array([[x, y, 0.0] for x in (0.0, 2.0, 4.0) for y in (0.0, 1.0, 2.0, 3.0)])
         quads = np.array(
@@ -154,16 +134,6 @@ class TestSampling:
         x, y, p = surface_pressure(nodes, quads, np.arange(6.0))
         assert x.tolist() == [1.0, 3.0] and y.tolist() == [0.5, 1.5, 2.5]
         assert p.tolist() == [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]]
-
-    def test_hertz_pressure_is_interpolated_to_rounding(self):
-        """p^2 is quadratic in r: linear interpolation between nodes 1/400 apart errs by 1/(8 * 400^2) of
-        p0^2.
-        """
-        r = np.linspace(0.0, 2.0, 801)
-        line = {"state": ["peak"] * r.size, "x_m": r, "p_Pa": np.sqrt(np.maximum(1.0 - r**2, 0.0))}
-        x, y = np.array([-0.31, 0.123]), np.array([0.4567])
-        exact = 1.0 - (x[:, None] ** 2 + y**2)
-        assert np.abs(pressure_on(x, y, {"line": line}) ** 2 - exact).max() <= 1.0 / (4.0 * 400**2)
 
     def test_linear_field_is_reproduced_and_nothing_extrapolated(self):
         r, z = (c.ravel() for c in np.meshgrid(np.linspace(0.02, 3.0, 41), np.linspace(0.03, 3.0, 43)))

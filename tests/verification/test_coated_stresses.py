@@ -2,25 +2,20 @@
 """Reference solutions of the coated half-space: stresses, where a film matters, a two-layer pavement."""
 
 import math
-from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
-from scipy.special import j1
 from test_coated_references import PAPER, STEEL
 
 from verification.reference.burmister import disc_stress, interface_stress
 from verification.reference.coated_changes import (
     breaking_thickness,
     film_contact,
-    largest_bare_mises,
     largest_mises,
-    mises_change,
     pressure_change,
 )
 from verification.reference.coated_sphere import solve_radius
-from verification.reference.hertz import largest_von_mises, subsurface_stress
+from verification.reference.hertz import subsurface_stress
 from verification.reference.layered_axisymmetric import (
     CoatedHalfSpace,
 )
@@ -67,21 +62,6 @@ def test_stresses_of_the_coated_contact(young, nu, h):
         assert abs(missing[1] - (missing[0] - missing[1]) / 7) < 0.3 * abs(missing[1]) + 1e-9
 
 
-def test_largest_von_mises_of_the_bare_contact():
-    """The search in the plane against the closed form on the axis (Hertz), and at the interface of a thick
-    film.
-    """
-    contact = film_contact(0.1, PAPER)
-    found = largest_bare_mises(contact)
-    value, z = largest_von_mises(contact.bare.peak_pressure, contact.bare.contact_radius, 0.3)
-    assert (
-        found.value == pytest.approx(value, rel=1e-6)
-        and found.z == pytest.approx(z, abs=2e-3)
-        and found.r == 0
-    )
-    assert largest_bare_mises(film_contact(1.0, PAPER)).z == 1.0
-
-
 def test_largest_von_mises_is_not_below_a_finer_scan():
     contact = film_contact(0.2, 10.0)
     found = largest_mises(contact)
@@ -111,11 +91,6 @@ def test_breaking_thickness_of_the_pressure(young, counter, limit, expected):
     assert abs(pressure_change(film_contact(h, young, counter=counter))) == pytest.approx(limit, rel=1e-5)
 
 
-def test_breaking_thickness_of_the_von_mises_stress():
-    h = breaking_thickness(PAPER, counter=STEEL, change=mises_change)
-    assert h == pytest.approx(0.112, abs=6e-4)
-
-
 def test_a_film_of_the_body_never_breaks_and_a_soft_one_at_once():
     assert breaking_thickness(1.0) == math.inf
     with pytest.raises(ValueError, match=r"limit = 1e-06 is passed at thickness/a0 = 0\.002"):
@@ -123,20 +98,6 @@ def test_a_film_of_the_body_never_breaks_and_a_soft_one_at_once():
 
 
 # --- two-layer pavement -------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("young", [10.0, 1000.0])
-def test_pavement_equals_adaptive_quadrature(young):
-    """The same Hankel integral by another rule (QUADPACK, period by period of the Bessel function): 1e-9."""
-    layers = CoatedHalfSpace(young, 0.5, 1.0, 1.0, 0.5)
-
-    def integrand(k):
-        k = np.array([k])
-        return -float(layers.profiles(k, layers.amplitudes(k), 1.0, film=False)[0, 0]) * 2.0 * j1(2.0 * k[0])
-
-    pieces = [0, 1e-3, 1e-2, 0.1, 0.5, 1, 2, 4, 8, 16, 40]
-    total = sum(quad(integrand, a, b, epsabs=1e-11, epsrel=1e-9)[0] for a, b in pairwise(pieces))
-    assert interface_stress(2.0, young) == pytest.approx(total, abs=1e-9)
 
 
 def test_pavement_is_smooth_at_the_incompressible_limit():

@@ -15,7 +15,6 @@ from verification.reference.coated_traction import (
     largest_von_mises,
 )
 from verification.reference.hamilton import sliding_stress
-from verification.reference.hertz import largest_von_mises as largest_of_hertz
 from verification.reference.layered import ManyDigits
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
 from verification.reference.stress import von_mises
@@ -90,16 +89,6 @@ def test_transform_of_the_hertz_pressure():
     for ka in (1e-3, 0.0999, 0.1001, 1.0, 7.0):
         exact = quad(lambda s, ka=ka: np.sqrt(1.0 - s * s) * j0(ka * s) * s, 0.0, 1.0, epsabs=1e-13)[0]
         assert hertz_transform(np.array([ka]))[0] == pytest.approx(exact, abs=1e-10)  # of the quadrature
-
-
-def test_largest_of_one_material_is_that_of_hertz():
-    layers = CoatedHalfSpace(2.0, 0.3, 0.1, 2.0, 0.3)
-    peak, (value, depth) = (
-        largest_von_mises(layers, 1.0, 1.0, 0.0, film=False),
-        largest_of_hertz(1.0, 1.0, 0.3),
-    )
-    assert peak.value == pytest.approx(value, rel=1e-6) and abs(peak.r) < 2e-3
-    assert peak.z == pytest.approx(depth, abs=2e-3)
 
 
 @pytest.mark.parametrize("film", [True, False])

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from growing_sphere_checks import LAWS, NU, YOUNG, check_cycled_sphere, check_growing_sphere
 
-import sam
 from sam.scene import Scene
 from verification.reference import misfit_sphere
 from verification.reference.misfit_sphere import GrowingSphere
@@ -72,14 +71,3 @@ def held(**loading):
         loading={"prescribed": "misfit-sphere", "radius": A, "misfit": 0.02, "surface": "held", **loading},
         solver={"tolerance": 1e-4},
     )
-
-
-def test_the_semi_analytical_model_meets_the_closed_form():
-    """1.2 times what was measured at 8 cells in the radius; of second order, see the case misfit-sphere."""
-    found = sam.solve(held(depth=1.5 * A))
-    body = found.grids["peak"]["body"]
-    volume = np.prod([np.diff(edges)[0] for edges in (body.x, body.y)]) * np.diff(body.z)
-    exact = GrowingSphere(YOUNG, NU, LAWS["linear"][1], 0.02, A)
-    total = float((body.cell_data["peeq"] * volume).sum())
-    assert total == pytest.approx(exact.total(), rel=0.027)
-    assert found.quantities["approach_m"] is None and found.quantities["force_N"] == 0.0
