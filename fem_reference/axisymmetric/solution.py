@@ -38,9 +38,7 @@ def axis_table(state: str, s: Stresses) -> Table:
 
 
 def line_table(state: str, model: Model, equilibrium: Equilibrium) -> Table:
-    """Surface nodes from the axis to the outer boundary; x is r. Beside a punch, under a given pressure:
-    gap NaN.
-    """
+    """Surface nodes; x is r. The gap is NaN beside a punch and where the pressure is given."""
     unit, problem, r = model.scales, model.problem, model.surface
     uz = [
         problem.body(equilibrium.u, i)[block.solid.boundary_dofs("surface", 1)]

@@ -145,9 +145,7 @@ def follow(
     followed: Followed | None = None,
     strained: Strained | None = None,
 ) -> list[Step]:
-    """All steps, to the last target or the first step that does not converge. followed: called after each
-    of them; strained: as in `run`.
-    """
+    """All steps, to the last target or the first that does not converge; parameters as of `run`."""
     while not now.ended:
         before, now = now, onward(model, now)
         if strained is not None and len(now.steps) > 1:
@@ -161,9 +159,7 @@ def follow(
 
 
 def forgotten(step: Step, strained: Strained) -> Step:
-    """The step with what its row of the history is made from: forces and gaps of the candidates, and the
-    largest strain.
-    """
+    """The step with what its row of the history needs: forces, gaps and the largest strain."""
     if step.state.history is None:
         return step
     state = replace(step.state, u=np.empty(0), history=None)
@@ -214,9 +210,7 @@ def same_history(before: Equilibrium, after: Equilibrium) -> bool:
 
 
 def advance(model: ContactModel, load: Load, start: Equilibrium, level: int = 0) -> Step:
-    """One step to `load`; when it does not converge and the body can yield, in two halves, each of which
-    may be halved.
-    """
+    """One step to `load`; when it does not converge and the body can yield, in two halves."""
     state = model.load(load, start, halved=level > 0)
     tried: tuple[Attempt, ...] = (attempt(state),)
     if state.converged or model.elastic or level == MOST_CUTS:

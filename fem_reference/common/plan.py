@@ -71,9 +71,7 @@ class Plan:
     bare: Self | None = None
 
     def forgets(self, cycle: int) -> bool:
-        """Whether no result reads displacements and strains of the states inside a cycle: of a counter-body
-        that moves, but for the loops of the last period that is judged.
-        """
+        """Whether no result reads the states inside a cycle: of a moving body, unless judged."""
         judged = self.judging is not None and cycle in last_period(self.judging, self.schedule.cycles)
         return self.sliding.moves and not judged
 
@@ -84,9 +82,7 @@ class Plan:
 
 
 def planned(kind: type[AnyPlan], scene: Scene, units: Scales, **own: Any) -> AnyPlan:
-    """The plan of a scene; own: what a geometry has of its own. With a coating there is a second one for
-    the bare contact: the same mesh, up to the last peak.
-    """
+    """The plan of a scene, with that of the bare contact. own: what a geometry has of its own."""
     sliding, bodies = slide(scene, units.length), bodies_of(scene, units)
     expected = 1.0 if scene.patch_surface is not None else expected_radius(scene)
     plan = kind(
@@ -163,9 +159,7 @@ def stages_of(scene: Scene, mesh: Sequence[Stage], stresses: Stage) -> tuple[Sta
 
 
 def _kind(scene: Scene) -> tuple[bool, int, bool]:
-    """Whether the body or its coating yields, its back-stresses at any depth at most, and whether the
-    traction changes its sign from cycle to cycle.
-    """
+    """Whether anything yields, the number of back-stresses, whether the traction alternates."""
     coating, plasticity, friction = scene.body.coating, scene.body.plasticity, scene.friction
     yields = plasticity is not None or (coating is not None and coating.yield_stress is not None)
     alternating = friction is not None and scene.coefficient > 0.0 and friction.direction == "alternating"

@@ -148,13 +148,10 @@ class J2:
     @property
     def yield_strain(self) -> Array:
         """Initial yield stress over Young's modulus at every point."""
-        found: Array = self.factor * self.curve.stress(np.zeros_like(self.factor)) / self.young
-        return found
+        return self.factor * self.curve.stress(np.zeros_like(self.factor)) / self.young
 
     def update(self, strain: Array, start: History) -> Update:
-        """Stress, history and tangent at `strain` (n, n_elements, n_points), from the history at the start
-        of the step.
-        """
+        """Stress, history and tangent at `strain` (n, n_elements, n_points), from `start`."""
         stress = np.einsum("st,teq->seq", self.stiffness, strain - start.inelastic)
         plastic = self.excess(stress, start) > ON_SURFACE  # step 1
         if not plastic.any():
@@ -209,14 +206,11 @@ class J2:
         return self._beyond(mises(self.effective(stress, history)), history.peeq)
 
     def _beyond(self, q: Array, peeq: Array) -> Array:
-        found: Array = q / (self.factor * self.curve.stress(peeq)) - 1.0
-        return found
+        return q / (self.factor * self.curve.stress(peeq)) - 1.0
 
 
 class Parts:
-    """A body of several materials. parts: (elements (n_elements,) bool, material), which together hold
-    every element once.
-    """
+    """A body of several materials. parts: (elements (n_elements,) bool, material)."""
 
     def __init__(self, parts: Sequence[tuple[Bools, J2]]):
         self.parts = tuple(parts)
@@ -285,8 +279,7 @@ Material = J2 | Parts
 def deviatoric(components: int) -> Array:
     """(n, n): strain with engineering shear -> its deviator as a tensor."""
     shears = components - 3
-    found: Array = np.diag([1.0] * 3 + [0.5] * shears) - np.pad(np.full((3, 3), 1.0 / 3.0), (0, shears))
-    return found
+    return np.diag([1.0] * 3 + [0.5] * shears) - np.pad(np.full((3, 3), 1.0 / 3.0), (0, shears))
 
 
 def plastic_increment(q: Array, peeq: Array, factor: Array, *, shear: float, curve: YieldCurve) -> Array:
@@ -319,9 +312,8 @@ def tangent_loss(q: Array, trial: Array, increment: Array, *, slope: Array, shea
     """
     N = np.sqrt(1.5) * trial / q
     ratio, along = increment / q, 1.0 / (3.0 * shear + slope)
-    found: Array = (
+    return (
         6.0
         * shear**2
         * (ratio[:, None, None] * deviatoric(len(N)) + np.einsum("n,sn,tn->nst", along - ratio, N, N))
     )
-    return found

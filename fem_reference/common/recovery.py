@@ -44,9 +44,7 @@ def exceeded_strain(peeq: Array, weights: Array) -> float | None:
 
 
 def parabola_peak(x: Array, y: Array) -> tuple[float, float]:
-    """(value, place) of the top of the parabola through three points, the middle one the largest; Newton's
-    form.
-    """
+    """(value, place) of the top of the parabola through three points, the middle the largest."""
     slope = np.diff(y) / np.diff(x)
     curvature = (slope[1] - slope[0]) / (x[2] - x[0])
     if curvature == 0.0:

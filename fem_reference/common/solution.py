@@ -53,9 +53,7 @@ class Pair:
 
 @dataclass(frozen=True)
 class Solved(Generic[M]):
-    """The model of a plan and its steps; of a coated one also those of the bare contact, no steps if the
-    coated one failed.
-    """
+    """The model of a plan and its steps, and of a coated one those of the bare contact."""
 
     model: M
     steps: list[Step]
@@ -70,9 +68,7 @@ Keeping = Callable[..., None]
 def coated_then_bare(
     coated: M, bare: M, begin: Pair, *, progress: Progress | None, keep: Keeping
 ) -> Solved[M]:
-    """The steps of the coated contact, then, unless it failed, those of the bare one on the same mesh for
-    comparison: the same up to the last peak if the body can yield; of an elastic one the peak is enough.
-    """
+    """The steps of the coated contact, then, unless it failed, of the bare one on the same mesh."""
     schedule, later = coated.plan.schedule, bare.plan.schedule
 
     def counted(first: int, last: int) -> Progress | None:
@@ -270,9 +266,7 @@ class Clock:
 
 
 def recorded_states(model: ContactModel, steps: Sequence[Step]) -> dict[str, Equilibrium]:
-    """The states of the tables by name: the peak of the last cycle and what follows it; or the last load
-    that was reached.
-    """
+    """The states of the tables: the last peak and what follows it, or the last load reached."""
     final = steps[-1]
     if not final.state.converged and not (final.unloads and final.cycle == model.plan.schedule.cycles):
         return {LAST: steps[-2].state if len(steps) > 1 else model.virgin()}
@@ -283,9 +277,7 @@ def recorded_states(model: ContactModel, steps: Sequence[Step]) -> dict[str, Equ
 
 
 def verdict(method: Method[P, M, S], solved: Solved[M], peak: S) -> Status:
-    """Status of the load steps, of a coated contact that converged that of the bare one. peak: stresses of
-    the first state.
-    """
+    """Status of the load steps, the bare contact included; peak: stresses of the first state."""
     status = judge(solved.model, solved.steps, peak)
     if solved.bare_model is None or not solved.bare_steps or status is not Status.CONVERGED:
         return status
@@ -294,9 +286,7 @@ def verdict(method: Method[P, M, S], solved: Solved[M], peak: S) -> Status:
 
 
 def judge(model: ContactModel, steps: Sequence[Step], peak: Peeq) -> Status:
-    """Status of the load steps of one contact; the mesh is judged at the largest contact, `peak` are its
-    stresses.
-    """
+    """Status of the load steps of one contact, whose largest contact judges the mesh."""
     states = [step.state for step in steps]
     if not states[-1].converged:
         return Status.NOT_CONVERGED if model.elastic else Status.STEP_CUT_LIMIT
@@ -312,9 +302,7 @@ def judge(model: ContactModel, steps: Sequence[Step], peak: Peeq) -> Status:
 def quantities_of(
     method: Method[P, M, S], model: M, states: Mapping[str, Equilibrium], fields: Mapping[str, S]
 ) -> Quantities:
-    """Every name of QUANTITIES, None where it does not apply to the scene; those of a coating alone come
-    later.
-    """
+    """Every name of QUANTITIES, None where it does not apply; a coating's own come later."""
     first, *_ = states
     peak, s = states[first], fields[first]
     mises_max, mises_depth = method.largest_mises(s)
@@ -381,10 +369,7 @@ def coating_elements(model: ContactModel, layers: int | None) -> dict[str, objec
 
 
 def cost(steps: Sequence[Step], setups: str, clock: Clock) -> dict[str, float | int | None]:
-    """Every name of COST, then `setups`, what a set-up is called, and "linear_iterations".
-
-    Contact and equilibrium share one Newton loop, so that their iterations are the same.
-    """
+    """Every name of COST, `setups`, what a set-up is called, and "linear_iterations"."""
     work = sum((step.work for step in steps), NO_WORK)
     values = {
         **clock.times(),

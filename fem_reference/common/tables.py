@@ -73,9 +73,7 @@ def step_tables(model: ContactModel, steps: Sequence[Step], peeq_max: Strained) 
 
 
 def history_table(model: ContactModel, steps: Sequence[Step], peeq_max: Strained) -> Table:
-    """One row per load step of every cycle; none for a step that did not converge, whose attempts the
-    residuals have.
-    """
+    """One row per load step of every cycle that converged."""
     unit, rows = model.scales, []
     for step in steps:
         state = step.state
@@ -125,8 +123,7 @@ def _yield_strain(model: ContactModel) -> Array:
     """Initial yield stress over Young's modulus at each Gauss point, (n,)."""
     if model.problem.material is None:
         raise ValueError("the body does not yield")
-    found: Array = model.scales.strain * model.problem.material.yield_strain.ravel()
-    return found
+    return model.scales.strain * model.problem.material.yield_strain.ravel()
 
 
 def verdicts_of(model: ContactModel, steps: Sequence[Step], judging: Judging) -> list[Verdict]:
@@ -142,7 +139,7 @@ def verdicts_of(model: ContactModel, steps: Sequence[Step], judging: Judging) ->
 def _periods_of(
     model: ContactModel, steps: Sequence[Step], judging: Judging
 ) -> tuple[list[History], list[Period]]:
-    """The histories at the ends of the periods that were finished, and what each period added."""
+    """The histories at the ends of finished periods, and what each period added."""
     last = {
         target.cycle: target.number
         for target in model.plan.schedule.targets
@@ -163,9 +160,7 @@ def _periods_of(
 
 
 def loops_of(model: ContactModel, steps: Sequence[Step]) -> dict[str, list[Any]]:
-    """The table loops: stress and plastic strain of three Gauss points over the last period; nothing before
-    that ends, or where nothing is judged.
-    """
+    """Stress and plastic strain of three Gauss points over the last period, if judged."""
     judging = model.plan.judging
     histories, periods = ([], []) if judging is None else _periods_of(model, steps, judging)
     if judging is None or len(periods) < 2 or len(periods) < model.plan.schedule.cycles // judging.period:
@@ -199,9 +194,7 @@ def _six_at(field: Array, at: int) -> Array:
 
 
 def element_fields(model: ContactModel, state: Equilibrium, steps: Sequence[Step]) -> dict[str, Array]:
-    """Fields of repeated loading in the elements of the half-space, (n,) or (n, 6): back-stresses of a state,
-    and of the last period its strains and the classes. Means over the Gauss points, of the class the highest.
-    """
+    """Means in the elements of back-stresses, and of the strains and classes of the last period."""
     material, judging, weights = model.problem.material, model.plan.judging, model.body.weights
     out: dict[str, Array] = {}
     if material is None or state.history is None:

@@ -20,11 +20,7 @@ POINTS = 4
 
 
 def hertz_forces(x: Array, y: Array, centre: tuple[float, float]) -> Array:
-    """(nx, ny) consistent nodal forces of 3/(2 pi) sqrt(1 - r^2), the Hertz pressure of unit force and
-    radius, at `centre`.
-
-    Integrals of pressure times bilinear shape function on the mesh lines x (nx,), y (ny,).
-    """
+    """(nx, ny) consistent nodal forces, on the lines x, y, of Hertz's pressure at `centre`."""
     (px, hats_x), (py, hats_y) = (_hats(line) for line in (x, y))
     pressure = hertz_pressure(np.hypot(px[:, None] - centre[0], py[None, :] - centre[1]))
     return hats_x @ pressure @ hats_y.T
@@ -66,9 +62,7 @@ def contact_area(x: Array, y: Array, pressure: Array, gap: Array, *, half: bool)
 
 
 def _edge(line: Array, others: Array, pressure: Array, gap: Array) -> Array:
-    """(2, n) places at which contact ends on lines along the first axis: `line` (nx,) and `others` (ny,) from
-    the centre.
-    """
+    """(2, n) places where contact ends on lines along the first axis, from the centre."""
     inside, found, width = pressure > 0.0, [], np.gradient(others)
     for first, second in ((0, 1), (1, 0)):  # leaving the contact upwards, downwards
         here, there = slice(first, line.size - second), slice(second, line.size - first)

@@ -49,8 +49,7 @@ class Track:
     @cached_property
     def ends(self) -> Array:
         """(2, 2) start and end."""
-        found: Array = self.model.plan.sliding.places[[0, -1]] * self.model.scales.length
-        return found
+        return self.model.plan.sliding.places[[0, -1]] * self.model.scales.length
 
     @cached_property
     def length(self) -> float:
@@ -60,8 +59,7 @@ class Track:
     @cached_property
     def direction(self) -> Array:
         """(2,) unit vector from start to end."""
-        found: Array = (self.ends[1] - self.ends[0]) / self.length
-        return found
+        return (self.ends[1] - self.ends[0]) / self.length
 
     @property
     def along_x(self) -> bool:
@@ -81,8 +79,7 @@ class Track:
 
     def way(self, x: Array | float) -> Array:
         """Distances of places on a path along x from its start."""
-        found: Array = (np.asarray(x) - self.ends[0, 0]) * self.direction[0]
-        return found
+        return (np.asarray(x) - self.ends[0, 0]) * self.direction[0]
 
     def steady(self, way: Array) -> Bools:
         """Whether these distances lie in the steady part."""
@@ -122,8 +119,7 @@ class Track:
     def surface(self, state: Equilibrium) -> Array:
         """(nx + 1, ny + 1) displacement of the surface in m."""
         dofs = self.model.body.basis.nodal_dofs[2][self.model.surface]
-        found: Array = state.u[dofs] * self.model.scales.displacement
-        return found
+        return state.u[dofs] * self.model.scales.displacement
 
     def along(self, values: Array) -> Array:
         """(nx + 1,) of those (nx + 1, ny + 1) at the nodes, on the path."""
@@ -148,9 +144,7 @@ class Track:
 def path_results(
     model: Model, steps: Sequence[Step], states: Mapping[str, Equilibrium], fields: Mapping[str, Stresses]
 ) -> tuple[dict[str, Table], dict[str, float | None]]:
-    """The columns that the history gets, the tables track, cross and passes of a body that has yielded below
-    a path along x, and every name of PATH_QUANTITIES.
-    """
+    """Columns of the history, the tables track, cross and passes, and PATH_QUANTITIES."""
     track, solved = Track(model), [step for step in steps if step.state.converged]
     driven = [track.driven(step.state) for step in solved]
     columns_of = zip(PATH_HISTORY, ("way", "force", "offset"), strict=True)
@@ -222,9 +216,7 @@ def _passes(track: Track, steps: Sequence[Step], ways: Mapping[int, Sequence[Dri
 
 
 def _track(track: Track, state: Equilibrium, s: Stresses) -> Table:
-    """Along the path at the surface nodes; strains and stresses of the elements interpolated to them, in the
-    uppermost layer and in that of the largest strain of the steady part.
-    """
+    """Along the path at the surface nodes: the top layer and the most strained one."""
     model, x = track.model, track.model.lines.x * track.model.scales.length
     plane = at_zero(s.stress, model.lines.y - track.y, 2)
     inside = track.steady(track.way(s.x))
@@ -244,9 +236,7 @@ def _track(track: Track, state: Equilibrium, s: Stresses) -> Table:
 
 
 def _cross(track: Track, state: Equilibrium, s: Stresses) -> Table:
-    """The elements in the plane x = const in the middle of the steady part, z running first; of a half body
-    those of its half.
-    """
+    """The elements in the plane x = const in the middle of the steady part, z running first."""
     model = track.model
     line = model.lines.x - track.middle / model.scales.length
     stress, peeq = at_zero(s.stress, line, 1), np.maximum(at_zero(s.peeq, line, 0), 0.0)

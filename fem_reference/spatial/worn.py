@@ -171,10 +171,7 @@ def lowered(model: RoughModel, state: Equilibrium, depth: Array) -> tuple[RoughM
 
 
 def moved_up(model: RoughModel, history: History, nodal: Array) -> History:
-    """The history with each column of Gauss points moved up by the depth there, linear between the nodes.
-
-    nodal: (nx + 1, ny + 1) in lengths of the model.
-    """
+    """The history moved up by the depth `nodal` (nx + 1, ny + 1) in lengths of the model."""
     columns, points = columns_of_points(model), model.body.points.reshape(3, -1)
     x, y, z = points[0, columns[:, 0, 0]], points[1, columns[0, :, 0]], points[2, columns[0, 0]]
     depth = RegularGridInterpolator((model.lines.x, model.lines.y), nodal)
