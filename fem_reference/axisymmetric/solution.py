@@ -83,7 +83,7 @@ def surface_grid(model: Model, equilibrium: Equilibrium) -> GridFields:
     """The surface nodes, a line along r in y = 0: pressure, displacement and, where it is finite, the gap."""
     unit, line = model.scales, line_table("", model, equilibrium)
     dofs = (model.body.boundary_dofs("surface", component) for component in (0, 1))
-    ur, uz = (model.problem.body(equilibrium.u, 0)[each] * unit.displacement for each in dofs)
+    ur, uz = (model.problem.body(equilibrium.u, 0)[part] * unit.displacement for part in dofs)
     points = {"p_Pa": np.asarray(line["p_Pa"]), "displacement_m": np.stack([ur, 0 * ur, uz])}
     if np.isfinite(line["gap_m"]).all():
         points["gap_m"] = np.asarray(line["gap_m"])

@@ -109,16 +109,16 @@ class KinematicJ2(J2):
     def _increment(self, s: Array, X: Array, back: BackStresses, *, plastic: Bools, peeq: Array) -> Array:
         """Root dp of step 2 by Newton's method, bracketed as in `plastic_increment`."""
         factor, curve, count = self.factor[plastic], self.curve.at(plastic), len(X)
-        own = 1.5 * self._product(s, s)
-        with_s = np.array([1.5 * self._product(s, each) for each in X])
+        square = 1.5 * self._product(s, s)
+        with_s = np.array([1.5 * self._product(s, back_stress) for back_stress in X])
         mutual = np.array([[1.5 * self._product(X[j], X[k]) for k in range(count)] for j in range(count)])
-        dp = lower = np.zeros_like(own)
+        dp = lower = np.zeros_like(square)
         upper = (mises(s - X.sum(axis=0)) - factor * curve.stress(peeq)) / (3.0 * self.shear)
-        before = np.full_like(own, np.inf)
-        rounding = 16.0 * np.finfo(float).eps * (peeq + np.sqrt(own) / (3.0 * self.shear))
+        before = np.full_like(square, np.inf)
+        rounding = 16.0 * np.finfo(float).eps * (peeq + np.sqrt(square) / (3.0 * self.shear))
         for _ in range(MAX_ITERATIONS):
             b, path = back.kept(dp)
-            q = np.sqrt(own - 2.0 * (b * with_s).sum(axis=0) + np.einsum("jq,jkq,kq->q", b, mutual, b))
+            q = np.sqrt(square - 2.0 * (b * with_s).sum(axis=0) + np.einsum("jq,jkq,kq->q", b, mutual, b))
             limit = factor * curve.stress(peeq + dp) + (back.modulus * path).sum(axis=0)
             f = q - 3.0 * self.shear * dp - limit
             lower, upper = np.where(f > 0.0, dp, lower), np.where(f < 0.0, dp, upper)

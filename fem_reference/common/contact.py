@@ -265,12 +265,12 @@ def newton_step(
     """Displacements, approach and load of the linearised problem; to a given approach two
     solutions, which are linear in the force, are combined. Raises NotDefiniteError.
     """
-    one, reached = problem.newton_step(u, response, active, load=load, kept=kept)
+    loaded, reached = problem.newton_step(u, response, active, load=load, kept=kept)
     if load.approach is None:
-        return one, reached, load
-    none, least = problem.newton_step(u, response, active, load=load.found(0.0), kept=kept)
+        return loaded, reached, load
+    unloaded, least = problem.newton_step(u, response, active, load=load.found(0.0), kept=kept)
     share = (load.approach - least) / (reached - least)
-    return none + share * (one - none), load.approach, load.found(share * load.force)
+    return unloaded + share * (loaded - unloaded), load.approach, load.found(share * load.force)
 
 
 def ended(residuals: Sequence[float], definite: bool, stuck: bool) -> str:

@@ -203,8 +203,8 @@ def material(bodies: Bodies, units: Scales, solid: Solid, *, misfit: bool = Fals
         if back is None:
             return J2(elastic, curve, factor, shears=shears)
         modulus, recovery = back
-        own = BackStresses(modulus * units.strain / units.pressure, recovery * units.strain)
-        return KinematicJ2(elastic, curve, factor, own, shears=shears)
+        back_stresses = BackStresses(modulus * units.strain / units.pressure, recovery * units.strain)
+        return KinematicJ2(elastic, curve, factor, back_stresses, shears=shears)
 
     if bodies.coating is None:
         return half_space(z)

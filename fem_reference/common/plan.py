@@ -81,8 +81,8 @@ class Plan:
         return left_out_of(self.stages)
 
 
-def planned(kind: type[AnyPlan], scene: Scene, units: Scales, **own: Any) -> AnyPlan:
-    """The plan of a scene, with that of the bare contact. own: what a geometry has of its own."""
+def planned(kind: type[AnyPlan], scene: Scene, units: Scales, **of_geometry: Any) -> AnyPlan:
+    """The plan of a scene, with that of the bare contact. of_geometry: its own fields."""
     sliding, bodies = slide(scene, units.length), bodies_of(scene, units)
     expected = 1.0 if scene.patch_surface is not None else expected_radius(scene)
     plan = kind(
@@ -99,7 +99,7 @@ def planned(kind: type[AnyPlan], scene: Scene, units: Scales, **own: Any) -> Any
         advice=advice_of(scene),
         judging=judging_of(scene),
         dissipates=counts_dissipation(scene),
-        **own,
+        **of_geometry,
     )
     if bodies.coating is None:
         return plan
@@ -150,7 +150,7 @@ def stages_of(scene: Scene, mesh: Sequence[Stage], stresses: Stage) -> tuple[Sta
         words = "the same contact without the film, for comparison"
         bare = [Stage("bare body", True, words, {"steps": _steps(scene)})]
     if scene.loading.force == 0.0:
-        solving, bare = ([Stage(each.stage, False, NO_FORCE) for each in some] for some in (solving, bare))
+        solving, bare = ([Stage(stage.stage, False, NO_FORCE) for stage in some] for some in (solving, bare))
     stages += [*solving, stresses]
     if yields and not reason_without(scene):
         words = "strains of the unloaded body after each period"
@@ -196,7 +196,7 @@ def _left_out(scene: Scene) -> list[tuple[str, str]]:
     rigid = scene.counterbody is not None and not scene.counterbody.elastic
     again = not yields and scene.loading.cycles > 1 and not alternating
     unload, reason = scene.loading.unload, reason_without(scene)
-    found = (
+    stages = (
         (not coating, "film elements", "no [body.coating]"),
         (not scene.coefficient, TRACTION, "friction.coefficient is 0" if scene.friction else "no [friction]"),
         (True, "worn geometry", "no [wear]"),
@@ -213,7 +213,7 @@ def _left_out(scene: Scene) -> list[tuple[str, str]]:
         (again, LATER_CYCLES, "elastic: every cycle equals the first"),
         (reason, VERDICT, reason or ""),
     )
-    return [(stage, why) for left_out, stage, why in found if left_out]
+    return [(stage, why) for left_out, stage, why in stages if left_out]
 
 
 def _steps(scene: Scene) -> int:

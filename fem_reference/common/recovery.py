@@ -22,9 +22,9 @@ def continued(z: Sequence[Array] | Array, values: Sequence[Array] | Array, depth
     quadratic for k = 3.
     """
     total: Array = np.zeros(())
-    for i, (own, value) in enumerate(zip(z, values, strict=True)):
+    for i, (place, value) in enumerate(zip(z, values, strict=True)):
         others = [other for j, other in enumerate(z) if j != i]
-        total = total + value * np.prod([(depth - other) / (own - other) for other in others], axis=0)
+        total = total + value * np.prod([(depth - other) / (place - other) for other in others], axis=0)
     return total
 
 

@@ -78,7 +78,7 @@ def coated_then_bare(
         coated,
         schedule,
         progress=counted(0, later.loading_steps),
-        keep=lambda now: keep(Pair(now), now, 0, len(later.targets)),
+        keep=lambda record: keep(Pair(record), record, 0, len(later.targets)),
         begin=begin.coated,
     )
     if not steps[-1].state.converged:
@@ -88,7 +88,7 @@ def coated_then_bare(
         bare,
         later.with_forces({(step.cycle, step.number): step.state.force for step in steps}),
         progress=counted(schedule.loading_steps, 0),
-        keep=lambda now: keep(Pair(finished, now), now, len(steps), 0),
+        keep=lambda record: keep(Pair(finished, record), record, len(steps), 0),
         begin=begin.bare,
     )
     return Solved(coated, steps, bare, bare_steps)
@@ -158,11 +158,11 @@ def solve(
     model = method.build(plan)
     clock.ready()
 
-    def keep(now: object, part: Progressed, before: int = 0, after: int = 0) -> None:
+    def keep(record: object, part: Progressed, before: int = 0, after: int = 0) -> None:
         if checkpoint:
             done = before + len(part.steps)
             total = done + len(part.targets) + after
-            checkpoint(Checkpoint.of(plan.model, now, done=done, total=total, cost=clock.times()))
+            checkpoint(Checkpoint.of(plan.model, record, done=done, total=total, cost=clock.times()))
 
     if plan.bare is not None:
         pair = start.record(Pair) if start else Pair()
@@ -172,7 +172,7 @@ def solve(
             model,
             plan.schedule,
             progress=progress,
-            keep=lambda now: keep(now, now),
+            keep=lambda record: keep(record, record),
             begin=start.record(Progressed) if start else None,
             strained=partial(method.peeq_max, model),
         )
@@ -186,8 +186,8 @@ def load_steps(method: Method[P, M, S], scene: Scene, record: Checkpoint | None)
     model = method.build(plan)
     if record is None:
         return model, run(model, plan.schedule)
-    now = record.record(Progressed) if plan.bare is None else record.record(Pair).coated
-    return model, [] if now is None else now.steps
+    reached = record.record(Progressed) if plan.bare is None else record.record(Pair).coated
+    return model, [] if reached is None else reached.steps
 
 
 def result_of(method: Method[P, M, S], solved: Solved[M], clock: Clock) -> Result:
@@ -207,12 +207,12 @@ def result_of(method: Method[P, M, S], solved: Solved[M], clock: Clock) -> Resul
     of_steps = step_tables(model, steps, partial(method.peeq_max, model))
     quantities = quantities_of(method, model, states, fields)
     quantities |= coated_quantities(method, solved, states[first])
-    of_path, found = method.of_path(model, steps, states, fields)
+    of_path, path_quantities = method.of_path(model, steps, states, fields)
     history = {**of_steps.pop("history"), **of_path.pop("history", {})}
     return Result(
         model=plan.model,
         status=status,
-        **of_load(first, quantities | found),
+        **of_load(first, quantities | path_quantities),
         tables={"history": history, **method.tables(model, states, fields), **of_path, **of_steps},
         fields=bodies[first],
         bodies=bodies,
@@ -260,7 +260,7 @@ class Clock:
         self._ready = time.perf_counter()
 
     def times(self) -> dict[str, float]:
-        """Return setup_s and solve_s up to now."""
+        """Return setup_s and solve_s so far."""
         setup, solving = self._ready - self._began, time.perf_counter() - self._ready
         return {"setup_s": self._before["setup_s"] + setup, "solve_s": self._before["solve_s"] + solving}
 

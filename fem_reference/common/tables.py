@@ -58,17 +58,17 @@ def step_tables(model: ContactModel, steps: Sequence[Step], peeq_max: Strained) 
         out["loops"] = loops
     if model.plan.schedule.cycles > 1:
         peaks = peak_steps(steps)
-        found = cycles_table(model, peaks, peeq_max)
+        table = cycles_table(model, peaks, peeq_max)
         cycles = [step.cycle for step in peaks]
         if any(target.load.ratio < 0 for target in model.plan.schedule.targets):
             signs = [int(np.sign(step.state.load.ratio)) for step in peaks]
-            found = {**found, FRICTION_SIGN: signs}
+            table |= {FRICTION_SIGN: signs}
         if model.plan.dissipates:
             spent = [sum(step.dissipated for step in steps if step.cycle == cycle) for cycle in cycles]
-            found = {**found, DISSIPATED: spent}  # J
+            table |= {DISSIPATED: spent}  # J
         if (judging := model.plan.judging) is not None:
-            found = {**found, **verdict_columns(cycles, verdicts_of(model, steps, judging), judging.period)}
-        out["cycles"] = found
+            table |= verdict_columns(cycles, verdicts_of(model, steps, judging), judging.period)
+        out["cycles"] = table
     return out
 
 
@@ -96,7 +96,7 @@ def history_table(model: ContactModel, steps: Sequence[Step], peeq_max: Strained
     return {name: [row[name] for row in rows] for name in HISTORY}
 
 
-def cycles_table(model: ContactModel, peaks: Sequence[Step], peeq_max: Strained) -> Table:
+def cycles_table(model: ContactModel, peaks: Sequence[Step], peeq_max: Strained) -> dict[str, list[Any]]:
     """Cycles at their peaks, without wear. What does not exist (skewness of a plane, tribofilm) is None."""
     states = [step.state for step in peaks]
     values: Mapping[str, list[float]] = {
@@ -150,8 +150,8 @@ def _periods_of(
         for step in steps
         if step.state.converged and step.number >= last[step.cycle] and step.unloads is not judging.loaded
     }
-    found = [ends[cycle] for cycle in sorted(ends) if cycle % judging.period == 0]
-    histories = [each for each in found if each is not None]
+    ended = [ends[cycle] for cycle in sorted(ends) if cycle % judging.period == 0]
+    histories = [history for history in ended if history is not None]
     if not histories:
         return [], []
     unit = model.scales.strain
@@ -188,9 +188,9 @@ def loops_of(model: ContactModel, steps: Sequence[Step]) -> dict[str, list[Any]]
 
 def _six_at(field: Array, at: int) -> Array:
     """Six components of a field (n, n_elements, n_points) at a point; in axial symmetry y is around."""
-    found, values = np.zeros(6), field.reshape(len(field), -1)[:, at]
-    found[AXISYMMETRIC if len(values) == 4 else slice(None)] = values
-    return found
+    six, values = np.zeros(6), field.reshape(len(field), -1)[:, at]
+    six[AXISYMMETRIC if len(values) == 4 else slice(None)] = values
+    return six
 
 
 def element_fields(model: ContactModel, state: Equilibrium, steps: Sequence[Step]) -> dict[str, Array]:
@@ -227,9 +227,7 @@ def _added(before: History, after: History, unit: float) -> Period:
 def verdict_summary(model: ContactModel, steps: Sequence[Step]) -> Mapping[str, Any] | None:
     """What a result says of repeated loading; None where nothing is judged, or no period was finished."""
     judging = model.plan.judging
-    if judging is None:
+    verdicts = [] if judging is None else verdicts_of(model, steps, judging)
+    if judging is None or not verdicts:
         return None
-    found = verdicts_of(model, steps, judging)
-    return (
-        summary(found, judging.period, judging.floor * float(_yield_strain(model).min())) if found else None
-    )
+    return summary(verdicts, judging.period, judging.floor * float(_yield_strain(model).min()))

@@ -70,7 +70,7 @@ class Preconditioner:
             max_coarse=COARSEST,
         )
         *finer, last = made.levels
-        levels, coarsest = [Level(each.A, each.P, each.R) for each in finer], Coarsest(last.A)
+        levels, coarsest = [Level(level.A, level.P, level.R) for level in finer], Coarsest(last.A)
 
         def apply(r: Array) -> Array:
             z = np.zeros(r.size)

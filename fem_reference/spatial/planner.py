@@ -219,10 +219,10 @@ def friction_weights(scene: Scene, lines: Lines, units: Scales) -> Array:
     """(nx + 1, ny + 1) coefficient of friction at the nodes over the largest one."""
     if scene.constant_friction or scene.coefficient == 0.0:
         return np.ones((lines.x.size, lines.y.size))
-    found, cells = required(required(scene.friction).path), []
-    for line, side, n in zip((lines.x, lines.y), found.extent, found.cells, strict=True):
+    grid_map, cells = required(required(scene.friction).path), []
+    for line, side, n in zip((lines.x, lines.y), grid_map.extent, grid_map.cells, strict=True):
         cells.append(np.clip(np.floor((line * units.length / side + 0.5) * n), 0, n - 1).astype(int))
-    return required(found.values)[np.ix_(*cells)] / scene.coefficient
+    return required(grid_map.values)[np.ix_(*cells)] / scene.coefficient
 
 
 def _grown(scene: Scene) -> float:

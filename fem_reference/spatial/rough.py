@@ -135,12 +135,12 @@ def build(plan: SpatialPlan) -> RoughModel:
     lines, bodies, patch, start = plan.lines, plan.bodies, of_rough(plan), start_of(plan)
     solid = HexSolid(block(lines), bodies.elastic[0])
     surface = surface_nodes(solid, lines)
-    own = opposite = np.zeros(patch.cells)
+    body = opposite = np.zeros(patch.cells)
     if patch.surface is not None:
-        own = heights_of(patch, patch.surface)
+        body = heights_of(patch, patch.surface)
     if patch.counter is not None:
         opposite = counter_heights_of(patch, patch.counter, in_metres(plan, start))
-    inside = between(plan, own + opposite, start)
+    inside = between(plan, body + opposite, start)
     gap = gap_of(plan, inside, float(inside.min()))
     candidates = np.argsort(gap, axis=None, kind="stable")[: patch.cells[0] * patch.cells[1]]
     touching = Candidates(
@@ -157,7 +157,7 @@ def build(plan: SpatialPlan) -> RoughModel:
         share=lines.share,
         material=material(bodies, plan.scales, solid),
     )
-    return RoughModel(plan, problem, surface, candidates, own, opposite, float(inside.min()), place=start)
+    return RoughModel(plan, problem, surface, candidates, body, opposite, float(inside.min()), place=start)
 
 
 def of_rough(plan: SpatialPlan) -> Patch:

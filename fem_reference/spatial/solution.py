@@ -212,7 +212,7 @@ def _contact_quantities(model: Model, peak: Equilibrium) -> Quantities:
     """Quantities of the contact at the peak."""
     unit, area = model.scales, model.contact_area(peak)
     centre = at_origin(model.nodal_pressure(peak), model) * unit.pressure
-    found = {
+    quantities = {
         "force_N": model.plan.force * model.share(peak),
         "contact_area_m2": area,
         "contact_radius_m": float(np.sqrt(area / np.pi)),
@@ -220,17 +220,17 @@ def _contact_quantities(model: Model, peak: Equilibrium) -> Quantities:
         "pressure_centroid_x_m": model.centroid(peak) * unit.length,
     }
     if model.plan.sliding.coefficient > 0.0:
-        found["tangential_displacement_center_m"] = _centre(model, peak, 0)
-    return found
+        quantities["tangential_displacement_center_m"] = _centre(model, peak, 0)
+    return quantities
 
 
 def _residual_quantities(model: Model, left: Equilibrium, s: Stresses) -> Quantities:
     """Quantities of the surface after unloading."""
-    found: Quantities = {"residual_uz_center_m": _centre(model, left, 2)}
+    quantities: Quantities = {"residual_uz_center_m": _centre(model, left, 2)}
     if model.plan.sliding.coefficient > 0.0:
-        found["residual_ux_center_m"] = _centre(model, left, 0)
-        found["plastic_shear_center_m"] = float(np.interp(0.0, s.x, plastic_shear(model, s)))
-    return found
+        quantities["residual_ux_center_m"] = _centre(model, left, 0)
+        quantities["plastic_shear_center_m"] = float(np.interp(0.0, s.x, plastic_shear(model, s)))
+    return quantities
 
 
 def _centre(model: Model, state: Equilibrium, component: int) -> float:
@@ -245,25 +245,23 @@ def _of_path(
     """What a counter-body that moves adds to the tables and quantities."""
     if not model.plan.sliding.moves:
         return {}, {}
-    found: tuple[dict[str, Table], Quantities] = import_module(TRACK).path_results(
-        model, steps, states, fields
-    )
-    return found
+    track = import_module(TRACK)
+    return track.path_results(model, steps, states, fields)
 
 
 def _tables(
     model: Model, states: Mapping[str, Equilibrium], fields: Mapping[str, Stresses]
 ) -> dict[str, Table]:
     """Tables of the states."""
-    (name, first), *_ = states.items()
+    (shown, first), *_ = states.items()
     out = {
-        "axis": stacked([axis_table(each, fields[each]) for each in states]),
-        "line": stacked([line_table(each, model, states[each], fields[each]) for each in states]),
-        "plane": stacked([plane_table(each, fields[each]) for each in states]),
+        "axis": stacked([axis_table(name, fields[name]) for name in states]),
+        "line": stacked([line_table(name, model, states[name], fields[name]) for name in states]),
+        "plane": stacked([plane_table(name, fields[name]) for name in states]),
     }
     leaves = bool(model.plan.sliding.places.any())  # the origin
     if first.force and (leaves or model.plan.kind == "rough"):
-        out["cut"] = cut_table(name, model, first, fields[name])
+        out["cut"] = cut_table(shown, model, first, fields[shown])
     return out | model.tables_of_patch(states)
 
 

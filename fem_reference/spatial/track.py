@@ -148,8 +148,8 @@ def path_results(
     track, solved = Track(model), [step for step in steps if step.state.converged]
     driven = [track.driven(step.state) for step in solved]
     columns_of = zip(PATH_HISTORY, ("way", "force", "offset"), strict=True)
-    found: dict[str, Table] = {
-        "history": {name: [getattr(each, part) for each in driven] for name, part in columns_of}
+    tables: dict[str, Table] = {
+        "history": {name: [getattr(drive, part) for drive in driven] for name, part in columns_of}
     }
     cycles = sorted({step.cycle for step in solved})
     ways = {c: [d for d, step in zip(driven, solved, strict=True) if step.cycle == c] for c in cycles}
@@ -158,10 +158,10 @@ def path_results(
         values["rolling_coefficient"] = _sense(ways[cycles[-1]]) * _mean(track, ways[cycles[-1]])[1]
     if solved and solved[-1].state.yielded:
         passes = _passes(track, solved, ways)
-        found["passes"] = passes
+        tables["passes"] = passes
         if track.along_x and UNLOADED in states:
-            found["track"] = _track(track, states[UNLOADED], fields[UNLOADED])
-            found["cross"] = _cross(track, states[UNLOADED], fields[UNLOADED])
+            tables["track"] = _track(track, states[UNLOADED], fields[UNLOADED])
+            tables["cross"] = _cross(track, states[UNLOADED], fields[UNLOADED])
             groove = track.groove(states[UNLOADED])  # of the last pass
             values |= {
                 "groove_depth_m": groove.depth,
@@ -176,7 +176,7 @@ def path_results(
     numbers = {
         name: float(value) for name, value in values.items() if value is not None and not np.isnan(value)
     }
-    return found, {name: numbers.get(name) for name in PATH_QUANTITIES}
+    return tables, {name: numbers.get(name) for name in PATH_QUANTITIES}
 
 
 def _sense(driven: Sequence[Driven]) -> int:
@@ -186,14 +186,14 @@ def _sense(driven: Sequence[Driven]) -> int:
 
 def _mean(track: Track, driven: Sequence[Driven]) -> tuple[float, float]:
     """(mean driving force in N, the part of the pressure over the normal force) in the steady part."""
-    found = [
-        (each.force, each.rolling)
-        for each in driven
-        if not np.isnan(each.rolling) and track.steady(np.array(each.way))
+    inside = [
+        (drive.force, drive.rolling)
+        for drive in driven
+        if not np.isnan(drive.rolling) and track.steady(np.array(drive.way))
     ]
-    if not found:
+    if not inside:
         return nan, nan
-    force, rolling = np.mean(found, axis=0)
+    force, rolling = np.mean(inside, axis=0)
     return float(force), float(rolling)
 
 
@@ -220,19 +220,19 @@ def _track(track: Track, state: Equilibrium, s: Stresses) -> Table:
     model, x = track.model, track.model.lines.x * track.model.scales.length
     plane = at_zero(s.stress, model.lines.y - track.y, 2)
     inside = track.steady(track.way(s.x))
-    own = np.maximum(s.peeq.max(axis=1), s.plane_peeq if track.y == 0.0 else 0.0)
-    layer = int((own[inside] if inside.any() else own).max(axis=0).argmax())
-    found: dict[str, Any] = {
+    strain = np.maximum(s.peeq.max(axis=1), s.plane_peeq if track.y == 0.0 else 0.0)
+    layer = int((strain[inside] if inside.any() else strain).max(axis=0).argmax())
+    values: dict[str, Any] = {
         "x_m": x,
         "uz_m": track.along(track.surface(state)),
-        "peeq_max": np.interp(x, s.x, own.max(axis=1)),
+        "peeq_max": np.interp(x, s.x, strain.max(axis=1)),
         "steady": track.steady(track.way(x)).astype(int),
     }
     for place, k in (("top", 0), ("deep", layer)):
-        found[f"{place}_z_m"] = s.z[k]
+        values[f"{place}_z_m"] = s.z[k]
         for name, component in (("sxx", XX), ("syy", YY), ("sxz", XZ)):
-            found[f"{place}_{name}_Pa"] = np.interp(x, s.x, plane[component][:, k])
-    return columns(TRACK, [found[name] for name in TRACK])
+            values[f"{place}_{name}_Pa"] = np.interp(x, s.x, plane[component][:, k])
+    return columns(TRACK, [values[name] for name in TRACK])
 
 
 def _cross(track: Track, state: Equilibrium, s: Stresses) -> Table:
