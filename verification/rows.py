@@ -157,16 +157,15 @@ class CaseFile(BaseModel):
     scene: of `verification/scenes`; set: key of the scene, as `loading.force` -> its value here, in SI;
     vary: recipe of `verification.cases.recipes` -> its value; quick: `set` and `vary` that differ at that
     level; models: that solve it; runs: name -> {model, set, vary}, beside these, which need not converge;
-    variants: name -> {words, set, vary} of the scene, each solved and measured by itself if rows or `also`
-    name it; values: quantity -> the number that it is held against; reference: an
-    independent answer, a name in `verification.references`; figures: kinds of `verification.cases.kinds`;
-    claims: its rows; sweeps: its points beside the scene itself; frame: function beside the file that returns
-    points instead; setting: (name, number with unit) for the reader; notes: sentences below the tables;
-    views: pictures in space; needs: package of the extra `reference` without which it does not run.
+    variants: name -> {words, set, vary} of the scene, each solved and measured by itself if rows name it;
+    values: quantity -> the number that it is held against; reference: an independent answer, a name in
+    `verification.references`; figures: kinds of `verification.cases.kinds`; claims: its rows; sweeps: its
+    points beside the scene itself; frame: function beside the file that returns points instead; setting:
+    (name, number with unit) for the reader; notes: sentences below the tables; views: pictures in space;
+    needs: package of the extra `reference` without which it does not run.
 
     allowance: rows of SAM against FEM that hold the difference over what refinement allows, known from
-    both models at the `coarser` resolution; against: recipe -> value of another scene, solved by the same
-    models, against which rows hold what changes.
+    both models at the `coarser` resolution.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
@@ -186,11 +185,9 @@ class CaseFile(BaseModel):
     models: tuple[Literal["sam", "fem", "fem-3d"], ...] = ()
     runs: dict[str, dict[str, Any]] = {}
     variants: dict[str, dict[str, Any]] = {}
-    also: tuple[str, ...] = ()
     reference: str = ""
     coarser: tuple[int, ...] = ()
     allowance: tuple[str, ...] = ()
-    against: dict[str, Any] = {}
     figures: tuple[str, ...] = ()
     views: tuple[str, ...] = ()
     claims: tuple[Claim, ...]

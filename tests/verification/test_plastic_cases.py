@@ -67,18 +67,6 @@ def test_the_second_cycle_is_held_against_the_first_peak():
     assert QUANTITIES["approach-reloaded"].of(made, None) == pytest.approx(1e-3, rel=1e-9)
 
 
-def test_largest_change_of_the_surface_is_that_of_any_of_its_parts():
-    def contact(approach: float = 1e-6, gap: float = 2e-6) -> Made:
-        table = {"state": ["peak", "peak", "unloaded"], "p_Pa": [1e9, 0.0, 0.0]}
-        table |= {"uz_m": [1e-6, 5e-7, 0.0], "gap_m": [0.0, gap, 9.0]}
-        return Made({"approach_m": approach, "contact_area_m2": 1e-11, "p_max_Pa": 1e9}, {"line": table})
-
-    change = QUANTITIES["surface-change"].between
-    assert change(None, contact(), contact()).value == 0.0
-    assert change(None, contact(approach=1.01e-6), contact()).value == pytest.approx(0.01, rel=1e-9)
-    assert change(None, contact(gap=2.1e-6), contact()).value == pytest.approx(0.05, rel=1e-9)
-
-
 class TestRings:
     edges = ring_edges(0.1, 1.0)
 
