@@ -11,7 +11,6 @@ from made_results import Made, square_mesh
 
 from verification.cases.compared import refinement
 from verification.cases.recipes import layer_faces
-from verification.figures.plastic import iso_lines
 from verification.judging import error_of
 from verification.quantities import QUANTITIES, Solved
 from verification.reference.convergence import extrapolate
@@ -49,13 +48,6 @@ def test_what_refinement_allows(name):
     assert (of_sam, of_fem, apart) == pytest.approx(expected, rel=1e-9) and allowed == of_sam + of_fem
     same = Solved(scene, None, {"sam": sam, "fem": fem}, coarser=((sam, 8 / 7), (fem, 2.0)))
     assert refinement(same, QUANTITIES[name])[-1] == 0.01
-
-
-def test_iso_line_of_the_proof_strain_is_drawn_when_it_is_reached():
-    assert 0.2 in iso_lines(0.5) and 0.2 in iso_lines(3.0) and 0.2 not in iso_lines(0.19)
-    for largest in (0.011, 0.5, 3.0):
-        levels = iso_lines(largest)
-        assert levels.size >= 3 and np.all(np.diff(levels) > 0.0) and levels[-1] < largest
 
 
 def test_the_second_cycle_is_held_against_the_first_peak():
