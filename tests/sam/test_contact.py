@@ -3,9 +3,8 @@
 
 import numpy as np
 import pytest
-from rounding import FAR
 
-from sam.contact.convolution import Convolution, Counters
+from sam.contact.convolution import Convolution
 from sam.contact.normal import Search, around, no_contact, solve_contact
 from sam.grid.cells import CellGrid, Window
 from sam.kernels.patches import Lags, displacement_coefficients
@@ -20,19 +19,6 @@ def sphere(n, extent=4.0, force=4 / 3, **options):
     x = (np.arange(n) - (n - 1) / 2) * h
     gap0 = (x[:, None] ** 2 + x[None, :] ** 2) / 2
     return solve_contact(gap0, (h, h), 1.0, force, search=Search(**options)), gap0, h
-
-
-def observed_order(sizes, errors):
-    """Slope of log|error| against log h, least squares."""
-    return -np.polyfit(np.log(sizes), np.log(np.abs(errors)), 1)[0]
-
-
-def test_hertz_on_129_cells():
-    contact, _, _ = sphere(129)
-    assert contact.converged
-    assert contact.pressure.max() == pytest.approx(P0, rel=1e-4)  # issue's bound; measured 3.6e-5
-    assert contact.approach == pytest.approx(1.0, rel=1e-4)  # measured 4.5e-5
-    assert contact.load_error < 1e-12
 
 
 def area_of(contact, hx=1.0, hy=1.0):
@@ -66,18 +52,6 @@ def test_area_below_a_punch_and_up_to_the_edge_of_the_grid_is_that_of_the_cells(
         assert area_of(contact, 1.0, 2.0) == pytest.approx(2.0 * (contact.pressure > 0).sum(), rel=1e-14)
 
 
-def test_hertz_order_of_convergence():
-    """Piecewise constant pressure: second order in its largest value and in the approach, over five odd
-    grids.
-
-    The contact edge moves by whole cells, so single steps scatter; the fit over five grids must be above 1.7.
-    """
-    sizes = [33, 65, 129, 257, 513]
-    solved = [sphere(n)[0] for n in sizes]
-    assert observed_order(sizes, [c.pressure.max() / P0 - 1 for c in solved]) > 1.7
-    assert observed_order(sizes, [c.approach - 1 for c in solved]) > 1.7
-
-
 def test_the_certificate_describes_the_returned_field():
     """Gap, penetration and load recomputed from the pressure alone, by a direct sum over all cells."""
     contact, gap0, h = sphere(25)
@@ -104,46 +78,6 @@ def test_the_box_does_not_change_the_answer():
     assert right.box.nx < 65  # and the box did leave cells out
 
 
-def test_a_coarse_start_saves_iterations():
-    """Counters, not seconds: from the next coarser grid the finest one needs few iterations."""
-    nested, alone = Counters(), Counters()
-    contact, gap0, _ = sphere(257, counters=nested)
-    sphere(257, start=np.ones_like(gap0), counters=alone)
-    assert contact.iterations <= 25 and contact.iterations < alone.contact_iterations
-
-
-def test_the_previous_step_is_a_better_start_than_coarser_grids():
-    """Eight load steps: fewer transforms from step to step than from coarser grids, and the same pressure."""
-    chained, nested, previous = Counters(), Counters(), None
-    for k in range(1, 9):
-        afresh, _, _ = sphere(65, force=k / 6, counters=nested)
-        previous, _, _ = sphere(
-            65, force=k / 6, start=previous.pressure if previous else None, counters=chained
-        )
-        assert np.abs(previous.pressure - afresh.pressure).max() < 1e-8 * P0
-    assert chained.ffts < 0.75 * nested.ffts
-
-
-@pytest.mark.parametrize(("length", "force"), [(1e-6, 1.0), (1.0, 1e9), (3.7e5, 2.3e-7)])
-def test_units_do_not_matter(length, force):
-    """The same problem in other units: the same iterations where they stop far above rounding (see
-    `rounding`).
-
-    A residual is a relative error of the pressure, up to a factor of ten: so many digits are equal.
-    """
-    n, h = 65, 4 / 65
-    x = (np.arange(n) - 32) * h
-    gap0 = (x[:, None] ** 2 + x[None, :] ** 2) / 2
-    modulus = force / length**2
-    for tolerance in (FAR, 1e-12):
-        goal = Search(tolerance)
-        base = solve_contact(gap0, (h, h), 1.0, 4 / 3, search=goal)
-        scaled = solve_contact(gap0 * length, (h * length, h * length), modulus, 4 / 3 * force, search=goal)
-        assert base.converged and (scaled.iterations == base.iterations or tolerance < FAR)
-        assert np.abs(scaled.pressure / modulus - base.pressure).max() <= 10 * tolerance * base.pressure.max()
-        assert scaled.approach / length == pytest.approx(base.approach, rel=10 * tolerance)
-
-
 def test_rough_surface_passes_its_checks():
     """Random heights, three loads from few spots to full contact; area grows with load."""
     rng = np.random.default_rng(5)
@@ -158,16 +92,6 @@ def test_rough_surface_passes_its_checks():
         assert contact.converged and contact.tension == 0.0 and contact.load_error < 1e-12
         areas.append((contact.pressure > 0).mean())
     assert areas[0] < areas[1] < areas[2] == 1.0
-
-
-def test_all_cells_in_contact_give_the_rigid_square_punch():
-    """Its stiffness F/(E* delta) = pi x 0.3667875 side: the capacitance of a square plate (Helsing & Perfekt
-    2013).
-
-    First order in h (edge singularity), extrapolated from two grids: 1e-4.
-    """
-    stiffness = [1.0 / solve_contact(np.zeros((n, n)), (2 / n, 2 / n), 1.0, 1.0).approach for n in (128, 256)]
-    assert 2 * stiffness[1] - stiffness[0] == pytest.approx(np.pi * 0.3667875 * 2, rel=1e-4)
 
 
 def test_bad_arguments_are_refused_by_name():

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The chemical film: return map against closed forms, a general solver and rates, failures."""
 
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -128,10 +127,6 @@ class TestGeneralSolver:
         )
         assert np.abs(wrong.plastic[..., 0] - right).max() > 1e-6
 
-    def test_beyond_what_the_film_can_bear_the_solver_finds_nothing(self):
-        with pytest.raises(ArithmeticError, match="no strains off the plane"):
-            Film(80e9, 0.3, 1e9).implicit_step(np.zeros(6), FlowPoint(np.zeros(3), 1e9, 0.6e9))
-
     def test_rates_meet_the_closed_form_in_equal_strains(self):
         p = 3.5e9
         e = in_plane_strain(p, *STEEL)
@@ -178,18 +173,6 @@ class TestReturnMap:
         with pytest.raises(ArithmeticError, match="not finite"):
             multiplier(np.array([np.nan]), np.zeros(1), np.ones(1), (1.0, 3.0))
 
-    def test_fast_enough_for_every_pass_of_a_load_step(self):
-        rng = np.random.default_rng(0)
-        pressure = np.zeros((64, 64))
-        pressure.flat[rng.choice(4096, 300, replace=False)] = rng.uniform(0.0, 5e9, 300)
-        strain, state = rng.normal(scale=3e-3, size=(3, 64, 64)), FilmState.fresh((64, 64))
-        times = []
-        for _ in range(10):
-            start = time.process_time()
-            LAW.step(state, strain, pressure)
-            times.append(time.process_time() - start)
-        assert min(times) < 5e-3  # of the processor; 1.2 ms measured
-
 
 class TestFailure:
     def test_no_equilibrium_is_a_failure_and_no_strain(self):
@@ -219,12 +202,6 @@ class TestFailure:
         state = law.step(FilmState.fresh((1, 1)), strain, cells(0.0))
         assert state.thinning[0, 0] > 1e-3 and not state.failed.any()
         assert law.step(state, strain, cells(1e6)).failed.all()
-
-    def test_state_before_the_step_is_left_alone(self):
-        state = at_centre(LAW, [3e9])
-        kept = state.plastic.copy()
-        LAW.step(state, np.full((3, 1, 1), 0.02), cells(1e9))
-        assert np.array_equal(state.plastic, kept)
 
     def test_sign_of_the_traction_mirrors_the_shear_alone(self):
         strain, pressure = cells([1e-3], [-4e-3], [2e-3]), cells(3e9)

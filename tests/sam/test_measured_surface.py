@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from builders import measured_scene as rough
 
-import sam
 from sam.grid.rough import RoughPatch
 from sam.scene import Grid, HeightMap, Scene, SceneError, Surface, load_scene, resolved
 from sam.scene.surface import heights, mean_deviation, patch_of, processed, roughness, roughness_as_read
@@ -106,18 +105,6 @@ def test_a_hole_in_a_harmonic_function_is_filled_with_it(function, cell, hole):
     assert np.abs(harmonic(values, cell) - exact).max() < 1e-12 * np.abs(exact).max()
 
 
-def test_a_filled_hole_has_no_summit_and_nothing_else_is_touched():
-    values = waves((40, 30))
-    holes = waves((40, 30), 1) > 1.0
-    holes[10:20, 12:22] = True
-    filled = harmonic(np.where(holes, np.nan, values), (1.0, 1.0))
-    assert np.array_equal(filled[~holes], values[~holes])
-    padded = np.pad(filled, 1, constant_values=-np.inf)
-    highest = np.max([padded[2:, 1:-1], padded[:-2, 1:-1], padded[1:-1, 2:], padded[1:-1, :-2]], axis=0)
-    assert (filled[holes] <= highest[holes] + 1e-12).all()
-    assert harmonic(values, (1.0, 1.0)) is values
-
-
 def test_missing_points_are_refused_unless_asked_for_and_never_most_of_the_map():
     values = np.where(waves((12, 10)) > 1.5, np.nan, 1.0)
     with pytest.raises(
@@ -212,31 +199,6 @@ def test_to_finer_cells_and_back_is_the_same_surface():
     assert np.abs(resampled(resampled(h, (25, 16)), (40, 33)) - h).max() > 0.1
 
 
-def test_a_patch_that_is_not_periodic_does_not_ring():
-    """A smooth surface that rises from side to side. Mirrored it has kinks: waves like 1/k^2, whose rest
-    beyond n is of first order at the sides and, of changing sign, of third inside. Periodic it has jumps,
-    whose overshoot no refinement takes away.
-    """
-
-    def error(n: int, of=resampled) -> tuple[float, float]:
-        coarse, fine = (
-            np.exp(centres(k, 1 / k))[:, None] * np.cos(2 * centres(8, 1 / 8)) for k in (n, 3 * n)
-        )
-        off = np.abs(of(coarse, (3 * n, 8)) - fine)
-        return off.max(), off[3 * n // 4 : -(3 * n // 4)].max()
-
-    def periodic(h, cells):
-        spectrum = np.fft.rfft(h, axis=0)
-        shift = np.exp(1j * np.pi * np.arange(len(spectrum)) * (1 / len(h) - 1 / cells[0]))
-        other = np.zeros((cells[0] // 2 + 1, h.shape[1]), complex)
-        other[: len(spectrum)] = spectrum / shift[:, None]
-        return np.fft.irfft(other, n=cells[0], axis=0) * cells[0] / len(h)
-
-    errors = np.array([error(n) for n in (31, 63, 127)])
-    assert np.allclose(errors[:-1] / errors[1:], [[2.0, 8.0]] * 2, rtol=0.1)
-    assert errors[1, 0] < 0.01 < 0.05 < error(63, periodic)[0] < 1.5 * error(127, periodic)[0]
-
-
 def test_the_grid_of_a_scene_may_differ_only_if_it_is_resampled(tmp_path):
     x, y = centres(12, 1e-6), centres(10, 1e-6)
     content = npz({"x_m": x, "y_m": y, "height_m": 1e-7 * np.cos(3e5 * x[:, None]) + 0 * y})
@@ -280,17 +242,6 @@ def measured(folder, keys: str = KEYS) -> Scene:
         keys,
         '[grid]\ncells = [32, 24]\nborder = "relief"\ndepths = ["0 um", "1 um"]\n',
     )
-
-
-def test_a_measured_patch_is_solved_on_its_own_grid(tmp_path):
-    scene = measured(tmp_path)
-    grid = sam.choose_grid(scene)
-    assert (grid.nx, grid.ny) == (32, 24) and (grid.hx, grid.hy) == pytest.approx((0.5e-6, 0.5e-6), rel=1e-9)
-    before, after = (
-        roughness_as_read(scene.surface),
-        roughness(processed(scene.surface, (32, 24)), grid.hx, grid.hy),
-    )
-    assert before.sa > 2 * after.sa and 5e-9 < after.sa < 3e-8  # the cap alone is higher than the roughness
 
 
 def test_what_is_done_to_a_file_is_part_of_the_scene(tmp_path):
@@ -342,24 +293,3 @@ def test_the_pin_is_what_its_recipe_makes():
     assert roughness_as_read(Surface(kind="file", path=file)).sa == pytest.approx(0.27e-6, rel=2e-3)
     other = load_scene(RECIPE).surface.model_copy(update={"seed": 3})
     assert np.abs(heights(other, *(centres(64, 1e-6),) * 2, (64e-6, 64e-6)) - file.values).max() > 0.1e-6
-
-
-def test_the_self_affine_part_of_the_pin_ends_at_twelve_cells():
-    """The marks are longer than the patch and depend on x only: they are in the row of no waves along y."""
-    power = np.abs(np.fft.fft2(pin_heights()[2])) ** 2
-    m = np.abs(np.fft.fftfreq(64, 1 / 64))
-    beyond = np.hypot(m[:, None], 1.5 * m[None, :]) > 64 / 12 * (1 + 1e-9)
-    beyond[:, 0] = False
-    assert power[beyond].max() < 1e-20 * power.max()
-
-
-def test_largest_elastic_pressure_on_the_pin_is_that_of_the_paper():
-    """6.5 GPa (Fig. 3) within 1 %, for which the recipe was chosen; from the file and from the recipe, but
-    for ten digits.
-    """
-    scenes = (load_scene(DATA.with_name(name)) for name in ("pin.toml", "pin-recipe.toml"))
-    from_file, from_recipe = (sam.solve(scene).quantities for scene in scenes)
-    assert from_file["p_max_Pa"] == pytest.approx(6.5e9, rel=0.01)
-    assert from_file["p_max_Pa"] == pytest.approx(
-        from_recipe["p_max_Pa"], rel=1e-5
-    )  # the relief falls by Ra of the sampling

@@ -122,24 +122,6 @@ def test_what_a_file_and_python_say_is_the_same(folder):
     assert parse_scene(swift("C = 20", "C = 20e-6\nalpha = 1").encode(), "").body.plasticity.alpha == 1.0
 
 
-@pytest.mark.parametrize(
-    "rows, fragment",
-    [
-        ("curve.csv", "rows: columns peeq"),
-        ([], COLUMNS),
-        ([0.0, 1e9], "row 1: 0.0 is not two numbers"),
-        ([(0.0, 1e9), (0.1, 1e9, 2)], "row 2: "),
-        ([(0.0, "1e9")], 'row 1: yield_stress_Pa = "1e9"'),
-        (np.array([[0.0, np.nan]]), "row 1: yield_stress_Pa = NaN"),
-        ([(0.0, True)], "row 1: yield_stress_Pa = true"),
-        ([(0.0, 2e9), (0.1, 1e9)], "softening"),
-    ],
-)
-def test_python_rows_are_checked_as_files_are(rows, fragment):
-    with pytest.raises(ValidationError, match=fragment):
-        Plasticity(law="table", file=rows)
-
-
 def test_contradictions_are_seen_between_sections_made_in_python():
     body = Body(young=210e9, poisson=0.3, plasticity=Plasticity(law="perfect", yield_stress=1e9))
     others = {"counterbody": CounterBody(shape="sphere", radius=1e-4), "loading": Loading(force=0.1)}
@@ -177,21 +159,3 @@ def test_a_link_out_of_the_folder_is_refused(folder):
 def test_bytes_without_a_folder_cannot_name_files():
     with pytest.raises(SceneError, match="no folder to read files from"):
         parse_scene(plastic(TABLE).encode(), "pasted")
-
-
-def test_a_given_traction_beyond_the_shear_strength_is_refused():
-    """Mean traction 2/3 mu p0 <= sigma_y/sqrt(3): beyond it the loaded circle slides off, unless the body
-    hardens.
-    """
-    keys = {
-        "body": {"young": 210e9, "poisson": 0.3, "plasticity": {"law": "perfect", "yield_stress": 1e9}},
-        "loading": {"prescribed": "hertz", "p0": 0.866e9, "radius": 4e-6},
-        "friction": {"coefficient": 1.0},
-    }
-    Scene.model_validate(keys)
-    beyond = keys | {"loading": keys["loading"] | {"p0": 0.867e9}}
-    with pytest.raises(ValidationError, match=r"at most 8\.66e\+08 Pa with friction\.coefficient = 1"):
-        Scene.model_validate(beyond)
-    hardens = keys["body"] | {"plasticity": {"law": "linear", "yield_stress": 1e9, "modulus": 1e9}}
-    Scene.model_validate(beyond | {"body": hardens})
-    Scene.model_validate({name: table for name, table in beyond.items() if name != "friction"})

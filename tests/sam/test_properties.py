@@ -10,7 +10,6 @@ from hypothesis import given, settings, strategies as st
 from plastic_start import begin
 from rounding import FAR
 
-import fem_reference
 import sam
 from sam.contact.convolution import Counters
 from sam.contact.normal import Search, solve_contact
@@ -23,7 +22,6 @@ from sam.plasticity.spectra import BoxOperator
 from sam.scene import (
     Body,
     CounterBody,
-    Friction,
     Grid,
     HeightMap,
     Loading,
@@ -89,31 +87,6 @@ def test_units_of_a_contact_change_neither_iterations_nor_digits(seed, length, s
     assert abs(other.approach / length - base.approach) <= CLOSE * np.abs(base.displacement).max()
 
 
-@PROPERTY
-@given(SEED, st.floats(1e-3, 1e3), COUPLING)
-def test_heights_and_force_in_proportion_keep_the_contact(seed, share, coupling):
-    """The contact is homogeneous of degree one: the pressure follows the factor. Hertz: a force s^3 on
-    lengths s, over s^2.
-    """
-    gap = bowl((20, 16)) * UM * 0.01 + 0.02 * UM * waves(seed)
-    for tolerance in (FAR, TOLERANCE):
-        base = contact_of(gap, coupling=coupling, tolerance=tolerance)
-        other = contact_of(share * gap, force=0.02 * share, coupling=coupling, tolerance=tolerance)
-        assert other.iterations == base.iterations or tolerance < FAR
-    assert same(other.pressure / share, base.pressure) and same(other.gap / share, base.gap)
-
-
-@PROPERTY
-@given(st.floats(1e-9, 1e9), COUPLING, st.integers(2, 6))
-def test_a_flat_punch_is_linear_in_the_force(share, coupling, radius):
-    x = np.arange(17) - 8
-    gap = np.where(np.hypot(x[:, None], x) <= radius, 0.0, np.inf)
-    one, other = contact_of(gap, coupling=coupling), contact_of(gap, force=0.02 * share, coupling=coupling)
-    assert same(other.pressure / share, one.pressure, 1e-10)
-    if coupling == 0.0:
-        assert (one.pressure[np.isfinite(gap)] > 0).all()
-
-
 def sphere(
     young=210e9, radius=105e-6, force=0.05, *, steps=2, plastic=None, mu=None, scale=(1.0, 1.0), **more
 ) -> Scene:
@@ -156,68 +129,7 @@ def test_units_of_a_scene_change_neither_counters_nor_digits(length, stress, pla
             assert other.quantities[name] / stress == pytest.approx(base.quantities[name], rel=1e-10)
 
 
-@FEWER
-@given(
-    st.floats(0.05, 20.0),
-    st.floats(0.03, 0.12),
-    st.sampled_from([0.0, 0.02, 0.1]),
-    st.sampled_from([None, 0.3]),
-)
-def test_equal_ratio_of_pressure_to_yield_stress_is_a_similar_contact(blunter, force, hardening, mu):
-    """Radius and moduli times s at equal force: equal pressures, strains over s (Johnson 1985, section 6.3).
-    Not the units.
-
-    1e-8: other roundings, and the contact is solved to 1e-7.
-    """
-
-    def solved(s):
-        plastic = {"law": "linear", "yield_stress": 1.2e9, "modulus": hardening * s * 210e9}
-        return sam.solve(
-            sphere(s * 210e9, s * 105e-6, force, plastic=plastic, mu=mu, loading={"unload": True})
-        ).quantities
-
-    base, other = solved(1.0), solved(blunter)
-    for name, power in (
-        ("p_max_Pa", 0),
-        ("contact_area_m2", 0),
-        ("mises_max_Pa", 0),
-        ("approach_m", 1),
-        ("peeq_max", 1),
-    ):
-        assert other[name] * blunter**power == pytest.approx(base[name], rel=CLOSE), name
-
-
-@FEWER
-@given(FACTOR, FACTOR, st.sampled_from([None, steel(0.05, 0.02)["plastic"]]))
-def test_units_of_a_scene_change_nothing_in_finite_elements(length, stress, plastic):
-    def solved(scale):
-        scene = sphere(scale=scale, plastic=plastic, loading={"unload": True})
-        return fem_reference.solve(
-            scene.model_copy(update={"fem": scene.fem.model_copy(update={"cells_per_radius": 4})})
-        )
-
-    base, other = solved((1.0, 1.0)), solved((length, stress))
-    assert other.status == base.status and other.cost["newton_iterations"] == base.cost["newton_iterations"]
-    for name in ("approach_m", "contact_radius_m"):
-        assert other.quantities[name] / length == pytest.approx(base.quantities[name], rel=1e-10)
-    assert other.quantities["p_max_Pa"] / stress == pytest.approx(base.quantities["p_max_Pa"], rel=1e-10)
-
-
 # --- place and orientation ----------------------------------------------------------------------------------
-
-
-@PROPERTY
-@given(SEED, st.integers(-6, 6), st.integers(-5, 5), COUPLING)
-def test_a_contact_moves_with_its_gap_by_whole_cells(seed, i, j, coupling):
-    """A rough summit in the middle of a larger grid, and elsewhere on it."""
-    whole, summit = np.full((32, 28), np.inf), bowl((16, 14)) * 0.02 * UM + 0.05 * UM * waves(seed, (16, 14))
-    centred, moved = whole.copy(), whole.copy()
-    centred[8:24, 7:21] = summit
-    moved[8 + i : 24 + i, 7 + j : 21 + j] = summit
-    base, other = contact_of(centred, coupling=coupling), contact_of(moved, coupling=coupling)
-    assert base.converged and other.converged
-    assert same(other.pressure, np.roll(base.pressure, (i, j), axis=(0, 1)))
-    assert other.approach == pytest.approx(base.approach, abs=CLOSE * np.abs(base.displacement).max())
 
 
 @PROPERTY
@@ -283,17 +195,6 @@ def test_a_rough_yielding_patch_turns_with_its_heights(seed):
     assert same(pressure.T, p, 1e-4) and same(exchanged, strain, 1e-4)
 
 
-@FEWER
-@given(SEED, st.floats(0.05, 0.4))
-def test_a_yielding_patch_sliding_the_other_way_is_the_mirror_image(seed, mu):
-    heights, friction = 0.3 * waves(seed, (16, 12), 5) - 0.03 * bowl((16, 12)), Friction(coefficient=mu)
-    p, strain = committed(rough(heights, friction))
-    pressure, found = committed(rough(heights[::-1], friction), sign=-1.0)
-    assert same(pressure[::-1], p, 1e-4) and same(np.flip(MIRROR_X * found, -2), strain, 1e-4)
-    pressure, found = committed(rough(heights[:, ::-1], friction))
-    assert same(pressure[:, ::-1], p, 1e-4) and same(np.flip(MIRROR_Y * found, -1), strain, 1e-4)
-
-
 # --- superposition and the way to the load ------------------------------------------------------------------
 
 
@@ -336,28 +237,6 @@ def test_an_elastic_contact_forgets_the_way_to_its_load(seed, forces, coupling):
     assert same(contact_of(gap, coupling=coupling, start=start).pressure, direct.pressure)
 
 
-@PROPERTY
-@given(st.integers(2, 12), st.sampled_from([None, 0.3]), st.floats(1e-3, 1.0))
-def test_an_elastic_scene_forgets_its_load_steps(steps, mu, force):
-    one, many = (sam.solve(sphere(force=force, steps=n, mu=mu)).quantities for n in (1, steps))
-    for name in ("p_max_Pa", "approach_m", "mises_max_Pa"):
-        assert many[name] == pytest.approx(one[name], rel=CLOSE)
-
-
-@FEWER
-@given(st.integers(2, 6), st.floats(1e-3, 1.0))
-def test_elastic_finite_elements_forget_their_load_steps(steps, force):
-    def solved(n):
-        scene = sphere(force=force, steps=n)
-        return fem_reference.solve(
-            scene.model_copy(update={"fem": scene.fem.model_copy(update={"cells_per_radius": 4})})
-        )
-
-    one, many = solved(1).quantities, solved(steps).quantities
-    for name in ("p_max_Pa", "approach_m", "contact_radius_m"):
-        assert many[name] == pytest.approx(one[name], rel=CLOSE)
-
-
 # --- order --------------------------------------------------------------------------------------------------
 
 
@@ -372,13 +251,3 @@ def test_more_force_never_opens_an_elastic_contact(seed, force, more):
     assert high.approach > low.approach
     assert (high.pressure > 0)[low.pressure > 0].all()
     assert (high.gap <= low.gap + CLOSE * np.abs(low.displacement).max()).all()
-
-
-@FEWER
-@given(st.floats(0.02, 0.2), st.sampled_from([0.0, 0.02, 0.1]), st.sampled_from([None, 0.3]))
-def test_approach_area_and_strain_rise_with_the_force_on_a_yielding_body(force, hardening, mu):
-    scene = sphere(steps=5, mu=mu, grid={"extent": (14e-6, 14e-6)}, **steel(force, hardening))
-    history = sam.solve(scene).tables["history"]
-    assert (np.diff(history["approach_m"]) > 0).all()
-    for name in ("contact_area_m2", "peeq_max"):  # whole cells, and nothing before yield
-        assert (np.diff(history[name]) >= 0).all(), name

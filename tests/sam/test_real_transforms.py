@@ -64,15 +64,6 @@ def test_back_is_the_inverse(monkeypatch, odd, n, short):
         assert not same.size or same.max() <= 2 * (kept + half) * EPS * np.abs(field).sum(axis).max()
 
 
-@pytest.mark.parametrize("kind", [np.float32, np.float64])
-def test_precision_is_kept(monkeypatch, kind):
-    kernel = np.random.default_rng(4).standard_normal((3, 8, 9)).astype(kind)
-    for short in (0, 10**4):
-        monkeypatch.setattr(real_transforms, "SHORT", short)
-        found = forward(kernel, 12, False, -1)
-        assert found.dtype == back(found, 9, False, -1).dtype == kind
-
-
 def test_spectrum_of_both_directions():
     """Against the two-dimensional sum over lags of both signs."""
     kernel = np.random.default_rng(8).standard_normal((4, 5))

@@ -15,11 +15,9 @@ import sam
 from sam.contact.box import BoxContact
 from sam.contact.convolution import Counters
 from sam.contact.operators import SurfaceOperators
-from sam.contact.stress import surface_strain, von_mises
 from sam.grid.cells import Sides
 from sam.plasticity import history
-from sam.scene import Body, CounterBody, Friction, FrictionMap, Grid, Loading, Plasticity, Scene, Status
-from sam.scene.result import STRESSES
+from sam.scene import FrictionMap, Status
 from sam.scene.surface import border_cells, heights, mean_deviation, with_relief
 from verification.cost.plan import plan
 from verification.reference.bonded_film import overall_coefficient
@@ -121,26 +119,6 @@ def test_what_a_sound_layer_keeps_is_counted():
     )
 
 
-def test_elastic_steps_apply_no_residual_stress_operator():
-    """A load at which nothing yields, on a body that may: film and contact only."""
-    result = sam.solve(running_in(counterbody=STEEL, plasticity=SWIFT | {"B": 17800e6}, wear=None))
-    assert result.quantities["peeq_max"] == 0.0 and result.cost["operator_applications"] == 0
-    assert 0.1 < result.quantities["friction_coefficient"] < 0.4
-
-
-def test_film_on_an_elastic_body_is_tested_with_the_strain_of_its_surface():
-    """The same film, contact and load: layers of the volume grid extrapolated, or stresses at z = 0. Cells
-    are 0.67 um, the uppermost layer is 0.1 um: linear extrapolation is then good for a few cells at the
-    limit.
-    """
-    yields = sam.solve(running_in(counterbody=STEEL, plasticity=SWIFT | {"B": 10000e6}, wear=0.5, cycles=1))
-    elastic = sam.solve(running_in(counterbody=STEEL, plasticity=None, wear=None, cycles=1))
-    p = [surface(result, "peak", "p_Pa") for result in (yields, elastic)]
-    assert np.abs(p[0] - p[1]).max() < 0.02 * p[1].max()
-    failed = [surface(result, "peak", "friction") > 0.25 for result in (yields, elastic)]
-    assert failed[1].sum() > 5 and (failed[0] != failed[1]).sum() <= 1
-
-
 def test_every_failed_cell_fails_in_the_converged_contact(monkeypatch):
     """At the end of a step the film is tested once more: nothing further fails, and all that failed did so
     for a pressure near its limit at least.
@@ -195,74 +173,6 @@ def test_local_friction_of_a_map_acts_where_it_is():
     assert found.quantities["friction_coefficient"] == pytest.approx(0.1 + 0.3 * share, rel=1e-12)
 
 
-def test_largest_values_are_looked_for_below_the_whole_patch():
-    result = solved(cycles=3)
-    table = result.tables["plane"]
-    peak = np.array(table["state"]) == "peak"
-    assert result.quantities["mises_max_Pa"] >= np.asarray(table["mises_Pa"])[peak].max()
-    assert result.quantities["peeq_max"] >= np.asarray(table["peeq"])[peak].max()
-    assert result.quantities["peeq_max"] == pytest.approx(result.tables["cycles"]["peeq_max"][-1], rel=0.2)
-
-
-def test_unloading_that_strains_is_seen_without_a_solve():
-    """The stress that is left without load decides whether unloading takes one step."""
-    scene = running_in(counterbody=STEEL, cycles=1)
-    result = sam.solve(scene)
-    last = result.tables["history"]["note"][-1]
-    assert last.startswith("elastic: unloading in one step") and "m3 removed" in last
-
-
-def test_surface_strain_is_extrapolated_linearly_in_depth():
-    """Exact for strains that are linear in z."""
-    depths = np.array([0.05e-6, 0.2e-6, 0.4e-6])
-    plastic, stress = np.zeros((6, 3, 1, 1)), np.zeros((6, 3, 1, 1))
-    plastic[0, :, 0, 0] = 1e-3 + 2e3 * depths
-    plastic[5, :, 0, 0] = -1e-4 + 1e2 * depths
-    stress[1, :, 0, 0] = 210e6
-    found = surface_strain(stress, plastic, depths, young=210e9, poisson=0.3)[:, 0, 0]
-    assert found == pytest.approx([1e-3 - 3e-4, 1e-3, -1e-4, -3e-4], rel=1e-12)
-
-
-def test_wear_without_smoothing_removes_less():
-    """The filter only adds to the scar of one cycle."""
-    wear = {"strain_limit": 0.002, "smoothing_window": 0}
-    plain = sam.solve(running_in(counterbody=STEEL, cycles=1, wear=wear))
-    smooth = sam.solve(running_in(counterbody=STEEL, cycles=1))
-    worn = [surface(result, "unloaded", "worn_m") for result in (plain, smooth)]
-    assert (worn[1] >= worn[0]).all() and worn[1].sum() > worn[0].sum()
-
-
-def test_a_scene_that_wears_plans_its_stages():
-    found = {entry["stage"]: entry for entry in plan(running_in(counterbody=STEEL))["models"][0]["stages"]}
-    assert found["worn geometry"]["runs"] and found["chemical film"]["runs"]
-    without = {
-        entry["stage"]: entry for entry in plan(running_in(wear=None, film=None))["models"][0]["stages"]
-    }
-    assert not without["worn geometry"]["runs"]
-
-
-def test_the_residual_stress_of_the_box_and_of_the_grid_agree():
-    """Stresses in y = 0 of the snapshot: von Mises at most the yield stress of the hardened material,
-    everywhere.
-    """
-    result = solved(cycles=1, wear=None)
-    assert result.certificate["yield_excess_outside_box"] <= 1e-4
-    mises = von_mises(np.stack([np.asarray(result.tables["axis"][name]) for name in STRESSES]))
-    assert mises == pytest.approx(np.asarray(result.tables["axis"]["mises_Pa"]), rel=1e-9)
-
-
-def test_a_film_that_never_fails_is_low_friction():
-    """A limit beyond reach and a hard film: the same as a constant coefficient, bit by bit in the
-    pressure.
-    """
-    hard = FILM | {"film_yield": 1e12, "strain_limit": 10.0}
-    film = sam.solve(running_in(counterbody=STEEL, film=hard, wear=None, cycles=1))
-    low = sam.solve(running_in(counterbody=STEEL, film={"coefficient": 0.1}, wear=None, cycles=1))
-    assert film.quantities["friction_coefficient"] == pytest.approx(0.1, rel=1e-12)
-    # solved twice to the tolerance of 1e-4 in another number of passes
-    assert surface(film, "peak", "p_Pa") == pytest.approx(surface(low, "peak", "p_Pa"), rel=1e-3, abs=1e6)
-
-
 def test_a_new_film_without_friction_forgets_the_traction_of_the_cycle_before(monkeypatch):
     """With low = 0 a film that is whole again leaves no traction: the contact is that of the same surface
     without friction, though unlike bodies were coupled by the traction where it had failed.
@@ -288,27 +198,6 @@ def test_a_new_film_without_friction_forgets_the_traction_of_the_cycle_before(mo
     alone = pressure(replace(model.built.problem.pressure, contact=BoxContact(bare, extent.window)))
     assert np.abs(new - alone).max() <= 1e-7 * alone.max()
     assert np.abs(with_failures - alone).max() > 0.01 * alone.max()
-
-
-def test_a_smooth_sphere_that_yields_only_where_its_film_has_failed():
-    """p0 = 1.5 GPa, yield stress 1 GPa: elastic at 0.1 (first yield at 1.6), plastic at 0.4 (1.24). The film
-    bears nothing.
-    """
-    force = (1.5e9 * np.pi) ** 3 * (1e-3) ** 2 / (6 * (210e9 / 0.91) ** 2)
-    scene = Scene(
-        body=Body(
-            young=210e9, poisson=0.3, plasticity=Plasticity(law="linear", yield_stress=1e9, modulus=20e9)
-        ),
-        counterbody=CounterBody(shape="sphere", radius=1e-3),
-        loading=Loading(force=force, steps=2, unload=True, cycles=2),
-        friction=Friction(**FILM | {"film_yield": 1e8}),
-        grid=Grid(cells=(33, 33)),
-    )
-    result = sam.solve(scene)
-    assert result.status is Status.CONVERGED and result.quantities["peeq_max"] > 0
-    assert 0.3 < result.quantities["friction_coefficient"] < 0.4  # low pressure at the rim
-    low = sam.solve(scene.model_copy(update={"friction": Friction(coefficient=0.1)}))
-    assert low.quantities["peeq_max"] == 0.0
 
 
 def test_the_box_grows_after_wear_and_removal_strains_nothing_at_its_bottom(monkeypatch):

@@ -7,12 +7,11 @@ import re
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 import fem_reference
 from sam.scene import Scene, Surface, parse_scene
 from sam.scene.surface import BORDER, border_cells, heights, mean_deviation, roughness, with_relief
-from verification.robustness.hostile import SMALL, WAVES
+from verification.robustness.hostile import WAVES
 
 SIDE = 64e-6
 PATCH = (SIDE, SIDE)
@@ -83,35 +82,6 @@ def test_spectrum_is_flat_then_falls_with_the_hurst_exponent_then_ends(anisotrop
     assert np.allclose(power[flat], level, rtol=1e-9, atol=0)
     assert np.allclose(power[falling], level * (q[falling] / 2) ** -3.6, rtol=1e-9, atol=0)
     assert power[~inside].max() < 1e-24 * level
-
-
-def test_a_cut_off_leaves_the_longer_waves_as_they_are():
-    short, long = (
-        np.fft.fft2(on_grid(Surface(**SELF_AFFINE | {"cutoff_short": c}), 96)) for c in (4e-6, 12e-6)
-    )
-    kept = np.abs(long) > 1e-9 * np.abs(long).max()
-    ratio = short[kept] / long[kept]
-    assert kept.sum() > 50 and np.allclose(
-        ratio, ratio[0].real, rtol=1e-9, atol=0
-    )  # one scale, no phase changed
-
-
-def test_skewness_and_slope_of_self_affine_surfaces():
-    """Heights of random phases are as high as deep, in the mean over seeds; the slope by Parseval: sum of C
-    q^2 over sum of C.
-
-    Central differences at 26 cells in the shortest wave take (2 pi/26)^2/6 = 1 % off its slope.
-    """
-    skewness = np.array(
-        [roughness(on_grid(Surface(**SELF_AFFINE | {"seed": k}), 64), 1, 1).ssk for k in range(40)]
-    )
-    assert abs(skewness.mean()) < 4 * skewness.std() / np.sqrt(skewness.size)
-    n = np.arange(-16, 17)
-    q = np.hypot(n[:, None], n[None, :])
-    power = np.where((q > 0) & (q <= 16 * (1 + 1e-9)), np.maximum(q / 2, 1) ** -3.6, 0.0)
-    exact = 0.3e-6 * 2 * np.pi / SIDE * np.sqrt((power * q**2).sum() / power.sum())
-    surface = Surface(**{key: value for key, value in SELF_AFFINE.items() if key != "ra"}, sq=0.3e-6)
-    assert roughness(on_grid(surface, 416), SIDE / 416, SIDE / 416).sdq == pytest.approx(exact, rel=0.01)
 
 
 def test_feed_marks_are_arcs_of_the_nose_with_cusps_up():
@@ -203,37 +173,6 @@ def waves(*changes: tuple[str, str]) -> Scene:
         text, count = re.subn(pattern, replacement, text, flags=re.MULTILINE)
         assert count == 1, pattern
     return parse_scene(text.encode(), "s")
-
-
-def test_a_surface_goes_with_every_counter_body():
-    for shape in (
-        '"sphere"\nradius = "1 mm"',
-        '"ellipsoid"\nradius_x = "1 mm"\nradius_y = "2 mm"',
-        '"punch"\nradius = "9 um"',
-    ):
-        assert waves(('"flat"', shape)).surface.seed == 7
-    assert waves(("^anisotropy.*\n", "")).surface.anisotropy == 1.0 and waves().seeds == (7,)
-    assert parse_scene(SMALL.encode(), "s").seeds == ()
-
-
-@pytest.mark.parametrize(
-    ("keys", "message"),
-    [
-        (
-            {"kind": "self-affine", "cutoff_long": 2.0, "cutoff_short": 1.0, "hurst": 0.5, "seed": 1},
-            "required: ra or sq",
-        ),
-        (SELF_AFFINE | {"sq": 1e-6}, "either ra or sq, not both"),
-        ({"kind": "sinusoid", "amplitude": 1e-6}, "required: wavelength_x, wavelength_y, or both"),
-        ({"kind": "file"}, 'required: kind = "file" takes path'),
-        ({"kind": "file", "path": "pin.csv"}, "a HeightMap"),
-        ({"kind": "file", "path": {"sha256": "ab", "cells": [3, 3], "extent": [1, 1]}}, "a HeightMap"),
-        ({"kind": "file", "path": np.zeros((5, 5))}, "a HeightMap"),
-    ],
-)
-def test_keys_of_a_kind_in_python(keys, message):
-    with pytest.raises(ValidationError, match=re.escape(message)):
-        Surface(**keys)
 
 
 def test_a_model_that_has_no_rough_bodies_says_so():

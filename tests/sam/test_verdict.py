@@ -88,19 +88,6 @@ def test_where_some_back_stress_never_recovers_the_strain_of_a_period_ends(share
     assert class_of(falling, worst=Behaviour.SETTLING) is Behaviour.SETTLING
 
 
-def test_where_some_back_stress_never_recovers_nothing_ratchets():
-    """Strains of a period that change by up to 5 % in size and direction, of which some would ratchet."""
-    rng, seen = np.random.default_rng(11), set()
-    for _ in range(400):
-        dp = 1e-3 * np.cumprod(1 + rng.uniform(-0.05, 0.05) * rng.uniform(0, 1, 5))
-        drifts = [np.array([1, -0.5, -0.5, 0, 0, 0]) + 0.05 * rng.standard_normal(6) for _ in dp]
-        share = rng.uniform(0.02, 0.9) * (1 + 0.03 * rng.uniform(-1, 1)) ** np.arange(5)
-        found = periods(dp, share, drifts)
-        seen.add(class_of(found))
-        assert class_of(found, worst=Behaviour.ALTERNATING) is not Behaviour.RATCHETTING
-    assert Behaviour.RATCHETTING in seen
-
-
 @pytest.mark.parametrize(
     ("law", "recovery", "worst"),
     [
@@ -119,24 +106,6 @@ def test_a_layer_that_may_ratchet_is_seen():
     """Prager's law in the body bounds nothing in a layer without it."""
     layer = {"layer_thickness": 1e-6, "layer": {"law": "perfect", "yield_stress": 1e9}}
     assert judging_of(judged_scene(law={"law": "perfect"} | layer)).worst is Behaviour.RATCHETTING
-
-
-def test_two_materials_of_which_one_ratchets():
-    """Chaboche's law between 1250 and -1050 MPa, 800 MPa yield stress: the strain of a cycle falls by 10 to
-    40 % in both, to nothing if the last back-stress never recovers and to 5.07e-4 if it does. The closing one
-    is told apart in every cycle, the ratchetting one when its strain has been steady for half of them.
-    """
-    found = {}
-    for last, cycles in ((0.0, 20), (3.0, 60)):
-        specimen = Specimen(SamPoint(Linear(800e6), [400e9, 60e9, 6e9], [2000.0, 300.0, last]))
-        ends = [(np.zeros(6), 0.0)]
-        for _ in range(cycles):
-            for stress in (1250e6, -1050e6):
-                specimen.to(stress={0: stress})
-            ends.append(specimen.point.plastic)
-        found[last] = classes_of(ends)
-    assert found[0.0][-1] is Behaviour.ALTERNATING and Behaviour.RATCHETTING not in found[0.0]
-    assert found[3.0][-1] is Behaviour.RATCHETTING and Behaviour.ALTERNATING not in found[3.0]
 
 
 def classes_of(ends):
