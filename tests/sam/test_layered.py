@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from builders import RADIUS, scene as small_scene
 from made_results import column
-from rounding import EPS, close, of_sum
+from rounding import close, of_sum
 
 import sam
 from sam import choose_grid
@@ -24,11 +24,10 @@ from sam.layered.patches import (
     CellIntegrals,
     LayeredPatches,
     RadialTable,
-    quintic,
     spline_matrix,
     wave_numbers,
 )
-from sam.layered.response import Layers, Response, normal_compliance, sinh_excess
+from sam.layered.response import Layers, Response
 from sam.scene import Scene, Status
 from sam.schedule import Load
 from verification.reference.layered import ManyDigits
@@ -95,16 +94,6 @@ def test_excess_is_the_difference_from_a_half_space_of_film():
             assert np.abs(whole - half_space - mine).max() < 1e-13
 
 
-def test_limits_of_the_compliance():
-    """k h -> 0: the body; k h -> infinity: the film. The first correction is of order k h, so 1e-7 at
-    1e-8.
-    """
-    k = np.array([1e-1, 1e12])
-    moduli = 2 / (normal_compliance(COATED, k) * k)  # E/(1 - nu^2)
-    assert moduli == pytest.approx([210e9 / (1 - 0.25**2), 80e9 / 0.91], rel=1e-6)
-    assert normal_compliance(COATED, np.array([0.0]))[0] == np.inf
-
-
 def test_no_overflow_far_beyond_the_range():
     kh = np.geomspace(1e-80, 1e80, 33)
     for ratio in (1e-6, 1e6):
@@ -112,14 +101,6 @@ def test_no_overflow_far_beyond_the_range():
         with np.errstate(over="raise", invalid="raise", divide="raise"):
             fields = [response.surface, response.surface_excess, *response.stress(0.5), *response.stress(3.0)]
         assert all(np.all(np.isfinite(field)) for field in fields)
-
-
-def test_sinh_excess_keeps_its_digits():
-    """x^3/6 (1 + x^2/20) e^{-x} for small x; the two branches meet at 1."""
-    x = np.array([1e-6, 1e-3])
-    assert sinh_excess(x) == close(np.exp(-x) * x**3 / 6 * (1 + x * x / 20), 1e-14)
-    below, above = sinh_excess(np.array([1 - 1e-12, 1 + 1e-12]))
-    assert below == pytest.approx(above, rel=1e-11)
 
 
 @pytest.mark.parametrize(
@@ -317,17 +298,6 @@ def test_radial_table_of_an_exponential(order, bias):
     assert np.abs(ours - exact).max() < 1e-11 * exact.max()  # rounding over r^bias at 1e-3, spline 1e-12
 
 
-def test_quintic_pieces():
-    """Sum 1; values and slopes of neighbouring pieces join; symbol at 0. 30 EPS: six terms of ten roundings,
-    half an EPS each.
-    """
-    assert quintic(np.linspace(0, 1, 11)).sum(axis=-1) == pytest.approx(np.ones(11), abs=30 * EPS)
-    assert quintic(np.array([0.0]))[0] == pytest.approx(np.array([1, 26, 66, 26, 1, 0]) / 120)
-    assert quintic(np.array([1.0]))[0, 1:] == pytest.approx(quintic(np.array([0.0]))[0, :5])
-    slope = np.diff(quintic(np.array([0.0, 1e-6, 1 - 1e-6, 1.0])), axis=0) / 1e-6
-    assert slope[2, 1:] == pytest.approx(slope[0, :5], abs=1e-5)
-
-
 @pytest.mark.parametrize("angular", [Angular(0), Angular(1), Angular(2, sine=True), Angular(3)])
 def test_cells_of_a_known_function(angular):
     """Near, 5, 4, 3 and 2 point cells against 12 x 12 Gauss points of g: all but the cells at the origin."""
@@ -341,17 +311,6 @@ def test_cells_of_a_known_function(angular):
         g = (1 + m * root) * (r / (1 + root)) ** m / root**3 / (2 * np.pi) * angular(np.arctan2(y, x))
         exact = np.sum(g * w[:, None] * w) * 1.5 / 4
         assert ours[i, j] == pytest.approx(exact, abs=2e-11)  # of a largest value of 0.1
-
-
-@pytest.mark.parametrize("cell, ratio", [(1e-8, 1e-6), (1e-3, 1e6)])
-def test_no_overflow(cell, ratio):
-    """100 nm film, cells from 10 nm to 1 mm, moduli 1e6 apart."""
-    coated, lags = LayeredPatches(Layers(ratio * 1e9, 0.5, THICKNESS, 1e9, 0.0)), Lags(20, 15, cell, cell)
-    with np.errstate(over="raise", invalid="raise", divide="raise"):
-        for load in (1, 3):
-            stress = coated.stress(lags, [0.0, 5e-8, 1e-7, 1e-6, 1e-3], load=load)
-            assert np.isfinite(stress).all()
-            assert np.isfinite(coated.displacement(lags, component=3, load=load)).all()
 
 
 def test_a_bad_depth_is_refused():

@@ -12,7 +12,6 @@ import pytest
 from builders import (
     CHEMICAL_FILM,
     PATH,
-    SHAPES,
     SWIFT_YIELD,
     hertz_force,
     parsed,
@@ -179,15 +178,6 @@ def test_all_of_friction_is_along_the_motion():
     np.testing.assert_allclose(force / FORCE, signed + offset / RADIUS, rtol=1e-9)
     np.testing.assert_array_equal(coefficient, 0.2)
     assert offset[3] == pytest.approx(-offset[-1], rel=1e-4) != 0
-
-
-def test_a_punch_keeps_its_pressure_and_has_no_slope():
-    """A flat end of 4 cells in the radius, whole cells further: nothing changes but the place."""
-    punch = SHAPES["punch"] | {"radius": A}
-    history = sam.solve(moving({"steps": 2}, plasticity=None, counterbody=punch)).tables["history"]
-    assert np.ptp(history["p_max_Pa"][:-1]) < 1e-6 * history["p_max_Pa"][1]
-    assert np.isnan(history["fx_N"][:-1]).all()
-    assert np.abs(history["pressure_offset_m"][:-1]).max() < 1e-6 * A
 
 
 LONG = {"path": {"steps": 8}, "track": 6.0}
@@ -362,12 +352,6 @@ def test_a_map_alone_asks_for_a_grid():
         Scene(**{**dict(found), "grid": None})
 
 
-def test_long_steps_over_summits_are_warned_of():
-    body = {**WAVES, "ra": 0.1e-6, "seed": 1}
-    few, many = (sam.plan(sliding(COUNTER, body=body, path={"steps": n})).track.warnings for n in (4, 12))
-    assert len(few) == 1 and "0.25 of its shortest wave" in few[0] and not many
-
-
 # film and wear on the way
 
 LIMIT, RATE, TRACK = 0.02, 3.0, 10.0
@@ -444,15 +428,6 @@ def test_a_failure_lasts_for_the_visit_and_unloading_in_place_ends_none():
     np.testing.assert_array_equal(back.reference[:, 0], 1.0)  # strain counts from there and then
     np.testing.assert_array_equal(back.film.plastic[:, 0], 0.0)
     assert film_of.entered(back, 0.75).film.failed is back.film.failed  # nothing is solved anew
-
-
-def test_a_given_limit_is_that_of_every_visit():
-    film_of = FilmOnCells(LAW, (1, 1), VisitLaw(None, 1.0))
-    film = film_of.fresh(np.zeros((4, 1, 1)))
-    for clock, p in ((0.0, 1.0), (0.1, 0.0), (0.2, 1.0)):
-        before = film_of.entered(film, clock)
-        film = film_of.tested(before, before, np.zeros((4, 1, 1)), pressure=np.full((1, 1), p), sign=1.0)
-    assert film.visits.limit[0, 0] == LIMIT and film.visits.counts.sum() == 1
 
 
 def test_a_limit_of_each_cell_takes_the_place_of_that_of_the_law():

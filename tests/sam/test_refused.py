@@ -121,7 +121,6 @@ title = 3 -> = & a string
 shape = 'flat'; radius = '1 mm' -> = & takes no radius
 -radius -> @radius is missing & takes radius
 radius = '1 mm'; radius_x = '1 mm' -> = & takes radius: remove it
--radius; shape = 'ellipsoid'; radius_x = '1 mm' -> @radius_y is missing & takes radius_x and radius_y
 -radius; shape = 'ellipsoid'; radius_x = '1 mm'; radius_y = '1 km' -> = \
  & radius_x/radius_y from 0.0001 to 10000
 shape = 'punch'; radius = '1 mm'; young = '1 GPa' -> @poisson is & $TOGETHER
@@ -160,24 +159,20 @@ coefficient = -0.1 | inf -> = & from 0 to 10
 coefficient = 0.1; coupling = 0 -> = & true or false
 coefficient = 0.1; direction = 'x' -> = & "constant" or "alternating"
 law = 'viscous' -> = & "constant", "map" or "chemical-film"
-coefficient = 0.1; mu = 0.2 -> = & unknown key
 ## SPHERE grid.
 border = 'relief' -> = & only together with [surface]
 cells = [65] | 65 -> = & a list of 2
 cells = [65, 5000] -> @cells[1] = 5000 & from 3 to 4097
 extent = ['1 um', 2] -> @extent[1] = 2 & $LENGTH
 depths = ['1 um', '0 um'] -> = & strictly ascending
-depths = ['-1 um'] -> @depths[0] = "-1 um" & or 0
 depths = [] -> = & a list of 1 to 1001
 depths = ['0 um']; layers = 3; depth = '1 um' -> @depths = ["0 um"] & not both
 layers = 3 -> @depth is missing & layers and depth together
 ## SPHERE body.plasticity.
 B = '1 GPa' -> @law is missing & "swift" or "linear" or "perfect"
-law = 'ramberg' -> = & "swift", "linear", "perfect"
 law = 'table' -> @file is missing & law = "table" takes file
 law = 'table'; file = 3 -> = & the name of a CSV file & $COLUMNS
 law = 'table'; file = 'none.csv' -> = & cannot be read: No such file
-law = 'table'; file = '.' -> = & cannot be read: Is a directory
 law = 'table'; file = '../curve.csv' | '/etc/passwd' -> = & $OUTSIDE
 law = 'table'; file = "a\u0000" -> @file = & cannot be read
 ## SWIFT body.plasticity.
@@ -187,20 +182,16 @@ C = 0 | '20' -> = & a number from 1e-15
 n = 0 | 1.0 | nan -> = & from 1e-06 to 0.999999
 alpha = 0 -> = & a number from 1e-15
 yield_stress = '1 GPa' -> yield_stress = & law = "swift" takes B, C, n, alpha: remove
-layer_thickness = '1 um'; layer.alpha = 1000.0 -> @layer.law is missing
 ## LINEAR body.plasticity.
 -modulus -> modulus is missing & yield_stress, modulus
 modulus = '-1 GPa' -> = & or 0
 ## PERFECT body.plasticity.
 modulus = '0 Pa' -> modulus = & "perfect" takes yield_stress: remove
-yield_stress = '0 GPa' -> =
-hardening = 3 -> = & unknown key & layer_thickness
 layer_thickness = 1e-06 -> layer_thickness = 1e-06 & a length as a string
 profile = 'p.csv' -> = & No such file
 kinematic.recovery = [300] -> @kinematic.modulus & is missing & required
 ## SWIFT
 body.poisson = 0.5 -> = & less than 0.5 with plasticity
-body.coating.young = '1 GPa'; body.coating.poisson = 0 -> body.coating.thickness is missing
 grid.depths = ['1 nm', '1 um'] | ['0 um'] -> = & $FACES
 solver.method = 'paper'; solver.stop = 'x' -> solver.stop & "stress" or "strain"
 solver.method = 'newton' -> = & "paper"
@@ -208,19 +199,13 @@ solver.extrapolate = true; grid.depth = '10 um'; grid.layers = 7 -> = & an even 
 solver.extrapolate = true; grid.depths = ['0 um', '1 um', '2 um'] -> = & an even number of layers
 ## LAYER
 -body.plasticity.layer_thickness -> body.plasticity.layer_thickness is missing & [body.plasticity.layer]
-body.plasticity.layer_thickness = '0 um' -> =
 body.plasticity.layer = 3 -> = & a table
-body.plasticity.layer = {} -> body.plasticity.layer.law is missing & "swift" or "linear"
 $FILM -> body.plasticity.layer & not together with [body.coating]
 ## LAYER body.plasticity.layer.
 law = 'voce' -> = & "swift", "linear"
--B -> @B is missing & takes B, C, n
-B = '-945 MPa' -> = & from 1e-30
 modulus = '1 GPa' -> = & takes B, C, n, alpha: remove it
 profile = 'p.csv' -> @profile & unknown key
 layer_thickness = '1 um' -> @layer_thickness & unknown key, did you mean body.plasticity.layer_thickness
-layer.law = 'perfect' -> @layer & unknown key
--B; -C; -n; law = 'table'; file = 'other.csv' -> = & No such file
 -B; -C; -n; law = 'table'; file = 'curve.csv' -> = & line 3 & softening is not available
 ## PATH loading.path.
 step_per_radius = 4 -> = & not both
@@ -228,8 +213,6 @@ steps = 2 -> = & 3 or more & longer than the contact radius, 6.053e-06 m
 -steps; step_per_radius = 0.5 -> = & from 1 to 1000
 return = 'round' -> = & "lifted" or "to-and-fro"
 start = [1, 2] | '9 um' | ['9 um', '0 um', '0 um'] | ['9 GPa', '0 um'] | [] -> @start
-steps = -1 | 1001 | 1.5 | '4' | true | [4] | nan -> @steps
-step_per_radius = inf -> @step_per_radius
 speed = 1 -> @speed
 ## PATH
 loading.force = '0 N' -> = & above 0 with loading.path
@@ -248,7 +231,6 @@ loading.path = {begin = ['-9 um', '0 um'], end = ['9 um', '0 um'], step_per_radi
 loading.force = '1e-25 N'; -loading.path.steps; loading.path.step_per_radius = 3 -> = & at most
 ## MISFIT loading.
 -depth -> @depth & required
--misfit -> @misfit & required
 depth = '15 N' | '-15 um' -> @depth & a length
 depth = '10 um' | '5 um' -> @depth & more than the radius
 misfit = -0.02 | 0.0 | 2.0 | '2 %' -> @misfit & a strain
@@ -256,7 +238,6 @@ profile = 'cube' -> @profile & smooth
 profile = 'gauss' -> @depth & 3 times the radius
 surface = 'fixed' -> @surface & held
 force = '1 N' -> @force & not both
-approach = '1 um' -> @approach & not both
 p0 = '1 GPa' -> @p0 & prescribed = "hertz"
 path.start = ['0 um', '0 um']; path.end = ['5 um', '0 um']; path.steps = 2 -> @path & prescribed = "hertz"
 -prescribed; force = '1 N' -> @misfit & only as part of prescribed = "misfit-sphere"
@@ -270,8 +251,6 @@ loading.unload = true; wear.strain_limit = 0.01 -> loading.prescribed & needs a 
 solver.method = 'paper' -> solver.method & solves a contact
 ## TURNED surface.
 -seed -> @seed is missing: required: kind = "hard-turned" takes ra, feed
-hurst = 1.2 -> @hurst = 1.2: a number from 0 to 1
-path = 'x' -> =
 kind = 'self-affine' -> @feed = "20 um": kind = "self-affine" takes & anisotropy: remove it
 kind = 'wood' -> @kind = "wood": one of "file", "hard-turned", "self-affine" or
 cutoff_long = '6 um' -> @cutoff_short = "6 um": less than cutoff_long, 6e-06 m
@@ -291,9 +270,7 @@ surface = {} -> @surface.kind is missing: & "file" or "hard-turned" or "self-aff
 renew = true -> = & did you mean counterbody.surface.renew?
 surface = 'map.csv' -> = & a table
 ## WAVE counterbody.surface.
-kind = 'waves' -> = & "self-affine" or "sinusoid"
 amplitude = '0 um' -> = & from 1e-30 to 1e+30 m
-amplitude = '0.1 N' -> = & a length as a string
 seed = 1 -> = & takes amplitude, wavelength_x, wavelength_y: remove it
 wavelength_x = '1 um' -> grid.cells & in the shortest wavelength
 ## RENEWED counterbody.surface.
@@ -302,7 +279,6 @@ seed = -1 | '5' | 1.5 -> = & a whole number from 0
 seed = 9223372036854775808 -> = & to 9.22337e+18
 -sq -> required: ra or sq
 ra = '20 nm' -> @sq = "20 nm": & either ra or sq
-cutoff_long = '4 um' -> @cutoff_short = "8 um": & less than cutoff_long, 4e-06 m
 cutoff_short = '1 um' -> grid.cells = [32, 32]: & at least [40, 40]
 crop = ['4 um', '4 um'] -> = & remove it
 ## MAP counterbody.surface.
@@ -339,7 +315,6 @@ modulus = ['1 GPa', '2 um'] | ['1 GPa', '-2 GPa'] | ['1 GPa', '2'] | ['1 GPa', t
 recovery = [300] -> = & as many numbers as modulus has: 2
 recovery = 300 | [] -> = & $LIST
 recovery = [-1, 0] | ['1', 0] | [nan, 0] | [100000000.0, 0] | [[300, 0], 1] -> @recovery[0] & $RECOVERY
-recover = [1, 0] -> = & did you mean recovery?
 """
 LONG = [
     (f"body.young = '1 {'Pa*' * 500}Pa'", ['body.young = "1 Pa*Pa', PRESSURE]),
@@ -440,7 +415,7 @@ SWIFT = builders.SWIFT
 THICK = SWIFT | {"layer_thickness": 1e-6}
 SOFT = {"law": "perfect", "yield_stress": 355e6}
 MPA = {"law": "table", "file": ((0.0, 355.0), (0.01, 450.0))}  # in MPa, under a column in Pa
-COATING = {"thickness": 1e-6, "young": 300e9, "poisson": 0.25}
+COATING = {"thickness": 1e-6, "young": 300e9, "poisson": 0.25, "yield_stress": 4e3}
 FILMED = {"law": "chemical-film", "low": 0.1, "high": 0.4, "film_thickness": 1e-7, "film_young": 70e9}
 FILMED |= {"film_poisson": 0.3, "strain_limit": 0.1, "film_yield": 700.0}
 MODULUS = "a pressure from 1e-30"
@@ -463,52 +438,29 @@ IN_PYTHON = [
     (plastic(SWIFT, layer=SOFT), f"{IN}_thickness", "", "the thickness of the layer"),
     (plastic(THICK, layer_thickness=float("nan"), layer=SOFT), f"{IN}_thickness", "nan", "a length from"),
     (plastic(THICK, layer=[SOFT]), IN, "perfect", "a table"),
-    (plastic(THICK, layer={"law": None}), f"{IN}.law", "", '"swift", "linear", "perfect" or "table"'),
     (plastic(THICK, layer=SWIFT | {"B": "945 um"}), f"{IN}.B", "945 um", MODULUS),
-    (plastic(THICK, layer=SWIFT | {"alpha": True}), f"{IN}.alpha", "True", "a number from 1e-15"),
-    (plastic(THICK, layer={"law": "table", "file": ((0.1, 1e9),)}), f"{IN}.file", "0.1", "peeq"),
-    (plastic(THICK, layer=SOFT | {"aplha": 1e3}), f"{IN}.aplha", "1000.0", "did you mean"),
     (plastic(THICK, layer=SWIFT | {"kinematic": {"modulus": ()}}), f"{IN}.kinematic.modulus", "()", LIST),
-    (plastic(SWIFT, kinematic={}), f"{BACK}.modulus", "", "required"),
     (plastic(SWIFT, kinematic=3), BACK, "3", "a table"),
     (back(modulus=1e9), f"{BACK}.modulus", "1000000000.0", LIST),
-    (back(modulus={"first": 1e9}), f"{BACK}.modulus", "first", LIST),
     (back(modulus=(0.0,)), f"{BACK}.modulus.0", "0.0", MODULUS),
-    (back(modulus=(float("inf"),)), f"{BACK}.modulus.0", "inf", MODULUS),
     (back(modulus=(True,)), f"{BACK}.modulus.0", "True", MODULUS),
-    (back(modulus=(1e31,)), f"{BACK}.modulus.0", "1e+31", MODULUS),
     (back(recovery=(1.0,) * 3), f"{BACK}.recovery", "1.0", "as many numbers as modulus has: 2"),
     (back(recovery=(0.0, 2e7)), f"{BACK}.recovery.1", "20000000.0", RECOVERY),
     (back(recovery=(True, 0.0)), f"{BACK}.recovery.0", "True", RECOVERY),
-    (back(law="prager"), f"{BACK}.law", "prager", "unknown key"),
     (back() | {"solver": {"verdict": 1}}, "solver.verdict", "1", "true or false"),
-    (back() | {"solver": {"verdicts": True}}, "solver.verdicts", "True", "did you mean verdict?"),
     (back() | {"solver": {"method": "paper"}}, "solver.method", "paper", "knows no back-stress"),
     (plastic(MPA), f"{AT}file", "", "at a plastic strain of 0.002: it is 374 Pa: are values in MPa"),
     (plastic(SWIFT, B=945.0), f"{AT}B", "", "at least 2.1e+06 Pa"),
     (plastic(SOFT, profile=((0.0, 1.0), (1e-5, 1e-3))), f"{AT}profile", "", "factors from 0.001"),
     (plastic(THICK, layer=SOFT | {"yield_stress": 1.0}), f"{IN}.yield_stress", "", "it is 1 Pa"),
-    (
-        {"body": {"coating": COATING | {"yield_stress": 4e3}}},
-        "body.coating.yield_stress",
-        "",
-        "least 3e+06 Pa",
-    ),
+    ({"body": {"coating": COATING}}, "body.coating.yield_stress", "", "least 3e+06 Pa"),
     ({"friction": FILMED}, "friction.film_yield", "", "film_young/100000"),
     (plastic({"law": "table", "file": "curve.csv"}), f"{AT}file", "curve", "rows: columns peeq"),
     (rows_of(), f"{AT}file", "", COLUMNS),
     (rows_of(0.0, 1e9), f"{AT}file", "", "row 1: 0.0 is not two numbers"),
     (rows_of((0.0, 1e9), (0.1, 1e9, 2)), f"{AT}file", "", "row 2: "),
     (rows_of((0.0, np.nan)), f"{AT}file", "", "row 1: yield_stress_Pa = NaN"),
-    (rows_of((0.0, True)), f"{AT}file", "", "row 1: yield_stress_Pa = true"),
     ({"surface": {"kind": "file", "path": np.zeros((5, 5))}}, "surface.path", "", "a HeightMap"),
-    ({"surface": {"kind": "file", "path": "pin.csv"}}, "surface.path", "", "a HeightMap"),
-    (
-        {"body": {"poisson": 0.5} | plastic(SOFT)["body"]},
-        "body.poisson",
-        "0.5",
-        "less than 0.5 with plasticity",
-    ),
 ]
 USUAL = [
     {"young": 11e9, "plasticity": SOFT | {"yield_stress": 1e6}},  # annealed indium

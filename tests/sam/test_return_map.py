@@ -34,9 +34,7 @@ from sam.plasticity.flow import (
 )
 from sam.scene import (
     Plasticity,
-    SceneError,
     load_scene,
-    parse_scene,
     plastic_work,
     step_energies,
     stored_energy,
@@ -263,11 +261,6 @@ THICK = 1.2e-6
 DEPTHS = np.array([0.0, 0.4e-6, 1.1999e-6, 1.2e-6, 3e-6])
 
 
-def test_a_layer_elsewhere_is_told_its_place():
-    with pytest.raises(SceneError, match=r"did you mean \[body.coating\] or \[body.plasticity.layer\]\?"):
-        parse_scene(scene_text(add="[layer]\nalpha = 1e3\n").encode(), "scene.toml")
-
-
 @pytest.mark.parametrize("law", LAWS)
 class TestEveryLaw:
     """The body hardens linearly, its factor goes from 2 at the surface to 1 at 3 um."""
@@ -341,12 +334,6 @@ def test_every_model_has_faces_at_the_kinks_below_smooth_and_rough_bodies(tables
         planes.append(flat.z * flat.scales.length)
     for each in planes:
         assert max(np.abs(each - kink).min() for kink in (0.7e-6, THICK)) < 1e-12 * THICK
-
-
-def test_faces_of_a_rough_body_without_a_kink_grow_evenly():
-    even = {"plasticity": SWIFT_LAW | {"layer_thickness": THICK}}
-    faces = sam.plan(scene(body=even, **ROUGH)).grid.faces
-    np.testing.assert_allclose(np.diff(faces)[1:] / np.diff(faces)[:-1], 1.25, rtol=1e-9)
 
 
 def test_a_plan_names_the_law_and_the_advice_counts_the_weaker_one():

@@ -112,15 +112,6 @@ def test_a_contact_at_the_edge_is_a_warning_and_its_border_does_not_count():
     assert column(result, "history", "p_max_Pa")[-1] == result.quantities["p_max_Pa"]
 
 
-def test_a_contact_near_the_edge_counts_as_long_as_it_does_not_touch_it():
-    """An asperity seven cells from the edge, with a contact radius of three: in what would be left out."""
-    n, side = 64, 8 * A0
-    place = centres(n, side)[5]
-    found = solve(of_heights(lambda x, y: paraboloid(x - place, y), n, side, force=F / 20))
-    p = column(found, "surface", "p_Pa").reshape(n, n)
-    assert found.converged and p[:9].max() == p.max() == found.quantities["p_max_Pa"] and not p[0].any()
-
-
 def test_small_spots_and_short_waves_are_warned_of():
     """At 24 cells the shortest wave of 12 um has 4.5, at 16 it has 3."""
     small, short = "too few cells in 2 of 2 spots", "3 cells in the shortest wavelength"
@@ -208,15 +199,6 @@ def test_waves_on_the_counter_body_are_those_on_the_body_upside_down(counterbody
     table = opposite.tables["surface"]
     assert not table["height_m"].any() and COUNTER_HEIGHT not in on_body.tables["surface"]
     np.testing.assert_array_equal(table[COUNTER_HEIGHT], on_body.tables["surface"]["height_m"])
-
-
-def test_heights_of_both_bodies_add():
-    both = solve(pressed({**FLAT, "surface": WAVE}, OTHER))
-    x = centres(32, SIDE)
-    total = sum(heights(CounterSurface(**each), x, x, (SIDE, SIDE)) for each in (WAVE, OTHER))
-    one = solve(of_heights(lambda *_: total, 32, SIDE, force=0.02))
-    for name in ("p_max_Pa", "approach_m", "mises_max_Pa", "contact_area_m2"):
-        assert both.quantities[name] == pytest.approx(one.quantities[name], rel=1e-9), name
 
 
 def test_each_stretch_is_the_surface_of_the_next_seed_and_touches_first_at_zero():

@@ -6,7 +6,6 @@ material points.
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -28,8 +27,6 @@ from sam.scene.verdict import (
     summary,
     verdict_on,
 )
-from sam.scene.yield_curve import Linear
-from tests.material_point import FemPoint, SamPoint, Specimen
 
 STRAIN = np.full(1, 1e-3)  # at first yield
 FLOOR, NOISE, NEAR = 1e-3, 1e-5, 1e-5  # of it, and of a limit
@@ -178,35 +175,6 @@ def test_material_that_wear_has_moved_is_not_judged():
     moved = period(found[-2].accumulated, found[-2].strain, np.ones(1, dtype=bool))
     assert class_of([*found[:-2], moved, *found[-1:] * 2]) is U
     assert class_of([*found[:-2], moved, *found[-1:] * 3]) is R
-
-
-@pytest.mark.parametrize("model", [SamPoint, FemPoint])
-def test_a_ratchet_of_armstrong_and_frederick_is_found_at_once(model):
-    """Between 1300 and -1200 MPa it leaves (1/g) ln[(S^2 - x2^2)/(S^2 - x1^2)] in each cycle from the first
-    on, S = C/g, x = stress less or plus Y. Found from the fourth on, as a strain that lasts.
-    """
-    specimen, ends = Specimen(model(Linear(1e9), [150e9], [300.0])), [(np.zeros(6), 0.0)]
-    for _ in range(6):
-        for stress in (1300e6, -1200e6):
-            specimen.to(stress={0: stress})
-        ends.append(specimen.point.plastic)
-    added = [period(np.full(1, p1 - p0), (e1 - e0)[:, None]) for (e0, p0), (e1, p1) in pairwise(ends)]
-    assert [class_of(added[: k + 1]) for k in range(6)] == [U] * 3 + [R] * 3
-
-
-@pytest.mark.parametrize("ratio, seed", [(0.9, 0), (0.97, 1), (0.99, 2)])
-def test_a_strain_that_falls_to_nothing_is_never_taken_for_a_ratchet(ratio, seed):
-    """Whatever noise within its bound; it alternates, or is undecided for about as long as is said."""
-    rng, count = np.random.default_rng(seed), 400
-    share = 0.3 * ratio ** np.arange(count) + 1e-5 * rng.uniform(-0.5, 0.5, count)
-    found = periods((5e-3, *(1e-3,) * (count - 1)), np.abs(share))
-    numbers = [*range(4, 40), *range(40, count, 20)]
-    said = [verdict(found[:n], [1.0]) for n in numbers]
-    decided = [each.behaviour is A for each in said]
-    assert {each.behaviour for each in said} <= {A, U} and decided[-1]
-    needed = numbers[decided.index(True)]
-    for n, each in zip(numbers, said, strict=True):
-        assert n >= needed or n + each.periods_to_decide > needed / 1.5, (n, needed)
 
 
 # the body
