@@ -3,7 +3,6 @@
 cells against quadrature over wave vectors, and coated scenes.
 """
 
-import random
 from dataclasses import replace
 
 import numpy as np
@@ -18,7 +17,7 @@ from sam.contact.convolution import Counters
 from sam.contact.operators import CoatedBodies, SurfaceOperators
 from sam.grid.cells import Window
 from sam.grid.smooth import contact_radius, depths_with_film
-from sam.kernels.patches import STRESS, Lags, displacement_coefficients, parity, stress_coefficients
+from sam.kernels.patches import STRESS, Lags, displacement_coefficients, stress_coefficients
 from sam.layered.patches import (
     Angular,
     CellIntegrals,
@@ -31,7 +30,7 @@ from sam.layered.response import Layers, Response
 from sam.scene import Scene, Status
 from sam.schedule import Load
 from verification.reference.layered import ManyDigits
-from verification.reference.layered_errors import Worst, all_points, worst_errors
+from verification.reference.layered_errors import Worst, worst_errors
 
 THICKNESS = 1e-7
 COATED = Layers(80e9, 0.3, THICKNESS, 210e9, 0.25)
@@ -41,22 +40,14 @@ SOFT = Layers(2e9, 0.5, THICKNESS, 210e9, 0.3)
 # the response to a wave
 
 
-def test_whole_range_against_many_digits():
-    """The corners of the range and a fixed draw of the rest. The bounds of the project; measured: 9e-16,
-    9e-11, 4e-10, 6e-16, 2e-10 (1e-16 times the ratio of moduli, 1e6).
-    """
-    rng, poissons = random.Random(6), ((0, 0.5), (0.5, 0), (0.5, 0.5))
-    points = [(kh, ratio, *nus) for kh in (1e-8, 1e4) for ratio in (1e-6, 1e6) for nus in poissons]
-    points += rng.sample(all_points(), 60)
-    for _ in range(20):
-        nus = rng.choice([0.5, rng.uniform(0, 0.5)]), rng.uniform(0, 0.5)
-        points.append((10 ** rng.uniform(-8, 4), 10 ** rng.uniform(-6, 6), *nus))
-    bounds = {"c_zz": 1e-11, "matrix": 1e-9, "film": 1e-9, "body": 1e-9, "jump": 1e-9}
-    worst = worst_errors(points)
-    for name, bound in bounds.items():
-        assert worst[name].error < bound, f"{name}: {worst[name]}"
-    moderate = worst_errors([p for p in points if 0.1 <= p[1] <= 10])
-    assert max(entry.error for entry in moderate.values()) < 1e-13, moderate  # some hundred roundings
+@pytest.mark.parametrize(
+    "kh, ratio, nus", [(1e-8, 1e6, (0, 0.5)), (1e4, 1e-6, (0.5, 0)), (0.7, 0.4, (0.3, 0.25))]
+)
+def test_response_against_many_digits(kh, ratio, nus):
+    """The bounds of the project at corners of the range, whose middle loses some hundred roundings."""
+    worst = worst_errors([(kh, ratio, *nus)])
+    for name, bound in {"c_zz": 1e-11, "matrix": 1e-9, "film": 1e-9, "body": 1e-9, "jump": 1e-9}.items():
+        assert worst[name].error < (1e-13 if kh == 0.7 else bound), f"{name}: {worst[name]}"
 
 
 def test_the_many_digits_do_not_depend_on_their_number_and_not_a_number_is_the_worst():
@@ -219,32 +210,6 @@ def test_displacement_equals_quadrature(layers, load):
         ours = at(np.array([patches.displacement(lags, component=i, load=load) for i in (1, 2, 3)]), LAGS)
         ours = ours * layers.shear / THICKNESS
         assert np.abs(ours - answer).max() < QUADRATURE * np.abs(answer).max()
-
-
-def refined(fine, name, load):
-    """Coefficients of cells three times as wide from those of cells a third: (n, n) from (3 n, 3 n) lags."""
-    px, py = parity(name, load)
-    fine = np.concatenate([px * fine[1:2], fine])
-    fine = np.concatenate([py * fine[:, 1:2], fine], axis=1)
-    n = fine.shape[0] // 3
-    return fine[: 3 * n, : 3 * n].reshape(n, 3, n, 3).sum(axis=(1, 3))
-
-
-@pytest.mark.parametrize("over, load", [(1e-3, 3), (0.3, 1), (30.0, 3), (1e4, 1)])
-def test_a_cell_is_the_sum_of_its_parts(over, load):
-    """Nine cells of a third: near and far cells, closed form or not, at any ratio of cell to thickness
-    (over).
-    """
-    coated, h = LayeredPatches(COATED), over * THICKNESS
-    parts, whole = Lags(45, 45, h / 3, h / 3), Lags(15, 15, h, h)
-    depths = np.array([0.0, 0.2, 0.9, 1.0, 1.6, 8.0]) * THICKNESS
-    fine, coarse = (coated.stress(lags, depths, load=load) for lags in (parts, whole))
-    together = np.array([[refined(f, name, load) for f in fine[n]] for n, name in enumerate(STRESS)])
-    largest = np.abs(coarse).max(axis=(0, 2, 3))
-    assert np.all(np.abs(coarse - together).max(axis=(0, 2, 3)) < 3e-9 * largest)  # measured: below 1e-9
-    for i in (1, 2, 3):
-        fine, coarse = (coated.displacement(lags, component=i, load=load) for lags in (parts, whole))
-        assert np.abs(coarse - refined(fine, str(i), load)).max() < 1e-9 * np.abs(coarse).max()
 
 
 @pytest.mark.parametrize("load, nu", [(1, 0.3), (2, 0.0), (3, 0.5)])
