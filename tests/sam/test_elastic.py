@@ -10,6 +10,7 @@ from scipy.integrate import quad
 
 import sam
 from sam import choose_grid
+from sam.contact.convolution import Counters
 from sam.contact.normal import solve_contact
 from sam.planner.bodies import Bodies, coarse, halved, hertz_semi_axes
 from sam.results.quantities import extrapolated
@@ -38,6 +39,21 @@ def test_estimated_semi_axes_meet_hertz(ratio):
 
         curvature = p0 * other / (modulus * this) * quad(integrand, 0, np.pi / 2)[0]
         assert curvature == pytest.approx(1 / (2 * radius), rel=1e-4)
+
+
+@pytest.mark.parametrize("shape", ["sphere", "ellipsoid", "punch", "rounded-punch"])
+def test_the_gap_of_a_shape_by_hand(shape):
+    grid = {"cells": (9, 7), "extent": (18e-6, 14e-6)}
+    found = sam.plan(scene(counterbody=SHAPES[shape], grid=grid)).problem(Counters()).gap(Load(0.65))
+    x, y = 2e-6 * (np.arange(9) - 4)[:, None], 2e-6 * (np.arange(7) - 3)
+    r = np.hypot(x, y)
+    expected = {
+        "sphere": r**2 / (2 * RADIUS),
+        "ellipsoid": x**2 / (2 * RADIUS) + y**2 / (4 * RADIUS),
+        "punch": np.where(r <= 5e-6, 0.0, np.inf),
+        "rounded-punch": np.maximum(r - 5e-6, 0.0) ** 2 / (2 * 50e-6),
+    }[shape]
+    assert found == pytest.approx(expected, rel=1e-9, abs=1e-20)
 
 
 def test_history_unloading_and_cycles():
