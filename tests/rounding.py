@@ -17,7 +17,6 @@ import pytest
 
 EPS = float(np.finfo(float).eps)
 FAR = 1e-7  # residual of a contact, far above rounding
-FAR_SCENE = 1e-3  # tolerance of an elastic scene, whose contact is then solved to FAR; 1e-12: to 1e-12
 
 
 def close(expected, rel: float = 1e-14):
