@@ -7,8 +7,6 @@ from builders import MODULUS, RADIUS, SPHERE, SWIFT, scene as small_scene
 
 import fem_reference
 import fem_reference.spatial
-from fem_reference.axisymmetric import planner
-from fem_reference.common import layered_force
 from fem_reference.common.bodies import Coating, Elastic
 from fem_reference.common.far_field import boussinesq, cerruti
 from fem_reference.common.layered_force import amplitudes, normal, tangential
@@ -189,16 +187,3 @@ def test_film_that_flows_away_is_not_converged():
     status, message = advice.outcome(Status.STEP_CUT_LIMIT, 0.0)
     assert status is Status.STEP_CUT_LIMIT and message.startswith("a load step did not converge")
     assert "friction.coefficient" in message
-
-
-def test_no_film_no_layered_force(monkeypatch):
-    """An uncoated scene computes nothing of a coating."""
-
-    def unwanted(*_args):
-        raise AssertionError
-
-    for module, name in ((layered_force, "normal"), (planner, "coated_lines"), (planner, "coated_core")):
-        monkeypatch.setattr(module, name, unwanted)
-    assert fem_reference.solve(scene(bare=True)).converged
-    with pytest.raises(AssertionError):
-        fem_reference.solve(scene())

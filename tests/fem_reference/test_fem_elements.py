@@ -240,29 +240,16 @@ def test_ring_forces_are_those_of_hertz():
     assert np.all(forces[-2:] == 0.0)
 
 
-def area_of(level, h, clamped=0.0):
-    """Area of {level > 0}, level(x, y) the distance to the edge of a smooth contact, by a mesh of size h."""
-    x = np.arange(-3, 3 + h / 2, h) + 0.137 * h
-    y = np.arange(-2, 2 + h / 2, h) - 0.29 * h
-    distance = level(x[:, None], y[None, :])
-    pressure, gap = np.sqrt(np.clip(distance, 0, None)), 4 / 3 * np.clip(-distance, 0, None) ** 1.5
-    return areas.area_of_spots(x, y, pressure, gap, clamped=clamped)
-
-
-def test_area_of_two_discs_and_of_a_ring():
-    """Exact fields at the nodes: 1 % at ten elements in the radius, of second order; a hole counts as one."""
-
-    def discs(x, y):
-        return np.maximum(1.0 - np.hypot(x + 1.5, y), 0.7 - np.hypot(x - 1.6, y - 0.3))
-
-    hole = area_of(lambda x, y: 0.4 - np.abs(np.hypot(x, y) - 1.2), 0.1)
-    assert hole == pytest.approx(np.pi * (1.6**2 - 0.8**2), rel=0.01)
-    exact = np.pi * 1.49
-    coarse, middle, fine = (area_of(discs, h) for h in (0.2, 0.1, 0.05))
-    assert middle == pytest.approx(exact, rel=0.01) and abs(fine - exact) < abs(coarse - exact) / 6
-    strip = middle - area_of(discs, 0.1, clamped=0.5)
-    assert strip == pytest.approx(0.5 * 0.1 * 2 * np.pi * 1.7, rel=0.03)
-    assert areas.area_of_spots(*2 * (np.arange(4.0),), np.zeros((4, 4)), np.ones((4, 4))) == 0.0
+def test_area_behind_a_straight_edge_is_exact():
+    """Pressure and gap of a smooth contact, sqrt and 3/2 power of the distance from its edge, meet there."""
+    x, y, edge = np.linspace(-1.0, 1.0, 9), np.linspace(0.0, 2.0, 5), 0.3
+    distance = (edge - x)[:, None] * np.ones(y.size)
+    fields = np.sqrt(np.clip(distance, 0, None)), 4 / 3 * np.clip(-distance, 0, None) ** 1.5
+    for fields_of, lines in ((fields, (x, y)), ([field.T for field in fields], (y, x))):
+        assert areas.area_of_spots(*lines, *fields_of, clamped=0.0) == pytest.approx(2.6, rel=1e-12)
+        strip = 0.5 * 2.0 * np.sqrt(0.25 * 0.5)
+        assert areas.area_of_spots(*lines, *fields_of, clamped=0.5) == pytest.approx(2.6 - strip, rel=1e-12)
+    assert areas.area_of_spots(x, y, 0.0 * distance, np.ones_like(distance)) == 0.0
 
 
 # --- far fields ---
