@@ -179,7 +179,7 @@ def yielding(plastic=True, friction=0.0, cells=8, box=10.0):
     )
 
 
-IN_SPACE = {"friction": 0.2, "cells": 4, "box": 5.0}
+IN_SPACE = {"friction": 0.2, "cells": 3, "box": 4.0}
 
 
 def test_an_elastic_iteration_has_factors_of_its_own():
@@ -231,7 +231,7 @@ def test_a_hierarchy_that_no_longer_does_is_made_anew(monkeypatch):
     monkeypatch.setattr(problem, "solve", failing)
     monkeypatch.setattr(problem.Kept, "keep", lambda self, *of: fresh.append(1) or keep(self, *of))
     result = fem_reference.spatial.solve(yielding(**IN_SPACE))
-    assert result.converged and result.cost["step_cuts"] == 0
+    assert result.status == "under-resolved" and result.cost["step_cuts"] == 0  # three elements in the radius
     assert result.cost["multigrid_setups"] == result.cost["newton_iterations"] > STEPS
 
 
