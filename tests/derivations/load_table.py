@@ -42,7 +42,7 @@ def stress(u: sp.Matrix) -> sp.Matrix:
 
 
 def navier(u: sp.Matrix, decay: sp.Expr) -> list[sp.Expr]:
-    """Coefficients of (1 - 2 nu) lap u + grad div u, which have to vanish; u: polynomials in s times decay."""
+    """Coefficients of (1 - 2 nu) lap u + grad div u, which vanish; u: polynomials in s times decay."""
     residual = ((1 - 2 * nu) * (u.diff(s, 2) - u) + grad(grad(u[0])[0] + grad(u[2])[2])) / decay
     return [c for e in residual for c in sp.Poly(sp.expand(sp.simplify(e)), s).coeffs()]
 
