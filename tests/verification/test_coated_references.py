@@ -8,9 +8,9 @@ import math
 
 import numpy as np
 import pytest
-from closed_form_checks import assert_elastic
 from scipy.integrate import quad
 from scipy.special import ellipkm1, j0, j1
+from test_closed_forms import assert_elastic
 
 from verification.reference.burmister import disc_stress
 from verification.reference.coated_changes import (
