@@ -275,7 +275,12 @@ def sam_surface(scene: Scene, result: Result) -> dict[str, float]:
     a, top = result.quantities["contact_radius_m"], line["p_Pa"].max()
     at = stress[:, :, 0] - (stress[:, :, 1] - stress[:, :, 0]) * z[0] / (z[1] - z[0])
     normal, shear = np.abs(at[2] + line["p_Pa"]) / top, np.abs(at[4] + line["qx_Pa"]) / top
-    out, inside = np.abs(x) > (1 + EDGE) * a, np.abs(x) < (1 - EDGE) * a
+    return tractions(np.abs(x) / a, normal, shear)
+
+
+def tractions(r: np.ndarray, normal: np.ndarray, shear: np.ndarray) -> dict[str, float]:
+    """The largest of both beside the contact and in it, r in contact radii, away from its edge, see EDGE."""
+    out, inside = r > 1 + EDGE, r < 1 - EDGE
     return {
         "free": float(max(normal[out].max(), shear[out].max())),
         "inside contact": float(max(normal[inside].max(), shear[inside].max())),
