@@ -28,6 +28,7 @@ from scipy.special import eval_legendre, j0
 from .checks import depth, positive
 from .hertz import CircularContact, subsurface_stress
 from .layered_axisymmetric import CoatedHalfSpace, hankel_stress, wave_numbers
+from .quadrature import gauss
 
 SHORTEST = 20.0
 """Wave number times thickness from which g, of order (k h)^2 exp(-2 k h), is below rounding."""
@@ -87,7 +88,7 @@ class CoatedContact:
         psi = -(d chi/dx)/x is a polynomial in x^2, which Gauss points integrate exactly.
         """
         rho2 = (depth("r", r) / self.contact_radius) ** 2
-        u, w = _gauss(len(self.coefficients))
+        u, w = gauss(len(self.coefficients))
         inside = np.maximum(1.0 - rho2, 0.0)
         psi = self._slopes(np.minimum(rho2, 1.0)[..., None] + inside[..., None] * u**2)[0]
         return self.scale / self.contact_radius * np.sqrt(inside) * (psi @ w)
@@ -127,7 +128,7 @@ class CoatedContact:
         """
         a, h = self.contact_radius, self.layers.thickness
         r = a * np.linspace(0.0, 1.0, count)
-        x, w = _gauss(2 * len(self.coefficients) + 8)
+        x, w = gauss(2 * len(self.coefficients) + 8)
         angles = np.sin(math.pi / 2 * x)
         chi = sum(c * eval_legendre(2 * n, np.outer(r / a, angles)) for n, c in enumerate(self.coefficients))
         k, weight = wave_numbers(h, 4.0 * a, 1.25 * SHORTEST)
@@ -186,7 +187,7 @@ class CoatedContact:
         a, nu = self.contact_radius, self.layers.poisson
         psi = self._slopes(1.0)[0]
         stress = psi * subsurface_stress(r, 0.0, z, 1.0, contact_radius=a, nu=nu)
-        t, w = _gauss(len(self.coefficients) + 24)
+        t, w = gauss(len(self.coefficients) + 24)
         rim = np.clip(r / a, 0.0, 1.0)
         for start, sign in ((0.0, -1.0), (1.0, 1.0)):
             length = np.abs(start - rim)
@@ -333,8 +334,3 @@ def _jacobi_sum(coefficients: np.ndarray, alpha: float, beta: float, y: np.ndarr
 def _series(first: float, second: float) -> float:
     """Modulus of two bodies in contact, 1/(1/first + 1/second)."""
     return 1.0 / (1.0 / first + 1.0 / second)
-
-
-def _gauss(order: int) -> tuple[np.ndarray, np.ndarray]:
-    t, w = np.polynomial.legendre.leggauss(order)
-    return (t + 1) / 2, w / 2
