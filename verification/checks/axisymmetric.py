@@ -85,9 +85,7 @@ class Finite(Formed):
         return np.stack([rr, tt, zz, 0 * rr, rz, 0 * rr])
 
     def equilibrium(self) -> dict[str, float]:
-        """Nodal forces: the largest on a free degree of freedom, and the sum over the contact less F; over
-        F.
-        """
+        """Nodal forces: the largest on a free degree of freedom, and their sum less F; over F."""
 
         @LinearForm
         def internal(v, w):
@@ -116,9 +114,7 @@ class Finite(Formed):
         return np.concatenate([self.basis.nodal_dofs[component], self.basis.facet_dofs[component]])
 
     def surface(self) -> dict[str, float]:
-        """Tractions in the elements at the surface against the nodal pressure, as `sam_surface`, linear from
-        the Gauss points.
-        """
+        """Tractions in the elements at the surface against the nodal pressure, as `sam_surface`."""
         top = np.isclose(self.z.min(axis=1), self.z.min())
         z = self.z[top]
         order = np.lexsort((z, np.round(self.r[top] / self.r[top].max(), 9)))
@@ -147,7 +143,5 @@ class Finite(Formed):
 
 
 def steps_of(scene: Scene, records: Sequence[Checkpoint]) -> tuple[Model, list[Step]]:
-    """The model of a scene and its steps, of the last record, or, of an elastic body that has none, taken
-    again.
-    """
+    """The model of a scene and its steps, of the last record, taken again where there is none."""
     return load_steps(scene, records[-1] if records else None)

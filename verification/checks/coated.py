@@ -86,9 +86,7 @@ def cell_means(
 
 
 def summed(influence: np.ndarray, load: np.ndarray, odd: bool) -> np.ndarray:
-    """(nx, ny) sums over the loaded cells of `influence` (nx, ny) of their distances, odd or even in that
-    along x.
-    """
+    """(nx, ny) sums over the loaded cells of `influence` of their distances, odd or even along x."""
     i, j = np.nonzero(load)
     di, dj = (np.arange(n)[:, None] - at for n, at in zip(load.shape, (i, j), strict=True))
     sign = np.sign(di) if odd else np.ones_like(di)

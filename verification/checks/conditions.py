@@ -74,9 +74,7 @@ def missed_approach(scene: Scene, result: Result) -> float:
 
 
 def simpson_rings(r: np.ndarray) -> np.ndarray:
-    """Weights of nodal values of ring pressures on quadratic edges, corner and mid nodes in turn: Simpson's
-    rule of 2 pi r p.
-    """
+    """Weights of nodal ring pressures on quadratic edges: Simpson's rule of 2 pi r p."""
     weight = np.zeros_like(r)
     width = r[2::2] - r[:-2:2]
     for first, share in ((0, 1.0), (1, 4.0), (2, 1.0)):
@@ -143,9 +141,7 @@ def initial_gap(scene: Scene, x: np.ndarray, y: np.ndarray, height: np.ndarray |
 
 
 def coefficient_at(scene: Scene, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Coefficient of friction at places (n,) in m, by the scene: of a map that of the cell with the nearest
-    centre.
-    """
+    """Coefficient of friction at places (n,) in m, by the scene: of a map the nearest cell's."""
     if scene.friction is None or scene.constant_friction:
         return np.full(x.shape, scene.coefficient)
     given = scene.friction.path
@@ -209,9 +205,7 @@ def unloaded(scene: Scene, result: Result) -> dict[str, float]:
 
 
 def flow(scene: Scene, records: Sequence[Checkpoint], depths: np.ndarray) -> dict[str, float]:
-    """The flow rule of SAM at the points of its cells, over the steps between records of one box, see
-    `flow_of`; depths: of the layers in m.
-    """
+    """The flow rule at the points of SAM's cells, over the steps of one box; depths: of layers in m."""
     worst: dict[str, float] = {"steps": 0}
     trees = [record.tree() for record in records]
     for before, now in pairwise(trees):

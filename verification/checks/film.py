@@ -54,9 +54,7 @@ def states(scene: Scene, records: Sequence[Checkpoint]) -> dict[str, float]:
 
 
 def pressure_of(scene: Scene, tree: Mapping) -> np.ndarray:
-    """(nx, ny) in Pa on a box that is the whole patch, from the one over half of E/(1 - nu^2) that is
-    recorded.
-    """
+    """(nx, ny) in Pa on a box that is the whole patch; E/(1 - nu^2)/2 is the unit of the record."""
     return tree["state"]["pressure"] * scene.body.young / (1 - scene.body.poisson**2) / 2
 
 

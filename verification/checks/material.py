@@ -42,9 +42,7 @@ def yield_stress(scene: Scene, peeq: np.ndarray, z: np.ndarray) -> np.ndarray:
 
 
 def back_stress(scene: Scene, strains: np.ndarray | None, z: np.ndarray) -> np.ndarray | float:
-    """Sum of the back-stresses X_k = 2/3 factor C_k a_k in Pa, (n, ...), of the a_k (N, n, ...) at depths in
-    m; zero without them.
-    """
+    """Sum of the back-stresses 2/3 factor C_k a_k in Pa, of a_k (N, n, ...) at depths in m."""
     law = scene.body.plasticity
     if law is None or strains is None:
         return 0.0
@@ -59,9 +57,7 @@ def back_stress(scene: Scene, strains: np.ndarray | None, z: np.ndarray) -> np.n
 
 
 def materials(scene: Scene, z: np.ndarray) -> list[tuple[np.ndarray, Scene]]:
-    """(where, scene) of the materials at depths z, bool of their shape: the body, and its film as a body of
-    its own.
-    """
+    """(where, scene) of the materials at depths z: the body, and its film as a body of its own."""
     body, film = scene.body, scene.body.coating
     if film is None:
         return [(np.ones(z.shape, dtype=bool), scene)]

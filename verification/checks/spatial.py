@@ -51,9 +51,7 @@ class Spatial(Formed):
         self.forces = self._forces(slopes)
 
     def _slopes(self, sides: np.ndarray) -> np.ndarray:
-        """(3, 8, n_elements, 8) derivatives of the trilinear shape functions of the corners (3, 8,
-        n_elements) at the points.
-        """
+        """(3, 8, n_elements, 8) derivatives of the shape functions of the corners at the points."""
         length = (self.high - self.low)[:, None]
         upper = sides > 0.5 * (self.low + self.high)[:, None]
         share = ((self.points - self.low[..., None]) / length[:, 0, :, None])[:, None]
@@ -109,9 +107,7 @@ class Spatial(Formed):
 
 
 def steps_of(scene: Scene, records: Sequence[Checkpoint]) -> list[Spatial]:
-    """The steps of a scene that were not halved, of the last record, or, of an elastic body that has none,
-    taken again.
-    """
+    """The steps of a scene that were not halved, of the last record, taken again where there is none."""
     model, steps = load_steps(scene, records[-1] if records else None)
     return [Spatial(scene, model, step) for step in steps if not step.cuts]
 

@@ -53,9 +53,7 @@ TABLES = _read_tables()
 
 
 def wanted(kinds: Collection[str], left_out: bool = True) -> dict[str, list]:
-    """Name -> [metric, tolerance, reason] of the rows of kinds of scenes, fields last, without those that
-    one of them leaves out.
-    """
+    """Name -> [metric, tolerance, reason] of the rows of kinds of scenes, fields last."""
     found: dict[str, list] = {}
     left: set[str] = set()
     for name, said in ((n, s) for kind, table in TABLES.items() if kind in kinds for n, s in table.items()):
@@ -190,9 +188,7 @@ def _centre(solved: Solution) -> float:
 
 
 def _on_line(tables, name: str, state: str = PEAK) -> tuple[np.ndarray, np.ndarray]:
-    """Distance from the axis, ascending, and a surface field there: the mean of both sides where both are
-    given.
-    """
+    """Distance from the axis, ascending, and a surface field there: the mean of both sides."""
     x, value = _rows(tables["line"], state, "x_m", name)
     r, where, count = np.unique(np.abs(x), return_inverse=True, return_counts=True)
     return r, np.bincount(where, value) / count
@@ -265,9 +261,7 @@ def _axis(pair: Pair, column: str, state: str = PEAK):
 
 
 def _below(film: float, z: np.ndarray, *others: np.ndarray) -> list[np.ndarray]:
-    """The rows of the body, from the interface on, where z is `film` to rounding: stresses along the surface
-    jump there.
-    """
+    """The rows of the body, from the interface on, where stresses along the surface jump."""
     z = np.where(np.isclose(z, film, rtol=ROUNDING, atol=0.0), film, z)
     return [column[z >= film] for column in (z, *others)]
 
@@ -348,9 +342,7 @@ IN_SCENE, ASKED = "[compare] tolerances", "the option or argument tolerance"
 
 @dataclass(frozen=True)
 class Tolerances:
-    """Those given. values: name of a row, of a spot without its place -> tolerance; sources: the same ->
-    who gave it.
-    """
+    """Name of a row, of a spot without its place -> its tolerance, and who gave it."""
 
     values: Mapping[str, float] = field(default_factory=dict)
     sources: Mapping[str, str] = field(default_factory=dict)

@@ -267,9 +267,7 @@ class Expected:
 
     @classmethod
     def of(cls, scene: Scene) -> Expected:
-        """By Hertz, for the elastic body without coating; of a rough scene the half side of its patch alone:
-        the line and the axis may miss every spot.
-        """
+        """By Hertz, without coating; of a rough scene the half side of its patch alone."""
         radius = float(max(hertz_semi_axes(scene)))
         body, other, loading = scene.body, scene.counterbody, scene.loading
         if other is None:

@@ -117,9 +117,7 @@ class Depths:
 
 
 def compared_depths(fem: Depths, x: float, radius: float) -> np.ndarray:
-    """Depths from SHALLOWEST radii on, as far as FEM has SHARE of its largest strain there; not between its
-    points on the two sides of a jump.
-    """
+    """Depths from SHALLOWEST radii on, with SHARE of FEM's largest strain there, beside the jump."""
     z = np.arange(SHALLOWEST, fem.z[-1] / radius, SPACING) * radius
     above, under = fem.z[fem.z < fem.jump], fem.z[fem.z >= fem.jump]
     if above.size:

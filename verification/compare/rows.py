@@ -61,9 +61,7 @@ class Pair:
 
     @property
     def top(self) -> float:
-        """Depth in m from which stresses and strains are compared: in the body, below its film; friction may
-        bring the largest stress to the surface.
-        """
+        """Depth in m from which stresses are compared: below the film, and the peak that friction shifts."""
         return max(BELOW_SURFACE * self.radius if "slides" in self.kinds else 0.0, self.film)
 
     def floor(self, name: str) -> float:
@@ -102,9 +100,7 @@ def scalar_row(pair: Pair, name: str, metric: str, limit: Limit) -> Verdict:
 
 
 def field_row(pair: Pair, name: str, sample: Callable, limit: Limit) -> Verdict:
-    """The row of a field; sample: from the pair the values of SAM and FEM at the same places, and their
-    weights.
-    """
+    """The row of a field; sample: pair -> values of SAM and FEM at the same places, and their weights."""
     try:
         a, b, weight = sample(pair)
     except (KeyError, IndexError, ValueError):  # a table or state is missing, or too small to interpolate in

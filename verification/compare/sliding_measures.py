@@ -22,9 +22,7 @@ FINE = 0.005  # of the grid on which contours are measured, in elastic contact r
 
 @dataclass(frozen=True)
 class Plane:
-    """The plastic strain in y = 0. x (nx,), z (nz,) in contact radii of the elastic contact, ascending; peeq:
-    (nx, nz).
-    """
+    """The plastic strain (nx, nz) in y = 0; x (nx,), z (nz,) in elastic contact radii, ascending."""
 
     x: np.ndarray
     z: np.ndarray
@@ -37,9 +35,7 @@ class Plane:
         return cls(x / a, z / a, peeq)
 
     def at(self, x: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """On the grid of x (m,) and z (n,), (m, n), by a bicubic spline; never below zero, NaN outside the
-        own grid.
-        """
+        """At x (m,) and z (n,), (m, n), by a bicubic spline; never below zero, NaN outside."""
         values = RectBivariateSpline(self.x, self.z, self.peeq, s=0)(x, z)
         inside = ((x >= self.x[0]) & (x <= self.x[-1]))[:, None] & ((z >= self.z[0]) & (z <= self.z[-1]))
         return np.where(inside, np.maximum(values, 0.0), np.nan)
@@ -55,18 +51,14 @@ class Plane:
 
 
 def depths_compared(plane: Plane, x: float) -> np.ndarray:
-    """Multiples of SPACING from SHALLOWEST on, as far as the profile at x is at least SHARE of its largest
-    value there.
-    """
+    """Multiples of SPACING from SHALLOWEST on with at least SHARE of the largest value there at x."""
     z = np.arange(SHALLOWEST, plane.z[-1], SPACING)
     peeq = plane.at(np.array([x]), z)[0]
     return z[peeq >= SHARE * np.nanmax(peeq)]
 
 
 def profile_difference(sam: Plane, fem: Plane, x: float) -> float:
-    """Largest |sam - fem|/fem of the plastic strain at x over `depths_compared` of fem; NaN if there are
-    none.
-    """
+    """Largest |sam - fem|/fem of the plastic strain at x over `depths_compared`, NaN without any."""
     z, at = depths_compared(fem, x), np.array([x])
     own, reference = sam.at(at, z)[0], fem.at(at, z)[0]
     return float(np.max(np.abs(own / reference - 1.0), initial=np.nan if z.size == 0 else 0.0))
@@ -74,9 +66,7 @@ def profile_difference(sam: Plane, fem: Plane, x: float) -> float:
 
 @dataclass(frozen=True)
 class Contour:
-    """Extent of the part of y = 0 where the plastic strain is at least a level, in contact radii of the
-    elastic contact.
-    """
+    """Where in y = 0 the plastic strain is at least a level, in elastic contact radii."""
 
     depth: float
     left: float
@@ -178,9 +168,7 @@ def spans(line: np.ndarray) -> np.ndarray:
 
 
 def patch_distance(result: Result, fem: Result, width: float) -> float:
-    """Relative L2 norm of the difference of the pressures over hats; those on y = 0 stand for half a hat
-    each.
-    """
+    """Relative L2 difference of the pressures over hats; those on y = 0 count half."""
     p, reference = (patch_pressures(each, fem, width) for each in (result, fem))
     weight = np.ones(p.shape)
     weight[:, 0] = 0.5
@@ -192,9 +180,7 @@ COMPONENTS = ("sxx", "syy", "szz", "syz", "sxz", "sxy")
 
 
 def stresses_inside(result: Result, a: float) -> tuple[tuple[np.ndarray, ...], np.ndarray]:
-    """Places (x, y, z) in m and stresses (n, 6) in Pa: of SAM on the axis, of FEM at the centres of its
-    elements.
-    """
+    """Places (x, y, z) in m, stresses (n, 6) in Pa: of SAM on the axis, of FEM in its elements."""
     if "hexahedron" in result.fields.cells:
         x, y, z = result.fields.points[result.fields.cells["hexahedron"]].mean(axis=1).T
         stress = np.asarray(result.fields.cell_data["stress_Pa"])

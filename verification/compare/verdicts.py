@@ -71,9 +71,7 @@ def verdict(scene: Scene, sam: Solution, fem: Solution) -> FilmVerdict:
 
 
 def breaking_radius(scene: Scene, limit: float = LIMIT) -> float:
-    """Of a sphere of the same materials, in m; see `FilmVerdict`. A sphere on a coated half-space, O'Sullivan
-    & King (1988).
-    """
+    """Of a sphere of the same materials, in m, see `FilmVerdict`; O'Sullivan & King (1988)."""
     body, film, other = scene.body, scene.body.coating, scene.counterbody
     counter = math.inf
     if other is not None and other.elastic:
@@ -96,9 +94,7 @@ def change_rows(sam: Solution, fem: Solution) -> list[Verdict]:
 
 
 def claim_rows(claim: FilmVerdict, sam: Solution, fem: Solution) -> list[Verdict]:
-    """The larger change of both models against the limit: rows of a comparison that is asked to judge the
-    claim.
-    """
+    """The larger change of both models against the limit: rows that judge the claim."""
     rows = []
     for name, words in CHANGES.items():
         sizes = [abs(value) for value in _both(sam, fem, name)]

@@ -158,9 +158,7 @@ class CoatedContact:
         return stress
 
     def _side(self, r: np.ndarray, z: np.ndarray, film: bool) -> np.ndarray:
-        """Stresses on one side of the interface; the integrand decays as exp(-k z) in the body, exp(-k (2 h -
-        z)) above.
-        """
+        """Stresses on one side; integrands decay as exp(-k z), in the film as exp(-k (2 h - z))."""
         decay = 2.0 * self.layers.thickness - np.max(z) if film else np.min(z)
         k, weight = wave_numbers(decay, self.contact_radius + np.max(r), 2.0 * SHORTEST)
         amplitudes = self.layers.amplitudes(k)
@@ -169,9 +167,7 @@ class CoatedContact:
         return stress + self._direct(r[:, None], z[None, :]) if film else stress
 
     def _slopes(self, x2) -> tuple[np.ndarray, np.ndarray]:
-        """psi = -(d chi/dx)/x and (d psi/dx)/x over scale, of x^2; P_2n(x) is the Jacobi P_n^(0,-1/2)(2 x^2 -
-        1).
-        """
+        """psi = -(d chi/dx)/x and (d psi/dx)/x over scale, of x^2; P_2n(x) is P_n^(0,-1/2)(2 x^2 - 1)."""
         y = 2.0 * np.asarray(x2) - 1.0
         n = np.arange(1, len(self.coefficients))
         first = -2.0 * self.coefficients[1:] * (n + 0.5)
@@ -251,9 +247,7 @@ def _expand(cosines: np.ndarray, weighted: np.ndarray) -> tuple[float, np.ndarra
 def solve_force(
     layers: CoatedHalfSpace, radius: float, force: float, counter_modulus: float = math.inf
 ) -> CoatedContact:
-    """The contact that carries the force (N): log(a) is sought by the secant method; F grows nearly like
-    a^3.
-    """
+    """The contact that carries the force (N): log(a) by the secant method, as F grows nearly like a^3."""
     bare = CircularContact(force, radius, _series(layers.modulus_body, counter_modulus))
     film = CircularContact(force, radius, _series(layers.modulus, counter_modulus))
 

@@ -30,9 +30,7 @@ RATE_DIGITS = 1e-12  # of the yield stress and strain
 
 @dataclass(frozen=True)
 class FlowPoint:
-    """What acts on the film: strains xx, yy, xy (3,) in its plane, pressure and sxz in Pa. Points add and
-    scale.
-    """
+    """Strains xx, yy, xy (3,) in the film's plane, pressure and sxz in Pa. Points add and scale."""
 
     strain: np.ndarray
     pressure: float
@@ -138,9 +136,7 @@ class Film:
         return found.t[-1], Y * found.y[:6, -1], found.y[6:, -1]
 
     def _rate(self, step: FlowPoint, stress: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-        """Rates of stress (6,) and plastic strain (6,) while it flows, and the factor of the flow: d eps_p =
-        factor s.
-        """
+        """Rates of stress (6,) and plastic strain (6,) while it flows, d eps_p = factor s, and the factor."""
         C, s = self.stiffness, deviator(stress)
         into = C @ s
         tangent = C - np.outer(into, into * SHEAR) / ((s * SHEAR) @ into)
@@ -149,9 +145,7 @@ class Film:
         return stress_rate, factor * s, factor
 
     def _mixed(self, matrix: np.ndarray, step: FlowPoint) -> tuple[np.ndarray, np.ndarray]:
-        """Stress and strain, (6,) each, where stress = matrix strain, strains in the plane and stresses off
-        it given.
-        """
+        """Stress and strain, (6,) each, = matrix strain, from strains in the plane and stresses off it."""
         right = step.off_plane - matrix[np.ix_(OFF, PLANE)] @ step.strain
         strain = _joined(step.strain, np.linalg.solve(matrix[np.ix_(OFF, OFF)], right))
         return matrix @ strain, strain

@@ -44,9 +44,7 @@ class HertzIntegrals(NamedTuple):
 
 
 def spheroidal(rho, zeta) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Oblate spheroidal coordinates xi >= 0, 0 <= eta <= 1, and xi^2 + eta^2, of rho, zeta >= 0 (arrays, no
-    unit).
-    """
+    """Oblate spheroidal coordinates xi >= 0, 0 <= eta <= 1, and xi^2 + eta^2, of rho, zeta >= 0."""
     difference = (rho - 1.0) * (rho + 1.0) + zeta**2  # xi^2 - eta^2
     total = np.hypot(difference, 2.0 * zeta)  # xi^2 + eta^2
     large = np.sqrt(0.5 * (total + np.abs(difference)))
@@ -68,9 +66,7 @@ def one_minus_xi_acot(xi) -> np.ndarray:
 
 
 def hertz_integrals(rho, zeta) -> HertzIntegrals:
-    """The eight integrals at rho = r/a, zeta = z/a (>= 0, broadcast); the zeta I(m, 1) are 0 at the edge
-    (limit).
-    """
+    """The eight integrals at rho = r/a, zeta = z/a >= 0, broadcast; the zeta I(m, 1) are 0 at the edge."""
     rho, zeta = np.broadcast_arrays(np.asarray(rho, dtype=float), np.asarray(zeta, dtype=float))
     xi, eta, total = spheroidal(rho, zeta)
     sin = 1.0 / np.sqrt(1.0 + xi**2)  # of phi = acot(xi)
@@ -149,9 +145,7 @@ class CircularContact:
         return pressure(r, self.peak_pressure, self.contact_radius)
 
     def displacement(self, r) -> np.ndarray:
-        """u_z(r) of both surfaces together, m. One body's share: ``surface_displacement`` with its E/(1 -
-        nu^2).
-        """
+        """u_z(r) of both surfaces together, m; of one body `surface_displacement` with its E/(1 - nu^2)."""
         return surface_displacement(r, self.peak_pressure, self.contact_radius, self.modulus)
 
     def gap(self, r) -> np.ndarray:
@@ -213,16 +207,12 @@ def subsurface_stress(x, y, z, peak_pressure: float, *, contact_radius: float, n
 
 
 def axis_stress(z, peak_pressure: float, contact_radius: float, nu: float) -> np.ndarray:
-    """Stresses under the centre, (..., 6) in Pa: s_xx = s_yy and s_zz are the principal stresses (Johnson
-    3.45).
-    """
+    """Stresses under the centre, (..., 6) in Pa: s_xx = s_yy and s_zz are principal (Johnson 3.45)."""
     return subsurface_stress(0.0, 0.0, z, peak_pressure, contact_radius=contact_radius, nu=nu)
 
 
 def largest_von_mises(peak_pressure: float, contact_radius: float, nu: float) -> tuple[float, float]:
-    """Largest von Mises stress (Pa) under the Hertz pressure and its depth (m), searched on the axis, where
-    it lies.
-    """
+    """Largest von Mises stress (Pa) under the Hertz pressure and its depth (m), which is on the axis."""
     a, p0, nu = (
         positive("contact_radius", contact_radius),
         positive("peak_pressure", peak_pressure),

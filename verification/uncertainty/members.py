@@ -33,9 +33,7 @@ FEWEST_STEPS = 4  # from so many on the others have fewer, else more
 
 @dataclass(frozen=True)
 class Member:
-    """A scene of the family. label: for the reader; number: of cells (in x, or in the radius) or load steps;
-    size: what its error falls with, in any unit.
-    """
+    """label: for the reader; number: of cells or load steps; size: what its error falls with."""
 
     scene: Scene
     label: str
