@@ -93,9 +93,7 @@ class TestSampling:
         assert p.tolist() == [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]]
 
     def test_hertz_pressure_is_interpolated_to_rounding(self):
-        """p^2 is quadratic in r: linear interpolation between nodes 1/400 apart errs by 1/(8 * 400^2) of
-        p0^2.
-        """
+        """p^2 is quadratic in r: lines between nodes 1/400 apart err by 1/(8 * 400^2) of p0^2."""
         r = np.linspace(0.0, 2.0, 801)
         line = {"state": ["peak"] * r.size, "x_m": r, "p_Pa": np.sqrt(np.maximum(1.0 - r**2, 0.0))}
         x, y = np.array([-0.31, 0.123]), np.array([0.4567])

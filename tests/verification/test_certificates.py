@@ -244,9 +244,7 @@ def test_a_step_that_ends_above_its_goal_is_seen(solves):
 
 
 def test_compliance(solves):
-    """Of the dense system with many digits: by Love's function of the axisymmetric problem, k from long
-    to short waves.
-    """
+    """Of the dense system with many digits: by Love's function, k from long to short waves."""
     scene = solves["soft film"][0]
     film, body = scene.body.coating, scene.body
     k = np.geomspace(1e-3, 20.0, 40) / film.thickness
@@ -319,9 +317,7 @@ class TestFormulas:
         assert u == pytest.approx(-u[::-1], abs=1e-6 * np.abs(u).max()) and u[20, 20] == 0.0
 
     def test_rules(self):
-        """Weights of the graded points: integrals of a constant, and of 1/r^2 over a cube that the origin
-        touches.
-        """
+        """Weights of the graded points: integrals of a constant, and of 1/r^2 over a cube at the origin."""
         for low, high in ((-0.5, 0.5), (0.0, 1.0), (1.0, 2.0), (-2.0, -1.0)):
             points, weights = cell_checks.towards_zero(low, high, 40)
             assert weights.sum() == pytest.approx(high - low) and ((points > low) & (points < high)).all()

@@ -149,9 +149,7 @@ def test_a_film_in_three_dimensions(context):
 
 
 def test_a_film_that_yields(context):
-    """In the axisymmetric model: film and body flow by laws of their own, the film at its own yield
-    stress.
-    """
+    """Film and body flow by laws of their own, the film at its own yield stress."""
     scene = yielding_film(context)["film that yields"]
     result, records = solved(scene, FEM)
     for what, value in of_fem(scene, result, records).values.items():

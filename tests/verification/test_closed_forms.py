@@ -82,9 +82,7 @@ def disc_nodes(a, b, x, y, z, count=160):
 
 
 def outside_nodes(count=200):
-    """The same for a unit disc seen from outside: polar about the centre, r = sin(alpha), far from the
-    peak.
-    """
+    """The same for a unit disc seen from outside: polar about the centre, r = sin(alpha)."""
     angle = 2 * np.pi * np.arange(count)[:, None] / count
     t, w = gauss(count)
     alpha = t * np.pi / 2
@@ -364,9 +362,7 @@ def test_circle_is_the_elliptic_limit_and_axes_can_be_exchanged():
 
 
 def wave_coefficients(m, count):
-    """Cosine coefficients p_n, n = 0..count, of the pressure; sin(psi) = sqrt(m) sin(t): midpoint rule
-    exact.
-    """
+    """Cosine coefficients p_n of the pressure; sin(psi) = sqrt(m) sin(t): the midpoint rule is exact."""
     wave = westergaard.WavyContact(1.0, 1.0, 1.0, m * math.pi)  # p* = pi
     t = np.pi * (np.arange(8 * count) + 0.5) / (8 * count) - np.pi / 2
     psi = np.arcsin(math.sqrt(m) * np.sin(t))

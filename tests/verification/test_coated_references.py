@@ -67,9 +67,7 @@ def harmonic(layers, k, film):
 
 
 def radial_slopes(layers, k, r, z, film):
-    """u_r and du_z/dr on one side: u_r = r e_tt, du_z/dr = 2 e_rz - du_r/dz, with a central difference of
-    order 8.
-    """
+    """u_r and du_z/dr on one side: u_r = r e_tt, du_z/dr = 2 e_rz - du_r/dz by differences."""
     E, nu = (layers.young, layers.poisson) if film else (layers.young_body, layers.poisson_body)
     stress = harmonic(layers, k, film)
 
@@ -137,9 +135,7 @@ def test_harmonics_equal_the_plane_wave_of_many_digits(young, nu, nu_body, kh):
 
 
 def test_waves_of_full_contact():
-    """p = z/c_zz(k), film of Table 1 (0.1 um), rigid and steel: values of another program, all digits
-    given.
-    """
+    """p = z/c_zz(k), film of Table 1 (0.1 um), rigid and steel: values of another program."""
     layers = CoatedHalfSpace(80e9, 0.3, 0.1e-6, 210e9, 0.3)
     waves = np.array([1, 2, 5, 10, 20, 50]) * 1e-6
     rigid = wave_pressure_ratio(layers, waves)
@@ -201,9 +197,7 @@ def ring_displacement(contact, r):
 
 
 def test_pressure_bends_the_surface_into_the_paraboloid():
-    """The whole chain without the expansion: p(r) from outside, rings for the film's half-space, a Hankel sum
-    for the rest.
-    """
+    """From p(r) alone: rings for the film's half-space, a Hankel sum for the rest."""
     contact = solve_radius(CoatedHalfSpace(PAPER, 0.3, 0.3, 1.0, 0.3), 2.0, 1.0, counter_modulus=STEEL)
     k, weight = wave_numbers(0.3, 2.0, 20.0)
     angle, share = np.polynomial.legendre.leggauss(40)
@@ -230,18 +224,14 @@ def test_equal_materials_are_hertz():
 
 @pytest.mark.parametrize("young", [0.1, 10.0])
 def test_thick_film_is_its_own_half_space(young):
-    """p(0)/p0 -> (E1/E2)^(2/3), a/a0 -> (E2/E1)^(1/3); the next term is the body's mean displacement, of
-    order (a/h)^3.
-    """
+    """p(0)/p0 -> (E1/E2)^(2/3), a/a0 -> (E2/E1)^(1/3); the next term is of order (a/h)^3."""
     contact = film_contact(300.0, young)
     assert contact.central_pressure / contact.bare.peak_pressure == pytest.approx(young ** (2 / 3), rel=1e-6)
     assert contact.contact_radius == pytest.approx(young ** (-1 / 3), rel=1e-6)
 
 
 def test_thin_layer_on_a_rigid_base():
-    """Johnson 5.8: ratios 1 + c h/a + ...: extrapolated linearly they are 1 to the square of h/a (0.02
-    here).
-    """
+    """Johnson 5.8: ratios 1 + c h/a, extrapolated linearly, are 1 to the square of h/a (0.02)."""
     ratios = []
     for h in (0.02, 0.01):
         layers = CoatedHalfSpace(1.0, 0.3, h, 1e8, 0.3)
@@ -253,9 +243,7 @@ def test_thin_layer_on_a_rigid_base():
 
 
 def test_stiff_thin_film_presses_off_the_axis():
-    """E1/E2 = 10, h = 0.2 a0: centre 1.106, largest 1.176 (values of another program); the search finds what
-    a scan finds.
-    """
+    """E1/E2 = 10, h = 0.2 a0, of another program; the search finds what a scan finds."""
     contact = film_contact(0.2, 10.0)
     largest, r = contact.largest_pressure()
     assert contact.central_pressure / contact.bare.peak_pressure == pytest.approx(1.106, abs=5e-4)
@@ -307,9 +295,7 @@ def test_stresses_of_the_coated_contact(young, nu, h):
 
 
 def test_largest_von_mises_of_the_bare_contact():
-    """The search in the plane against the closed form on the axis (Hertz), and at the interface of a thick
-    film.
-    """
+    """The search in the plane against Hertz on the axis, and at the interface of a thick film."""
     contact = film_contact(0.1, PAPER)
     found = largest_bare_mises(contact)
     value, z = largest_von_mises(contact.bare.peak_pressure, contact.bare.contact_radius, 0.3)
@@ -380,9 +366,7 @@ def test_pavement_is_smooth_at_the_incompressible_limit():
 
 
 def test_disc_on_one_material_in_closed_form():
-    """Axis (Johnson 3.32): s_rr/p = -(1 + 2 nu)/2 + (1 + nu) z/w - z^3/(2 w^3), w^2 = a^2 + z^2; in film and
-    body.
-    """
+    """s_rr/p = -(1 + 2 nu)/2 + (1 + nu) z/w - z^3/(2 w^3), w^2 = a^2 + z^2 (Johnson 3.32)."""
     nu, z = 0.3, np.array([0.1, 0.5, 1.0, 3.0])
     stress = disc_stress(CoatedHalfSpace(1.0, nu, 1.0, 1.0, nu), 1.0, 0.0, z)[0]
     c = z / np.hypot(1.0, z)
@@ -405,9 +389,7 @@ ROUNDING = 1e-12
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
 def test_one_material_is_hamilton(nu):
-    """The body through the quadrature alone; the film through what the interface sends back, which is
-    nothing.
-    """
+    """The body by quadrature alone; the film by what the interface sends back, nothing."""
     layers = CoatedHalfSpace(2.0, nu, 0.1, 2.0, nu)
     for film, z in ((True, np.array([0.0, 0.05, 0.1])), (False, np.array([0.1, 0.3, 1.0]))):
         found = coated_sliding_stress(layers, 3.0, 1.0, 0.4, x=X, z=z, film=film)
@@ -444,9 +426,7 @@ def test_the_interface_holds_together(layers):
 @COATED
 @pytest.mark.parametrize("k", [0.3, 4.0, 30.0])
 def test_waves_of_traction_have_many_digits(layers, k):
-    """Amplitudes under the shear traction and the antiplane wave, against a dense solve of other
-    potentials.
-    """
+    """Amplitudes under shear, and the antiplane wave, against a solve of other potentials."""
     h, ratio = layers.thickness, layers.young / layers.young_body
     exact = ManyDigits(k * h, ratio, layers.poisson, layers.poisson_body)
     for z, film in ((0.4 * h, True), (h, True), (h, False), (1.7 * h, False)):

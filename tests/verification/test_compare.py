@@ -93,9 +93,7 @@ def red(sam, fem, of=PLASTIC) -> set[str]:
 
 @pytest.mark.parametrize("size", [1.0, 1e-6])
 def test_both_models_find_the_strain_that_a_twentieth_of_the_plastic_volume_exceeds(size):
-    """Linear over depth, of layers of different heights: 0.01 of the strain ends the plastic volume at 0.99
-    of the depth, to half of the lowest layer, of 0.01.
-    """
+    """Linear over depth: 0.01 of the strain ends the plastic volume at 0.99 of the depth."""
     z = size * np.append(np.linspace(0.0, 0.5, 101), np.linspace(0.51, 1.0, 50))
     middles, heights = (z[1:] + z[:-1]) / 2, np.diff(z)
     strain = 0.02 * (1 - middles / size)
@@ -108,9 +106,7 @@ def test_both_models_find_the_strain_that_a_twentieth_of_the_plastic_volume_exce
 
 
 def test_equal_fields_agree_on_different_points():
-    """Nothing but interpolation between cells of 1/14, of an elastic body linearly: at most half of the
-    tightest tolerance of a field.
-    """
+    """Nothing but interpolation between cells of 1/14: at most half of the tightest tolerance."""
     for of, count in ((ELASTIC, 10), (PLASTIC, 18)):
         rows = rows_of(of=of)
         assert set(rows) == set(wanted(pair_of(of, SAM, FEM).kinds)) <= set(names_of_rows(of))
@@ -161,9 +157,7 @@ def test_a_wrong_field_turns_its_row_red_and_a_missing_one_too(name, side):
 
 
 def test_a_wrong_pressure_is_seen_where_the_contact_ends_and_beside_it():
-    """Half of it, or none known, beyond 0.9 of the radius of a yielding contact, in its means; 2 % in an
-    elastic one, and a ring of 5 % beside it.
-    """
+    """Half of it, or none, beyond 0.9 of a yielding contact; 2 % in an elastic one, a ring of 5 %."""
     r = np.abs(SAM.tables["line"]["x_m"])
     for factor in (0.5, math.nan):
         rim = np.where((r > 0.92) & (r <= 1.0), factor, 1.0)
@@ -237,9 +231,7 @@ def test_a_scene_says_which_rows_there_are(tables, added, lost):
 
 
 def test_equal_parabolic_pressures_on_different_points_agree_to_rounding():
-    """p^2 = p0^2 (1 - r^2/a^2) is reproduced exactly between any points, so the comparison adds no error of
-    its own.
-    """
+    """p^2 = p0^2 (1 - r^2/a^2) is reproduced exactly between any points."""
 
     def hertzian(x):
         p = np.sqrt(np.maximum(0.0, 1.0 - x**2))

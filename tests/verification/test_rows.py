@@ -15,9 +15,7 @@ GATES = load_rows()
 
 
 def synthetic(gate: Row, share: float) -> Measured:
-    """A value whose error is `share` of the tolerance (for at_least: 1/share of it), built from the metric's
-    meaning.
-    """
+    """A value whose error is `share` of the tolerance (at_least: 1/share), by the metric's meaning."""
     step = share * gate.tolerance
     return {
         "relative": lambda: Measured(2.0 * (1.0 + step), 2.0),

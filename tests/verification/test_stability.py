@@ -109,9 +109,7 @@ def test_what_is_not_as_expected_is_wrong_and_turns_the_matrix_red(monkeypatch, 
 
 @pytest.mark.parametrize("apart, kind", [(0.0, Kind.RIGHT), (0.05, Kind.RIGHT), (0.2, Kind.WRONG)])
 def test_a_value_is_compared_within_the_refinement_uncertainty_of_both(monkeypatch, apart, kind):
-    """Both models converge at first order, SAM to 1 and FEM to 1 + apart; each errs by 4 % on the cells of
-    the row.
-    """
+    """SAM converges to 1, FEM to 1 + apart, at first order; each errs by 4 % on the cells of the row."""
     coarser = {SAM: plastic.larger_cells, FEM: plastic.larger_elements}
 
     def first_order(scene, model):

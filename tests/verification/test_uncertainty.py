@@ -147,9 +147,7 @@ def test_cells_and_steps_are_added_up():
 
 
 def test_values_that_agree_by_chance_leave_what_the_edge_of_the_contact_does():
-    """0.1 of the value, of the area 0.3, over the square of the cells in the radius; not where no edge falls
-    between cells.
-    """
+    """0.1 of the value, of the area 0.3, over the square of the cells in the radius."""
     scene = Scene(**ELASTIC | {"grid": {"cells": (65, 65), "extent": (4e-4, 4e-4)}})
     area = {"contact_area_m2": np.pi * 1e-8}
     result = made(scene)
