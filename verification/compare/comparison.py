@@ -86,7 +86,7 @@ def _kinds(scene: Scene) -> set[str]:
     unloaded = plastic and scene.loading.unload
     if _rough(scene):
         found = {"rough-map": not scene.constant_friction, "rough-at-rest": plastic and not slides}
-        found |= {"rough": True, "rough-unloaded": unloaded, "spatial": False}
+        found |= {"rough": True, "rough-unloaded": unloaded}
     else:
         shape = "" if scene.counterbody is None else scene.counterbody.shape
         found = {"smooth": True, "unloaded": unloaded, "coated": scene.body.coating is not None}
