@@ -244,3 +244,50 @@ def test_equal_parabolic_pressures_on_different_points_agree_to_rounding():
     for count, most in ((64, 1e-4), (65, 1e-12)):
         row = rows_of(hertzian(np.linspace(-2, 2, count)), half, ELASTIC)["p_Pa over the contact"]
         assert row.error < most
+
+
+def test_what_a_scene_gives_is_not_compared_and_a_path_leaves_a_groove():
+    """For an approach the force takes its place, 1.5 times as wide."""
+    given = rows_of(of=scene(loading={"approach": 1e-7, "force": None}))
+    assert "approach_m" not in given and given["force_N"].row.tolerance == 1.5 * 2e-3
+    pressure = rows_of(of=scene(loading={"prescribed": "hertz", "p0": 4e9, "radius": 6e-6}))
+    assert not {"approach_m", "force_N"} & set(pressure)
+    path = {"start": (0.0, 0.0), "end": (1e-6, 0.0), "steps": 2}
+    pair = (replace(each, quantities=QUANTITIES | {"groove_depth_m": 1.0}) for each in (SAM, FEM))
+    moved = rows_of(*pair, of=scene(loading={"path": path}))
+    assert list(moved)[-1] == "groove_depth_m" and not {"p_center_Pa", "p_Pa over the contact"} & set(moved)
+
+
+def rough_contact(loads=(3.0, 1.0), area: float = 9.0) -> Made:
+    """Two spots of 4 and 5 cells of a micrometre with these loads, in N, and a line after unloading."""
+    x, y = (each.ravel() for each in np.meshgrid(*(1e-6 * np.arange(8.0),) * 2, indexing="ij"))
+    p = np.zeros((8, 8))
+    p[1:3, 1:3], p[5, 2:7] = loads[0] / 4e-12, loads[1] / 5e-12
+    surface = {"state": ["peak"] * 64, "x_m": x, "y_m": y, "p_Pa": p.ravel()}
+    line = {"state": ["unloaded"] * 8, "x_m": 1e-6 * np.arange(8.0), "uz_m": np.linspace(1.0, 2.0, 8)}
+    quantities = {"force_N": 4.0, "approach_m": 1.0, "contact_area_m2": area, "peeq_max": 0.01}
+    return Made(quantities, {"surface": surface, "line": line})
+
+
+def test_a_rough_scene_is_compared_spot_by_spot():
+    surface = {"kind": "sinusoid", "amplitude": 1e-7, "wavelength_x": 1e-5}
+    rough = scene(
+        body={"plasticity": PERFECT},
+        counterbody={"shape": "flat"},
+        surface=surface,
+        loading={"unload": True},
+        grid={"cells": (8, 8), "extent": (8e-6, 8e-6), "layers": 4, "depth": 4e-6},
+    )
+    spots = ["load of the spot at 1.50, 1.50 um", "load of the spot at 5.00, 4.00 um"]
+    rows = rows_of(rough_contact(), rough_contact(), rough)
+    quantities = ["approach_m", "contact_area_m2", "peeq_max"]
+    assert list(rows) == [*quantities, *spots, "p_Pa over the patch", "residual uz_m on the line"]
+    assert all(row.passed for row in rows.values()) and rows[spots[0]].points == 1
+    known = ("load of the spot", "p_Pa over the patch", "friction_coefficient", *quantities)
+    assert set(known) <= set(names_of_rows(rough))
+    assert red(rough_contact((3.1, 1.0)), rough_contact(), rough) == {spots[0]}
+    assert red(rough_contact(area=9.5), rough_contact(), rough) == {"contact_area_m2"}
+    bare = replace(rough_contact(), tables={})
+    assert red(bare, rough_contact(), rough) == {"p_Pa over the patch", "residual uz_m on the line"}
+    none = replace(rough_contact(), quantities=rough_contact().quantities | {"force_N": 0.0})
+    assert list(rows_of(none, none, rough)) == quantities

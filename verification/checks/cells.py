@@ -61,10 +61,9 @@ def left(scene: Scene, result: Result, records: Sequence[Checkpoint]) -> float:
 
 
 def stress(scene: Scene, result: Result) -> float:
-    """Stress of an elastic body in y = 0, DEEP cells and deeper, less sums over points of the cells in
-    contact; over p_max.
-
-    Of Boussinesq's and Cerruti's stress of point forces, in about COLUMNS columns of the plane.
+    """Stress of an elastic body in y = 0, DEEP cells and deeper, less sums over points of the cells
+    in contact; over p_max. Of Boussinesq's and Cerruti's stress of point forces, in about COLUMNS
+    columns of the plane.
     """
     (x, y, p), q = surface_of(result), traction_of(scene, result)
     cell, (at, z, returned) = result.discretisation["cell_m"], plane_of(result)
@@ -99,10 +98,8 @@ def half_space(
 
 
 def love(x: np.ndarray, y: np.ndarray, p: np.ndarray, cell: Sequence[float]) -> np.ndarray:
-    """(nx, ny) sums of p times the integral of dA/r over each cell, at the centres x (nx,) and y (ny,), in m
-    Pa.
-
-    x ln(y + r) + y ln(x + r) at the corners, by asinh, which loses no digits.
+    """(nx, ny) sums of p times the integral of dA/r over each cell, at the centres x (nx,) and y
+    (ny,), in m Pa. x ln(y + r) + y ln(x + r) at the corners, by asinh, which loses no digits.
     """
     return _corners(
         x, y, p, cell, primitive=lambda X, Y: X * np.arcsinh(Y / np.abs(X)) + Y * np.arcsinh(X / np.abs(Y))

@@ -154,9 +154,8 @@ def coefficient_at(scene: Scene, x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 def traction_of(scene: Scene, result: Result) -> np.ndarray:
     """(nx, ny) mu p of SAM's cells in Pa, by the scene; zero where it does not act on the normal
-    displacement.
-
-    Of a chemical film with the high or the low coefficient, which of them is nearer to the returned traction.
+    displacement. Of a chemical film with the high or the low coefficient, which of them is nearer
+    to the returned traction.
     """
     x, y, p = surface_of(result)
     if scene.friction is None or not scene.friction.coupling:
@@ -236,12 +235,11 @@ def at_points(scene: Scene, stress: np.ndarray, strain: np.ndarray) -> np.ndarra
 
 
 def planes(r: np.ndarray, z: np.ndarray, szz: np.ndarray, force: float, *, spread: float) -> np.ndarray:
-    """Force through the planes z = const over the load less 1, (nz,): szz (nr, nz) at radii r, ascending from
-    near zero.
-
-    Trapezoidal sums of 2 pi r szz; beyond the last radius R the stress of a point force (Johnson 1985, Eq.
-    3.19), and of the mean square distance `spread` of the pressure from the axis the first term, spread/4
-    times the flux through r = R of the gradient of that stress.
+    """Force through the planes z = const over the load less 1, (nz,): szz (nr, nz) at radii r,
+    ascending from near zero. Trapezoidal sums of 2 pi r szz; beyond the last radius R the stress of
+    a point force (Johnson 1985, Eq. 3.19), and of the mean square distance `spread` of the pressure
+    from the axis the first term, spread/4 times the flux through r = R of the gradient of that
+    stress.
     """
     inside = -2 * np.pi * np.trapezoid(szz * r[:, None], r, axis=0) - np.pi * r[0] ** 2 * szz[0]
     reach = np.hypot(r[-1], z)
@@ -259,10 +257,9 @@ def sam_planes(scene: Scene, result: Result) -> np.ndarray:
 
 
 def sam_surface(scene: Scene, result: Result) -> dict[str, float]:
-    """Tractions below the surface against those on it, over the largest pressure; from the first two depths,
-    linearly.
-
-    Away from the edge of contact, see EDGE. With friction the shear stress against q = mu p.
+    """Tractions below the surface against those on it, over the largest pressure; from the first
+    two depths, linearly. Away from the edge of contact, see EDGE. With friction the shear stress
+    against q = mu p.
     """
     x, z, stress = plane_of(result)
     line = peak_rows(result, "line")

@@ -18,12 +18,10 @@ from verification.reference.film_flow import Film, FlowPoint
 
 
 def states(scene: Scene, records: Sequence[Checkpoint]) -> dict[str, float]:
-    """Of the cells in contact whose film is whole, in every step of loading, the first one from a film
-    without strain.
-
-    flow: plastic strain less that of a backward-Euler step, limit: thinning, traction: beyond what the film
-    bears, each over its limit; healed: cells that had failed before. Why a cell failed cannot be seen here:
-    more friction then changed its pressure.
+    """Of the cells in contact whose film is whole, in every step of loading, the first one from a
+    film without strain. flow: plastic strain less that of a backward-Euler step, limit: thinning,
+    traction: beyond what the film bears, each over its limit; healed: cells that had failed before.
+    Why a cell failed cannot be seen here: more friction then changed its pressure.
     """
     law, film = (
         scene.friction,

@@ -125,12 +125,11 @@ def von_mises(s: np.ndarray) -> np.ndarray:
 def flow_of(
     scene: Scene, strain: np.ndarray, length: np.ndarray, stress: np.ndarray, *, limit: np.ndarray
 ) -> dict[str, float]:
-    """Increments of plastic strain (6, ...) and of its length, at the end of a step with the stress (6, ...),
-    in Pa.
-
-    direction: 2 G |d eps - 3/2 dgamma s/q| over the initial yield stress; length: |sqrt(2/3 d eps : d eps) -
-    dgamma| likewise; volume: its trace likewise; consistency: |q - sigma_y|/sigma_y where a cell strains;
-    backwards: -dgamma likewise; yield: the largest (q - sigma_y)/sigma_y.
+    """Increments of plastic strain (6, ...) and of its length, at the end of a step with the stress
+    (6, ...), in Pa. direction: 2 G |d eps - 3/2 dgamma s/q| over the initial yield stress; length:
+    |sqrt(2/3 d eps : d eps) - dgamma| likewise; volume: its trace likewise; consistency: |q -
+    sigma_y|/sigma_y where a cell strains; backwards: -dgamma likewise; yield: the largest (q -
+    sigma_y)/sigma_y.
     """
     unit = (
         scene.body.young / (1 + scene.body.poisson) / float(yield_stress(scene, np.zeros(1), np.zeros(1))[0])

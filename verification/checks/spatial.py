@@ -77,10 +77,8 @@ class Spatial(Formed):
         return coefficient_at(self.scene, *self.nodes[:2] * self.model.scales.length)
 
     def equilibrium(self) -> dict[str, float]:
-        """Largest nodal force that nothing balances, largest |q - mu p| of a node in contact, sum of p less
-        F; over F.
-
-        Without force over the force of the whole loading.
+        """Largest nodal force that nothing balances, largest |q - mu p| of a node in contact, sum
+        of p less F; over F. Without force over the force of the whole loading.
         """
         model, scale = self.model, self.model.scales.peak_force
         in_contact = np.zeros(self.nodes.shape[1], dtype=bool)
@@ -119,11 +117,10 @@ def flows(steps: Sequence[Spatial]) -> dict[str, float]:
 
 
 def surface(scene: Scene, result: Result) -> dict[str, float]:
-    """Of the returned nodes z = 0: sum of p over the load less 1, tension; p gap = 0, gap >= 0; q = mu p on
-    the line y = 0.
-
-    The gap is that of the shapes + uz - approach, of a rough body with the returned heights; without force
-    that on y = 0 as returned. A node has a quarter of each face around it.
+    """Of the returned nodes z = 0: sum of p over the load less 1, tension; p gap = 0, gap >= 0; q =
+    mu p on the line y = 0. The gap is that of the shapes + uz - approach, of a rough body with the
+    returned heights; without force that on y = 0 as returned. A node has a quarter of each face
+    around it.
     """
     top = result.fields.points[:, 2] == 0.0
     x, y, _ = result.fields.points[top].T

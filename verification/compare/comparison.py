@@ -195,11 +195,10 @@ def _on_line(tables, name: str, state: str = PEAK) -> tuple[np.ndarray, np.ndarr
 
 
 def _pressure_at(solved: Solution, at: np.ndarray) -> np.ndarray:
-    """p at r: p^2 is linear in r^2 between values, as it is under Hertz, and falls to zero at the contact
-    radius.
-
-    Where pressure is given beyond that radius it counts: then it ends halfway to the first value without
-    pressure, as far as the last cell, or the surface that the last node stands for, reaches.
+    """p at r: p^2 is linear in r^2 between values, as it is under Hertz, and falls to zero at the
+    contact radius. Where pressure is given beyond that radius it counts: then it ends halfway to
+    the first value without pressure, as far as the last cell, or the surface that the last node
+    stands for, reaches.
     """
     r, p = _on_line(solved.tables, "p_Pa")
     last = int(np.flatnonzero(p)[-1])

@@ -95,11 +95,9 @@ def contours(planes: Sequence[Plane], level: float) -> list[Contour | None]:
 
 
 def hat_means(nodes: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """(n, m): means of piecewise constant values over linear shape functions, the integral of each divided by
-    its own.
-
-    nodes: (n,), faces: (m + 1,) of the cells, both ascending; shape functions of the outermost nodes are
-    one-sided.
+    """(n, m): means of piecewise constant values over linear shape functions, the integral of each
+    divided by its own. nodes: (n,), faces: (m + 1,) of the cells, both ascending; shape functions
+    of the outermost nodes are one-sided.
     """
     before, after = np.diff(nodes, prepend=nodes[0]), np.diff(nodes, append=nodes[-1])
 
@@ -114,11 +112,9 @@ def hat_means(nodes: np.ndarray, faces: np.ndarray) -> np.ndarray:
 
 
 def nodal_pressures(sam: Result, fem: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Pressures of SAM and FEM at the surface nodes y >= 0 of FEM, and the areas of the nodes, (nx, ny) each,
-    in Pa and m^2.
-
-    A nodal force of FEM is the integral of the pressure with the shape function of the node: that of SAM is
-    integrated so.
+    """Pressures of SAM and FEM at the surface nodes y >= 0 of FEM, and the areas of the nodes, (nx,
+    ny) each, in Pa and m^2. A nodal force of FEM is the integral of the pressure with the shape
+    function of the node: that of SAM is integrated so.
     """
     x, y, p_fem = surface_nodes(fem)
     u, v, p = surface_pressure(sam.fields.points, sam.fields.cells["quad"], sam.fields.cell_data["p_Pa"])
@@ -140,11 +136,10 @@ def pressure_distance(p: np.ndarray, reference: np.ndarray, area: np.ndarray) ->
 
 
 def patch_pressures(result: Result, fem: Result, width: float) -> np.ndarray:
-    """Means of the pressure over hats of half width `width` (m), (nx, ny), of SAM or of FEM, from its nodal
-    pressures.
-
-    A contact that ends inside an element has its last force on one node or the other: over hats of a length
-    that does not go with the elements both sides of the edge are taken together.
+    """Means of the pressure over hats of half width `width` (m), (nx, ny), of SAM or of FEM, from
+    its nodal pressures. A contact that ends inside an element has its last force on one node or the
+    other: over hats of a length that does not go with the elements both sides of the edge are taken
+    together.
     """
     x, y, p_fem = surface_nodes(fem)
     p = p_fem if result is fem else nodal_pressures(result, fem)[0]
@@ -205,10 +200,9 @@ def _inside(x: np.ndarray, z: np.ndarray, a: float) -> np.ndarray:
 def limit_of_strain(
     results: Mapping[str, Result], model: str, *, a: float, x: float, z: np.ndarray
 ) -> np.ndarray:
-    """The strain at (x, z) in contact radii, (n,), without cells and load steps: of second order in the one
-    and of first in the other, whose share is much the same on any cells.
-
-    results: "limit-MODEL-COUNT-STEPS" -> of so many cells or elements in the radius; two counts in one step,
+    """The strain at (x, z) in contact radii, (n,), without cells and load steps: of second order in
+    the one and of first in the other, whose share is much the same on any cells. results:
+    "limit-MODEL-COUNT-STEPS" -> of so many cells or elements in the radius; two counts in one step,
     and one of them in three numbers of steps.
     """
     at = {
