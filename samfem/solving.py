@@ -213,9 +213,10 @@ def check(scene: Scene, *names: str, anyway: bool = False) -> None:
     unless `anyway`, in the time that a command begins unasked.
     """
     for model in names:
-        models.check(scene, model)
-        accurate = scene.solver.accuracy is not None
-        chosen = chosen_scene(scene, model, first_choice(scene, model)) if accurate else scene
+        chosen = scene
+        if scene.solver.accuracy is not None:
+            models.check(scene, model)
+            chosen = chosen_scene(scene, model, first_choice(scene, model))
         check_needs(chosen, model, anyway=anyway)
 
 

@@ -6,7 +6,6 @@ forgotten of a new one is named here.
 import math
 import pkgutil
 import re
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -82,55 +81,20 @@ class TestEveryShape:
         assert f'`"{shape}"`' in GUIDE and f'"{shape}"' in README
 
 
-@dataclass(frozen=True)
-class Cone:
-    """A shape that no scene file knows, without radii of curvature."""
+def test_one_row_of_the_table_is_enough_for_a_shape_without_radii_which_needs_a_force(monkeypatch):
+    monkeypatch.setitem(bodies.SHAPES, "cone", Opposite(lambda _: None, lambda *_: (2e-6, 2e-6)))
 
-    slope: float
+    def cone(**tables):
+        found = scene(**tables)
+        shape = found.counterbody.model_copy(update={"shape": "cone", "radius": None})
+        return found.model_copy(update={"counterbody": shape})
 
-    def gap(self, grid, at=(0.0, 0.0)):
-        return self.slope * np.hypot(grid.x[:, None] - at[0], grid.y[None, :] - at[1])
-
-
-class TestAShapeWithoutRadii:
-    """One row of the table is enough for elastic, coated and yielding bodies; without force it is refused."""
-
-    SLOPE = 0.02
-
-    @pytest.fixture
-    def pressed(self, monkeypatch):
-        def semi_axes(found, _):
-            """Sneddon (1965): the mean pressure is E*/2 times the slope."""
-            modulus = found.pair.contact_modulus
-            return (math.sqrt(2 * found.force / (math.pi * modulus * self.SLOPE)),) * 2
-
-        monkeypatch.setitem(bodies.SHAPES, "cone", Opposite(lambda _: Cone(self.SLOPE), semi_axes))
-
-        def make(**tables):
-            found = scene(**tables)
-            cone = found.counterbody.model_copy(update={"shape": "cone", "radius": None})
-            return found.model_copy(update={"counterbody": cone})
-
-        return make
-
-    def test_is_solved(self, pressed):
-        cone = pressed(grid={"cells": (65, 65)})
-        approach = sam.solve(cone).quantities["approach_m"]
-        # Sneddon's pi/2 a times the slope; the pressure is infinite at the apex, in the middle of a cell
-        exact = math.pi / 2 * bodies.hertz_semi_axes(cone)[0] * self.SLOPE
-        assert approach == pytest.approx(exact, rel=0.01)
-
-    def test_has_a_plan_on_a_coated_and_on_a_yielding_body(self, pressed):
-        a = bodies.hertz_semi_axes(pressed())[0]
-        coated = sam.plan(pressed(body={"coating": FILM})).grid
-        assert 0.3 * a < coated.nx * coated.hx / 4 < 3 * a
-        yielding = pressed(body={"plasticity": {"law": "perfect", "yield_stress": 1e9}})
-        assert plastic_boxes(yielding, sam.plan(yielding).grid)
-        assert advice_of(yielding, ["sam"])["kind"] is None
-
-    def test_is_refused_without_force_by_name(self, pressed):
-        with pytest.raises(UnsupportedScene, match=r'loading\.force = 0.*"cone".*above 0'):
-            check(pressed(loading={"force": 0.0}))
+    coated = sam.plan(cone(body={"coating": FILM})).grid
+    assert 0.6e-6 < coated.nx * coated.hx / 4 < 6e-6
+    yielding = cone(body={"plasticity": {"law": "perfect", "yield_stress": 1e9}})
+    assert plastic_boxes(yielding, sam.plan(yielding).grid) and advice_of(yielding, ["sam"])["kind"] is None
+    with pytest.raises(UnsupportedScene, match=r'loading\.force = 0.*"cone".*above 0'):
+        check(cone(loading={"force": 0.0}))
 
 
 def test_every_reference_solution_is_asked_for_by_a_test():
