@@ -82,7 +82,9 @@ class TestEveryShape:
 
 
 def test_one_row_of_the_table_is_enough_for_a_shape_without_radii_which_needs_a_force(monkeypatch):
-    monkeypatch.setitem(bodies.SHAPES, "cone", Opposite(lambda _: None, lambda *_: (2e-6, 2e-6)))
+    monkeypatch.setitem(
+        bodies.SHAPES, "cone", Opposite(lambda _: None, lambda found, _: (2e-6 * bool(found.force),) * 2)
+    )
 
     def cone(**tables):
         found = scene(**tables)
