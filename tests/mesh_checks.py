@@ -1,12 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Shipped scenes with fewer load steps, cells and elements, and what VTK reads of the meshes of their runs.
+"""Shipped scenes with fewer load steps, cells and elements, and what VTK reads of their meshes."""
 
-As a program (`python -m tests.mesh_checks [SCENE ...]`) it solves the shipped scenes in every model that can
-represent them and that is predicted to be quick, and prints what is wrong and the sizes of the files.
-"""
-
-import sys
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -15,14 +9,12 @@ import numpy as np
 import pyvista
 
 from sam.scene import Scene, read_scene
-from verification.cost.plan import plan
 from verification.runs import models
-from verification.runs.files import Run, read_run, write_run
+from verification.runs.files import Run
 
 SCENES = Path(__file__).resolve().parents[1] / "verification" / "scenes"
 STATES = {"peak": "", "unloaded": "-unloaded"}
 NEAR = 1e-9  # of the largest value: what the digits of the files leave, measured 0 at equal places
-LARGEST = 30.0, 1.5e9  # s, bytes, predicted: larger scenes are left out by the program
 
 
 def reduced(path: Path) -> Scene:
@@ -171,34 +163,3 @@ def wrong_line(run: Run) -> Iterator[str]:
         found = (near & row) @ np.asarray(moved) / counts
         if np.abs(found - expected).max() > NEAR * np.abs(expected).max():
             yield f"{path.name}: displacement"
-
-
-def main(chosen: list[str]) -> int:
-    """Check the shipped scenes, or those that are chosen, and print what was found."""
-    failed = 0
-    for path in sorted([*SCENES.glob("*.toml"), *SCENES.glob("starts/*.toml")]):
-        name = str(path.relative_to(SCENES).with_suffix(""))
-        if chosen and name not in chosen:
-            continue
-        scene = reduced(path)
-        for entry in plan(scene)["models"]:
-            model, cost = entry["model"], entry["estimate"]
-            if not entry["available"] or cost["time_s"] > LARGEST[0] or cost["memory_bytes"] > LARGEST[1]:
-                print(f"{name}, {model}: left out")
-                continue
-            result = models.solve(scene, model)
-            with tempfile.TemporaryDirectory() as folder:
-                write_run(result, scene, folder, {})
-                run = read_run(Path(folder))
-                found, compared = wrong(run), sum(len(each) for _, each, _ in compared_stress(run))
-                files = sorted(run.folder.glob("*.vt[ur]"))
-                sizes = ", ".join(f"{each.name} {each.stat().st_size / 1e3:.0f} kB" for each in files)
-            failed += bool(found)
-            print(
-                f"{name}, {model}: {result.status}; {compared} tensors compared; {sizes}; {found or 'good'}"
-            )
-    return int(failed > 0)
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

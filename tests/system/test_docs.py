@@ -161,14 +161,11 @@ def test_every_command_is_documented():
     assert {words[0] for text in PAGES.values() for words in commands(text)} == set(COMMANDS)
 
 
-@pytest.mark.parametrize("link", ["missing.md", "docs/theory.md#no-such-heading", "reports/none.html"])
-def test_a_broken_link_is_seen(link):
-    assert broken_links(f"[page]({link}) and [good](docs/theory.md#conventions)", ROOT) == [link]
-
-
-@pytest.mark.parametrize("line", ["samfem solve", "samfem solve a.toml --modle sam", "samfem verify no-such"])
-def test_a_wrong_command_line_is_seen(line):
-    assert wrong_commands(f"```sh\n{line}  # a comment\n```\n")
+def test_a_broken_link_and_a_wrong_command_line_are_seen():
+    for link in ("missing.md", "docs/theory.md#no-such-heading", "reports/none.html"):
+        assert broken_links(f"[page]({link}) and [good](docs/theory.md#conventions)", ROOT) == [link]
+    for line in ("samfem solve", "samfem solve a.toml --modle sam", "samfem verify no-such"):
+        assert wrong_commands(f"```sh\n{line}  # a comment\n```\n")
 
 
 def test_every_symbol_stands_in_the_file_that_the_architecture_names():

@@ -40,45 +40,25 @@ def hardened(law: str, folder: Path):
 
 
 @pytest.mark.parametrize("law", LAWS)
-class TestEveryLaw:
-    def test_is_written_once_more_by_the_checks(self, law, tmp_path):
-        found = hardened(law, tmp_path)
-        peeq, z = np.meshgrid([0.0, 5e-4, 3e-3, 0.03], [0.0, 4e-7, 2e-6])
-        expected = found.body.plasticity.depth_profile()(z) * found.body.plasticity.curve().stress(peeq)
-        # fewer than ten roundings, of terms no larger than three times the result
-        assert yield_stress(found, peeq, z) == pytest.approx(expected, rel=1e-14, abs=0.0)
-
-    def test_has_the_slope_of_its_stress_and_does_not_soften(self, law, tmp_path):
-        """Five-point differences with a step of 1/1000 of the strain: 1e-12 + rounding 1e-13/1e-3."""
-        curve, peeq = (
-            hardened(law, tmp_path).body.plasticity.curve(),
-            np.array([[2e-6, 3e-4], [0.004, 0.022]]),
-        )
-        step = 1e-3 * peeq
-        f = [curve.stress(peeq + k * step) for k in (-2, -1, 1, 2)]
-        difference = (f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step)
-        np.testing.assert_allclose(curve.slope(peeq), difference, rtol=1e-8, atol=1e-8 * 1e9)
-        assert (curve.slope(peeq) >= 0.0).all()
-
-    def test_is_in_the_guide(self, law):
-        assert f'`"{law}"`' in GUIDE and f'"{law}"' in README
+def test_every_law_is_written_once_more_by_the_checks_and_in_the_guide(law, tmp_path):
+    found = hardened(law, tmp_path)
+    peeq, z = np.meshgrid([0.0, 5e-4, 3e-3, 0.03], [0.0, 4e-7, 2e-6])
+    expected = found.body.plasticity.depth_profile()(z) * found.body.plasticity.curve().stress(peeq)
+    # fewer than ten roundings, of terms no larger than three times the result
+    assert yield_stress(found, peeq, z) == pytest.approx(expected, rel=1e-14, abs=0.0)
+    assert f'`"{law}"`' in GUIDE and f'"{law}"' in README
 
 
 @pytest.mark.parametrize("shape", SHAPES_OF_SCENES)
-class TestEveryShape:
-    def test_has_the_same_gap_in_the_checks(self, shape):
-        smooth = scene()
-        other = type(smooth.counterbody)(**SHAPES[shape])
-        grid = CellGrid(64, 64, 0.4e-6, 0.4e-6, np.zeros(1))
-        x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
-        gap = bodies.SHAPES[shape].gap(other).gap(grid)
-        found = GAPS[shape](other, x, y)
-        # the cells of a punch have its area as closely as whole rings allow: of its edge two cells are free
-        edge = np.abs(np.hypot(x, y) - (other.radius if shape == "punch" else math.inf)) < 0.8e-6
-        np.testing.assert_allclose(found[~edge], gap[~edge], rtol=1e-14)
-
-    def test_is_in_the_guide(self, shape):
-        assert f'`"{shape}"`' in GUIDE and f'"{shape}"' in README
+def test_every_shape_has_the_same_gap_in_the_checks_and_is_in_the_guide(shape):
+    other = type(scene().counterbody)(**SHAPES[shape])
+    grid = CellGrid(64, 64, 0.4e-6, 0.4e-6, np.zeros(1))
+    x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
+    # the cells of a punch have its area as closely as whole rings allow: of its edge two cells are free
+    edge = np.abs(np.hypot(x, y) - (other.radius if shape == "punch" else math.inf)) < 0.8e-6
+    gap = bodies.SHAPES[shape].gap(other).gap(grid)
+    np.testing.assert_allclose(GAPS[shape](other, x, y)[~edge], gap[~edge], rtol=1e-14)
+    assert f'`"{shape}"`' in GUIDE and f'"{shape}"' in README
 
 
 def test_one_row_of_the_table_is_enough_for_a_shape_without_radii_which_needs_a_force(monkeypatch):

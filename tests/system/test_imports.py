@@ -8,7 +8,6 @@ no forbidden import hides in a table of module names, and a command loads no mor
 from __future__ import annotations
 
 import ast
-import inspect
 import os
 import re
 import shutil
@@ -147,15 +146,6 @@ def test_verification_uses_what_the_solvers_export():
 )
 def test_an_import_from_inside_a_solver_is_seen(line, wrong):
     assert inside_a_solver(line) == wrong
-
-
-def test_what_a_package_exports_is_there_and_has_a_docstring():
-    """Constants and names of types, which can have none, have it in their module."""
-    for package in (name for name, path in MODULES.items() if path.name == "__init__.py"):
-        module = import_module(package)
-        for name in getattr(module, "__all__", ()):
-            found = getattr(module, name)
-            assert inspect.getdoc(found) or not (inspect.isclass(found) or inspect.isfunction(found)), name
 
 
 PICTURES = {"matplotlib", "pyvista", "vtk", "PIL"}

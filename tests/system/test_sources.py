@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The sources: functions and modules within their limits, standard terms, and docs/equations.md against the
-code: a row for each equation, names that exist, functions that cite it.
+"""The sources: functions and modules within their limits, and docs/equations.md against the code: a row for
+each equation, names that exist, functions that cite it.
 
 Nothing is solved. ruff holds the other limits, of parameters, columns and branches.
 """
@@ -21,23 +21,9 @@ SOURCES = {
     path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8")
     for folder in ("samfem", "sam", "fem_reference", "verification", "tests", "docs")
     for path in sorted((ROOT / folder).rglob("*"))
-    if path.suffix in (".py", ".md", ".toml") and path != Path(__file__)
+    if path.suffix in (".py", ".md")
 }
 FUNCTION, MODULE = 100, 800  # lines
-PRIVATE = {
-    r"\blifts?\b|\blifted\b": "residual displacement, raises, unloaded",
-    r"\btorn\b|\btears?\b|\btearing\b": "removed, removal",
-    r"\binert\b": "equivalent mutant",
-    r"\bstability matrix\b": "robustness matrix",
-    r"\bpatience\b": "stagnation limit",
-    r"\bsettled\b": "converged, steady, shakedown",
-    r"\bcertify\w*|\bcertified\b": "check, a-posteriori check",
-    r"\bledgers?\b": "wear state",
-    r"\bSELF_STIFFNESS\b": "algorithmic stiffness of the fixed-point map",
-    r"\blocked (by|energy)\b": "stored (cold-work) energy",
-}
-"""Private word -> the standard term to write instead."""
-PUBLIC = "|".join(map(re.escape, ("mutation.not-inert", "not-inert", '"lifted"')))
 PAGE = SOURCES["docs/equations.md"]
 NUMBERS = {str(k) for k in range(1, 31)}
 WITHOUT_NUMBER = {"D_33": "D_33", "D_31": "D_31", "outside": "outside", "inside": "inside"}
@@ -63,23 +49,6 @@ def test_functions_and_modules_within_their_limits():
 @pytest.mark.parametrize("lines, hits", [(FUNCTION, 0), (FUNCTION + 1, 1), (MODULE, 1), (MODULE + 1, 2)])
 def test_the_limits(lines, hits):
     assert len(too_long("def f():\n" + "    a = 1\n" * (lines - 1))) == hits
-
-
-def private_words(text: str) -> list[str]:
-    """Private words of a text, with what to write instead."""
-    text = re.sub(PUBLIC, "", text)
-    return [
-        f"{found.group()}: {standard}"
-        for word, standard in PRIVATE.items()
-        for found in re.finditer(word, text, re.IGNORECASE)
-    ]
-
-
-def test_the_standard_terms_are_written():
-    found = {name: private_words(text) for name, text in SOURCES.items()}
-    assert {name: words for name, words in found.items() if words} == {}
-    assert len(private_words("material that tears, certify(scene)")) == 2
-    assert private_words('inertia, a shift, id = "mutation.not-inert", certificates.sam-load') == []
 
 
 def rows(page: str) -> dict[str, str]:

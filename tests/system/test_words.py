@@ -179,17 +179,6 @@ class TestMisplacedKeys:
         assert {place.split(" with ")[0] for found in OTHER_NAMES.values() for place in found} <= known
 
 
-def test_sizes_of_a_plan_have_units_that_a_person_reads(scene_file, samfem):
-    """Bytes in MB or GB, lengths in um or nm: no number with an exponent."""
-    plastic = '[body.plasticity]\nlaw = "perfect"\nyield_stress = "2 GPa"\n'
-    shown = samfem("plan", scene_file(add=plastic)).out
-    assert "bytes" not in shown
-    assert re.search(r"\de[-+]?\d", shown) is None
-    assert re.search(r"^sam: about \d+ MB and [\d.]+ s$", shown, re.MULTILINE)
-    assert re.search(r"cell \d+\.?\d* nm x \d+\.?\d* nm", shown)
-    assert re.search(r"largest_depth [\d.]+ um", shown)
-
-
 @pytest.mark.parametrize("command", [["solve", "--model", "fem-axisymmetric"], ["compare", "--no-store"]])
 def test_what_is_predicted_to_take_more_than_a_day_is_begun_only_when_asked(
     scene_file, samfem, monkeypatch, folder, command

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""VTK reads what runs of shipped scenes write; all of them with `python -m tests.mesh_checks`."""
+"""VTK reads what runs of shipped scenes write."""
 
 import mesh_checks
 import numpy as np

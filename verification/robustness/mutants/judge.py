@@ -10,7 +10,6 @@ import functools
 import gc
 import os
 import pickle
-import selectors
 import signal
 import sys
 import time
@@ -18,6 +17,8 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection, wait
 from types import FunctionType, ModuleType
 from typing import Any
 
@@ -70,38 +71,31 @@ def forked(tasks: Iterable[tuple[Any, Callable[[], Any]]], seconds: float) -> It
     """(name, what the task returned) as they end, each in a fork; None for one that died or took more than
     `seconds` of processor time, where that is not 0.
     """
-    running: dict[int, tuple[Any, int, bytearray]] = {}
-    selector, left = selectors.DefaultSelector(), iter(tasks)
-    more = True
+    running: dict[Connection, tuple[Any, int]] = {}
+    left, more = iter(tasks), True
     while more or running:
         while more and len(running) < WORKERS:
-            task = next(left, None)
-            if task is None:
-                more = False
-                break
-            reading, child = _start(task[1], seconds)
-            running[reading] = (task[0], child, bytearray())
-            selector.register(reading, selectors.EVENT_READ)
-        for key, _ in selector.select() if running else ():
-            name, child, held = running[key.fd]
-            if part := os.read(key.fd, 1 << 16):
-                held += part
-                continue
-            selector.unregister(key.fd)
-            os.close(key.fd)
+            if more := (task := next(left, None)) is not None:
+                connection, child = _start(task[1], seconds)
+                running[connection] = task[0], child
+        for connection in wait(list(running)) if running else ():
+            name, child = running.pop(connection)
+            try:
+                answer = connection.recv()
+            except (EOFError, OSError):  # it died, perhaps while it wrote
+                answer = None
+            connection.close()
             os.waitpid(child, 0)
-            del running[key.fd]
-            yield name, pickle.loads(bytes(held)) if held else None
+            yield name, answer
 
 
-def _start(task: Callable[[], Any], seconds: float) -> tuple[int, int]:
-    reading, writing = os.pipe()
-    child = os.fork()
-    if child:
-        os.close(writing)
+def _start(task: Callable[[], Any], seconds: float) -> tuple[Connection, int]:
+    reading, writing = Pipe(duplex=False)
+    if child := os.fork():
+        writing.close()
         return reading, child
     try:
-        os.close(reading)
+        reading.close()
         signal.signal(signal.SIGPROF, signal.SIG_DFL)
         signal.setitimer(signal.ITIMER_PROF, seconds)
         quiet = os.open(os.devnull, os.O_WRONLY)
@@ -109,8 +103,7 @@ def _start(task: Callable[[], Any], seconds: float) -> tuple[int, int]:
         os.dup2(quiet, 2)
         answer = pickle.dumps(task())
         signal.setitimer(signal.ITIMER_PROF, 0)
-        with os.fdopen(writing, "wb") as pipe:
-            pipe.write(answer)
+        writing.send_bytes(answer)
     finally:
         os._exit(0)
     raise AssertionError("not reached")
