@@ -96,7 +96,9 @@ def _solved_in_parts(
     if scene.solver.uncertainty or scene.solver.accuracy:
         return _solved_family(scene, model, folder, inputs, resume=resume, say=say)
     seconds, who = checkpoints.interval(), checkpoints.identity(scene, model)
-    start = _start(scene, folder, who, say) if resume else _begin(folder, say)
+    if not resume and (folder / CHECKPOINT).exists():
+        say(f"a checkpoint of an interrupted run is in {folder}, and is replaced; --resume continues it")
+    start = _start(scene, folder, who, say) if resume else None
     writer = checkpoints.Writer(folder, who, seconds, start, warn=say)
     with checkpoints.interruptible(writer):
         how = {"fresh": True, "checkpoint": writer, "start": start}
@@ -145,12 +147,6 @@ def _solved_family(
 def _telling(progress: Progress, who: str) -> Callable[[str, int, int], None]:
     """Shows how far a solve is, with its name."""
     return lambda stage, done, total: progress(f"{who}: {stage}", done, total)
-
-
-def _begin(folder: Path, say: Callable[[str], None]) -> None:
-    """Begin anew, and say so where a checkpoint is in the folder."""
-    if (folder / CHECKPOINT).exists():
-        say(f"a checkpoint of an interrupted run is in {folder}, and is replaced; --resume continues it")
 
 
 def _start(

@@ -39,7 +39,7 @@ from verification.runs.files import (
 )
 from verification.runs.lock import locked
 from verification.runs.provenance import collect, without_places
-from verification.runs.store import UNCONVERGED, Lookup, Reuse, Store, default_store, identity
+from verification.runs.store import RESULT, UNCONVERGED, Lookup, Reuse, Store, default_store, identity
 from verification.runs.study import Points, StudyPoint, read_study
 from verification.runs.tables import csv_text
 from verification.sensitivity import indices
@@ -53,6 +53,20 @@ COUNTERS = ("contact_iterations", "plastic_iterations", "operator_applications",
 REFUSED, FAILED = "refused", "failed"
 MOST_SAID = 3
 REST_FACTOR = 4  # the table is not rewritten before this many times the time that the last writing took
+
+
+class KeepsAll(Store):
+    """A store that keeps a run without a converged result as it keeps the others: with its status, it is a
+    finding of a study of many runs, and costs as much.
+    """
+
+    def lookup(self, scene: Scene, model: str, kind: str = RESULT) -> Lookup:
+        found = super().lookup(scene, model, kind)
+        other = super().lookup(scene, model, UNCONVERGED) if found.result is None else found
+        return found if other.result is None else other
+
+    def keep(self, scene: Scene, model: str, result: Result, *, unconverged: bool = True) -> None:
+        super().keep(scene, model, result, unconverged=unconverged)
 
 
 @dataclass(frozen=True)
@@ -93,9 +107,8 @@ class Sweep:
         """A result, solved or reused."""
         self.counts["reused" if source.reused else "solved"] += 1
         self.counts["not_converged"] += not result.converged
-        numbers = [result.quantities.get(name) for name in QUANTITIES] + [
-            result.cost.get(name) for name in COUNTERS
-        ]
+        numbers = [result.quantities.get(name) for name in QUANTITIES]
+        numbers += [result.cost.get(name) for name in COUNTERS]
         reason = "" if result.converged else result.message or result.status.advice
         self._row(point, result.status.value, reason, [*numbers, "; ".join(result.warnings)])
         place = self.place(point.index)
@@ -114,14 +127,8 @@ class Sweep:
         self._row(point, status, " ".join(reason.split()), empty)
 
     def _row(self, point: StudyPoint, status: str, reason: str, last: Sequence) -> None:
-        self.rows[point.index] = (
-            point.index,
-            *point.shown,
-            self.content.study.model,
-            status,
-            reason,
-            *last,
-        )
+        model = self.content.study.model
+        self.rows[point.index] = (point.index, *point.shown, model, status, reason, *last)
 
     def write(self, always: bool = False) -> None:
         """The table of what is finished, in the order of the index; a long one not after each point."""
@@ -153,7 +160,8 @@ def sweep(
     content = read_study(path)
     folder = out or Path(f"{path.stem}-sweep")
     _check_folder(folder)
-    store = default_store() if use_store else None
+    known = default_store() if use_store else None
+    store = None if known is None else KeepsAll(known.folder)
     with locked(folder), _executor(scheduler, workers) as executor:
         seeds = [] if content.study.seed is None else [content.study.seed]
         state = Sweep(content, folder, store, runs, provenance=collect(content.inputs, seeds))
@@ -217,9 +225,8 @@ def _clear(state: Sweep) -> None:
     """
     for name in (*FILES, *OF_DESIGN):
         (state.folder / name).unlink(missing_ok=True)
-    ours = {
-        state.place(point.index).name: point for point in state.content.points if state.runs and state.store
-    }
+    kept = state.content.points if state.runs and state.store else ()
+    ours = {state.place(point.index).name: point for point in kept}
     for place in (state.folder / RUNS).glob("[0-9]*"):
         if place.is_dir() and not place.is_symlink() and not _is_run_of(place, ours.get(place.name), state):
             clear_run(place)
@@ -271,28 +278,16 @@ def _look_up(state: Sweep, progress: Progress) -> Iterator[StudyPoint]:
         if point.scene is None:
             state.add_without(point, REFUSED, point.reason)
             continue
-        found = _found(state.store, point.scene, model) if state.store else None
-        if found is not None and found.result is not None:
+        found = state.store.lookup(point.scene, model) if state.store else Lookup()
+        if found.result is not None:
             state.add(point, found.result, Reuse(True, found.created, found.commit), {})
         else:
-            if found is not None and found.note:
-                state.notes.append(found.note)
+            state.notes += filter(None, [found.note])
             yield point
         progress("looked up in the store", done, len(points))
     if state.notes:
-        text = (
-            f"{len(state.notes)} results of the store cannot be used and are computed again: {state.notes[0]}"
-        )
-        print(f"samfem: sweep: {text}", file=sys.stderr)
-
-
-def _found(store: Store, scene: Scene, model: str) -> Lookup:
-    """What a store holds of a scene, converged or not."""
-    converged = store.lookup(scene, model)
-    if converged.result is not None:
-        return converged
-    other = store.lookup(scene, model, UNCONVERGED)
-    return converged if other.result is None else other
+        text = f"{len(state.notes)} results of the store cannot be used and are computed again"
+        print(f"samfem: sweep: {text}: {state.notes[0]}", file=sys.stderr)
 
 
 def _take(state: Sweep, point: StudyPoint, outcome: SolvedPoint | Failure) -> None:
@@ -300,7 +295,7 @@ def _take(state: Sweep, point: StudyPoint, outcome: SolvedPoint | Failure) -> No
         state.add_without(point, FAILED, outcome.reason)
         return
     if state.store is not None:
-        state.store.keep(point.scene, outcome.result.model, outcome.result, unconverged=True)
+        state.store.keep(point.scene, outcome.result.model, outcome.result)
     state.add(point, outcome.result, Reuse(False), outcome.origin)
 
 
@@ -342,10 +337,8 @@ def index_rows(state: Sweep) -> list[tuple]:
     for name in QUANTITIES:
         values = np.where(converged, np.array(columns[name], dtype=float), np.nan)
         for index in indices(study.mode, shares, values, study.seed):
-            numbers = (index.values, *index.bounds, index.count)
-            rows = [
-                (name, key, index.name, *each) for key, *each in zip(study.factors, *numbers, strict=True)
-            ]
+            columns_of = zip(study.factors, index.values, *index.bounds, index.count, strict=True)
+            rows = [(name, key, index.name, *each) for key, *each in columns_of]
             found += sorted(rows, key=lambda row: -abs(row[3]))
     return found
 
