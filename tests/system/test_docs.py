@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""The documentation is right: its links, commands, scenes, file names, symbols and numbers are checked, and
-the stories of the guide are run, one command after the other, in an empty folder.
+"""The documentation is right: its links, commands, scenes, file names and symbols are checked, and the
+stories of the guide are run, one command after the other, in an empty folder.
 
 The first story, `first-contact`, is run by `.ci/wheel`, with the package installed as its reader installs it.
 """
 
-import json
 import os
 import re
 import shlex
@@ -13,7 +12,6 @@ import shutil
 import subprocess
 import sys
 import tomllib
-from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -37,7 +35,6 @@ PAGES = {
 }
 LONGEST_README, LONGEST_PATH = 120, 2800  # lines
 LONGEST_S = 120  # what a reader of a story is promised
-NUMBERS = ("No", "One", "Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine", "Ten")
 PLACEHOLDER = "NAME"
 """Stands for a name that the reader chooses."""
 STORIES = {
@@ -51,9 +48,6 @@ FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 CODE = re.compile(r"`([^`\n]+)`")
 PATH_OF_SOURCE = re.compile(r"(samfem|sam|fem_reference|verification|tests|docs|reports)/[\w./*-]+")
 SYMBOLS_IN_FILE = re.compile(r"((?:`[\w.]+`(?:, | and ))*`[\w.]+`) in `([\w/]+\.py)`")
-NUMBER_OF_GATE = re.compile(
-    r"\| ([0-9.]+) (%|times) \| `([a-z0-9.-]+)` \| \[[^]]+\]\((reports/[\w-]+\.html)\) \|"
-)
 every_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 
 
@@ -225,50 +219,6 @@ def test_every_public_function_of_the_python_page_is_public():
     assert {package for package, _ in rows} == {"sam", "fem_reference", "fem_reference.spatial"}
     for package, names in rows:
         assert set(CODE.findall(names)) <= set(import_module(package).__all__), package
-
-
-@cache
-def published() -> dict:
-    return json.loads((ROOT / "reports" / "results.json").read_text(encoding="utf-8"))
-
-
-def wrong_numbers(text: str) -> list[str]:
-    """Gates whose printed number is not that of the published page to half a unit of its last digit, or which
-    do not stand on that page.
-    """
-    wrong = []
-    for number, unit, gate, page in NUMBER_OF_GATE.findall(text):
-        verdict = next(v for v in published()["gates"] if v["id"] == gate)
-        value = verdict["error"] * (100 if unit == "%" else 1)
-        half = 0.5 * 10.0 ** -len(number.partition(".")[2])
-        right = verdict["status"] == "passed" and abs(float(number) - value) <= half * (1 + 1e-9)
-        if not right or f'id="{gate}"' not in (ROOT / page).read_text(encoding="utf-8"):
-            wrong.append(gate)
-    return wrong
-
-
-def not_named_red(text: str) -> set[str]:
-    """Gates that failed and that the text does not name, or names although they hold."""
-    states = {gate["id"]: gate["status"] for gate in published()["gates"]}
-    red = {name for name, status in states.items() if status in ("failed", "unchecked")}
-    numbers = {gate for *_, gate, _ in NUMBER_OF_GATE.findall(text)}
-    return red ^ ({name for name in CODE.findall(text) if name in states} - numbers)
-
-
-def test_the_numbers_of_the_readme_are_those_of_the_published_pages():
-    found = NUMBER_OF_GATE.findall(README)
-    assert len(found) == 5 and wrong_numbers(README) == []
-    for number, unit, gate, _ in found:
-        other = f"| {1.1 * float(number):.4g} {unit} | `{gate}`"
-        assert wrong_numbers(README.replace(f"| {number} {unit} | `{gate}`", other)) == [gate]
-
-
-def test_the_readme_names_every_gate_that_failed():
-    failed = published()["summary"]["failed"] + published()["summary"]["unchecked"]
-    assert not_named_red(README) == set()
-    assert not_named_red(README + " `pavement.fox`") == {"pavement.fox"} and len(not_named_red("")) == failed
-    count = NUMBERS[failed] if failed < len(NUMBERS) else failed
-    assert not failed or f"{count} gate{'s' if failed > 1 else ''} fail" in README
 
 
 @pytest.fixture(scope="module")
