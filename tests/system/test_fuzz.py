@@ -30,6 +30,7 @@ from verification.robustness.fuzz import (
     MORE_KINDS,
     RUN,
     STUDIES,
+    BadInput,
     bad_input,
     good_meshes,
     lay,
@@ -75,7 +76,7 @@ def test_a_good_mesh_is_read_in_each_format(tmp_path):
     for name in good_meshes():
         text = MAPPING.replace("own.vtu", name)
         text = text if name != "own.vtk" else text[: text.index("mises = ")]
-        bad = with_mapping(MESHES, text, good_meshes())
+        bad = BadInput(MESHES, *with_mapping(text, good_meshes()))
         assert case.read_all(lay(bad, tmp_path / name), bad) == "valid"
 
 
