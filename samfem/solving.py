@@ -46,9 +46,9 @@ def solve(
 ) -> int:
     """Solve a scene into a folder; 0 if converged, else 1 with status and advice on stderr.
 
-    resume: go on from the checkpoint in the folder, and do nothing where the result is there already;
-    uncertainty: of all quantities, as [solver] of the scene may ask for it too; anyway: however long that
-    takes, as what is resumed does.
+    resume: go on from the checkpoint in the folder, and do nothing where the result is there
+    already; uncertainty: of all quantities, as [solver] of the scene may ask for it too; anyway:
+    however long that takes, as what is resumed does.
     """
     scene, inputs = read_scene(path)
     if uncertainty:
@@ -181,8 +181,8 @@ def write_solved(
 
 
 def check(scene: Scene, *names: str, anyway: bool = False) -> None:
-    """Raise ModelError unless each model can represent the scene within the memory of the machine, and,
-    unless `anyway`, in the time that a command begins unasked.
+    """Raise ModelError unless each model can represent the scene within the memory of the machine,
+    and, unless `anyway`, in the time that a command begins unasked.
     """
     for model in names:
         chosen = scene

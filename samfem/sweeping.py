@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The command sweep: the scenes of a study, solved by many workers, as one table.
 
-What the store holds is not solved again, and what is solved is kept there as soon as it is finished, so a
-sweep that was killed goes on where it was. The table holds no times: the same study gives the same bytes
-wherever it was solved.
+What the store holds is not solved again, and what is solved is kept there as soon as it is
+finished, so a sweep that was killed goes on where it was. The table holds no times: the same study
+gives the same bytes wherever it was solved.
 """
 
 from __future__ import annotations
@@ -56,8 +56,8 @@ REST_FACTOR = 4  # the table is not rewritten before this many times the time th
 
 
 class KeepsAll(Store):
-    """A store that keeps a run without a converged result as it keeps the others: with its status, it is a
-    finding of a study of many runs, and costs as much.
+    """A store that keeps a run without a converged result as it keeps the others: with its status,
+    it is a finding of a study of many runs, and costs as much.
     """
 
     def lookup(self, scene: Scene, model: str, kind: str = RESULT) -> Lookup:
@@ -79,8 +79,8 @@ class SolvedPoint:
 
 @dataclass
 class Sweep:
-    """What has become of the points so far. rows: index -> row of the table; runs: whether run folders are
-    written.
+    """What has become of the points so far. rows: index -> row of the table; runs: whether run
+    folders are written.
     """
 
     content: Points
@@ -149,12 +149,13 @@ def sweep(
     use_store: bool = True,
     anyway: bool = False,
 ) -> int:
-    """Solve the scenes of a study into a folder; 0 if all converged, else 1 with the first reasons on stderr.
+    """Solve the scenes of a study into a folder; 0 if all converged, else 1 with the first reasons
+    on stderr.
 
-    scheduler: address of a Dask cluster, instead of so many `workers` on this machine (None: one a core);
-    runs: write a folder for each result; use_store: take what the store holds, and keep there what is solved;
-    anyway: also scenes that take longer than a command begins unasked.
-    Raises SceneError or FolderError before anything is made, KeyboardInterrupt that says what is kept.
+    scheduler: address of a Dask cluster, instead of so many `workers` on this machine (None: one a
+    core); runs: write a folder for each result; use_store: take what the store holds, and keep
+    there what is solved; anyway: also scenes that take longer than a command begins unasked. Raises
+    SceneError or FolderError before anything is made, KeyboardInterrupt that says what is kept.
     """
     began = time.monotonic()
     content = read_study(path)
@@ -220,8 +221,8 @@ def _check_folder(folder: Path) -> None:
 
 
 def _clear(state: Sweep) -> None:
-    """Remove the files of an older sweep, sweep.json first, and its runs, but those that the store will give
-    again.
+    """Remove the files of an older sweep, sweep.json first, and its runs, but those that the store
+    will give again.
     """
     for name in (*FILES, *OF_DESIGN):
         (state.folder / name).unlink(missing_ok=True)
@@ -300,8 +301,8 @@ def _take(state: Sweep, point: StudyPoint, outcome: SolvedPoint | Failure) -> No
 
 
 def solve_scene(scene: Scene, model: str, code: str, anyway: bool = False) -> SolvedPoint | Failure:
-    """In a worker: the result of a scene. A Failure if it raises, or if the worker runs another version of
-    the code.
+    """In a worker: the result of a scene. A Failure if it raises, or if the worker runs another
+    version of the code.
     """
     try:
         if code_version(model) != code:

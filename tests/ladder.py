@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""A ladder of scenes, from an elastic sphere to full running-in, and what a solve of each does, counted from
-outside.
+"""A ladder of scenes, from an elastic sphere to full running-in, and what a solve of each does,
+counted from outside.
 
-As a program (`python tests/ladder.py MODEL:RUNG ...`) it solves rungs, each in a process of its own with
-empty caches, and prints as JSON what ran: kinds of work with their calls and sizes, and transforms by the
-work that they belong to. Nothing in the solvers counts for it: functions are wrapped where they are defined,
-once their module is loaded.
+As a program (`python tests/ladder.py MODEL:RUNG ...`) it solves rungs, each in a process of its own
+with empty caches, and prints as JSON what ran: kinds of work with their calls and sizes, and
+transforms by the work that they belong to. Nothing in the solvers counts for it: functions are
+wrapped where they are defined, once their module is loaded.
 """
 
 import functools
@@ -48,8 +48,8 @@ CHEMICAL = {
 
 
 def sphere(plasticity=None, *, coating=None, counterbody=None, friction=None, solver=None, **loading) -> dict:
-    """A rigid sphere on a smooth body: 33 x 33 cells elastic, 17 x 17 plastic; FEM with the fewest elements
-    that are allowed.
+    """A rigid sphere on a smooth body: 33 x 33 cells elastic, 17 x 17 plastic; FEM with the fewest
+    elements that are allowed.
     """
     plastic = plasticity is not None
     grid = (
@@ -257,16 +257,16 @@ PROBES: dict[str, dict[str, Namer]] = {
         "rough.counter_heights_of": "counter heights",
     },
 }
-"""Of each package: ends of full names of functions, and what kinds of work they are, the first one that of
-their transforms.
+"""Of each package: ends of full names of functions, and what kinds of work they are, the first one
+that of their transforms.
 """
 
 
 class Recorder:
     """Wraps what PROBES name while it records, and the transforms of scipy and numpy.
 
-    work: kind -> [calls, numbers that it made], in the order in which they began; transforms: kind of work,
-    or "" -> [calls, values].
+    work: kind -> [calls, numbers that it made], in the order in which they began; transforms: kind
+    of work, or "" -> [calls, values].
     """
 
     def __init__(self):

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""The suite in one environment after another; each changes one thing that a machine decides, and no other.
+"""The suite in one environment after another; each changes one thing that a machine decides, and no
+other.
 
-    python tests/run_environments.py [NAME ...] [--out FILE] [-- ARGUMENT OF PYTEST ...]
+python tests/run_environments.py [NAME ...] [--out FILE] [-- ARGUMENT OF PYTEST ...]
 
-PROBE is run in each one first; `holds` reads its answer, so that a change which had no effect on this machine
-is not counted as a test of anything. Prints a row for each as it ends, and the whole output of pytest where a
-test failed. Exit code 1 if one failed anywhere, 2 for a wrong name.
+PROBE is run in each one first; `holds` reads its answer, so that a change which had no effect on
+this machine is not counted as a test of anything. Prints a row for each as it ends, and the whole
+output of pytest where a test failed. Exit code 1 if one failed anywhere, 2 for a wrong name.
 """
 
 import argparse
@@ -89,8 +90,8 @@ print(json.dumps({
     "terminal": sys.stdout.isatty(),
 }))
 """
-"""Prints, as one line of JSON, what numpy, scipy and Python found, with the threads that the tests have. Both
-BLAS compute something, so that a kernel which the processor cannot run ends the process.
+"""Prints, as one line of JSON, what numpy, scipy and Python found, with the threads that the tests
+have. Both BLAS compute something, so that a kernel which the processor cannot run ends the process.
 """
 
 
@@ -102,9 +103,9 @@ class NotHereError(Exception):
 class Environment:
     """One change of what a machine decides.
 
-    variables: None takes one away; options: of pytest; around: (checkout, scratch folder) -> the words before
-    a command, raises NotHereError; owner: number of the user whom a copy of the checkout is given to; holds:
-    whether a probe shows the change, given the probe without it.
+    variables: None takes one away; options: of pytest; around: (checkout, scratch folder) -> the
+    words before a command, raises NotHereError; owner: number of the user whom a copy of the
+    checkout is given to; holds: whether a probe shows the change, given the probe without it.
     """
 
     says: str
@@ -181,8 +182,8 @@ def as_user(number: int) -> Callable[[Path, Path], list[str]]:
 
 
 def of_kernel(name: str) -> Environment:
-    """Kernels of OpenBLAS for a processor. They may go by an older name (Prescott's are called Katmai), but
-    those that are taken anyway, or that another of KERNELS asks for, are not its own.
+    """Kernels of OpenBLAS for a processor. They may go by an older name (Prescott's are called
+    Katmai), but those that are taken anyway, or that another of KERNELS asks for, are not its own.
     """
 
     def holds(probe: dict, plain: dict) -> bool:
@@ -260,8 +261,8 @@ def environments() -> dict[str, Environment]:
 
 @dataclass(frozen=True)
 class Row:
-    """What came out of one environment. kernels: of numpy and scipy; failed: names of tests; trouble: why the
-    suite was not run or did not end by itself, else "".
+    """What came out of one environment. kernels: of numpy and scipy; failed: names of tests;
+    trouble: why the suite was not run or did not end by itself, else "".
     """
 
     name: str
@@ -287,8 +288,8 @@ class Row:
 
 
 def ended(words: Sequence[str], limit_s: float, **how) -> int | None:
-    """The exit code of a command, None after the limit. Its process group is ended whole when it takes too
-    long or this process is interrupted.
+    """The exit code of a command, None after the limit. Its process group is ended whole when it
+    takes too long or this process is interrupted.
     """
     process = subprocess.Popen(words, stdin=subprocess.DEVNULL, start_new_session=True, **how)
     try:

@@ -162,8 +162,8 @@ def test_a_defect_shows_where_when_asked(folder, monkeypatch):
 
 
 def test_an_interrupt_in_a_process_of_its_own(folder):
-    """The signal arrives while a command runs; one that waits stands for it. Tests in a background job would
-    ignore it.
+    """The signal arrives while a command runs; one that waits stands for it. Tests in a background
+    job would ignore it.
     """
     code = "import sys, time; from samfem import cli, planning\n"
     code += "planning.plan = lambda **_: (print('runs', flush=True), time.sleep(60))\n"

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The documentation is right: its links, commands, scenes, file names and symbols are checked, and the
-stories of the guide are run, one command after the other, in an empty folder.
+"""The documentation is right: its links, commands, scenes, file names and symbols are checked, and
+the stories of the guide are run, one command after the other, in an empty folder.
 
-The first story, `first-contact`, is run by `.ci/wheel`, with the package installed as its reader installs it.
+The first story, `first-contact`, is run by `.ci/wheel`, with the package installed as its reader
+installs it.
 """
 
 import os
@@ -110,8 +111,8 @@ def fragments() -> list[tuple[str, list[str]]]:
 
 
 def accept(parts: list[str], folder: Path) -> None:
-    """Raises SceneError unless the last part is a study, a case, or makes a scene with the parts before it
-    and that of the README; of [body] a part changes only the keys that it gives.
+    """Raises SceneError unless the last part is a study, a case, or makes a scene with the parts
+    before it and that of the README; of [body] a part changes only the keys that it gives.
     """
     (folder / "sphere.toml").write_text(blocks(README, "toml")[0], encoding="utf-8")
     for name in ("curve-b.csv", "pin.csv"):

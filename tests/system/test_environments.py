@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The command that runs the suite in other environments: what it counts, what it calls not run, and that it
-goes on.
+"""The command that runs the suite in other environments: what it counts, what it calls not run, and
+that it goes on.
 """
 
 import os

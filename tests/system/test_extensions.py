@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Every hardening law, shape and reference solution is known wherever one of each is asked for: what is
-forgotten of a new one is named here.
+"""Every hardening law, shape and reference solution is known wherever one of each is asked for:
+what is forgotten of a new one is named here.
 """
 
 import math

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Bad input: the readers raise their own errors only; and every gate of the case turns red when something is
-wrong.
+"""Bad input: the readers raise their own errors only; and every gate of the case turns red when
+something is wrong.
 """
 
 import json
@@ -252,8 +252,8 @@ def test_a_name_with_a_null_character_is_passed_as_far_as_systems_do(tmp_path):
 
 
 def test_markup_and_control_characters_do_no_harm_in_a_report(tmp_path, monkeypatch):
-    """As a title of a scene would arrive: in the set-up, a table, a note, and the message of a case that
-    breaks off.
+    """As a title of a scene would arrive: in the set-up, a table, a note, and the message of a case
+    that breaks off.
     """
     text = " ".join(entry for entry in MARKUP if len(entry) < 100)
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Who imports whom, and what is loaded at run time.
 
-`lint-imports` holds the order of the packages. Here one bad line is seen to turn each of its contracts red,
-no forbidden import hides in a table of module names, and a command loads no more than it needs.
+`lint-imports` holds the order of the packages. Here one bad line is seen to turn each of its
+contracts red, no forbidden import hides in a table of module names, and a command loads no more
+than it needs.
 """
 
 from __future__ import annotations
@@ -105,8 +106,8 @@ def test_a_table_names_no_module_of_the_other_model():
 
 
 def inside_a_solver(source: str) -> list[str]:
-    """What a source imports of a solver that is not public: a module of a package, or a name that the
-    package has not in `__all__`.
+    """What a source imports of a solver that is not public: a module of a package, or a name that
+    the package has not in `__all__`.
     """
     found = []
     for node in ast.walk(ast.parse(source)):
@@ -190,8 +191,9 @@ COMMANDS = {
 
 @pytest.fixture(scope="module")
 def loaded_by_command(tmp_path_factory) -> dict[str, set[str]]:
-    """Names of all modules that each command has loaded, in a process of its own. Pictures in space are drawn
-    in a further process, whose modules are not seen here: no module can be started as one.
+    """Names of all modules that each command has loaded, in a process of its own. Pictures in space
+    are drawn in a further process, whose modules are not seen here: no module can be started as
+    one.
     """
     folder = tmp_path_factory.mktemp("commands")
     (folder / "scene.toml").write_text(SCENE)

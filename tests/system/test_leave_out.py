@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Nothing is computed that a scene does not need, counted over a ladder of scenes; and the plan says what
-runs.
+"""Nothing is computed that a scene does not need, counted over a ladder of scenes; and the plan
+says what runs.
 
-What ran (`ladder`) must be what the stages of the plan need that run (NEEDS), no more and no less. The rest
-is left out with a reason, and `samfem plan` prints the same.
+What ran (`ladder`) must be what the stages of the plan need that run (NEEDS), no more and no less.
+The rest is left out with a reason, and `samfem plan` prints the same.
 """
 
 import ast
@@ -99,7 +99,8 @@ NEEDS: dict[str, dict[str, str]] = {
     },
 }
 """Of each model: stages of a plan, those that it must not have after "not" -> kinds of work (see
-ladder.PROBES) that they need together, and after the bar those that the program is free to do without.
+ladder.PROBES) that they need together, and after the bar those that the program is free to do
+without.
 """
 OF_FEM = """elastic sphere; unloaded; cycles; elastic counter-body; rounded edge; no friction after all;
 no force; coated; given load; plastic; back-stresses; plastic, unloaded; plastic cycles;
@@ -232,8 +233,8 @@ def functions_of(package: str) -> list[str]:
 
 
 def test_every_probe_names_something_and_every_influence_coefficient_has_a_probe():
-    """A function that is renamed or moved must not go unseen; coefficients are public functions that are
-    named so, and methods of a coated body.
+    """A function that is renamed or moved must not go unseen; coefficients are public functions
+    that are named so, and methods of a coated body.
     """
     for package, probes in ladder.PROBES.items():
         names = functions_of(package)
@@ -284,8 +285,9 @@ def test_transforms_that_a_scene_has_no_use_for():
 
 
 def test_stresses_are_evaluated_once_for_a_state_and_the_elastic_peak_is_solved_once():
-    """Of an elastic scene that is unloaded at its peak, and the zeros after it: coefficients of every depth
-    once. One elastic solution says whether a body yields, and where plastic strain is first looked for.
+    """Of an elastic scene that is unloaded at its peak, and the zeros after it: coefficients of
+    every depth once. One elastic solution says whether a body yields, and where plastic strain is
+    first looked for.
     """
     ran = ran_in(SAM, "unloaded")
     assert ran["work"]["stress in y = 0"][0] == 2

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A solve that ends before its peak load: no quantity of that load, no state called peak, and the last load
-that fitted.
+"""A solve that ends before its peak load: no quantity of that load, no state called peak, and the
+last load that fitted.
 """
 
 import io
@@ -48,8 +48,8 @@ def says_what_was_reached(result, force: float) -> None:
 
 
 def limited(monkeypatch, model: type, fails) -> None:
-    """Let Newton's method of a model end unconverged where `fails` says so of the force, in units of the
-    peak's.
+    """Let Newton's method of a model end unconverged where `fails` says so of the force, in units
+    of the peak's.
     """
     solved = model.load
 
@@ -127,8 +127,8 @@ def test_three_dimensional_cut_limit(monkeypatch):
 
 @pytest.fixture(scope="module")
 def solved(tmp_path_factory):
-    """Folder of the result of a plastic sphere on a grid of its own that is too shallow, and what the command
-    wrote to stdout and stderr.
+    """Folder of the result of a plastic sphere on a grid of its own that is too shallow, and what
+    the command wrote to stdout and stderr.
     """
     folder, out, err = tmp_path_factory.mktemp("edge"), io.StringIO(), io.StringIO()
     law = f"[body.plasticity]\n{HARDENING['swift']}"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The mutation check: what it finds, that it is changed where it is used, what is lost, and that its gates
-turn red.
+"""The mutation check: what it finds, that it is changed where it is used, what is lost, and that
+its gates turn red.
 """
 
 import json

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A solve that was stopped and continued gives the same bytes; a checkpoint of anything else is refused by
-name.
+"""A solve that was stopped and continued gives the same bytes; a checkpoint of anything else is
+refused by name.
 """
 
 import json
@@ -114,8 +114,8 @@ CASES = {
 
 
 def made_by(scene: Scene, model: str, folder: Path | None = None, *, start=None, stop: int = 0):
-    """The result of a solve from `start` on, None where it is stopped after so many checkpoints, and these,
-    or the files in a folder that each is written to before the solve goes on.
+    """The result of a solve from `start` on, None where it is stopped after so many checkpoints,
+    and these, or the files in a folder that each is written to before the solve goes on.
     """
     made: list = []
 
@@ -155,11 +155,11 @@ def contents(result, scene: Scene, folder: Path) -> dict[str, bytes]:
 
 @pytest.mark.parametrize("name", CASES)
 def test_a_solve_continued_from_any_checkpoint_gives_the_same_bytes(name, tmp_path, monkeypatch):
-    """From the file of each of its checkpoints in turn: the next checkpoint, bit by bit, is the undisturbed
-    run's.
+    """From the file of each of its checkpoints in turn: the next checkpoint, bit by bit, is the
+    undisturbed run's.
 
-    By induction every continued solve ends like it. From the first, a middle and the last one, the end itself
-    is compared: every file of the run.
+    By induction every continued solve ends like it. From the first, a middle and the last one, the
+    end itself is compared: every file of the run.
     """
     model, scene, change = CASES[name]
     if change is not None:
@@ -196,8 +196,9 @@ def is_what_its_name_says(name: str, result, made: list[Path]) -> None:
 
 @pytest.mark.parametrize("model", [SAM, FEM])
 def test_a_solve_that_breaks_off_leaves_checkpoints_as_good(model, tmp_path):
-    """The callback raises: what it was given before does not change, and no caller's array is written to
-    later. Its arrays are numbers in C order: a file gives them back in it, and sums go along the memory.
+    """The callback raises: what it was given before does not change, and no caller's array is
+    written to later. Its arrays are numbers in C order: a file gives them back in it, and sums go
+    along the memory.
     """
     scene = sphere()
     expected = contents(models.solve(scene, model), scene, tmp_path / "whole")

@@ -84,8 +84,8 @@ def test_interrupt_then_resume(solve, interrupt):
 
 
 def test_interrupt_after_the_last_step_then_resume(solve, interrupt, monkeypatch):
-    """Between the last step and the files of the result nothing is left to be solved; the latest checkpoint
-    is written also if the interval has not passed.
+    """Between the last step and the files of the result nothing is left to be solved; the latest
+    checkpoint is written also if the interval has not passed.
     """
     monkeypatch.setenv(checkpoints.INTERVAL, "1e6")
     assert "continues after the last step" in interrupt(5)[0]
@@ -117,8 +117,8 @@ def test_outside_the_main_thread_no_handler_is_set(folder):
 
 
 def test_killed_then_resumed(solve):
-    """kill -9 of a real process, right after its second checkpoint: only that is left, and the rest gives the
-    same bytes.
+    """kill -9 of a real process, right after its second checkpoint: only that is left, and the rest
+    gives the same bytes.
     """
     program = (
         "import os, signal, sys\n"
@@ -233,8 +233,8 @@ def test_resume_of_a_finished_folder_solves_nothing_and_keeps_its_exit_code(fold
 
 
 def test_an_older_result_stays_until_a_newer_solve_is_finished(solve, interrupt):
-    """Interrupted while it solves the scene of a finished folder again: the result is there, and --resume
-    finishes.
+    """Interrupted while it solves the scene of a finished folder again: the result is there, and
+    --resume finishes.
     """
     solve()
     summary = SUMMARY.read_bytes()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The sources: functions and modules within their limits, and docs/equations.md against the code: a row for
-each equation, names that exist, functions that cite it.
+"""The sources: functions and modules within their limits, and docs/equations.md against the code: a
+row for each equation, names that exist, functions that cite it.
 
 Nothing is solved. ruff holds the other limits, of parameters, columns and branches.
 """
@@ -73,8 +73,8 @@ def found(name: str) -> object:
 
 
 def cited(thing: object) -> set[str]:
-    """The words of comments and strings of a function, method, property or class, and the numbers that they
-    cite: of "Eq. 5", "Eq. 9 and 10", "Eq. 22 to 26"; not "Eq. 3.19" of another source.
+    """The words of comments and strings of a function, method, property or class, and the numbers
+    that they cite: of "Eq. 5", "Eq. 9 and 10", "Eq. 22 to 26"; not "Eq. 3.19" of another source.
     """
     thing = getattr(thing, "fget", thing) if isinstance(thing, property) else thing
     thing = thing.func if isinstance(thing, cached_property) else thing

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What is in the wheel: all that runs, nothing that only tests and maintainers need, and no package of an
-extra at import.
+"""What is in the wheel: all that runs, nothing that only tests and maintainers need, and no package
+of an extra at import.
 """
 
 import ast
@@ -57,8 +57,8 @@ def test_the_wheel_has_every_file_of_the_packages_but_the_mutation_check():
 
 
 def loaded_at_import(path: Path) -> set[str]:
-    """Modules that a file imports when it is itself imported, in no function and not for type checkers
-    alone.
+    """Modules that a file imports when it is itself imported, in no function and not for type
+    checkers alone.
     """
     found, nodes = set(), list(ast.parse(path.read_text(encoding="utf-8")).body)
     while nodes:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What the commands say: reasons that name the key to change, suggestions, advice first, sizes that a person
-can read.
+"""What the commands say: reasons that name the key to change, suggestions, advice first, sizes that
+a person can read.
 """
 
 import csv
@@ -87,8 +87,8 @@ def test_a_comparison_names_what_stops_every_model_at_once(scene_file, samfem):
 
 
 class TestClaim:
-    """A film of 0.08 contact radii and a third of the stiffness changes pressure and stress by 6 and 7 %: not
-    negligible.
+    """A film of 0.08 contact radii and a third of the stiffness changes pressure and stress by 6
+    and 7 %: not negligible.
     """
 
     film = FILM.replace("100 nm", "500 nm")
@@ -259,8 +259,8 @@ AT_LIMIT = [
 
 
 class TestAdviceOfWhatCanBeChanged:
-    """Every status of every model: no key at its limit, none that the scene has not, none that is set
-    already.
+    """Every status of every model: no key at its limit, none that the scene has not, none that is
+    set already.
     """
 
     @pytest.mark.parametrize("advise", [advice, message_of])

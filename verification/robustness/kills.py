@@ -30,8 +30,8 @@ OF_EVERY_RUN = (SUMMARY, FIELDS, SURFACE, STEPS, "history.csv", "axis.csv", "lin
 
 @dataclass(frozen=True)
 class Ended:
-    """A command that ended: exit code (negative: by a signal, None: stopped after LIMIT_S) and what it
-    printed.
+    """A command that ended: exit code (negative: by a signal, None: stopped after LIMIT_S) and what
+    it printed.
     """
 
     code: int | None
@@ -51,8 +51,8 @@ class KillTrial:
 
 
 def start(words: Sequence[str], store: Path, command: Sequence[str] | None = None) -> subprocess.Popen:
-    """A command in a session of its own, with a checkpoint at each step. It hears SIGINT, as started from a
-    terminal: a job in the background of a script inherits that it does not.
+    """A command in a session of its own, with a checkpoint at each step. It hears SIGINT, as
+    started from a terminal: a job in the background of a script inherits that it does not.
     """
     own = {"SAMFEM_STORE": str(store), "SAMFEM_CHECKPOINT_S": "0", "OMP_NUM_THREADS": "1"}
     return subprocess.Popen(
@@ -215,8 +215,8 @@ def killed_sweep(
     rng: random.Random,
     base: Path,
 ) -> KillTrial:
-    """Kill a sweep ("parent") or one of its workers ("worker") after `delay`, start it again if need be, and
-    compare.
+    """Kill a sweep ("parent") or one of its workers ("worker") after `delay`, start it again if
+    need be, and compare.
     """
     trial, store = KillTrial(), base / f"{folder.name}-store"
     process = start([*words, "--out", str(folder)], store)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Bad input: what the readers and the command make of scenes, tables, archives and folders that are wrong on
-purpose.
+"""Bad input: what the readers and the command make of scenes, tables, archives and folders that are
+wrong on purpose.
 """
 
 from __future__ import annotations
@@ -77,8 +77,8 @@ class Hang(BaseException):
 
 @dataclass
 class Tally:
-    """counts: (kind, how it ended) -> number; findings: gate -> what was wrong, one text each; slowest:
-    seconds, input.
+    """counts: (kind, how it ended) -> number; findings: gate -> what was wrong, one text each;
+    slowest: seconds, input.
     """
 
     counts: Counter = field(default_factory=Counter)
@@ -91,8 +91,8 @@ class Tally:
 
 
 def read_all(path: Path, bad: BadInput) -> str:
-    """Read an input as samfem does: "valid" or "refused". Any other error than those of the readers comes
-    out.
+    """Read an input as samfem does: "valid" or "refused". Any other error than those of the readers
+    comes out.
     """
     try:
         if bad.kind in (MESHES, MAPPINGS):
@@ -146,8 +146,8 @@ def judge_readers(
 
 @contextmanager
 def guarded(seconds: float, memory: int) -> Iterator[None]:
-    """Raise Hang in the block after so many seconds of processor time, MemoryError beyond so many further
-    bytes. Main thread only.
+    """Raise Hang in the block after so many seconds of processor time, MemoryError beyond so many
+    further bytes. Main thread only.
     """
 
     def stop(*_):
@@ -172,8 +172,8 @@ def _address_space() -> int:
 
 
 def words_for(bad: BadInput, path: Path, number: int) -> list[str]:
-    """The command for an input: solve or compare what is wrong or small, plan the rest; read what is no scene
-    as --out.
+    """The command for an input: solve or compare what is wrong or small, plan the rest; read what
+    is no scene as --out.
     """
     if bad.kind == RUN:
         return ["solve", "scene.toml", "--out", str(path)]
@@ -214,8 +214,8 @@ def _is_small(path: Path, read: Callable[[Path], Any] = read_scene) -> bool:
 def run_command(
     words: Sequence[str], base: Path, command: Sequence[str] = SAMFEM, how: random.Random | None = None
 ) -> tuple[int | None, str, set[str]]:
-    """Run a command in base/cwd with homes of its own: its exit code, None where it was stopped after
-    COMMAND_LIMIT_S, what it printed, and the paths below `base` that changed.
+    """Run a command in base/cwd with homes of its own: its exit code, None where it was stopped
+    after COMMAND_LIMIT_S, what it printed, and the paths below `base` that changed.
 
     how: draws its address space and what is closed; without it neither is limited.
     """
@@ -241,8 +241,8 @@ def run_command(
 
 
 def snapshot(base: Path) -> dict[str, tuple]:
-    """Everything below a folder: relative path -> (kind and rights, size, time of change of a file's
-    content).
+    """Everything below a folder: relative path -> (kind and rights, size, time of change of a
+    file's content).
     """
     found = {}
     for above, folders, files in os.walk(base):
@@ -256,8 +256,8 @@ def snapshot(base: Path) -> dict[str, tuple]:
 def judge_commands(
     numbers: Sequence[int], base: Path, command: Sequence[str] = SAMFEM, progress=lambda *_: None
 ) -> Tally:
-    """Run the command on inputs of SEED, AT_ONCE at a time, each in a folder of its own, of which it may
-    change cwd/out, unless it ends in 2.
+    """Run the command on inputs of SEED, AT_ONCE at a time, each in a folder of its own, of which
+    it may change cwd/out, unless it ends in 2.
     """
     tally, prepared = Tally(), []
     for number in numbers:
@@ -302,8 +302,8 @@ def counts_table(caption: str, tally: Tally) -> SmallTable:
 
 
 class BadInputs(Case):
-    """Inputs read in this process, and the command run on others: (level, tally of the readers, of the
-    command).
+    """Inputs read in this process, and the command run on others: (level, tally of the readers, of
+    the command).
     """
 
     def solve(self, context: Context) -> tuple[str, Tally, Tally]:
@@ -351,8 +351,8 @@ CASES = (BadInputs("bad-input"),)
 
 
 def main(what: str, first: str, last: str) -> None:
-    """Part of a campaign, larger than the case: `read` or `run` the inputs from the first to before the last,
-    and print kinds, ends and findings as a line of JSON.
+    """Part of a campaign, larger than the case: `read` or `run` the inputs from the first to before
+    the last, and print kinds, ends and findings as a line of JSON.
     """
     with tempfile.TemporaryDirectory(prefix="samfem-bad-input-") as base:
         judge = {"read": judge_readers, "run": judge_commands}[what]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Faults: solves and sweeps that are killed at random moments, and what else can go wrong while a run writes
-its folder.
+"""Faults: solves and sweeps that are killed at random moments, and what else can go wrong while a
+run writes its folder.
 """
 
 from __future__ import annotations
@@ -140,8 +140,8 @@ def other_scene(base: Path) -> Made:
 
 @dataclass(frozen=True)
 class Fault:
-    """A fault and how it should end. says: what the message must hold; written: whether a summary may be
-    there.
+    """A fault and how it should end. says: what the message must hold; written: whether a summary
+    may be there.
     """
 
     name: str
@@ -188,8 +188,8 @@ def undisturbed(words: Sequence[str], out: Path, store: Path) -> Ended:
 
 
 def kill_solves(count: int, base: Path, progress) -> tuple[list[KillTrial], float]:
-    """Trials of solves killed at moments uniform over the time of an undisturbed one, which is returned
-    too.
+    """Trials of solves killed at moments uniform over the time of an undisturbed one, which is
+    returned too.
     """
     words = ["solve", str(base / "scene.toml")]
     seconds = undisturbed(words, base / "undisturbed", base / "store").seconds
@@ -249,8 +249,8 @@ def counts_table(caption: str, trials: Sequence[KillTrial]) -> SmallTable:
 
 @dataclass(frozen=True)
 class Killed:
-    """Trials of solves (one undisturbed takes `seconds`) and of sweeps, and the other faults with their
-    rows.
+    """Trials of solves (one undisturbed takes `seconds`) and of sweeps, and the other faults with
+    their rows.
     """
 
     solves: list[KillTrial]

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""The mutants of a module: numbers, comparisons and conditions of its source, which changes some of them.
+"""The mutants of a module: numbers, comparisons and conditions of its source, which changes some of
+them.
 
-Perturbed by a factor 1.001 are, each by itself: every float; every integer that is an operand of + - * / and
-meets a float there, which only the run tells (`Number`); every row of a table. Structure, and left as it is:
-0, indices and slices, powers, keys of dictionaries, operands of // and %, arguments and limits that are
-integers, integers that only ever meet integers. A named integer, NAME = 24 in a module or a class, is a
-count: it grows by 2, as some have to stay even. In functions, < becomes <= and any other comparison its
-opposite, by itself; each condition of an if, a while or the like is negated.
+Perturbed by a factor 1.001 are, each by itself: every float; every integer that is an operand of +
+- * / and meets a float there, which only the run tells (`Number`); every row of a table. Structure,
+and left as it is: 0, indices and slices, powers, keys of dictionaries, operands of // and %,
+arguments and limits that are integers, integers that only ever meet integers. A named integer, NAME
+= 24 in a module or a class, is a count: it grows by 2, as some have to stay even. In functions, <
+becomes <= and any other comparison its opposite, by itself; each condition of an if, a while or the
+like is negated.
 """
 
 from __future__ import annotations
@@ -23,8 +25,9 @@ ARITHMETIC = (np.add, np.subtract, np.multiply)
 FACTOR = 1.001
 MORE = 2
 HOOK = "_perturbed_number_"
-"""Begins the names under which a rewritten module finds its `Number`; one underscore, as a class changes
-names with two."""
+"""Begins the names under which a rewritten module finds its `Number`; one underscore, as a class
+changes names with two.
+"""
 NEIGHBOUR = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt}
 OPPOSITE = {ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Gt: ast.LtE, ast.GtE: ast.Lt} | {
     one: other
@@ -35,9 +38,10 @@ OPPOSITE = {ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Gt: ast.LtE, ast.GtE: ast.Lt} 
 
 @dataclass(frozen=True)
 class Mutant:
-    """One change. kind: "number", "count", "row", "comparison" or "branch"; function: qualified name, "" at
-    the level of the module; ordinal: among those of its kind in the function; text: what is changed, or what
-    a comparison becomes; code: file line where the code begins; line: of the source.
+    """One change. kind: "number", "count", "row", "comparison" or "branch"; function: qualified
+    name, "" at the level of the module; ordinal: among those of its kind in the function; text:
+    what is changed, or what a comparison becomes; code: file line where the code begins; line: of
+    the source.
     """
 
     module: str
@@ -64,8 +68,8 @@ class Mutant:
 
 
 class Number:
-    """An integer that is perturbed where it meets a float, and in each true division; anywhere else it is
-    itself.
+    """An integer that is perturbed where it meets a float, and in each true division; anywhere else
+    it is itself.
     """
 
     def __init__(self, value: int, factor: float):
@@ -166,8 +170,8 @@ def _found(module: str, source: str, tree: ast.Module) -> list[Found]:
 
 
 def _parts(node: ast.AST) -> Iterator[tuple[ast.AST, tuple, bool]]:
-    """(part, the scope that it is in, as a tuple, whether it is an index) of what is looked at in a node: no
-    keys, decorators and annotations.
+    """(part, the scope that it is in, as a tuple, whether it is an index) of what is looked at in a
+    node: no keys, decorators and annotations.
     """
     if isinstance(node, ast.FunctionDef | ast.Lambda | ast.ClassDef):
         arguments = getattr(node, "args", None)  # a class has none

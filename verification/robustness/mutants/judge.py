@@ -33,8 +33,9 @@ WORKERS = 2
 SECONDS = 1.0
 """Of processor time, with what it sets up: a test is fast below it."""
 ALONE, TOGETHER = 2 * SECONDS, 15.0
-"""Seconds of processor time that a test may take while observed, which takes longer, and all that one mutant
-meets."""
+"""Seconds of processor time that a test may take while observed, which takes longer, and all that
+one mutant meets.
+"""
 ASKED = 5.0
 """Seconds that the tests asked about one mutant took together while they were observed, the fastest first."""
 PARAMETERS = 100
@@ -43,8 +44,8 @@ KILLED, SURVIVED, STRUCTURE = "killed", "survived", "structure"
 
 @dataclass(frozen=True)
 class Seen:
-    """A test on its own. called: (file, first line) of each function of the changed modules that ran in it;
-    met: the integers that met a float.
+    """A test on its own. called: (file, first line) of each function of the changed modules that
+    ran in it; met: the integers that met a float.
     """
 
     passed: bool
@@ -55,8 +56,8 @@ class Seen:
 
 @dataclass(frozen=True)
 class MutantVerdict:
-    """outcome: one of those above; by: the test that failed; seconds: its processor time; error: its kind;
-    asked: tests run.
+    """outcome: one of those above; by: the test that failed; seconds: its processor time; error:
+    its kind; asked: tests run.
     """
 
     mutant: Mutant
@@ -68,8 +69,8 @@ class MutantVerdict:
 
 
 def forked(tasks: Iterable[tuple[Any, Callable[[], Any]]], seconds: float) -> Iterator[tuple[Any, Any]]:
-    """(name, what the task returned) as they end, each in a fork; None for one that died or took more than
-    `seconds` of processor time, where that is not 0.
+    """(name, what the task returned) as they end, each in a fork; None for one that died or took
+    more than `seconds` of processor time, where that is not 0.
     """
     running: dict[Connection, tuple[Any, int]] = {}
     left, more = iter(tasks), True
@@ -110,8 +111,8 @@ def _start(task: Callable[[], Any], seconds: float) -> tuple[Connection, int]:
 
 
 class Session:
-    """Calls `work(items)` in place of running the tests that pytest has collected; items: node id -> test;
-    failed: files that cannot be collected.
+    """Calls `work(items)` in place of running the tests that pytest has collected; items: node id
+    -> test; failed: files that cannot be collected.
     """
 
     def __init__(self, work: Callable[[dict[str, pytest.Item]], None]):
@@ -126,8 +127,8 @@ class Session:
 
 
 def with_tests(files: Sequence[str], work: Callable[[dict[str, pytest.Item]], None]) -> list[str]:
-    """Collect the tests of these files of tests/, those of the system apart, and call work(items); the files
-    that cannot be collected. RuntimeError where pytest ends otherwise.
+    """Collect the tests of these files of tests/, those of the system apart, and call work(items);
+    the files that cannot be collected. RuntimeError where pytest ends otherwise.
     """
     from hypothesis import Phase, settings
 
@@ -147,8 +148,8 @@ def with_tests(files: Sequence[str], work: Callable[[dict[str, pytest.Item]], No
 
 
 def run(item: pytest.Item, following: pytest.Item | None = None) -> tuple[bool, float, str]:
-    """Run one test with what it sets up and, unless the following one shares it, takes down: whether it
-    passed, processor seconds, kind of the error.
+    """Run one test with what it sets up and, unless the following one shares it, takes down:
+    whether it passed, processor seconds, kind of the error.
 
     Without pytest's reports: to show why a test failed takes it longer than most of the tests do.
     """
@@ -199,11 +200,11 @@ def prepare() -> None:
 def observe(
     modules: Sequence[str], items: Mapping[str, pytest.Item], progress: Callable[[int, int], None]
 ) -> tuple[dict[str, Seen], frozenset[Mutant], list[str]]:
-    """What each test runs and takes, without those that are slow or fail; the integers that meet a float when
-    their module is loaded; the tests that fail by the fault of the rewriting.
+    """What each test runs and takes, without those that are slow or fail; the integers that meet a
+    float when their module is loaded; the tests that fail by the fault of the rewriting.
 
-    All modules are rewritten with every number as it is, and each test is run on its own, in a fork that
-    remembers nothing.
+    All modules are rewritten with every number as it is, and each test is run on its own, in a fork
+    that remembers nothing.
     """
     prepare()
     files = frozenset(import_module(name).__file__ for name in modules)
@@ -244,8 +245,8 @@ def observe(
 
 
 def askable(mutant: Mutant, seen: Mapping[str, Seen], loaded: Collection[Mutant]) -> list[str]:
-    """Tests in which the integer meets a float; those that run the function of any other mutant, or any of
-    the module if it is outside of one. The fastest first.
+    """Tests in which the integer meets a float; those that run the function of any other mutant, or
+    any of the module if it is outside of one. The fastest first.
     """
     file = import_module(mutant.module).__file__
     if mutant.integer and mutant not in loaded:
