@@ -76,14 +76,11 @@ def _uncertainty(scene: Scene, model: str) -> tuple[Stage, float]:
 
 
 def check_needs(scene: Scene, model: str, available: float | None = None, *, anyway: bool = False) -> None:
-    """Raise ModelError if `model` would need more memory than there is, `available` bytes, by default this
-    machine's; or, unless `anyway`, more time than LONGEST.
+    """Raise ModelError if `model` cannot represent the scene, or would need more memory than there is,
+    `available` bytes, by default this machine's; or, unless `anyway`, more time than LONGEST.
     """
+    models.check(scene, model)
     available = memory_bytes() if available is None else available
-    try:
-        models.check(scene, model)
-    except models.ModelError:
-        return
     needs = estimates.estimate(scene, model)
     if available and needs.memory_bytes > available:
         needed, there = (with_prefix(number, "B") for number in (needs.memory_bytes, available))
