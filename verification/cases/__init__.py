@@ -37,7 +37,7 @@ def case_of(file: CaseFile) -> Case:
     if file.own:
         _check(file)
     if file.scene or file.frame:
-        return Compared(file.name, **said, alone=file.own, file=file)
+        return Compared(file.name, **said, alone=file.own or file.alone, file=file)
     module = import_module(f"{__name__}.{file.path.parent.name}.{file.path.stem}")
     (case,) = (case for case in module.CASES if case.name == file.name)
     return replace(case, **said, file=file)

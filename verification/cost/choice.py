@@ -10,8 +10,17 @@ from math import ceil, sqrt
 
 import sam
 from sam.scene import Grid, Scene
-from verification.cost.advice import kind_of, table
-from verification.cost.advice_rows import COATED, DEEP, ELASTIC, LOAD_STEPS, NEVER, SLIDING, YIELDING
+from verification.cost.advice import (
+    COATED,
+    DEEP,
+    ELASTIC,
+    LOAD_STEPS,
+    NEVER,
+    SLIDING,
+    YIELDING,
+    kind_of,
+    table,
+)
 from verification.runs import models
 from verification.uncertainty import RATIO, alone, coarser, has_history, why_not
 

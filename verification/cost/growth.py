@@ -11,7 +11,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import resources
 
 import numpy as np
@@ -144,86 +144,12 @@ def _applied(nx: int, ny: int, layers: int) -> tuple[float, float, int, int]:
 # The ladders
 
 
-def elastic(sizes: Iterable[int], family: str, depths: tuple[float, ...] | None = None) -> list[Rung]:
-    """Rigid sphere in one step, over four contact radii; depths in m, those of a user who says nothing if
-    None.
-    """
-    scene = _one_step(scene_of("hertz-sphere"))
-    return [
-        Rung(family, f"{n} x {n} cells", models.SAM, _gridded(scene, cells=(n, n), depths=depths), n**2)
-        for n in sizes
-    ]
-
-
-def coated(sizes: Iterable[int]) -> list[Rung]:
-    """Rigid sphere on a soft film, with the bare body to compare with."""
-    scene = _one_step(scene_of("coated-sphere"))
-    return [
-        Rung("coated", f"{n} x {n} cells", models.SAM, _gridded(scene, cells=(n, n)), n**2) for n in sizes
-    ]
-
-
-def rough(sizes: Iterable[int], film: bool = False) -> list[Rung]:
-    """Hard-turned patch with friction, with its film or without."""
-    scene, family = scene_of("rough-patch"), "rough, coated" if film else "rough"
-    if not film:
-        scene = scene.model_copy(update={"body": scene.body.model_copy(update={"coating": None})})
-    return [Rung(family, f"{n} x {n} cells", models.SAM, _gridded(scene, cells=(n, n)), n**2) for n in sizes]
-
-
-def plastic(sizes: Iterable[int], steps: int = 5) -> list[Rung]:
-    """Rigid sphere on Swift steel at four times the load of first yield's pressure, loaded."""
-    scene = _loaded(scene_of("plastic-swift-rigid"), steps=steps, unload=False)
-    return [
-        Rung("plastic", f"{n} x {n} cells", models.SAM, _gridded(scene, cells=(n, n)), n**2) for n in sizes
-    ]
-
-
-def running_in(sizes: Iterable[int], steps: int = 3) -> list[Rung]:
-    """A cycle on a rough patch, with film and wear, in cells of 1 um."""
-    scene = _loaded(scene_of("running-in-bulk"), steps=steps, unload_steps=steps, cycles=1)
-    return [Rung("running-in", f"{n} x {n} cells", models.SAM, _patch(scene, n), n**2) for n in sizes]
-
-
-def cycles(
-    counts: Iterable[int], cells: int = 32, steps: int = 3, *, family: str = "cycles", renewed: bool = False
-) -> list[Rung]:
-    """The same patch, small, over more and more cycles; renewed: against a rough plane, other in each."""
-    scene = _patch(_loaded(scene_of("running-in-bulk"), steps=steps, unload_steps=steps), cells)
-    if renewed:
-        plane = scene.counterbody.model_copy(update={"surface": CounterSurface(**PLANE)})
-        scene = scene.model_copy(update={"counterbody": plane})
-    return [
-        Rung(family, f"{n} cycle{'s' * (n > 1)}", models.SAM, _loaded(scene, cycles=n), n) for n in counts
-    ]
-
-
-def finite_elements(model: str, sizes: Iterable[int], yields: bool = False, steps: int = 1) -> list[Rung]:
-    """The rigid sphere with more and more elements in the contact radius; unknowns are counted. steps: of an
-    elastic body.
-    """
-    scene = (
-        _loaded(scene_of("plastic-swift-rigid"), steps=5, unload=False)
-        if yields
-        else _loaded(scene_of("hertz-sphere"), steps=steps, unload=False)
-    )
-    family = f"{model}, plastic" if yields else f"{model}, {steps} steps" if steps > 1 else model
-    meshed = [
-        scene.model_copy(update={"fem": scene.fem.model_copy(update={"cells_per_radius": n})}) for n in sizes
-    ]
-    return [Rung(family, f"{n} elements in a", model, each) for n, each in zip(sizes, meshed, strict=True)]
-
-
 def _gridded(scene: Scene, **keys) -> Scene:
     return scene.model_copy(update={"grid": (scene.grid or Grid()).model_copy(update=keys)})
 
 
 def _loaded(scene: Scene, **keys) -> Scene:
     return scene.model_copy(update={"loading": scene.loading.model_copy(update=keys)})
-
-
-def _one_step(scene: Scene) -> Scene:
-    return _loaded(scene, steps=1, unload=False)
 
 
 def _patch(scene: Scene, cells: int) -> Scene:
@@ -236,23 +162,72 @@ def _patch(scene: Scene, cells: int) -> Scene:
     )
 
 
+def square(family: str, sizes: Iterable[int], name: str, *, bare: bool = False, **loading) -> list[Rung]:
+    """A scene of SAM on n x n cells; bare: without its film; loading: keys of it."""
+    scene = _loaded(scene_of(name), **loading)
+    if bare:
+        scene = scene.model_copy(update={"body": scene.body.model_copy(update={"coating": None})})
+    return [Rung(family, f"{n} x {n} cells", models.SAM, _gridded(scene, cells=(n, n)), n**2) for n in sizes]
+
+
+def at_surface(rungs: Iterable[Rung]) -> list[Rung]:
+    """The same with the stresses at the surface alone, in place of the depths of a user who names none."""
+    return [replace(rung, scene=_gridded(rung.scene, depths=(0.0,))) for rung in rungs]
+
+
+def running_in(sizes: Iterable[int], steps: int = 3) -> list[Rung]:
+    """A cycle on a rough patch, with film and wear, in cells of 1 um."""
+    scene = _loaded(scene_of("running-in-bulk"), steps=steps, unload_steps=steps, cycles=1)
+    return [Rung("running-in", f"{n} x {n} cells", models.SAM, _patch(scene, n), n**2) for n in sizes]
+
+
+def cycles(counts: Iterable[int], *, family: str = "cycles", renewed: bool = False) -> list[Rung]:
+    """The same patch, small, over more and more cycles; renewed: against a rough plane, other in each."""
+    scene = _patch(_loaded(scene_of("running-in-bulk"), steps=3, unload_steps=3), 32)
+    if renewed:
+        plane = scene.counterbody.model_copy(update={"surface": CounterSurface(**PLANE)})
+        scene = scene.model_copy(update={"counterbody": plane})
+    return [
+        Rung(family, f"{n} cycle{'s' * (n > 1)}", models.SAM, _loaded(scene, cycles=n), n) for n in counts
+    ]
+
+
+def elements(
+    family: str, model: str, sizes: Iterable[int], name: str = "hertz-sphere", *, steps: int = 1
+) -> list[Rung]:
+    """The rigid sphere with more and more elements in the contact radius; unknowns are counted."""
+    scene = _loaded(scene_of(name), steps=steps, unload=False)
+    meshed = {n: scene.fem.model_copy(update={"cells_per_radius": n}) for n in sizes}
+    return [
+        Rung(family, f"{n} elements in a", model, scene.model_copy(update={"fem": fem}))
+        for n, fem in meshed.items()
+    ]
+
+
+ONE_STEP = {"steps": 1, "unload": False}
+LOADED = {"steps": 5, "unload": False}
+YIELDING = "plastic-swift-rigid"
+"""Swift steel at four times the load of first yield's pressure."""
 FAMILIES: Mapping[str, Callable[[], list[Rung]]] = {
-    "contact": lambda: elastic((65, 129, 257, 513, 1025, 2049), "elastic contact", depths=(0.0,)),
-    "stresses": lambda: elastic((65, 129, 257, 513), "elastic, all depths"),
+    "contact": lambda: at_surface(
+        square("elastic contact", (65, 129, 257, 513, 1025, 2049), "hertz-sphere", **ONE_STEP)
+    ),
+    "stresses": lambda: square("elastic, all depths", (65, 129, 257, 513), "hertz-sphere", **ONE_STEP),
     "cycles": lambda: cycles((1, 2, 4, 8, 16)),
     "cycles, renewed": lambda: cycles((1, 2, 4, 8), family="cycles, renewed", renewed=True),
-    "axisymmetric": lambda: finite_elements(models.FEM, (4, 8, 16, 32, 64)),
-    "spatial": lambda: finite_elements(models.FEM_3D, (3, 4, 5, 6, 8)),
-    "rough": lambda: rough((64, 128, 256)),
-    "coated": lambda: coated((65, 129, 257)),
-    "rough, coated": lambda: rough((64, 128), film=True),
-    "plastic": lambda: plastic((33, 45, 63, 89)),
+    "axisymmetric": lambda: elements(models.FEM, models.FEM, (4, 8, 16, 32, 64)),
+    "spatial": lambda: elements(models.FEM_3D, models.FEM_3D, (3, 4, 5, 6, 8)),
+    "rough": lambda: square("rough", (64, 128, 256), "rough-patch", bare=True),
+    "coated": lambda: square("coated", (65, 129, 257), "coated-sphere", **ONE_STEP),
+    "rough, coated": lambda: square("rough, coated", (64, 128), "rough-patch"),
+    "plastic": lambda: square("plastic", (33, 45, 63, 89), YIELDING, **LOADED),
     "running-in": lambda: running_in((32, 48, 64)),
-    "axisymmetric, plastic": lambda: finite_elements(models.FEM, (8, 16, 32), yields=True),
-    "axisymmetric, steps": lambda: finite_elements(models.FEM, (32, 64), steps=4),
+    "axisymmetric, plastic": lambda: elements(
+        f"{models.FEM}, plastic", models.FEM, (8, 16, 32), YIELDING, steps=5
+    ),
+    "axisymmetric, steps": lambda: elements(f"{models.FEM}, 4 steps", models.FEM, (32, 64), steps=4),
 }
-"""The ladders of the case `growth`. The first five have exponents; all are predicted, and the factors fitted
-to them."""
+"""The ladders of the case `growth`, all of which are predicted, and the factors fitted to them."""
 STORED = ("boxes",)  # counts of what is stored, and nothing beside it: their factor is 1
 # bytes over an idle process, and seconds, from which a prediction counts
 MEMORY_MATTERS, TIME_MATTERS = 100e6, 0.5
