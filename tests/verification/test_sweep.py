@@ -3,7 +3,9 @@
 cluster.
 """
 
+import asyncio
 import csv
+import importlib
 import json
 import os
 import signal
@@ -11,6 +13,7 @@ import subprocess
 import sys
 import time
 from concurrent.futures import Future
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import nullcontext
 from pathlib import Path
 from types import SimpleNamespace
@@ -24,7 +27,7 @@ from optional_packages import dask_distributed
 
 from samfem import executors, sweeping
 from samfem.cli import main
-from samfem.executors import WORKER_DIED, Failure, Processes, run
+from samfem.executors import WORKER_DIED, Cluster, Failure, Processes, run
 from verification.runs import threads
 from verification.runs.files import read_run
 from verification.runs.store import FOLDER
@@ -299,15 +302,6 @@ def test_tasks_run_in_processes_with_one_thread_each_and_leave_ours_alone(monkey
     assert os.environ["OMP_NUM_THREADS"] == "7" and "MKL_NUM_THREADS" not in os.environ
 
 
-def test_one_death_is_repeated_and_an_error_is_not():
-    with Processes(2) as workers:
-        assert outcomes(workers, functions.fail, {0: (1,)}) == {0: Failure("ZeroDivisionError: on purpose")}
-        assert outcomes(workers, functions.double, {k: (k,) for k in range(6)}) == {
-            k: 2.0 * k for k in range(6)
-        }
-        assert workers.lost == 0
-
-
 def test_a_worker_that_is_killed_while_idle_is_replaced():
     with Processes(1) as workers:
         os.kill(workers.submit(functions.process_id).result(), signal.SIGKILL)
@@ -435,3 +429,33 @@ def test_a_dask_cluster_that_loses_a_worker_gives_the_same_table(
     record = sweep_of("dask", "--no-runs", "--scheduler", address)
     assert marker.exists() and record["workers"] == {"kind": "dask", "lost": 1}
     assert record["counts"]["solved"] == 4 and Path("dask/sweep.csv").read_bytes() == calm
+
+
+def cascaded(status, result) -> BaseException:
+    """What the executor of distributed makes of a task with this result, and this status when it is asked
+    for after it.
+    """
+    dask_distributed()
+    cascade = importlib.import_module("distributed.cfexecutor")._cascade_future
+
+    async def asked(**_):
+        return result
+
+    async def answer():
+        found = Future()
+        await cascade(SimpleNamespace(status=status, _result=asked), found)
+        return found.exception()
+
+    return asyncio.run(answer())
+
+
+def test_a_task_whose_worker_dies_just_after_its_result_is_no_failure():
+    def raised(error):
+        try:
+            raise error
+        except TypeError as found:
+            return TypeError, found, found.__traceback__
+
+    workers = SimpleNamespace(_killed=BrokenProcessPool)
+    assert Cluster.died(workers, cascaded("lost", Failure("any value")))
+    assert not Cluster.died(workers, cascaded("error", raised(TypeError("of the task"))))

@@ -15,9 +15,9 @@ from verification.cases.case import FEM, Case, Context, Plot, SmallTable, number
 from verification.cost.precision import at_error
 from verification.figures.peers import curves as drawn
 from verification.peers import elastic, plastic, problems
+from verification.peers.plastic import StoredReference, between, periodic
 from verification.peers.points import PeerPoint, curves, fastest, ratio, reached
 from verification.peers.programs import sam as ours
-from verification.peers.reference import StoredReference, between, periodic
 from verification.peers.running import (
     CONTACT_MECHANICS,
     NAMES,
