@@ -27,7 +27,6 @@ from verification.cost.precision import (
     at_error,
     bracket,
     limit_of,
-    time_to_error,
 )
 from verification.figures.check import findings
 from verification.figures.style import save
@@ -61,8 +60,8 @@ def test_time_is_interpolated_in_the_logarithms():
     """
     n = np.array([2.0, 4.0, 8.0, 16.0])
     for target in (0.05, 0.003):
-        assert time_to_error(0.01 * n**3, 0.4 / n**2, target) == pytest.approx(0.01 * (0.4 / target) ** 1.5)
-    assert time_to_error(n, 0.4 / n**2, 1e-4) is None
+        assert at_error(0.01 * n**3, 0.4 / n**2, target).value == pytest.approx(0.01 * (0.4 / target) ** 1.5)
+    assert at_error(n, 0.4 / n**2, 1e-4).value is None
     assert at_error(n, 0.4 / n**2, 0.5) == Reached(2.0, True, pytest.approx(0.4 / 256))
     assert at_error([1.0, 2.0], [math.nan, 0.001], 0.01).value == 2.0  # nothing to interpolate from
     assert at_error([1.0, 2.0], [0.1, 0.0], 0.01).value == 2.0

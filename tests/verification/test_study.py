@@ -10,8 +10,7 @@ import pytest
 from builders import scene_text
 
 from sam.scene import SceneError
-from verification.runs.axis import Axis, in_si
-from verification.runs.study import read_study
+from verification.runs.study import Axis, in_si, read_study
 
 MORRIS = 'mode = "morris"\nsamples = 4\nseed = 1'
 

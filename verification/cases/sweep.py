@@ -241,7 +241,8 @@ def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
             if any(orders):
                 cells = (f"order {order.order:.2f}" if order else "" for order in orders)
                 lines.append((*[""] * len(axes), model.upper(), *cells))
-        yield SmallTable(f"Points {name}".strip(), (*map(_plain, axes), "model", *shown.values()), lines)
+        caption = f"Points {name}" if file.sweeps else f"{name[:1].upper()}{name[1:]}" or "Points"
+        yield SmallTable(caption.strip(), (*map(_plain, axes), "model", *shown.values()), lines)
 
 
 def _cell(value: Any) -> str:

@@ -69,15 +69,6 @@ def at_error(values: Sequence[float], errors: Sequence[float], target: float, fl
     return Reached(float(values[coarse] * (values[fine] / values[coarse]) ** share), False, smallest)
 
 
-def time_to_error(
-    seconds: Sequence[float], errors: Sequence[float], target: float, floor: float = 0.0
-) -> float | None:
-    """Seconds to the error `target`, see `at_error`; that of the coarsest point where even that is as good.
-    None: never.
-    """
-    return at_error(seconds, errors, target, floor).value
-
-
 @dataclass(frozen=True)
 class Reference:
     """A value to measure errors against, and its own relative uncertainty: the floor of the figures."""

@@ -11,8 +11,18 @@ import numpy as np
 
 from sam.scene import Progress
 from verification.peers import problems
-from verification.peers.points import PeerPoint, points_of
-from verification.peers.running import ASPHER, CONTACT_MECHANICS, SAM, TAMAAS, Job, Measurement, measure, run
+from verification.peers.running import (
+    ASPHER,
+    CONTACT_MECHANICS,
+    SAM,
+    TAMAAS,
+    Job,
+    Measurement,
+    cells_in_words,
+    measure,
+    rows_of,
+    run,
+)
 
 SIZES = (64, 96, 128, 192, 256, 512)  # the error that is asked for lies between 192 and 256
 ROUGH_SIZES = (256, 512, 1024)
@@ -96,7 +106,7 @@ def hertz_errors(
     problem any better.
     """
     found = abs(float(p.max()) / problems.P0 - 1)
-    also = {"as_found": found, "l2": distance(p, problems.hertz_pressure(n, side))}
+    also = {"as-found": found, "l2": distance(p, problems.hertz_pressure(n, side))}
     return max(found, converged_error), also
 
 
@@ -105,8 +115,8 @@ def hertz(
     rounds: int,
     progress: Progress = lambda *_: None,
     sizes: Sequence[int] = SIZES,
-) -> tuple[list[PeerPoint], list[float]]:
-    """Points of every program, and the seconds of the calibration kernel in between."""
+) -> tuple[list[dict[str, Any]], list[float]]:
+    """Rows of every program, and the seconds of the calibration kernel in between."""
     found, kernel = measure(hertz_jobs(list(pythons), sizes), pythons, rounds, progress)
     least: dict[tuple[int, float], float] = {}
 
@@ -118,7 +128,7 @@ def hertz(
             least[n, side] = abs(float(tight.fields["pressure"].max()) / problems.P0 - 1)
         return hertz_errors(each.fields["pressure"], n, side, least[n, side])
 
-    return points_of(found, errors), kernel
+    return rows_of(problems.HERTZ, found, errors), kernel
 
 
 def rough(
@@ -126,17 +136,17 @@ def rough(
     rounds: int,
     progress: Progress = lambda *_: None,
     sizes: Sequence[int] = ROUGH_SIZES,
-) -> tuple[list[PeerPoint], list[float]]:
-    """Points of every program at the loosest tolerance that reaches ROUGH_ERROR on each grid; those that miss
+) -> tuple[list[dict[str, Any]], list[float]]:
+    """Rows of every program at the loosest tolerance that reaches ROUGH_ERROR on each grid; those that miss
     it too.
     """
     tight = {n: solution(problems.ROUGH, n, pythons[SAM]) for n in sizes}
-    points, kernel = [], []
+    rows, kernel = [], []
     open_ = {(program, n): 0 for program in pythons for n in sizes}  # -> place in the ladder
 
     def errors(each: Measurement) -> tuple[float, dict[str, float]]:
         p, reference = each.fields["pressure"], tight[each.job.cells]
-        return distance(p, reference), {"p_max": abs(float(p.max() / reference.max()) - 1)}
+        return distance(p, reference), {"p-max": abs(float(p.max() / reference.max()) - 1)}
 
     while open_:
         jobs: dict[str, list[Job]] = {}
@@ -149,12 +159,12 @@ def rough(
             jobs, pythons, rounds, progress, reaches=lambda each: errors(each)[0] <= ROUGH_ERROR
         )
         kernel += seconds
-        fresh = points_of(found, errors)
-        points += fresh
-        missed = {(p.program, p.cells) for p in fresh if not p.error <= ROUGH_ERROR}
+        fresh = rows_of(problems.ROUGH, found, errors)
+        rows += fresh
+        missed = {(row["model"], row["cells"]) for row in fresh if not row["error"] <= ROUGH_ERROR}
         open_ = {
-            key: place + 1
-            for key, place in open_.items()
-            if key in missed and place + 1 < len(ROUGH_LADDERS[key[0]])
+            (program, n): place + 1
+            for (program, n), place in open_.items()
+            if (program, cells_in_words(n)) in missed and place + 1 < len(ROUGH_LADDERS[program])
         }
-    return points, kernel
+    return rows, kernel

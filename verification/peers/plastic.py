@@ -9,15 +9,16 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.integrate import trapezoid
 
 from sam.scene import Progress
 from verification.peers import problems
-from verification.peers.points import PeerPoint, points_of
-from verification.peers.running import SAM, TAMAAS, Job, Measurement, interpreter, measure, run
+from verification.peers.running import SAM, TAMAAS, Job, Measurement, interpreter, measure, rows_of, run
 
 GRIDS = ((16, 8), (32, 16), (64, 32))  # cells a side and layers of the box of 6a x 6a x 2.5a
 COMPARED = ((32, 16), (64, 32))
@@ -62,22 +63,23 @@ def step(
     rounds: int,
     references: Mapping[str, StoredReference],
     progress: Progress = lambda *_: None,
-) -> tuple[list[PeerPoint], list[float]]:
-    """Points of SAM and Tamaas, and the seconds of the calibration kernel; references: program -> what it
+) -> tuple[list[dict[str, Any]], list[float]]:
+    """Rows of SAM and Tamaas, and the seconds of the calibration kernel; references: program -> what it
     tends to.
     """
     found, kernel = measure(jobs(), pythons, rounds, progress)
-    points = []
+    rows = []
     for program, own in found.items():
-        points += points_of({program: own}, lambda each, to=references[program]: step_errors(each.fields, to))
-    return points, kernel
+        errors, floor = partial(step_errors, to=references[program]), references[program].profile_uncertainty
+        rows += [row | {"floor": floor} for row in rows_of(problems.STEP, {program: own}, errors)]
+    return rows, kernel
 
 
-def step_errors(fields: Mapping[str, np.ndarray], to: StoredReference) -> tuple[float, dict[str, float]]:
+def step_errors(each: Measurement, to: StoredReference) -> tuple[float, dict[str, float]]:
     """Relative L2 error of the plastic strain below the apex; beside it the error of its largest value, from
     a parabola.
     """
-    z, peeq = fields["z"], fields["peeq"]
+    z, peeq = each.fields["z"], each.fields["peeq"]
     return profile_error(z, peeq, to.z, to.peeq), {"largest": abs(largest(z, peeq) / to.peeq_max - 1)}
 
 
