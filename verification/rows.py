@@ -131,7 +131,7 @@ class CaseFile(BaseModel):
     them, see `Take`; notes: sentences below the tables; views: pictures in space.
 
     frame: function beside the file that returns the points instead of sweeps; of such functions, tables:
-    that return one of the frame; needs: that says why the case cannot run here. alone: it measures times,
+    that return one of the frame; cannot: that says why the case does not run here. alone: it measures times,
     so that nothing runs beside it and a later run measures again.
 
     allowance: rows of SAM against FEM that hold the difference over what refinement allows, known from
@@ -169,7 +169,7 @@ class CaseFile(BaseModel):
     frame: str = ""
     tables: tuple[str, ...] = ()
     alone: bool = False
-    needs: str = ""
+    cannot: str = ""
     takes: dict[str, tuple[Take, ...]] = {}
     notes: tuple[str, ...] = ()
     setting: tuple[tuple[str, str], ...] = ()

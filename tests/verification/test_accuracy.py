@@ -7,15 +7,13 @@ import numpy as np
 import pandas as pd
 import pytest
 from builders import PERFECT, SPHERE, STEEL, scene_text
-from made_results import context, red
+from made_results import context, of_frame, red
 from pydantic import ValidationError
 
 from sam import choose_grid
 from sam.scene import Result, Scene, Status
-from verification.cases import all_cases
 from verification.cases.case import with_keys
 from verification.cases.cost import accuracy as case
-from verification.cases.sweep import taken
 from verification.cost import accuracy
 from verification.cost.accuracy import NEAREST, missed, solve
 from verification.cost.advice import table
@@ -238,7 +236,7 @@ def test_the_case_counts_what_is_missed_without_a_word():
     unsaid = {**good, "reached": 0.0, "unsaid": 1.0, "over-fixed": 12.0}
 
     def red_of(*rows):
-        return red("accuracy", taken(all_cases()["accuracy"].file, pd.DataFrame(rows)), whole=True)
+        return red("accuracy", of_frame("accuracy", pd.DataFrame(rows)), whole=True)
 
     assert red_of(good) == set() and red_of(good, refused) == {"reached"}
     assert red_of(good, refused, unsaid) == {"reached", "unsaid", "over-fixed"}

@@ -10,16 +10,14 @@ import numpy as np
 import pandas as pd
 import pytest
 from builders import PERFECT, RUN_IN_STEEL, SWIFT, hertz_force, running_in, scene
-from made_results import red
+from made_results import of_frame, red
 
 import sam
 from sam import choose_grid
-from verification.cases import all_cases
 from verification.cases.case import Context, with_loading
 from verification.cases.cost import growth as case
 from verification.cases.cyclic.repeated import law
 from verification.cases.recipes import even_cells, rubbed
-from verification.cases.sweep import taken
 from verification.cost import estimates, growth
 from verification.cost.growth import Applied, Taken
 from verification.cost.measured import alone, idle_bytes
@@ -163,7 +161,7 @@ def box_of(power: float, nx: int, ny: int, nz: int) -> Applied:
 def gates(found, boxes) -> tuple[pd.DataFrame, dict, set[str]]:
     """The frame, the values of the rows and those that are red."""
     frame = pd.DataFrame(case.rows_of(found, boxes))
-    values = taken(all_cases()["growth"].file, frame)
+    values = of_frame("growth", frame)
     return frame, values, red("growth", values, whole=True)
 
 

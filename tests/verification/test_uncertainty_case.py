@@ -3,11 +3,9 @@
 
 import pandas as pd
 import pytest
-from made_results import context, red
+from made_results import context, of_frame, red
 
-from verification.cases import all_cases
 from verification.cases.cost import uncertainty as study
-from verification.cases.sweep import taken
 
 CASE = "uncertainty"
 
@@ -25,7 +23,7 @@ def gates(frame: pd.DataFrame, factor: float = 1.0) -> set[str]:
     """Those that are red where the uncertainties are wider by a factor."""
     wider = frame.assign(**{"over-error": factor * frame["over-error"]})
     wider["covered-by-uncertainty"] = (wider["error"] <= factor * frame["uncertainty"]).astype(float)
-    return red(CASE, taken(all_cases()[CASE].file, wider), whole=True)
+    return red(CASE, of_frame(CASE, wider), whole=True)
 
 
 def test_the_rule_holds_and_another_factor_turns_it_red(frame):

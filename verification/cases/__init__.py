@@ -38,7 +38,7 @@ def case_of(file: CaseFile) -> Case:
     if file.own:
         _check(file)
     if file.scene or file.frame:
-        needs = (lambda: beside(file, file.needs, {})()) if file.needs else str
+        needs = (lambda: beside(file, file.cannot, {})()) if file.cannot else str
         return Compared(file.name, **said, alone=file.own or file.alone, needs=needs, file=file)
     module = import_module(f"{__name__}.{file.path.parent.name}.{file.path.stem}")
     (case,) = (case for case in module.CASES if case.name == file.name)

@@ -154,10 +154,11 @@ STATISTICS: Mapping[str, Callable[[DataFrame, str], float | Measured]] = {
     "ratio": lambda rows, column: rows[column].iloc[0] / rows[column].iloc[-1],
     "mean": lambda rows, column: rows[column].mean(),
     "median": lambda rows, column: rows[column].median(),
-    "sum": lambda rows, column: rows[column].sum(),
+    "total": lambda rows, column: float(rows[column].sum()),
 }
 """Word of a row -> what it takes of a column. pair: the value of SAM beside that of FEM; order, limit: under
-refinement; ratio: first over last; nan where one is missing, but mean, median, sum: of those that are there.
+refinement; ratio: first over last; nan where one is missing; mean, median, total: of the values that there
+are.
 """
 
 
@@ -241,8 +242,8 @@ def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
             if any(orders):
                 cells = (f"order {order.order:.2f}" if order else "" for order in orders)
                 lines.append((*[""] * len(axes), model.upper(), *cells))
-        caption = f"Points {name}" if file.sweeps else f"{name[:1].upper()}{name[1:]}" or "Points"
-        yield SmallTable(caption.strip(), (*map(_plain, axes), "model", *shown.values()), lines)
+        caption = f"Points {name}".strip() if file.sweeps else name
+        yield SmallTable(caption or "Points", (*map(_plain, axes), "model", *shown.values()), lines)
 
 
 def _cell(value: Any) -> str:

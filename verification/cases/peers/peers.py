@@ -38,7 +38,7 @@ ROUNDS = {"quick": 1, "full": 3}
 MESHES = (32, 48)  # elements in the Hertz radius of the finite-element reference of the step
 # on one grid, settings are compared whose error is at most this many times the smallest one there
 AS_GOOD = 1.5
-REFERENCES = "step: references, with the distance of the next coarser grid as uncertainty"
+REFERENCES = "Step: references, with the distance of the next coarser grid as uncertainty"
 
 
 def frame(context: Context) -> Iterator[dict[str, Any]]:
