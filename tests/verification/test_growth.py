@@ -4,7 +4,6 @@ memory.
 """
 
 import os
-from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -19,7 +18,6 @@ from verification.cases.cost import growth as case
 from verification.cases.cyclic.repeated import law
 from verification.cases.recipes import even_cells, rubbed
 from verification.cost import estimates, growth
-from verification.cost.growth import Applied, Taken
 from verification.cost.measured import alone, idle_bytes
 from verification.reference.convergence import fit_power
 from verification.runs.models import FEM, SAM
@@ -72,7 +70,7 @@ def test_a_process_measures_its_own_memory_and_one_thread(idle):
 def test_a_rung_is_measured(idle, monkeypatch):
     monkeypatch.setattr(growth, "REPEATS", 1)
     made = growth.measured_at(growth.square("elastic", (33,), "hertz-sphere", **growth.ONE_STEP)[0], idle)
-    assert made.converged and made.size == 33**2 and made.cpu_s > 0 and made.count == 1
+    assert made["converged"] and made["size"] == 33**2 and made["cpu-s"] > 0 and made["memory"] > 0
 
 
 def test_back_stresses_and_a_larger_zone_take_more(tmp_path):
@@ -124,6 +122,12 @@ def test_factors_are_found_from_counts():
     counts = [{"a": a, "b": b} for a, b in np.random.default_rng(1).uniform(1e6, 1e8, (8, 2))]
     measured = [5 * each["a"] + 2 * each["b"] for each in counts]
     assert growth.fitted(counts, measured, 1.0) == pytest.approx({"a": 5.0, "b": 2.0}, rel=1e-6)
+    ladders = ("axisymmetric", "axisymmetric, plastic", "axisymmetric, steps")
+    rungs = [rung for name in ladders for rung in growth.FAMILIES[name]()]
+    work = [estimates.counted(rung.scene, FEM) for rung in rungs]
+    taken = [{"model": FEM, "memory": 7.0 * c.bytes["unknowns"], "cpu-s": c.work["factors"]} for c in work]
+    memory, seconds = growth.factors(rungs, taken)
+    assert memory[FEM]["unknowns"] == pytest.approx(7.0) and seconds[FEM]["factors"] == pytest.approx(1.0)
 
 
 def test_every_count_has_a_factor():
@@ -136,7 +140,8 @@ def test_every_count_has_a_factor():
 
 def test_a_box_is_applied():
     box = growth.applied(6, 5, 3)
-    assert box.cells == 90 and box.setup_s > 0 and box.apply_s > 0 and box.stored >= 36 * 9 * 30 * 4
+    assert box["cells"] == 90 and box["set-up-s"] > 0 and box["cpu-s"] > 0
+    assert box["stored"] >= 36 * 9 * 30 * 4
 
 
 def synthetic(power: float = 1.0) -> tuple[dict, dict]:
@@ -147,15 +152,20 @@ def synthetic(power: float = 1.0) -> tuple[dict, dict]:
         for k, rung in enumerate(make()):
             size = rung.size or 1e4 * 3**k
             seconds = 1e-3 * (size if name == "cycles" else size / 1e3) ** power * (1 + (name == "stresses"))
-            taken = Taken(rung, size, seconds, 1, 1, True)
-            found[name].append(replace(taken, memory=max(taken.expected.memory_bytes, 1)))
+            said = estimates.estimate(rung.scene, rung.model)
+            memory = max(said.memory_bytes - round(estimates.IDLE_BYTES), 1)
+            row = {"model": rung.model, "family": rung.family, "scene": rung.label, "size": size}
+            row |= {"cpu-s": seconds, "predicted-s": said.time_s, "memory": memory}
+            found[name].append(row | {"predicted-memory": memory, "converged": True})
     boxes = {name: [box_of(power, *sizes) for sizes in each] for name, each in case.BOXES.items()}
     return found, boxes
 
 
-def box_of(power: float, nx: int, ny: int, nz: int) -> Applied:
+def box_of(power: float, nx: int, ny: int, nz: int) -> dict:
     cells = nx * ny
-    return Applied(nx, ny, nz, 1e-5 * cells * nz, (1e-8 * cells * nz**2) ** power, 8 * cells, 9 * cells)
+    cost = {"cpu-s": (1e-8 * cells * nz**2) ** power, "set-up-s": 1e-5 * cells * nz, "stored": 8 * cells}
+    size = {"cells": cells * nz, "plane": cells, "depth": nz}
+    return {"model": SAM, "scene": "box", **size, **cost, "memory": 9 * cells}
 
 
 def gates(found, boxes) -> tuple[pd.DataFrame, dict, set[str]]:
@@ -184,5 +194,5 @@ def test_growth_that_is_too_fast_is_red():
 def test_memory_that_was_not_predicted_and_a_solve_that_failed_are_red():
     found, boxes = synthetic()
     last = found["contact"][-1]
-    found["contact"][-1] = replace(last, memory=round(1.25 * last.memory), converged=False)
+    last |= {"memory": round(1.25 * last["memory"]), "converged": False}
     assert {"memory-error", "unconverged"} <= gates(found, boxes)[2]

@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib import resources
+from typing import Any
 
 import numpy as np
 
@@ -39,71 +40,35 @@ class Rung:
     size: float | None = None
 
 
-@dataclass(frozen=True)
-class Taken:
-    """What the solve of a rung took. memory: bytes above a process that has solved nothing; cpu_s: median of
-    `count` solves.
-    """
-
-    rung: Rung
-    size: float
-    cpu_s: float
-    memory: int
-    count: int
-    converged: bool
-    box: tuple[int, int, int] | None = None
-
-    @property
-    def expected(self) -> estimates.Estimate:
-        """What the plan of the scene says, its memory above that of the process as well."""
-        said = estimates.estimate(self.rung.scene, self.rung.model)
-        return estimates.Estimate(said.memory_bytes - round(estimates.IDLE_BYTES), said.time_s)
-
-
-@dataclass(frozen=True)
-class Applied:
-    """A box of cells and its residual-stress operator: seconds to set it up and of one application, bytes of
-    its coefficients.
-    """
-
-    nx: int
-    ny: int
-    layers: int
-    setup_s: float
-    apply_s: float
-    stored: int
-    memory: int
-
-    @property
-    def cells(self) -> int:
-        return self.nx * self.ny * self.layers
-
-
 def scene_of(name: str) -> Scene:
     """The scene of `verification/scenes/<name>.toml`."""
     with resources.as_file(resources.files("verification").joinpath("scenes", f"{name}.toml")) as path:
         return read_scene(path)[0]
 
 
-def measured_at(rung: Rung, idle: int) -> Taken:
-    """The solve of a rung, each time in a process of its own; idle: see `idle_bytes`."""
+def measured_at(rung: Rung, idle: int) -> dict[str, Any]:
+    """What the solve of a rung took, each time in a process of its own, and what the plan of the scene says;
+    memory in bytes above a process that has solved nothing (idle: see `idle_bytes`), time the median of some
+    solves in s.
+    """
     results = [solve_alone(rung.scene, rung.model)]
     while results[0].cost["cpu_s"] < SHORT_S and len(results) < REPEATS:
         results.append(solve_alone(rung.scene, rung.model))
-    cost, found = [result.cost for result in results], results[0].discretisation
-    box = (*found["plastic_box_cells"], found["plastic_box_layers"]) if "plastic_box_cells" in found else None
-    return Taken(
-        rung,
-        float(found["dofs"]) if rung.size is None else rung.size,
-        float(np.median([each["cpu_s"] for each in cost])),
-        max(each["peak_memory_bytes"] for each in cost) - idle,
-        len(results),
-        all(result.converged for result in results),
-        box and tuple(map(int, box)),
-    )
+    said = estimates.estimate(rung.scene, rung.model)
+    return {
+        "model": rung.model,
+        "family": rung.family,
+        "scene": rung.label,
+        "size": float(rung.size or results[0].discretisation["dofs"]),
+        "cpu-s": float(np.median([result.cost["cpu_s"] for result in results])),
+        "predicted-s": said.time_s,
+        "memory": max(result.cost["peak_memory_bytes"] for result in results) - idle,
+        "predicted-memory": said.memory_bytes - round(estimates.IDLE_BYTES),
+        "converged": all(result.converged for result in results),
+    }
 
 
-def climb(rungs: Sequence[Rung], report: Progress = lambda *_: None) -> list[Taken]:
+def climb(rungs: Sequence[Rung], report: Progress = lambda *_: None) -> list[dict[str, Any]]:
     """`measured_at` for each rung."""
     idle = {model: idle_bytes(model) for model in dict.fromkeys(rung.model for rung in rungs)}
     taken = []
@@ -113,10 +78,14 @@ def climb(rungs: Sequence[Rung], report: Progress = lambda *_: None) -> list[Tak
     return taken
 
 
-def applied(nx: int, ny: int, layers: int) -> Applied:
-    """The residual-stress operator of a box, in single precision, in a process of its own."""
+def applied(nx: int, ny: int, layers: int) -> dict[str, Any]:
+    """The residual-stress operator of a box of cells, in single precision, in a process of its own: seconds
+    of one application and of the set-up, bytes of its coefficients and of all.
+    """
     setup, apply_s, stored, peak = alone(_applied, nx, ny, layers)
-    return Applied(nx, ny, layers, setup, apply_s, stored, peak - idle_bytes(models.SAM))
+    size = {"cells": nx * ny * layers, "plane": nx * ny, "depth": layers}
+    cost = {"cpu-s": apply_s, "set-up-s": setup, "stored": stored, "memory": peak - idle_bytes(models.SAM)}
+    return {"model": models.SAM, "scene": f"{nx} × {ny} × {layers}"} | size | cost
 
 
 def _applied(nx: int, ny: int, layers: int) -> tuple[float, float, int, int]:
@@ -273,39 +242,33 @@ def fitted(
     return dict(zip(names, (found.x[: len(names)] / scale).tolist(), strict=True)) | dict(known)
 
 
-def factors(taken: Sequence[Taken]) -> tuple[dict[str, dict[str, float]], dict[str, dict[str, float]]]:
+def factors(
+    rungs: Sequence[Rung], taken: Sequence[Mapping[str, Any]]
+) -> tuple[dict[str, dict[str, float]], dict[str, dict[str, float]]]:
     """(MEMORY, TIME) that suit what was measured."""
     memory, seconds = {}, {}
-    for model in dict.fromkeys(each.rung.model for each in taken):
-        those = [each for each in taken if each.rung.model == model]
-        counts = [estimates.counted(each.rung.scene, model) for each in those]
+    for model in dict.fromkeys(rung.model for rung in rungs):
+        counts = [estimates.counted(rung.scene, model) for rung in rungs if rung.model == model]
+        own = [row for row in taken if row["model"] == model]
         known = {name: 1.0 for name in STORED if any(name in count.bytes for count in counts)}
         memory[model] = fitted(
-            [count.bytes for count in counts], [each.memory for each in those], MEMORY_MATTERS, known
+            [count.bytes for count in counts], [row["memory"] for row in own], MEMORY_MATTERS, known
         )
-        seconds[model] = fitted(
-            [count.work for count in counts], [each.cpu_s for each in those], TIME_MATTERS
-        )
+        seconds[model] = fitted([count.work for count in counts], [row["cpu-s"] for row in own], TIME_MATTERS)
     return memory, seconds
 
 
 def main(arguments: Sequence[str]) -> None:
     """Solve the ladders (all, or those that are named) and print the factors."""
-    names = arguments or list(FAMILIES)
-
-    def report(stage: str, k: int, n: int) -> None:
-        print(f"{k} of {n}: {stage}", flush=True)
-
-    taken = climb([rung for name in names for rung in FAMILIES[name]()], report)
-    for each in taken:
-        said = each.expected
+    rungs = [rung for name in arguments or FAMILIES for rung in FAMILIES[name]()]
+    taken = climb(rungs, lambda stage, k, n: print(f"{k} of {n}: {stage}", flush=True))
+    for row in taken:
         print(
-            f"{each.rung.family:24} {each.rung.label:20} {each.cpu_s:8.3g} s, said {said.time_s:8.3g}; "
-            f"{each.memory / 1e6:8.4g} MB, said {said.memory_bytes / 1e6:8.4g}",
-            each.box or "",
-            "" if each.converged else "not converged",
+            f"{row['family']:24} {row['scene']:20} {row['cpu-s']:8.3g} s, said {row['predicted-s']:8.3g}; "
+            f"{row['memory'] / 1e6:8.4g} MB, said {row['predicted-memory'] / 1e6:8.4g}",
+            "" if row["converged"] else "not converged",
         )
-    for name, found in zip(("MEMORY", "TIME"), factors(taken), strict=True):
+    for name, found in zip(("MEMORY", "TIME"), factors(rungs, taken), strict=True):
         print(f"{name} = {{")
         for model, of in found.items():
             print(f"    {model!r}: {{{', '.join(f'{key!r}: {value:.3g}' for key, value in of.items())}}},")

@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from verification.cases.case import FEM_3D, Context, Plot, SmallTable
 from verification.cost import growth
-from verification.cost.growth import MEMORY_MATTERS, TIME_MATTERS, Applied, Taken
+from verification.cost.growth import MEMORY_MATTERS, TIME_MATTERS
 from verification.figures.growth import PowerCurve, growth as draw, predicted as draw_predicted
 from verification.reference.convergence import Power, fit_power
 from verification.rows import CaseFile
@@ -45,32 +45,23 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
     rungs = {name: make() for name, make in growth.FAMILIES.items()}
     taken = iter(growth.climb([rung for each in rungs.values() for rung in each], context.progress))
     found = {name: [next(taken) for _ in each] for name, each in rungs.items()}
-    boxes = {name: [growth.applied(*box) for box in each] for name, each in BOXES.items()}
-    yield from rows_of(found, boxes)
+    yield from rows_of(found, {name: [growth.applied(*box) for box in each] for name, each in BOXES.items()})
 
 
-def rows_of(found: dict[str, list[Taken]], boxes: dict[str, list[Applied]]) -> Iterator[dict[str, Any]]:
-    """The rows of ladders that were climbed. further-s: of the stresses, beyond the contact alone; memory in
-    bytes above a process that has solved nothing.
+def rows_of(found: Mapping[str, list[dict]], boxes: Mapping[str, list[dict]]) -> Iterator[dict[str, Any]]:
+    """The rows of ladders that were climbed, and of boxes. further-s: of the stresses, beyond the contact
+    alone.
     """
-    contact = {each.size: each.cpu_s for each in found["contact"]}
+    contact = {row["size"]: row["cpu-s"] for row in found["contact"]}
     for name, taken in found.items():
-        for each in taken:
-            row = {"sweep": name, "model": each.rung.model, "scene": each.rung.label, "size": each.size}
-            row |= {"cpu-s": each.cpu_s, "predicted-s": each.expected.time_s}
-            row |= {"memory": each.memory, "predicted-memory": each.expected.memory_bytes}
-            row["time-factor"] = factor(each.cpu_s, each.expected.time_s)
-            row["memory-error"] = factor(each.memory, each.expected.memory_bytes) - 1.0
-            row["unconverged"] = float(not each.converged and each.rung.model != FEM_3D)
-            yield row | ({"further-s": each.cpu_s - contact[each.size]} if name == "stresses" else {})
-    sizes = {
-        "cells": lambda box: box.cells, "plane": lambda box: box.nx * box.ny, "depth": lambda box: box.layers
-    }  # fmt: skip
+        for row in taken:
+            own = {"time-factor": factor(row["cpu-s"], row["predicted-s"])}
+            own["memory-error"] = factor(row["memory"], row["predicted-memory"]) - 1.0
+            own["unconverged"] = float(not row["converged"] and row["model"] != FEM_3D)
+            own |= {"further-s": row["cpu-s"] - contact[row["size"]]} if name == "stresses" else {}
+            yield {"sweep": name} | row | own
     for name, applied in boxes.items():
-        for box in applied:
-            row = {"sweep": f"operator-{name}", "model": "sam", "size": float(sizes[name](box))}
-            row |= {"scene": f"{box.nx} × {box.ny} × {box.layers}", "cpu-s": box.apply_s}
-            yield row | {"set-up-s": box.setup_s, "memory": box.memory, "stored": box.stored}
+        yield from ({"sweep": f"operator-{name}"} | row | {"size": float(row[name])} for row in applied)
 
 
 def factor(measured: float, expected: float) -> float:
