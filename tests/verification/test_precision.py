@@ -28,9 +28,8 @@ from verification.cost.precision import (
     bracket,
     limit_of,
 )
-from verification.figures.check import findings
 from verification.figures.style import save
-from verification.figures.work_precision import Line, curves, overview
+from verification.figures.work_precision import overview
 from verification.runs import models
 
 SCENES = Path(problems.__file__).parents[2] / "scenes"
@@ -283,20 +282,9 @@ def test_a_small_study_from_end_to_end(tmp_path, monkeypatch):
     assert len(frame) == 6 and (frame["error"] < 0.1).all()
     assert case.growth(frame[frame["method"] == COUPLED], "error") < 1.0
     figures = [context.save(plot) for plot in (case.advice(FILE, frame), case.errors(FILE, frame, "hertz"))]
-    assert all((tmp_path / figure.png).stat().st_size > 1000 for figure in figures)
-    assert read_rows((tmp_path / "figures/work-precision-advice.csv").read_text(encoding="utf-8"))
-
-
-def test_figures_of_synthetic_curves(tmp_path):
-    n = np.array([2, 4, 8, 16])
-    lines = {
-        "SAM": Line(0.01 * n**2.0, 0.2 / n**2.0, n),
-        "FEM, 3D": Line(1.0 * n**3.0, np.where(n > 2, 0.3 / n, np.nan), n),
-        "another": Line(np.full(4, np.nan), np.full(4, np.nan), n),
-    }
-    drawing = curves({"resolution": (lines, 1e-3), "load steps": (lines, 0.0)}, "error")
-    assert len(drawing.data["method"]) == 2 * 12
-    labels = [text.get_text() for text in drawing.figure.legends[0].get_texts()]
-    assert labels[:-2] == ["SAM", "FEM, 3D"] and findings(drawing.figure) == []
+    assert all((tmp_path / figure.png).stat().st_size > 1000 and not figure.findings for figure in figures)
+    none = case.errors(FILE, frame.assign(error=math.nan), "hertz").drawing  # without an answer: no curve
+    assert len(none.figure.legends[0].get_texts()) == 2 and len(none.data["method"]) == 6
     nowhere = overview({"running-in": {"SAM": Reached(None, False, 0.04)}}, "1 %")
     assert save(nowhere, tmp_path / "nowhere")[0].stat().st_size > 1000
+    assert read_rows((tmp_path / "figures/work-precision-advice.csv").read_text(encoding="utf-8"))
