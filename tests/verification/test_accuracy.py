@@ -15,9 +15,8 @@ from sam.scene import Result, Scene, Status
 from verification.cases.case import with_keys
 from verification.cases.cost import accuracy as case
 from verification.cost import accuracy
-from verification.cost.accuracy import NEAREST, missed, solve
+from verification.cost.accuracy import NEAREST, Choice, chosen_scene, expected, first_choice, missed, solve
 from verification.cost.advice import table
-from verification.cost.choice import Choice, chosen_scene, expected, first_choice
 from verification.cost.plan import plan
 from verification.reference.hertz import CircularContact
 from verification.runs.models import FEM, SAM, ModelError

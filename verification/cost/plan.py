@@ -11,8 +11,8 @@ from typing import Any
 
 from sam.scene import NO_FORCE, Scene, Stage, printable
 from verification.cost import estimates
+from verification.cost.accuracy import chosen_scene, expected, first_choice, quantities_of
 from verification.cost.advice import advice_of
-from verification.cost.choice import chosen_scene, expected, first_choice, quantities_of
 from verification.runs import models
 from verification.runs.model_range import model_range, range_lines
 from verification.runs.provenance import memory_bytes

@@ -14,8 +14,7 @@ from sam.scene import Result, Scene
 from verification.cases.case import FEM, SAM, Context, with_keys, with_loading
 from verification.cases.cost.uncertainty import sliding, solved
 from verification.cases.recipes import at_ratio
-from verification.cost.accuracy import solve
-from verification.cost.choice import Choice, chosen_scene, quantities_of
+from verification.cost.accuracy import Choice, chosen_scene, quantities_of, solve
 from verification.cost.estimates import estimate
 from verification.references import REFERENCES, coated_contact
 from verification.runs import models
