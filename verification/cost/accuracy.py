@@ -89,10 +89,9 @@ def quantities_of(scene: Scene) -> tuple[str, ...]:
 
 
 def first_choice(scene: Scene, model: str) -> Choice:
-    """With what the first three grids of a scene end: what the table of advice has, or for a scene with a
-    history the fewest cells and steps, as a grid that is finer than it has to be costs more there.
-
-    Raises ModelError as `expected`, and for quantities without an uncertainty.
+    """With what the first three grids of a scene end: what the table of advice has, or with a history the
+    fewest cells and steps, as too fine a grid costs more there. Raises ModelError as `expected`, and for
+    quantities without an uncertainty.
     """
     advised = expected(scene, model)
     for name in quantities_of(scene):
@@ -102,9 +101,8 @@ def first_choice(scene: Scene, model: str) -> Choice:
 
 
 def expected(scene: Scene, model: str) -> Choice:
-    """What the table of advice has for the accuracy of a scene.
-
-    Raises ModelError for a kind of scene or an accuracy that was not measured.
+    """What the table of advice has for the accuracy of a scene. Raises ModelError for a kind of scene or an
+    accuracy that was not measured.
     """
     accuracy, kind = scene.solver.accuracy, kind_of(scene)
     if kind not in ADVISED:
@@ -179,10 +177,8 @@ class BeyondError(models.ModelError):
 
 
 def solve(scene: Scene, model: str, solver: Solve | None = None) -> Result:
-    """The result of a scene as it asks for it: plain, with its uncertainty, or to an accuracy.
-
-    Raises what the solver raises, and ModelError as `first_choice` or where even the first grids need too
-    much.
+    """The result of a scene as it asks for it: plain, with its uncertainty, or to an accuracy. Raises what
+    the solver raises, and ModelError as `first_choice` or where even the first grids need too much.
     """
     if scene.solver.accuracy is None:
         return solve_uncertain(scene, model, solver)
@@ -212,10 +208,8 @@ class Solution:
 
 @dataclass
 class Attempt:
-    """What some grids say of the finest of them.
-
-    quantity: the one that is known worst; relative: its uncertainty, None where there is none; why: what
-    keeps the next grid from being solved.
+    """What some grids say of the finest of them: the quantity that is known worst, its relative uncertainty,
+    None where there is none, and why the next grid is not solved.
     """
 
     choice: Choice
@@ -347,9 +341,9 @@ class Search:
         return Attempt(choice, result, worst, relative, why)
 
     def with_companions(self, choice: Choice) -> list[Solution]:
-        """A grid and the next two coarser ones, none of them hardly coarser than the one before. Those of an
-        elastic body are solved in one step, at the depths of its largest stresses alone, or at a single one
-        where the accuracy of no stress is asked for; they have none then.
+        """A grid and the next two coarser ones, none hardly coarser than the one before. Those of an elastic
+        body are solved in one step, at the depths of its largest stresses, or at one where no stress is asked
+        for.
         """
         picked = [self.solution(choice)]
         depths = depths_of_maxima(alone(self.scene), picked[0].result)
@@ -363,9 +357,8 @@ class Search:
 
     def wanted(self, attempt: Attempt, count: int) -> Choice:
         """The cells and load steps that are foreseen to reach the accuracy in the least time, by the parts of
-        the uncertainty: those by cells and box of the last attempt, that by load steps of `count`.
-
-        Raises BeyondError where none does.
+        the uncertainty by cells and box of the last attempt, and by load steps of `count`. Raises BeyondError
+        where none does.
         """
         choice = attempt.choice
         if attempt.relative is None:

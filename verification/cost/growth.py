@@ -47,9 +47,8 @@ def scene_of(name: str) -> Scene:
 
 
 def measured_at(rung: Rung, idle: int) -> dict[str, Any]:
-    """What the solve of a rung took, each time in a process of its own, and what the plan of the scene says;
-    memory in bytes above a process that has solved nothing (idle: see `idle_bytes`), time the median of some
-    solves in s.
+    """What the solve of a rung took, each time in a process of its own, and what the plan of the scene says:
+    bytes above a process that has solved nothing (idle), median seconds.
     """
     results = [solve_alone(rung.scene, rung.model)]
     while results[0].cost["cpu_s"] < SHORT_S and len(results) < REPEATS:
@@ -211,10 +210,8 @@ def fitted(
     matters: float,
     known: Mapping[str, float] | None = None,
 ) -> dict[str, float]:
-    """Factors >= 0 of the counts: the least sum of the largest relative error of what was measured and the
-    mean one.
-
-    Errors of what is smaller than `matters` weigh less, in proportion. known: factors that are not looked
+    """Factors >= 0 of the counts with the least sum of the largest relative error of what was measured and
+    the mean one, those of what is smaller than `matters` in proportion; known: factors that are not looked
     for.
     """
     from scipy.optimize import linprog

@@ -99,11 +99,8 @@ def hertz_errors(
     p: np.ndarray, n: int, side: float, converged_error: float
 ) -> tuple[float, dict[str, float]]:
     """Error of the largest pressure, and the relative L2 error of the pressure against Hertz' mean over each
-    cell.
-
-    converged_error: of the largest pressure of the discrete problem, solved tightly. The larger of the two
-    errors counts: an iteration that stops where its own error cancels that of the grid has not solved the
-    problem any better.
+    cell. converged_error: of the discrete problem, solved tightly; the larger counts, as an iteration that
+    stops where its own error cancels that of the grid has solved the problem no better.
     """
     found = abs(float(p.max()) / problems.P0 - 1)
     also = {"as-found": found, "l2": distance(p, problems.hertz_pressure(n, side))}

@@ -143,11 +143,9 @@ def measure(
     calibrate: Callable[[], float] = calibration_s,
     reaches: Callable[[Measurement], bool] = lambda _: True,
 ) -> tuple[dict[str, list[Measurement]], list[float]]:
-    """Every program's jobs in each round in turn: (program -> measurements, seconds of the kernel).
-
-    pythons: program -> interpreter. Jobs that take long are measured in fewer rounds (`Measurement.wanted`),
-    and those whose first answer `reaches` nothing in one. A job has a process of its own: nothing that a
-    program keeps of one serves another.
+    """Every program's jobs in each round in turn, each in a process of its own: (program -> measurements,
+    seconds of the kernel). Jobs that take long are measured in fewer rounds (`Measurement.wanted`), and those
+    whose first answer `reaches` nothing in one. pythons: program -> interpreter.
     """
     found = {program: [Measurement(job) for job in own] for program, own in jobs.items()}
     kernel = [calibrate()]

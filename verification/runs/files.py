@@ -122,11 +122,9 @@ class Run:
 
 
 def write_run(result: Result, scene: Scene, folder: str | Path, provenance: Mapping | None = None) -> Path:
-    """Write a result into `folder` (made if need be) in place of an older one, and return the path of
-    summary.json.
-
-    provenance: as `verification.runs.provenance.collect` returns it, collected here when absent. Raises
-    FolderError if the folder holds anything but a run, OSError if it cannot be written.
+    """Write a result into `folder` (made if need be) in place of an older one; the path of summary.json.
+    provenance: as `collect` returns it. Raises FolderError if the folder holds anything but a run, OSError if
+    it cannot be written.
     """
     folder = Path(folder)
     check_target(folder)
@@ -212,9 +210,7 @@ def _why(error: Exception) -> str:
 
 def check_target(folder: Path, also: Sequence[str] = ()) -> None:
     """Raise FolderError unless a run may be written to `folder`: absent, empty, or of an older or broken-off
-    run.
-
-    also: names that the folder may hold besides the files of a run.
+    run; also: names that it may hold besides the files of a run.
     """
     try:
         check_place(folder)

@@ -120,10 +120,8 @@ PositiveEnds = Annotated[tuple | None, BeforeValidator(_positive_ends)]
 
 
 class Axis(Section):
-    """The values of one key: a list, or `count` of them between two ends (both included, but not by the
-    random ones).
-
-    range: equal distances; log: equal ratios; random, random-log: drawn uniformly, or uniformly in the
+    """The values of one key: a list, or `count` of them between two ends, both included but not by the random
+    ones. range: equal distances; log: equal ratios; random, random-log: drawn uniformly, or so in the
     logarithm. block: of a design, a value of the list drawn for each sample.
     """
 
