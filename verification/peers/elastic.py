@@ -83,18 +83,6 @@ def disagreements(problem: str, n: int, pythons: Mapping[str, Path]) -> dict[str
     return {program: distance(solution(problem, n, pythons[program], program), own) for program in others}
 
 
-def hertz_jobs(programs: Sequence[str], sizes: Sequence[int] = SIZES) -> dict[str, list[Job]]:
-    """The solves of the sphere by each program: every setting on every grid."""
-    return {
-        program: [
-            Job(problems.HERTZ, n, settings, label)
-            for label, settings in HERTZ_SETTINGS[program].items()
-            for n in sizes
-        ]
-        for program in programs
-    }
-
-
 def hertz_errors(
     p: np.ndarray, n: int, side: float, converged_error: float
 ) -> tuple[float, dict[str, float]]:
@@ -108,13 +96,20 @@ def hertz_errors(
 
 
 def hertz(
-    pythons: Mapping[str, Path],
-    rounds: int,
-    progress: Progress = lambda *_: None,
-    sizes: Sequence[int] = SIZES,
+    pythons: Mapping[str, Path], rounds: int, progress: Progress
 ) -> tuple[list[dict[str, Any]], list[float]]:
-    """Rows of every program, and the seconds of the calibration kernel in between."""
-    found, kernel = measure(hertz_jobs(list(pythons), sizes), pythons, rounds, progress)
+    """Rows of every program with every setting on every grid, and the seconds of the calibration kernel in
+    between.
+    """
+    jobs = {
+        program: [
+            Job(problems.HERTZ, n, settings, label)
+            for label, settings in HERTZ_SETTINGS[program].items()
+            for n in SIZES
+        ]
+        for program in pythons
+    }
+    found, kernel = measure(jobs, pythons, rounds, progress)
     least: dict[tuple[int, float], float] = {}
 
     def errors(each: Measurement) -> tuple[float, dict[str, float]]:
@@ -129,17 +124,14 @@ def hertz(
 
 
 def rough(
-    pythons: Mapping[str, Path],
-    rounds: int,
-    progress: Progress = lambda *_: None,
-    sizes: Sequence[int] = ROUGH_SIZES,
+    pythons: Mapping[str, Path], rounds: int, progress: Progress
 ) -> tuple[list[dict[str, Any]], list[float]]:
     """Rows of every program at the loosest tolerance that reaches ROUGH_ERROR on each grid; those that miss
     it too.
     """
-    tight = {n: solution(problems.ROUGH, n, pythons[SAM]) for n in sizes}
+    tight = {n: solution(problems.ROUGH, n, pythons[SAM]) for n in ROUGH_SIZES}
     rows, kernel = [], []
-    open_ = {(program, n): 0 for program in pythons for n in sizes}  # -> place in the ladder
+    open_ = {(program, n): 0 for program in pythons for n in ROUGH_SIZES}  # -> place in the ladder
 
     def errors(each: Measurement) -> tuple[float, dict[str, float]]:
         p, reference = each.fields["pressure"], tight[each.job.cells]

@@ -23,14 +23,8 @@ from verification.peers.running import SAM, TAMAAS, Job, Measurement, interprete
 GRIDS = ((16, 8), (32, 16), (64, 32))  # cells a side and layers of the box of 6a x 6a x 2.5a
 COMPARED = ((32, 16), (64, 32))
 OWN_SIDE, OWN_DEPTH = 2.8, 1.5  # in a: of a grid that holds the contact and the plastic zone, and no more
-OWN_GRIDS = (
-    (11, 14),
-    (13, 16),
-    (15, 19),
-    (17, 21),
-    (21, 26),
-    (25, 31),
-)  # layers of about 4/5 of a cell's side
+OWN_GRIDS = ((11, 14), (13, 16), (15, 19), (17, 21), (21, 26), (25, 31))
+"""Layers of about 4/5 of a cell's side."""
 TOLERANCE = 1e-3  # of SAM; 1e-6 changes the largest strain by 1e-4
 SETTINGS = {
     "": {"tolerance": 1e-3, "contact_tolerance": 1e-5, "relaxation": 0.3},
@@ -41,33 +35,26 @@ on the finest grid. Its accelerated solve does not end within the tolerance here
 at all."""
 
 
-def jobs() -> dict[str, list[Job]]:
-    """The solves of the elastic-plastic step: SAM in the box of Tamaas and on its own grid, and Tamaas."""
-    same = {"tolerance": TOLERANCE, "side": problems.BOX[0], "depth": problems.BOX[1]}
-    own = {"tolerance": TOLERANCE, "side": OWN_SIDE, "depth": OWN_DEPTH}
-    return {
-        SAM: [
-            *(Job(problems.STEP, cells, same, "box of Tamaas") for cells in GRIDS),
-            *(Job(problems.STEP, cells, own, "own grid") for cells in OWN_GRIDS),
-        ],
-        TAMAAS: [
-            Job(problems.STEP, cells, how, label)
-            for label, how in SETTINGS.items()
-            for cells in (GRIDS if not label else GRIDS[:-1])
-        ],
-    }
-
-
 def step(
     pythons: Mapping[str, Path],
     rounds: int,
     references: Mapping[str, StoredReference],
-    progress: Progress = lambda *_: None,
+    progress: Progress,
 ) -> tuple[list[dict[str, Any]], list[float]]:
-    """Rows of SAM and Tamaas, and the seconds of the calibration kernel; references: program -> what it
-    tends to.
+    """Rows of SAM, in the box of Tamaas and on its own grid, and of Tamaas, and the seconds of the kernel;
+    references: program -> what it tends to.
     """
-    found, kernel = measure(jobs(), pythons, rounds, progress)
+    same = {"tolerance": TOLERANCE, "side": problems.BOX[0], "depth": problems.BOX[1]}
+    own_box = {"tolerance": TOLERANCE, "side": OWN_SIDE, "depth": OWN_DEPTH}
+    solves = {
+        SAM: [(GRIDS, same, "box of Tamaas"), (OWN_GRIDS, own_box, "own grid")],
+        TAMAAS: [(GRIDS[: -1 if label else None], how, label) for label, how in SETTINGS.items()],
+    }
+    jobs = {
+        program: [Job(problems.STEP, cells, how, label) for grids, how, label in each for cells in grids]
+        for program, each in solves.items()
+    }
+    found, kernel = measure(jobs, pythons, rounds, progress)
     rows = []
     for program, own in found.items():
         errors, floor = partial(step_errors, to=references[program]), references[program].profile_uncertainty

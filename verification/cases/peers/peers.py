@@ -59,10 +59,7 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
     def told(stage: str, k: int, n: int) -> None:
         context.progress(f"{context.case}: {stage}", k, n)
 
-    measured = [
-        elastic.hertz(pythons, rounds, told, elastic.SIZES),
-        elastic.rough(pythons, rounds, told, elastic.ROUGH_SIZES),
-    ]
+    measured = [elastic.hertz(pythons, rounds, told), elastic.rough(pythons, rounds, told)]
     if TAMAAS in pythons:
         references = {SAM: half_space(context), TAMAAS: periodic()}
         pair = {name: pythons[name] for name in references}
