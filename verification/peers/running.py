@@ -246,21 +246,12 @@ def rows_of(problem: str, found: Mapping[str, Sequence[Measurement]], errors: Er
     for program, own in found.items():
         for each in own:
             label = ", ".join(filter(None, (NAMES[program], each.job.label)))
-            row = {
-                "sweep": problem,
-                "model": program,
-                "curve": label,
-                "cells": cells_in_words(each.job.cells),
-            }
-            row |= {"seconds": each.seconds, "again": each.again, "error": float("nan")}
+            row: dict[str, Any] = {"sweep": problem, "model": program, "curve": label}
+            row |= {"cells": cells_in_words(each.job.cells), "seconds": each.seconds, "again": each.again}
+            row["error"] = float("nan")
             if each.solved:
-                error, also = errors(each)
-                row |= {
-                    "error": error,
-                    **also,
-                    "rounds": len(each.cpu_s),
-                    "iterations": each.record.get("iterations"),
-                }
+                row["error"], also = errors(each)
+                row |= {**also, "rounds": len(each.cpu_s), "iterations": each.record.get("iterations")}
                 row |= {"least": min(each.cpu_s), "most": max(each.cpu_s), "set-up": np.median(each.setup_s)}
                 row["memory"] = each.record["peak_memory_bytes"]
             rows.append(row | {"status": "" if each.solved else each.failure or "not converged"})
