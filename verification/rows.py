@@ -160,9 +160,13 @@ class CaseFile(BaseModel):
     variants: name -> {words, set, vary} of the scene, each solved and measured by itself if rows name it;
     values: quantity -> the number that it is held against; reference: an independent answer, a name in
     `verification.references`; figures: kinds of `verification.cases.kinds`; claims: its rows; sweeps: its
-    points beside the scene itself; frame: function beside the file that returns points instead; setting:
-    (name, number with unit) for the reader; notes: sentences below the tables; views: pictures in space;
-    needs: package of the extra `reference` without which it does not run.
+    points beside the scene itself; setting: (name, number with unit) for the reader; notes: sentences below
+    the tables; views: pictures in space; needs: package of the extra `reference` without which it does not
+    run.
+
+    frame: function beside the file that returns the points instead of sweeps; of such functions, tables:
+    that return one of the frame; cannot: that says why the case does not run here. alone: it measures times,
+    so that nothing runs beside it and a later run measures again.
 
     allowance: rows of SAM against FEM that hold the difference over what refinement allows, known from
     both models at the `coarser` resolution.
@@ -193,6 +197,9 @@ class CaseFile(BaseModel):
     claims: tuple[Claim, ...]
     sweeps: dict[str, SweepFile] = {}
     frame: str = ""
+    tables: tuple[str, ...] = ()
+    alone: bool = False
+    cannot: str = ""
     notes: tuple[str, ...] = ()
     setting: tuple[tuple[str, str], ...] = ()
     needs: str = ""

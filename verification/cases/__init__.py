@@ -21,6 +21,7 @@ from typing import Any
 from sam.scene import Problem, SceneError, spelling
 from verification.cases.case import Case
 from verification.cases.compared import Compared
+from verification.cases.recipes import beside
 from verification.quantities import QUANTITIES
 from verification.references import REFERENCES
 from verification.rows import FOLDER, LEVELS, CaseFile, case_files
@@ -37,11 +38,13 @@ def case_of(file: CaseFile) -> Case:
     said: dict[str, Any] = {key: getattr(file, key) for key in ("title", "question", "equations", "levels")}
     if file.own:
         _check(file)
+    missing = f'install {file.needs}: pip install "samfem[reference]"'
     if file.needs:
-        missing = f'install {file.needs}: pip install "samfem[reference]"'
         said["needs"] = lambda: "" if find_spec(file.needs) else missing
+    elif file.cannot:
+        said["needs"] = lambda: beside(file, file.cannot, {})()
     if file.scene or file.frame:
-        return Compared(file.name, **said, alone=file.own, file=file)
+        return Compared(file.name, **said, alone=file.own or file.alone, file=file)
     module = import_module(f"{__name__}.{file.path.parent.name}.{file.path.stem}")
     (case,) = (case for case in module.CASES if case.name == file.name)
     return replace(case, **said, file=file)

@@ -174,6 +174,7 @@ class Compared(Case):
                 yield from _passes(self.file.variants[name]["words"] if name else "", solved.results)
             return
         solved = found[""]
+        yield from (beside(self.file, name, {})(solved.frame) for name in self.file.tables)
         yield from tables_of(self.file, solved.frame) if self.file.taken else ()
         if set(solved.results) != {"sam", "fem"}:
             return

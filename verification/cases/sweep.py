@@ -151,13 +151,16 @@ STATISTICS: Mapping[str, Callable[[DataFrame, str], float | Measured]] = {
     "order": lambda rows, column: fit_order(rows["h"], rows[column]).order,
     "limit": lambda rows, column: extrapolate(rows["h"], rows[column]).limit,
     "largest": lambda rows, column: float(np.max(rows[column].to_numpy())),
-    "total": lambda rows, column: float(rows[column].sum()),
     "first": lambda rows, column: rows[column].iloc[0],
     "last": lambda rows, column: rows[column].iloc[-1],
     "ratio": lambda rows, column: rows[column].iloc[0] / rows[column].iloc[-1],
+    "mean": lambda rows, column: rows[column].mean(),
+    "median": lambda rows, column: rows[column].median(),
+    "total": lambda rows, column: float(rows[column].sum()),
 }
 """Word of a row -> what it takes of a column. pair: the value of SAM beside that of FEM; order, limit: under
-refinement; ratio: first over last; nan where one is missing.
+refinement; ratio: first over last; nan where one is missing; mean, median, total: of the values that there
+are.
 """
 
 
@@ -228,7 +231,7 @@ def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
             values = [column for column, how in sweep.columns.items() if how == "value"]
             shown |= {f"{column} expected": f"{shown[column]}, expected" for column in values}
         known = {c: rows[c].dropna() for c in shown if c in rows}
-        shown = {c: shown[c] for c, own in known.items() if len(own) and isinstance(own.iloc[0], (str, Real))}
+        shown = {c: shown[c] for c, own in known.items() if len(own) and isinstance(own.iloc[0], str | Real)}
         head = (*map(_plain, axes), *["model"] * any(rows["model"]))
         lines = [
             (
