@@ -20,8 +20,7 @@ from samfem.shown import (
     uncertain_table,
     undecided_line,
 )
-from verification.cost.accuracy import missed, solve as solve_family
-from verification.cost.choice import chosen_scene, first_choice
+from verification.cost.accuracy import chosen_scene, first_choice, missed, solve as solve_family
 from verification.cost.plan import check_needs
 from verification.figures import solve_figures
 from verification.figures.space import CannotDrawError, draw_run

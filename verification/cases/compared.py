@@ -189,6 +189,7 @@ class Compared(Case):
                 yield _differences(self.file, found)
             return
         solved = found[""]
+        yield from (beside(self.file, name, {})(solved.frame) for name in self.file.tables)
         yield from tables_of(self.file, solved.frame) if self.file.takes else ()
         if set(solved.results) != {"sam", "fem"}:
             return
