@@ -13,7 +13,7 @@ from verification.cases.case import Outcome, Plot
 from verification.figures.check import findings
 from verification.figures.maps import FieldPair, MapPeak, plane_maps
 from verification.figures.style import BLUE, VERMILION, Drawing, save, sheet, style
-from verification.suite import pdf, verify
+from verification.suite import verify
 
 X = np.linspace(0.0, 10.0, 21)
 
@@ -157,11 +157,10 @@ def test_a_figure_that_cannot_be_read_fails_its_case_in_every_record(
         plot = Plot(Drawing(figure, {"x": [1.0]}), "curve", "A curve", "Two lines", "Caption")
         return Outcome(figures=[context.save(plot)])
 
-    for module in (verify, pdf):
-        own = FakeCase("own", "Own", "Is it read?", does=does)
-        monkeypatch.setattr(module, "all_cases", lambda own=own: {"own": own})
+    own = FakeCase("own", "Own", "Is it read?", does=does)
+    monkeypatch.setattr(verify, "all_cases", lambda: {"own": own})
     assert verify.main(["own"], "quick", tmp_path / "out") == code
-    (drawn,) = pdf.draw_pdf(tmp_path / "out", print, None)
+    (drawn,) = verify.draw_pdf(tmp_path / "out", print, None)
     assert drawn == tmp_path / "out" / "figures" / "own-curve.pdf" and drawn.read_bytes()[:5] == b"%PDF-"
     case = json.loads((tmp_path / "out" / "results.json").read_text())["cases"][0]
     assert case["status"] == ("failed" if code else "passed") and bool(

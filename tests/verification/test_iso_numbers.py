@@ -6,8 +6,7 @@ import pytest
 from matplotlib.contour import ContourSet
 
 from verification.figures.check import findings
-from verification.figures.iso_numbers import readable
-from verification.figures.maps import FieldPair, MapPeak, plane_maps
+from verification.figures.maps import FieldPair, MapPeak, plane_maps, readable
 
 U, V = np.linspace(-1.5, 1.5, 61), np.linspace(0.0, 1.9, 39)
 LEVELS = [0.4, 0.6, 0.8]

@@ -15,7 +15,7 @@ from samfem import publishing
 from verification.cases.case import Case, Context, NotDrawnError, Outcome, Plot, with_loading
 from verification.judging import Measured
 from verification.runs import models
-from verification.suite import earlier, freshness, outcomes, verify
+from verification.suite import freshness, outcomes, verify
 
 NAMES = ("timed", "first", "second")
 ROWS = [row(f"{name}.one") for name in NAMES]
@@ -71,7 +71,7 @@ def published(monkeypatch, counted):
     made = Published()
     for module in (publishing, freshness):
         monkeypatch.setattr(module, "all_cases", lambda: {name: made.case(name) for name in NAMES})
-    for module in (verify, freshness, earlier):
+    for module in (verify, freshness):
         monkeypatch.setattr(module, "load_rows", lambda: ROWS)
     monkeypatch.setattr(publishing, "Processes", Here)
     monkeypatch.setattr(Here, "started", [])
@@ -157,7 +157,7 @@ def test_what_stays_is_judged_by_the_gates_of_today_unless_they_measure_somethin
     tmp_path, published, monkeypatch
 ):
     def gates(**changed):
-        for module in (verify, freshness, earlier):
+        for module in (verify, freshness):
             monkeypatch.setattr(module, "load_rows", lambda: [row(ROWS[0].id, **changed), *ROWS[1:]])
 
     run(tmp_path)

@@ -17,12 +17,12 @@ from stored import COARSE, COARSE_KEYS
 from samfem.cli import main
 from verification.cases.case import Outcome, Plot, SmallTable, View
 from verification.figures import space
-from verification.figures.profiles import Profile, profiles
+from verification.figures.lines import Profile, profiles
 from verification.figures.style import Drawing, new_figure, save
 from verification.judging import Measured
 from verification.references import contact_of
 from verification.runs.files import FolderError
-from verification.suite import listing, verify
+from verification.suite import verify
 
 ROWS = [
     row(f"{case}.{name}", quantity=f"quantity {name}, FEM", reason=f"because of {name}")
@@ -74,9 +74,8 @@ CASES = {
 
 @pytest.fixture(autouse=True)
 def _small_cases(monkeypatch):
-    for module in (verify, listing):
-        monkeypatch.setattr(module, "all_cases", lambda: CASES)
-        monkeypatch.setattr(module, "load_rows", lambda: ROWS)
+    monkeypatch.setattr(verify, "all_cases", lambda: CASES)
+    monkeypatch.setattr(verify, "load_rows", lambda: ROWS)
 
 
 def run(out, *cases, level="quick"):

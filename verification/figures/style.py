@@ -125,7 +125,7 @@ def log_ticks(axis: Axis, words: Callable[[float], str] = "{:g}".format) -> None
         if decades > 1.0
         else (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
     )
-    axis.set_major_locator(LogLocator(subs=steps, numticks=20))
+    axis.set_major_locator(LogLocator(subs=steps, numticks=20 if decades < 8.0 else 7))
     axis.set_major_formatter(lambda value, _: words(value))
     axis.set_minor_formatter(NullFormatter())
 

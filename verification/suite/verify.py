@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Run verification cases, judge them by the table of gates, and write the report.
+"""Run verification cases, judge them by the table of gates, and write the report; or list them, or draw the
+figures of a report as PDF.
 
 The folder holds the pages (index.html and one for each group of cases), results.json, gates.csv, junit.xml,
 figures/ and runs/ (every solve). results.json says "complete": false while the cases run, so that a broken
@@ -15,11 +16,13 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from textwrap import fill
 
 from sam.scene import Progress
 from verification.cases import LEVELS, Case, all_cases, case_of
 from verification.cases.case import Context, NotDrawnError, Outcome
-from verification.judging import RowStatus, Verdict, evaluate
+from verification.judging import Row, RowStatus, Verdict, evaluate
 from verification.rows import load_rows, read_cases
 from verification.runs import provenance
 from verification.runs.code_version import version_of_cases
@@ -27,17 +30,17 @@ from verification.runs.files import FolderError, plain, write_atomically
 from verification.runs.lock import locked
 from verification.runs.store import Lookup, Reuse, Store
 from verification.suite import outcomes
-from verification.suite.earlier import Earlier
-from verification.suite.freshness import older
-from verification.suite.listing import unknown_cases
+from verification.suite.freshness import Earlier, older
 from verification.suite.pages import INDEX, remove_pages, write_report
 from verification.suite.pages.stored import ASKED, ELSEWHERE, NAMED
 from verification.suite.records import gates_csv, junit_xml, origin, results_json, text_rows, unreadable
-from verification.text.console import print_table
+from verification.text.console import print_table, table_lines, unknown
 
 FORMAT = "samfem-verification"
 RESULTS = "results.json"
 NOTHING = Earlier()
+WIDTH = 100
+"""Characters of a line of a reason."""
 BEFORE = "before"
 """Key of results.json while a report is in the making: that of the report whose cases stay."""
 
@@ -332,3 +335,63 @@ def _write(results: dict, out: Path, stale: Mapping[str, str]) -> None:
 
 def _write_results(results: dict, out: Path) -> None:
     write_atomically(out / RESULTS, results_json(results).encode())
+
+
+def show(what: str, names: Sequence[str]) -> int:
+    """On stdout, of the named cases (none: of all), one line each, or where `what` is "gates" question,
+    gates, tolerances and reasons. Returns 0, or 2 for an unknown name.
+    """
+    known, gates, rows = all_cases(), load_rows(), []
+    if problem := unknown_cases(names, known):
+        print(f"samfem: error: {problem}", file=sys.stderr)
+        return 2
+    for case in [case for case in known.values() if not names or case.name in names]:
+        own = [gate for gate in gates if gate.case == case.name]
+        rows.append((case.name, ", ".join(case.levels) or "when named", str(len(own)), case.title))
+        if what == "gates":
+            print(f"{case.name}: {case.question}")
+            for gate in own:
+                print(f"  {gate.id}: {gate.quantity}: {_limit(gate)}")
+                print(fill(gate.reason, WIDTH, initial_indent=" " * 6, subsequent_indent=" " * 6))
+    if what != "gates":
+        print("\n".join(table_lines(("case", "levels", "gates", "title"), rows)))
+    return 0
+
+
+def unknown_cases(names: Sequence[str], known: Mapping[str, Case]) -> str:
+    """What is wrong with names of cases, or an empty text."""
+    wrong = [name for name in names if name not in known]
+    return unknown("case", wrong, known, "samfem verify --list shows all") if wrong else ""
+
+
+def _limit(gate: Row) -> str:
+    """What the gate allows, in words."""
+    match gate.metric:
+        case "equal":
+            return "equal"
+        case "at_most" | "at_least":
+            return f"{gate.metric.replace('_', ' ')} {gate.tolerance:g}"
+        case _:
+            words = {"relative_l2": "relative difference (L2)"}.get(gate.metric, f"{gate.metric} difference")
+            return f"{words} at most {gate.tolerance:g}"
+
+
+def draw_pdf(folder: Path, progress: Progress, store: Store | None) -> list[Path]:
+    """Write figures/<case>-<name>.pdf of every case of a report that has figures, and return the paths.
+
+    A result that is not in the store is solved again. Raises FolderError when the folder holds no finished
+    report.
+    """
+    results, known, written = finished(folder), all_cases(), []
+    (folder / "figures").mkdir(exist_ok=True)
+    for record in results["cases"]:
+        if not record["figures"] or record["name"] not in known:
+            continue
+        with TemporaryDirectory() as scratch:
+            out = Path(scratch)
+            level = record.get("level", results["level"])
+            context = Context(record["name"], out, level, progress, store=store, pdf=True)
+            known[record["name"]].run(context)
+            for path in sorted((out / "figures").glob("*.pdf")):
+                written.append(Path(shutil.copy(path, folder / "figures" / path.name)))
+    return written

@@ -12,7 +12,7 @@ import numpy as np
 from verification.cases.case import FEM_3D, Case, Context, Plot, SmallTable
 from verification.cost import growth
 from verification.cost.growth import MEMORY_MATTERS, TIME_MATTERS, Applied, Taken
-from verification.figures.growth import PowerCurve, growth as draw, predicted
+from verification.figures.lines import Curve, growth as draw, predicted
 from verification.reference.convergence import Power, fit_power
 
 BOXES = ((16, 16, 8), (32, 32, 16), (64, 64, 32), (128, 128, 32))  # of the exponent in cells
@@ -200,14 +200,14 @@ _NAMES = {
 _ELEMENTS = (("axisymmetric", "axisymmetric"), ("3D", "spatial"))
 
 
-def _growth(climbed: Climbed) -> dict[str, tuple[str, dict[str, PowerCurve], dict[str, PowerCurve]]]:
+def _growth(climbed: Climbed) -> dict[str, tuple[str, dict[str, Curve], dict[str, Curve]]]:
     """The columns of the figure: title -> (label of x, seconds, bytes)."""
     powers, memory = climbed.powers, climbed.memory
 
-    def curve(family: str, of: str, power: Power | None = None) -> PowerCurve:
+    def curve(family: str, of: str, power: Power | None = None) -> Curve:
         return _curve(climbed.found[family], "size", of, power)
 
-    def of_box(of: str, power: Power | None = None) -> PowerCurve:
+    def of_box(of: str, power: Power | None = None) -> Curve:
         return _curve(climbed.boxes["cells"], "cells", of, power)
 
     return {
@@ -243,11 +243,9 @@ def _growth(climbed: Climbed) -> dict[str, tuple[str, dict[str, PowerCurve], dic
     }
 
 
-def _curve(points: Sequence, size: str, of: str, power: Power | None) -> PowerCurve:
+def _curve(points: Sequence, size: str, of: str, power: Power | None) -> Curve:
     """An attribute of points over another."""
-    return PowerCurve(
-        *(np.array([float(getattr(each, key)) for each in points]) for key in (size, of)), power
-    )
+    return Curve(*(np.array([float(getattr(each, key)) for each in points]) for key in (size, of)), power)
 
 
 def _prediction(taken: Sequence[Taken]) -> dict[str, tuple[float, float, dict[str, tuple[list, list]]]]:

@@ -29,7 +29,7 @@ from verification.cases.case import (
     with_loading,
 )
 from verification.cases.recipes import at_ratio
-from verification.figures.uncertainty import coverage
+from verification.figures.lines import coverage
 from verification.quantities import QUANTITIES
 from verification.reference.coated_changes import largest_mises
 from verification.reference.hamilton import largest_von_mises

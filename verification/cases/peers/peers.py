@@ -13,7 +13,7 @@ import numpy as np
 
 from verification.cases.case import FEM, Case, Context, Plot, SmallTable, number, with_mesh
 from verification.cost.precision import at_error
-from verification.figures.peers import curves as drawn
+from verification.figures.lines import of_programs
 from verification.peers import elastic, plastic, problems
 from verification.peers.points import PeerPoint, curves, fastest, ratio, reached
 from verification.peers.programs import sam as ours
@@ -190,7 +190,7 @@ def rough(context: Context, found: ProgramTimes) -> None:
     }
     found.plots.append(
         Plot(
-            drawn(series, "cells a side", "processor time [s]", ("cells", "cpu_s")),
+            of_programs(series, "cells a side", "processor time [s]"),
             "rough",
             "Rough patch: time over size",
             f"Processor time over cells a side for {', '.join(series)}.",
@@ -351,7 +351,7 @@ def errors_over_time(
         if solved := [p for p in own if p.measurement.solved]:
             times, errors = (np.array([getattr(p, of) for p in solved]) for of in ("seconds", "error"))
             series[label] = (own[0].name, times, errors)
-    drawing = drawn(series, "processor time [s]", ylabel, ("cpu_s", "error"), target=target, floor=floor)
+    drawing = of_programs(series, "processor time [s]", ylabel, target=target, floor=floor)
     dotted = "Dotted: the error whose times are compared."
     shade = "Shaded: the uncertainty of the references." if floor else dotted
     words = f"{title}: {ylabel} over processor time for {', '.join(series)}."

@@ -14,14 +14,21 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from verification.judging import RowStatus
 from verification.runs.files import write_atomically
-from verification.suite.pages.answers import Answer, answers_of, far, kind_of, origins, sentence
-from verification.suite.pages.costs import costs_of, table_of
-from verification.suite.pages.findings import Evidence
-from verification.suite.pages.groups import GROUPS, OTHER, Group, group_of, page_of
-from verification.suite.pages.headline import PAGE, Headline, headline_of
+from verification.suite.pages.answers import (
+    Answer,
+    Evidence,
+    answers_of,
+    cost_table,
+    costs_of,
+    far,
+    kind_of,
+    origins,
+    pairs_of,
+    sentence,
+)
+from verification.suite.pages.headline import PAGE, headline_of
 from verification.suite.pages.mathml import formula, with_scripts
-from verification.suite.pages.pairs import pairs_of
-from verification.suite.pages.stored import ShownCase, Stored, read_stored
+from verification.suite.pages.stored import GROUPS, ShownCase, Stored, group_of, page_of, read_stored
 from verification.suite.pages.views import (
     Look,
     amount,
@@ -116,7 +123,7 @@ def _write_pages(stored: Stored, folder: Path) -> None:
     evidence = Evidence(stored, pairs_of(stored))
     answers = answers_of(evidence)
     pages = {
-        f"{group.name}.html": _group_page(group, cases, answers, stored=stored, look=look)
+        f"{group['name']}.html": _group_page(group, cases, answers, stored=stored, look=look)
         for group, cases in _groups(stored)
     }
     for name, template in (
@@ -133,7 +140,7 @@ def _write_pages(stored: Stored, folder: Path) -> None:
 
 def remove_pages(folder: Path) -> None:
     """Remove what `write_report` wrote, but for the picture."""
-    names = (INDEX, README, ONE_FILE, *(f"{group.name}.html" for group in (*GROUPS, OTHER)))
+    names = (INDEX, README, ONE_FILE, *(f"{group['name']}.html" for group in GROUPS))
     for name in names:
         (folder / name).unlink(missing_ok=True)
 
@@ -146,9 +153,9 @@ def _one_file(results: Mapping, folder: Path) -> str:
     return _page("single.html.j2", stored, cases=cases, origins=origins(stored.ran.values()))
 
 
-def _groups(stored: Stored) -> Iterator[tuple[Group, list[ShownCase]]]:
+def _groups(stored: Stored) -> Iterator[tuple[dict, list[ShownCase]]]:
     """The groups of which a case ran, with these: failed first, then by the share of the tolerance used."""
-    for group in (*GROUPS, OTHER):
+    for group in GROUPS:
         cases = [each for each in stored.ran.values() if group_of(each.name) == group]
         if cases:
             yield group, _ordered(cases)
@@ -159,10 +166,10 @@ def _ordered(cases: Iterable[ShownCase]) -> list[ShownCase]:
 
 
 def _group_page(
-    group: Group, cases: list[ShownCase], answers: list[Answer], *, stored: Stored, look: Look
+    group: dict, cases: list[ShownCase], answers: list[Answer], *, stored: Stored, look: Look
 ) -> str:
     told: set[str] = set()
-    headline = headline_of(stored) if group.name == PAGE else None
+    headline = headline_of(stored) if group["name"] == PAGE else None
     pictures = headline.pictures if headline else ()
     shown = {each["png"] for each in pictures}
     long = len(cases) > MANY_CASES or sum(len(each.case["figures"]) for each in cases) > MANY_FIGURES
@@ -171,18 +178,18 @@ def _group_page(
         stored,
         headline=headline,
         pictures=[figure_view(each, look) for each in pictures],
-        answers=[each for each in answers if each.question.page == group.name and not _told(each, headline)],
+        answers=[
+            each
+            for each in answers
+            if each.question["page"] == group["name"]
+            and not (headline and each.question["words"] == headline.question)
+        ],
         group=group,
         long=long,
         cases=[case_view(each, look, told, shown) for each in cases],
         waiting=[row for row in stored.waiting if group_of(row[0]) == group],
         origins=origins(cases),
     )
-
-
-def _told(answer: Answer, headline: Headline | None) -> bool:
-    """Whether the headline of a page answers that already."""
-    return headline is not None and answer.question.words == headline.question
 
 
 def _index(template: str, evidence: Evidence, answers: list[Answer]) -> str:
@@ -194,7 +201,7 @@ def _index(template: str, evidence: Evidence, answers: list[Answer]) -> str:
         sentence=sentence(stored, evidence.pairs),
         picture=f"{PICTURE}.png" if evidence.pairs else "",
         far=far(evidence.pairs),
-        costs=table_of(costs_of(stored)),
+        costs=cost_table(costs_of(stored)),
         answers=answers,
         red=stored.red,
         broken=stored.broken,
@@ -231,14 +238,23 @@ def _page(template: str, stored: Stored, **shown: Any) -> str:
 
 def _draw(evidence: Evidence, folder: Path) -> None:
     if evidence.pairs:
-        from verification.figures.agreement import agreement  # noqa: PLC0415 - loads matplotlib
+        from verification.figures.specials import agreement  # noqa: PLC0415 - loads matplotlib
         from verification.figures.style import save  # noqa: PLC0415 - loads matplotlib
 
         (folder / PICTURE).parent.mkdir(parents=True, exist_ok=True)
-        titles = [group.title for group in (*GROUPS, OTHER)]
+        titles = [group["title"] for group in GROUPS]
         rows = [
-            (pair.page, pair.against, pair.predicted, pair.reference, pair.case.name, pair.quantity)
-            for pair in sorted(evidence.pairs, key=lambda pair: titles.index(pair.page))
+            (
+                group_of(pair.case.name)["title"],
+                pair.against,
+                pair.predicted,
+                pair.reference,
+                pair.case.name,
+                pair.quantity,
+            )
+            for pair in sorted(
+                evidence.pairs, key=lambda pair: titles.index(group_of(pair.case.name)["title"])
+            )
         ]
         save(agreement(rows), folder / PICTURE, long=sys.maxsize)
 

@@ -4,27 +4,27 @@
 from __future__ import annotations
 
 import base64
+import csv
 import re
 import struct
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache
+from importlib import resources
 from pathlib import Path
 from typing import Any
 
 from verification.judging import LIMITS, RowStatus
 from verification.runs.files import SUMMARY
 from verification.runs.store import short
-from verification.suite.pages.literature import works_of
-from verification.suite.pages.stored import RED, ShownCase, share_used
+from verification.suite.pages.stored import LIMIT_SIGNS, RED, ShownCase, share_used
 from verification.suite.records import origin
 from verification.text.console import number
 
 WIDE = 1600  # pixels: letters of a picture drawn wider than 8 inches are too small in half a page
 BRIEF = 60  # letters
 _METRICS = {"relative_l2": "relative L2", "at_most": "at most", "at_least": "at least"}
-LIMIT_SIGNS = {"<=": "\N{LESS-THAN OR EQUAL TO}", ">=": "\N{GREATER-THAN OR EQUAL TO}", "=": "="}
-
-
+NOT_CONFIRMED = "not confirmed"
 _NUMBER = re.compile(r"[<>≤≥]? ?[+−-]?[0-9][^ ]*( [^ ]{1,4})?$")
 
 
@@ -43,7 +43,7 @@ def case_view(each: ShownCase, look: Look, told: set[str], above: Collection[str
     """A case for the template. told: the equations that stand further up on the page; filled here; above:
     files of the figures that stand further up.
     """
-    case = each.case
+    case, digest = each.case, each.case.get("code", "")[:12]
     equations = [tuple(row) for row in case["equations"]]
     new = [row for row in equations if row[1] not in told]
     told.update(row[1] for row in equations)
@@ -61,14 +61,31 @@ def case_view(each: ShownCase, look: Look, told: set[str], above: Collection[str
         "scenes": [(name, f"{look.scenes}/{name}" if look.scenes else "") for name in each.inputs],
         "runs": [run for run in case["runs"] if (look.folder / run / SUMMARY).is_file()],
         "works": works_of(case),
-        "origin": _origin(each),
+        "origin": f"{each.date[:10]}, {short(each.commit)}" + f", code {digest}" * bool(digest),
     }
 
 
-def _origin(each: ShownCase) -> str:
-    """Day, commit and, where the results say it, the digest of the code that the case depends on."""
-    digest = each.case.get("code", "")[:12]
-    return f"{each.date[:10]}, {short(each.commit)}" + (f", code {digest}" if digest else "")
+@cache
+def works() -> list[dict[str, str]]:
+    """The literature: what finds it in the words of a case, a regular expression; its text; its DOI as public
+    lists of references or its first page have it, NOT_CONFIRMED where none was found, empty without.
+    """
+    place = resources.files("verification.suite").joinpath("pages", "literature.csv")
+    return list(csv.DictReader(place.read_text(encoding="utf-8").splitlines()))
+
+
+def works_of(case: Mapping) -> list[tuple[str, str]]:
+    """(citation, link) of what the question, the equations and the notes of a case refer to; no link without
+    a confirmed DOI.
+    """
+    words = [text for row in case["equations"] for text in row]
+    text, found = "\n".join([*words, case["question"], *case["notes"]]), []
+    for work in works():
+        doubt = work["doi"] == NOT_CONFIRMED
+        if re.search(work["mark"], text):
+            cited = work["text"] + f" (DOI {NOT_CONFIRMED})" * doubt
+            found.append((cited, f"https://doi.org/{work['doi']}" if work["doi"] and not doubt else ""))
+    return found
 
 
 def tightest(each: ShownCase) -> str:
