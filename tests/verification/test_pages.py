@@ -36,8 +36,8 @@ from verification.suite.pages.answers import (
 )
 from verification.suite.pages.mathml import formula, with_scripts
 from verification.suite.pages.older import pairs_in, times_in
+from verification.suite.pages.site import brief, works
 from verification.suite.pages.stored import GROUPS, PAGES, group_of, read_stored
-from verification.suite.pages.views import brief, works
 
 ROOT = Path(__file__).resolve().parents[2]
 REPORTS = ROOT / "reports"

@@ -17,8 +17,8 @@ from pathlib import Path
 from verification.judging import RowStatus
 from verification.runs.files import FolderError, write_atomically
 from verification.suite.pages.headline import headline_of
+from verification.suite.pages.site import found
 from verification.suite.pages.stored import RED, read_stored
-from verification.suite.pages.views import found
 from verification.suite.verify import finished
 
 BEGIN, END = "<!-- Written by `make readme`. -->", "<!-- Up to here. -->"

@@ -10,7 +10,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from statistics import median
-from typing import Any
 
 import numpy as np
 
@@ -81,10 +80,6 @@ class WorkPrecision(Case):
         for table in (times_table, faster_table, references_table, steps_table):
             yield table(studies)
         yield from map(points_table, studies)
-
-    def data(self, studies: Sequence[ProblemStudy]) -> dict[str, Any]:
-        """Under `times`: contact, quantity, and method -> seconds to 1 %, and whether they are a bound."""
-        return {"times": [(each.problem.title, *_to_one_percent(each)) for each in studies]}
 
     def notes(self, studies: Sequence[ProblemStudy]) -> Iterator[str]:
         yield (
@@ -239,13 +234,6 @@ def times_table(studies: Sequence[ProblemStudy]) -> SmallTable:
             rows.append((study.problem.title, name, *(spent(*each) for each in reached), last))
     columns = ("problem", "method", *(f"{100.0 * t:g} %" for t in TARGETS), "1 %, in kernels")
     return SmallTable("Processor time in s to an error (resolution)", columns, rows)
-
-
-def _to_one_percent(study: ProblemStudy) -> tuple[str, dict[str, tuple[float | None, bool]]]:
-    """The quantities of a problem in words, and each method's processor seconds to an error of 1 %."""
-    reached = {name: curve.time(0.01) for name, curve in study.curves.items()}
-    words = " and ".join(dict.fromkeys(MEASURES[name] for name in study.references))
-    return words, {name: (time.value, time.coarsest) for name, time in reached.items()}
 
 
 def spent(time: Reached, fineness: Reached) -> str:

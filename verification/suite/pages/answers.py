@@ -142,7 +142,8 @@ def _time(time: tuple[float | None, bool] | None) -> str:
 def costs_of(stored: Stored) -> list[Cost]:
     """Every contact of the case that measured times, none where it did not run."""
     costs, ran = [], stored.ran.get("work-precision")
-    said = () if ran is None else times_in(ran.case) if "data" not in ran.case else ran.case["data"]["times"]
+    data = ran.case.get("data", {}) if ran else {"times": ()}
+    said = data["times"] if "times" in data else times_in(ran.case)
     for problem, words, times in said:
         fem = {name: time for name, time in times.items() if name.startswith("FEM")}
         reached = {name: time[0] for name, time in fem.items() if time[0]}

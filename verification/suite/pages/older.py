@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Results of versions in which cases handed no data to the pages: what newer ones hand on is read from their
-tables, here and nowhere else. When all published cases have `data`, this goes.
+"""Results of cases that hand no data to the pages, as those of older versions: what others hand on is read
+from their tables, here and nowhere else. When all published cases have `data`, this goes.
 """
 
 from __future__ import annotations
