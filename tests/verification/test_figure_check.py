@@ -13,7 +13,7 @@ from PIL import Image
 from verification.cases.case import Outcome, Plot
 from verification.figures.check import findings
 from verification.figures.maps import FieldPair, MapPeak, plane_maps, readable
-from verification.figures.style import BLUE, VERMILION, Drawing, save, sheet, style
+from verification.figures.style import BLUE, VERMILION, Drawing, save, sheet
 from verification.suite import verify
 
 X = np.linspace(0.0, 10.0, 21)
@@ -174,18 +174,6 @@ def test_a_figure_that_cannot_be_read_fails_its_case_in_every_record(
     assert ("figures" in (tmp_path / "out" / "junit.xml").read_text()) == bool(code)
 
 
-def test_a_map_keeps_its_colours(tmp_path):
-    with sheet(3.0, 2.0, layout="none") as (figure, axis):
-        figure.colorbar(axis.pcolormesh(np.linspace(0.0, 1.0, 400)[None, :]), ax=axis)
-    save(Drawing(figure, {}), tmp_path / "map", data=False)
-    with style():
-        figure.savefig(tmp_path / "exact.png", dpi=200)
-    drawn, exact = (
-        np.asarray(Image.open(tmp_path / name).convert("RGB"), dtype=int) for name in ("map.png", "exact.png")
-    )
-    assert Image.open(tmp_path / "map.png").mode == "RGB" and np.abs(drawn - exact).max() <= 2
-
-
 U, V = np.linspace(-1.5, 1.5, 61), np.linspace(0.0, 1.9, 39)
 LEVELS = [0.4, 0.6, 0.8]
 
@@ -217,11 +205,6 @@ def test_of_lines_whose_numbers_touch_the_one_to_keep_stays(keep):
     assert any("collide" in finding for finding in findings(draw(LEVELS).figure))
     drawing = readable(draw, LEVELS, keep=(keep,))
     assert findings(drawing.figure) == [] and lines_of(drawing) == [pytest.approx([keep])] * 2
-
-
-def test_a_line_too_small_for_its_number_goes_even_if_it_is_to_be_kept():
-    drawing = readable(bell(0.1), LEVELS, keep=LEVELS[1:])
-    assert findings(drawing.figure) == [] and lines_of(drawing) == [pytest.approx(LEVELS[:1])] * 2
 
 
 def test_numbers_that_stand_apart_stay_and_a_level_that_a_field_does_not_reach_needs_none():

@@ -19,14 +19,12 @@ from verification.suite.pages.answers import Evidence, statements as of_paper
 from verification.suite.pages.headline import COLUMNS, MEANING, NOTHING, headline_of
 from verification.suite.pages.judged import (
     FINER,
-    FOLLOWS,
     INPUTS,
     NOT_RUN,
     PHYSICS,
     READINGS,
     WORDS,
     Judged,
-    counted,
 )
 from verification.suite.pages.stored import read_stored
 
@@ -108,16 +106,6 @@ def test_each_statement_has_a_row_with_what_decides_it_and_what_makes_it_hold(re
     assert good == tuple(WORDS[each] for each in (GOOD.hardening, GOOD.sign, GOOD.counter))
 
 
-def test_statements_are_counted_by_the_median_and_without_those_that_follow():
-    later, first = next(iter(FOLLOWS.items()))
-    found = [(first, "held"), (later, "held"), ("even", "failed"), ("soft", "not decided")]
-    said = [{"statement": words, "by_median": verdict} for words, verdict in found]
-    assert counted(said) == (
-        "2 held, 1 failed, 1 not decided, of 4; of the 3 independent ones 1 held, 1 failed, 1 not decided"
-    )
-    assert counted(said[2:]) == "0 held, 1 failed, 1 not decided, of 2"
-
-
 def said(headline):
     return " ".join([headline.answer, *(text for _, text in headline.depends)])
 
@@ -156,22 +144,6 @@ def test_what_finer_cells_refute_is_not_counted_and_named(readings, studies):
     text = headline_of(read_stored(stored(readings, *studies, finer))).answer
     assert "1 of these 13 (bulk: worn in the first six cycles) failed on finer cells" in text
     assert text.endswith("not counting such, 12 of 15 hold.")
-
-
-def test_a_statement_that_follows_from_another_holds_where_that_one_does():
-    """Bulk by any volumes that grow; the order of friction where it is kept by all that is asked of it."""
-    asked = {each.words: each for each in STATEMENTS}
-    assert set(FOLLOWS) | set(FOLLOWS.values()) <= set(asked)
-    (later, early), (below, order) = ((asked[each], asked[by]) for each, by in FOLLOWS.items())
-    rng, base = np.random.default_rng(1), as_the_paper_says()
-    for _ in range(100):
-        steps = rng.random(25) ** 4
-        steps[6:] *= rng.random() / 9.0 * steps[:6].sum() / steps[6:].sum()
-        surface = {**base, BULK: replace(base[BULK], volume=np.cumsum(steps))}
-        assert early.holds(early.value(surface)) and later.holds(later.value(surface))
-        friction = {case: replace(base[case], friction=rng.uniform(0.1, 0.4, 25)) for case in NAMES}
-        if order.holds(order.value(friction)):
-            assert below.value(friction) < 0.0
 
 
 def test_the_pressures_that_remove_metal_and_the_last_cycles_are_said(readings, studies):

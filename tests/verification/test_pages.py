@@ -100,8 +100,6 @@ def test_the_first_screen_holds_the_answer(published, evidence):
     [
         ("<h1>A</h1><p><table></table></p>", "<table> in a paragraph"),
         ("<h1>A</h1><h3>B</h3>", "a heading of level 3"),
-        ("<h1>A</h1><h1>B</h1>", "not one heading"),
-        ("<h1>A</h1><div>", "<div> is not closed"),
         ('<h1>A</h1><img src="a.png" alt="">', "a.png without a text"),
         ('<h1 id="a">A</h1><p id="a"></p>', "id a twice"),
         ("<h1>A</h1><script></script>", "a script"),
@@ -121,7 +119,6 @@ def test_a_broken_link_and_a_faint_colour_are_seen(tmp_path):
     ("line", "markup"),
     [
         ("σ_vM", '<msub><mi>σ</mi><mrow><mi mathvariant="normal">vM</mi></mrow></msub>'),
-        ("a³", "<msup><mi>a</mi><mrow><mn>3</mn></mrow></msup>"),
         ("3F/(4E)", "<mrow><mn>4</mn><mi>E</mi></mrow></mfrac>"),
         ("√(1 − x)", "<msqrt><mn>1</mn>"),
         ("σzz", "<msub><mi>σ</mi><mrow><mi>z</mi><mi>z</mi></mrow></msub>"),

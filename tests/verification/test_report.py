@@ -17,7 +17,7 @@ from stored import COARSE, COARSE_KEYS
 from samfem.cli import main
 from verification.cases.case import Outcome, Plot, SmallTable, View
 from verification.figures import space
-from verification.figures.lines import Profile, profiles
+from verification.figures.profiles import Profile, profiles
 from verification.figures.style import Drawing, new_figure, save
 from verification.judging import Measured
 from verification.references import contact_of

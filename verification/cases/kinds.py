@@ -22,8 +22,6 @@ from verification.figures.lines import (
     LOOKS,
     PERCENT,
     Curve,
-    Profile,
-    axis_profiles,
     below_spots,
     convergence,
     curves,
@@ -31,10 +29,8 @@ from verification.figures.lines import (
     grooves,
     new_strains,
     profile_of,
-    profiles,
     refinement,
     residual,
-    residual_surface,
 )
 from verification.figures.maps import (
     SURFACE_AXES,
@@ -48,6 +44,7 @@ from verification.figures.maps import (
     rough_pressures,
     sliding_sections,
 )
+from verification.figures.profiles import Profile, axis_profiles, profiles, residual_surface
 from verification.figures.style import Drawing
 from verification.quantities import OF_TRACKS, Solved, ladders, of_passes, planes, refined, strain_below
 from verification.reference.convergence import extrapolate

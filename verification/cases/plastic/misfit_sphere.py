@@ -14,7 +14,7 @@ import numpy as np
 from sam.scene import Plasticity, Result, Scene
 from verification.cases.case import Plot, with_body, with_loading
 from verification.cases.plastic.misfit_images import NAMES, Images, images
-from verification.figures.lines import Profile, profiles
+from verification.figures.profiles import Profile, profiles
 from verification.judging import Measured
 from verification.quantities import Reference
 from verification.reference.misfit_sphere import GrowingSphere

@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 from sam.contact import stresses, von_mises
 from sam.grid import Window
 from verification.cases.case import Context, Plot
-from verification.figures.lines import Profile, profiles
+from verification.figures.profiles import Profile, profiles
 from verification.judging import Measured
 from verification.reference.hamilton import largest_von_mises, sliding_stress
 
