@@ -121,7 +121,6 @@ def test_the_answer_counts_what_the_tables_hold_and_the_index_and_the_page_begin
     assert "(a soft layer) 16 and 16" in text and "40 points, 5 materials" in text
     assert "deviation of the layer, factor (" in text and f"1 holds ({NEVER}) under nothing" in text
     assert "In the study over hardening and loading cycles 21 to 25 add more than 0.1 %" in text
-    assert "Fitted" in found.fitted["caption"] and "hardness" in found.fitted_note
     assert [each["png"][19:-4] for each in found.pictures] == [
         *("sensitivity-probabilities", "sensitivity-two-inputs", "physics-volume")
     ]
@@ -171,7 +170,7 @@ def test_a_study_that_did_not_run_is_said_not_to_have_run(readings, studies):
     text = said(found)
     assert all(f"(case {name}) did not run." in text for name in (INPUTS, PHYSICS))
     assert {row[4] for row in found.rows} == {row[6] for row in found.rows} == {NOT_RUN}
-    assert found.fitted == {} and found.pictures == [] and headline_of(read_stored(stored())) is None
+    assert found.pictures == [] and headline_of(read_stored(stored())) is None
     short = record(INPUTS, {})
     assert headline_of(read_stored(stored(short))) is None
     assert "was made without" in said(headline_of(read_stored(stored(readings, short))))

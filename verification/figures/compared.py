@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Figures of a comparison: the curves of both models, and of data of the user, in the same axes, at peak
-load.
+"""Figures of a comparison: the curves of both models, and of data of the user, in the same axes, at
+peak load.
 """
 
 from __future__ import annotations
@@ -48,8 +48,7 @@ PANELS = {
 
 
 def draw_comparison(folder: Path, solutions: Mapping[str, Solution], prefix: str = "") -> list[Path]:
-    """Write the figures of results of one scene into `folder`/figures; returns the paths (PNG, CSV of
-    each).
+    """Write the figures of results of one scene into `folder`/figures; returns the paths (PNG, CSV of each).
 
     solutions: "SAM", "FEM" and names of data -> each; prefix: of the names of the files.
     """

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The figures of films that yield, of the frame of `verification.cases.coated.film_yield`: what they change
-over the contact radius, pressures, strains.
+"""The figures of films that yield, of the frame of `verification.cases.coated.film_yield`: what
+they change over the contact radius, pressures, strains.
 """
 
 from __future__ import annotations
@@ -65,8 +65,8 @@ def _title(radius: float) -> str:
 
 
 def strains(found: DataFrame) -> Drawing:
-    """Plastic strain in %, mean of the columns of Gauss points over the film's thickness, over r/a0: a panel
-    for each contact radius, a curve for each body.
+    """Plastic strain in %, mean of the columns of Gauss points over the film's thickness, over
+    r/a0: a panel for each contact radius, a curve for each body.
     """
     panels: dict[str, dict[str, Curve]] = {}
     for _, one in found.iterrows():

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Lines over x by series and panel, with points, fits and bounds where they are asked for: one function,
-`curves`, and the figures that it draws.
+"""Lines over x by series and panel, with points, fits and bounds where they are asked for: one
+function, `curves`, and the figures that it draws.
 """
 
 from __future__ import annotations
@@ -115,10 +115,11 @@ def curves(
     rows = list(dict.fromkeys(key[0] for key in panels)) if isinstance(next(iter(panels)), tuple) else []
     across = len(panels) // len(rows) if rows else way.across or len(panels)
     shape = -(-len(panels) // across), across
-    every = {name: curve for series in panels.values() for name, curve in series.items()}
+    every = [each for series in panels.values() for each in series.items()]
     others, shared = cycle(CYCLES), bool(rows) or isinstance(ylabel, str)
-    looks = {name: way.looks[name] if name in way.looks else next(others) for name in every}
-    fitted = [curve.fit for curve in every.values() if curve.fit]
+    names = dict.fromkeys(name for name, _ in every)
+    looks = {name: way.looks[name] if name in way.looks else next(others) for name in names}
+    fitted = any(curve.fit for _, curve in every)
     data = Columns("panel", "series", "x", "y", *(["fit"] if fitted else []))
     inches, share = (max(way.size[0] * across, 5.0), way.size[1] * shape[0]), "row" if shared else False
     with sheet(*inches, shape, sharey=share, sharex="col" if rows else False) as (figure, grid):
@@ -138,7 +139,7 @@ def curves(
             if not shared or k % across == 0:
                 axis.set_ylabel(label)
         if way.count and "y" not in way.logarithmic:
-            top = max(np.max(curve.y) for series in panels.values() for curve in series.values())
+            top = max(np.max(curve.y) for _, curve in every)
             for axis in grid.ravel():
                 axis.set_ylim(0.0, 1.08 * top if shared and not rows else None)
         _name(figure, list(grid.ravel()), way)
@@ -226,8 +227,8 @@ def grooves(found: Mapping[str, tuple[np.ndarray, np.ndarray]], length: float) -
 
 
 def new_strains(found: Mapping[str, Sequence[float]], floors: Sequence[float] = ()) -> Drawing:
-    """The largest plastic strain that each pass adds to a cell of the steady part; no mark where it is 0.
-    floors: strains below which a verdict counts none.
+    """The largest plastic strain that each pass adds to a cell of the steady part; no mark where it
+    is 0. floors: strains below which a verdict counts none.
     """
     drawn = {
         name: Curve(np.arange(1, len(own) + 1), np.where(np.array(own) > 0.0, own, np.nan))
@@ -239,8 +240,8 @@ def new_strains(found: Mapping[str, Sequence[float]], floors: Sequence[float] = 
 
 
 def errors_over_counts(panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray]]]) -> Drawing:
-    """Relative errors (n,) over the number (n,) of steps or cells in a radius of the contact, logarithmic.
-    panels: what is counted -> quantity -> line.
+    """Relative errors (n,) over the number (n,) of steps or cells in a radius of the contact,
+    logarithmic. panels: what is counted -> quantity -> line.
     """
     drawn = {of: {name: Curve(n, 1e2 * e) for name, (n, e) in own.items()} for of, own in panels.items()}
     xlabels = {counted: f"{counted} in $a$" for counted in panels}
@@ -280,8 +281,8 @@ def of_programs(
     target: float | None = None,
     floor: float = 0.0,
 ) -> Drawing:
-    """Label of the curve -> (program, x, y), in the order of the resolution; target: a value of y that
-    times are stated at; floor: shaded, no claims below.
+    """Label of the curve -> (program, x, y), in the order of the resolution; target: a value of y
+    that times are stated at; floor: shaded, no claims below.
     """
     seen, looks = dict.fromkeys(PROGRAMS, 0), {}
     for label, (program, _, _) in series.items():
@@ -306,8 +307,8 @@ def curves_on_axis(
 
 
 def convergence(panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Order | None]]]) -> Drawing:
-    """log-log error against cell size; panels: title -> quantity -> (h/a, relative error, fitted order or
-    None).
+    """log-log error against cell size; panels: title -> quantity -> (h/a, relative error, fitted
+    order or None).
     """
     drawn = {
         title: {
@@ -327,8 +328,8 @@ def refinement(
     xlabels: Mapping[str, str],
     ylabel: str,
 ) -> Drawing:
-    """Strains in % over h, down to their limits at h = 0; panels: title -> "SAM" or "FEM" -> (h, strain,
-    limit).
+    """Strains in % over h, down to their limits at h = 0; panels: title -> "SAM" or "FEM" -> (h,
+    strain, limit).
     """
     drawn: dict[str, dict[str, Curve]] = {}
     for title, own in panels.items():
@@ -349,8 +350,8 @@ def refinement(
 def limits(
     panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Callable]]], band: float
 ) -> Drawing:
-    """Differences from a model without small strains; panels: quantity -> material -> (a/R, relative
-    difference, its fit); band: shaded on both sides of zero.
+    """Differences from a model without small strains; panels: quantity -> material -> (a/R,
+    relative difference, its fit); band: shaded on both sides of zero.
     """
     drawn = {
         title.capitalize(): {
@@ -376,8 +377,8 @@ def profile_of(plane: Plane, x: float, deep: float) -> Curve:
 
 
 def below_spots(spots: Mapping[str, tuple]) -> Drawing:
-    """Plastic strain over depth. spots: title of a panel -> (z in m, strain) of SAM and of FEM, and the depth
-    from which they are compared; above it is grey.
+    """Plastic strain over depth. spots: title of a panel -> (z in m, strain) of SAM and of FEM, and
+    the depth from which they are compared; above it is grey.
     """
     panels, shade = {}, {}
     for title, (*models, compared) in spots.items():
@@ -388,8 +389,8 @@ def below_spots(spots: Mapping[str, tuple]) -> Drawing:
 
 
 def residual(sam: tuple[np.ndarray, np.ndarray], fem: tuple[np.ndarray, np.ndarray]) -> Drawing:
-    """What the heights along y = 0 have lost after unloading: (x, displacement into the body) of each model,
-    in m.
+    """What the heights along y = 0 have lost after unloading: (x, displacement into the body) of
+    each model, in m.
     """
     drawn = {name: Curve(MICRO * x, -1e9 * uz) for name, (x, uz) in (("SAM", sam), ("FEM", fem))}
     how = {"looks": LINE_ON_POINTS, "size": (6.0, 3.0)}
@@ -405,8 +406,8 @@ LINE_ON_POINTS = {
 def response_errors(
     errors: Mapping[str, tuple[np.ndarray, np.ndarray]], bounds: Mapping[str, float]
 ) -> Drawing:
-    """Errors over kh, log-log; errors: name -> (kh, error); bounds: words -> what is allowed. Errors that are
-    smaller than 1e-17 are drawn there.
+    """Errors over kh, log-log; errors: name -> (kh, error); bounds: words -> what is allowed.
+    Errors that are smaller than 1e-17 are drawn there.
     """
     own = {name: Curve(kh, np.maximum(error, 1e-17)) for name, (kh, error) in errors.items()}
     marks = {f"allowed: {name}, {bound:g}": ("y", bound) for name, bound in bounds.items()}
@@ -418,8 +419,8 @@ MODEL_MARKS = {"SAM": {"marker": "o", "fillstyle": "none"}, "FEM": {"marker": "x
 
 
 def film_pressures(panels: Mapping[str, Mapping[str, Mapping[str, tuple]]]) -> Drawing:
-    """Pressure over p0 over r/a0 under films of one modulus a panel; panels: title -> film -> "reference" or
-    model -> (r, p); the bare contact of Hertz dotted.
+    """Pressure over p0 over r/a0 under films of one modulus a panel; panels: title -> film ->
+    "reference" or model -> (r, p); the bare contact of Hertz dotted.
     """
     bare = np.linspace(0.0, 1.0, 401)
     hertz = {"color": "#888888", "linestyle": ":", "linewidth": 1.6}
@@ -456,8 +457,8 @@ def thinning_curves(pressure: np.ndarray, lines: Mapping[str, np.ndarray], limit
 
 
 def yield_profiles(cases: Mapping[str, Callable[[np.ndarray, float], np.ndarray]], deep: float) -> Drawing:
-    """Yield stress in GPa over depth to `deep` (m), without plastic strain and with 1 %; cases: name ->
-    function of depths in m and a plastic strain, in Pa.
+    """Yield stress in GPa over depth to `deep` (m), without plastic strain and with 1 %; cases:
+    name -> function of depths in m and a plastic strain, in Pa.
     """
     z = np.linspace(0.0, deep, 401)
     titles = {0.0: "Before any plastic strain", 0.01: "After a plastic strain of 1 %"}
@@ -491,8 +492,8 @@ def over_cells(volumes: Mapping[str, Mapping[float, Sequence[float]]], default: 
 
 
 def coverage(panels: Mapping[str, Sequence[tuple[str, str, float, float]]]) -> Drawing:
-    """The uncertainty of numbers over their true error. panels: rule -> (scene, quantity, relative error,
-    relative uncertainty) of each value; what lies below the line is not covered.
+    """The uncertainty of numbers over their true error. panels: rule -> (scene, quantity, relative
+    error, relative uncertainty) of each value; what lies below the line is not covered.
     """
     data, drawn = Columns("rule", "scene", "quantity", "error_percent", "uncertainty_percent"), {}
     for title, points in panels.items():
@@ -534,8 +535,8 @@ def _with_power(curve: Curve, unit: float) -> Curve:
 
 
 def predicted(panels: Mapping[str, tuple[float, float, Mapping[str, tuple[Sequence, Sequence]]]]) -> Drawing:
-    """Title with unit -> (factor that is allowed, measured value from which it counts, family -> (measured,
-    predicted)).
+    """Title with unit -> (factor that is allowed, measured value from which it counts, family ->
+    (measured, predicted)).
     """
     drawn, shades = {}, []
     names = dict.fromkeys(family for _, _, families in panels.values() for family in families)

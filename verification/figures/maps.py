@@ -46,11 +46,11 @@ BAR, CROSS, INTERFACE = (
 
 @dataclass(frozen=True)
 class FieldPair:
-    """Two normalised fields on one grid: u (m,), v (n,), first and second (m, n); NaN where a field is not
-    known.
+    """Two normalised fields on one grid: u (m,), v (n,), first and second (m, n); NaN where a field
+    is not known.
 
-    names: of the two; axes: labels of u and v; quantity: label of the field, e.g. "$p/p_0$"; semi_axes: of
-    the contact in the units of u (and v), for the outline.
+    names: of the two; axes: labels of u and v; quantity: label of the field, e.g. "$p/p_0$";
+    semi_axes: of the contact in the units of u (and v), for the outline.
     """
 
     u: np.ndarray
@@ -199,8 +199,8 @@ def three_panels(pair: FieldPair, *, touching: bool = False, strip: float = 0.0)
 
 
 def _draw_difference(panel: Axes, pair: FieldPair, bar: Mapping, *, touching: bool, strip: float) -> None:
-    """The difference on a symmetric scale that a few points of the edge may exceed; the largest is written
-    above it.
+    """The difference on a symmetric scale that a few points of the edge may exceed; the largest is
+    written above it.
     """
     shown = pair.difference
     if touching:
@@ -218,8 +218,8 @@ def _draw_difference(panel: Axes, pair: FieldPair, bar: Mapping, *, touching: bo
 
 
 def draw_field(panel: Axes, u: np.ndarray, v: np.ndarray, field: np.ndarray, **options):
-    """Colours of a field (m, n) over u (m,) and v (n,), grey where it is NaN; rasterised, so that a PDF stays
-    small.
+    """Colours of a field (m, n) over u (m,) and v (n,), grey where it is NaN; rasterised, so that a
+    PDF stays small.
     """
     panel.set_facecolor(GREY)
     mesh = panel.pcolormesh(
@@ -279,8 +279,8 @@ CLEAR = 0.25
 def compared_pressure(
     sam: Result, fem: Tables, a: float, p0: float, *, reach: float = 1.3, edge: float = 1.0, power: int = 2
 ) -> Drawing:
-    """p/p0 over (x/a, y/a) to `reach`: SAM | FEM | difference; edge: radius of the contact in a; power: see
-    pressure_on.
+    """p/p0 over (x/a, y/a) to `reach`: SAM | FEM | difference; edge: radius of the contact in a;
+    power: see pressure_on.
     """
     x, y, p = pressure_map(sam)
     use_x, use_y = np.abs(x) <= reach * a, np.abs(y) <= reach * a
@@ -321,9 +321,9 @@ def compared_mises(
 ) -> Drawing:
     """Von Mises stress over p0 in y = 0: SAM | FEM | difference.
 
-    film: its thickness, element: size of the elements there, both in m. Between the last Gauss points above
-    and below the interface, within CLEAR of an element, no stress of FEM is known on either side: nothing is
-    drawn there.
+    film: its thickness, element: size of the elements there, both in m. Between the last Gauss
+    points above and below the interface, within CLEAR of an element, no stress of FEM is known on
+    either side: nothing is drawn there.
     """
     clear = None if film is None else (film, CLEAR * element)
     pair, peaks = _both(sam, fem, "mises", (a, p0), clear=clear)
@@ -331,8 +331,8 @@ def compared_mises(
 
 
 def compared_peeq(sam: Result, fem: Result, a: float) -> Drawing:
-    """Plastic strain in % in y = 0: SAM | FEM | difference, with the iso-line of 0.2 %; a: the elastic
-    contact radius in m; the bar over the maps is the contact of FEM.
+    """Plastic strain in % in y = 0: SAM | FEM | difference, with the iso-line of 0.2 %; a: the
+    elastic contact radius in m; the bar over the maps is the contact of FEM.
     """
     pair, peaks = _both(sam, fem, "peeq", (a, 1.0 / PERCENT))
     pair = replace(pair, semi_axes=(edge := fem.quantities["contact_radius_m"] / a, edge))
@@ -348,9 +348,9 @@ def _both(
     *,
     clear: tuple[float, float] | None = None,
 ) -> tuple[FieldPair, list[MapPeak]]:
-    """A quantity of SAM and the axisymmetric model in y = 0, |x/a| <= 1.5, z/a <= 1.9, and the maxima as both
-    quote them, refined in depth, in the column where the field is largest. clear: depth, and how far from it
-    nothing is known.
+    """A quantity of SAM and the axisymmetric model in y = 0, |x/a| <= 1.5, z/a <= 1.9, and the
+    maxima as both quote them, refined in depth, in the column where the field is largest. clear:
+    depth, and how far from it nothing is known.
     """
     (a, unit), column, label = units, *(("mises_Pa", VON_MISES) if name == "mises" else (name, STRAIN))
     x, z, values = plane_field(sam.tables, column)
@@ -384,8 +384,8 @@ def sliding_sections(sam: Result, fem: Result, units: tuple[float, float], thick
 
 
 def in_body(fem: Result, x: np.ndarray, z: np.ndarray, thickness: float) -> np.ndarray:
-    """(nx, nz) the von Mises stress of the three-dimensional model in y = 0 below the film, linear; NaN above
-    its first depth there.
+    """(nx, nz) the von Mises stress of the three-dimensional model in y = 0 below the film, linear;
+    NaN above its first depth there.
     """
     u, w, values = plane_field(fem.tables, "mises_Pa")
     w[np.isclose(w, thickness, rtol=1e-9, atol=0.0)] = thickness  # to rounding
@@ -445,8 +445,8 @@ def readable(
 
 
 def _unreadable(drawing: Drawing, levels: Sequence[float]) -> set[float]:
-    """Levels whose line found no place for a number, in panels where fewer than two have one; without such,
-    those whose number is nearer to another one than half its size.
+    """Levels whose line found no place for a number, in panels where fewer than two have one;
+    without such, those whose number is nearer to another one than half its size.
     """
     drawing.figure.draw_without_rendering()  # the layout says where the numbers are
     without, touching = set(), set()

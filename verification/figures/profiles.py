@@ -58,8 +58,8 @@ CLOSED_FORM = "closed form"
 def profiles(
     panels: Sequence[Profile], reference: str = CLOSED_FORM, *, interface: float | None = None
 ) -> Drawing:
-    """Each panel above its error in %, more than three in two columns; interface: x at which a film ends, a
-    line.
+    """Each panel above its error in %, more than three in two columns; interface: x at which a film
+    ends, a line.
     """
     rows, across = profile_rows(reference), len(panels) if len(panels) <= 3 else 2
     bands = -(-len(panels) // across)
@@ -127,8 +127,8 @@ def correlations(
 ) -> Drawing:
     """Ratios over w* with published fits, and underneath the distance from the first fit.
 
-    panels: label -> (name of the fit -> function of w*, "SAM" or "FEM" -> (w*, ratio)); band: tolerance,
-    shaded.
+    panels: label -> (name of the fit -> function of w*, "SAM" or "FEM" -> (w*, ratio)); band:
+    tolerance, shaded.
     """
     drawn, how = [], {"points": True, "band": PERCENT * band, "logarithmic": True}
     for label, (fits, series) in panels.items():
@@ -139,8 +139,8 @@ def correlations(
 
 
 def axis_profiles(sam: Result, fem: Result, a: float, deep: float = 2.0) -> Drawing:
-    """Under the centre: plastic strain and von Mises stress at the peak, von Mises and lateral stress when
-    unloaded.
+    """Under the centre: plastic strain and von Mises stress at the peak, von Mises and lateral
+    stress when unloaded.
     """
     wanted = (
         ("Plastic strain", "plastic strain [%]", "peak", "peeq", PERCENT),

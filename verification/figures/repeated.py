@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Figures of repeated loading: plastic strain of each period, loops of stress and strain of three points, and
-the map of classes in the plane y = 0.
+"""Figures of repeated loading: plastic strain of each period, loops of stress and strain of three
+points, and the map of classes in the plane y = 0.
 """
 
 from __future__ import annotations
@@ -55,8 +55,8 @@ def drawings_of(run: Run) -> dict[str, Drawing]:
 
 
 def strain_per_period(run: Run) -> Drawing:
-    """The largest accumulated strain that each period adds, the largest change of the plastic strain, and the
-    floor below which strain counts as none; a marker for the class of the body.
+    """The largest accumulated strain that each period adds, the largest change of the plastic
+    strain, and the floor below which strain counts as none; a marker for the class of the body.
     """
     table = run.tables["cycles"]
     table = table[np.isfinite(table["period"].to_numpy(dtype=float))]
@@ -86,8 +86,8 @@ def strain_per_period(run: Run) -> Drawing:
 
 
 def loops(run: Run) -> Drawing:
-    """Stress over plastic strain of three points in the last period, of each the component that strains most,
-    counted from the start of the period.
+    """Stress over plastic strain of three points in the last period, of each the component that
+    strains most, counted from the start of the period.
     """
     drawn: dict[str, Curve] = {}
     for (number, points), color in zip(
@@ -113,8 +113,8 @@ def loops(run: Run) -> Drawing:
 
 
 def classified(folder: Path) -> tuple[np.ndarray, np.ndarray] | None:
-    """Corners (n, 4, 2) of the cells or elements that touch the plane y = 0, x and z in m, and their classes
-    (n,); None where nothing is judged.
+    """Corners (n, 4, 2) of the cells or elements that touch the plane y = 0, x and z in m, and
+    their classes (n,); None where nothing is judged.
     """
     of_sam = (folder / BODY).exists()
     mesh = mesh_of(folder, BODY if of_sam else FIELDS)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Figures of one finished run, from its files: pressure, von Mises stress, plastic strain, profiles, wear,
-load.
+"""Figures of one finished run, from its files: pressure, von Mises stress, plastic strain,
+profiles, wear, load.
 
-Every plane and profile goes through the largest pressure, see `verification.figures.places`. Lengths are in
-contact radii below a circular contact around the origin, else in µm.
+Every plane and profile goes through the largest pressure, see `verification.figures.places`.
+Lengths are in contact radii below a circular contact around the origin, else in µm.
 """
 
 from __future__ import annotations
@@ -42,8 +42,7 @@ friction.
 
 
 def draw_run(folder: Path, *, pdf: bool = False) -> list[Path]:
-    """Write the figures of a run into its folder `figures`; returns the paths (PNG and CSV of each,
-    or PDF).
+    """Write the figures of a run into its folder `figures`; returns the paths (PNG and CSV of each, or PDF).
 
     Raises FolderError (a ValueError) when the folder holds no result. A run without load has only its history
     to show, one that did not reach its peak the last load that it reached.

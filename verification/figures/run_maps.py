@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Maps of one run: fields in the plane through the largest pressure, pressure and friction over the contact,
-wear.
+"""Maps of one run: fields in the plane through the largest pressure, pressure and friction over the
+contact, wear.
 """
 
 from __future__ import annotations
@@ -44,9 +44,9 @@ DIGITS = 5e-4
 
 
 def plane_map(run: Run, section: Section, column: str, label: str) -> Drawing:
-    """A column at the peak in the plane through the largest pressure, with iso-lines, contact and its
-    maximum; in contact radii of a circle around the origin, else in µm, around the spot of the largest
-    pressure and what is around the largest value.
+    """A column at the peak in the plane through the largest pressure, with iso-lines, contact and
+    its maximum; in contact radii of a circle around the origin, else in µm, around the spot of the
+    largest pressure and what is around the largest value.
     """
     (unit, _), film = UNITS[column], interface_of(run)
     x, z, values = plane_of(run, section, column)
@@ -98,8 +98,8 @@ def _largest(run: Run, column: str, field: np.ndarray, places: tuple, *, depth: 
 
 
 def contact_map(surface: SurfaceMap, column: str, label: str) -> Drawing:
-    """A field over the contact, nothing out of it, with the outline of the contact and the largest value, of
-    the cells that count: within a dashed frame, where some do not.
+    """A field over the contact, nothing out of it, with the outline of the contact and the largest
+    value, of the cells that count: within a dashed frame, where some do not.
     """
     (unit, name), touching = UNITS[column], surface.touching
     x, y, field = MICRO * surface.x, MICRO * surface.y, unit * surface.in_contact(column)
@@ -130,8 +130,8 @@ def contact_map(surface: SurfaceMap, column: str, label: str) -> Drawing:
 
 
 def worn(run: Run) -> Drawing:
-    """The depth worn after the last cycle, and the surface before and after along the row through its deepest
-    cell.
+    """The depth worn after the last cycle, and the surface before and after along the row through
+    its deepest cell.
     """
     scar = Scar.of(run.tables)
     i, j = np.unravel_index(np.nanargmax(scar.worn), scar.worn.shape)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The figures of running-in: six panels of a run (Bosman & Schipper 2011, Figs. 13-17), its surface, and the
-regimes of film and metal.
+"""The figures of running-in: six panels of a run (Bosman & Schipper 2011, Figs. 13-17), its
+surface, and the regimes of film and metal.
 """
 
 from __future__ import annotations
@@ -71,8 +71,8 @@ def _ends(places: np.ndarray) -> tuple[float, float]:
 
 
 def _relief(panel: Axes, scar: Scar) -> None:
-    """The worn surface around its scar, or without one its contact, and a third of its size beside it, as if
-    lit from the upper left; and the edge of what is worn.
+    """The worn surface around its scar, or without one its contact, and a third of its size beside
+    it, as if lit from the upper left; and the edge of what is worn.
     """
     marked, near = scar.worn > 0.0 if (scar.worn > 0.0).any() else scar.in_contact, []
     for axis in (1, 0):
@@ -143,12 +143,12 @@ def regime_map(
     friction: tuple[float, float],
     constants: Sequence[str],
 ) -> Drawing:
-    """Left: pressure that removes a spot without film over its friction; pressure of film breakdown. Right:
-    the same over the strength of the surface, with the largest pressure of each run in its first and
-    last cycle.
+    """Left: pressure that removes a spot without film over its friction; pressure of film
+    breakdown. Right: the same over the strength of the surface, with the largest pressure of each
+    run in its first and last cycle.
 
-    limits: case -> those with each of the `constants` (in words; the first is that of the runs); reached:
-    case -> (first, last) in Pa.
+    limits: case -> those with each of the `constants` (in words; the first is that of the runs);
+    reached: case -> (first, last) in Pa.
     """
     rows = Columns("case", "constant", "strength_GPa", "tears_GPa", "film_GPa", "first_GPa", "last_GPa")
     film = GIGA * next(iter(limits.values()))[0].film

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Figures of their own kind: bars with bounds, energies over a load path, heat maps of what a film changes,
-two inputs of a study, and every number of SAM beside its reference.
+"""Figures of their own kind: bars with bounds, energies over a load path, heat maps of what a film
+changes, two inputs of a study, and every number of SAM beside its reference.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 
 
 def agreement(pairs: Sequence[tuple[str, str, float, float, str, str]]) -> Drawing:
-    """SAM over its reference, less one, a row for each group of cases. pairs: (group, kind of the reference,
-    predicted, reference, case, quantity).
+    """SAM over its reference, less one, a row for each group of cases. pairs: (group, kind of the
+    reference, predicted, reference, case, quantity).
     """
     groups = list(dict.fromkeys(pair[0] for pair in pairs))
     kinds = sorted({pair[1] for pair in pairs}, reverse=True)
@@ -73,8 +73,8 @@ def _signed(value: float, unit: str = "") -> str:
 
 
 def probabilities(rows: Sequence[tuple[str, int, int, tuple[float, float]]]) -> Drawing:
-    """A bar with its bounds for each statement. rows: words, points at which it holds, points at which it
-    says anything, bounds of the share.
+    """A bar with its bounds for each statement. rows: words, points at which it holds, points at
+    which it says anything, bounds of the share.
     """
     table = Columns("statement", "holds", "of", "low", "high")
     names, held, of, bounds = (list(each) for each in zip(*rows[::-1], strict=True))
@@ -143,8 +143,8 @@ def best_pair(
     *,
     printed: Sequence[float],
 ) -> Drawing:
-    """A mark for each point over two inputs, coloured by the number of statements that hold there. printed:
-    the two printed inputs.
+    """A mark for each point over two inputs, coloured by the number of statements that hold there.
+    printed: the two printed inputs.
     """
     table = Columns(*labels, "statements that hold")
     with sheet(5.6, 4.2) as (figure, axis):
@@ -163,8 +163,8 @@ def best_pair(
 
 
 def over_path(panels: Mapping[str, tuple[Balance, Balance | None]]) -> Drawing:
-    """Shares of the largest work over the load steps; panels: title -> (SAM, FEM or None). Areas and line:
-    SAM; crosses: FEM.
+    """Shares of the largest work over the load steps; panels: title -> (SAM, FEM or None). Areas
+    and line: SAM; crosses: FEM.
     """
     parts = {"dissipated": ORANGE, "stored by residual stress": GREEN, "recovered on unloading": BLUE}
     rows = Columns("panel", "model", "state", "force_N", "work", "stored", "dissipated")
@@ -189,11 +189,11 @@ def over_path(panels: Mapping[str, tuple[Balance, Balance | None]]) -> Drawing:
 
 
 def change_maps(maps: Mapping[str, DataFrame], paper: tuple[float, Mapping[str, float]]) -> Drawing:
-    """Heat maps on logarithmic axes, of a bicubic spline through the points over the logarithms, with lines
-    of 1 % and 5 %, one colour scale for all, and the film of the paper.
+    """Heat maps on logarithmic axes, of a bicubic spline through the points over the logarithms,
+    with lines of 1 % and 5 %, one colour scale for all, and the film of the paper.
 
-    maps: title -> changes as shares over thickness/a0 (index) and E1/E2 (columns); paper: its modulus ratio,
-    and label -> thickness/a0 on some contact radii.
+    maps: title -> changes as shares over thickness/a0 (index) and E1/E2 (columns); paper: its
+    modulus ratio, and label -> thickness/a0 on some contact radii.
     """
     rows = Columns("map", "thickness_over_a0", "E1_over_E2", "change_percent")
     largest = 100.0 * max(np.abs(each.to_numpy()).max() for each in maps.values())

@@ -112,8 +112,8 @@ class Earlier:
 
 
 def earlier(results: Record, known: Iterable[str], wanted: Iterable[str]) -> Earlier:
-    """What stays of a report: the cases that are known and not wanted, and of those wanted what came to its
-    end with this code, judged anew where only its gates have changed.
+    """What stays of a report: the cases that are known and not wanted, and of those wanted what
+    came to its end with this code, judged anew where only its gates have changed.
     """
     again, cases = set(wanted), dict[str, Record]()
     gates: list[Record] = []

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The outcome of a whole verification case in the store, with its figures and runs as files.
 
-A case whose code and scenes are unchanged need not run again: what it measured is judged anew, what it drew
-is written again byte for byte. Only a case that came to its end is kept. Its scenes count by content,
-everything else by the version of the code that it depends on.
+A case whose code and scenes are unchanged need not run again: what it measured is judged anew, what
+it drew is written again byte for byte. Only a case that came to its end is kept. Its scenes count
+by content, everything else by the version of the code that it depends on.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ PACKED = 4_000  # bytes of a table: packing those beyond saves 1.4 of the 1.9 MB
 
 @dataclass(frozen=True)
 class Kept:
-    """What is stored of a case. files: name in the folder of the report -> content; inputs, sources: see
-    Context; seconds: that the case took.
+    """What is stored of a case. files: name in the folder of the report -> content; inputs,
+    sources: see Context; seconds: that the case took.
     """
 
     outcome: Outcome
@@ -35,8 +35,8 @@ class Kept:
 
 
 def find(store: Store, case: Case, context: Context) -> Lookup:
-    """The outcome of a case at the level of the context, if it is there, of this version and of the same
-    scenes.
+    """The outcome of a case at the level of the context, if it is there, of this version and of the
+    same scenes.
     """
     found = store.find(_identity(case, context.level), version_of_cases(), Kept)
     inputs = found.result.inputs if found.result else {}
@@ -47,8 +47,8 @@ def find(store: Store, case: Case, context: Context) -> Lookup:
 
 
 def put_back(kept: Kept, context: Context, *, with_runs: bool = True) -> Outcome:
-    """Write the files of a case into the folder of the report again, a run's summary last, or only its
-    figures, and fill the context.
+    """Write the files of a case into the folder of the report again, a run's summary last, or only
+    its figures, and fill the context.
     """
     drawn = {name for figure in kept.outcome.figures for name in figure.files}
     files = [(name, content) for name, content in kept.files.items() if with_runs or name in drawn]

@@ -28,8 +28,8 @@ WIDTH = 118
 
 
 def renewed(text: str, results: Mapping) -> str:
-    """The text with the numbers of the results. Raises ValueError for a gate that did not pass, and for a
-    text without the two marks.
+    """The text with the numbers of the results. Raises ValueError for a gate that did not pass, and
+    for a text without the two marks.
     """
     gates = {gate["id"]: gate for gate in results["gates"]}
     if text.count(BEGIN) != 1 or text.count(END) != 1:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Run verification cases, judge them by the table of gates, and write the report; or list them, or draw the
-figures of a report as PDF.
+"""Run verification cases, judge them by the table of gates, and write the report; or list them, or
+draw the figures of a report as PDF.
 
-The folder holds the pages (index.html and one for each group of cases), results.json, gates.csv, junit.xml,
-figures/ and runs/ (every solve). results.json says "complete": false while the cases run, so that a broken
-run is never read as a result.
+The folder holds the pages (index.html and one for each group of cases), results.json, gates.csv,
+junit.xml, figures/ and runs/ (every solve). results.json says "complete": false while the cases
+run, so that a broken run is never read as a result.
 """
 
 from __future__ import annotations
@@ -47,8 +47,8 @@ BEFORE = "before"
 
 @dataclass(frozen=True)
 class RanCase:
-    """A case that was run or reused. failure: why it broke off, or empty; seconds: of its own run; source:
-    where it is from, or why it was not taken from the store.
+    """A case that was run or reused. failure: why it broke off, or empty; seconds: of its own run;
+    source: where it is from, or why it was not taken from the store.
     """
 
     context: Context
@@ -106,8 +106,8 @@ def finish(
 ) -> int:
     """Judge the cases that ran, write the report into `out` and say what is red.
 
-    known: all cases by name; unmet: name -> why a case could not run here; stays: of an earlier report. Of
-    the other cases that did not run results.json says under `unmet` where they belong.
+    known: all cases by name; unmet: name -> why a case could not run here; stays: of an earlier
+    report. Of the other cases that did not run results.json says under `unmet` where they belong.
     Returns 0 when every gate of every case that ran held, else 1.
     """
     results = _judged(ran, known, level=level, stays=stays) | {"command": command}
@@ -140,8 +140,8 @@ def runnable(cases: Sequence[Case]) -> tuple[list[Case], dict[str, str]]:
 def rebuild(folder: Path, *, single_file: bool = False) -> int:
     """Write the pages of a finished report again from results.json and figures/, without solving.
 
-    single_file: also report.html, which holds all of them and their figures. The index marks the cases that
-    are older than the code.
+    single_file: also report.html, which holds all of them and their figures. The index marks the
+    cases that are older than the code.
 
     Returns 0. Raises FolderError when the folder holds no finished report.
     """
@@ -183,8 +183,8 @@ def stored(folder: Path) -> dict | None:
 
 
 def start(out: Path, stays: Earlier = NOTHING) -> None:
-    """Mark the folder as a report in the making and clear an earlier one, but for the figures of what
-    `stays` of it, which results.json goes on to hold.
+    """Mark the folder as a report in the making and clear an earlier one, but for the figures of
+    what `stays` of it, which results.json goes on to hold.
     """
     out.mkdir(parents=True, exist_ok=True)
     _write_results({"format": FORMAT, "complete": False, BEFORE: before(out) if stays.cases else {}}, out)
@@ -200,8 +200,8 @@ def start(out: Path, stays: Earlier = NOTHING) -> None:
 
 
 def before(folder: Path) -> dict:
-    """results.json of the finished report in a folder, or of the one that another is about to replace; empty
-    without one.
+    """results.json of the finished report in a folder, or of the one that another is about to
+    replace; empty without one.
     """
     results = stored(folder) or {}
     return results if results.get("complete") else results.get(BEFORE, {})
@@ -242,8 +242,8 @@ def _judged(ran: Mapping[str, RanCase], known: Mapping[str, Case], *, level: str
 
 
 def _run_or_reuse(case: Case, context: Context) -> RanCase:
-    """A case from the store, or else run and kept there, unless it measures times. What makes an entry
-    unusable is said on stderr if it is damage.
+    """A case from the store, or else run and kept there, unless it measures times. What makes an
+    entry unusable is said on stderr if it is damage.
     """
     started, kept = time.perf_counter(), None if case.alone else context.store
     found = outcomes.find(kept, case, context) if kept else Lookup()
@@ -276,8 +276,8 @@ def _solves(ran: Sequence[RanCase]) -> dict[str, int]:
 
 
 def attempt(case: Case, context: Context) -> tuple[Outcome, str]:
-    """The outcome and, when the case broke off, why; any error of a case is its own and is reported with
-    it. What was found before a figure failed counts.
+    """The outcome and, when the case broke off, why; any error of a case is its own and is reported
+    with it. What was found before a figure failed counts.
     """
     try:
         return case.run(context), ""
@@ -338,8 +338,8 @@ def _write_results(results: dict, out: Path) -> None:
 
 
 def show(what: str, names: Sequence[str]) -> int:
-    """On stdout, of the named cases (none: of all), one line each, or where `what` is "gates" question,
-    gates, tolerances and reasons. Returns 0, or 2 for an unknown name.
+    """On stdout, of the named cases (none: of all), one line each, or where `what` is "gates"
+    question, gates, tolerances and reasons. Returns 0, or 2 for an unknown name.
     """
     known, gates, rows = all_cases(), load_rows(), []
     if problem := unknown_cases(names, known):

@@ -53,8 +53,8 @@ FLAT = {"lighting": False}
 class Picture:
     """What is drawn, in µm and with heights times `exaggeration`.
 
-    parts: (mesh, options of pyvista's `add_mesh`); "scalars" among them are coloured between `limits`; label:
-    of the colour bar, with the unit; box: (3, 2), the ends of the axes.
+    parts: (mesh, options of pyvista's `add_mesh`); "scalars" among them are coloured between
+    `limits`; label: of the colour bar, with the unit; box: (3, 2), the ends of the axes.
     """
 
     title: str
@@ -74,8 +74,8 @@ class Picture:
 
 @dataclass(frozen=True)
 class _Projection:
-    """The parallel projection of a box: unit vectors on the screen, and the middle and the size of what is
-    seen.
+    """The parallel projection of a box: unit vectors on the screen, and the middle and the size of
+    what is seen.
     """
 
     right: np.ndarray
@@ -159,8 +159,8 @@ def add(plotter: pv.Plotter, picture: Picture) -> None:
 
 
 def _axes(panel: Axes, picture: Picture, view: _Projection) -> None:
-    """Three edges of the box with ticks and the others behind the bodies; z says the lengths before their
-    exaggeration.
+    """Three edges of the box with ticks and the others behind the bodies; z says the lengths before
+    their exaggeration.
     """
     (x0, x1), (y0, y1), (z0, z1) = picture.box
     hidden = [((x0, y0, z0), (x0, y1, z0)), ((x0, y1, z0), (x1, y1, z0)), ((x0, y1, z0), (x0, y1, z1))]
@@ -181,8 +181,8 @@ def _edge(
     label: str,
     times: float = 1.0,
 ) -> None:
-    """An edge between two corners with ticks towards `out` and its label: beside its middle, or above its end
-    where it is upright.
+    """An edge between two corners with ticks towards `out` and its label: beside its middle, or
+    above its end where it is upright.
     """
     first, last = np.array(ends)
     along = int(np.argmax(np.abs(last - first)))

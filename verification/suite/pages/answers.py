@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The questions of the first page and their answers, computed of the results: `pages.toml` says which rows,
-pairs and cells belong to which.
+"""The questions of the first page and their answers, computed of the results: `pages.toml` says
+which rows, pairs and cells belong to which.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ SAID = {
 
 @dataclass(frozen=True)
 class Pair:
-    """A value of SAM and its reference, with the unit of both unsaid: what counts is their ratio; gate: that
-    holds it, None where only the case says both.
+    """A value of SAM and its reference, with the unit of both unsaid: what counts is their ratio;
+    gate: that holds it, None where only the case says both.
     """
 
     case: ShownCase
@@ -99,8 +99,8 @@ def far(pairs: Iterable[Pair]) -> list[list[Pair]]:
 
 @dataclass(frozen=True)
 class Cost:
-    """Processor times to an error of 1 % in one contact. quantity: that has the error; sam, fem: seconds
-    (None: not reached), and whether they are a bound; model: the fastest finite elements.
+    """Processor times to an error of 1 % in one contact. quantity: that has the error; sam, fem:
+    seconds (None: not reached), and whether they are a bound; model: the fastest finite elements.
     """
 
     problem: str
@@ -261,8 +261,8 @@ def cell(evidence: Evidence, words: str, case: str, caption: str, *how: Any) -> 
 
 
 def times(evidence: Evidence, _: str) -> Iterator[Finding]:
-    """How many times the processor time of SAM finite elements take to the same error: the range over the
-    contacts where both reach it, and where only one does.
+    """How many times the processor time of SAM finite elements take to the same error: the range
+    over the contacts where both reach it, and where only one does.
     """
     costs = costs_of(evidence.stored)
     if both := sorted((each for each in costs if each.known), key=lambda each: each.ratio):
@@ -276,8 +276,8 @@ def times(evidence: Evidence, _: str) -> Iterator[Finding]:
 
 
 def statements(evidence: Evidence, _: str) -> Iterator[Finding]:
-    """What holds of the statements of the paper: for each reading of it by the median of the surfaces, and
-    for each study that ran.
+    """What holds of the statements of the paper: for each reading of it by the median of the
+    surfaces, and for each study that ran.
     """
     judged, found = Judged(evidence.stored), []
     if cases := judged.older:
@@ -321,8 +321,8 @@ PARTS: Mapping[str, Callable[..., Iterator[Finding]]] = {
 
 @dataclass(frozen=True)
 class Answer:
-    """A row of the index. question: of `pages.toml`; cost: of the cases behind it; origin: (date, commit) of
-    each code that they ran with; cases: their names.
+    """A row of the index. question: of `pages.toml`; cost: of the cases behind it; origin: (date,
+    commit) of each code that they ran with; cases: their names.
     """
 
     question: Mapping

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Results of cases that hand no data to the pages, as those of older versions: what others hand on is read
-from their tables, here and nowhere else. When all published cases have `data`, this goes.
+"""Results of cases that hand no data to the pages, as those of older versions: what others hand on
+is read from their tables, here and nowhere else. When all published cases have `data`, this goes.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ NO_PAIRS = ("Refinement", "Strain that a cycle adds")
 
 
 def pairs_in(case: Mapping) -> Iterator[tuple[str, float, float]]:
-    """(quantity, SAM, FEM) of the tables of a case: of rows of quantities with a column of each, or of the
-    columns of largest values, and of cycles, of rows that differ in the model alone.
+    """(quantity, SAM, FEM) of the tables of a case: of rows of quantities with a column of each, or
+    of the columns of largest values, and of cycles, of rows that differ in the model alone.
     """
     for table in case["tables"]:
         columns, rows = list(table["columns"]), table["rows"]
@@ -49,8 +49,8 @@ def pairs_in(case: Mapping) -> Iterator[tuple[str, float, float]]:
 
 
 def times_in(case: Mapping) -> Iterator[tuple[str, str, dict[str, tuple[float | None, bool]]]]:
-    """(contact, quantity, method -> seconds to an error of 1 %, None where that is not reached, and whether
-    they are a bound) of the case that measured times.
+    """(contact, quantity, method -> seconds to an error of 1 %, None where that is not reached, and
+    whether they are a bound) of the case that measured times.
     """
     quantities: dict[str, list[str]] = {}
     times: dict[str, dict] = {}

@@ -93,8 +93,8 @@ _NUMBER = re.compile(r"[<>≤≥]? ?[+−-]?[0-9][^ ]*( [^ ]{1,4})?$")
 
 @dataclass(frozen=True)
 class Look:
-    """How pages are written. folder: where; embed: figures inside the page; scenes: the folder of the scenes
-    as the pages link it, empty where it is not near them.
+    """How pages are written. folder: where; embed: figures inside the page; scenes: the folder of
+    the scenes as the pages link it, empty where it is not near them.
     """
 
     folder: Path
@@ -103,8 +103,8 @@ class Look:
 
 
 def case_view(each: ShownCase, look: Look, told: set[str], above: Collection[str] = ()) -> dict:
-    """A case for the template. told: the equations that stand further up on the page; filled here; above:
-    files of the figures that stand further up.
+    """A case for the template. told: the equations that stand further up on the page; filled here;
+    above: files of the figures that stand further up.
     """
     tight = [(share, gate["quantity"]) for gate in each.gates if (share := share_used(gate)) is not None]
     case, digest = each.case, each.case.get("code", "")[:12]
@@ -139,8 +139,8 @@ def works() -> list[dict[str, str]]:
 
 
 def works_of(case: Mapping) -> list[tuple[str, str]]:
-    """(citation, link) of what the question, the equations and the notes of a case refer to; no link without
-    a confirmed DOI.
+    """(citation, link) of what the question, the equations and the notes of a case refer to; no
+    link without a confirmed DOI.
     """
     words = [text for row in case["equations"] for text in row]
     text, found = "\n".join([*words, case["question"], *case["notes"]]), []
@@ -254,8 +254,8 @@ def write_report(
 ) -> Path:
     """Write the pages of results into the folder of their figures; returns the one to open.
 
-    single_file: also report.html with everything inside, which is all there is of a comparison; stale: name
-    -> why a case is older than the code, which is marked.
+    single_file: also report.html with everything inside, which is all there is of a comparison;
+    stale: name -> why a case is older than the code, which is marked.
     """
     alone = results.get("kind") == "comparison"
     if not alone:
@@ -411,8 +411,8 @@ def _draw(evidence: Evidence, folder: Path) -> None:
 
 
 def _scenes_from(folder: Path) -> str:
-    """The scenes as seen from a folder of the repository; empty from elsewhere, where a link would name a
-    place of the machine.
+    """The scenes as seen from a folder of the repository; empty from elsewhere, where a link would
+    name a place of the machine.
     """
     scenes = ROOT / "verification" / "scenes"
     if not folder.resolve().is_relative_to(ROOT):

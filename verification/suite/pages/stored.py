@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The results that pages are made of: the cases of a results.json that ran, each with gates and origin, and
-the page of each.
+"""The results that pages are made of: the cases of a results.json that ran, each with gates and
+origin, and the page of each.
 """
 
 from __future__ import annotations
@@ -42,8 +42,8 @@ RED = (RowStatus.FAILED, RowStatus.UNCHECKED)
 
 @dataclass(frozen=True)
 class ShownCase:
-    """A case that ran. case, gates: as in results.json; commit, date: of the code and of the day that solved
-    it; inputs: names of its scene files.
+    """A case that ran. case, gates: as in results.json; commit, date: of the code and of the day
+    that solved it; inputs: names of its scene files.
     """
 
     case: Mapping
