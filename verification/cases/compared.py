@@ -189,6 +189,7 @@ class Compared(Case):
                 yield _differences(self.file, found)
             return
         solved = found[""]
+        yield from (beside(self.file, name, {})(solved.frame) for name in self.file.tables)
         yield from tables_of(self.file, solved.frame) if self.file.takes else ()
         if set(solved.results) != {"sam", "fem"}:
             return
@@ -205,8 +206,11 @@ class Compared(Case):
             yield SmallTable("Refinement uncertainties", columns, rows)
 
     def data(self, found: Mapping[str, Solved]) -> dict[str, Any]:
-        """Under `pairs` each quantity of SAM beside that of FEM, of variants the largest values."""
-        pairs = []
+        """Under `pairs` each quantity of SAM beside that of FEM, of variants the largest values; and what the
+        file hands on of its frame.
+        """
+        pairs: list[tuple[str, float, float]] = []
+        handed = beside(self.file, self.file.data, {})(found[""].frame) if self.file.data else {}
         for name, solved in found.items():
             if {"sam", "fem"} <= set(solved.results) and name not in self.file.also:
                 said = f" ({self.file.variants[name]['words'].replace('mu = ', 'μ = ')})" if name else ""
@@ -214,7 +218,7 @@ class Compared(Case):
                     where = words.startswith("depth of")  # a place, which the mesh decides
                     if words.startswith("largest ") or not (name or where):
                         pairs.append((words + said, sam, fem))
-        return {"pairs": pairs}
+        return {"pairs": pairs} | handed
 
     def figures(self, found: Mapping[str, Solved]) -> Iterator[Plot]:
         from verification.cases.kinds import KINDS, OVER_VARIANTS, SWEPT  # noqa: PLC0415 - loads matplotlib

@@ -23,8 +23,7 @@ from verification.figures.style import (
     new_figure,
     style,
 )
-from verification.runs.axis import Axis, in_si
-from verification.runs.study import Study
+from verification.runs.study import Axis, Study, in_si
 
 QUANTITIES = {
     "p_max_Pa": ("largest pressure [GPa]", 1e-9),

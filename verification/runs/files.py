@@ -57,6 +57,11 @@ class FolderError(ValueError):
     """A folder that is no result, or that must not be written to; the message says which and what to do."""
 
 
+def _said(name: str, need: bool = True) -> property:
+    """What summary.json says under a name; None where it need not say it and does not."""
+    return property(lambda run: run.summary[name] if need else run.summary.get(name))
+
+
 @dataclass(frozen=True)
 class Run:
     """A result read back. summary: as in summary.json; tables: name -> table of floats (NaN: empty) and
@@ -67,50 +72,24 @@ class Run:
     summary: Mapping
     tables: Mapping[str, DataFrame]
 
-    @property
-    def quantities(self) -> Mapping[str, float | None]:
-        return self.summary["quantities"]
+    quantities = _said("quantities")
+    model = _said("model")
+    status = _said("status")
+    message = _said("message")
+    cost = _said("cost")
+    discretisation = _said("discretisation")
+    verdict = _said("verdict", need=False)
+    uncertainty = _said("uncertainty", need=False)
+    model_range = _said("model_range", need=False)
 
     @property
     def last_fitting(self) -> Mapping[str, float | None]:
         return self.summary.get("last_fitting") or {}
 
     @property
-    def verdict(self) -> Mapping[str, Any] | None:
-        return self.summary.get("verdict")
-
-    @property
-    def uncertainty(self) -> Mapping[str, Mapping[str, Any]] | None:
-        return self.summary.get("uncertainty")
-
-    @property
-    def model_range(self) -> Mapping[str, Any] | None:
-        return self.summary.get("model_range")
-
-    @property
     def range_lines(self) -> list[str]:
         """What is said about it, see `verification.runs.model_range`."""
         return [] if self.model_range is None else range_lines(self.model_range)
-
-    @property
-    def model(self) -> str:
-        return self.summary["model"]
-
-    @property
-    def status(self) -> str:
-        return self.summary["status"]
-
-    @property
-    def message(self) -> str:
-        return self.summary["message"]
-
-    @property
-    def cost(self) -> Mapping[str, float | int | None]:
-        return self.summary["cost"]
-
-    @property
-    def discretisation(self) -> Mapping[str, Any]:
-        return self.summary["discretisation"]
 
     @property
     def scene(self) -> Scene:
@@ -122,11 +101,9 @@ class Run:
 
 
 def write_run(result: Result, scene: Scene, folder: str | Path, provenance: Mapping | None = None) -> Path:
-    """Write a result into `folder` (made if need be) in place of an older one, and return the path of
-    summary.json.
-
-    provenance: as `verification.runs.provenance.collect` returns it, collected here when absent. Raises
-    FolderError if the folder holds anything but a run, OSError if it cannot be written.
+    """Write a result into `folder` (made if need be) in place of an older one; the path of summary.json.
+    provenance: as `collect` returns it. Raises FolderError if the folder holds anything but a run, OSError if
+    it cannot be written.
     """
     folder = Path(folder)
     check_target(folder)
@@ -212,9 +189,7 @@ def _why(error: Exception) -> str:
 
 def check_target(folder: Path, also: Sequence[str] = ()) -> None:
     """Raise FolderError unless a run may be written to `folder`: absent, empty, or of an older or broken-off
-    run.
-
-    also: names that the folder may hold besides the files of a run.
+    run; also: names that it may hold besides the files of a run.
     """
     try:
         check_place(folder)
