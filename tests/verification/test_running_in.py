@@ -513,7 +513,7 @@ class TestFigures:
 
     def test_lines_of_two_names_have_colours_and_dashes(self):
         lines = {(one, two): np.arange(3.0) for one in "ab" for two in ("x", "y")}
-        drawing = over_cycles({("V", "first, second and more"): lines})
+        drawing = over_cycles({("V", "first, second and more"): lines}, ("one", "two"))
         (panel,), names = drawing.figure.axes, drawing.figure.legends[0].get_texts()
         assert [text.get_text() for text in names] == ["a", "b", "x", "y"]
         assert len({(line.get_color(), line.get_linestyle()) for line in panel.lines}) == 4

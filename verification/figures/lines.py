@@ -564,12 +564,13 @@ def predicted(panels: Mapping[str, tuple[float, float, Mapping[str, tuple[Sequen
 
 def over_cycles(
     panels: Mapping[tuple[str, str], Mapping[tuple[str, str], np.ndarray]],
+    names: Sequence[str],
     *,
     first: int = 0,
     thick: str = "",
 ) -> Drawing:
     """A row of panels for each quantity, a column for each title, lines over the cycles from the `first` on;
-    colours by the first of the two names of a line, dashes by the second, unless one of these is drawn
+    colours by the first of the two `names` of a line, dashes by the second, unless one of these is drawn
     `thick`, the others thin. panels: (quantity, title) -> two names of a line -> (n,) its values.
     """
     firsts, seconds = ({key[k]: None for own in panels.values() for key in own} for k in (0, 1))
@@ -581,12 +582,14 @@ def over_cycles(
             width = (2.0 if two == thick else 0.5) if thick else 1.3
             look = {"color": colors[one], "linestyle": dashes[one if thick else two], "linewidth": width}
             looks[f"{one}, {two}"] = look | ({"alpha": 0.4} if width < 1.0 else {})
-    drawn = {
-        (quantity, _broken(title)): {
-            ", ".join(key): Curve(np.arange(first, first + len(y)), y) for key, y in own.items()
-        }
-        for (quantity, title), own in panels.items()
-    }
+    drawn: dict[tuple[str, str], dict[str, Curve]] = {}
+    data = Columns("quantity", "panel", *names, "cycle", "value")
+    for (quantity, title), own in panels.items():
+        panel = drawn[quantity, _broken(title)] = {}
+        for key, values in own.items():
+            cycles = np.arange(first, first + len(values))
+            panel[", ".join(key)] = Curve(cycles, values)
+            data.add(quantity, title, *key, cycles, values)
     entries = [
         Line2D([], [], color=color, linestyle=dashes.get(name, "-"), label=name)
         for name, color in colors.items()
@@ -594,7 +597,7 @@ def over_cycles(
     if not thick:
         entries += [Line2D([], [], color=BLACK, linestyle=line, label=name) for name, line in dashes.items()]
     how = {"count": True, "legend": entries, "size": (2.2, 1.9)}
-    return curves(drawn, "cycle", looks=looks, **how)
+    return Drawing(curves(drawn, "cycle", looks=looks, **how).figure, data)
 
 
 def _broken(title: str) -> str:

@@ -609,7 +609,7 @@ def readings_plot(cases: Mapping[str, Mapping[str, Sequence[History]]]) -> Plot:
         for name, readings in cases.items()
     }
     return Plot(
-        over_cycles(panels, thick="median", first=1),
+        over_cycles(panels, ("reading", "surface"), thick="median", first=1),
         "readings",
         "Both readings of the paper over the cycles",
         "Volume, friction and roughness over the cycles, a column for each case, a line for each reading.",

@@ -220,7 +220,7 @@ class RunningInPhysics(Study):
             for case, counter in itertools.product(DRAWN, Counter)
         }
         yield Plot(
-            over_cycles(panels),
+            over_cycles(panels, ("hardening", "friction")),
             "volume",
             "Worn volume over the cycles under each physics",
             "Worn volume over the cycles: a row of panels for each material, a column for each counter-body, "
