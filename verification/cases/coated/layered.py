@@ -14,7 +14,7 @@ from scipy.special import j1
 from sam.kernels import STRESS, Lags, displacement_coefficients, stress_coefficients
 from sam.layered import LayeredPatches, Layers, Response, normal_compliance
 from verification.cases.case import Case, Context, Measured, Plot, SmallTable, package_of
-from verification.figures.coated import response_errors
+from verification.figures.lines import response_errors
 from verification.reference.burmister import interface_stress
 from verification.reference.layered_axisymmetric import CoatedHalfSpace, wave_numbers, wave_pressure_ratio
 from verification.reference.layered_errors import POISSONS, RATIOS, WAVES, Worst, all_points, worst_errors

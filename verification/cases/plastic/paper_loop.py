@@ -11,7 +11,7 @@ import numpy as np
 from sam.scene import Result, Scene
 from verification.cases.case import SAM, Case, Context, Measured, Plot, SmallTable, with_keys, with_loading
 from verification.cases.recipes import Resolution, at_ratio, resolved_at
-from verification.figures.plastic import curves_on_axis
+from verification.figures.lines import curves_on_axis
 from verification.figures.style import BLACK, BLUE, ORANGE, VERMILION
 from verification.references import contact_of
 from verification.runs.sampling import peak
