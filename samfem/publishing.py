@@ -26,8 +26,7 @@ from verification.runs.lock import locked
 from verification.runs.models import SAM
 from verification.runs.store import Lookup, Reuse, Store, solve_or_reuse
 from verification.suite import outcomes, verify
-from verification.suite.earlier import earlier
-from verification.suite.lighter import lighter
+from verification.suite.freshness import earlier
 from verification.suite.verify import RanCase
 
 SCRATCH = "scratch"
@@ -152,5 +151,5 @@ def _ran(case: Case, store: Store, failure: str, *, level: str, out: Path) -> Ra
     if found.result is None:
         return RanCase(context, Outcome(), failure or CHANGED, 0.0, Reuse(False))
     outcome = outcomes.put_back(found.result, context, with_runs=False)
-    outcome = replace(outcome, figures=[lighter(each, out) for each in outcome.figures])
+    outcome = replace(outcome, figures=[outcomes.packed(each, out) for each in outcome.figures])
     return RanCase(context, outcome, "", found.result.seconds, Reuse(True, found.created, found.commit))

@@ -165,8 +165,9 @@ class CaseFile(BaseModel):
     run.
 
     frame: function beside the file that returns the points instead of sweeps; of such functions, tables:
-    that return one of the frame; cannot: that says why the case does not run here. alone: it measures times,
-    so that nothing runs beside it and a later run measures again.
+    that return one of the frame; data: that hands numbers of it to the pages; cannot: that says why the
+    case does not run here. alone: it measures times, so that nothing runs beside it and a later run
+    measures again.
 
     allowance: rows of SAM against FEM that hold the difference over what refinement allows, known from
     both models at the `coarser` resolution.
@@ -198,6 +199,7 @@ class CaseFile(BaseModel):
     sweeps: dict[str, SweepFile] = {}
     frame: str = ""
     tables: tuple[str, ...] = ()
+    data: str = ""
     alone: bool = False
     cannot: str = ""
     notes: tuple[str, ...] = ()

@@ -16,8 +16,7 @@ from sam.scene import Scene
 from sam.scene.verdict import ORDER
 from verification.runs.models import FEM, SAM, solve
 
-YIELD = 1e9
-MELAN = 3.2256  # limit of the pressure over the yield stress
+YIELD, MELAN = 1e9, 3.2256  # Pa; limit of shakedown, in yield stresses
 PRAGER = {"modulus": (210e9 / 19,)}
 
 

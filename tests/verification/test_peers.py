@@ -21,8 +21,7 @@ from verification.peers.plastic import between, largest, periodic, profile_error
 from verification.peers.programs import aspher, sam as ours
 from verification.peers.running import SAM, TAMAAS, VARIABLE, Job, Measurement, PeersError
 from verification.rows import load_rows
-from verification.suite.listing import show_cases
-from verification.suite.verify import main
+from verification.suite.verify import main, show
 
 
 class TestProblems:
@@ -150,7 +149,7 @@ class TestEnvironment:
         assert main(["peers"], "full", tmp_path / "out") == 0 and "no such program" in capsys.readouterr().out
 
     def test_list_says_that_it_runs_when_named(self, capsys):
-        assert show_cases(["peers"]) == 0
+        assert show("cases", ["peers"]) == 0
         assert capsys.readouterr().out.splitlines()[1].split()[:4] == ["peers", "when", "named", "6"]
 
     def test_versions_are_asked_of_the_interpreter(self, tmp_path):

@@ -237,6 +237,9 @@ def test_tables_and_advice_of_a_study(every):
     tables = [*(table(some) for table in own), *tables_of(FILE, some)]
     assert len(tables) == 5 and all(len(row) == len(t.columns) for t in tables for row in t.rows)
     assert any("not reached (1.6 %)" in row for row in case.times(some).rows)
+    (of_hertz, of_friction) = (times for _, _, times in case.to_one_percent(some)["times"])
+    assert of_hertz["FEM, axisymmetric"][0] == pytest.approx(one.seconds) and not of_hertz["SAM"][1]
+    assert of_friction["FEM, 3D"] == (None, False)
 
 
 def test_a_solve_that_breaks_off_or_does_not_converge_is_shown_and_counts_as_no_answer():

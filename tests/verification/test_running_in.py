@@ -42,7 +42,8 @@ from verification.cases.running_in.study import (
 )
 from verification.compare.running_in_measures import Limits, Scar, Spread
 from verification.figures import run
-from verification.figures.running_in import over_cycles, regime_map, six_panels
+from verification.figures.lines import over_cycles
+from verification.figures.running_in import regime_map, six_panels
 from verification.runs.files import write_run
 
 SCENES = {case: load_scene(f"verification/scenes/running-in-{case}.toml") for case in (*NAMES, "curve-c")}

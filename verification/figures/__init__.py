@@ -72,12 +72,12 @@ def sweep_figure(study: Study, rows: Sequence[Mapping], path: Path) -> None:
 
 
 def sensitivity_figure(rows: Sequence[Mapping], path: Path) -> None:
-    """Draw the indices of a study as `path`.png, if there are any; see `verification.figures.sensitivity`."""
-    from verification.figures.sensitivity import bars  # noqa: PLC0415 - loads matplotlib
+    """Draw the indices of a study as `path`.png, if there are any; see `verification.figures.specials`."""
+    from verification.figures.specials import sensitivities  # noqa: PLC0415 - loads matplotlib
     from verification.figures.style import save  # noqa: PLC0415 - loads matplotlib
 
     if rows:
-        save(bars(rows), path, data=False)
+        save(sensitivities(rows), path, data=False)
 
 
 __all__ = [

@@ -18,7 +18,7 @@ from sam.layered import LayeredPatches, Layers
 from sam.scene import Result, Scene
 from verification.cases.case import FEM, SAM, Context, Plot, with_grid, with_mesh
 from verification.cases.recipes import coated_scene, film_under
-from verification.figures.coated import change_maps
+from verification.figures.specials import change_maps
 from verification.reference.coated_changes import (
     breaking_thickness,
     film_contact,

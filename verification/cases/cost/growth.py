@@ -11,7 +11,7 @@ import numpy as np
 from verification.cases.case import FEM_3D, Context, Plot, SmallTable
 from verification.cost import growth
 from verification.cost.growth import MEMORY_MATTERS, TIME_MATTERS
-from verification.figures.growth import PowerCurve, growth as draw, predicted as draw_predicted
+from verification.figures.lines import Curve, growth as draw, predicted as draw_predicted
 from verification.reference.convergence import Power, fit_power
 from verification.rows import CaseFile
 
@@ -96,10 +96,10 @@ def time_and_memory(file: CaseFile, frame: DataFrame) -> Plot:
     """Both over the size."""
     of_time = {EXPONENTS[what][:2]: power for what, power in powers(frame).items()}
 
-    def curve(ladder: str, column: str, *, top: int = 0) -> PowerCurve:
+    def curve(ladder: str, column: str, *, top: int = 0) -> Curve:
         own = frame[frame["sweep"] == ladder]
         power = fit_power(own["size"][-top:], own[column][-top:]) if top else of_time.get((ladder, column))
-        return PowerCurve(own["size"].to_numpy(), own[column].to_numpy(dtype=float), power)
+        return Curve(own["size"].to_numpy(), own[column].to_numpy(dtype=float), power)
 
     elements = {"axisymmetric": "axisymmetric", "3D": "spatial"}
     columns = {

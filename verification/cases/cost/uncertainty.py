@@ -17,7 +17,7 @@ import numpy as np
 from sam.scene import Result, Scene, Status
 from verification.cases.case import FEM, SAM, Context, Plot, with_grid, with_keys, with_loading
 from verification.cases.recipes import at_ratio
-from verification.figures import uncertainty as figures
+from verification.figures import lines
 from verification.quantities import QUANTITIES
 from verification.reference.coated_changes import largest_mises
 from verification.reference.hamilton import largest_von_mises
@@ -329,7 +329,7 @@ def coverage(file: CaseFile, frame: DataFrame) -> Plot:
         for words, name in rules.items()
     }
     return Plot(
-        figures.coverage(panels),
+        lines.coverage(panels),
         "coverage",
         "Uncertainty over error",
         "Uncertainty of each value over its error, by two rules; above the line it is covered.",

@@ -318,6 +318,19 @@ def times(frame: DataFrame) -> SmallTable:
     return SmallTable("Processor time in s to an error (resolution)", columns, lines)
 
 
+def to_one_percent(frame: DataFrame) -> dict[str, Any]:
+    """Under `times` each problem, its quantities, and method -> processor seconds to an error of 1 %, None
+    where it is not reached, and whether they are a bound.
+    """
+    found = []
+    for problem, rows in ladders(frame):
+        words = dict.fromkeys(MEASURES[name] for name in rows["references"].iloc[0])
+        times = {name: reached(rows, name, 0.01) for name in methods(rows)}
+        seconds = {name: (time.value, time.coarsest) for name, time in times.items()}
+        found.append((problem.title, " and ".join(words), seconds))
+    return {"times": found}
+
+
 def spent(seconds: Reached, fineness: Reached) -> str:
     """A cell of the table."""
     if seconds.value is None:

@@ -24,7 +24,7 @@ from verification.cases.running_in.scenes import (
     swift,
 )
 from verification.cases.running_in.study import CUBIC, Run
-from verification.figures.friction import CYCLES, Curve, curves
+from verification.figures.lines import CYCLES, Curve, curves
 
 EFFORT = Effort(cycles=10, steps=4, cells=48)
 FITTED, HALF = (1e-6, 0.03), EFFORT.cycles // 2

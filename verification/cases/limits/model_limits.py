@@ -18,7 +18,7 @@ from fem_reference import plastic_radius
 from fem_reference.finite_strain import Curve, build, curve_of, load_to
 from sam.scene import Scene
 from verification.cases.case import Context, Measured, Plot
-from verification.figures.limits import limits as drawn
+from verification.figures.lines import limits as drawn
 from verification.references import contact_of
 from verification.runs.model_range import (
     COLUMNS,

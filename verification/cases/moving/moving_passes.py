@@ -13,7 +13,7 @@ import numpy as np
 from sam.scene import Friction, Plasticity, Result, Scene
 from verification.cases.case import SAM, Case, Context, Measured, Plot, SmallTable, with_body, with_keys
 from verification.cases.recipes import initial_yield, on_track
-from verification.figures.moving import new_strains
+from verification.figures.lines import new_strains
 
 CELLS = {"quick": 4, "full": 8}  # in the radius
 STEEL = {

@@ -15,7 +15,7 @@ from verification.cases.case import SAM, Case, Context, Plot, SmallTable, with_b
 from verification.cases.recipes import TRACK, on_track, radius_at
 from verification.energy.balance import Balance
 from verification.energy.of_sam import balance_of
-from verification.figures.moving import grooves
+from verification.figures.lines import grooves
 from verification.references import hertz_sphere
 
 ELASTIC = {"cells": 8, "length": 9 * 2.25 / 8, "per_radius": 8 / 2.25}  # 9 steps of 2 1/4 cells

@@ -14,7 +14,7 @@ from sam.scene import Result, Scene
 from verification import uncertainty
 from verification.cases.case import SAM, Case, Context, Measured, Plot, SmallTable
 from verification.cases.recipes import on_track
-from verification.figures.moving import errors_over_counts
+from verification.figures.lines import errors_over_counts
 from verification.quantities import refined
 
 STEPS = (1, 2, 4, 8, 16, 32)  # in the radius; the strain has no order before the last three

@@ -13,7 +13,7 @@ import numpy as np
 
 from verification.cases.case import FEM, Context, Plot, SmallTable, number, with_mesh
 from verification.cost.precision import at_error
-from verification.figures.peers import curves as drawn
+from verification.figures.lines import of_programs
 from verification.peers import elastic, plastic, problems
 from verification.peers.plastic import StoredReference, between, periodic
 from verification.peers.programs import sam as ours
@@ -237,7 +237,7 @@ def over_time(file: CaseFile, frame: DataFrame, problem: str) -> Plot:
     }
     floor = rows["floor"].max() if problem == problems.STEP else 0.0
     target = elastic.HERTZ_ERROR if problem == problems.HERTZ else None
-    drawing = drawn(series, "processor time [s]", of, ("cpu_s", "error"), target=target, floor=floor)
+    drawing = of_programs(series, "processor time [s]", of, target=target, floor=floor)
     words = f"{title}: {of} over processor time for {', '.join(series)}."
     shade = "Shaded: the uncertainty of the references." if floor else "Dotted: where times are compared."
     return Plot(
@@ -255,7 +255,7 @@ def over_size(file: CaseFile, frame: DataFrame) -> Plot:
             times = [fast[n]["seconds"][program] for n in there]
             series[name] = name, np.array([sizes[n] for n in there]), np.array(times)
     return Plot(
-        drawn(series, "cells a side", "processor time [s]", ("cells", "cpu_s")),
+        of_programs(series, "cells a side", "processor time [s]"),
         "rough",
         "Rough patch: time over size",
         f"Processor time over cells a side for {', '.join(series)}.",

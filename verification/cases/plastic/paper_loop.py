@@ -10,7 +10,7 @@ import numpy as np
 
 from verification.cases.case import SAM, Context, Plot, with_keys, with_loading
 from verification.cases.recipes import Resolution, at_ratio, resolved_at
-from verification.figures.friction import CYCLES, Curve, curves
+from verification.figures.lines import Curve, curves
 from verification.references import contact_of
 from verification.runs.sampling import peak
 
@@ -93,13 +93,10 @@ def on_the_axis(file: CaseFile, frame: DataFrame) -> Plot:
         a = contact_of(run["scene"]).contact_radius
         name = f"{run['method']}, {run['steps']} step{'s' * (run['steps'] > 1)}"
         panels.setdefault(run["law"], {})[name] = Curve(z[use := z <= 1.5 * a] / a, 1e2 * strain[use])
-    looks = dict(
-        zip(dict.fromkeys(name for panel in panels.values() for name in panel), CYCLES, strict=False)
-    )
     words = (
         "Plastic strain over depth. The loop of the paper adds up returns at the pressures and stresses of "
         "its iteration, which is no load path, and takes none of them back: it meets the yield condition, at "
         "a larger plastic strain. More load steps help."
     )
-    drawing = curves(panels, "$z/a$", "plastic strain [%]", looks=looks)
+    drawing = curves(panels, "$z/a$", "plastic strain [%]")
     return Plot(drawing, "axis", "Plastic strain under the centre", words, words)

@@ -52,7 +52,8 @@ from verification.cases.running_in.study import (
     statements_table,
 )
 from verification.compare.running_in_measures import History, Limits, Scar
-from verification.figures.running_in import over_cycles, regime_map, six_panels, surface, yield_profiles
+from verification.figures.lines import over_cycles, yield_profiles
+from verification.figures.running_in import regime_map, six_panels, surface
 from verification.reference.regime import Regime, regime
 
 SHOWN = 2  # the seed of the scenes

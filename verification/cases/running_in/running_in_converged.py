@@ -30,7 +30,7 @@ from verification.cases.case import (
 from verification.cases.running_in.scenes import LITERATURE_B, with_plasticity
 from verification.cases.running_in.study import CUBIC, spread
 from verification.compare.running_in_measures import Scar
-from verification.figures.running_in import over_cells
+from verification.figures.lines import over_cells
 
 SIDE, SHORTEST, SMOOTHED = 25e-6, 8e-6, 5e-6  # m: of the patch, shortest wave, window of smoothing
 CELLS = (25, 45, 75, 135)  # along a side

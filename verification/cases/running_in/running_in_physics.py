@@ -36,7 +36,7 @@ from verification.cases.running_in.scenes import (
 from verification.cases.running_in.study import STATEMENTS, STILL, Judged, Judgement, Run, Study, good, judged
 from verification.compare.running_in_measures import History
 from verification.cost.estimates import estimate
-from verification.figures.running_in import over_cycles
+from verification.figures.lines import over_cycles
 
 EFFORT = Effort(LAST, steps=3, cells=32)
 SQ = 20e-9  # m: of the counter-surface, the geometric middle of the 5 to 60 nm of ground and polished discs

@@ -42,7 +42,7 @@ from verification.cases.running_in.scenes import (
 )
 from verification.cases.running_in.study import STATEMENTS, Histories, Run, Study
 from verification.cost.estimates import estimate
-from verification.figures.running_in import best_pair, probabilities
+from verification.figures.specials import best_pair, probabilities
 from verification.sensitivity import UNIFORM, design, indices
 from verification.surrogate import Surrogate, surrogate
 

@@ -13,7 +13,7 @@ import numpy as np
 from sam.scene import Path, Result, Scene
 from verification.cases.case import SAM, Case, Context, Measured, Plot, SmallTable, with_grid, with_loading
 from verification.cases.running_in.study import outside
-from verification.figures.moving import of_passes
+from verification.figures.lines import of_passes
 from verification.runs import models
 
 CELLS, STEPS, PASSES, RISES = 24, 6, 2, 3  # of the small scene: cells of 1 um, steps of one cell
