@@ -7,6 +7,7 @@ from growing_sphere_checks import NU, YOUNG
 
 from fem_reference.axisymmetric.misfit import PROFILES, MisfitSphere
 from fem_reference.axisymmetric.planner import plan
+from fem_reference.axisymmetric.solution import solve
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.refusals import UnsupportedScene
 from fem_reference.spatial.planner import check as check_spatial
@@ -71,6 +72,18 @@ def test_zone_ends_where_the_stress_of_a_point_is_the_yield_stress():
     for limit in (0.05, 0.2):
         assert held.zone(limit) == pytest.approx((1.3 / limit) ** (1 / 3), rel=3e-4)
     assert held.stiffness == pytest.approx(1.3, rel=1e-14) and held.zone(2.0) == 0.0
+
+
+def test_nothing_touches_and_an_elastic_body_forgets_the_strain():
+    """Below a free surface, all that it left is rounding; one that yields is within its yield stress."""
+    elastic = solve(sphere(None, surface="free", cells=4, unload=True))
+    plane = elastic.tables["plane"]
+    left = plane["mises_Pa"][plane["state"] == "unloaded"]
+    assert elastic.converged and np.abs(left).max() < 1e-9 * plane["mises_Pa"].max()
+    plastic = solve(sphere(cells=4, steps=2, unload=True))
+    assert plastic.certificate["yield_excess"] < 1e-9 and plastic.quantities["peeq_max"] > 0.0
+    for q in (elastic.quantities, plastic.quantities):
+        assert q["approach_m"] is None and q["force_N"] == q["contact_area_m2"] == q["p_max_Pa"] == 0.0
 
 
 def test_refusals_name_the_key():

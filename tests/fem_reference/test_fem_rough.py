@@ -16,6 +16,7 @@ from rounding import EPS, close
 import fem_reference
 from fem_reference import UnsupportedScene, spatial
 from fem_reference.common.plasticity import History
+from fem_reference.common.schedule import Load
 from fem_reference.spatial import worn_cycles
 from fem_reference.spatial.rough import build, on_mesh
 from fem_reference.spatial.worn import Limits, columns_of_points, depth_above, moved_up, own_depth
@@ -158,6 +159,30 @@ def test_surface_nodes_are_the_centres_of_the_cells():
     expected = two_tops(x * unit, y * unit)
     gap = model.problem.gap0 * model.scales.displacement
     assert gap == pytest.approx(expected.max() - expected, abs=10 * EPS * np.abs(expected).max())
+
+
+def test_an_ellipsoid_over_a_rough_body_has_its_gap_and_slope_at_each_place():
+    """Its own slope, as the heights of the body do not drive it; in a relief these fall off at the border."""
+    ball = {"shape": "ellipsoid", "radius_x": 400e-6, "radius_y": 300e-6}
+    path = {"start": (-1e-6, 0.0), "end": (1e-6, 0.0), "steps": 1}
+    made = spatial.plan(rough(12, counterbody=ball, loading={"force": 0.01, "path": path}))
+    model, load, unit = build(made), Load(4 / 3, 0.0, 0.1, 0.05), made.scales
+    x, y = (np.meshgrid(*made.patch.centres, indexing="ij")[k] for k in (0, 1))
+    inside, moved = np.isfinite(model.initial_gap), model.at(load)
+    x, y = x - 0.1 * unit.length, y - 0.05 * unit.length
+    assert moved.place == (0.1, 0.05)
+    for direction, slope in (((1.0, 0.0), x / 400e-6), ((0.0, 1.0), y / 300e-6)):
+        assert model.slope(load, direction)[inside] == pytest.approx(slope.ravel(), abs=1e-15)
+    height = x**2 / 800e-6 + y**2 / 600e-6 - model.heights
+    gap = moved.initial_gap[inside] * unit.displacement
+    assert gap == pytest.approx((height - model.first).ravel(), abs=1e-12 * np.ptp(height))
+    grid = {"cells": (12, 12), "extent": (SIDE, SIDE), "border": "relief"}
+    wave = {"kind": "sinusoid", "amplitude": 20e-9, "wavelength_x": SIDE}
+    lowered, plain = (
+        build(spatial.plan(rough(12, surface=wave, grid=grid | {"border": border}))).heights
+        for border in ("relief", "free")
+    )
+    assert np.array_equal(lowered[5:7, 5:7], plain[5:7, 5:7]) and lowered[0, 0] < plain[0, 0]
 
 
 def test_the_map_is_read_where_the_nodes_are():

@@ -190,6 +190,19 @@ def test_newtons_method_converges_quadratically(kind):
 
 
 @pytest.mark.parametrize("kind", ["sphere", "finite"])
+def test_the_limit_of_a_small_load_is_the_model_of_the_scenes(kind):
+    """Relative differences fall with a/R, 1e-6 here."""
+    curves = []
+    for one in ("flat", kind):
+        model = study.build(scene(1e-18, 4), one)
+        curves.append(study.curve_of(model, study.load_to(model, [0.3, 1.0])))
+    flat, true = curves
+    assert true.radius[-1] < 1e-5 and not true.strain.any()
+    for name in ("force", "radius", "approach", "pressure"):
+        assert getattr(true, name) == pytest.approx(getattr(flat, name), rel=1e-5)
+
+
+@pytest.mark.parametrize("kind", ["sphere", "finite"])
 def test_nodes_in_contact_lie_on_the_sphere_and_push_along_its_normal(kind):
     model = study.build(scene(3e-2, 6), kind)
     state = study.load_to(model, [0.5, 1.0])[-1].state

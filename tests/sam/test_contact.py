@@ -10,7 +10,7 @@ import pytest
 from rounding import EPS
 
 from sam.contact import convolution
-from sam.contact.box import BoxContact, ForceControl
+from sam.contact.box import ApproachControl, BoxContact, ForceControl
 from sam.contact.convolution import (
     BoxConvolution,
     Convolution,
@@ -27,6 +27,7 @@ from sam.contact.convolution import (
 )
 from sam.contact.normal import Search, Solved, Units, around, fit_of, measured, no_contact, solve_contact
 from sam.contact.operators import SurfaceOperators
+from sam.contact.stress import stresses
 from sam.grid.cells import CellGrid, Window
 from sam.kernels.patches import STRESS, Cuboids, Lags, displacement_coefficients, parity, stress_coefficients
 from sam.plasticity.spectra import EXCHANGED, ODD_X, ODD_Y, BoxOperator
@@ -115,6 +116,14 @@ def test_the_box_does_not_change_the_answer():
     assert around(cells) == Window(0, 26, 4, 4)  # stays on the grid
 
 
+def test_a_given_approach_starts_from_the_overlap_where_no_start_fits():
+    """The number that fits the displacement of a start, here twice its pressure, best to the overlap."""
+    control, gap0 = ApproachControl(1.0), np.array([[0.0, 3.0]])
+    for start, expected in (([[4.0, 1.0]], [[4 / 17, 1 / 17]]), ([[0.0, 1.0]], [[0.5, 0.0]])):
+        p, u = control.begun(np.array(start), gap0, 1.0, lambda p: 2 * p)
+        assert p == pytest.approx(np.array(expected), rel=1e-12) and np.array_equal(u, 2 * p)
+
+
 def test_the_work_of_a_contact_is_budgeted():
     """Counted, not timed: of a sphere 187 transforms and 58 displacements, from coarser grids."""
     counters = Counters()
@@ -198,6 +207,19 @@ def test_equals_the_direct_sum(source, observed):
         for k in range(6):
             slow = direct_sum(kernels[k], signs[k], field, source, observed)
             assert np.abs(fast[k] - slow).max() <= 1e-12 * np.abs(kernels).max() * np.abs(field).sum()
+
+
+def test_stresses_are_sums_of_coefficients_over_cells():
+    """Of a pressure and of a traction, on cells of any size."""
+    rng, window, depths = np.random.default_rng(6), Window(0, 0, 5, 4), np.array([0.0, 0.7, 2.0])
+    loads = {3: rng.normal(size=(5, 4)), 1: rng.normal(size=(5, 4))}
+    found = stresses(loads, (2.0, 1.5), depths, window, nu=0.3)
+    expected = np.zeros_like(found)
+    for load, field in loads.items():
+        kernels = stress_coefficients(Lags(5, 4, 2.0, 1.5), depths, 0.3, load=load)
+        for k, n in np.ndindex(6, 3):
+            expected[k, n] += direct_sum(kernels[k, n], parity(STRESS[k], load), field, window, window)
+    assert np.abs(found - expected).max() <= 1e-12 * np.abs(expected).max()
 
 
 @pytest.mark.parametrize("rows", [Window(0, 6, 15, 1), Window(2, 5, 11, 2), Window(9, 0, 6, 1)])

@@ -35,6 +35,8 @@ from fem_reference.spatial.lines import Lines
 from sam.contact.convolution import Counters
 from sam.contact.operators import CoatedPair
 from sam.contact.stress import von_mises
+from sam.elastic.problem import GivenHertz
+from sam.grid.cells import CellGrid
 from sam.half_space import ElasticConstants, ElasticPair
 from sam.kernels.patches import Cuboids, Lags, stress_coefficients
 from sam.layered.patches import normal_compliance
@@ -232,6 +234,18 @@ def test_given_pressure_lowers_the_surface_as_hertz_s():
     found = plan.problem(Counters()).contact(Load(plan.schedule.peak.force))
     expected = np.pi * 2e9 * 10e-6 / 2 * (1 - 0.3**2) / 210e9
     assert found.displacement.max() == pytest.approx(expected, rel=3e-4, abs=0.0)
+
+
+def test_given_pressure_is_the_mean_over_each_cell():
+    """Of eight times eight points each, about the place of the load, in proportion to its force."""
+    given, grid = GivenHertz(3.0, 2.0), CellGrid(13, 11, 0.5, 0.6, np.zeros(1))
+    assert given.peak_force == pytest.approx(8 * np.pi, rel=1e-12)
+    part = (np.arange(8) - 3.5) / 8
+    x, y = grid.x[:, None] - 0.3 + 0.5 * part, grid.y[:, None] + 0.2 + 0.6 * part
+    inside = np.maximum(1 - (x[:, :, None, None] ** 2 + y**2) / 4, 0.0)
+    expected = 1.5 * np.sqrt(inside).mean(axis=(1, 3))
+    found = given.pressure(grid, Load(4 * np.pi, x=0.3, y=-0.2))
+    assert found == pytest.approx(expected, rel=1e-12, abs=1e-15)
 
 
 def test_lines_of_a_block():

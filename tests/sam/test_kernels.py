@@ -205,6 +205,18 @@ def test_primitives_are_the_repeated_integrals_that_they_claim_to_be():
         assert value == pytest.approx(answer, rel=1e-10, abs=1e-13), (a, b, c)
 
 
+@pytest.mark.parametrize("image", [True, False])
+def test_corner_functions_are_means_over_their_points(image):
+    x, y = np.broadcast_arrays(
+        np.array([[0.5, 1.5], [0.6, 1.6]])[:, :, None], np.array([[[0.2, 0.9]], [[0.3, 1.0]]])
+    )
+    both, first, last = (
+        layer_stress.CornerFunctions((1, 1), (x[part], y[part]))(image, np.array([0.4, 1.1]))
+        for part in (np.s_[:], np.s_[:1], np.s_[1:])
+    )
+    assert both == pytest.approx((first + last) / 2, rel=1e-13)
+
+
 class ManyDigits:
     """numpy for arrays of mpmath numbers: its elementary functions replaced, everything else numpy's own."""
 

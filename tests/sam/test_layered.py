@@ -27,6 +27,7 @@ from sam.layered.patches import (
     wave_numbers,
 )
 from sam.layered.response import Layers, Response
+from sam.planner.bodies import Bodies
 from sam.scene import Scene, Status
 from sam.schedule import Load
 from verification.reference.layered import ManyDigits
@@ -445,6 +446,13 @@ def test_depths_hold_the_film_the_interface_and_what_is_below():
     assert choose_grid(given).depths.tolist() == [0.0, 1e-6, 3e-6]
     modulus = 210e9 / 0.91
     assert contact_radius(lambda k: 2 / (modulus * k), FORCE, RADIUS, (A0, A0)) == close(A0, 1e-9)
+
+
+def test_a_chosen_grid_is_four_estimated_radii_wide():
+    """The estimate is within 3 % of the radius, 1.296 A0 by a spectral method."""
+    soft = coated(80 / 210, 1.0)
+    grid, radius = choose_grid(soft), Bodies(soft).scale * A0
+    assert grid.nx * grid.hx == close(4 * radius, 1e-9) and radius == close(1.296 * A0, 0.03)
 
 
 def test_a_bare_contact_that_does_not_fit_is_said_and_not_compared():

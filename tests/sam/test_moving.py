@@ -344,6 +344,16 @@ def test_a_wave_carries_its_pressure_with_it():
     np.testing.assert_allclose(history["pressure_offset_m"], [-2 * CELL, 0, 2 * CELL], atol=1e-3 * CELL)
 
 
+def test_a_body_that_yields_only_further_along_the_path():
+    """The first place stays elastic by itself, and a later one does not."""
+    loading = {"force": 0.01, "path": {"start": (-3 * CELL, 0.0), "end": (3 * CELL, 0.0), "steps": 6}}
+    keys = {"counterbody": {"shape": "sphere", "radius": 400e-6}, "loading": loading, "cycles": 1, "steps": 1}
+    law = {"law": "perfect", "yield_stress": 3.8e9}
+    found = sam.solve(running_in(plasticity=law, film=None, wear=None, **keys))
+    peeq = np.array(found.tables["history"]["peeq_max"])
+    assert peeq[0] == 0 < peeq[-1]
+
+
 def test_a_map_alone_asks_for_a_grid():
     values = np.random.Generator(np.random.PCG64(1)).normal(scale=1e-8, size=(36, 24))
     found = sliding({"kind": "file", "path": HeightMap(values, (36 * CELL, 24 * CELL))})
@@ -471,6 +481,19 @@ class TestPasses:
         assert visits["way_m"][-1] == pytest.approx(6 * CELL) and sum(visits["visits"]) > 0
         np.testing.assert_allclose(visits["time_s"], np.array(visits["way_m"]) / 1.0)
         np.testing.assert_allclose(visits["thinning_limit"], 3.644e-9 * np.sqrt(visits["time_s"]) / 100e-9)
+
+
+def test_an_elastic_body_with_a_film_meets_every_pass():
+    """No pass stands for all: the film of a later one may thin by less."""
+    scene = worn()
+    body = scene.body.model_copy(update={"plasticity": None})
+    grid = scene.grid.model_copy(update={"depths": None})
+    elastic = scene.model_copy(update={"body": body, "grid": grid, "wear": None})
+    history = sam.solve(elastic).tables["history"]
+    cycle, friction = (np.array(history[name]) for name in ("cycle", "friction_coefficient"))
+    first, second = friction[cycle == 1], friction[cycle == 2]
+    assert len(first) == len(second) and "elastic: equal" not in "".join(history["note"])
+    assert second[:-1].mean() != first[:-1].mean()
 
 
 def test_a_body_that_wears_is_unloaded_at_each_reversal():

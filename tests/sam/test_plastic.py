@@ -26,6 +26,7 @@ import sam.grid.smooth
 from sam import choose_grid
 from sam.contact.convolution import Counters
 from sam.elastic.history import solve_elastic
+from sam.elastic.stress import elastic_peak
 from sam.grid.cells import MOST_TIMES, RATIO, Room, Sides, enlarged
 from sam.grid.smooth import point_load_reach
 from sam.planner.bodies import SHAPES, given_sides, hertz_semi_axes
@@ -94,6 +95,15 @@ def test_one_and_a_half_times_the_yield_stress_is_elastic():
     assert any(entry.stage == "eigenstrain kernels" for entry in result.left_out)
     rows = solve_elastic(sam.plan(a_scene).problem(Counters()), lambda *_: None).rows
     assert result.tables["history"]["p_max_Pa"][-2] == rows[-2].p_max
+
+
+@pytest.mark.parametrize(
+    ("given", "shape"), [(yielding(3, grid=SMALL), (11, 17)), (running_in(wear=None, film=None), (8, 1))]
+)
+def test_the_elastic_peak_is_looked_for_in_one_plane_or_everywhere(given, shape):
+    """Below a smooth body the plane y = 0; below a rough one the largest of each depth."""
+    plan = sam.plan(given)
+    assert elastic_peak(plan.problem(Counters()), plan.schedule.peak).mises.shape == shape
 
 
 def test_the_first_box_does_not_matter(monkeypatch):

@@ -91,7 +91,7 @@ NEEDS: dict[str, dict[str, str]] = {
         "mesh, surface heights": "whole block",
         "mesh, counter-surface heights": "whole block",
         "surface heights": "heights",
-        "counter-surface heights": "counter heights",
+        "counter-surface heights": "counter heights | heights",
         "tangential traction": "slipping step, tangential far field",
         "not tangential traction": "step without slip",
         "moving counter-body": "motion of the counter-body",

@@ -186,7 +186,7 @@ def test_what_was_killed_before_and_survives_is_named(tmp_path, monkeypatch):
 
 
 def test_the_frozen_table_and_the_draw_do_not_depend_on_places():
-    assert {row["module"] for row in frozen.read()} <= set(scope.modules())
+    assert all(row["branches"].isdigit() and row["function"] is not None for row in frozen.read())
     one = Mutant("verification.compare.rows", "branch", "A.f", 0, "not (x)", 1)
     moved = Mutant("verification.compare.others", "branch", "f", 3, "not (x)", 70)
     assert scope.drawn(one) == scope.drawn(moved)

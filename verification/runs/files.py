@@ -193,9 +193,16 @@ def check_target(folder: Path, also: Sequence[str] = ()) -> None:
     """
     try:
         check_place(folder)
-        _check_content(folder, also)
+        if (folder / SUMMARY).exists():
+            read_summary(folder)
+            return
+        names = [entry.name for entry in folder.iterdir()] if folder.exists() else []
     except OSError as error:  # no permission, a name that is too long
         raise FolderError(f"{folder} cannot be used: {error.strerror}") from None
+    if strange := [name for name in names if not (_of_a_run(name) or name in also)]:
+        raise FolderError(
+            f"{folder} is not the folder of a run (it holds {min(strange)}): give a new or empty one"
+        )
 
 
 def check_place(folder: Path) -> None:
@@ -207,19 +214,6 @@ def check_place(folder: Path) -> None:
     elif not folder.is_dir() or not os.access(folder, os.W_OK):
         raise FolderError(
             f"{folder} is no folder that can be written to: give one, new, empty or of an older run"
-        )
-
-
-def _check_content(folder: Path, also: Sequence[str]) -> None:
-    if not folder.exists():
-        return
-    if (folder / SUMMARY).exists():
-        read_summary(folder)
-        return
-    strange = [entry.name for entry in folder.iterdir() if not (_of_a_run(entry.name) or entry.name in also)]
-    if strange:
-        raise FolderError(
-            f"{folder} is not the folder of a run (it holds {min(strange)}): give a new or empty one"
         )
 
 

@@ -77,10 +77,7 @@ def solve(
     checkpoint, start: see the solvers; the times of a solve in parts add up, and its memory is that of the
     largest part. Raises ModelError for a scene that the model cannot represent.
     """
-    from verification.runs.model_range import refusal, with_range  # noqa: PLC0415 - loads numpy
-
-    if refusal(scene):
-        check(scene, model)  # raises it, or what the model itself has against the scene
+    check(scene, model)
     began, before = time.process_time(), start.cost if start else {}
 
     def measured() -> dict[str, float | int]:
@@ -90,11 +87,11 @@ def solve(
     def keep(made: Checkpoint) -> None:
         checkpoint(made.with_cost(measured()))
 
-    package = _package(model)
-    try:
-        result = package.solve(scene, progress=progress, checkpoint=keep if checkpoint else None, start=start)
-    except package.UnsupportedScene as reason:
-        raise ModelError(f"model {model}: {reason}") from None
+    result = _package(model).solve(
+        scene, progress=progress, checkpoint=keep if checkpoint else None, start=start
+    )
+    from verification.runs.model_range import with_range  # noqa: PLC0415 - loads numpy
+
     return with_range(scene, replace(result, cost={**result.cost, **measured()}))
 
 
