@@ -39,7 +39,7 @@ def record(name, data, tables=(), notes=(), setup=()):
     words = {"title": name, "question": "", "failure": "", "status": "passed", "reused": None}
     lists = {"equations": [], "runs": [], "setup": list(map(list, setup)), "notes": list(notes)}
     figure = dict.fromkeys(("title", "alt", "caption", "csv"), "") | {"embedded": True}
-    own = ("probabilities", "two-inputs", "volume")
+    own = ("probabilities", "volume")
     figures = [figure | {"png": f"figures/{name}-{each}.png"} for each in own]
     made = {"name": name, "seconds": 1.0, "tables": shown, "figures": figures, "data": plain(data)}
     return made | words | lists
@@ -122,7 +122,7 @@ def test_the_answer_counts_what_the_tables_hold_and_the_index_and_the_page_begin
     assert "deviation of the layer, factor (" in text and f"1 holds ({NEVER}) under nothing" in text
     assert "In the study over hardening and loading cycles 21 to 25 add more than 0.1 %" in text
     assert [each["png"][19:-4] for each in found.pictures] == [
-        *("sensitivity-probabilities", "sensitivity-two-inputs", "physics-volume")
+        *("sensitivity-probabilities", "physics-volume")
     ]
     write_report(results, tmp_path)
     page, index = (

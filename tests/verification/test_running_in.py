@@ -461,14 +461,13 @@ class TestReadings:
 
     def test_every_case_is_drawn_in_both_readings(self, solved, monkeypatch):
         """Without bulk in the second, which is lost. What a drawing holds is tested with the figures."""
-        for drawing in ("over_cycles", "regime_map", "six_panels", "surface", "yield_profiles"):
+        for drawing in ("over_cycles", "regime_map", "six_panels", "yield_profiles"):
             monkeypatch.setattr(running_in, drawing, lambda *_, **__: None)
         found, _ = solved({f"renewed-{BULK}-seed-{seed}" for seed in TEN} | {f"renewed-{DUCTILE}-seed-2"})
         names = [plot.name for plot in CASE.figures(found)]
         printed = ["yield", "regimes", *NAMES]
         assert names == [
             "readings",
-            "surface",
             *printed,
             *(f"renewed-{name}" for name in printed if name != BULK),
         ]

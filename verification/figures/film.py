@@ -62,22 +62,3 @@ def pressures(found: DataFrame, bare_radius: float) -> Drawing:
 def _title(radius: float) -> str:
     """The contact radius of a panel."""
     return rf"$a_0$ = {MICRO * radius:g} $\mu$m"
-
-
-def strains(found: DataFrame) -> Drawing:
-    """Plastic strain in %, mean of the columns of Gauss points over the film's thickness, over
-    r/a0: a panel for each contact radius, a curve for each body.
-    """
-    panels: dict[str, dict[str, Curve]] = {}
-    for _, one in found.iterrows():
-        r, z, strain = peak(one["result"].tables["plane"], "x_m", "z_m", "peeq")
-        inside = (z < one["scene"].body.coating.thickness) & (r <= 1.4 * one["radius"])
-        x, column = np.unique(np.round(r[inside] / one["radius"], 9), return_inverse=True)
-        mean = np.bincount(column, strain[inside]) / np.bincount(column)
-        panel = panels.setdefault(_title(one["radius"]), {})
-        panel[_series(one["body"], one["film"])] = Curve(x, PERCENT * mean)
-        if one["body"] == "elastic":
-            panel["thin film"] = Curve(np.zeros(1), np.array([PERCENT * one["thin_film"]]))
-    circle = {"color": BLACK, "marker": "o", "fillstyle": "none", "linestyle": "none"}
-    looks = LOOKS | {"thin film": circle}
-    return curves(panels, "$r/a_0$", "plastic strain of the film [%]", looks=looks)

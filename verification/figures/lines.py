@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from sam.scene import Attempt, Result
+from sam.scene import Attempt
 from verification.compare.sliding_measures import Plane
 from verification.figures.style import (
     BLACK,
@@ -37,7 +37,6 @@ from verification.figures.style import (
     zero_line,
 )
 from verification.reference.convergence import Limit, Order, Power
-from verification.runs.sampling import rows_of
 
 MICRO, GIGA, PERCENT = 1e6, 1e-9, 1e2
 POINTS = {"SAM": SAM | {"marker": "o", "fillstyle": "none"}, "FEM": FEM | {"marker": "x"}}
@@ -294,18 +293,6 @@ def of_programs(
     return curves({"": drawn}, xlabel, ylabel, looks=looks, **how)
 
 
-def curves_on_axis(
-    results: Mapping[str, Result], a: float, looks: Sequence[Mapping], deep: float = 1.5
-) -> Drawing:
-    """Plastic strain in % under the centre at the peak, one curve a result."""
-    drawn = {}
-    for name, result in results.items():
-        z, peeq = rows_of(result.tables["axis"], "peak", "z_m", "peeq")
-        drawn[name] = Curve(z[use := z <= deep * a] / a, PERCENT * peeq[use])
-    own = dict(zip(results, looks, strict=True))
-    return curves({"": drawn}, "$z/a$", "plastic strain [%]", looks=own, size=(6.0, 3.6))
-
-
 def convergence(panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Order | None]]]) -> Drawing:
     """log-log error against cell size; panels: title -> quantity -> (h/a, relative error, fitted
     order or None).
@@ -401,18 +388,6 @@ LINE_ON_POINTS = {
     "SAM": SAM,
     "FEM": FEM | {"linestyle": "none", "marker": "o", "markersize": 4.0, "fillstyle": "none"},
 }
-
-
-def response_errors(
-    errors: Mapping[str, tuple[np.ndarray, np.ndarray]], bounds: Mapping[str, float]
-) -> Drawing:
-    """Errors over kh, log-log; errors: name -> (kh, error); bounds: words -> what is allowed.
-    Errors that are smaller than 1e-17 are drawn there.
-    """
-    own = {name: Curve(kh, np.maximum(error, 1e-17)) for name, (kh, error) in errors.items()}
-    marks = {f"allowed: {name}, {bound:g}": ("y", bound) for name, bound in bounds.items()}
-    how = {"logarithmic": "xy", "marks": marks, "legend": "right", "size": (7.2, 4.0)}
-    return curves({"": own}, "wave number times thickness $kh$", "worst error", **how)
 
 
 MODEL_MARKS = {"SAM": {"marker": "o", "fillstyle": "none"}, "FEM": {"marker": "x"}}

@@ -53,7 +53,7 @@ from verification.cases.running_in.study import (
 )
 from verification.compare.running_in_measures import History, Limits, Scar
 from verification.figures.lines import over_cycles, yield_profiles
-from verification.figures.running_in import regime_map, six_panels, surface
+from verification.figures.running_in import regime_map, six_panels
 from verification.reference.regime import Regime, regime
 
 SHOWN = 2  # the seed of the scenes
@@ -262,13 +262,10 @@ class RunningIn(Study):
         yield readings_plot(
             {NAMES[case]: {str(of): own.get(case, []) for of, own in readings.items()} for case in cases}
         )
-        for number, reading in enumerate(readings):
+        for reading in readings:
             shown = {case: main_seed(own) for case, own in found.cases(reading).items()}
             if not shown:
                 continue
-            if not number:
-                case, seed = next(iter(shown.items()))
-                yield surface_plot(seed, found.runs[reading, case, seed].scar)
             yield yield_plot(found, reading)
             yield regimes_plot(found, reading)
             for case, seed in shown.items():
@@ -620,18 +617,6 @@ def readings_plot(cases: Mapping[str, Mapping[str, Sequence[History]]]) -> Plot:
 def _with_median(values: Sequence[np.ndarray]) -> dict[str, np.ndarray]:
     found = {str(k): each for k, each in enumerate(values, start=1)}
     return found | ({"median": np.median(values, axis=0)} if values else {})
-
-
-def surface_plot(seed: int, scar: Scar) -> Plot:
-    """The surface of the scenes before any wear."""
-    return Plot(
-        surface(scar),
-        "surface",
-        f"The rough surface before running-in, surface {seed}",
-        "Map of the heights of the rough surface, and its profile through the highest place.",
-        "In place of the measured surface of the paper's Fig. 12, which is not public: made with its Ra, "
-        "size and sampling. Heights out of the body; at the border they fall, so that the patch ends free.",
-    )
 
 
 def yield_plot(found: Found, reading: Reading) -> Plot:

@@ -42,7 +42,7 @@ from verification.cases.running_in.scenes import (
 )
 from verification.cases.running_in.study import STATEMENTS, Histories, Run, Study
 from verification.cost.estimates import estimate
-from verification.figures.specials import best_pair, probabilities
+from verification.figures.specials import probabilities
 from verification.sensitivity import UNIFORM, design, indices
 from verification.surrogate import Surrogate, surrogate
 
@@ -410,25 +410,6 @@ class RunningInSensitivity(Study):
             "Probability that a statement of the paper holds",
             "A bar with its bounds for each of the 17 statements, and at how many points it holds.",
             "Right: points at which it holds, of those at which it says anything; bounds of 90 %.",
-        )
-        counts = list(found.decided_by.items())[:2]
-        named = [
-            (next((k, one) for k, one in enumerate(INPUTS) if one.name == name), n) for name, n in counts
-        ]
-        two = [each for each, _ in named]
-        yield Plot(
-            best_pair(
-                [[one.factor * one.value(share) for share in found.shares[:, k]] for k, one in two],
-                [one.words for _, one in two],
-                found.counts,
-                [one.logarithmic for _, one in two],
-                printed=[one.factor * one.printed for _, one in two],
-            ),
-            "two-inputs",
-            "Statements that hold together, over the two inputs that change them most",
-            "A mark for each point over two inputs, coloured by the number of statements that hold there.",
-            "All other inputs differ from point to point too. Statements whose probability is changed beyond "
-            f"chance: {', '.join(f'{count} by {one.words}' for (_, one), count in named)}.",
         )
 
 

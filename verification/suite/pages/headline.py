@@ -49,7 +49,7 @@ MEANING = (
     "% (5 % where it is said)."
 )
 """Of the columns and the words of the table."""
-PICTURES = ((INPUTS, "probabilities"), (INPUTS, "two-inputs"), (PHYSICS, "volume"))
+PICTURES = ((INPUTS, "probabilities"), (PHYSICS, "volume"))
 """Case and name of the figures of the headline."""
 UNTESTED = (
     "That curve C is very close to curve B, so that the paper's Fig. 15 stands for both: curve C runs on one "
