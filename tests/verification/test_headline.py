@@ -7,13 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from made_histories import as_the_paper_says
-from made_results import context
-from made_studies import GOOD, over_inputs, over_physics
+from made_studies import GOOD, over_inputs, over_physics, verdicts
 from page_checks import PageReader, faults_of
 
+from verification.cases import all_cases
 from verification.cases.running_in import running_in_physics, running_in_sensitivity
-from verification.cases.running_in.scenes import BULK, HARDENING, NAMES
-from verification.cases.running_in.study import STATEMENTS, judged as judged_on
+from verification.cases.running_in.study import BULK, HARDENING, NAMES, STATEMENTS
 from verification.runs.files import plain
 from verification.suite.pages import write_report
 from verification.suite.pages.findings import Evidence, PaperStatements
@@ -50,7 +49,7 @@ def record(name, data, tables=(), notes=(), setup=()):
             "embedded": True,
             "png": f"figures/{name}-{own}.png",
         }
-        for own in ("probabilities", "two-inputs", "volume")
+        for own in ("probabilities", "volume")
     ]
     return (
         {"name": name, "seconds": 1.0, "tables": shown, "figures": figures, "data": plain(data)}
@@ -65,7 +64,7 @@ def older(case):
 
 
 def statements(**judged):
-    return {"statements": {name: [one.data for one in each] for name, each in judged.items()}}
+    return {"statements": judged}
 
 
 def stored(*cases):
@@ -79,24 +78,20 @@ def readings():
     said = as_the_paper_says()
     still = {**said, HARDENING: replace(said[HARDENING], volume=0.0 * said[HARDENING].volume)}
     early = {**said, HARDENING: replace(said[HARDENING], volume=said[BULK].volume)}
-    found = statements(**{"printed inputs": judged_on([still] * 3), "renewed": judged_on([early] * 3)})
+    found = statements(**{"printed inputs": verdicts([still] * 3), "renewed": verdicts([early] * 3)})
     return record(READINGS, found | {"second_reading": "a soft layer"})
 
 
 @pytest.fixture(scope="module")
-def studies(tmp_path_factory):
+def studies():
     """Of inputs and of physics, with one statement that holds nowhere."""
-    here = context(INPUTS, tmp_path_factory.mktemp("scenes"))
-    inputs = over_inputs({case: here.scene(f"running-in-{case}") for case in NAMES})
-    physics, records = over_physics(), []
-    for (case,), found in ((running_in_sensitivity.CASES, inputs), (running_in_physics.CASES, physics)):
-        for (_, name), one in found.runs.items():
-            if name == HARDENING:
-                one.history = replace(one.history, volume=0.0 * one.history.volume)
-        records.append(
-            record(case.name, *(part(found) for part in (case.data, case.tables, case.notes, case.setup)))
-        )
-    return records
+    hardening = as_the_paper_says()[HARDENING]
+    never = {HARDENING: replace(hardening, volume=0.0 * hardening.volume)}
+    made = (running_in_sensitivity, over_inputs(**never)), (running_in_physics, over_physics(**never))
+    return [
+        record(case.name, *(part(found) for part in (case.data, case.tables, case.notes, case.setup)))
+        for case, found in ((all_cases()[study.CASES[0].name], found) for study, found in made)
+    ]
 
 
 def test_each_statement_has_a_row_with_what_decides_it_and_what_makes_it_hold(readings, studies):
@@ -115,7 +110,7 @@ def test_each_statement_has_a_row_with_what_decides_it_and_what_makes_it_hold(re
     assert rows["curve B: still wears linearly"]["holds under"] == "1 of 24"
     assert rows["hardening: wears as much as bulk"]["what makes it hold"] == "the second reading"
     (good,) = Judged(read_stored(stored(*studies))).under("curve B: still wears linearly")
-    assert good == tuple(WORDS[each] for each in (GOOD.hardening, GOOD.sign, GOOD.counter))
+    assert good == tuple(WORDS[each] for each in reversed(GOOD))
 
 
 def test_every_other_physics_of_the_study_has_words():
@@ -155,7 +150,6 @@ def test_the_answer_counts_what_the_tables_hold(readings, studies):
     assert "Fitted" in found.fitted["caption"] and "hardness" in found.fitted_note
     assert [each["png"][8:-4] for each in found.pictures] == [
         "running-in-sensitivity-probabilities",
-        "running-in-sensitivity-two-inputs",
         "running-in-physics-volume",
     ]
 
@@ -163,7 +157,7 @@ def test_the_answer_counts_what_the_tables_hold(readings, studies):
 def test_what_finer_cells_refute_is_not_counted_and_named(readings, studies):
     said_so = as_the_paper_says()
     busy = {**said_so, BULK: replace(said_so[BULK], volume=1e-18 * np.arange(1.0, 26.0))}
-    finer = record(FINER, statements(coarse=judged_on([said_so]), fine=judged_on([busy])))
+    finer = record(FINER, statements(coarse=verdicts([said_so]), fine=verdicts([busy])))
     text = headline_of(read_stored(stored(readings, *studies, finer))).answer
     assert "1 of these 13 (bulk: worn in the first six cycles) failed on finer cells" in text
     assert text.endswith("not counting such, 12 of 15 hold.")
@@ -171,18 +165,18 @@ def test_what_finer_cells_refute_is_not_counted_and_named(readings, studies):
 
 def test_a_statement_that_follows_from_another_holds_where_that_one_does():
     """Bulk by any volumes that grow; the order of friction where it is kept by all that is asked of it."""
-    asked = {each.words: each for each in STATEMENTS}
-    assert set(FOLLOWS) | set(FOLLOWS.values()) <= set(asked)
-    (later, early), (below, order) = ((asked[each], asked[by]) for each, by in FOLLOWS.items())
-    rng, base = np.random.default_rng(1), as_the_paper_says()
+    rng, base, surfaces = np.random.default_rng(1), as_the_paper_says(), []
     for _ in range(100):
         steps = rng.random(25) ** 4
         steps[6:] *= rng.random() / 9.0 * steps[:6].sum() / steps[6:].sum()
-        surface = {**base, BULK: replace(base[BULK], volume=np.cumsum(steps))}
-        assert early.holds(early.value(surface)) and later.holds(later.value(surface))
-        friction = {case: replace(base[case], friction=rng.uniform(0.1, 0.4, 25)) for case in NAMES}
-        if order.holds(order.value(friction)):
-            assert below.value(friction) < 0.0
+        own = {case: replace(base[case], friction=rng.uniform(0.1, 0.4, 25)) for case in NAMES}
+        surfaces.append({**own, BULK: replace(own[BULK], volume=np.cumsum(steps))})
+    asked, found = {each.words: each for each in STATEMENTS}, verdicts(surfaces)
+    values = {each["statement"]: each["values"] for each in found}
+    (later, early), (below, order) = FOLLOWS.items()
+    assert all(map(asked[early].holds, values[early])) and all(map(asked[later].holds, values[later]))
+    kept = [low for low, high in zip(values[below], values[order], strict=True) if asked[order].holds(high)]
+    assert kept and max(kept) < 0.0
 
 
 def test_the_pressures_that_remove_metal_and_the_last_cycles_are_said(readings, studies):

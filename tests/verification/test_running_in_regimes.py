@@ -9,13 +9,7 @@ from scipy.integrate import solve_ivp
 
 from sam.scene import load_scene
 from verification.cases.running_in import running_in
-from verification.cases.running_in.scenes import (
-    BULK,
-    HARDENING,
-    NAMES,
-    A,
-    B,
-)
+from verification.cases.running_in.study import BULK, HARDENING, NAMES, A, B
 from verification.reference.bonded_film import in_plane_strain, plastic_strain
 from verification.reference.regime import (
     Regime,

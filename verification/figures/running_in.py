@@ -15,7 +15,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from verification.compare.running_in_measures import History, Limits, Scar
-from verification.figures.maps import draw_field, outline, remark
+from verification.figures.maps import draw_field, outline
 from verification.figures.places import edges_of
 from verification.figures.style import (
     BLACK,
@@ -213,21 +213,6 @@ def over_cycles(
 LONG_TITLE = 20  # characters from which a title is broken at its last comma
 
 
-def surface(scar: Scar) -> Drawing:
-    """The heights before any wear over the patch, and along the row through the highest place, in um."""
-    j = int(np.argmax(scar.height.max(axis=0)))
-    x, y, height = MICRO * scar.x, MICRO * scar.y, MICRO * scar.height
-    with sheet(9.0, 3.6, 2, width_ratios=(1.0, 1.5)) as (figure, (left, right)):
-        mesh = draw_field(left, x, y, height, cmap="cividis")
-        figure.colorbar(mesh, ax=left, label="height [µm]", fraction=0.05, pad=0.03)
-        left.set(title="Heights", **MAP_AXES)
-        left.axhline(y[j], color=VERMILION, linewidth=0.9)
-        right.plot(x, height[:, j], color=VERMILION, linewidth=1.2)
-        right.set(xlabel=f"$x$ [µm] at $y$ = {y[j]:.3g} µm", ylabel="height [µm]")
-        remark(right, f"through the highest place; all heights: {height.min():.2f} to {height.max():.2f} µm")
-    return Drawing(figure, _columns(scar))
-
-
 def yield_profiles(cases: Mapping[str, Callable[[np.ndarray, float], np.ndarray]], deep: float) -> Drawing:
     """Yield stress in GPa over depth to `deep` (m), without plastic strain and with 1 %; cases: name ->
     function of depths in m and a plastic strain, in Pa.
@@ -367,35 +352,6 @@ def probabilities(rows: Sequence[tuple[str, int, int, tuple[float, float]]]) -> 
         axis.set(xlim=(0.0, 1.0), ylim=(-0.7, len(names) - 0.3))
         axis.set_axisbelow(True)
     table.add(names, held, of, low, high)
-    return Drawing(figure, table)
-
-
-def best_pair(
-    places: Sequence[Sequence[float]],
-    labels: Sequence[str],
-    counts: np.ndarray,
-    logarithmic: Sequence[bool],
-    *,
-    printed: Sequence[float],
-) -> Drawing:
-    """A mark for each point over two inputs, coloured by the number of statements that hold there. printed:
-    the two printed inputs.
-    """
-    table = Columns(*labels, "statements that hold")
-    with sheet(5.6, 4.2) as (figure, axis):
-        marks = axis.scatter(*places, c=counts, cmap="viridis", s=36, edgecolors=BLACK, linewidths=0.4)
-        figure.colorbar(marks, ax=axis, label="statements that hold", ticks=MaxNLocator(integer=True))
-        look = {"color": VERMILION, "markersize": 9, "markeredgewidth": 2, "clip_on": False}
-        axis.plot(*printed, "x", **look, label="printed inputs")
-        axis.set(xlabel=labels[0], ylabel=labels[1], axisbelow=True)
-        for of, scale, yes in zip(
-            (axis.xaxis, axis.yaxis), (axis.set_xscale, axis.set_yscale), logarithmic, strict=True
-        ):
-            if yes:
-                scale("log")
-                log_ticks(of)
-        figure.legend(loc="outside upper left")
-    table.add(*places, counts)
     return Drawing(figure, table)
 
 

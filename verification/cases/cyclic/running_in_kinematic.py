@@ -13,17 +13,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from verification.cases.case import SAM, Case, Context, Measured, Plot, SmallTable, number, with_keys
-from verification.cases.running_in.scenes import (
+from verification.cases.running_in.study import (
+    CUBIC,
     MODULI,
     NAMES,
     RECOVERY,
     SHARES,
     Effort,
+    Run,
     hardened,
     printed_scenes,
     swift,
 )
-from verification.cases.running_in.study import CUBIC, Run
 from verification.figures.friction import CYCLES, Curve, curves
 
 EFFORT = Effort(cycles=10, steps=4, cells=48)
