@@ -113,9 +113,12 @@ class TestRegime:
             pytest.approx(removal, abs=5e-3),
             pytest.approx(softer, abs=5e-3),
         )
-        assert (
-            limits.removal_whole == pytest.approx(4 * limits.removal, rel=1e-14) and limits.film == other.film
-        )
+        assert limits.removal_whole == pytest.approx(4 * limits.removal, rel=1e-14)
+        assert limits.film == other.film
+        if case == BULK:
+            assert limits.strength == pytest.approx(swift(1780e6, 4, 0.095, 0.002), rel=1e-12)
+        profile, middle = SCENES[case].body.plasticity.depth_profile(), 0.05e-6  # of the first layer
+        assert limits.first / limits.removal == pytest.approx(profile(middle) / profile(0.0), rel=1e-12)
 
     def test_bad_numbers_are_refused_by_name(self):
         for wrong, name in (((-1.0, 0.4), "strength"), ((1e9, 0.0), "friction"), ((np.nan, 0.4), "strength")):

@@ -50,8 +50,8 @@ def of_cells(by_cells: Mapping[int, Mapping[str, float]], key: str) -> float:
 def runs(context: Context) -> Iterator[dict[str, Any]]:
     """Values by the number of steps and of cells in a radius, in m and 1. limit: of short steps; refined: of
     fine cells; exact: of both. extrapolated: from coarse steps of a/4 and a/8, as of first order, and the
-    same cells: those of a/6, a/8 and a/12 leave the strain of one cell within 0.6 % of each other, in no order.
-    covered: the error of a single run over its uncertainty.
+    same cells: those of a/6, a/8 and a/12 leave the strain of one cell within 0.6 %, in no order. covered:
+    the error of a single run over its uncertainty.
     """
     base = context.scene("moving-sphere")
 
