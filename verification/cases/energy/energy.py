@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
     from verification.rows import CaseFile
 
+__all__ = ["balances", "order_in_cells", "order_in_steps", "path"]
+
 RATIO = 4.0
 STEPS = (6, 12, 24)  # of the loading; the first for all grids, the coarsest grid for all of them
 CELLS = {"quick": (5, 7, 10), "full": (6, 10, 14)}
