@@ -42,7 +42,7 @@ from verification.cases.running_in.study import (
 )
 from verification.compare.running_in_measures import History, Limits, Scar, Spread
 from verification.figures import run
-from verification.figures.running_in import over_cycles, regime_map, six_panels
+from verification.figures.running_in import regime_map, six_panels
 from verification.runs.files import write_run
 
 SCENES = {case: load_scene(f"verification/scenes/running-in-{case}.toml") for case in (*NAMES, "curve-c")}
@@ -342,14 +342,6 @@ class TestReadings:
 
 
 class TestFigures:
-    def test_lines_of_two_names_have_colours_and_dashes(self):
-        lines = {(one, two): np.arange(3.0) for one in "ab" for two in ("x", "y")}
-        drawing = over_cycles({("V", "first, second and more"): lines}, ("one", "two"))
-        (panel,), names = drawing.figure.axes, drawing.figure.legends[0].get_texts()
-        assert [text.get_text() for text in names] == ["a", "b", "x", "y"]
-        assert len({(line.get_color(), line.get_linestyle()) for line in panel.lines}) == 4
-        assert panel.get_title() == "first,\nsecond and more" and drawing.data["cycle"][:3] == [0, 1, 2]
-
     def test_panels_and_regimes_hold_the_numbers_that_they_show(self):
         one = made()
         drawing = six_panels(one.scar, one.history, (0.1, 0.4))

@@ -96,6 +96,7 @@ class Compared(Case):
         return replace(found, coarser=tuple(zip(before, ratios, strict=True)))
 
     def ahead(self, context: Context) -> Iterator[Scene]:
+        """Of the sweeps; of a frame what a function `scenes` beside the file says, if there is one."""
         if self.file.frame:
             yield from beside(self.file, "scenes", {"scenes": lambda _: ()})(context)
             return
