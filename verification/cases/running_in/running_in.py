@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Running-in: the five cases of Bosman & Schipper (2011), Figs. 13-17, against what the paper says of them:
-on ten surfaces with the printed inputs, and beside it in a second reading of what the paper leaves open; on
-one surface with finer cells.
+"""Running-in: the five cases of Bosman & Schipper (2011), Figs. 13-17, against what the paper says
+of them: on ten surfaces with the printed inputs, and beside it in a second reading of what the
+paper leaves open; on one surface with finer cells.
 
 Rows are for what must be so: sums that agree, cycles that are complete, friction between its two
-coefficients. What the paper says of its own surface is judged in a table, beside the pressures at which a
-film fails and metal is removed, which decide it.
+coefficients. What the paper says of its own surface is judged in a table, beside the pressures at
+which a film fails and metal is removed, which decide it.
 """
 
 from __future__ import annotations
@@ -45,8 +45,8 @@ DEEP = 2e-6  # m: how far down the yield stress is drawn; the profiles end above
 
 
 def renewed(scene: Scene) -> Scene:
-    """The second reading: the layer hardens little; the counter-surface is rough and another one in each
-    cycle; layers of cells reach deeper.
+    """The second reading: the layer hardens little; the counter-surface is rough and another one
+    in each cycle; layers of cells reach deeper.
     """
     scene = study.deeper(
         study.with_counter(study.with_layer_alpha(scene, study.LAYER_ALPHA), study.ROUGHNESS["sq"])
@@ -82,8 +82,8 @@ def alike(one: Run) -> bool:
 
 
 def iterations_of(result: Result) -> tuple[list[float], list[float]]:
-    """Plastic iterations of each cycle to the fifth (of a short run: of all but the last), and of those after
-    it.
+    """Plastic iterations of each cycle to the fifth (of a short run: of all but the last), and of
+    those after it.
     """
     history = result.tables["history"]
     cycle, iterations = (np.asarray(history[name], dtype=float) for name in ("cycle", "iterations"))
@@ -93,8 +93,8 @@ def iterations_of(result: Result) -> tuple[list[float], list[float]]:
 
 
 def later_over_early(one: Run) -> float:
-    """Plastic iterations, each with an application of the operator of residual stress: mean of later cycles
-    over the first, where each meets the same counter-surface.
+    """Plastic iterations, each with an application of the operator of residual stress: mean of
+    later cycles over the first, where each meets the same counter-surface.
     """
     early, later = iterations_of(one.result)
     return float(np.mean(later) / np.mean(early)) if alike(one) else 0.0
@@ -136,8 +136,8 @@ the last cycle, against cycles.csv.
 
 
 class RunningIn(Study):
-    """Every material on every surface in both readings, and what is varied of the printed inputs; rows over
-    all of them, statements over those that converged.
+    """Every material on every surface in both readings, and what is varied of the printed inputs;
+    rows over all of them, statements over those that converged.
     """
 
     parts = ("reading", "material", "surface")
@@ -277,15 +277,17 @@ def led(reading: str, name: str) -> str:
 
 
 def shown_of(good: DataFrame, reading: str) -> Iterator[tuple[str, DataFrame]]:
-    """Each material with its runs, that on the surface of the scenes first, where it is among them."""
+    """Each material with its runs, that on the surface of the scenes first, where it is among
+    them.
+    """
     own = good[good["reading"] == reading]
     own = own.sort_values("surface", key=lambda seeds: seeds != SHOWN, kind="stable")
     yield from ((case, own[own["material"] == case]) for case in NAMES if (own["material"] == case).any())
 
 
 def readings_of(found: DataFrame) -> dict[str, list[dict[str, Any]]]:
-    """Reading, or size of cells -> what is told of the statements; none with fewer cycles than they ask
-    for.
+    """Reading, or size of cells -> what is told of the statements; none with fewer cycles than
+    they ask for.
     """
     return {
         reading: study.judged(study.measured(own, ["surface"]))
@@ -295,8 +297,9 @@ def readings_of(found: DataFrame) -> dict[str, list[dict[str, Any]]]:
 
 
 def last_cycles(found: DataFrame, reading: str) -> dict[str, dict[str, list[float]]]:
-    """Material -> of each surface the first cycle from which on no cell strains, NaN if the last one still
-    does, and what the last cycle adds: largest new strain, number of cells that yield, wear in m3.
+    """Material -> of each surface the first cycle from which on no cell strains, NaN if the last
+    one still does, and what the last cycle adds: largest new strain, number of cells that yield,
+    wear in m3.
     """
     columns = {"strain": "new_strain_max", "cells": "yielding_cells", "wear_m3": "wear_of_cycle_m3"}
     good = found[found["converged"] & (found["reading"] == reading)]
@@ -308,9 +311,9 @@ def last_cycles(found: DataFrame, reading: str) -> dict[str, dict[str, list[floa
 
 
 def regimes(found: DataFrame, reading: str) -> dict[str, dict[str, Any]]:
-    """Material -> the pressures in Pa at which films fail and metal is removed, the largest in the first
-    cycle, the median of the surfaces, and of all surfaces the cells with a failed film at the last peak and
-    those of them whose pressure removes a wide spot in the first layer.
+    """Material -> the pressures in Pa at which films fail and metal is removed, the largest in the
+    first cycle, the median of the surfaces, and of all surfaces the cells with a failed film at
+    the last peak and those of them whose pressure removes a wide spot in the first layer.
     """
     values = {}
     for case, runs in found[found["reading"] == reading].groupby("material", sort=False)["run"]:
@@ -332,7 +335,9 @@ def regimes(found: DataFrame, reading: str) -> dict[str, dict[str, Any]]:
 
 
 def regimes_table(found: DataFrame, reading: str) -> SmallTable:
-    """What decides: the pressures at which films fail and metal is removed, against the largest there is."""
+    """What decides: the pressures at which films fail and metal is removed, against the largest
+    there is.
+    """
     rows = []
     for case, own in regimes(found, reading).items():
         *pressures, above, failed = own.values()
@@ -431,7 +436,9 @@ SIZES = {f"{EFFORT.cells / cells:.3g} µm": cells for cells in WINDOWS}
 
 
 class RunningInCells(Study):
-    """All materials on a quarter of the printed area, on both sizes of cells, which stand for readings."""
+    """All materials on a quarter of the printed area, on both sizes of cells, which stand for
+    readings.
+    """
 
     parts = RunningIn.parts
 

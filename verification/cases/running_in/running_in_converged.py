@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Worn volume on finer cells, layers and load steps, each alone, with the surface shifted against the cells;
-on how many surfaces the recommended cells give it within a tenth, and what they cost.
+"""Worn volume on finer cells, layers and load steps, each alone, with the surface shifted against
+the cells; on how many surfaces the recommended cells give it within a tenth, and what they cost.
 
-The scar is smoothed over a length: the window has as many cells as that takes. Sizes of cells are those of
-which an odd number makes up the length, so that it is the same on all grids to the bit.
+The scar is smoothed over a length: the window has as many cells as that takes. Sizes of cells are
+those of which an odd number makes up the length, so that it is the same on all grids to the bit.
 """
 
 from __future__ import annotations
@@ -43,8 +43,8 @@ TENTH = 0.1
 
 @dataclass(frozen=True)
 class Member:
-    """A run. thirds: of a cell, by which the surface is shifted along x and y; parts: of each layer; window:
-    cells, None: those of the length SMOOTHED; force: over FORCE.
+    """A run. thirds: of a cell, by which the surface is shifted along x and y; parts: of each
+    layer; window: cells, None: those of the length SMOOTHED; force: over FORCE.
     """
 
     seed: int
@@ -63,7 +63,9 @@ class Member:
         return f"surface-{self.seed}-cells-{self.cells}" + "".join(others)
 
     def of(self, base: Scene) -> Scene:
-        """The patch: waves of SHORTEST and more on softer steel than printed, so that most surfaces wear."""
+        """The patch: waves of SHORTEST and more on softer steel than printed, so that most
+        surfaces wear.
+        """
         surface, grid = (
             shifted(base.surface, self.seed, self.cells, self.thirds / 3),
             Grid(depths=cut(FACES, self.parts)),
@@ -95,8 +97,8 @@ def window_of(cells: int) -> int:
 
 
 def shifted(like: Surface, seed: int, cells: int, shift: float) -> Surface:
-    """The surface and its relief, shifted by so many cells along x and y: sums of waves and a polynomial,
-    evaluated elsewhere.
+    """The surface and its relief, shifted by so many cells along x and y: sums of waves and a
+    polynomial, evaluated elsewhere.
     """
     waves = {"sq": 0.2e-6, "cutoff_long": SIDE, "cutoff_short": SHORTEST, "hurst": like.hurst}
     surface = Surface(kind="self-affine", **waves, seed=seed, anisotropy=like.anisotropy)
@@ -125,11 +127,12 @@ def scenes(context: Context) -> Iterator[Scene]:
 
 
 def surfaces(context: Context) -> Iterator[dict[str, Any]]:
-    """A row for each surface. N cells: its worn volumes in m3 at all shifts on N cells a side; off-N: that of
-    the shift that is furthest off the mean on the finest cells, heights-N: of what residual heights have
-    lost, root mean square, both relative; layers, steps: relative, what is left of their change; load,
-    smoothing: change by them; uncertain: cells and shift, layers and steps, added; time: on the
-    recommended cells over that on the coarsest; error: of the volume summed over a scar, over the median.
+    """A row for each surface. N cells: its worn volumes in m3 at all shifts on N cells a side;
+    off-N: that of the shift that is furthest off the mean on the finest cells, heights-N: of what
+    residual heights have lost, root mean square, both relative; layers, steps: relative, what is
+    left of their change; load, smoothing: change by them; uncertain: cells and shift, layers and
+    steps, added; time: on the recommended cells over that on the coarsest; error: of the volume
+    summed over a scar, over the median.
     """
     base, errors = context.scene("running-in-bulk"), dict.fromkeys(SEEDS, 0.0)
     volumes, heights, seconds = {}, {}, {}
@@ -180,8 +183,8 @@ def per_wave(cells: int) -> float:
 
 
 def lowering(result: Result) -> np.ndarray:
-    """What wear and plastic strain have lowered the unloaded surface by after the last cycle: means over the
-    coarsest cells, (n, n) in m.
+    """What wear and plastic strain have lowered the unloaded surface by after the last cycle:
+    means over the coarsest cells, (n, n) in m.
     """
     fields = result.grids["unloaded"]["surface"].cell_data
     lowered = np.squeeze(fields["worn_m"] + fields["uz_m"])

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Three asperities that harden by back-stresses and wear between the cycles: SAM against finite elements.
+"""Three asperities that harden by back-stresses and wear between the cycles: SAM against finite
+elements.
 
-Each model removes by its own plastic strain, with a rule and a transfer of the state of its own; beside it
-the finite elements remove what SAM does, so that the transfer alone is compared.
+Each model removes by its own plastic strain, with a rule and a transfer of the state of its own;
+beside it the finite elements remove what SAM does, so that the transfer alone is compared.
 """
 
 from __future__ import annotations
@@ -48,8 +49,9 @@ def scene_of(base: Scene, cells: int) -> Scene:
 
 
 def compared(context: Context) -> Iterator[dict[str, Any]]:
-    """SAM off FEM on three grids, at the peak of the first and of the last cycle and after it, where FEM
-    removes by its own strain or the depths of SAM; wears: least depth in m that SAM removes in a cycle.
+    """SAM off FEM on three grids, at the peak of the first and of the last cycle and after it,
+    where FEM removes by its own strain or the depths of SAM; wears: least depth in m that SAM
+    removes in a cycle.
     """
     base = context.scene("rough-asperities")
     for cells in CELLS:
@@ -69,8 +71,8 @@ def compared(context: Context) -> Iterator[dict[str, Any]]:
 
 
 def differences(sam: Result, fem: WornCycle, first: tuple[PatchPressure, PatchPressure]) -> dict[str, Any]:
-    """L2 of SAM off FEM; the strain below the spots of the first cycle, which a scar divides later, the worst
-    of them. lost, lost in fem: what the heights along y = 0 have lost in m.
+    """L2 of SAM off FEM; the strain below the spots of the first cycle, which a scar divides
+    later, the worst of them. lost, lost in fem: what the heights along y = 0 have lost in m.
     """
     own, other = PatchPressure.of(sam.tables), PatchPressure.of(fem.tables)
     below, strains = (Depths.of(sam.tables), Depths.of(fem.tables)), []

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""The same body under other physics: how it hardens, what presses on it from cycle to cycle, and whether
-friction changes its sign; which statements of the paper hold in which of them.
+"""The same body under other physics: how it hardens, what presses on it from cycle to cycle, and
+whether friction changes its sign; which statements of the paper hold in which of them.
 
-Everything else has the printed inputs: materials, film, limits of strain and load. The patch has a quarter of
-the area of the printed scenes, so that all combinations take minutes; one surface, so that nothing is said of
-others.
+Everything else has the printed inputs: materials, film, limits of strain and load. The patch has a
+quarter of the area of the printed scenes, so that all combinations take minutes; one surface, so
+that nothing is said of others.
 """
 
 from __future__ import annotations
@@ -107,8 +107,8 @@ class RunningInPhysics(Study):
         return study.framed(self.runs(context), [*PARTS, "material"], NUMBERS | FIRST)
 
     def measure(self, found: DataFrame) -> dict[str, Measured]:
-        """first-cycle: of physics that differ only in what comes after it: against constant friction under
-        a counter-surface that is not renewed between passes.
+        """first-cycle: of physics that differ only in what comes after it: against constant
+        friction under a counter-surface that is not renewed between passes.
         """
         good, worst = found[found["converged"]].set_index([*PARTS, "material"])[[*FIRST]], 0.0
         for (counter, _, hardening, case), own in good.iterrows():

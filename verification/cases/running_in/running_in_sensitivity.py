@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Which of the inputs that the paper leaves open decide its statements on running-in.
 
-Every input is drawn evenly over its range, each point on another surface, and all materials are run at each
-point: shares of the points at which a statement holds are probabilities over these ranges. Ranges are those
-that the paper, the literature on this steel and the readings of its figures allow; within them every value
-counts as equally likely, and inputs as independent.
+Every input is drawn evenly over its range, each point on another surface, and all materials are
+run at each point: shares of the points at which a statement holds are probabilities over these
+ranges. Ranges are those that the paper, the literature on this steel and the readings of its
+figures allow; within them every value counts as equally likely, and inputs as independent.
 
-The points at which most statements hold together are chosen by their result, so that they are fitted: how far
-they are from the printed inputs, what they would mean for the body, and whether that is plausible is said.
+The points at which most statements hold together are chosen by their result, so that they are
+fitted: how far they are from the printed inputs, what they would mean for the body, and whether
+that is plausible is said.
 """
 
 from __future__ import annotations
@@ -52,9 +53,9 @@ MATERIALS = (BULK, A, B)
 
 
 class Input(NamedTuple):
-    """An input between two ends, which are SI, drawn evenly in its value, its logarithm or its LEVELS;
-    printed: in the scenes, where the paper does not print it what they assume; words, factor: for the reader;
-    key: of the scene, else `put` by one of CHANGES.
+    """An input between two ends, which are SI, drawn evenly in its value, its logarithm or its
+    LEVELS; printed: in the scenes, where the paper does not print it what they assume; words,
+    factor: for the reader; key: of the scene, else `put` by one of CHANGES.
     """
 
     name: str
@@ -174,12 +175,12 @@ def wilson(held: int, of: int, level: float = 0.9) -> tuple[float, float]:
 
 
 def deciders(shares: np.ndarray, held: np.ndarray, fit: Surrogate | None = None) -> list[dict[str, Any]]:
-    """The inputs that decide a statement, the first most. held: (points,), NaN: says nothing; fit: of its
-    measure.
+    """The inputs that decide a statement, the first most. held: (points,), NaN: says nothing; fit:
+    of its measure.
 
-    change: how much more often it holds in the upper half of an input's range than in the lower one, with
-    bounds of 90 %; acts: whether that is beyond chance: by itself, or beyond its bounds where a fit of the
-    measure tells that the input moves it.
+    change: how much more often it holds in the upper half of an input's range than in the lower
+    one, with bounds of 90 %; acts: whether that is beyond chance: by itself, or beyond its bounds
+    where a fit of the measure tells that the input moves it.
     """
     says = np.isfinite(held)
     moves = fit.shares >= PART if believed(fit) else np.zeros(len(INPUTS), dtype=bool)
@@ -201,7 +202,9 @@ def believed(fit: Surrogate | None) -> bool:
 
 
 def change_between(high: np.ndarray, low: np.ndarray, level: float) -> tuple[float, float]:
-    """Bounds of the difference of two probabilities: Newcombe, Stat. Med. 17 (1998) 873, method 10."""
+    """Bounds of the difference of two probabilities: Newcombe, Stat. Med. 17 (1998) 873, method
+    10.
+    """
     ends = [(part.mean(), *wilson(int(part.sum()), part.size, level)) for part in (high, low)]
     (p, p_low, p_high), (q, q_low, q_high) = ends
     bounds = p - q - np.hypot(p - p_low, q_high - q), p - q + np.hypot(p_high - p, q - q_low)
@@ -209,14 +212,16 @@ def change_between(high: np.ndarray, low: np.ndarray, level: float) -> tuple[flo
 
 
 def least_change(points: int) -> float:
-    """Smallest change of a probability near a half that is beyond CHANCE, between the halves of a range."""
+    """Smallest change of a probability near a half that is beyond CHANCE, between the halves of a
+    range.
+    """
     return float(norm.isf(CHANCE / 2.0) * np.sqrt(2.0 * 0.25 / (points / 2.0)))
 
 
 @dataclass(frozen=True)
 class Studied:
-    """frame: of all runs, by point and material; shares: of the inputs, (points, inputs); printed: material
-    -> bounds of the hardness of its surface with the printed inputs in Pa.
+    """frame: of all runs, by point and material; shares: of the inputs, (points, inputs); printed:
+    material -> bounds of the hardness of its surface with the printed inputs in Pa.
     """
 
     frame: DataFrame
@@ -230,7 +235,9 @@ class Studied:
 
     @cached_property
     def held(self) -> np.ndarray:
-        """Whether a statement holds at a point, (statements, points); NaN where it says nothing there."""
+        """Whether a statement holds at a point, (statements, points); NaN where it says nothing
+        there.
+        """
         limits = np.array([(each.low, each.high) for each in STATEMENTS])
         holds = (limits[:, :1] <= self.measures) & (self.measures <= limits[:, 1:])
         return np.where(np.isnan(self.measures), np.nan, holds)
@@ -242,8 +249,8 @@ class Studied:
 
     @cached_property
     def chances(self) -> list[dict[str, Any]]:
-        """Of each statement: at how many points it holds, of those at which it says anything, bounds of that
-        share, and the inputs that decide it.
+        """Of each statement: at how many points it holds, of those at which it says anything,
+        bounds of that share, and the inputs that decide it.
         """
         found = []
         for said, row, fit in zip(STATEMENTS, self.held, self.fits, strict=True):

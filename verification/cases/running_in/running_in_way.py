@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Running-in on a way: a rough pin with film and wear below a rough disc that moves on in steps of one cell,
-another stretch of it in each pass; what it costs beside the same contact at rest.
+"""Running-in on a way: a rough pin with film and wear below a rough disc that moves on in steps of
+one cell, another stretch of it in each pass; what it costs beside the same contact at rest.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ def small(scene: Scene, steps: int = STEPS) -> Scene:
 
 
 def resumed(scene: Scene) -> tuple[int, float]:
-    """How many numbers of its tables differ where the scene goes on from the middle of the last way, and how
-    much larger that checkpoint is than the one in the middle of the first way.
+    """How many numbers of its tables differ where the scene goes on from the middle of the last
+    way, and how much larger that checkpoint is than the one in the middle of the first way.
     """
     kept: list = []
     found = models.solve(scene, SAM, checkpoint=kept.append)

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""The study of running-in (Bosman & Schipper 2011, Figs. 13-17): five materials as scenes and what readings
-of the paper change in them; their runs as one frame; the statements of the paper as measures with limits.
+"""The study of running-in (Bosman & Schipper 2011, Figs. 13-17): five materials as scenes and what
+readings of the paper change in them; their runs as one frame; the statements of the paper as
+measures with limits.
 
-A frame has a row a run: the parts of its key, `run`, `converged`, and its measures and other numbers, NaN
-where it did not converge. The paper's surface is not public and its numbers belong to it: only directions and
-ratios are asked for. A statement that the model contradicts is a finding; nothing here is a row.
+A frame has a row a run: the parts of its key, `run`, `converged`, and its measures and other
+numbers, NaN where it did not converge. The paper's surface is not public and its numbers belong to
+it: only directions and ratios are asked for. A statement that the model contradicts is a finding;
+nothing here is a row.
 """
 
 from __future__ import annotations
@@ -64,7 +66,9 @@ def printed_scenes(context: Context, effort: Effort) -> dict[str, Scene]:
 
 
 def reduced(scene: Scene, effort: Effort) -> Scene:
-    """The scene on a patch of so many cells, at its nominal pressure, for so many cycles and steps."""
+    """The scene on a patch of so many cells, at its nominal pressure, for so many cycles and
+    steps.
+    """
     if effort.cells != scene.grid.cells[0]:
         share = effort.cells / scene.grid.cells[0]
         extent = tuple(share * side for side in scene.grid.extent)
@@ -90,7 +94,9 @@ def with_constant(scene: Scene, B: float) -> Scene:
 
 
 def with_layer_alpha(scene: Scene, alpha: float) -> Scene:
-    """The layer, if there is one, with Swift's law of its own: hardening by alpha times the strain."""
+    """The layer, if there is one, with Swift's law of its own: hardening by alpha times the
+    strain.
+    """
     plasticity = scene.body.plasticity
     if plasticity.layer_thickness is None:
         return scene
@@ -99,8 +105,8 @@ def with_layer_alpha(scene: Scene, alpha: float) -> Scene:
 
 
 def with_deviation(scene: Scene, scale: float) -> Scene:
-    """With so much of the layer's deviation from the bulk; scaling the factors would change the bulk below it
-    too.
+    """With so much of the layer's deviation from the bulk; scaling the factors would change the
+    bulk below it too.
     """
     if (profile := scene.body.plasticity.profile) is None:
         return scene
@@ -108,16 +114,17 @@ def with_deviation(scene: Scene, scale: float) -> Scene:
 
 
 def with_counter(scene: Scene, sq: float, *, renew: bool = True) -> Scene:
-    """A rough counter-surface of so many m rms, another one in each cycle if it is renewed. Its seeds, one
-    for each cycle, are neither those of the surfaces nor those of another surface's counter-surface.
+    """A rough counter-surface of so many m rms, another one in each cycle if it is renewed. Its
+    seeds, one for each cycle, are neither those of the surfaces nor those of another surface's
+    counter-surface.
     """
     keys = {**ROUGHNESS, "sq": sq, "seed": 1000 * scene.surface.seed + 1, "renew": renew}
     return with_keys(scene, "counterbody", surface=CounterSurface(kind="self-affine", **keys))
 
 
 def deeper(scene: Scene) -> Scene:
-    """With the next faces of DEEPER: softer steel, and the summits of some surfaces, let the body yield below
-    the layers of the printed scenes.
+    """With the next faces of DEEPER: softer steel, and the summits of some surfaces, let the body
+    yield below the layers of the printed scenes.
     """
     depths = scene.grid.depths
     return with_grid(scene, depths=(*depths, *next(faces for faces in DEEPER if faces[0] > depths[-1])))
@@ -129,7 +136,9 @@ def swift(law: Plasticity, peeq: np.ndarray) -> np.ndarray:
 
 
 def hardened(scene: Scene, share: float) -> Scene:
-    """The body with so much of its hardening by back-stresses, and the rest as a table that ends flat."""
+    """The body with so much of its hardening by back-stresses, and the rest as a table that ends
+    flat.
+    """
     law, peeq = scene.body.plasticity, np.append(0.0, np.geomspace(1e-7, LARGEST, POINTS))
     first = float(swift(law, np.zeros(1))[0])
     stress = first + (1 - share) * (swift(law, peeq) - first)
@@ -170,7 +179,9 @@ class Run:
 
     @property
     def off(self) -> float:
-        """Volume summed over surface.csv against the last of cycles.csv, relative; 0 where both are 0."""
+        """Volume summed over surface.csv against the last of cycles.csv, relative; 0 where both
+        are 0.
+        """
         return apart(self.scar.volume, self.history.volume[-1])
 
 
@@ -233,8 +244,8 @@ def framed(
     parts: Sequence[str],
     numbers: Mapping[str, Callable[[Run], float]] | None = None,
 ) -> DataFrame:
-    """A row a run. parts: names of those of a key; numbers: name -> what a run that converged has of it,
-    beside MEASURES.
+    """A row a run. parts: names of those of a key; numbers: name -> what a run that converged has
+    of it, beside MEASURES.
     """
     import pandas as pd
 
@@ -247,8 +258,9 @@ def framed(
 
 
 class Study(Case):
-    """Runs that may stay unconverged: a row counts those, and a set of hours does not break off for one of
-    them. Where the plastic zone reaches the last layer a run begins again with deeper ones.
+    """Runs that may stay unconverged: a row counts those, and a set of hours does not break off
+    for one of them. Where the plastic zone reaches the last layer a run begins again with deeper
+    ones.
     """
 
     def scenes(self, context: Context) -> dict[Hashable, Scene]:
@@ -291,9 +303,9 @@ def runs_table(caption: str, groups: Mapping[str, Iterable[Run]]) -> SmallTable:
 
 
 class Statement(NamedTuple):
-    """One sentence of the paper. low, high: of its measure, as asked; figure: of the paper; how: one of
-    MEASURES and the materials; the largest of those before a sign, less or over the smallest of those behind
-    it.
+    """One sentence of the paper. low, high: of its measure, as asked; figure: of the paper; how:
+    one of MEASURES and the materials; the largest of those before a sign, less or over the
+    smallest of those behind it.
     """
 
     figure: str
@@ -304,7 +316,9 @@ class Statement(NamedTuple):
     how: str
 
     def of(self, measures: DataFrame) -> Any:
-        """Its measure on each surface, NaN: says nothing there. measures: (measure, material) -> of each."""
+        """Its measure on each surface, NaN: says nothing there. measures: (measure, material) ->
+        of each.
+        """
         name, *materials = self.how.split()
         at = next((k for k, each in enumerate(materials) if each in "-/"), len(materials))
         own = measures[name][materials[:at]].max(axis=1, skipna=False)
@@ -358,8 +372,8 @@ STATEMENTS = tuple(
 
 
 def measured(frame: DataFrame, by: Sequence[str]) -> DataFrame:
-    """The measure of each statement (columns, by their words) on each surface, of which `by` are the parts of
-    a key; NaN where it says nothing, or a run is missing or did not converge.
+    """The measure of each statement (columns, by their words) on each surface, of which `by` are
+    the parts of a key; NaN where it says nothing, or a run is missing or did not converge.
     """
     import pandas as pd
 
@@ -374,10 +388,11 @@ HELD, FAILED, OPEN = "held", "failed", "not decided"
 def judged(measures: DataFrame) -> list[dict[str, Any]]:
     """What pages are told of each statement, of its measures on surfaces, see `measured`.
 
-    by_agreement: held or failed where eight surfaces of ten agree; one on which it says nothing agrees with
-    neither. by_median: nothing where no more than half of them say anything. margin: distance of the median
-    from the nearest limit over the interquartile range of the surfaces, NaN without median; below 1 the
-    statement is close: decided by less than they scatter. none_on: surfaces without a value.
+    by_agreement: held or failed where eight surfaces of ten agree; one on which it says nothing
+    agrees with neither. by_median: nothing where no more than half of them say anything. margin:
+    distance of the median from the nearest limit over the interquartile range of the surfaces, NaN
+    without median; below 1 the statement is close: decided by less than they scatter. none_on:
+    surfaces without a value.
     """
     found = []
     for said in STATEMENTS:
@@ -401,7 +416,9 @@ def judged(measures: DataFrame) -> list[dict[str, Any]]:
 
 
 def statements_table(readings: Mapping[str, Sequence[Mapping[str, Any]]]) -> SmallTable:
-    """Each statement with its verdicts. readings: name of a reading -> what is told of the statements."""
+    """Each statement with its verdicts. readings: name of a reading -> what is told of the
+    statements.
+    """
     columns, rows = ["Fig.", "statement of the paper", "measure", "asked"], []
     for name in readings:
         columns += [f"{name}: median (range)", "holds on", "by the median", "by agreement"]
