@@ -22,20 +22,7 @@ MODULES = {
     "plastic_radius": "fem_reference.common.hertz",
     "solve": "fem_reference.axisymmetric.solution",
 }
-__all__ = [
-    "AxisymmetricSolid",
-    "Elastic",
-    "Equilibrium",
-    "Model",
-    "Step",
-    "UnsupportedScene",
-    "check",
-    "left_out",
-    "load_steps",
-    "plan",
-    "plastic_radius",
-    "solve",
-]
+__all__ = list(MODULES)
 
 
 def __getattr__(name: str) -> Any:

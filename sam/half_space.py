@@ -53,9 +53,7 @@ class ElasticPair:
 
     @property
     def contact_modulus(self) -> float:
-        """E* in Pa, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (Johnson 1985, Eq. 4.23). In D_33 of paper Eq. 5,
-        which is printed with E alone. With a coating it is a unit of pressure, no more.
-        """
+        """E* in Pa, 1/E* = sum (1 - nu^2)/E (Johnson 1985, Eq. 4.23), in D_33 of paper Eq. 5."""
         compliance = self.body.compliance
         if self.other is not None:
             compliance += self.other.compliance
@@ -68,10 +66,7 @@ class ElasticPair:
 
     @property
     def tangential_mismatch(self) -> float:
-        """2 beta of Dundurs (1969), E*/2 [(1 - 2 nu1)/mu1 - (1 - 2 nu2)/mu2]: body 2 carries the opposite
-        traction; zero between like bodies, largest against a rigid one. The paper prints the first term
-        alone.
-        """
+        """2 beta of Dundurs (1969), E*/2 [(1 - 2 nu1)/mu1 - (1 - 2 nu2)/mu2]; printed without nu2."""
         compliance = self.body.tangential_compliance
         if self.other is not None:
             compliance -= self.other.tangential_compliance

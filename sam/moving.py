@@ -53,11 +53,10 @@ class Growth:
 
 @dataclass(frozen=True)
 class Track:
-    """The track of a scene. start, end: of the path in m; radius: semi-axis of the contact along x by Hertz
-    in m; curvatures: (1/Rx, 1/Ry) in 1/m of the counter-body, if any; step: along the path in m; plane:
-    whether the counter-body is one, below which every place counts as steady; carries: share of the motion by
-    which the pressure moves; strip: of a rough counter-body; period: way in m from the start of a pass to the
-    next, of a closed track if there is one; returns: whether even passes go back; growth: of a film.
+    """The track of a scene, in m: start, end; radius: of the contact along x; curvatures: of the
+    counter-body; step; plane: below one every place is steady; carries: share of the motion of the
+    pressure; strip: of a rough counter-body; period: from pass to pass; returns: even passes go
+    back; growth: of a film.
     """
 
     start: tuple[float, float]
@@ -258,7 +257,7 @@ def path_quantities(track: Track, grid: CellGrid, history: History) -> dict[str,
             "shoulder_end_m": groove.at_end,
             "shoulder_side_m": groove.beside,
             "transient_length_m": groove.transient,
-            "passes_to_steady": passes_to_steady([each.strain for each in passes]),
+            "passes_to_steady": passes_to_steady([passed.strain for passed in passes]),
         }
     return {
         name: None if (value := values.get(name)) is None or np.isnan(value) else float(value)
@@ -268,7 +267,7 @@ def path_quantities(track: Track, grid: CellGrid, history: History) -> dict[str,
 
 def _passes(passes: Sequence[PassEnd]) -> dict[str, Any]:
     of_pass = zip(PASSES, fields(PassEnd), strict=True)
-    return {name: [getattr(each, field.name) for each in passes] for name, field in of_pass}
+    return {name: [getattr(passed, field.name) for passed in passes] for name, field in of_pass}
 
 
 def _surface_of_passes(track: Track, history: History) -> dict[str, Any]:

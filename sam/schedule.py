@@ -27,10 +27,8 @@ class Approach:
 
 @dataclass(frozen=True)
 class Load:
-    """What acts on the body. force: normal, in N, under a given approach that of the solved contact, NaN
-    before; sign: of the traction along x; x, y: where it is centred in m; stretch: which one of a rough
-    counter-body is opposite, from 0; misfit: share of the misfit strain, 0 to 1; approach: of the rigid
-    bodies in m, given in place of the force, or None.
+    """What acts on the body. force in N, NaN before a given approach (m) is solved; sign: of the
+    traction along x; x, y in m; stretch: of a rough counter-body; misfit: share of its strain.
     """
 
     force: float
@@ -77,9 +75,7 @@ class Load:
         return replace(self, force=self.force * k / count, approach=approach, misfit=self.misfit * k / count)
 
     def rise(self, start: Load) -> float:
-        """How much more is given than at another load, in N or m; NaN where one gives a force and the other
-        an approach, but for no force, which counts as no approach.
-        """
+        """How much more is given than at another load, in N or m; NaN if of another kind."""
         if (self.approach is None) != (start.approach is None) and self.force and start.force:
             return nan
         return self.level - start.level
@@ -99,9 +95,7 @@ UNLOADED = Load(0.0)
 
 @dataclass(frozen=True)
 class Target:
-    """The end of a load step of a cycle. snapshot: the state to be recorded there ("peak", "unloaded" or
-    none); elastic_unloading: in a single step, if that strains nothing; note: for the history.
-    """
+    """The end of a load step; snapshot: the state to record; elastic_unloading: in one step."""
 
     cycle: int
     step: int
@@ -114,12 +108,9 @@ class Target:
 
 @dataclass(frozen=True)
 class Schedule:
-    """All load steps of a scene, unloading in one. peak: the largest load; unload_steps: equal steps in which
-    a body is unloaded that yields in it; path: places of the load on its way forth after each step at full
-    size, the start first, in m; alternates: whether the traction changes its sign from cycle to cycle;
-    renews: whether another stretch of the counter-body is opposite in each cycle; returns: whether even
-    cycles go the path back; varies: whether the surfaces opposite each other differ along the path;
-    remembers: whether a film remembers the pass before.
+    """All load steps of a scene, unloading in one. peak: the largest load; unload_steps: of a body
+    that yields; path: places on the way forth in m; alternates: sign of the traction; renews,
+    varies: surfaces between and along paths; returns: even cycles go back; remembers: a film.
     """
 
     targets: tuple[Target, ...]
@@ -170,9 +161,7 @@ class Schedule:
         return not self.targets[-1].rises
 
     def in_steps(self, target: Target, peak: Load) -> list[Target]:
-        """Unloading in equal steps of the force from the peak, in place of the target that does it in one; of
-        a body that yields nobody knows at which approach the force is zero.
-        """
+        """Unloading in equal steps of the force in place of a single one."""
         count = self.unload_steps
         left = [1 - k / count if k < count else 0.0 for k in range(1, count + 1)]
         loads = [replace(target.load, force=peak.force * part, misfit=peak.misfit * part) for part in left]
@@ -186,12 +175,9 @@ Coefficient = float | Array
 
 @dataclass(frozen=True)
 class FullSlip:
-    """The traction q = coefficient * p along x, at every step. slides: whether there is a traction anywhere;
-    coefficient: at the cells, with a tribofilm the low one, as long as it is whole; highest: where a
-    tribofilm has failed everywhere, else the same; coupled: whether the traction moves the surfaces normally;
-    coupling: 2 beta, the factor of the coefficient in the gap (1 with a coating, where 2 beta is a function
-    of the wave number, see `sam.contact.operators`); whole: coefficient under a whole tribofilm, None without
-    one.
+    """The traction q = coefficient * p along x. slides: anywhere; coefficient: at the cells, the
+    low one of a tribofilm; highest: of a failed one; coupled: moves the surfaces normally;
+    coupling: 2 beta, or 1 with a coating; whole: coefficient under a whole film, or None.
     """
 
     slides: bool = False

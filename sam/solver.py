@@ -150,7 +150,7 @@ def _on_grid(
         return _elastic(problem, report), None
     if start is None:
         peaks = (elastic_peak(problem, load) for load in plan.schedule.peaks)
-        peak = next((each for each in peaks if yields(each, plan.initial_yield)), None)
+        peak = next((peak for peak in peaks if yields(peak, plan.initial_yield)), None)
         if peak is None:
             return _elastic(problem, report), None
     history, record = solve_plastic(problem, report, keep=keep, start=start, peak=peak)

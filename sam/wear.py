@@ -68,9 +68,7 @@ def limit_by_depth(wear: Wear, layer_thickness: float | None) -> StrainLimits:
 
 
 class Worn(NamedTuple):
-    """What is removed of each column before smoothing, (nx, ny): depth in m from the surface; thickness in m
-    above its limit under a sound roof; whether all layers are, so that the true depth may be larger.
-    """
+    """What is removed of each column, (nx, ny): depth in m; above its limit; whether it is all."""
 
     depth: Array
     roofed: Array
@@ -110,9 +108,7 @@ def worn_depth(alpha: Array, faces: Array, limits: StrainLimits, interpolate: bo
 
 
 def _from_surface(start: Array, end: Array, lengths: Array) -> Worn:
-    """Columns of segments (n, nx, ny) in which the excess over the limit is linear, from `start` to `end`; it
-    may jump between them. An excess of exactly 0 removes nothing; one that only touches 0 at an end goes on.
-    """
+    """Columns of segments (n, nx, ny) of linear excess; of exactly 0 removes nothing."""
     open_top, full = start > 0, (start > 0) & (end >= 0)
     crossing = (open_top != (end > 0)) & ~full
     share = np.divide(np.maximum(start, end), np.abs(start - end), out=full.astype(float), where=crossing)
@@ -150,9 +146,8 @@ def weights(window: int, order: int) -> Array:
 
 
 def filtered(field: Array, window: int, order: int) -> Array:
-    """The smoothed field (nx, ny), continued as in a mirror at the outer faces of the border cells, so the
-    sum stays. Cells at lags of equal weight are added first, in an order that no mirror changes: a field with
-    the symmetry of the square gives one with that symmetry bit by bit.
+    """The smoothed field (nx, ny), mirrored at the border: its sum and its symmetry stay, bit by
+    bit.
     """
     w, half = weights(window, order), window // 2
     padded = np.pad(field, half, mode="symmetric")
@@ -200,10 +195,8 @@ def check_depth(depth: Array) -> None:
 
 
 def remapped(field: Array, faces: Array, depth: Array) -> tuple[Array, Array]:
-    """A field (..., n_layers, nx, ny), means of cells, with each column moved up by its depth (nx, ny) in m
-    >= 0, and its integral over that depth, (..., nx, ny) in m; faces: (n_layers + 1,) in m. Columns that are
-    not worn keep every bit, and without any the field itself is returned. ValueError for a depth that is
-    negative or not finite.
+    """A field (..., n_layers, nx, ny) with each column moved up by its depth (nx, ny) in m, and its
+    integral over that; unworn columns keep every bit. ValueError for a negative depth.
     """
     check_depth(depth)
     worn, leading = depth > 0, field.shape[:-3]
@@ -243,10 +236,8 @@ T = TypeVar("T", bound=np.generic)
 
 @dataclass(frozen=True, eq=False)
 class WearState:
-    """Wear so far on the whole grid. cell_area: hx hy in m2; depth: (nx, ny) in m, sum over the cycles of
-    what was removed. For each cycle: volumes, in m3, removed; raw_volumes: what tore, before smoothing;
-    roofed_volumes: above the limit under a sound roof, which stays; bottom_columns: how many tore down to the
-    deepest face; residuals: of the remap, see `sam.wear.closing_residual`.
+    """Wear so far on the grid: depth (nx, ny) in m; by cycle volumes in m3: removed, raw (before
+    smoothing) and roofed (which stays); columns removed to the bottom; residuals of the remap.
     """
 
     cell_area: float
@@ -304,10 +295,7 @@ class WearLaw:
     def removed(
         self, state: WearState, fields: dict[str, Array], faces: Array, window: Window, *, peeq: Array
     ) -> tuple[WearState, dict[str, Array]]:
-        """Wear after one more cycle, and the fields of the material below the new surface. fields: by name,
-        each (..., n_layers, nx, ny) on the cells of the window; faces: of the layers, (n_layers + 1,) in m;
-        peeq: accumulated plastic strain of the cells, which decides.
-        """
+        """Wear after one more cycle, and the fields (..., n_layers, nx, ny) below the new surface."""
         raw = worn_depth(peeq, faces, self.limits, self.interpolate)
         depth, roofed = (self._on_grid(each, window) for each in (raw.depth, raw.roofed))
         whole = Worn(depth, roofed, self._on_grid(raw.at_bottom, window))
@@ -326,10 +314,7 @@ class WearLaw:
 
 
 def with_cycle(state: WearState, raw: Worn, depth: Array, residual: float) -> WearState:
-    """The wear state after one more cycle. raw: before smoothing; depth: (nx, ny) in m that was removed;
-    residual: of the remap, relative. The depth stays the same array where nothing is removed: what was
-    computed for the surface is still right.
-    """
+    """The wear state after one more cycle; the same array of depths where nothing is removed."""
     return replace(
         state,
         depth=state.depth + depth if depth.any() else state.depth,

@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING
 from sam.scene import Problem, Progress, Result, Scene, SceneError, spelling
 from samfem.refusals import Refusals
 from samfem.solving import check
-from verification.compare.comparison import compare_data, compare_scene
+from verification.compare.comparison import Tolerances, compare_data, compare_scene, tolerances_of
 from verification.compare.own_data import OwnData, read_data
 from verification.compare.rows import COLUMNS, Solution, table_rows
-from verification.compare.tolerances import Tolerances, tolerances_of
 from verification.compare.verdicts import FilmVerdict, change_rows, claim_rows, verdict
 from verification.cost.accuracy import solve as solve_family
 from verification.judging import Verdict

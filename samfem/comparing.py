@@ -11,6 +11,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import SimpleNamespace
 
 from sam.scene import Problem, Result, Scene, SceneError, either, finer_cells, finer_mesh, read_scene
 from samfem.compared import COMPANION, Compared, Question, Uncertain, agreement, asked, seconds
@@ -42,22 +43,6 @@ PARTS = {models.SAM: "sam", models.FEM: "fem", models.FEM_3D: "fem"}
 
 
 @dataclass(frozen=True)
-class Options:
-    """Of the command, as its --help says."""
-
-    model: str | None = None
-    out: Path | None = None
-    use_store: bool = True
-    figures: bool = False
-    claim: str | None = None
-    tolerances: Sequence[tuple[str, float | str]] = ()
-    data: Sequence[Path] = ()
-    report: Path | None = None
-    junit: Path | None = None
-    anyway: bool = False
-
-
-@dataclass(frozen=True)
 class Job:
     """A scene to compare. inputs: name of a file that was read -> its content; folder: of what is written."""
 
@@ -70,9 +55,9 @@ class Job:
 def compare(paths: Sequence[Path], **options) -> int:
     """Solve each scene with SAM and another model, and write DIR/sam, DIR/fem and compare.csv.
 
-    Returns 0 if all converged and every row held. options: see `Options`.
+    Returns 0 if all converged and every row held. options: of the command, as its --help says.
     """
-    given = Options(**options)
+    given = SimpleNamespace(**options)
     jobs = _jobs(paths, given)
     store, found = default_store() if given.use_store else None, []
     for job in jobs:
@@ -88,7 +73,7 @@ def compare(paths: Sequence[Path], **options) -> int:
     return max(_judge(each.scene, each.results, each.rows, each.off) for each in found)
 
 
-def _jobs(paths: Sequence[Path], given: Options) -> list[Job]:
+def _jobs(paths: Sequence[Path], given: SimpleNamespace) -> list[Job]:
     """The comparisons that are asked for. Raises with everything that is wrong with any of them."""
     refusals, jobs = Refusals(), []
     for path in paths:
@@ -112,7 +97,7 @@ def _jobs(paths: Sequence[Path], given: Options) -> list[Job]:
     return jobs
 
 
-def _job(path: Path, folder: Path, given: Options) -> Job:
+def _job(path: Path, folder: Path, given: SimpleNamespace) -> Job:
     scene, inputs = read_scene(path)
     how = {"model": given.model, "claim": given.claim, "data": given.data, "anyway": given.anyway}
     refusals = Refusals()
@@ -135,7 +120,7 @@ def _check_comparison(folder: Path) -> None:
         check_target(folder / part)
 
 
-def _check_pages(given: Options) -> None:
+def _check_pages(given: SimpleNamespace) -> None:
     """Raise FolderError where a page or a JUnit file cannot be written."""
     if given.report is not None:
         from samfem.comparison_page import check_report  # noqa: PLC0415 - loads the suite
@@ -175,18 +160,18 @@ def _write(job: Job, found: Compared, *, draw: bool) -> None:
         "rows": len(found.rows),
         "failed": len(found.failed),
         "model_range": found.range_lines,
+        "data": {
+            data.name: {"rows": len(rows), "failed": sum(not row.passed for row in rows)}
+            for data, rows in zip(found.data, found.beside, strict=True)
+        },
+        "cost": {each.model: {"seconds": seconds(each), **each.cost} for each in found.results},
     }
-    content["data"] = {
-        data.name: {"rows": len(rows), "failed": sum(not row.passed for row in rows)}
-        for data, rows in zip(found.data, found.beside, strict=True)
-    }
-    content["cost"] = {each.model: {"seconds": seconds(each), **each.cost} for each in found.results}
     write_atomically(job.folder / COMPANION, json_text(content).encode())
     if draw:
         compare_figures(job.folder, found.solutions)
 
 
-def _write_pages(jobs: Sequence[Job], found: Sequence[Compared], given: Options) -> None:
+def _write_pages(jobs: Sequence[Job], found: Sequence[Compared], given: SimpleNamespace) -> None:
     """The page and the JUnit file, if they are asked for."""
     if given.report is None and given.junit is None:
         return
@@ -205,28 +190,19 @@ def _write_pages(jobs: Sequence[Job], found: Sequence[Compared], given: Options)
 
 def _show_all(jobs: Sequence[Job], found: Sequence[Compared]) -> None:
     """A line for each scene."""
-    rows = [
-        (
-            job.name,
-            agreement(each.rows),
-            *map(with_time, map(seconds, each.results)),
-            "passed" if each.passed else "FAILED",
-        )
-        for job, each in zip(jobs, found, strict=True)
-    ]
+    rows = []
+    for job, each in zip(jobs, found, strict=True):
+        times = map(with_time, map(seconds, each.results))
+        rows.append((job.name, agreement(each.rows), *times, "passed" if each.passed else "FAILED"))
     print_table(("scene", "rows", "SAM", "FEM", ""), rows, red=[not each.passed for each in found])
 
 
 def _verdict(jobs: Sequence[Job], found: Sequence[Compared]) -> str:
     """How many scenes agree, which do not, and the cost."""
     wrong = [job.name for job, each in zip(jobs, found, strict=True) if not each.passed]
-    times = [
-        with_time(sum(each)) for each in zip(*(map(seconds, each.results) for each in found), strict=True)
-    ]
-    agree = f"{len(jobs) - len(wrong)} of {len(jobs)} scenes agree" + (
-        f", not {', '.join(wrong)}" if wrong else ""
-    )
-    return f"{agree}; SAM {times[0]}, FEM {times[1]}"
+    sam, fem = (with_time(sum(seconds(each.results[k]) for each in found)) for k in (0, 1))
+    agree = f"{len(jobs) - len(wrong)} of {len(jobs)} scenes agree"
+    return agree + f", not {', '.join(wrong)}" * bool(wrong) + f"; SAM {sam}, FEM {fem}"
 
 
 def _show(job: Job, found: Compared, *, figures: bool) -> None:
@@ -236,17 +212,8 @@ def _show(job: Job, found: Compared, *, figures: bool) -> None:
     cells, red = [], []
     for row, (_, values) in zip(found.rows, table.iterrows(), strict=True):
         beside = [cell for name in own for cell in (digits(values[name]), _mark(values, name))]
-        cells.append(
-            (
-                row.quantity,
-                digits(row.value),
-                digits(row.expected),
-                digits(row.error, 3),
-                digits(row.row.tolerance),
-                "passed" if row.passed else "FAILED",
-                *beside,
-            )
-        )
+        numbers = digits(row.value), digits(row.expected), digits(row.error, 3), digits(row.row.tolerance)
+        cells.append((row.quantity, *numbers, "passed" if row.passed else "FAILED", *beside))
         red.append("FAILED" in " ".join(cells[-1]))
     heads = [head for name in own for head in (name, "")]
     if both := {each.quantity: each for each in found.uncertain}:
@@ -297,7 +264,5 @@ def _judge(
 def _finer(scene: Scene) -> str:
     """What to refine of both models."""
     layers = "raise the number of layers in grid" if scene.body.plasticity is not None else ""
-    mesh = (
-        finer_mesh(scene) if scene.patch_surface is None else ""
-    )  # of a rough scene both have the same cells
+    mesh = finer_mesh(scene) if scene.patch_surface is None else ""  # of a rough one both have the same cells
     return either(finer_cells(scene), layers, mesh) or "lower grid.extent"

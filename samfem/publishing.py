@@ -16,17 +16,17 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from sam.scene import Result, Scene
+from sam.scene import Scene
 from samfem.executors import Failure, Processes, run
+from samfem.sweeping import KeepsAll
 from verification.cases import Case, all_cases
 from verification.cases.case import Context, Outcome
 from verification.runs.code_version import version_of_cases
 from verification.runs.lock import locked
 from verification.runs.models import SAM
-from verification.runs.store import RESULT, UNCONVERGED, Lookup, Reuse, Store, solve_or_reuse
+from verification.runs.store import Lookup, Reuse, Store, solve_or_reuse
 from verification.suite import outcomes, verify
-from verification.suite.earlier import earlier
-from verification.suite.lighter import lighter
+from verification.suite.freshness import earlier
 from verification.suite.verify import RanCase
 
 SCRATCH = "scratch"
@@ -35,19 +35,6 @@ REPORTS = Path("reports")
 """Its report says how long cases took, where that of the folder to write does not."""
 UNKNOWN = math.inf  # s: what may be the longest begins
 CHANGED = "files of the code changed while it ran: publish again"
-
-
-class KeepsAll(Store):
-    """A store that keeps a run without a converged result as it keeps the others: with its status, it is a
-    finding of a study of many runs, and costs as much.
-    """
-
-    def lookup(self, scene: Scene, model: str, kind: str = RESULT) -> Lookup:
-        found = super().lookup(scene, model, kind)
-        return super().lookup(scene, model, UNCONVERGED) if found.result is None else found
-
-    def keep(self, scene: Scene, model: str, result: Result, *, unconverged: bool = True) -> None:
-        super().keep(scene, model, result, unconverged=unconverged)
 
 
 def publish(case: Sequence[str], *, level: str, out: Path, store: Path, workers: int) -> int:
@@ -164,5 +151,5 @@ def _ran(case: Case, store: Store, failure: str, *, level: str, out: Path) -> Ra
     if found.result is None:
         return RanCase(context, Outcome(), failure or CHANGED, 0.0, Reuse(False))
     outcome = outcomes.put_back(found.result, context, with_runs=False)
-    outcome = replace(outcome, figures=[lighter(each, out) for each in outcome.figures])
+    outcome = replace(outcome, figures=[outcomes.packed(each, out) for each in outcome.figures])
     return RanCase(context, outcome, "", found.result.seconds, Reuse(True, found.created, found.commit))

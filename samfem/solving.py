@@ -20,8 +20,7 @@ from samfem.shown import (
     uncertain_table,
     undecided_line,
 )
-from verification.cost.accuracy import missed, solve as solve_family
-from verification.cost.choice import chosen_scene, first_choice
+from verification.cost.accuracy import chosen_scene, first_choice, missed, solve as solve_family
 from verification.cost.plan import check_needs
 from verification.figures import solve_figures
 from verification.figures.space import CannotDrawError, draw_run
@@ -46,9 +45,9 @@ def solve(
 ) -> int:
     """Solve a scene into a folder; 0 if converged, else 1 with status and advice on stderr.
 
-    resume: go on from the checkpoint in the folder, and do nothing where the result is there already;
-    uncertainty: of all quantities, as [solver] of the scene may ask for it too; anyway: however long that
-    takes, as what is resumed does.
+    resume: go on from the checkpoint in the folder, and do nothing where the result is there
+    already; uncertainty: of all quantities, as [solver] of the scene may ask for it too; anyway:
+    however long that takes, as what is resumed does.
     """
     scene, inputs = read_scene(path)
     if uncertainty:
@@ -67,7 +66,7 @@ def _solve(
         result = read_run(folder)
         print(f"samfem: {folder} is already finished: nothing is solved", file=sys.stderr)
     else:
-        result = _solved_in_parts(scene, model, folder, inputs, resume=resume)
+        result = _solved(scene, model, folder, inputs, resume=resume)
     heads = status_line(result), undecided_line(result), load_line(result)
     print(*filter(None, heads), sep="\n")
     if result.uncertainty:
@@ -85,51 +84,28 @@ def _solve(
     return unconverged([result])
 
 
-def _solved_in_parts(
-    scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], *, resume: bool
-) -> Result:
+def _solved(scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], *, resume: bool) -> Result:
     """A fresh result, written to `folder`, of a solve that may be interrupted and continued."""
 
-    def say(text: str) -> None:
-        print(f"samfem: {text}", file=sys.stderr, flush=True)
+    def write(result: Result, source: Reuse) -> None:
+        write_solved(scene, folder, result, source=source, inputs=inputs)
 
-    if scene.solver.uncertainty or scene.solver.accuracy:
-        return _solved_family(scene, model, folder, inputs, resume=resume, say=say)
-    seconds, who = checkpoints.interval(), checkpoints.identity(scene, model)
-    start = _start(scene, folder, who, say) if resume else _begin(folder, say)
-    writer = checkpoints.Writer(folder, who, seconds, start, warn=say)
-    with checkpoints.interruptible(writer):
-        how = {"fresh": True, "checkpoint": writer, "start": start}
-        return solved(scene, model, folder, inputs, store=default_store(), **how)
-
-
-def _solved_family(
-    scene: Scene,
-    model: str,
-    folder: Path,
-    inputs: dict[str, bytes],
-    *,
-    resume: bool,
-    say: Callable[[str], None],
-) -> Result:
-    """The same of a scene with its uncertainty: what is finished of it is kept in the folder until all is."""
-    place = folder / MEMBERS
+    if not (scene.solver.uncertainty or scene.solver.accuracy):
+        if not resume and (folder / CHECKPOINT).exists():
+            _say(f"a checkpoint of an interrupted run is in {folder}, and is replaced; --resume continues it")
+        return _in_parts(scene, model, folder, resume=resume, write=write)
+    place = folder / MEMBERS  # of a scene with its uncertainty: what is finished, until all is
     if not resume:
         rmtree(place, ignore_errors=True)
-    kept, seconds = Store(place), checkpoints.interval()
+    kept = Store(place)
 
     def member(each: Scene, label: str) -> Result:
         if (found := kept.lookup(each, model).result) is not None:
-            say(f"{label}: already solved")
+            _say(f"{label}: already solved")
             return found
-        who = checkpoints.identity(each, model)
-        start = _start(each, place, who, say) if (place / CHECKPOINT).exists() else None
-        writer = checkpoints.Writer(place, who, seconds, start, warn=say)
         try:
-            with checkpoints.interruptible(writer), Progress(remaining=True) as progress:
-                told = _telling(progress, f"{model}, {label}")
-                how = {"fresh": True, "checkpoint": writer, "start": start}
-                result = solve_or_reuse(default_store(), each, model, told, **how)[0]
+            begun = (place / CHECKPOINT).exists()
+            result = _in_parts(each, model, place, label=f", {label}", resume=begun)
         except KeyboardInterrupt as stop:
             text = str(stop) or f"interrupted: --resume continues with {label}"
             raise KeyboardInterrupt(text) from None
@@ -138,64 +114,59 @@ def _solved_family(
         return result
 
     result = solve_family(scene, model, member)
-    write_solved(scene, folder, result, source=Reuse(False), inputs=inputs)
+    write(result, Reuse(False))
     return result
 
 
-def _telling(progress: Progress, who: str) -> Callable[[str, int, int], None]:
-    """Shows how far a solve is, with its name."""
-    return lambda stage, done, total: progress(f"{who}: {stage}", done, total)
+def _in_parts(
+    scene: Scene,
+    model: str,
+    place: Path,
+    *,
+    resume: bool,
+    label: str = "",
+    write: Callable[[Result, Reuse], None] = lambda *_: None,
+) -> Result:
+    """A fresh result, with checkpoints in a folder; write: what an interruption may not leave half done."""
+    seconds, who = checkpoints.interval(), checkpoints.identity(scene, model)
+    start = _start(scene, place, who) if resume else None
+    writer = checkpoints.Writer(place, who, seconds, start, warn=_say)
+    how = {"fresh": True, "checkpoint": writer, "start": start}
+    with checkpoints.interruptible(writer):
+        with Progress(remaining=True) as progress:
+
+            def told(stage: str, done: int, total: int) -> None:
+                progress(f"{model}{label}: {stage}", done, total)
+
+            result, source = solve_or_reuse(default_store(), scene, model, told, **how)
+        write(result, source)
+    return result
 
 
-def _begin(folder: Path, say: Callable[[str], None]) -> None:
-    """Begin anew, and say so where a checkpoint is in the folder."""
-    if (folder / CHECKPOINT).exists():
-        say(f"a checkpoint of an interrupted run is in {folder}, and is replaced; --resume continues it")
+def _say(text: str) -> None:
+    print(f"samfem: {text}", file=sys.stderr, flush=True)
 
 
-def _start(
-    scene: Scene, folder: Path, who: dict[str, object], say: Callable[[str], None]
-) -> Checkpoint | None:
+def _start(scene: Scene, folder: Path, who: dict[str, object]) -> Checkpoint | None:
     """The checkpoint to go on from; says where it begins, or why there is none.
 
     Raises FolderError for the checkpoint of something else.
     """
     if scene.body.plasticity is None:
-        say("an elastic scene has no checkpoint: solved from the beginning")
+        _say("an elastic scene has no checkpoint: solved from the beginning")
         return None
     try:
         start = checkpoints.read(folder, who)
     except checkpoints.DamagedError as error:
-        say(f"{error}: solved from the beginning")
+        _say(f"{error}: solved from the beginning")
         return None
     if start is None:
-        say(f"no checkpoint in {folder}: solved from the beginning")
+        _say(f"no checkpoint in {folder}: solved from the beginning")
     elif start.done < start.total:
-        say(f"continued from step {start.done + 1} of {start.total}")
+        _say(f"continued from step {start.done + 1} of {start.total}")
     else:
-        say(f"continued after the last of {start.total} steps")
+        _say(f"continued after the last of {start.total} steps")
     return start
-
-
-def solved(
-    scene: Scene,
-    model: str,
-    folder: Path,
-    inputs: dict[str, bytes],
-    *,
-    store: Store | None,
-    fresh: bool = False,
-    **how,
-) -> Result:
-    """The result of a scene from the store, or solved and kept there; written to `folder`.
-
-    fresh, how: see `solve_or_reuse`.
-    """
-    with Progress(remaining=True) as progress:
-        told = _telling(progress, model)
-        result, source = solve_or_reuse(store, scene, model, told, fresh=fresh, **how)
-    write_solved(scene, folder, result, source=source, inputs=inputs)
-    return result
 
 
 def write_solved(
@@ -209,13 +180,14 @@ def write_solved(
 
 
 def check(scene: Scene, *names: str, anyway: bool = False) -> None:
-    """Raise ModelError unless each model can represent the scene within the memory of the machine, and,
-    unless `anyway`, in the time that a command begins unasked.
+    """Raise ModelError unless each model can represent the scene within the memory of the machine,
+    and, unless `anyway`, in the time that a command begins unasked.
     """
     for model in names:
-        models.check(scene, model)
-        accurate = scene.solver.accuracy is not None
-        chosen = chosen_scene(scene, model, first_choice(scene, model)) if accurate else scene
+        chosen = scene
+        if scene.solver.accuracy is not None:
+            models.check(scene, model)
+            chosen = chosen_scene(scene, model, first_choice(scene, model))
         check_needs(chosen, model, anyway=anyway)
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The command sweep: the scenes of a study, solved by many workers, as one table.
 
-What the store holds is not solved again, and what is solved is kept there as soon as it is finished, so a
-sweep that was killed goes on where it was. The table holds no times: the same study gives the same bytes
-wherever it was solved.
+What the store holds is not solved again, and what is solved is kept there as soon as it is
+finished, so a sweep that was killed goes on where it was. The table holds no times: the same study
+gives the same bytes wherever it was solved.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from verification.runs.files import (
 )
 from verification.runs.lock import locked
 from verification.runs.provenance import collect, without_places
-from verification.runs.store import UNCONVERGED, Lookup, Reuse, Store, default_store, identity
+from verification.runs.store import RESULT, UNCONVERGED, Lookup, Reuse, Store, default_store, identity
 from verification.runs.study import Points, StudyPoint, read_study
 from verification.runs.tables import csv_text
 from verification.sensitivity import indices
@@ -55,6 +55,20 @@ MOST_SAID = 3
 REST_FACTOR = 4  # the table is not rewritten before this many times the time that the last writing took
 
 
+class KeepsAll(Store):
+    """A store that keeps a run without a converged result as it keeps the others: with its status,
+    it is a finding of a study of many runs, and costs as much.
+    """
+
+    def lookup(self, scene: Scene, model: str, kind: str = RESULT) -> Lookup:
+        found = super().lookup(scene, model, kind)
+        other = super().lookup(scene, model, UNCONVERGED) if found.result is None else found
+        return found if other.result is None else other
+
+    def keep(self, scene: Scene, model: str, result: Result, *, unconverged: bool = True) -> None:
+        super().keep(scene, model, result, unconverged=unconverged)
+
+
 @dataclass(frozen=True)
 class SolvedPoint:
     """A result and where it was computed: versions, machine and threads of the worker."""
@@ -65,8 +79,8 @@ class SolvedPoint:
 
 @dataclass
 class Sweep:
-    """What has become of the points so far. rows: index -> row of the table; runs: whether run folders are
-    written.
+    """What has become of the points so far. rows: index -> row of the table; runs: whether run
+    folders are written.
     """
 
     content: Points
@@ -93,9 +107,8 @@ class Sweep:
         """A result, solved or reused."""
         self.counts["reused" if source.reused else "solved"] += 1
         self.counts["not_converged"] += not result.converged
-        numbers = [result.quantities.get(name) for name in QUANTITIES] + [
-            result.cost.get(name) for name in COUNTERS
-        ]
+        numbers = [result.quantities.get(name) for name in QUANTITIES]
+        numbers += [result.cost.get(name) for name in COUNTERS]
         reason = "" if result.converged else result.message or result.status.advice
         self._row(point, result.status.value, reason, [*numbers, "; ".join(result.warnings)])
         place = self.place(point.index)
@@ -114,14 +127,8 @@ class Sweep:
         self._row(point, status, " ".join(reason.split()), empty)
 
     def _row(self, point: StudyPoint, status: str, reason: str, last: Sequence) -> None:
-        self.rows[point.index] = (
-            point.index,
-            *point.shown,
-            self.content.study.model,
-            status,
-            reason,
-            *last,
-        )
+        model = self.content.study.model
+        self.rows[point.index] = (point.index, *point.shown, model, status, reason, *last)
 
     def write(self, always: bool = False) -> None:
         """The table of what is finished, in the order of the index; a long one not after each point."""
@@ -142,18 +149,20 @@ def sweep(
     use_store: bool = True,
     anyway: bool = False,
 ) -> int:
-    """Solve the scenes of a study into a folder; 0 if all converged, else 1 with the first reasons on stderr.
+    """Solve the scenes of a study into a folder; 0 if all converged, else 1 with the first reasons
+    on stderr.
 
-    scheduler: address of a Dask cluster, instead of so many `workers` on this machine (None: one a core);
-    runs: write a folder for each result; use_store: take what the store holds, and keep there what is solved;
-    anyway: also scenes that take longer than a command begins unasked.
-    Raises SceneError or FolderError before anything is made, KeyboardInterrupt that says what is kept.
+    scheduler: address of a Dask cluster, instead of so many `workers` on this machine (None: one a
+    core); runs: write a folder for each result; use_store: take what the store holds, and keep
+    there what is solved; anyway: also scenes that take longer than a command begins unasked. Raises
+    SceneError or FolderError before anything is made, KeyboardInterrupt that says what is kept.
     """
     began = time.monotonic()
     content = read_study(path)
     folder = out or Path(f"{path.stem}-sweep")
     _check_folder(folder)
-    store = default_store() if use_store else None
+    known = default_store() if use_store else None
+    store = None if known is None else KeepsAll(known.folder)
     with locked(folder), _executor(scheduler, workers) as executor:
         seeds = [] if content.study.seed is None else [content.study.seed]
         state = Sweep(content, folder, store, runs, provenance=collect(content.inputs, seeds))
@@ -212,14 +221,13 @@ def _check_folder(folder: Path) -> None:
 
 
 def _clear(state: Sweep) -> None:
-    """Remove the files of an older sweep, sweep.json first, and its runs, but those that the store will give
-    again.
+    """Remove the files of an older sweep, sweep.json first, and its runs, but those that the store
+    will give again.
     """
     for name in (*FILES, *OF_DESIGN):
         (state.folder / name).unlink(missing_ok=True)
-    ours = {
-        state.place(point.index).name: point for point in state.content.points if state.runs and state.store
-    }
+    kept = state.content.points if state.runs and state.store else ()
+    ours = {state.place(point.index).name: point for point in kept}
     for place in (state.folder / RUNS).glob("[0-9]*"):
         if place.is_dir() and not place.is_symlink() and not _is_run_of(place, ours.get(place.name), state):
             clear_run(place)
@@ -271,28 +279,16 @@ def _look_up(state: Sweep, progress: Progress) -> Iterator[StudyPoint]:
         if point.scene is None:
             state.add_without(point, REFUSED, point.reason)
             continue
-        found = _found(state.store, point.scene, model) if state.store else None
-        if found is not None and found.result is not None:
+        found = state.store.lookup(point.scene, model) if state.store else Lookup()
+        if found.result is not None:
             state.add(point, found.result, Reuse(True, found.created, found.commit), {})
         else:
-            if found is not None and found.note:
-                state.notes.append(found.note)
+            state.notes += filter(None, [found.note])
             yield point
         progress("looked up in the store", done, len(points))
     if state.notes:
-        text = (
-            f"{len(state.notes)} results of the store cannot be used and are computed again: {state.notes[0]}"
-        )
-        print(f"samfem: sweep: {text}", file=sys.stderr)
-
-
-def _found(store: Store, scene: Scene, model: str) -> Lookup:
-    """What a store holds of a scene, converged or not."""
-    converged = store.lookup(scene, model)
-    if converged.result is not None:
-        return converged
-    other = store.lookup(scene, model, UNCONVERGED)
-    return converged if other.result is None else other
+        text = f"{len(state.notes)} results of the store cannot be used and are computed again"
+        print(f"samfem: sweep: {text}: {state.notes[0]}", file=sys.stderr)
 
 
 def _take(state: Sweep, point: StudyPoint, outcome: SolvedPoint | Failure) -> None:
@@ -300,13 +296,13 @@ def _take(state: Sweep, point: StudyPoint, outcome: SolvedPoint | Failure) -> No
         state.add_without(point, FAILED, outcome.reason)
         return
     if state.store is not None:
-        state.store.keep(point.scene, outcome.result.model, outcome.result, unconverged=True)
+        state.store.keep(point.scene, outcome.result.model, outcome.result)
     state.add(point, outcome.result, Reuse(False), outcome.origin)
 
 
 def solve_scene(scene: Scene, model: str, code: str, anyway: bool = False) -> SolvedPoint | Failure:
-    """In a worker: the result of a scene. A Failure if it raises, or if the worker runs another version of
-    the code.
+    """In a worker: the result of a scene. A Failure if it raises, or if the worker runs another
+    version of the code.
     """
     try:
         if code_version(model) != code:
@@ -342,10 +338,8 @@ def index_rows(state: Sweep) -> list[tuple]:
     for name in QUANTITIES:
         values = np.where(converged, np.array(columns[name], dtype=float), np.nan)
         for index in indices(study.mode, shares, values, study.seed):
-            numbers = (index.values, *index.bounds, index.count)
-            rows = [
-                (name, key, index.name, *each) for key, *each in zip(study.factors, *numbers, strict=True)
-            ]
+            columns_of = zip(study.factors, index.values, *index.bounds, index.count, strict=True)
+            rows = [(name, key, index.name, *each) for key, *each in columns_of]
             found += sorted(rows, key=lambda row: -abs(row[3]))
     return found
 

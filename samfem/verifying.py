@@ -12,8 +12,6 @@ from verification.runs.store import default_store
 from verification.suite import verify as suite
 from verification.suite.changes import show_changes
 from verification.suite.freshness import older, stale
-from verification.suite.listing import show_cases, show_gates
-from verification.suite.pdf import draw_pdf
 from verification.text.console import Progress
 
 
@@ -25,7 +23,7 @@ def verify(
     show: "cases" or "gates", to list them and run none.
     """
     if show:
-        return {"cases": show_cases, "gates": show_gates}[show](case)
+        return suite.show(show, case)
     with Progress(remaining=True) as progress:
         return suite.main(list(case), level, out, progress, store=default_store() if use_store else None)
 
@@ -48,7 +46,7 @@ def report(
         return 0
     if pdf:
         with Progress() as progress:
-            written = draw_pdf(folder, progress, default_store())
+            written = suite.draw_pdf(folder, progress, default_store())
         print(*written, sep="\n")
         return 0
     return suite.rebuild(folder, single_file=single_file)

@@ -109,6 +109,13 @@ def scene(length: float = 1.0, stress: float = 1.0, **tables: Any) -> Scene:
     )
 
 
+def yielding(ratio: float, plasticity: Mapping = SWIFT, **tables: Any) -> Scene:
+    """`scene` at the force at which Hertz's largest pressure is `ratio` times the first yield stress."""
+    first = plasticity.get("yield_stress", SWIFT_YIELD)
+    loading = {"force": hertz_force(ratio * first), "unload": True, **tables.pop("loading", {})}
+    return scene(body={"plasticity": plasticity}, loading=loading, **tables)
+
+
 def running_in(
     *, cycles=2, steps=3, film=CHEMICAL_FILM, wear=0.002, counterbody=None, **tables: Any
 ) -> Scene:

@@ -10,7 +10,6 @@ but the misfit strain itself.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import solve_ivp
 from scipy.linalg import solveh_banded
 
 ENDS = 2.0
@@ -78,50 +77,3 @@ def _returned(size, peeq, law, shear):
         slope = 2 * (law(peeq + 2 * dq + step) - law(peeq + 2 * dq)) / step
         dq = np.maximum(dq + (size - 6 * shear * dq - law(peeq + 2 * dq)) / (6 * shear + slope), 0.0)
     return np.where(yields, dq, 0.0), np.where(yields, slope / (6 * shear + slope), 1.0)
-
-
-def check_growing_sphere(module, counts=(200, 400), leaves=8e-6):
-    """The closed form against radial elements: all laws, loading, removal, and growing anew.
-
-    leaves: largest error of the plastic strain, and of stresses over E, of second order in the element, of
-    the first of the counts. The radial stress at the centre sums up the errors of all elements, and is left
-    out.
-    """
-    for name, (misfit, law) in LAWS.items():
-        for shares in ((1.0,), (1.0, 0.0), (1.0, 0.0, 1.0)):
-            exact = module.GrowingSphere(YOUNG, NU, law, misfit, 1.0, shares=shares)
-            for count in counts:
-                found = radial_elements(law, lambda x, top=misfit: top * module.smooth(x)[0], shares, count)
-                fields, most = exact.fields(found.x), leaves * (counts[0] / count) ** 2
-                assert np.abs(found.peeq - fields.peeq).max() < most, (name, shares)
-                assert np.abs(found.deviator - fields.deviator).max() < most * YOUNG, (name, shares)
-                off = np.abs(found.radial - exact.radial_stress(found.x))
-                assert off[found.x > 0.2].max() < most * YOUNG, (name, shares)
-
-
-def check_cycled_sphere(module, periods=3):
-    """With a back-stress and constant yield stress, growing and shrinking: against the rates at a radius,
-    integrated from where it begins to yield. They follow from D = x +- Y, the law of x and equilibrium.
-    """
-    yields, compliance, r = 1e9, (1 - NU) / YOUNG, np.array([0.6, 1.0, 1.255, 2.0])
-    for modulus, recovery in ((160e9, 0.0), (160e9, 90.0), (40e9, 300.0)):
-        law, shares = LAWS["perfect"][1], (1.0, 0.0) * periods
-        sphere = module.GrowingSphere(YOUNG, NU, law, 0.07, 1.0, "gauss", shares, modulus, recovery)
-        found = np.array([(each.plastic, each.peeq) for each in sphere.history(r)])
-        for k, excess in enumerate(0.07 * module.gauss(r)[1]):
-            q = peeq = back = share = 0.0
-            for number, end in enumerate(shares):
-                sign = 1.0 if end > share else -1.0
-                begin = (q + compliance * (back + sign * yields)) / excess
-                if sign * (end - begin) > 0:
-
-                    def rates(_, state, law=(modulus, recovery), sign=sign, excess=excess):
-                        slope = 2 * (law[0] - law[1] * sign * state[1])
-                        rate = excess / (1 + compliance * slope)
-                        return rate, slope * rate, 2 * sign * rate
-
-                    way = begin, end
-                    ends = solve_ivp(rates, way, (q, back, peeq), rtol=1e-11, atol=(1e-16, 1e-3, 1e-16))
-                    q, back, peeq = ends.y[:, -1]
-                share = end
-                assert np.abs(found[number, :, k] - (q, peeq)).max() < 1e-11, (modulus, recovery, number)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""A ladder of scenes, from an elastic sphere to full running-in, and what a solve of each does, counted from
-outside.
+"""A ladder of scenes, from an elastic sphere to full running-in, and what a solve of each does,
+counted from outside.
 
-As a program (`python tests/ladder.py MODEL:RUNG ...`) it solves rungs, each in a process of its own with
-empty caches, and prints as JSON what ran: kinds of work with their calls and sizes, transforms by the work
-that they belong to, and the modules that were loaded. Nothing in the solvers counts for it: functions are
+As a program (`python tests/ladder.py MODEL:RUNG ...`) it solves rungs, each in a process of its own
+with empty caches, and prints as JSON what ran: kinds of work with their calls and sizes, and
+transforms by the work that they belong to. Nothing in the solvers counts for it: functions are
 wrapped where they are defined, once their module is loaded.
 """
 
@@ -14,19 +14,154 @@ import json
 import os
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, field
+from importlib import import_module
 from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 
-from ladder_scenes import SCENES
-
 ROOT = Path(__file__).resolve().parent.parent
-OURS = ("samfem", "sam", "fem_reference", "verification")
-TRANSFORMS = [
-    f"{kind}{axes}"
-    for kind in ("rfft", "irfft", "fft", "ifft", "dct", "idct", "dst", "idst")
-    for axes in ("", "2", "n")
-]
+KINDS = ("rfft", "irfft", "fft", "ifft", "dct", "idct", "dst", "idst")
+TRANSFORMS = [f"{kind}{axes}" for kind in KINDS for axes in ("", "2", "n")]
+
+STEEL = {"young": 210e9, "poisson": 0.3}
+SWIFT = {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121}
+HARD = {"law": "perfect", "yield_stress": 50e9}
+FILM = {"thickness": 0.4e-6, "young": 80e9, "poisson": 0.3}
+SURFACE = {
+    "kind": "self-affine",
+    "ra": 0.1e-6,
+    "cutoff_long": 16e-6,
+    "cutoff_short": 8e-6,
+    "hurst": 0.8,
+    "seed": 1,
+}
+DEPTHS = (0.0, 0.3e-6, 0.8e-6, 2e-6, 4e-6, 8e-6)
+CHEMICAL = {
+    "law": "chemical-film",
+    "low": 0.1,
+    "high": 0.4,
+    "film_thickness": 100e-9,
+    "film_young": 80e9,
+    "film_poisson": 0.3,
+    "film_yield": 2e9 / 3,
+    "strain_limit": 0.0204,
+}
+
+
+def sphere(plasticity=None, *, coating=None, counterbody=None, friction=None, solver=None, **loading) -> dict:
+    """A rigid sphere on a smooth body: 33 x 33 cells elastic, 17 x 17 plastic; FEM with the fewest
+    elements that are allowed.
+    """
+    plastic = plasticity is not None
+    grid = (
+        {"cells": (17, 17), "extent": (12e-6, 12e-6), "layers": 8, "depth": 7e-6}
+        if plastic
+        else {"cells": (33, 33)}
+    )
+    body = STEEL | {"plasticity": plasticity, "coating": coating}
+    return {
+        "body": {name: value for name, value in body.items() if value is not None},
+        "counterbody": {"shape": "sphere", "radius": 105e-6} | (counterbody or {}),
+        "loading": {"force": 0.05, "steps": 2} | loading,
+        "grid": grid,
+        "fem": {"cells_per_radius": 2, "box": 3.0},
+        "solver": {"tolerance": 1e-4 if plastic else 1e-6} | (solver or {}),
+    } | ({"friction": friction} if friction else {})
+
+
+def given(plasticity=None, friction=None, **loading) -> dict:
+    """A pressure that the scene gives, in place of force and sphere."""
+    out = sphere(plasticity, friction=friction)
+    del out["counterbody"]
+    return out | {"loading": {"prescribed": "hertz", "p0": 3.5e9, "radius": 2.5e-6, "steps": 1} | loading}
+
+
+def misfit(plasticity=None, **loading) -> dict:
+    """A sphere that grows inside the body, which nothing touches."""
+    out = sphere(plasticity)
+    del out["counterbody"], out["grid"]
+    given = {"prescribed": "misfit-sphere", "depth": 6e-6, "radius": 3e-6, "misfit": 0.02, "steps": 2}
+    return out | {"loading": given | loading}
+
+
+def rough(plasticity=None, friction=None, wear=None, **loading) -> dict:
+    """A plane on a rough patch of 24 x 24 cells."""
+    sections = {"friction": friction, "wear": wear}
+    return {
+        "body": STEEL | ({"plasticity": plasticity} if plasticity else {}),
+        "counterbody": {"shape": "flat"},
+        "surface": SURFACE,
+        "loading": {"force": 0.02, "steps": 2} | loading,
+        "grid": {"cells": (12, 12), "extent": (16e-6, 16e-6), "depths": DEPTHS, "border": "relief"},
+        "fem": {"box": 3.0},
+        "solver": {"tolerance": 1e-4},
+    } | {name: value for name, value in sections.items() if value}
+
+
+def opposite(plasticity=None, renew=False, **loading) -> dict:
+    """A rough counter-body on a smooth body."""
+    found = rough(plasticity, **loading)
+    return found | {"counterbody": {"shape": "flat", "surface": found.pop("surface") | {"renew": renew}}}
+
+
+DECOUPLED = {"coefficient": 0.2, "coupling": False}
+COUPLED = {"coefficient": 0.2}
+RUNNING_IN = {"unload": True, "cycles": 2}
+EDGE = {"shape": "rounded-punch", "flat_radius": 1e-6}
+MOVED = {"force": None, "approach": 60e-9}
+PATH = {"start": (-1e-6, 0.0), "end": (1e-6, 0.0), "steps": 2}
+ON_PATCH = {"start": (0.0, 0.0), "end": (16e-6 / 12, 0.0), "steps": 1}
+SCENES = {
+    "elastic sphere": sphere(),
+    "unloaded": sphere(unload=True),
+    "cycles": sphere(unload=True, cycles=3),
+    "decoupled": sphere(friction=DECOUPLED),
+    "coupled": sphere(friction=COUPLED),
+    "like bodies": sphere(friction=COUPLED, counterbody=STEEL),
+    "elastic counter-body": sphere(counterbody=STEEL),
+    "rounded edge": sphere(counterbody=EDGE),
+    "no friction after all": sphere(friction={"coefficient": 0.0}),
+    "no force": sphere(force=0.0),
+    "given load, travelling": given(
+        friction=COUPLED, path={"start": (-2e-6, 0.0), "end": (2e-6, 0.0), "steps": 2}
+    ),
+    "coated": sphere(coating=FILM),
+    "coated, sliding": sphere(coating=FILM, friction=COUPLED),
+    "given load": given(),
+    "given load, sliding": given(friction=COUPLED),
+    "strong": sphere(HARD, unload=True),
+    "plastic": sphere(SWIFT),
+    "plastic, layered": sphere(SWIFT | {"layer_thickness": 1e-6, "layer": SWIFT | {"alpha": 1e3}}),
+    "back-stresses": sphere(SWIFT | {"kinematic": {"modulus": (11e9,)}}, unload=True, cycles=4, steps=1),
+    "plastic, unloaded": sphere(SWIFT, unload=True),
+    "plastic, decoupled": sphere(SWIFT, friction=DECOUPLED),
+    "plastic, coupled": sphere(SWIFT, friction=COUPLED),
+    "plastic, the paper's loop": sphere(SWIFT, solver={"method": "paper", "tolerance": 1e-4}),
+    "elastic, alternating": sphere(friction=COUPLED | {"direction": "alternating"}, unload=True, cycles=2),
+    "plastic cycles": sphere(SWIFT, unload=True, cycles=2),
+    "alternating": sphere(SWIFT, friction=COUPLED | {"direction": "alternating"}, unload=True, cycles=2),
+    "plastic, given load": given(SWIFT),
+    "moving": sphere(path=PATH, steps=1),
+    "moving, plastic": sphere(SWIFT, path=PATH, unload=True),
+    "moving, rough": opposite(path=ON_PATCH, steps=1),
+    "moving, film and wear": rough(SWIFT, friction=CHEMICAL, wear={"strain_limit": 0.002}, **RUNNING_IN)
+    | {"counterbody": opposite()["counterbody"], "loading": {"force": 0.02, "path": ON_PATCH, **RUNNING_IN}},
+    "misfit": misfit(),
+    "misfit, plastic": misfit(SWIFT, unload=True),
+    "rough elastic": rough(),
+    "rough elastic, sliding": rough(friction=DECOUPLED),
+    "rough plastic": rough(SWIFT),
+    "rough counter-body": opposite(),
+    "rough counter-body, renewed": opposite(SWIFT, renew=True, **RUNNING_IN),
+    "chemical film, elastic": rough(friction=CHEMICAL, **RUNNING_IN),
+    "chemical film": rough(SWIFT, friction=CHEMICAL, **RUNNING_IN),
+    "wear": rough(SWIFT, wear={"strain_limit": 0.002}, **RUNNING_IN),
+    "wear out of reach": rough(SWIFT, wear={"strain_limit": float("inf")}, **RUNNING_IN),
+    "moved": sphere(**MOVED),
+    "moved, coated": sphere(coating=FILM, **MOVED),
+    "moved, plastic": sphere(SWIFT, unload=True, **MOVED),
+    "moved, rough": rough(**MOVED),
+    "running-in": rough(SWIFT, friction=CHEMICAL, wear={"strain_limit": 0.002}, **RUNNING_IN),
+}
 
 
 def scene(name: str):
@@ -34,24 +169,6 @@ def scene(name: str):
     from sam.scene import Scene
 
     return Scene(**SCENES[name], title=name)
-
-
-# what is recorded
-
-
-@dataclass
-class Ran:
-    """What a solve did, all in the order in which it began.
-
-    work: kind -> [calls, numbers that it made]; transforms: kind of work, or "" -> [calls, values]; modules:
-    of this program; others: the rest, by their first name; summary: parts of the result.
-    """
-
-    work: dict[str, list[int]] = field(default_factory=dict)
-    transforms: dict[str, list[int]] = field(default_factory=dict)
-    modules: list[str] = field(default_factory=list)
-    others: list[str] = field(default_factory=list)
-    summary: dict = field(default_factory=dict)
 
 
 def _load(a: dict) -> str:
@@ -140,23 +257,22 @@ PROBES: dict[str, dict[str, Namer]] = {
         "rough.counter_heights_of": "counter heights",
     },
 }
-"""Of each package: ends of full names of functions, and what kinds of work they are, the first one that of
-their transforms.
+"""Of each package: ends of full names of functions, and what kinds of work they are, the first one
+that of their transforms.
 """
-
-
-# recording
 
 
 class Recorder:
     """Wraps what PROBES name while it records, and the transforms of scipy and numpy.
 
-    spoilt: name in SPOILERS of what is made wrong, for a test of the tests.
+    work: kind -> [calls, numbers that it made], in the order in which they began; transforms: kind
+    of work, or "" -> [calls, values].
     """
 
-    def __init__(self, spoilt: str = ""):
-        self.ran, self.stack = Ran(), []
-        self.spoiled, self.spoil = SPOILERS[spoilt] if spoilt else ("", None)
+    def __init__(self):
+        self.work: dict[str, list[int]] = {}
+        self.transforms: dict[str, list[int]] = {}
+        self.stack: list[str] = []
 
     def probed(self, function: Callable, namer: Namer) -> Callable:
         """The function, which also records what it does and that the transforms inside are its own."""
@@ -167,7 +283,7 @@ class Recorder:
             bound = signature.bind(*args, **keys)
             bound.apply_defaults()
             kinds = (namer if isinstance(namer, str) else namer(bound.arguments)).split(", ")
-            counts = [self.ran.work.setdefault(kind, [0, 0]) for kind in kinds]
+            counts = [self.work.setdefault(kind, [0, 0]) for kind in kinds]
             self.stack.append(kinds[0])
             try:
                 out = function(*args, **keys)
@@ -181,14 +297,12 @@ class Recorder:
         return recorded
 
     def counted(self, transform: Callable) -> Callable:
-        """The transform, which also counts itself and the values that it makes for the work that it is part
-        of.
-        """
+        """The transform, which also counts itself and the values that it makes for the work it is part of."""
 
         @functools.wraps(transform)
         def recorded(*args, **keys):
             out = transform(*args, **keys)
-            count = self.ran.transforms.setdefault(self.stack[-1] if self.stack else "", [0, 0])
+            count = self.transforms.setdefault(self.stack[-1] if self.stack else "", [0, 0])
             count[0] += 1
             count[1] += int(out.size)
             return out
@@ -207,148 +321,71 @@ class Recorder:
         sys.meta_path.insert(0, self)
 
     def find_spec(self, name: str, path=None, target=None) -> ModuleSpec | None:
-        """For modules of this program: as usual, but that functions with probes are wrapped once they are
-        defined.
-        """
+        """As usual, but that functions with probes are wrapped once their module is run."""
         probes = PROBES.get(name.split(".")[0])
-        if probes is None:
-            return None
-        spec = PathFinder.find_spec(name, path, target)
+        spec = PathFinder.find_spec(name, path, target) if probes else None
         if spec is None or spec.loader is None:
             return spec
         run = spec.loader.exec_module
 
         def exec_module(module) -> None:
             run(module)
-            if name == self.spoiled:
-                self.spoil(module)
-            for holder, attribute, namer in places(module, probes):
-                found = inspect.getattr_static(holder, attribute)
-                if isinstance(found, classmethod):
-                    setattr(holder, attribute, classmethod(self.probed(found.__func__, namer)))
-                else:
-                    setattr(holder, attribute, self.probed(found, namer))
+            for holder, attribute, full in defined(module):
+                for end in (end for end in probes if full.endswith(f".{end}")):
+                    found = inspect.getattr_static(holder, attribute)
+                    wrapped = self.probed(getattr(found, "__func__", found), probes[end])
+                    setattr(
+                        holder, attribute, classmethod(wrapped) if isinstance(found, classmethod) else wrapped
+                    )
 
         spec.loader.exec_module = exec_module
         return spec
 
 
-def places(module, probes: dict[str, Namer]) -> list[tuple[object, str, Namer]]:
-    """Functions and methods that a module defines and that have a probe: where they are kept, by which name,
-    and their kind.
-    """
-    own = {
-        name: each
-        for name, each in vars(module).items()
-        if getattr(each, "__module__", None) == module.__name__
-    }
-    found = [
-        (module, name, f"{module.__name__}.{name}") for name, each in own.items() if inspect.isfunction(each)
-    ]
-    for name, each in own.items():
-        if inspect.isclass(each):
-            found += [(each, method, f"{module.__name__}.{name}.{method}") for method in vars(each)]
-    return [
-        (holder, name, probes[end])
-        for holder, name, full in found
-        for end in probes
-        if full.endswith(f".{end}")
-    ]
+def defined(module) -> list[tuple[object, str, str]]:
+    """Functions and methods that a module defines: where they are kept, by which name, and their full one."""
+    found = []
+    for name, each in vars(module).items():
+        if getattr(each, "__module__", None) != module.__name__:
+            continue
+        if inspect.isfunction(each):
+            found.append((module, name, f"{module.__name__}.{name}"))
+        elif inspect.isclass(each):
+            found += [(each, own, f"{module.__name__}.{name}.{own}") for own in vars(each)]
+    return found
 
 
-# what a solver must not do, done to it
-
-
-def _with_traction(module) -> None:
-    """Stresses of a traction that the scene has not."""
-    stresses = module.stresses
-
-    def spoilt(tractions, *args, **keys):
-        return stresses({1: 0.0 * tractions[3] + 1.0, **tractions}, *args, **keys)
-
-    module.stresses = functools.wraps(stresses)(spoilt)
-
-
-def _with_transform(module) -> None:
-    """A transform that belongs to no work."""
-    import numpy
-    import scipy.fft
-
-    tables = module.state_tables
-    module.state_tables = lambda *args: (scipy.fft.rfft2(numpy.ones((4, 4))), tables(*args))[1]
-
-
-def _with_pictures(_module) -> None:
-    import matplotlib  # noqa: F401
-
-
-def _with_history(module) -> None:
-    """A plastic history of an elastic body."""
-    from fem_reference.common.plasticity import J2, CurveInUnits
-    from sam.scene.yield_curve import Linear
-
-    module.material = lambda bodies, units, solid: J2(
-        bodies.elastic[0],
-        CurveInUnits(Linear(float("inf")), 1.0, 1.0),
-        1.0 + 0.0 * solid.weights,
-        shears=len(solid.stiffness_tensor) - 3,
-    )
-
-
-SPOILERS: dict[str, tuple[str, Callable]] = {
-    "traction": ("sam.contact.stress", _with_traction),
-    "transform": ("sam.results.tables", _with_transform),
-    "pictures": ("sam.results.tables", _with_pictures),
-    "history": ("fem_reference.axisymmetric.model", _with_history),
-}
-"""What is spoilt, in which module, and how, once the module is loaded."""
-
-
-# one process for each rung
-
-
-def solve(rung: str, model: str, recorder: Recorder) -> Ran:
-    """Solve a rung with this process's recorder."""
-    from importlib import import_module
-
+def ran(rung: str, model: str) -> dict:
+    """Solve a rung in this process: what it did, and parts of the result."""
+    recorder = Recorder()
+    recorder.install()
     from verification.runs.models import MODELS
 
-    known = set(sys.modules)
-    package = import_module(MODELS[model])
-    result = package.solve(scene(rung))
-    ran = recorder.ran
-    new = set(sys.modules) - known
-    ran.modules = sorted(name for name in new if name.split(".")[0] in OURS)
-    ran.others = sorted({name.split(".")[0] for name in new} - {*OURS, *sys.stdlib_module_names})
-    ran.summary = {
-        "status": result.status.value,
+    result = import_module(MODELS[model]).solve(scene(rung))
+    return {
+        "work": recorder.work,
+        "transforms": recorder.transforms,
         "left_out": [[entry.stage, entry.reason] for entry in result.left_out],
         "cost": {name: value for name, value in result.cost.items() if value is not None},
-        "discretisation": dict(result.discretisation),
+        "depths": result.discretisation.get("depths"),
         "states": sorted(set(result.tables["line"]["state"])),
         "notes": [str(note) for note in result.tables["history"]["note"]],
         "cycles": [int(cycle) for cycle in result.tables["history"]["cycle"]],
     }
-    return ran
 
 
-def in_child(rung: str, model: str, spoilt: str = "") -> dict:
+def in_child(rung: str, model: str) -> dict:
     """What a solve does in a copy of this process, which has loaded no solver yet."""
     reading, writing = os.pipe()
     child = os.fork()
     if child == 0:
         code = 1
         try:
-            recorder = Recorder(spoilt)
-            recorder.install()
-            content = asdict(solve(rung, model, recorder))
             with os.fdopen(writing, "w") as pipe:
-                json.dump(content, pipe, default=float)
+                json.dump(ran(rung, model), pipe, default=float)
             code = 0
         except BaseException:
-            import traceback
-
-            traceback.print_exc()
+            sys.excepthook(*sys.exc_info())
         finally:
             sys.stderr.flush()
             os._exit(code)
@@ -361,23 +398,14 @@ def in_child(rung: str, model: str, spoilt: str = "") -> dict:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Rungs as MODEL:RUNG or MODEL:RUNG:SPOILER; what every solve loads of other libraries is loaded once,
-    before.
-    """
+    """Rungs as MODEL:RUNG; what every solve loads of other libraries is loaded once, before."""
     sys.path.insert(0, str(ROOT))
-    import numpy  # noqa: F401
-    import pydantic  # noqa: F401
-    import scipy.fft  # noqa: F401
-    import scipy.optimize  # noqa: F401
-    import scipy.special  # noqa: F401
-
-    import sam.scene  # noqa: F401
-    import verification.runs.models  # noqa: F401
-
+    for name in ("numpy", "pydantic", "scipy.fft", "scipy.optimize", "scipy.special", "sam.scene"):
+        import_module(name)
     found = {}
     for argument in arguments:
-        model, rung, *spoilt = argument.split(":")
-        found[argument] = in_child(rung, model, *spoilt)
+        model, rung = argument.split(":")
+        found[argument] = in_child(rung, model)
     json.dump(found, sys.stdout)
     return 0
 

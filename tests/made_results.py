@@ -6,8 +6,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from sam.scene import FieldMesh
+from verification.cases import all_cases
 from verification.cases.case import Context
 from verification.judging import evaluate
+from verification.quantities import Solved
 from verification.rows import load_rows
 
 
@@ -73,6 +75,11 @@ def with_quantities(result, **factors: float):
     """The result with some of its quantities multiplied."""
     changed = {name: result.quantities[name] * factor for name, factor in factors.items()}
     return replace(result, quantities={**result.quantities, **changed})
+
+
+def of_frame(case: str, frame) -> dict:
+    """What the rows of a case take of a frame."""
+    return all_cases()[case].measure({"": Solved(None, None, {}, frame)})
 
 
 def context(case: str, folder, level: str = "quick") -> Context:

@@ -17,13 +17,10 @@ import pytest
 
 EPS = float(np.finfo(float).eps)
 FAR = 1e-7  # residual of a contact, far above rounding
-FAR_SCENE = 1e-3  # tolerance of an elastic scene, whose contact is then solved to FAR; 1e-12: to 1e-12
 
 
 def close(expected, rel: float = 1e-14):
-    """Relative only: pytest's own absolute tolerance of 1e-12 is larger than many a depth or volume in SI
-    units.
-    """
+    """Relative only: many a depth or volume in SI units is below pytest's absolute tolerance of 1e-12."""
     return pytest.approx(expected, rel=rel, abs=0)
 
 
@@ -33,7 +30,5 @@ def of_sum(terms) -> float:
 
 
 def of_least_squares(matrix: np.ndarray) -> float:
-    """Of the norm of a solution by QR or singular values: the longer side of the matrix, eps and its
-    condition (chapter 20).
-    """
+    """Of the norm of a solution by QR or SVD: longer side of the matrix, eps and condition (chapter 20)."""
     return max(matrix.shape) * EPS * float(np.linalg.cond(matrix))

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""The suite in one environment after another.
+"""The suite in one environment after another; each changes one thing that a machine decides, and no
+other.
 
-    python tests/run_environments.py [NAME ...] [--out FILE] [-- ARGUMENT OF PYTEST ...]
+python tests/run_environments.py [NAME ...] [--out FILE] [-- ARGUMENT OF PYTEST ...]
 
-Prints a row for each as it ends, and the whole output of pytest where a test failed. Exit code 1 if one
-failed anywhere, 2 for a wrong name. What an environment is, and when this machine cannot give it:
-environments.py.
+PROBE is run in each one first; `holds` reads its answer, so that a change which had no effect on
+this machine is not counted as a test of anything. Prints a row for each as it ends, and the whole
+output of pytest where a test failed. Exit code 1 if one failed anywhere, 2 for a wrong name.
 """
 
 import argparse
@@ -18,16 +19,18 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from importlib import metadata
 from pathlib import Path
 from xml.etree import ElementTree
 
-from environments import PROBE, Environment, NotHereError, Place, environments
+import numpy
+
+from verification.runs.threads import EVERY_LIBRARY as THREADS
 
 ROOT = Path(__file__).resolve().parent.parent
-NOT_COPIED = (
+LATEST = (
     ".git",
     ".venv*",
     "latest*",
@@ -37,6 +40,7 @@ NOT_COPIED = (
     ".ruff_cache",
     "*.egg-info",
 )
+"""Not copied for another user."""
 LIMIT_S, PROBE_LIMIT_S = 3600.0, 120.0
 NO_TESTS = 5
 COLUMNS = (
@@ -47,17 +51,222 @@ COLUMNS = (
     "failed",
     "skipped",
     "seconds",
-    "outcome",
 )
+KERNELS = ("Prescott", "Nehalem", "Haswell", "Zen", "SkylakeX")
+NOBODY, STRANGER = 65534, 54321
+"""Numbers of an ordinary user, and of one that the machine does not know, as containers use them."""
+HOMES = ("HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "USER", "LOGNAME")
+LANGUAGE = ("LC_ALL", "LC_CTYPE", "LANG", "PYTHONUTF8", "PYTHONCOERCECLOCALE", "PYTHONIOENCODING")
+SCREEN = ("TERM", "COLUMNS", "LINES", "NO_COLOR", "FORCE_COLOR")
+DECIDED = ("OPENBLAS_CORETYPE", "NPY_DISABLE_CPU_FEATURES", "TZ", "LC_ALL", *LANGUAGE[3:5], *THREADS)
+"""Taken away everywhere: they would mix with what an environment changes."""
+FOLDERS = ("HOME", "TMPDIR")
+"""Variables whose value in an environment is the name of a folder to be made for it."""
+PROBE = r"""
+import json, locale, os, sys, time
+sys.path.insert(0, "tests")
+import conftest
+import numpy, threadpoolctl
+def blas(known=()):
+    libraries = threadpoolctl.threadpool_info()
+    return [library for library in libraries if library["user_api"] == "blas" and library not in known]
+own = blas()
+import scipy.linalg
+others = blas(own) or own
+matrix = numpy.eye(300) + 1 / (1 + numpy.add.outer(numpy.arange(300.0), numpy.arange(300.0)))
+assert numpy.allclose(scipy.linalg.solve(matrix, matrix @ matrix), matrix)
+print(json.dumps({
+    "numpy": [library.get("architecture") for library in own],
+    "scipy": [library.get("architecture") for library in others],
+    "threads": sorted({library["num_threads"] for library in own + others}),
+    "features": numpy.show_config(mode="dicts").get("SIMD Extensions", {}).get("found", []),
+    "cores": len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count(),
+    "offset_s": time.localtime(0).tm_gmtoff,
+    "encoding": locale.getpreferredencoding(False).lower(),
+    "user": os.geteuid(),
+    "home": os.path.expanduser("~"),
+    "proc": os.path.exists("/proc/self"),
+    "writable": os.access(".", os.W_OK),
+    "terminal": sys.stdout.isatty(),
+}))
+"""
+"""Prints, as one line of JSON, what numpy, scipy and Python found, with the threads that the tests
+have. Both BLAS compute something, so that a kernel which the processor cannot run ends the process.
+"""
+
+
+class NotHereError(Exception):
+    """The machine cannot give the environment; the message says why."""
+
+
+@dataclass(frozen=True)
+class Environment:
+    """One change of what a machine decides.
+
+    variables: None takes one away; options: of pytest; around: (checkout, scratch folder) -> the
+    words before a command, raises NotHereError; owner: number of the user whom a copy of the
+    checkout is given to; holds: whether a probe shows the change, given the probe without it.
+    """
+
+    says: str
+    variables: Mapping[str, str | None] = field(default_factory=dict)
+    options: tuple[str, ...] = ()
+    around: Callable[[Path, Path], list[str]] = lambda checkout, scratch: []
+    owner: int | None = None
+    holds: Callable[[dict, dict], bool] = lambda probe, plain: True
+
+    def variables_in(self, scratch: Path) -> dict[str, str]:
+        """All variables of a process in it. The folders that they name are made in `scratch`."""
+        changed = {"TMPDIR": "tmp", **self.variables}
+        for name in FOLDERS:
+            if changed.get(name):
+                changed[name] = str(scratch / changed[name])
+                Path(changed[name]).mkdir(exist_ok=True)
+        kept = {name: value for name, value in os.environ.items() if name not in (*DECIDED, *changed)}
+        return kept | {name: value for name, value in changed.items() if value is not None}
+
+
+def on_one_core(checkout: Path, scratch: Path) -> list[str]:
+    """All processes on the first core that this one may use."""
+    if not hasattr(os, "sched_setaffinity"):
+        raise NotHereError("this system binds no process to a core")
+    only = "os.sched_setaffinity(0, [min(os.sched_getaffinity(0))])"
+    return [sys.executable, "-c", f"import os, sys; {only}; os.execvp(sys.argv[1], sys.argv[1:])"]
+
+
+def on_a_terminal(checkout: Path, scratch: Path) -> list[str]:
+    """A terminal of its own."""
+    ended = "os.waitstatus_to_exitcode(pty.spawn(sys.argv[1:]))"
+    return [
+        sys.executable,
+        "-c",
+        f"import os, pty, sys; code = {ended}; sys.exit(code if code >= 0 else 128 - code)",
+    ]
+
+
+def with_mounts(*lines: str) -> list[str]:
+    """A view of the file system of its own, prepared by lines of shell."""
+    if os.geteuid() != 0 or not (shutil.which("unshare") and shutil.which("setpriv")):
+        raise NotHereError("only root can do that, with unshare and setpriv")
+    before = ["unshare", "--mount", "sh", "-c", "\n".join(["set -e", *lines, 'exec "$@"']), "sh"]
+    tried = subprocess.run([*before, "true"], capture_output=True, text=True, check=False)
+    if tried.returncode:
+        raise NotHereError(f"nothing can be mounted here: {tried.stderr.strip()}")
+    return before
+
+
+def read_only(checkout: Path, scratch: Path) -> list[str]:
+    """The checkout on a file system that nobody can write to."""
+    here = f"'{checkout}'"
+    return with_mounts(f"mount --bind {here} {here}", f"mount -o remount,bind,ro {here}", f"cd {here}")
+
+
+def as_user(number: int) -> Callable[[Path, Path], list[str]]:
+    """As another user, who is shown the interpreter where it lies in a folder that is closed to others."""
+
+    def around(checkout: Path, scratch: Path) -> list[str]:
+        lines = []
+        for k, prefix in enumerate(sorted({sys.prefix, sys.base_prefix})):
+            closed = [folder for folder in Path(prefix).parents if folder.stat().st_mode & 0o005 != 0o005]
+            if closed:
+                (kept := scratch / f"interpreter-{k}").mkdir(exist_ok=True)
+                lines += [
+                    f"mount --bind '{prefix}' '{kept}'",
+                    f"mount -t tmpfs -o mode=755 none '{closed[-1]}'",
+                    f"mkdir -p '{prefix}'",
+                    f"mount --bind '{kept}' '{prefix}'",
+                ]
+        return [*with_mounts(*lines), "setpriv", f"--reuid={number}", f"--regid={number}", "--clear-groups"]
+
+    return around
+
+
+def of_kernel(name: str) -> Environment:
+    """Kernels of OpenBLAS for a processor. They may go by an older name (Prescott's are called
+    Katmai), but those that are taken anyway, or that another of KERNELS asks for, are not its own.
+    """
+
+    def holds(probe: dict, plain: dict) -> bool:
+        taken = {*probe["numpy"], *probe["scipy"]}
+        return taken == {name} or not taken & {*plain["numpy"], *plain["scipy"], *KERNELS, None}
+
+    return Environment(f"OPENBLAS_CORETYPE={name}", {"OPENBLAS_CORETYPE": name}, holds=holds)
+
+
+def environments() -> dict[str, Environment]:
+    """Every environment by its name, the one without a change first."""
+    features = numpy.show_config(mode="dicts").get("SIMD Extensions", {}).get("found", [])
+    found = {"plain": Environment("nothing changed; no terminal")}
+    found |= {f"openblas-{name.lower()}": of_kernel(name) for name in KERNELS}
+    found["numpy-baseline"] = Environment(
+        "NPY_DISABLE_CPU_FEATURES: all above the baseline",
+        {"NPY_DISABLE_CPU_FEATURES": " ".join(features)},
+        holds=lambda probe, plain: bool(plain["features"]) and not probe["features"],
+    )
+    for count in (1, 2):
+        found[f"threads-{count}"] = Environment(
+            f"OPENBLAS_NUM_THREADS={count}, and those of other libraries",
+            dict.fromkeys(THREADS, str(count)),
+            holds=lambda probe, plain, count=count: probe["threads"] == [count],
+        )
+    one = {"around": on_one_core, "holds": lambda probe, plain: probe["cores"] == 1 < plain["cores"]}
+    found["one-core"] = Environment("one core", **one)
+    away = {"holds": lambda probe, plain: probe["offset_s"] % 3600 != 0}
+    found["time-zone"] = Environment("TZ=Asia/Kathmandu", {"TZ": "Asia/Kathmandu"}, **away)
+    plain_c = {**dict.fromkeys(LANGUAGE), "LC_ALL": "C"}
+    found["c-locale"] = Environment("LC_ALL=C", plain_c)
+    found["ascii"] = Environment(
+        "LC_ALL=C, kept as ASCII by PYTHONUTF8=0",
+        {**plain_c, "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
+        holds=lambda probe, plain: probe["encoding"] not in ("utf-8", "utf8"),
+    )
+    nobody = dict.fromkeys(HOMES)
+    found["no-home"] = Environment("HOME is not set", nobody)
+    found["no-user"] = Environment(
+        "a user without name and home, as in a container",
+        nobody,
+        around=as_user(STRANGER),
+        owner=STRANGER,
+        holds=lambda probe, plain: probe["user"] == STRANGER and probe["home"] == "~",
+    )
+    found["user"] = Environment(
+        "an ordinary user instead of root",
+        {**nobody, "HOME": "home"},
+        around=as_user(NOBODY),
+        owner=NOBODY,
+        holds=lambda probe, plain: probe["user"] == NOBODY,
+    )
+    locked = {"around": read_only, "holds": lambda probe, plain: not probe["writable"]}
+    found["read-only"] = Environment("the checkout cannot be written", **locked)
+    found["no-proc"] = Environment(
+        "/proc is empty",
+        around=lambda checkout, scratch: with_mounts("mount -t tmpfs -o mode=555 none /proc"),
+        holds=lambda probe, plain: not probe["proc"],
+    )
+    found["terminal"] = Environment(
+        "a terminal, 60 columns wide, in colour",
+        {**dict.fromkeys(SCREEN), "TERM": "xterm-256color", "COLUMNS": "60", "FORCE_COLOR": "1"},
+        around=on_a_terminal,
+        holds=lambda probe, plain: probe["terminal"],
+    )
+    dumb = {**dict.fromkeys(SCREEN), "TERM": "dumb", "NO_COLOR": "1"}
+    found["dumb"] = Environment("TERM=dumb and NO_COLOR=1", dumb)
+    found["folder"] = Environment("a temporary folder named 'tmp \u00fc'", {"TMPDIR": "tmp \u00fc"})
+    for seed in (1, 2, 3):  # files and the tests of each, and the examples of properties anew
+        options = ("--random-order", f"--random-order-seed={seed}")
+        drawn = ("--hypothesis-profile=default", f"--hypothesis-seed={seed}")
+        found[f"random-{seed}"] = Environment(f"tests in random order, seed {seed}", options=options + drawn)
+    return found
 
 
 @dataclass(frozen=True)
 class Row:
-    """What came out of one environment. kernels: of numpy and scipy; failed: names of tests; trouble: why the
-    suite was not run or did not end by itself, else "".
+    """What came out of one environment. kernels: of numpy and scipy; failed: names of tests;
+    trouble: why the suite was not run or did not end by itself, else "".
     """
 
-    environment: Environment
+    name: str
+    says: str
     kernels: str = ""
     was_run: bool = False
     passed: int = 0
@@ -70,150 +279,110 @@ class Row:
     def is_bad(self) -> bool:
         return self.was_run and bool(self.failed or self.trouble)
 
-    @property
-    def outcome(self) -> str:
-        if not self.was_run:
-            return f"not run: {self.trouble}"
-        return f"FAILED: {self.trouble or 'see below'}" if self.is_bad else "passed"
-
     def cells(self) -> list[str]:
-        counts = (self.passed, len(self.failed), self.skipped, f"{self.seconds:.0f}")
-        shown = map(str, counts if self.was_run else ("",) * len(counts))
-        return [self.environment.name, self.environment.says, self.kernels, *shown, self.outcome]
+        outcome = f"FAILED: {self.trouble or 'see below'}" if self.is_bad else "passed"
+        if not self.was_run:
+            return [self.name, self.says, self.kernels, "", "", "", "", f"not run: {self.trouble}"]
+        counts = map(str, (self.passed, len(self.failed), self.skipped, round(self.seconds)))
+        return [self.name, self.says, self.kernels, *counts, outcome]
 
 
-class Session:
-    """A process group that is ended whole when it takes too long or this process is interrupted."""
-
-    def __init__(self, words: Sequence[str], limit_s: float, **how):
-        self.process = subprocess.Popen(words, stdin=subprocess.DEVNULL, start_new_session=True, **how)
-        self.limit_s = limit_s
-
-    def code(self) -> int | None:
-        """The exit code, None after the limit."""
-        try:
-            return self.process.wait(self.limit_s)
-        except subprocess.TimeoutExpired:
-            return None
-        finally:
-            if self.process.poll() is None:
-                os.killpg(self.process.pid, signal.SIGKILL)
-                self.process.wait()
+def ended(words: Sequence[str], limit_s: float, **how) -> int | None:
+    """The exit code of a command, None after the limit. Its process group is ended whole when it
+    takes too long or this process is interrupted.
+    """
+    process = subprocess.Popen(words, stdin=subprocess.DEVNULL, start_new_session=True, **how)
+    try:
+        return process.wait(limit_s)
+    except subprocess.TimeoutExpired:
+        return None
+    finally:
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
 
 
-def probe(environment: Environment, place: Place, before: Sequence[str]) -> dict:
+def probe(environment: Environment, checkout: Path, scratch: Path, before: Sequence[str] = ()) -> dict:
     """What numpy, scipy and Python find there. Raises NotHereError."""
-    words = [*before, sys.executable, "-c", PROBE]
     with tempfile.TemporaryFile() as told:
-        variables = environment.variables_in(place.scratch)
-        how = {"cwd": place.checkout, "env": variables, "stdout": told, "stderr": subprocess.STDOUT}
-        code = Session(words, PROBE_LIMIT_S, **how).code()
+        how = {"cwd": checkout, "env": environment.variables_in(scratch), "stderr": subprocess.STDOUT}
+        code = ended([*before, sys.executable, "-c", PROBE], PROBE_LIMIT_S, stdout=told, **how)
         told.seek(0)
         lines = told.read().decode(errors="replace").strip().splitlines() or [""]
     if code is None:
         raise NotHereError(f"no answer within {PROBE_LIMIT_S:.0f} s")
     if code < 0:
-        raise NotHereError(
-            f"numpy or scipy ends by {signal.Signals(-code).name}: this processor cannot run the kernel"
-        )
+        name = signal.Signals(-code).name
+        raise NotHereError(f"numpy or scipy ends by {name}: this processor cannot run the kernel")
     if code:
         raise NotHereError(lines[-1])
     return json.loads(lines[-1])
 
 
-def run(environment: Environment, plain: dict, arguments: Sequence[str], base: Path) -> Row:
+def run(name: str, environment: Environment, plain: dict, arguments: Sequence[str], base: Path) -> Row:
     """The suite in one environment. plain: the probe without a change; base: an empty folder."""
-    try:
-        place = _place(environment, base)
-        before = environment.around(place)
-        found = probe(environment, place, before)
-    except NotHereError as reason:
-        return Row(environment, trouble=str(reason))
-    kernels = f"{_names(found['numpy'])}, {_names(found['scipy'])} ({'/'.join(map(str, found['threads']))})"
-    if not environment.holds(found, plain):
-        return Row(environment, kernels, trouble=environment.otherwise)
-    return _tested(
-        environment, kernels, place, [*before, sys.executable, *_pytest(environment, place, arguments)]
-    )
-
-
-def _names(kernels: Sequence[str | None]) -> str:
-    return "/".join(name or "unknown" for name in kernels) or "none known"
-
-
-def _pytest(environment: Environment, place: Place, arguments: Sequence[str]) -> list[str]:
-    report = f"--junit-xml={place.scratch / 'report.xml'}"
-    return ["-m", "pytest", "-p", "no:cacheprovider", report, *environment.options, *arguments]
-
-
-def _place(environment: Environment, base: Path) -> Place:
-    """The checkout, or a copy of it that belongs to the environment's user."""
     checkout, scratch = ROOT, base / "scratch"
     scratch.mkdir()
-    if environment.owner is not None:
-        if os.geteuid() != 0:
-            raise NotHereError("only root can become another user")
-        checkout = base / "checkout"
-        shutil.copytree(ROOT, checkout, ignore=shutil.ignore_patterns(*NOT_COPIED))
-        environment.variables_in(scratch)
-        base.chmod(0o755)
-        for path in (checkout, *checkout.rglob("*"), scratch, *scratch.rglob("*")):
-            os.chown(path, environment.owner, environment.owner, follow_symlinks=False)
-    return Place(checkout, scratch)
-
-
-def _tested(environment: Environment, kernels: str, place: Place, words: Sequence[str]) -> Row:
-    copied = {"PYTHONPATH": str(place.checkout)} if place.checkout != ROOT else {}
-    variables = environment.variables_in(place.scratch) | copied
-    log, began = place.scratch / "log.txt", time.monotonic()
+    try:
+        if environment.owner is not None:  # a copy that belongs to that user
+            if os.geteuid() != 0:
+                raise NotHereError("only root can become another user")
+            checkout = base / "checkout"
+            shutil.copytree(ROOT, checkout, ignore=shutil.ignore_patterns(*LATEST))
+            environment.variables_in(scratch)
+            base.chmod(0o755)
+            for path in (checkout, *checkout.rglob("*"), scratch, *scratch.rglob("*")):
+                os.chown(path, environment.owner, environment.owner, follow_symlinks=False)
+        before = environment.around(checkout, scratch)
+        found = probe(environment, checkout, scratch, before)
+    except NotHereError as reason:
+        return Row(name, environment.says, trouble=str(reason))
+    taken = ("/".join(each or "unknown" for each in found[key]) or "none known" for key in ("numpy", "scipy"))
+    kernels = f"{', '.join(taken)} ({'/'.join(map(str, found['threads']))})"
+    if not environment.holds(found, plain):
+        return Row(name, environment.says, kernels, trouble="the change has no effect on this machine")
+    report, log, began = scratch / "report.xml", scratch / "log.txt", time.monotonic()
+    words = [*before, sys.executable, "-m", "pytest", "-p", "no:cacheprovider", f"--junit-xml={report}"]
+    copied = {"PYTHONPATH": str(checkout)} if checkout != ROOT else {}
+    variables = environment.variables_in(scratch) | copied
     with log.open("wb") as stream:
-        how = {"cwd": place.checkout, "env": variables, "stdout": stream, "stderr": subprocess.STDOUT}
-        code = Session(words, LIMIT_S, **how).code()
-    seconds = time.monotonic() - began
-    passed, failed, skipped = counts(place.scratch / "report.xml")
-    row = Row(environment, kernels, True, passed, failed, skipped, seconds, _trouble(code, bool(failed)))
+        how = {"cwd": checkout, "env": variables, "stdout": stream, "stderr": subprocess.STDOUT}
+        code = ended([*words, *environment.options, *arguments], LIMIT_S, **how)
+    seconds, (passed, failed, skipped) = time.monotonic() - began, counts(report)
+    trouble = "" if code == bool(failed) else f"pytest ended with {code}"
+    trouble = {None: f"did not end within {LIMIT_S / 60:.0f} min", NO_TESTS: "no tests"}.get(code, trouble)
+    row = Row(name, environment.says, kernels, True, passed, failed, skipped, seconds, trouble)
     if row.is_bad:
         print(log.read_text(encoding="utf-8", errors="replace"), flush=True)
     return row
-
-
-def _trouble(code: int | None, tests_failed: bool) -> str:
-    if code is None:
-        return f"did not end within {LIMIT_S / 60:.0f} min"
-    if code == NO_TESTS:
-        return "no tests"
-    return "" if code == int(tests_failed) else f"pytest ended with {code}"
 
 
 def counts(report: Path) -> tuple[int, tuple[str, ...], int]:
     """(passed, names of those that failed, skipped) of a JUnit file of pytest; none if it was not written."""
     if not report.exists():
         return 0, (), 0
-    kinds = {"passed": 0, "skipped": 0}
-    failed = []
+    passed, failed, skipped = 0, [], 0
     for test in ElementTree.parse(report).iter("testcase"):
         ends = {part.tag for part in test}
         if ends & {"failure", "error"}:
             failed.append(f"{test.get('classname')}::{test.get('name')}")
         else:
-            kinds["skipped" if "skipped" in ends else "passed"] += 1
-    return kinds["passed"], tuple(failed), kinds["skipped"]
+            skipped += "skipped" in ends
+            passed += "skipped" not in ends
+    return passed, tuple(failed), skipped
 
 
 def table(rows: Sequence[Row]) -> str:
     """The outcome as a table in Markdown, and the tests that failed in each environment."""
     versions = ", ".join(f"{name} {metadata.version(name)}" for name in ("numpy", "scipy", "pytest"))
-    cells = [COLUMNS, ["---"] * len(COLUMNS), *(row.cells() for row in rows)]
-    failed = [f"- {row.environment.name}: {', '.join(row.failed)}" for row in rows if row.failed]
+    cells = [[*COLUMNS, "outcome"], ["---"] * (len(COLUMNS) + 1), *(row.cells() for row in rows)]
     lines = ["| " + " | ".join(text.replace("|", "/") for text in line) + " |" for line in cells]
-    return (
-        "\n".join([f"Python {platform.python_version()}, {versions}", "", *lines, "", *failed]).rstrip()
-        + "\n"
-    )
+    failed = ["", *(f"- {row.name}: {', '.join(row.failed)}" for row in rows if row.failed)]
+    return "\n".join([f"Python {platform.python_version()}, {versions}", "", *lines, *failed]).rstrip() + "\n"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    known = {environment.name: environment for environment in environments()}
+    known, rows = environments(), []
     parser = argparse.ArgumentParser(description="Run the suite in environments that other machines give.")
     parser.add_argument("name", nargs="*", metavar="NAME", help=f"default: all of {', '.join(known)}")
     parser.add_argument("--out", type=Path, metavar="FILE", help="also write the table there")
@@ -222,31 +391,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(given[:split])
     if wrong := sorted(set(options.name) - set(known)):
         parser.error(f"no such environment: {', '.join(wrong)}; there are {', '.join(known)}")
-    chosen = [known[name] for name in known if name in (options.name or known)]
-    rows = _rows(chosen, known["plain"], given[split + 1 :], options.out)
+    with tempfile.TemporaryDirectory(prefix="samfem-") as folder:
+        (first := Path(folder, "probe")).mkdir()
+        plain = probe(known["plain"], ROOT, first)
+        for name in (name for name in known if name in (options.name or known)):
+            (base := Path(folder, name)).mkdir()
+            Path(folder).chmod(0o755)
+            rows.append(run(name, known[name], plain, given[split + 1 :], base))
+            print("  ".join(filter(None, rows[-1].cells())), flush=True)
+            if options.out:  # after each: an interrupted run keeps what was found
+                options.out.write_text(table(rows), encoding="utf-8")
+            shutil.rmtree(base, ignore_errors=True)
     print(table(rows), end="")
     return int(any(row.is_bad for row in rows))
-
-
-def _rows(
-    chosen: Sequence[Environment], plain: Environment, arguments: Sequence[str], out: Path | None
-) -> list[Row]:
-    """The rows one by one; the file is written after each: an interrupted run keeps what was found."""
-    rows: list[Row] = []
-    with tempfile.TemporaryDirectory(prefix="samfem-") as name:
-        first = Place(ROOT, Path(name, "probe"))
-        first.scratch.mkdir()
-        found = probe(plain, first, [])
-        for environment in chosen:
-            base = Path(name, environment.name)
-            base.mkdir()
-            Path(name).chmod(0o755)
-            rows.append(run(environment, found, arguments, base))
-            print("  ".join(filter(None, rows[-1].cells())), flush=True)
-            if out:
-                out.write_text(table(rows), encoding="utf-8")
-            shutil.rmtree(base, ignore_errors=True)
-    return rows
 
 
 if __name__ == "__main__":

@@ -127,9 +127,13 @@ class CaseFile(BaseModel):
     name it; values: quantity -> the number that it is held against; reference: an
     independent answer, a name in `verification.references`; figures: kinds of `verification.cases.kinds`;
     claims: table of rows -> name -> its quantity, of those without a take; sweeps: its points beside the
-    scene itself; frame: function beside the file that returns points instead; setting: (name, number with
-    unit) for the reader; takes: id of a row -> what it takes of them, see `Take`; notes: sentences below the
-    tables; views: pictures in space.
+    scene itself; setting: (name, number with unit) for the reader; takes: id of a row -> what it takes of
+    them, see `Take`; notes: sentences below the tables; views: pictures in space.
+
+    frame: function beside the file that returns the points instead of sweeps; of such functions, tables:
+    that return one of the frame; data: that hands numbers of it to the pages; cannot: that says why the
+    case does not run here. alone: it measures times, so that nothing runs beside it and a later run
+    measures again.
 
     allowance: rows of SAM against FEM that hold the difference over what refinement allows, known from
     both models at the `coarser` resolution; against: recipe -> value of another scene, solved by the same
@@ -164,6 +168,10 @@ class CaseFile(BaseModel):
     claims: dict[str, dict[str, str]]
     sweeps: dict[str, SweepFile] = {}
     frame: str = ""
+    tables: tuple[str, ...] = ()
+    data: str = ""
+    alone: bool = False
+    cannot: str = ""
     takes: dict[str, tuple[Take, ...]] = {}
     notes: tuple[str, ...] = ()
     setting: tuple[tuple[str, str], ...] = ()

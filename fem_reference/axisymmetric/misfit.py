@@ -52,9 +52,7 @@ PROFILES: dict[str, Callable[[Array], tuple[Array, Array]]] = {
 
 @dataclass(frozen=True)
 class MisfitSphere:
-    """A misfit sphere about (0, depth) in a body of these constants. free: no tractions at z = 0; else those
-    of an infinite body.
-    """
+    """A misfit sphere about (0, depth). free: no tractions at z = 0; else of an infinite body."""
 
     elastic: Elastic
     depth: float
@@ -88,9 +86,7 @@ class MisfitSphere:
         return u + far * np.stack([u_r, u_z])
 
     def surface_forces(self, r: Array) -> Array:
-        """(2, n) consistent nodal forces along r and z that hold the surface z = 0, on quadratic edges with
-        the nodes r, corner and mid in turn; zero on a free one.
-        """
+        """(2, n) consistent nodal forces along r and z that hold the surface, at the nodes r."""
         forces = np.zeros((2, r.size))
         if self.free:
             return forces
@@ -111,9 +107,7 @@ class MisfitSphere:
         return forces
 
     def zone(self, limit: float) -> float:
-        """Radius inside which the elastic stress of an infinite body reaches a yield stress: that of its
-        plastic zone; 0 where it does not.
-        """
+        """Radius of the plastic zone in an infinite body of a yield stress; 0 without one."""
         s = np.linspace(0.0, max(1.0, 2.0 * np.cbrt(self.stiffness / limit)), 8001)
         e, m = PROFILES[self.profile](s)
         return float(s[self.stiffness * (m - e) >= limit].max(initial=0.0))

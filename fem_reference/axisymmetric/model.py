@@ -24,9 +24,7 @@ from fem_reference.common.refusals import FEWEST_ELEMENTS
 from fem_reference.common.schedule import Load
 
 REACH = 1.3
-"""Nodes up to so many contact radii fix the edge: with 32 elements in it the radius of Hertz is met to
-7e-5.
-"""
+"""Nodes up to so many contact radii fix the edge: with 32 elements in it Hertz's is met to 7e-5."""
 
 
 @dataclass(frozen=True)
@@ -72,9 +70,7 @@ class Model(ContactModel):
         return self.plan.gap(r)
 
     def nodal_pressure(self, state: Equilibrium) -> Array:
-        """(n_surface,) multiplier over the area of the node; on the axis, where that is zero, see
-        `axis_pressure`.
-        """
+        """(n_surface,) multiplier over the area of the node; on the axis of `axis_pressure`."""
         if self.misfit is not None:
             return np.zeros(self.surface.size)
         if self.prescribed:
@@ -86,9 +82,7 @@ class Model(ContactModel):
         return p
 
     def contact_radius(self, state: Equilibrium) -> float:
-        """Radius of the last node in contact of a punch, or the given one; otherwise fitted to the gap, see
-        `edge_radius`.
-        """
+        """Contact radius: of a punch that of the last node in contact, else of `edge_radius`."""
         if self.prescribed:
             return 1.0 if state.force and self.misfit is None else 0.0
         if not state.active.any():
@@ -115,10 +109,7 @@ class Model(ContactModel):
 
     def contact_forces(self, state: Equilibrium) -> Array:
         """(n_candidates,) forces of the counter-body on the nodes, from the displacements."""
-        found: Array = self.problem.internal_force(state.u, state.history)[
-            self.problem.normal[self.problem.slave]
-        ]
-        return found
+        return self.problem.internal_force(state.u, state.history)[self.problem.normal[self.problem.slave]]
 
     def with_misfit(self, history: History | None, load: Load) -> History | None:
         """The history with the misfit strain of a load."""
@@ -142,8 +133,7 @@ class Model(ContactModel):
         else:
             exponent = PLASTIC_GROWTH if previous.yielded else HERTZ_GROWTH
             radius = self.contact_radius(previous) * (force / previous.force) ** exponent
-        inside: Bools = self.radii <= max(radius, self.plan.flat)
-        return inside
+        return self.radii <= max(radius, self.plan.flat)
 
     def outgrown(self, states: Sequence[Equilibrium]) -> bool:
         """Whether a contact reaches beyond the uniform part of the mesh."""
@@ -162,10 +152,7 @@ class Model(ContactModel):
 
 
 def axis_pressure(r: Array, p: Array, area: Array) -> float:
-    """Pressure at r = 0 from neighbours, by least squares with an even parabola, weighted by area.
-
-    The area weights cancel the alternating error of corner and mid nodes.
-    """
+    """Pressure at r = 0 by least squares with a parabola: weights of area cancel its alternation."""
     return float(np.polynomial.polynomial.polyfit(r**2, p, 1, w=np.sqrt(area))[0])
 
 
@@ -209,9 +196,7 @@ def build(plan: AxisymmetricPlan) -> Model:
 
 
 def with_misfit(plan: AxisymmetricPlan, sphere: MisfitSphere, block: Block, gap0: Array) -> Model:
-    """The model of a body that a misfit sphere strains, with the displacements of its elastic fields on the
-    outer boundary and, where the surface is held, the tractions there.
-    """
+    """The model of a body with a misfit sphere, whose elastic fields hold the outer boundary."""
     solid = block.solid
     forces, far, places = np.zeros(solid.size), np.zeros(solid.size), solid.basis.doflocs
     on_surface = [solid.boundary_dofs("surface", component) for component in (0, 1)]

@@ -42,9 +42,7 @@ SHAPES = ("sphere", "punch", ROUNDED)
 ELASTIC_CORE = 1.3
 """Radii of a misfit sphere up to which its mesh is uniform where nothing yields."""
 NARROWEST = 1e-4
-"""Smallest part of a contact beyond a flat end, over its radius: with 4e-4 a solve takes seconds, with 1e-6
-minutes.
-"""
+"""Smallest share of a contact beyond a flat end: 4e-4 takes seconds, 1e-6 minutes."""
 BEYOND_ZONE = 1.1
 """The same in radii of its plastic zone, whose strain falls to zero there."""
 
@@ -239,9 +237,7 @@ def _zone(scene: Scene, sphere: MisfitSphere) -> float:
 
 
 def sphere_lines(cells_per_radius: int, box: float, core: float, depth: float) -> tuple[Array, Array]:
-    """(r, z) mesh lines about a misfit sphere of radius 1 with its centre on a line at `depth`: uniform up to
-    `core` from the centre, then growing to the surface and to `box` below and beside it.
-    """
+    """(r, z) mesh lines about a misfit sphere of radius 1 at `depth`, uniform up to `core`."""
     size = 1.0 / cells_per_radius
     beside = uniform_then_growing(size, core, box)
     if core + size < depth:
@@ -255,9 +251,7 @@ def sphere_lines(cells_per_radius: int, box: float, core: float, depth: float) -
 
 @dataclass(frozen=True)
 class Core:
-    """The uniform part of a mesh for a smooth contact of radius 1: radius beyond the edge of the contact,
-    depth.
-    """
+    """Radius and depth of the uniform part of a mesh for a smooth contact of radius 1."""
 
     radius: float = 1.3
     depth: float = 0.8
@@ -270,32 +264,23 @@ ELASTIC = Core()
 
 
 def plastic_core(radius: float) -> Core:
-    """Uniform part for a plastic contact whose radius is about `radius`; the largest plastic strain is well
-    inside.
-
-    With twice the depth, or elements that grow by 1.1, no scalar result changes by more than 1e-4.
-    """
+    """Uniform part for a plastic contact of about `radius`: twice the depth changes scalars by 1e-4."""
     return Core(1.3 * radius, 1.2 * radius)
 
 
 def smooth_lines(
     cells_per_radius: int, box: float, core: Core = ELASTIC, marks: Sequence[float] | Array = ()
 ) -> tuple[Array, Array]:
-    """(r, z) mesh lines for a smooth contact of radius 1: uniform in `core`, then growing to `box`.
-
-    marks: depths at which the material changes; without lines there a layer would be up to a quarter of an
-    element thicker or thinner, as its Gauss points are.
-    """
+    """(r, z) mesh lines for a smooth contact of radius 1; marks: depths of other materials."""
     size = 1.0 / cells_per_radius
     r = uniform_then_growing(size, core.radius, box)
     return r, uniform_then_growing(size, core.depth, box, marks=marks)
 
 
 def punch_lines(cells_per_radius: int, box: float) -> tuple[Array, Array]:
-    """(r, z) mesh lines for a flat-ended cylinder of radius 1.
-
-    Inside r = sin(i pi / (2 n)): in this variable the force of the pressure 1/sqrt(1 - r^2) is smooth up to
-    the edge; outside, and in depth, elements grow from the size at the edge.
+    """(r, z) mesh lines for a punch of radius 1: inside r = sin(i pi / (2 n)), where the force of
+    its pressure 1/sqrt(1 - r^2) is smooth up to the edge; outside, and in depth, growing from the
+    size there.
     """
     inside = np.sin(np.linspace(0.0, np.pi / 2.0, cells_per_radius + 1))
     inside[-1] = 1.0
@@ -304,10 +289,7 @@ def punch_lines(cells_per_radius: int, box: float) -> tuple[Array, Array]:
 
 
 def rounded_lines(scene: Scene, core: Core) -> tuple[Array, Array]:
-    """(r, z) mesh lines for a punch with a rounded edge: finer in the contact beyond the flat end and as far
-    beyond and below that as about a smooth contact of its size; lines at the flat end and in the depths of
-    `smooth_lines`.
-    """
+    """(r, z) mesh lines for a punch with a rounded edge, finer beyond its flat end."""
     flat, coating, box = flat_end(scene), coating_of(scene, scales(scene)), scene.fem.box
     coarse = 1.0 / scene.fem.cells_per_radius
     fine = min(1.0, IN_ROUNDING * (1.0 - flat)) * coarse if flat < 1.0 else coarse  # no force: no edge
@@ -329,10 +311,7 @@ def rounded_lines(scene: Scene, core: Core) -> tuple[Array, Array]:
 
 
 def coated_core(scene: Scene, plastic: float | None) -> Core:
-    """The well resolved part of the mesh: that of the larger contact, with and without the coating.
-
-    plastic: estimate of the radius when the body yields, None if it does not.
-    """
+    """The well resolved part of the mesh, of the larger contact; plastic: its radius after yield."""
     flows = required(scene.body.coating).yield_stress is not None
     reach = max(1.0, expected_radius(scene), plastic or 1.0, yielded_radius(scene))
     if flows or plastic is not None:
@@ -341,11 +320,7 @@ def coated_core(scene: Scene, plastic: float | None) -> Core:
 
 
 def coated_lines(scene: Scene, core: Core) -> tuple[Array, Array]:
-    """(r, z) mesh lines: as for the body alone, sized by the smaller contact near it and by the larger one
-    beyond.
-
-    The interface is a line; the coating has two elements or more through its thickness.
-    """
+    """(r, z) mesh lines, sized by the smaller contact, with and without coating, near it."""
     coating = required(coating_of(scene, scales(scene)))
     cells, box = scene.fem.cells_per_radius, scene.fem.box
     if is_punch(scene):
@@ -375,9 +350,7 @@ def flat_end(scene: Scene) -> float:
 
 
 def choose_core(scene: Scene) -> Core:
-    """The uniform part of the mesh: larger when Hertz's stresses are beyond yield, and for a softer
-    coating.
-    """
+    """The uniform part of the mesh: larger if Hertz's stresses yield, and for a softer coating."""
     radius = None if is_punch(scene) else plastic_radius(scene)
     if scene.body.coating is not None:
         return coated_core(scene, radius)

@@ -28,24 +28,18 @@ from fem_reference.common.plasticity import History, Material
 from fem_reference.common.schedule import Load
 
 FEW = 12
-"""Iterations with the factors of an earlier tangent, each a twentieth of new factors: beyond these, new
-ones are cheaper.
-"""
+"""Iterations with earlier factors, each a twentieth of new ones: beyond, these are cheaper."""
 
 
 @dataclass(frozen=True)
 class Block:
-    """One body of the contact. elastic: for its far field; the solid may use any material, its coating is
-    respected.
-    """
+    """One body of the contact, with the elastic constants of its far field."""
 
     solid: AxisymmetricSolid
     elastic: Elastic
 
     def far_field(self) -> Array:
-        """(size,) displacements of the point force on the outer boundary, under a unit force; zero
-        elsewhere.
-        """
+        """(size,) displacements far away under a unit point force; zero elsewhere."""
         values, locations = np.zeros(self.solid.size), self.solid.basis.doflocs
         for component in (0, 1):
             far = self.solid.boundary_dofs("far", component)
@@ -91,9 +85,7 @@ class ContactProblem:
         self.order = self._order()
 
     def _order(self) -> Integers:
-        """The degrees of freedom (size,) in the order of their elimination; the second body lies above the
-        first.
-        """
+        """(size,) degrees of freedom as they are eliminated; the second body lies above."""
         mesh = self.blocks[0].solid.basis.mesh
         corners = [np.unique(np.round(line, 12)) for line in mesh.p]
         places = np.concatenate([block.solid.basis.doflocs for block in self.blocks], axis=1)
@@ -108,11 +100,7 @@ class ContactProblem:
         return np.argsort(part[r, z], kind="stable")
 
     def _supports(self, far: Array | None) -> tuple[Bools, Array]:
-        """Which degrees of freedom are prescribed (bool), and their values under a unit force (others
-        zero); (size,).
-
-        Far away they are the displacements of the point force; on the axis u_r = 0.
-        """
+        """(size,) prescribed degrees of freedom, and their values under a unit force."""
         fixed, values = np.zeros(self.size, dtype=bool), np.zeros(self.size)
         for block, offset in zip(self.blocks, self.offsets, strict=True):
             values[offset:][: block.solid.size] = block.far_field() if far is None else far
@@ -134,9 +122,7 @@ class ContactProblem:
         return np.concatenate(parts)
 
     def respond(self, u: Array, start: History | None) -> Response:
-        """Response at u in a step that starts from `start`; the caller decides whether its end becomes
-        history.
-        """
+        """Response at u in a step from `start`; the caller decides whether it becomes history."""
         if self.material is None or start is None:
             return Response(
                 self.internal_force(u), self.tangent([b.solid.stiffness for b in self.blocks]), None
@@ -154,8 +140,7 @@ class ContactProblem:
 
     def gap(self, u: Array, approach: float) -> Array:
         """gap0 + sum of u_z - delta at the candidates."""
-        found: Array = self.gap0 + u[self.normal].sum(axis=0) - approach
-        return found
+        return self.gap0 + u[self.normal].sum(axis=0) - approach
 
     def elimination(self, active: Bools) -> tuple[sp.csr_matrix, Array]:
         """(T, d1) of changes T v + delta d1 that leave the gap of the active nodes as it is, for every v
@@ -225,8 +210,7 @@ class ContactProblem:
 
     def reaction(self, response: Response) -> Array:
         """Force (n_candidates,) of the counter-body on each candidate, if that is in contact."""
-        found: Array = response.force[self.normal[self.slave]]
-        return found
+        return response.force[self.normal[self.slave]]
 
     def out_of_balance(self, response: Response, active: Bools, load: Load) -> float:
         """Largest force on a free degree of freedom."""
@@ -235,11 +219,7 @@ class ContactProblem:
 
 
 class Bordered:
-    """Exact inverse of [[A, b], [b, c]]: A sparse, symmetric and positive definite, in an order of little
-    fill-in.
-
-    Raises NotDefiniteError.
-    """
+    """Exact inverse of [[A, b], [b, c]] with A positive definite. Raises NotDefiniteError."""
 
     def __init__(self, A: sp.csr_matrix, b: Array, c: float):
         try:

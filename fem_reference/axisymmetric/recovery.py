@@ -42,11 +42,8 @@ class Stresses:
     kinks: Kinks = EVEN
 
     def in_elements(self, gauss: Array) -> Array:
-        """Mean (..., n_elements) over the Gauss points of each element, weighted by ring volume
-        (rectangles: by r).
-        """
-        found: Array = (gauss * self.r).sum(axis=-1) / self.r.sum(axis=-1)
-        return found
+        """(..., n_elements) means over the Gauss points, weighted by the volume of their rings."""
+        return (gauss * self.r).sum(axis=-1) / self.r.sum(axis=-1)
 
     def layer(self, coating: bool) -> Stresses:
         """The part above the interface, or from it downwards."""
@@ -85,10 +82,8 @@ def stresses(model: Model, state: Equilibrium) -> Stresses:
 
 
 def with_interface(s: Stresses, depth: float) -> Stresses:
-    """Stresses completed by the interface: the axis has a point there, on the line through the two next
-    below.
-
-    Of a point that has yielded the values themselves, as beyond them the yield stress would be passed.
+    """Stresses with a point of the axis at the interface: on the line through the two below, or as
+    next to it where the body has yielded, as beyond it the yield stress would be passed.
     """
     first = int(np.searchsorted(s.axis_z, depth))
     near = slice(first, first + (1 if s.axis_peeq[first] > 0.0 else 2))
@@ -103,9 +98,7 @@ def with_interface(s: Stresses, depth: float) -> Stresses:
 
 
 def on_face(part: Stresses, depth: float) -> Array:
-    """(4, n) stresses at `depth`, a face of the part, extrapolated in the elements next to it that have not
-    yielded.
-    """
+    """(4, n) stresses at a face, from the elements next to it that have not yielded."""
     distance = np.abs(part.z.mean(axis=1) - depth)
     nearest = distance < distance.min() * (1.0 + 1e-6)
     row = nearest & ~(part.peeq > 0.0).any(axis=1)
@@ -118,9 +111,7 @@ def on_face(part: Stresses, depth: float) -> Array:
 
 
 def largest_in_layer(s: Stresses, coating: bool) -> Peak:
-    """Largest von Mises stress in Pa of the coating or below it, its faces included, and its depth in m, as
-    `largest_mises`.
-    """
+    """Largest von Mises stress in Pa of the coating or below it, with its faces, and depth in m."""
     part = s.layer(coating)
     peaks = [largest_mises(part)]
     if coating and part.peeq.any():
@@ -150,10 +141,7 @@ def on_axis(r: Array, z: Array, gauss: Array) -> tuple[Array, Array]:
 
 
 def largest_mises(s: Stresses) -> Peak:
-    """Largest von Mises stress in Pa and its depth in m, see `largest`; never across an interface.
-
-    Where it has yielded it is that of the Gauss points: beyond them the yield stress would be passed.
-    """
+    """Largest von Mises stress in Pa and its depth in m; of a point that has yielded as it is."""
     if s.interface is not None:
         return max((largest_in_layer(s, coating) for coating in (True, False)), key=lambda peak: peak[0])
     q = mises(s.gauss)

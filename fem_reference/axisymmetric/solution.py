@@ -38,9 +38,7 @@ def axis_table(state: str, s: Stresses) -> Table:
 
 
 def line_table(state: str, model: Model, equilibrium: Equilibrium) -> Table:
-    """Surface nodes from the axis to the outer boundary; x is r. Beside a punch, under a given pressure:
-    gap NaN.
-    """
+    """Surface nodes; x is r. The gap is NaN beside a punch and where the pressure is given."""
     unit, problem, r = model.scales, model.problem, model.surface
     uz = [
         problem.body(equilibrium.u, i)[block.solid.boundary_dofs("surface", 1)]
@@ -85,7 +83,7 @@ def surface_grid(model: Model, equilibrium: Equilibrium) -> GridFields:
     """The surface nodes, a line along r in y = 0: pressure, displacement and, where it is finite, the gap."""
     unit, line = model.scales, line_table("", model, equilibrium)
     dofs = (model.body.boundary_dofs("surface", component) for component in (0, 1))
-    ur, uz = (model.problem.body(equilibrium.u, 0)[each] * unit.displacement for each in dofs)
+    ur, uz = (model.problem.body(equilibrium.u, 0)[part] * unit.displacement for part in dofs)
     points = {"p_Pa": np.asarray(line["p_Pa"]), "displacement_m": np.stack([ur, 0 * ur, uz])}
     if np.isfinite(line["gap_m"]).all():
         points["gap_m"] = np.asarray(line["gap_m"])

@@ -45,8 +45,7 @@ class BackStresses:
 
     def stresses(self, a: Array) -> Array:
         """X_k of a_k, (N, n, ...)."""
-        found: Array = self.modulus[:, None] * a / 1.5
-        return found
+        return self.modulus[:, None] * a / 1.5
 
     def kept(self, dp: Array) -> tuple[Array, Array]:
         """(b_k, i_k) of step 1."""
@@ -67,13 +66,11 @@ class KinematicJ2(J2):
 
     def effective(self, stress: Array, history: History) -> Array:
         """Deviatoric stress less the back-stresses, which the yield stress limits."""
-        found: Array = deviator(stress) - self.back_stress(history)
-        return found
+        return deviator(stress) - self.back_stress(history)
 
     def back_stress(self, history: History) -> Array:
         """The sum of the back-stresses at every point, (n, n_elements, n_points)."""
-        found: Array = self.back.stresses(history.stored_back).sum(axis=0)
-        return found
+        return self.back.stresses(history.stored_back).sum(axis=0)
 
     def dissipated(self, before: History, after: History) -> Array:
         """Energy that a step dissipates at every point; not what the back-stresses store."""
@@ -107,24 +104,21 @@ class KinematicJ2(J2):
 
     def _product(self, a: Array, b: Array) -> Array:
         """a:b of tensors (n, m)."""
-        found: Array = (self.engineering * a * b).sum(axis=0)
-        return found
+        return (self.engineering * a * b).sum(axis=0)
 
     def _increment(self, s: Array, X: Array, back: BackStresses, *, plastic: Bools, peeq: Array) -> Array:
-        """Root dp of step 2 by Newton's method, with bisection of its bracket in place of a step that leaves
-        it or did not halve the residual.
-        """
+        """Root dp of step 2 by Newton's method, bracketed as in `plastic_increment`."""
         factor, curve, count = self.factor[plastic], self.curve.at(plastic), len(X)
-        own = 1.5 * self._product(s, s)
-        with_s = np.array([1.5 * self._product(s, each) for each in X])
+        square = 1.5 * self._product(s, s)
+        with_s = np.array([1.5 * self._product(s, back_stress) for back_stress in X])
         mutual = np.array([[1.5 * self._product(X[j], X[k]) for k in range(count)] for j in range(count)])
-        dp = lower = np.zeros_like(own)
+        dp = lower = np.zeros_like(square)
         upper = (mises(s - X.sum(axis=0)) - factor * curve.stress(peeq)) / (3.0 * self.shear)
-        before = np.full_like(own, np.inf)
-        rounding = 16.0 * np.finfo(float).eps * (peeq + np.sqrt(own) / (3.0 * self.shear))
+        before = np.full_like(square, np.inf)
+        rounding = 16.0 * np.finfo(float).eps * (peeq + np.sqrt(square) / (3.0 * self.shear))
         for _ in range(MAX_ITERATIONS):
             b, path = back.kept(dp)
-            q = np.sqrt(own - 2.0 * (b * with_s).sum(axis=0) + np.einsum("jq,jkq,kq->q", b, mutual, b))
+            q = np.sqrt(square - 2.0 * (b * with_s).sum(axis=0) + np.einsum("jq,jkq,kq->q", b, mutual, b))
             limit = factor * curve.stress(peeq + dp) + (back.modulus * path).sum(axis=0)
             f = q - 3.0 * self.shear * dp - limit
             lower, upper = np.where(f > 0.0, dp, lower), np.where(f < 0.0, dp, upper)

@@ -108,9 +108,7 @@ def expected_radius(scene: Scene) -> float:
 
 
 def yielded_radius(scene: Scene) -> float:
-    """Estimate of the contact radius over Hertz's when the coating flows: mean pressure 3 Y in its share of
-    the contact.
-    """
+    """Estimate of the contact radius over Hertz's when the coating flows at a mean pressure 3 Y."""
     coating, units = scene.body.coating, scales(scene)
     if (
         coating is None

@@ -25,9 +25,7 @@ from sam.scene.result import unfinished
 EQUILIBRIUM = 1e-9
 """Largest residual force on a free degree of freedom, over the contact force; rounding leaves 1e-14."""
 SIGN = 1e-10
-"""Multipliers (over the force) and gaps (over the approach) of the wrong sign up to this are rounding: no
-change.
-"""
+"""Multipliers (over the force), gaps (over the approach) of the wrong sign: rounding."""
 MAX_ITERATIONS = 60
 """Limit of the iteration; steps that converge take 1 to 12."""
 DIVERGED = 1.0
@@ -35,9 +33,7 @@ DIVERGED = 1.0
 NEGLIGIBLE = 0.3
 """A linear solve needs no smaller residual than this share of EQUILIBRIUM."""
 STALLED = 10
-"""An iteration ends when its residual has not fallen below its best for so many iterations; those that
-converge take 12 at most.
-"""
+"""An iteration ends after so many residuals above its best; those that converge take 12 at most."""
 
 
 class NotDefiniteError(ArithmeticError):
@@ -163,9 +159,7 @@ class Equilibrium:
 
 @dataclass(frozen=True)
 class Response:
-    """What the bodies do at given displacements: internal force (size,), its derivative, history as in
-    Equilibrium.
-    """
+    """What bodies do at given displacements: internal force (size,), its derivative, history."""
 
     force: Array
     tangent: sp.csr_matrix
@@ -173,9 +167,7 @@ class Response:
 
 
 class Problem(Protocol):
-    """What the iteration needs to know of bodies in contact. gap0: (n_candidates,); displacements and
-    forces (size,).
-    """
+    """Bodies in contact. gap0: (n_candidates,); displacements and forces: (size,)."""
 
     size: int
     gap0: Array
@@ -234,9 +226,7 @@ def without_contact(
 
 
 def _iterate(problem: Problem, state: Equilibrium, scale: float, contact: ActiveSet | Open) -> Equilibrium:
-    """The semi-smooth Newton iteration from `state`, which holds the load and the history at the start of
-    the step.
-    """
+    """The semi-smooth Newton iteration from `state`, with the load and history of its beginning."""
     load, history, u = state.load, state.history, state.u
     residuals: list[float] = []
     steady, definite = 0, True
@@ -272,17 +262,15 @@ def _iterate(problem: Problem, state: Equilibrium, scale: float, contact: Active
 def newton_step(
     problem: Problem, u: Array, response: Response, active: Bools, *, load: Load, kept: Kept
 ) -> tuple[Array, float, Load]:
-    """Displacements, approach and load of the linearised problem.
-
-    All of it is linear in the force. Where the approach is given, the solutions under the force of the last
-    iteration and under none are combined to the one that has this approach. Raises NotDefiniteError.
+    """Displacements, approach and load of the linearised problem; to a given approach two
+    solutions, which are linear in the force, are combined. Raises NotDefiniteError.
     """
-    one, reached = problem.newton_step(u, response, active, load=load, kept=kept)
+    loaded, reached = problem.newton_step(u, response, active, load=load, kept=kept)
     if load.approach is None:
-        return one, reached, load
-    none, least = problem.newton_step(u, response, active, load=load.found(0.0), kept=kept)
+        return loaded, reached, load
+    unloaded, least = problem.newton_step(u, response, active, load=load.found(0.0), kept=kept)
     share = (load.approach - least) / (reached - least)
-    return none + share * (one - none), load.approach, load.found(share * load.force)
+    return unloaded + share * (loaded - unloaded), load.approach, load.found(share * load.force)
 
 
 def ended(residuals: Sequence[float], definite: bool, stuck: bool) -> str:

@@ -30,8 +30,7 @@ def mises(stress: Array) -> Array:
     """Von Mises stress, components in the first axis of `stress`."""
     xx, yy, zz, *shears = stress
     square = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2)
-    found: Array = np.sqrt(square + 3.0 * sum(shear**2 for shear in shears))
-    return found
+    return np.sqrt(square + 3.0 * sum(shear**2 for shear in shears))
 
 
 def deviator(stress: Array) -> Array:
@@ -62,8 +61,7 @@ class Solid:
     def in_coating(self) -> Bools:
         """Elements of the coating, (n_elements,)."""
         thickness = 0.0 if self.coating is None else self.coating.thickness
-        inside: Bools = self.points[-1].mean(axis=1) < thickness
-        return inside
+        return self.points[-1].mean(axis=1) < thickness
 
     @cached_property
     def coating_tensor(self) -> Array:
@@ -97,8 +95,7 @@ class Solid:
             stress[:, self.in_coating] = np.einsum(
                 "st,teq->seq", self.coating_tensor, strain[:, self.in_coating]
             )
-        found: Array = stress
-        return found
+        return stress
 
     def internal_force(self, stress: Array) -> Array:
         """Nodal forces (n_dofs,): integral of B^T stress."""
@@ -132,11 +129,7 @@ class Solid:
         return np.concatenate([np.searchsorted(keys, part).astype(np.int32) for part in parts])
 
     def softened(self, elements: Integers, loss: Array) -> sp.csr_matrix:
-        """The stiffness matrix, same pattern, when the moduli of some elements are smaller.
-
-        elements: (m,) their numbers; loss: (m, n_points, n_strains, n_strains), subtracted from the elastic
-        moduli.
-        """
+        """The stiffness matrix less that of `loss` (m, n_points, n_strains, n_strains) in elements."""
         if not elements.size:
             return self.stiffness
         B, weights = self._B[elements], self.weights[elements]
@@ -152,5 +145,4 @@ class Solid:
     def boundary_dofs(self, name: str, component: int) -> Integers:
         """Degrees of freedom of one component on a boundary, by the first coordinate, then the next."""
         dofs = self.basis.get_dofs(name).all(f"u^{component + 1}")
-        found: Integers = dofs[np.lexsort(self.basis.doflocs[::-1, dofs])]
-        return found
+        return dofs[np.lexsort(self.basis.doflocs[::-1, dofs])]

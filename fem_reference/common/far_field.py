@@ -79,9 +79,7 @@ def kind_of(coating: Coating | None) -> str:
 
 
 def normal_far_field(coating: Coating | None, body: Elastic, r: Array, z: Array) -> Array:
-    """(u_r, u_z), (2, n), under a unit force along +z at the origin. coating: on the body; r, z: (n,) far
-    from the origin.
-    """
+    """(2, n) displacements u_r, u_z under a unit force along +z at the origin; r, z: (n,)."""
     u = boussinesq(1.0, body, r, z)
     if coating is None:
         return u
@@ -90,12 +88,5 @@ def normal_far_field(coating: Coating | None, body: Elastic, r: Array, z: Array)
 
 
 def coating_effect(coating: Coating, body: Elastic, points: Array, *, sliding: bool) -> Array:
-    """(2, 3, n) displacements with the coating minus without it, under unit forces along z and along x at
-    the origin.
-
-    points: (3, n); sliding: whether there is a force along x; without it the second ones are zero.
-    """
-    effect: Array = import_module(MODULES[kind_of(coating)]).slanted_pair(
-        coating, body, points, sliding=sliding
-    )
-    return effect
+    """(2, 3, n) as `slanted_pair` of `layered_force`, which is loaded for a coating only."""
+    return import_module(MODULES[kind_of(coating)]).slanted_pair(coating, body, points, sliding=sliding)

@@ -20,9 +20,7 @@ T = TypeVar("T")
 PUNCHES = ("punch", ROUNDED)
 """Shapes whose contact with a flat end has the units of a flat-ended cylinder."""
 DECAY = 1.7
-"""Share of a coating in the compliance of a contact of radius a: 1 - exp(-DECAY h/a), within 0.07 for
-moduli 0.4 to 2.
-"""
+"""A coating's share in the compliance is 1 - exp(-DECAY h/a), within 0.07 for moduli 0.4 to 2."""
 UNLOADED_RADIUS = 0.01
 """Reference length over radius of curvature when there is no force, and therefore no contact radius."""
 
@@ -113,17 +111,14 @@ def scales(scene: Scene) -> Scales:
 
 
 def equivalent_radius(counter: CounterBody) -> float:
-    """Radius of the sphere, or geometric mean of those of the ellipsoid; of a punch, that of its end;
-    of a rounded edge, its own.
-    """
+    """Radius of a sphere, a punch or a rounded edge; of an ellipsoid the geometric mean."""
     radii = counter.radii
     return required(counter.radius) if radii is None else float(np.sqrt(radii[0] * radii[1]))
 
 
 def peak_force(scene: Scene) -> float:
-    """Normal force at the peak in N; of a given pressure 2/3 pi a^2 p0 (Johnson 1985, Eq. 3.40).
-
-    Of a given approach the estimate by which a smooth scene has its mesh.
+    """Normal force at the peak in N, 2/3 pi a^2 p0 of Hertz (Johnson 1985, Eq. 3.40), or an
+    estimate.
     """
     loading = scene.loading
     if loading.approach is not None:
@@ -183,9 +178,7 @@ def hertz_pressure(r: Array) -> Array:
 
 
 def largest_mises(poisson: float) -> float:
-    """Largest von Mises stress under a sphere over p0: on the axis, |s_rr - s_zz| of Johnson 1985, Eq.
-    (3.45).
-    """
+    """Largest |s_rr - s_zz| below a sphere over p0, on the axis: Johnson 1985, Eq. (3.45)."""
     z = np.linspace(0.0, 2.0, 2001)
     return float(np.abs(-(1.0 + poisson) * (1.0 - z * np.arctan2(1.0, z)) + 1.5 / (1.0 + z**2)).max())
 

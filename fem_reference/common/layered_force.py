@@ -44,10 +44,8 @@ POINTS = 10
 
 
 def normal(coating: Coating, body: Elastic, r: Array, z: Array) -> Array:
-    """(u_r, u_z) with the coating minus without it, under a unit force along +z at the origin. r, z: (n,),
-    not near the origin.
-
-    body: the substrate; consistent units.
+    """(u_r, u_z) coated less bare, under a unit force along +z at the origin; r, z: (n,) far from
+    it.
     """
     k, weight = _wave_numbers(np.hypot(r, z).min())
     depths, place = np.unique(z, return_inverse=True)
@@ -83,11 +81,7 @@ def tangential(coating: Coating, body: Elastic, points: Array) -> Array:
 
 
 def slanted_pair(coating: Coating, body: Elastic, points: Array, *, sliding: bool = True) -> Array:
-    """(2, 3, n) displacements (u_x, u_y, u_z) with the coating minus without it, under unit forces along z
-    and along x.
-
-    sliding: whether there is a force along x; without it the second ones are zero.
-    """
+    """(2, 3, n) displacements coated less bare, under unit forces along z and, if sliding, x."""
     x, y, z = points
     r = np.hypot(x, y)
     u_r, u_z = normal(coating, body, r, z)
@@ -116,9 +110,7 @@ def _wave(bessel: Callable[[Array], Array], k: Array, r: Array) -> Array:
 
 @dataclass(frozen=True)
 class _Modes:
-    """The decaying solutions of one material, m: (...) depth times wave number; results (4, 2, ...): U, W,
-    S, T.
-    """
+    """Solutions of one material, U, W, S, T: (4, 2, ...), at m = k z (...)."""
 
     young: float
     poisson: float
@@ -134,17 +126,12 @@ class _Modes:
         return np.stack([np.array(first), np.array(second)], axis=1) * np.exp(-m)
 
     def growing(self, m: Array) -> Array:
-        """Return the solutions that grow, the mirror images of `decaying`; m: distance from the other face
-        times wave number.
-        """
-        found: Array = self.decaying(m) * np.array([1.0, -1.0, 1.0, -1.0]).reshape(4, 1, *[1] * np.ndim(m))
-        return found
+        """Return the mirror images of `decaying`; m counts from the other face."""
+        return self.decaying(m) * np.array([1.0, -1.0, 1.0, -1.0]).reshape(4, 1, *[1] * np.ndim(m))
 
 
 def amplitudes(coating: Coating, body: Elastic, k: Array, z: Array, *, load: tuple[float, float]) -> Array:
-    """(U, W) (2, n_k, n) at depths z (n,), with the coating minus without, for szz and shear stress `load`
-    at z = 0.
-    """
+    """(U, W) (2, n_k, n) at depths z, coated less bare, for szz and shear `load` at z = 0."""
     top, base = _Modes(coating.young, coating.poisson), _Modes(body.young, body.poisson)
     kh, zero, stress = k * coating.thickness, np.zeros_like(k), np.array(load)
     system = np.zeros((6, 6, k.size))  # rows: S, T at z = 0; U, W, S, T at the interface
@@ -160,10 +147,7 @@ def amplitudes(coating: Coating, body: Elastic, k: Array, z: Array, *, load: tup
     waves = np.concatenate([top.decaying(from_top), top.growing(from_interface)], axis=1)[:2]
     within = np.einsum("ck,ackn->akn", coated[:4], waves)
     below = np.einsum("ck,ackn->akn", coated[4:], base.decaying(from_interface)[:2])
-    found: Array = np.where(inside, within, below) - np.einsum(
-        "ck,ackn->akn", bare, base.decaying(from_top)[:2]
-    )
-    return found
+    return np.where(inside, within, below) - np.einsum("ck,ackn->akn", bare, base.decaying(from_top)[:2])
 
 
 def _across(coating: Coating, body: Elastic, k: Array, z: Array) -> Array:

@@ -114,11 +114,11 @@ def run(
     total = sum(not step.unloads for step in begin.steps)
     total += sum(not target.unloads for target in begin.targets)
 
-    def followed(now: Progressed) -> None:
-        if progress is not None and not now.steps[-1].unloads:
-            progress("contact", sum(not step.unloads for step in now.steps), total)
-        if keep is not None and not model.elastic and now.state.converged:
-            keep(now)
+    def followed(record: Progressed) -> None:
+        if progress is not None and not record.steps[-1].unloads:
+            progress("contact", sum(not step.unloads for step in record.steps), total)
+        if keep is not None and not model.elastic and record.state.converged:
+            keep(record)
 
     steps = follow(model, begin, followed, strained)
     return repeated(steps, schedule.cycles) if schedule.repeats and steps[-1].state.converged else steps
@@ -141,45 +141,41 @@ def climb(model: ContactModel, forces: Sequence[float], state: Equilibrium) -> l
 
 def follow(
     model: ContactModel,
-    now: Progressed,
+    record: Progressed,
     followed: Followed | None = None,
     strained: Strained | None = None,
 ) -> list[Step]:
-    """All steps, to the last target or the first step that does not converge. followed: called after each
-    of them; strained: as in `run`.
-    """
-    while not now.ended:
-        before, now = now, onward(model, now)
-        if strained is not None and len(now.steps) > 1:
-            *earlier, last, new = now.steps
+    """All steps, to the last target or the first that does not converge; parameters as of `run`."""
+    while not record.ended:
+        before, record = record, onward(model, record)
+        if strained is not None and len(record.steps) > 1:
+            *earlier, last, new = record.steps
             if model.plan.forgets(last.cycle) and last.cycle == new.cycle and new.state.converged:
                 last = last if new.unloads else forgotten(last, strained)
-            now = replace(now, steps=[*earlier, last, new])
-        if followed is not None and len(now.steps) > len(before.steps):
-            followed(now)
-    return now.steps
+            record = replace(record, steps=[*earlier, last, new])
+        if followed is not None and len(record.steps) > len(before.steps):
+            followed(record)
+    return record.steps
 
 
 def forgotten(step: Step, strained: Strained) -> Step:
-    """The step with what its row of the history is made from: forces and gaps of the candidates, and the
-    largest strain.
-    """
+    """The step with what its row of the history needs: forces, gaps and the largest strain."""
     if step.state.history is None:
         return step
     state = replace(step.state, u=np.empty(0), history=None)
     return replace(step, state=state, peeq_max=strained(step.state))
 
 
-def onward(model: ContactModel, now: Progressed) -> Progressed:
+def onward(model: ContactModel, record: Progressed) -> Progressed:
     """One step further; or, where single-step elastic unloading would yield, the same with more targets."""
-    target, *rest = now.targets
+    target, *rest = record.targets
     if target.steps_if_yielding:
-        state = model.load(target.load, now.state)
-        if not (state.converged and same_history(now.state, state)):
-            return replace(now, targets=[*divided(target, now.state.force, state.work), *rest])
+        state = model.load(target.load, record.state)
+        if not (state.converged and same_history(record.state, state)):
+            return replace(record, targets=[*divided(target, record.state.force, state.work), *rest])
         step = Step(state, state.work, note=ELASTIC_UNLOADING, attempts=(attempt(state),))
     else:
-        step = advance(model, target.load, now.state)
+        step = advance(model, target.load, record.state)
         step = replace(step, note=f"cut into {step.cuts + 1} steps" if step.cuts else "")
     step = replace(
         step,
@@ -188,7 +184,7 @@ def onward(model: ContactModel, now: Progressed) -> Progressed:
         number=target.number,
         unloads=target.unloads,
     )
-    return replace(now, targets=rest, steps=[*now.steps, step])
+    return replace(record, targets=rest, steps=[*record.steps, step])
 
 
 def divided(target: Target, force: float, spent: Work) -> list[Target]:
@@ -214,9 +210,7 @@ def same_history(before: Equilibrium, after: Equilibrium) -> bool:
 
 
 def advance(model: ContactModel, load: Load, start: Equilibrium, level: int = 0) -> Step:
-    """One step to `load`; when it does not converge and the body can yield, in two halves, each of which
-    may be halved.
-    """
+    """One step to `load`; when it does not converge and the body can yield, in two halves."""
     state = model.load(load, start, halved=level > 0)
     tried: tuple[Attempt, ...] = (attempt(state),)
     if state.converged or model.elastic or level == MOST_CUTS:

@@ -11,9 +11,7 @@ import numpy as np
 from fem_reference.common.arrays import Array
 
 GROWTH = 1.25
-"""Ratio of neighbouring elements outside the uniform part of a plane mesh; 1.1 changes no scalar result of a
-plastic contact by more than 1e-4.
-"""
+"""Ratio of elements beyond the uniform part; 1.1 changes plastic scalars by up to 1e-4."""
 CLOSEST = 8.0
 """Depths at which the material changes that are nearer than an element over this are one."""
 
@@ -27,8 +25,7 @@ def grow(start: float, stop: float, size: float, growth: float = GROWTH) -> Arra
     reached = np.log1p((stop - start) / size * (growth - 1.0)) / np.log(growth)
     count = max(1, int(np.ceil(round(reached, 9))))
     steps = growth ** np.arange(1, count + 1)
-    lines: Array = start + (stop - start) * np.cumsum(steps) / np.sum(steps)
-    return lines
+    return start + (stop - start) * np.cumsum(steps) / np.sum(steps)
 
 
 def uniform_then_growing(
@@ -53,9 +50,7 @@ def uniform_then_growing(
 
 @dataclass(frozen=True)
 class Sizes:
-    """Largest size of an element at a distance from the origin: `fine` up to the first limit, then `coarse`
-    up to the other.
-    """
+    """Largest size of an element at a distance: `fine` to the first limit, then `coarse`."""
 
     fine: float
     coarse: float
@@ -74,9 +69,7 @@ class Sizes:
 def marched(
     start: float, stop: float, first: float, sizes: Callable[[float], float], *, growth: float = GROWTH
 ) -> Array:
-    """Points after `start` up to `stop`: intervals from `first` on, growing as `sizes` allows, scaled to
-    end at `stop`.
-    """
+    """Points after `start` to `stop`: from `first` on growing as `sizes` allows, then scaled."""
     places, size = [start], min(first, sizes(start))
     while places[-1] < stop:
         places.append(places[-1] + size)
@@ -90,9 +83,7 @@ def marched(
 def coated_depths(
     thickness: float, box: float, sizes: Sizes, *, growth: float = GROWTH, fewest: int = 2
 ) -> Array:
-    """z lines to `box`, one of them at the interface, at least `fewest` elements above it; below growing
-    from their size.
-    """
+    """z lines to `box`, one at the interface, `fewest` elements or more above it, growing below."""
     coating = marched(0.0, thickness, min(sizes.fine, thickness / fewest), sizes, growth=growth)
     last = coating[-1] - coating[-2] if coating.size > 1 else thickness
     below = marched(thickness, box, growth * last, sizes, growth=growth)

@@ -28,14 +28,10 @@ ELASTIC = Strength(UNYIELDING)
 HERTZ_GROWTH = 1.0 / 3.0
 """Power of the force with which the radius of an elastic contact grows: Johnson 1985, Eq. (4.22)."""
 PLASTIC_GROWTH = 0.45
-"""The same once the body has yielded, a little below 1/2 of constant mean pressure: it sets the starting
-set only.
-"""
+"""The same after yield, below 1/2 of constant mean pressure; for starting sets only."""
 
 PLASTIC_RISE = 1.1
-"""Power of the approach with which the force grows once the body has yielded, a little above 1 of constant
-mean pressure: it sets the starting set only.
-"""
+"""Power of the approach of the force after yield, above 1 of constant mean pressure; likewise."""
 
 
 @dataclass(frozen=True)
@@ -79,9 +75,7 @@ class ContactModel(ABC):
 
     @abstractmethod
     def nodal_pressure(self, state: Equilibrium) -> Array:
-        """Pressure at the surface nodes: the multiplier of a node over its area. `p_max_Pa` is the largest
-        of these.
-        """
+        """Multiplier of each surface node over its area; `p_max_Pa` is the largest."""
 
     @abstractmethod
     def contact_area(self, state: Equilibrium) -> float:
@@ -117,9 +111,7 @@ class ContactModel(ABC):
         return self.body.stress(self.displacements(state), 0.0 if history is None else history.inelastic)
 
     def largest_pressure(self, state: Equilibrium) -> float:
-        """Largest nodal pressure in Pa, `p_max_Pa` of a result; of a given pressure the largest at any
-        node.
-        """
+        """Largest nodal pressure in Pa, `p_max_Pa` of a result."""
         return float(self.nodal_pressure(state).max()) * self.scales.pressure
 
     def dissipated(self, before: Equilibrium, after: Equilibrium) -> float:
@@ -187,9 +179,7 @@ class ContactModel(ABC):
         return replace(unloaded, load=load, approach=approach, gap=gap, residuals=(), work=NO_WORK)
 
     def expected_force(self, approach: float, scheduled: float, previous: Equilibrium) -> float:
-        """Force that an approach probably needs, to start the iteration from: from the step before; from no
-        contact that of Hertz, `scheduled`, less what the residual displacement leaves apart.
-        """
+        """Force that an approach probably needs, from the step before or Hertz."""
         if previous.force > 0.0:
             power = PLASTIC_RISE if previous.yielded else HERTZ_RISE
             return float(previous.force * (approach / previous.approach) ** power)
@@ -197,9 +187,7 @@ class ContactModel(ABC):
 
 
 def material(bodies: Bodies, units: Scales, solid: Solid, *, misfit: bool = False) -> Material | None:
-    """Plasticity of the half-space in the units of a model, the yield stress of each Gauss point at its
-    depth; None where nothing yields and there is no misfit strain either.
-    """
+    """Plasticity of the half-space at its Gauss points; None if nothing yields or is misfit."""
     if not (bodies.yields or misfit):
         return None
     shears = len(solid.stiffness_tensor) - 3
@@ -215,8 +203,8 @@ def material(bodies: Bodies, units: Scales, solid: Solid, *, misfit: bool = Fals
         if back is None:
             return J2(elastic, curve, factor, shears=shears)
         modulus, recovery = back
-        own = BackStresses(modulus * units.strain / units.pressure, recovery * units.strain)
-        return KinematicJ2(elastic, curve, factor, own, shears=shears)
+        back_stresses = BackStresses(modulus * units.strain / units.pressure, recovery * units.strain)
+        return KinematicJ2(elastic, curve, factor, back_stresses, shears=shears)
 
     if bodies.coating is None:
         return half_space(z)

@@ -71,9 +71,7 @@ class Plan:
     bare: Self | None = None
 
     def forgets(self, cycle: int) -> bool:
-        """Whether no result reads displacements and strains of the states inside a cycle: of a counter-body
-        that moves, but for the loops of the last period that is judged.
-        """
+        """Whether no result reads the states inside a cycle: of a moving body, unless judged."""
         judged = self.judging is not None and cycle in last_period(self.judging, self.schedule.cycles)
         return self.sliding.moves and not judged
 
@@ -83,10 +81,8 @@ class Plan:
         return left_out_of(self.stages)
 
 
-def planned(kind: type[AnyPlan], scene: Scene, units: Scales, **own: Any) -> AnyPlan:
-    """The plan of a scene; own: what a geometry has of its own. With a coating there is a second one for
-    the bare contact: the same mesh, up to the last peak.
-    """
+def planned(kind: type[AnyPlan], scene: Scene, units: Scales, **of_geometry: Any) -> AnyPlan:
+    """The plan of a scene, with that of the bare contact. of_geometry: its own fields."""
     sliding, bodies = slide(scene, units.length), bodies_of(scene, units)
     expected = 1.0 if scene.patch_surface is not None else expected_radius(scene)
     plan = kind(
@@ -103,7 +99,7 @@ def planned(kind: type[AnyPlan], scene: Scene, units: Scales, **own: Any) -> Any
         advice=advice_of(scene),
         judging=judging_of(scene),
         dissipates=counts_dissipation(scene),
-        **own,
+        **of_geometry,
     )
     if bodies.coating is None:
         return plan
@@ -154,7 +150,7 @@ def stages_of(scene: Scene, mesh: Sequence[Stage], stresses: Stage) -> tuple[Sta
         words = "the same contact without the film, for comparison"
         bare = [Stage("bare body", True, words, {"steps": _steps(scene)})]
     if scene.loading.force == 0.0:
-        solving, bare = ([Stage(each.stage, False, NO_FORCE) for each in some] for some in (solving, bare))
+        solving, bare = ([Stage(stage.stage, False, NO_FORCE) for stage in some] for some in (solving, bare))
     stages += [*solving, stresses]
     if yields and not reason_without(scene):
         words = "strains of the unloaded body after each period"
@@ -163,9 +159,7 @@ def stages_of(scene: Scene, mesh: Sequence[Stage], stresses: Stage) -> tuple[Sta
 
 
 def _kind(scene: Scene) -> tuple[bool, int, bool]:
-    """Whether the body or its coating yields, its back-stresses at any depth at most, and whether the
-    traction changes its sign from cycle to cycle.
-    """
+    """Whether anything yields, the number of back-stresses, whether the traction alternates."""
     coating, plasticity, friction = scene.body.coating, scene.body.plasticity, scene.friction
     yields = plasticity is not None or (coating is not None and coating.yield_stress is not None)
     alternating = friction is not None and scene.coefficient > 0.0 and friction.direction == "alternating"
@@ -202,7 +196,7 @@ def _left_out(scene: Scene) -> list[tuple[str, str]]:
     rigid = scene.counterbody is not None and not scene.counterbody.elastic
     again = not yields and scene.loading.cycles > 1 and not alternating
     unload, reason = scene.loading.unload, reason_without(scene)
-    found = (
+    stages = (
         (not coating, "film elements", "no [body.coating]"),
         (not scene.coefficient, TRACTION, "friction.coefficient is 0" if scene.friction else "no [friction]"),
         (True, "worn geometry", "no [wear]"),
@@ -219,7 +213,7 @@ def _left_out(scene: Scene) -> list[tuple[str, str]]:
         (again, LATER_CYCLES, "elastic: every cycle equals the first"),
         (reason, VERDICT, reason or ""),
     )
-    return [(stage, why) for left_out, stage, why in found if left_out]
+    return [(stage, why) for left_out, stage, why in stages if left_out]
 
 
 def _steps(scene: Scene) -> int:

@@ -148,29 +148,26 @@ class J2:
     @property
     def yield_strain(self) -> Array:
         """Initial yield stress over Young's modulus at every point."""
-        found: Array = self.factor * self.curve.stress(np.zeros_like(self.factor)) / self.young
-        return found
+        return self.factor * self.curve.stress(np.zeros_like(self.factor)) / self.young
 
     def update(self, strain: Array, start: History) -> Update:
-        """Stress, history and tangent at `strain` (n, n_elements, n_points), from the history at the start
-        of the step.
-        """
+        """Stress, history and tangent at `strain` (n, n_elements, n_points), from `start`."""
         stress = np.einsum("st,teq->seq", self.stiffness, strain - start.inelastic)
         plastic = self.excess(stress, start) > ON_SURFACE  # step 1
         if not plastic.any():
             none = np.empty((0, *plastic.shape[1:], len(stress), len(stress)))
             return Update(stress, start, np.empty(0, dtype=int), none)
-        found = self.returned(stress, start, plastic)
-        stress[:, plastic] -= 2.0 * self.shear * found.increment * found.flow  # step 3
+        returned = self.returned(stress, start, plastic)
+        stress[:, plastic] -= 2.0 * self.shear * returned.increment * returned.flow  # step 3
         total, accumulated, back = start.plastic_strain.copy(), start.peeq.copy(), start.back
-        total[:, plastic] += found.increment * found.flow * self.engineering
-        accumulated[plastic] += found.increment
-        if back is not None and found.back is not None:
+        total[:, plastic] += returned.increment * returned.flow * self.engineering
+        accumulated[plastic] += returned.increment
+        if back is not None and returned.back is not None:
             back = back.copy()
-            back[:, :, plastic] += found.back
+            back[:, :, plastic] += returned.back
         elements = np.flatnonzero(plastic.any(axis=1))
         loss = np.zeros((elements.size, *plastic.shape[1:], len(stress), len(stress)))
-        loss[plastic[elements]] = found.loss
+        loss[plastic[elements]] = returned.loss
         return Update(
             stress, replace(start, plastic_strain=total, peeq=accumulated, back=back), elements, loss
         )
@@ -187,10 +184,12 @@ class J2:
 
     def dissipated(self, before: History, after: History) -> Array:
         """Energy that a step dissipates at every point, (n_elements, n_points)."""
-        found, flowing = np.zeros_like(after.peeq), after.peeq > before.peeq
+        energy, flowing = np.zeros_like(after.peeq), after.peeq > before.peeq
         curve = self.curve.at(flowing)
-        found[flowing] = self.factor[flowing] * plastic_work(curve, after.peeq[flowing], before.peeq[flowing])
-        return found
+        energy[flowing] = self.factor[flowing] * plastic_work(
+            curve, after.peeq[flowing], before.peeq[flowing]
+        )
+        return energy
 
     def back_stress(self, history: History) -> Array:
         """The sum of the back-stresses at every point, (n, n_elements, n_points)."""
@@ -209,14 +208,11 @@ class J2:
         return self._beyond(mises(self.effective(stress, history)), history.peeq)
 
     def _beyond(self, q: Array, peeq: Array) -> Array:
-        found: Array = q / (self.factor * self.curve.stress(peeq)) - 1.0
-        return found
+        return q / (self.factor * self.curve.stress(peeq)) - 1.0
 
 
 class Parts:
-    """A body of several materials. parts: (elements (n_elements,) bool, material), which together hold
-    every element once.
-    """
+    """A body of several materials. parts: (elements (n_elements,) bool, material)."""
 
     def __init__(self, parts: Sequence[tuple[Bools, J2]]):
         self.parts = tuple(parts)
@@ -230,10 +226,10 @@ class Parts:
     @property
     def yield_strain(self) -> Array:
         """Initial yield stress over Young's modulus at every point."""
-        found = np.empty(self.shape)
+        strain = np.empty(self.shape)
         for elements, material in self.parts:
-            found[elements] = material.yield_strain
-        return found
+            strain[elements] = material.yield_strain
+        return strain
 
     @property
     def back_stresses(self) -> int:
@@ -259,17 +255,17 @@ class Parts:
 
     def dissipated(self, before: History, after: History) -> Array:
         """Energy that a step dissipates at every point, (n_elements, n_points)."""
-        found = np.empty_like(after.peeq)
+        energy = np.empty_like(after.peeq)
         for elements, material in self.parts:
-            found[elements] = material.dissipated(before.of(elements), after.of(elements))
-        return found
+            energy[elements] = material.dissipated(before.of(elements), after.of(elements))
+        return energy
 
     def back_stress(self, history: History) -> Array:
         """The sum of the back-stresses at every point, (n, n_elements, n_points)."""
-        found = np.empty_like(history.plastic_strain)
+        total = np.empty_like(history.plastic_strain)
         for elements, material in self.parts:
-            found[:, elements] = material.back_stress(history.of(elements))
-        return found
+            total[:, elements] = material.back_stress(history.of(elements))
+        return total
 
     def excess(self, stress: Array, history: History) -> Array:
         """(q - Y)/Y at every point; -1 where nothing ever yields."""
@@ -285,8 +281,7 @@ Material = J2 | Parts
 def deviatoric(components: int) -> Array:
     """(n, n): strain with engineering shear -> its deviator as a tensor."""
     shears = components - 3
-    found: Array = np.diag([1.0] * 3 + [0.5] * shears) - np.pad(np.full((3, 3), 1.0 / 3.0), (0, shears))
-    return found
+    return np.diag([1.0] * 3 + [0.5] * shears) - np.pad(np.full((3, 3), 1.0 / 3.0), (0, shears))
 
 
 def plastic_increment(q: Array, peeq: Array, factor: Array, *, shear: float, curve: YieldCurve) -> Array:
@@ -319,9 +314,8 @@ def tangent_loss(q: Array, trial: Array, increment: Array, *, slope: Array, shea
     """
     N = np.sqrt(1.5) * trial / q
     ratio, along = increment / q, 1.0 / (3.0 * shear + slope)
-    found: Array = (
+    return (
         6.0
         * shear**2
         * (ratio[:, None, None] * deviatoric(len(N)) + np.einsum("n,sn,tn->nst", along - ratio, N, N))
     )
-    return found

@@ -22,9 +22,9 @@ def continued(z: Sequence[Array] | Array, values: Sequence[Array] | Array, depth
     quadratic for k = 3.
     """
     total: Array = np.zeros(())
-    for i, (own, value) in enumerate(zip(z, values, strict=True)):
+    for i, (place, value) in enumerate(zip(z, values, strict=True)):
         others = [other for j, other in enumerate(z) if j != i]
-        total = total + value * np.prod([(depth - other) / (own - other) for other in others], axis=0)
+        total = total + value * np.prod([(depth - other) / (place - other) for other in others], axis=0)
     return total
 
 
@@ -44,9 +44,7 @@ def exceeded_strain(peeq: Array, weights: Array) -> float | None:
 
 
 def parabola_peak(x: Array, y: Array) -> tuple[float, float]:
-    """(value, place) of the top of the parabola through three points, the middle one the largest; Newton's
-    form.
-    """
+    """(value, place) of the top of the parabola through three points, the middle the largest."""
     slope = np.diff(y) / np.diff(x)
     curvature = (slope[1] - slope[0]) / (x[2] - x[0])
     if curvature == 0.0:

@@ -26,9 +26,7 @@ from sam.scene.schema import Scene
 from sam.scene.section import Problem, spelling
 
 THINNEST = 1e-4
-"""Smallest thickness of a coating in Hertz radii: with 16 cells in the radius its elements are 1250 times
-as wide as high.
-"""
+"""Smallest thickness of a coating in Hertz radii: elements 1250 times as wide as high."""
 THICKEST = 0.5
 """Largest thickness of a coating in sizes of the box, so that there is a body below it."""
 SMALLEST = 0.01
@@ -78,9 +76,7 @@ def running_in_problems(scene: Scene) -> list[Problem]:
 
 
 def coating_problems(scene: Scene) -> list[Problem]:
-    """What finite elements cannot represent of a coating; the scene must be one whose contact radius can be
-    estimated.
-    """
+    """What finite elements cannot represent of a coating, of a scene with a contact radius."""
     coating = scene.body.coating
     if coating is None:
         return []
@@ -113,13 +109,9 @@ FLOWED = 1.0
 """Accumulated plastic strain of a coating beyond which a small-strain solution means nothing."""
 SOFTER = "raise body.coating.thickness, or lower body.coating.young"
 FEWEST_ELEMENTS = 4
-"""Elements in the contact radius below which a result is called under-resolved (pressure in the centre off
-by 1 %).
-"""
+"""Fewer elements in the contact radius are under-resolved: 1 % off in the central pressure."""
 FEWEST_NODES = 28
-"""Nodes in contact, all spots of a rough patch together, below which a result is called under-resolved: as
-many as a spot of three elements in the radius has.
-"""
+"""Fewer nodes in rough contact are under-resolved; a spot of three elements has 28."""
 
 
 def message_of(scene: Scene, status: Status) -> str:
@@ -149,17 +141,13 @@ def message_of(scene: Scene, status: Status) -> str:
 
 @dataclass(frozen=True)
 class Advice:
-    """What to change when a solve ends in a status, in words. flows: of a coating that yields without
-    limit, if it can.
-    """
+    """What to change when a solve ends in a status; flows: of a coating that may flow."""
 
     by_status: Mapping[Status, str]
     flows: str | None = None
 
     def outcome(self, status: Status, peeq: float) -> tuple[Status, str]:
-        """Status and message of a solve, as given, unless the coating flows without limit; peeq: the
-        largest at the peak.
-        """
+        """Status and message of a solve; peeq: the largest at the peak, of a coating that flows."""
         if self.flows is not None and status is Status.CONVERGED and peeq > FLOWED:
             return Status.NOT_CONVERGED, self.flows
         return status, self.by_status[status]

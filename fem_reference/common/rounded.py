@@ -15,9 +15,7 @@ HALVINGS = 60
 
 
 def radius_under_force(counter: CounterBody, force: float) -> float:
-    """Contact radius in m under a force in N over E*: with cos t = b/a, F/E* = a^3/R [4/3 sin^3 t - cos t (t
-    - sin t cos t)] (Abel transform of the gap).
-    """
+    """Contact radius in m, F/E* = a^3/R [4/3 sin^3 t - cos t (t - sin t cos t)], cos t = b/a."""
     return _radius(counter, lambda a, t: force_at(counter, a, t) < force)
 
 

@@ -106,9 +106,7 @@ class Target:
 
 @dataclass(frozen=True)
 class Schedule:
-    """The targets of all cycles that are solved. repeats: every later cycle equals the first, and only that
-    is solved.
-    """
+    """The targets of all cycles that are solved. repeats: later cycles equal the first."""
 
     targets: tuple[Target, ...]
     cycles: int = 1
@@ -119,25 +117,21 @@ class Schedule:
         """Number of steps that do not take the load off, without those of repeated cycles."""
         return sum(not target.unloads for target in self.targets)
 
-    def with_forces(self, found: Mapping[tuple[int, int], float]) -> Schedule:
-        """The same steps with forces in place of approaches; found: those of a solved contact, by cycle and
-        number.
-        """
+    def with_forces(self, forces: Mapping[tuple[int, int], float]) -> Schedule:
+        """The same with forces in place of approaches; forces: solved ones by cycle, number."""
         targets = [
             target
             if target.load.approach is None
             else replace(
                 target,
-                load=replace(target.load, force=found[target.cycle, target.number], approach=None),
+                load=replace(target.load, force=forces[target.cycle, target.number], approach=None),
             )
             for target in self.targets
         ]
         return replace(self, targets=tuple(targets))
 
     def of_bare_contact(self, elastic: bool) -> Schedule:
-        """The steps of the contact without coating, for comparison: up to the last peak; of an elastic body
-        the peak alone.
-        """
+        """The steps without coating: up to the last peak; of an elastic body the peak alone."""
         last = max(i for i, target in enumerate(self.targets) if not target.unloads)
         return Schedule(self.targets[last if elastic else 0 : last + 1])
 
@@ -145,9 +139,7 @@ class Schedule:
 def schedule_of(
     loading: Loading, peak_force: float, *, sliding: Sliding, elastic: bool = False, unit: float = 1.0
 ) -> Schedule:
-    """The schedule of a scene's loading. peak_force: in the model's units, an estimate where the
-    approach is given; elastic: no body has a plastic history; unit: of displacement, in m.
-    """
+    """The schedule of a scene's loading; unit: of displacement in m, of the model."""
     repeats = elastic and sliding.repeats
     approach = None if loading.approach is None else loading.approach / unit
     strokes = replace(sliding.strokes, cycles=1 if repeats else loading.cycles)
@@ -169,8 +161,6 @@ def _of_cycle(steps: int, peak: Target, places: Array) -> list[Target]:
 
 
 def unloading(count: int, last: Target) -> Target:
-    """The way back to no force after the target `last`: one elastic step, or `count` equal ones if a point
-    yields.
-    """
+    """The way back from the target `last`: one elastic step, or `count` if a point yields."""
     load = replace(last.load, force=0.0, approach=None)
     return Target(load, last.cycle, last.number + 1, unloads=True, steps_if_yielding=count)

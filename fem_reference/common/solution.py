@@ -53,9 +53,7 @@ class Pair:
 
 @dataclass(frozen=True)
 class Solved(Generic[M]):
-    """The model of a plan and its steps; of a coated one also those of the bare contact, no steps if the
-    coated one failed.
-    """
+    """The model of a plan and its steps, and of a coated one those of the bare contact."""
 
     model: M
     steps: list[Step]
@@ -70,9 +68,7 @@ Keeping = Callable[..., None]
 def coated_then_bare(
     coated: M, bare: M, begin: Pair, *, progress: Progress | None, keep: Keeping
 ) -> Solved[M]:
-    """The steps of the coated contact, then, unless it failed, those of the bare one on the same mesh for
-    comparison: the same up to the last peak if the body can yield; of an elastic one the peak is enough.
-    """
+    """The steps of the coated contact, then, unless it failed, of the bare one on the same mesh."""
     schedule, later = coated.plan.schedule, bare.plan.schedule
 
     def counted(first: int, last: int) -> Progress | None:
@@ -82,7 +78,7 @@ def coated_then_bare(
         coated,
         schedule,
         progress=counted(0, later.loading_steps),
-        keep=lambda now: keep(Pair(now), now, 0, len(later.targets)),
+        keep=lambda record: keep(Pair(record), record, 0, len(later.targets)),
         begin=begin.coated,
     )
     if not steps[-1].state.converged:
@@ -92,7 +88,7 @@ def coated_then_bare(
         bare,
         later.with_forces({(step.cycle, step.number): step.state.force for step in steps}),
         progress=counted(schedule.loading_steps, 0),
-        keep=lambda now: keep(Pair(finished, now), now, len(steps), 0),
+        keep=lambda record: keep(Pair(finished, record), record, len(steps), 0),
         begin=begin.bare,
     )
     return Solved(coated, steps, bare, bare_steps)
@@ -162,11 +158,11 @@ def solve(
     model = method.build(plan)
     clock.ready()
 
-    def keep(now: object, part: Progressed, before: int = 0, after: int = 0) -> None:
+    def keep(record: object, part: Progressed, before: int = 0, after: int = 0) -> None:
         if checkpoint:
             done = before + len(part.steps)
             total = done + len(part.targets) + after
-            checkpoint(Checkpoint.of(plan.model, now, done=done, total=total, cost=clock.times()))
+            checkpoint(Checkpoint.of(plan.model, record, done=done, total=total, cost=clock.times()))
 
     if plan.bare is not None:
         pair = start.record(Pair) if start else Pair()
@@ -176,7 +172,7 @@ def solve(
             model,
             plan.schedule,
             progress=progress,
-            keep=lambda now: keep(now, now),
+            keep=lambda record: keep(record, record),
             begin=start.record(Progressed) if start else None,
             strained=partial(method.peeq_max, model),
         )
@@ -190,8 +186,8 @@ def load_steps(method: Method[P, M, S], scene: Scene, record: Checkpoint | None)
     model = method.build(plan)
     if record is None:
         return model, run(model, plan.schedule)
-    now = record.record(Progressed) if plan.bare is None else record.record(Pair).coated
-    return model, [] if now is None else now.steps
+    reached = record.record(Progressed) if plan.bare is None else record.record(Pair).coated
+    return model, [] if reached is None else reached.steps
 
 
 def result_of(method: Method[P, M, S], solved: Solved[M], clock: Clock) -> Result:
@@ -211,12 +207,12 @@ def result_of(method: Method[P, M, S], solved: Solved[M], clock: Clock) -> Resul
     of_steps = step_tables(model, steps, partial(method.peeq_max, model))
     quantities = quantities_of(method, model, states, fields)
     quantities |= coated_quantities(method, solved, states[first])
-    of_path, found = method.of_path(model, steps, states, fields)
+    of_path, path_quantities = method.of_path(model, steps, states, fields)
     history = {**of_steps.pop("history"), **of_path.pop("history", {})}
     return Result(
         model=plan.model,
         status=status,
-        **of_load(first, quantities | found),
+        **of_load(first, quantities | path_quantities),
         tables={"history": history, **method.tables(model, states, fields), **of_path, **of_steps},
         fields=bodies[first],
         bodies=bodies,
@@ -264,15 +260,13 @@ class Clock:
         self._ready = time.perf_counter()
 
     def times(self) -> dict[str, float]:
-        """Return setup_s and solve_s up to now."""
+        """Return setup_s and solve_s so far."""
         setup, solving = self._ready - self._began, time.perf_counter() - self._ready
         return {"setup_s": self._before["setup_s"] + setup, "solve_s": self._before["solve_s"] + solving}
 
 
 def recorded_states(model: ContactModel, steps: Sequence[Step]) -> dict[str, Equilibrium]:
-    """The states of the tables by name: the peak of the last cycle and what follows it; or the last load
-    that was reached.
-    """
+    """The states of the tables: the last peak and what follows it, or the last load reached."""
     final = steps[-1]
     if not final.state.converged and not (final.unloads and final.cycle == model.plan.schedule.cycles):
         return {LAST: steps[-2].state if len(steps) > 1 else model.virgin()}
@@ -283,9 +277,7 @@ def recorded_states(model: ContactModel, steps: Sequence[Step]) -> dict[str, Equ
 
 
 def verdict(method: Method[P, M, S], solved: Solved[M], peak: S) -> Status:
-    """Status of the load steps, of a coated contact that converged that of the bare one. peak: stresses of
-    the first state.
-    """
+    """Status of the load steps, the bare contact included; peak: stresses of the first state."""
     status = judge(solved.model, solved.steps, peak)
     if solved.bare_model is None or not solved.bare_steps or status is not Status.CONVERGED:
         return status
@@ -294,9 +286,7 @@ def verdict(method: Method[P, M, S], solved: Solved[M], peak: S) -> Status:
 
 
 def judge(model: ContactModel, steps: Sequence[Step], peak: Peeq) -> Status:
-    """Status of the load steps of one contact; the mesh is judged at the largest contact, `peak` are its
-    stresses.
-    """
+    """Status of the load steps of one contact, whose largest contact judges the mesh."""
     states = [step.state for step in steps]
     if not states[-1].converged:
         return Status.NOT_CONVERGED if model.elastic else Status.STEP_CUT_LIMIT
@@ -312,9 +302,7 @@ def judge(model: ContactModel, steps: Sequence[Step], peak: Peeq) -> Status:
 def quantities_of(
     method: Method[P, M, S], model: M, states: Mapping[str, Equilibrium], fields: Mapping[str, S]
 ) -> Quantities:
-    """Every name of QUANTITIES, None where it does not apply to the scene; those of a coating alone come
-    later.
-    """
+    """Every name of QUANTITIES, None where it does not apply; a coating's own come later."""
     first, *_ = states
     peak, s = states[first], fields[first]
     mises_max, mises_depth = method.largest_mises(s)
@@ -381,10 +369,7 @@ def coating_elements(model: ContactModel, layers: int | None) -> dict[str, objec
 
 
 def cost(steps: Sequence[Step], setups: str, clock: Clock) -> dict[str, float | int | None]:
-    """Every name of COST, then `setups`, what a set-up is called, and "linear_iterations".
-
-    Contact and equilibrium share one Newton loop, so that their iterations are the same.
-    """
+    """Every name of COST, `setups`, what a set-up is called, and "linear_iterations"."""
     work = sum((step.work for step in steps), NO_WORK)
     values = {
         **clock.times(),

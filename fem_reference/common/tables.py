@@ -58,24 +58,22 @@ def step_tables(model: ContactModel, steps: Sequence[Step], peeq_max: Strained) 
         out["loops"] = loops
     if model.plan.schedule.cycles > 1:
         peaks = peak_steps(steps)
-        found = cycles_table(model, peaks, peeq_max)
+        table = cycles_table(model, peaks, peeq_max)
         cycles = [step.cycle for step in peaks]
         if any(target.load.ratio < 0 for target in model.plan.schedule.targets):
             signs = [int(np.sign(step.state.load.ratio)) for step in peaks]
-            found = {**found, FRICTION_SIGN: signs}
+            table |= {FRICTION_SIGN: signs}
         if model.plan.dissipates:
             spent = [sum(step.dissipated for step in steps if step.cycle == cycle) for cycle in cycles]
-            found = {**found, DISSIPATED: spent}  # J
+            table |= {DISSIPATED: spent}  # J
         if (judging := model.plan.judging) is not None:
-            found = {**found, **verdict_columns(cycles, verdicts_of(model, steps, judging), judging.period)}
-        out["cycles"] = found
+            table |= verdict_columns(cycles, verdicts_of(model, steps, judging), judging.period)
+        out["cycles"] = table
     return out
 
 
 def history_table(model: ContactModel, steps: Sequence[Step], peeq_max: Strained) -> Table:
-    """One row per load step of every cycle; none for a step that did not converge, whose attempts the
-    residuals have.
-    """
+    """One row per load step of every cycle that converged."""
     unit, rows = model.scales, []
     for step in steps:
         state = step.state
@@ -98,7 +96,7 @@ def history_table(model: ContactModel, steps: Sequence[Step], peeq_max: Strained
     return {name: [row[name] for row in rows] for name in HISTORY}
 
 
-def cycles_table(model: ContactModel, peaks: Sequence[Step], peeq_max: Strained) -> Table:
+def cycles_table(model: ContactModel, peaks: Sequence[Step], peeq_max: Strained) -> dict[str, list[Any]]:
     """Cycles at their peaks, without wear. What does not exist (skewness of a plane, tribofilm) is None."""
     states = [step.state for step in peaks]
     values: Mapping[str, list[float]] = {
@@ -125,8 +123,7 @@ def _yield_strain(model: ContactModel) -> Array:
     """Initial yield stress over Young's modulus at each Gauss point, (n,)."""
     if model.problem.material is None:
         raise ValueError("the body does not yield")
-    found: Array = model.scales.strain * model.problem.material.yield_strain.ravel()
-    return found
+    return model.scales.strain * model.problem.material.yield_strain.ravel()
 
 
 def verdicts_of(model: ContactModel, steps: Sequence[Step], judging: Judging) -> list[Verdict]:
@@ -142,7 +139,7 @@ def verdicts_of(model: ContactModel, steps: Sequence[Step], judging: Judging) ->
 def _periods_of(
     model: ContactModel, steps: Sequence[Step], judging: Judging
 ) -> tuple[list[History], list[Period]]:
-    """The histories at the ends of the periods that were finished, and what each period added."""
+    """The histories at the ends of finished periods, and what each period added."""
     last = {
         target.cycle: target.number
         for target in model.plan.schedule.targets
@@ -153,8 +150,8 @@ def _periods_of(
         for step in steps
         if step.state.converged and step.number >= last[step.cycle] and step.unloads is not judging.loaded
     }
-    found = [ends[cycle] for cycle in sorted(ends) if cycle % judging.period == 0]
-    histories = [each for each in found if each is not None]
+    ended = [ends[cycle] for cycle in sorted(ends) if cycle % judging.period == 0]
+    histories = [history for history in ended if history is not None]
     if not histories:
         return [], []
     unit = model.scales.strain
@@ -163,9 +160,7 @@ def _periods_of(
 
 
 def loops_of(model: ContactModel, steps: Sequence[Step]) -> dict[str, list[Any]]:
-    """The table loops: stress and plastic strain of three Gauss points over the last period; nothing before
-    that ends, or where nothing is judged.
-    """
+    """Stress and plastic strain of three Gauss points over the last period, if judged."""
     judging = model.plan.judging
     histories, periods = ([], []) if judging is None else _periods_of(model, steps, judging)
     if judging is None or len(periods) < 2 or len(periods) < model.plan.schedule.cycles // judging.period:
@@ -193,15 +188,13 @@ def loops_of(model: ContactModel, steps: Sequence[Step]) -> dict[str, list[Any]]
 
 def _six_at(field: Array, at: int) -> Array:
     """Six components of a field (n, n_elements, n_points) at a point; in axial symmetry y is around."""
-    found, values = np.zeros(6), field.reshape(len(field), -1)[:, at]
-    found[AXISYMMETRIC if len(values) == 4 else slice(None)] = values
-    return found
+    six, values = np.zeros(6), field.reshape(len(field), -1)[:, at]
+    six[AXISYMMETRIC if len(values) == 4 else slice(None)] = values
+    return six
 
 
 def element_fields(model: ContactModel, state: Equilibrium, steps: Sequence[Step]) -> dict[str, Array]:
-    """Fields of repeated loading in the elements of the half-space, (n,) or (n, 6): back-stresses of a state,
-    and of the last period its strains and the classes. Means over the Gauss points, of the class the highest.
-    """
+    """Means in the elements of back-stresses, and of the strains and classes of the last period."""
     material, judging, weights = model.problem.material, model.plan.judging, model.body.weights
     out: dict[str, Array] = {}
     if material is None or state.history is None:
@@ -234,9 +227,7 @@ def _added(before: History, after: History, unit: float) -> Period:
 def verdict_summary(model: ContactModel, steps: Sequence[Step]) -> Mapping[str, Any] | None:
     """What a result says of repeated loading; None where nothing is judged, or no period was finished."""
     judging = model.plan.judging
-    if judging is None:
+    verdicts = [] if judging is None else verdicts_of(model, steps, judging)
+    if judging is None or not verdicts:
         return None
-    found = verdicts_of(model, steps, judging)
-    return (
-        summary(found, judging.period, judging.floor * float(_yield_strain(model).min())) if found else None
-    )
+    return summary(verdicts, judging.period, judging.floor * float(_yield_strain(model).min()))

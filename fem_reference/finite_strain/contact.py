@@ -36,10 +36,8 @@ class Placed(Response):
 
 
 class SphereContact(ContactProblem):
-    """One body against a rigid sphere of true geometry. slope: unit of length over its radius, also the
-    unit of strain.
-
-    hencky: the body's material at finite strain; None: small strain, by the material of ContactProblem.
+    """One body against a rigid sphere of true geometry. slope: unit of length over its radius, and
+    of strain; hencky: material at finite strain, None for that of small strain.
     """
 
     def __init__(self, flat: ContactProblem, slope: float, hencky: Hencky | None):
@@ -54,16 +52,14 @@ class SphereContact(ContactProblem):
 
     def place(self, u: Array) -> Array:
         """Radius (n_candidates,) of the deformed surface nodes."""
-        found: Array = self.radii + self.slope * u[self.radial]
-        return found
+        return self.radii + self.slope * u[self.radial]
 
     def gap(self, u: Array, approach: float) -> Array:
         """Vertical gap of the candidates, infinite beside the sphere."""
         x = self.place(u)
         square = 1.0 - (self.slope * x) ** 2
         height = np.where(square > 0.0, x**2 / (1.0 + np.sqrt(np.clip(square, 0.0, None))), np.inf)
-        found: Array = height + u[self.normal[0]] - approach
-        return found
+        return height + u[self.normal[0]] - approach
 
     def respond(self, u: Array, start: History | None) -> Placed:
         """Return the response as ContactProblem does, at finite strain if there is a material for it."""
@@ -121,9 +117,7 @@ class SphereContact(ContactProblem):
         return moved, approach
 
     def _check(self, u: Array) -> None:
-        """Raise NotDefiniteError unless every point keeps a positive volume and no node in reach is beside
-        the sphere.
-        """
+        """Raise NotDefiniteError where an element is turned inside out."""
         if not np.isfinite(u).all():
             raise NotDefiniteError("displacements are not finite")
         plane, hoop = deformation(self.operator.gradient(u), self.slope)

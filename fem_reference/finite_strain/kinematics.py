@@ -19,9 +19,7 @@ from fem_reference.common.arrays import Array
 
 
 class GradientOperator:
-    """grad u at the Gauss points of axisymmetric elements, and what follows for nodal forces and their
-    derivative.
-    """
+    """grad u at the Gauss points of axisymmetric elements, nodal forces and their derivative."""
 
     def __init__(self, basis: Basis, weights: Array):
         """weights: (n_elements, n_points) volume of each point, undeformed."""
@@ -37,8 +35,7 @@ class GradientOperator:
 
     def gradient(self, u: Array) -> Array:
         """(n_elements, n_points, 5) of the displacements (n_dofs,)."""
-        found: Array = (self._flat @ u[self.dofs][:, :, None]).reshape(self._shape[:3])
-        return found
+        return (self._flat @ u[self.dofs][:, :, None]).reshape(self._shape[:3])
 
     def nodal_forces(self, stress: Array) -> Array:
         """(n_dofs,) of the first Piola-Kirchhoff stress (n_elements, n_points, 5)."""
@@ -69,9 +66,7 @@ class Principal:
 
 
 def principal(tensor: Array) -> Principal:
-    """Principal values and axes of tensors (..., 4); where both in the plane are equal, the axes are r and
-    z.
-    """
+    """Principal values and axes of tensors (..., 4); r and z where both in the plane are equal."""
     rr, tt, zz, rz = np.moveaxis(tensor, -1, 0)
     middle, half = 0.5 * (rr + zz), np.hypot(0.5 * (rr - zz), rz)
     angle = 0.5 * np.arctan2(rz, 0.5 * (rr - zz))
@@ -81,9 +76,7 @@ def principal(tensor: Array) -> Principal:
 
 
 def composed(axes: Array, values: Array) -> Array:
-    """(..., 4): sum of values[k] axis_k axis_k^T, for columns of `axes` of any length; the hoop value as it
-    is.
-    """
+    """(..., 4): sum of values[k] axis_k axis_k^T in the plane, and the hoop value."""
     rr, zz = ((axes[..., i, :] ** 2 * values[..., ::2]).sum(axis=-1) for i in (0, 1))
     rz = (axes[..., 0, :] * axes[..., 1, :] * values[..., ::2]).sum(axis=-1)
     return np.stack([rr, values[..., 1], zz, rz], axis=-1)
@@ -108,9 +101,7 @@ def deformation(gradient: Array, strain: float) -> tuple[Array, Array]:
 
 
 def pushed_change(shift: Array, hoop: Array, change: Array) -> Array:
-    """F (1 + change) F^T - 1 of F = 1 + shift, hoop: that of the hoop; without cancellation. change:
-    symmetric (..., 4).
-    """
+    """F (1 + change) F^T - 1 (..., 4) of F = 1 + shift, and of the hoop; without cancellation."""
     rr, tt, zz, rz = np.moveaxis(change, -1, 0)
     turned, F = np.swapaxes(shift, -1, -2), shift + np.eye(2)
     inner = np.stack([np.stack([rr, rz], axis=-1), np.stack([rz, zz], axis=-1)], axis=-2)

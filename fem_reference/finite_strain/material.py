@@ -55,9 +55,7 @@ class Update:
 
 
 class Hencky:
-    """Elastic-plastic material of a body at finite strain, from that of small strain; strains are in the
-    unit `strain`.
-    """
+    """Elastic-plastic material at finite strain, from that of small strain; strain: unit."""
 
     def __init__(self, small: J2, strain: float):
         self.small, self.strain = small, strain
@@ -65,9 +63,7 @@ class Hencky:
         self.bulk = float(small.stiffness[0, :3].sum() / 3.0)
 
     def update(self, gradient: Array, start: History) -> Update:
-        """Stress, tangent and history at grad u (n_elements, n_points, 5), from the history at the start of
-        the step.
-        """
+        """Stress, tangent, history at grad u (n_elements, n_points, 5), from `start`."""
         unit, shear = self.strain, self.small.shear
         plane, hoop = deformation(gradient, unit)
         log_plastic = np.moveaxis(start.plastic_strain, 0, -1) * [1.0, 1.0, 1.0, 0.5]
@@ -97,9 +93,7 @@ class Hencky:
         return Update(piola, np.swapaxes(onto, -1, -2) @ spatial @ onto, stress, history)
 
     def _returned(self, q: Array, peeq: Array) -> tuple[Bools, Array, Array]:
-        """Which points yield (bool), their plastic increment and the slope of the yield stress after it;
-        elsewhere 0, inf.
-        """
+        """Points that yield, plastic increment and slope after it; elsewhere 0 and inf."""
         plastic = self.small.yields(q, peeq)
         step, slope = np.zeros_like(q), np.full_like(q, np.inf)
         if plastic.any():
@@ -125,11 +119,9 @@ class Hencky:
 
 
 def principal_tangent(s: Array, q: Array, step: Array, *, slope: Array, shear: float, bulk: float) -> Array:
-    """(..., 3, 3) consistent tangent C of principal stresses by principal strains, step 4 of
-    `fem_reference.common.plasticity`.
-
-    s, q: deviator and von Mises stress of the trial stress; step, slope: plastic increment and Y' after it,
-    0 and inf where nothing yields.
+    """(..., 3, 3) consistent tangent C in principal values, step 4 of
+    `fem_reference.common.plasticity`; s, q: deviator and von Mises stress of the trial stress;
+    step, slope: 0 and inf without yield.
     """
     N = np.sqrt(1.5) * s / q[..., None]
     ratio, along = step / q, 1.0 / (3.0 * shear + slope)
@@ -137,14 +129,11 @@ def principal_tangent(s: Array, q: Array, step: Array, *, slope: Array, shear: f
         ratio[..., None, None] * DEVIATORIC
         + (along - ratio)[..., None, None] * N[..., :, None] * N[..., None, :]
     )
-    found: Array = bulk + 2.0 * shear * DEVIATORIC - 6.0 * shear**2 * loss
-    return found
+    return bulk + 2.0 * shear * DEVIATORIC - 6.0 * shear**2 * loss
 
 
 def mapping(axes: Array, M: Array, hoop: Array) -> Array:
-    """(..., 5, 5) that takes dF onto dL on the axes; its transpose takes t there onto P. M = F^-1 axes;
-    hoop: of F^-1.
-    """
+    """(..., 5, 5) from dF to dL on the axes, transposed from t to P. M: F^-1 axes; hoop: of F^-1."""
     onto = np.zeros((*hoop.shape, 5, 5))
     for row, k, m in PLANE:
         for column, i, j in PLANE:

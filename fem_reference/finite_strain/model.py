@@ -23,9 +23,7 @@ from fem_reference.finite_strain.material import Hencky
 from sam.scene.schema import Scene
 
 KINDS = ("flat", "sphere", "finite")
-"""The model of the scenes; small strain with the sphere's true geometry on the deformed surface; finite
-strain as well.
-"""
+"""The model of the scenes; with the sphere's true geometry; at finite strain as well."""
 
 
 @dataclass(frozen=True)

@@ -19,19 +19,7 @@ MODULES = {
     "solve": "fem_reference.spatial.solution",
     "worn_cycles": "fem_reference.spatial.worn",
 }
-__all__ = [
-    "Equilibrium",
-    "Model",
-    "Step",
-    "UnsupportedScene",
-    "WornCycle",
-    "check",
-    "left_out",
-    "load_steps",
-    "plan",
-    "solve",
-    "worn_cycles",
-]
+__all__ = list(MODULES)
 
 
 def __getattr__(name: str) -> Any:

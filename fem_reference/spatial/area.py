@@ -41,9 +41,7 @@ def area_of_spots(x: Array, y: Array, pressure: Array, gap: Array, *, clamped: f
 
 
 def edges(line: Array, pressure: Array, gap: Array, inside: Bools) -> Array:
-    """(n - 1, m) places on `line` (n,) where contact ends between neighbours along the first axis, NaN
-    elsewhere.
-    """
+    """(n - 1, m) places on `line` (n,) where contact ends along the first axis, else NaN."""
     places = np.full((line.size - 1, pressure.shape[1]), np.nan)
     slant = slants(inside)
     for first, second in ((0, 1), (1, 0)):  # in contact before the edge, after it
@@ -56,22 +54,15 @@ def edges(line: Array, pressure: Array, gap: Array, inside: Bools) -> Array:
 
 
 def slants(inside: Bools) -> Array:
-    """Cosine between the first axis and the normal of the edge at each node, from differences of the
-    smoothed contact.
-    """
+    """Cosine between the first axis and the normal of the edge, from the smoothed contact."""
     smooth = ndimage.uniform_filter(inside.astype(float), size=3, mode="nearest")
     along, across = np.gradient(smooth)
     length = np.hypot(along, across)
-    found: Array = np.divide(np.abs(along), length, out=np.ones_like(along), where=length > 0.0)
-    return found
+    return np.divide(np.abs(along), length, out=np.ones_like(along), where=length > 0.0)
 
 
 def face(x: Array, y: Array, inside: Bools, along: tuple[Array, Array]) -> tuple[float, float]:
-    """Area in contact of one face, and length of the edge of contact in it.
-
-    x, y: (2,) its sides; inside: (2, 2) corners; along: where the edge crosses the sides along x (2,) and
-    along y (2,).
-    """
+    """Area in contact of one face and length of its edge; along: where this crosses the sides (2,)."""
     along_x, along_y = along
     crossings = ((along_x[0], y[0]), (x[1], along_y[1]), (along_x[1], y[1]), (x[0], along_y[0]))
     points, leaves = [], []
@@ -100,5 +91,4 @@ def crossing(pressure: Array, gap: Array, length: Array, slant: Array) -> Array:
     m = np.minimum(np.cbrt(total / cubic), total / np.maximum(linear, 1e-300))
     for _ in range(50):  # Newton from above the root of a convex function: monotone
         m = m - (cubic * m**3 + linear * m - total) / (3.0 * cubic * m**2 + linear)
-    found: Array = cubic * m**3 / total
-    return found
+    return cubic * m**3 / total

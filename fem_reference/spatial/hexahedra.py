@@ -51,15 +51,12 @@ def strain_operator(basis: Basis) -> Array:
 
 
 def block(lines: Lines) -> MeshHex:
-    """Tensor mesh with the boundaries "surface" (z = 0), "symmetry" (y = 0 of a half) and "far" (the other
-    faces).
-    """
+    """Tensor mesh with the boundaries "surface" (z = 0), "symmetry" (y = 0 of a half) and "far"."""
     x, y, z = lines.x, lines.y, lines.z
 
     def far(p: Array) -> Array:
         sides = (p[0] == x[0]) | (p[0] == x[-1]) | (p[1] == y[-1]) | (p[2] == z[-1])
-        found: Array = sides if lines.half else sides | (p[1] == y[0])
-        return found
+        return sides if lines.half else sides | (p[1] == y[0])
 
     boundaries = {"surface": lambda p: p[2] == 0.0, "far": far}
     if lines.half:

@@ -47,9 +47,7 @@ class Lines:
 
 
 def two_sided(low: float, high: float, size: float, box: float, *, growth: float = GROWTH) -> Array:
-    """Lines uniform from about low <= 0 to about high >= 0, one of them at 0, then growing over `box`
-    beyond both sides.
-    """
+    """Lines uniform from low <= 0 to high >= 0, with 0, then growing over `box` on both sides."""
     below, above = (int(np.ceil(round(reach / size, 9))) for reach in (-low, high))
     core = size * np.arange(-below, above + 1)
     outside = grow(0.0, box, size, growth)

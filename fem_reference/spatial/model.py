@@ -102,8 +102,7 @@ class Model(ContactModel):
             y = np.zeros_like(y)  # the other half has the opposite sign
         tx, ty = direction
         cx, cy = (self.scales.strain * curvature for curvature in self.plan.curvature)
-        found: Array = tx * cx * x + ty * cy * y
-        return found
+        return tx * cx * x + ty * cy * y
 
     def on_surface(self, values: Array) -> Array:
         """(nx + 1, ny + 1) from values at the candidates, zero elsewhere."""
@@ -125,9 +124,7 @@ class Model(ContactModel):
         return contact_area(*self._edge_fields(state), half=self.lines.half)
 
     def _edge_fields(self, state: Equilibrium) -> tuple[Array, Array, Array, Array]:
-        """Mesh lines x and y, and on them pressure and gap, none negative: what the edge of the contact is
-        read from.
-        """
+        """Mesh lines, pressure and gap, not negative, of which the edge is read."""
         gap = np.clip(self.on_surface(state.gap), 0.0, None)
         return self.lines.x, self.lines.y, np.clip(self.nodal_pressure(state), 0.0, None), gap
 
@@ -141,8 +138,7 @@ class Model(ContactModel):
 
     def contact_forces(self, state: Equilibrium) -> Array:
         """(n_candidates,) forces of the counter-body on the nodes, from the displacements."""
-        found: Array = self.body.internal_force(self.stress(state))[self.problem.normal]
-        return found
+        return self.body.internal_force(self.stress(state))[self.problem.normal]
 
     def ratio(self, state: Equilibrium) -> Array:
         """(nx + 1, ny + 1) tangential over normal traction."""
@@ -177,16 +173,13 @@ class Model(ContactModel):
         return float((forces.sum(axis=1) * self.lines.x).sum() / (forces.sum() or 1.0))
 
     def starting_set(self, force: float, previous: Equilibrium) -> Bools:
-        """Nodes that probably touch: the ellipse of Hertz, or that of the previous area, scaled with the
-        force.
-        """
+        """Nodes that probably touch: Hertz's ellipse, or of the previous area, scaled."""
         radius, share = self.plan.expected, force / self.scales.peak_force
         if previous.force > 0.0:
             radius, share = np.sqrt(self.area(previous) / np.pi), force / previous.force
         radius *= share ** (PLASTIC_GROWTH if previous.yielded else HERTZ_GROWTH)
         (x, y), (a, b) = self.places, self.plan.axes
-        found: Bools = np.hypot((x - self.place[0]) / a, (y - self.place[1]) / b) <= radius
-        return found
+        return np.hypot((x - self.place[0]) / a, (y - self.place[1]) / b) <= radius
 
     def tables_of_patch(self, states: Mapping[str, Equilibrium]) -> dict[str, Table]:
         """The tables that smooth bodies do not have: none."""
@@ -224,13 +217,11 @@ def build(plan: SpatialPlan) -> Model:
 
 def paraboloid(curvature: tuple[float, float], x: Array, y: Array) -> Array:
     """Gap at a distance (x, y) from the apex of the counter-body."""
-    found: Array = 0.5 * (curvature[0] * x**2 + curvature[1] * y**2)
-    return found
+    return 0.5 * (curvature[0] * x**2 + curvature[1] * y**2)
 
 
 def surface_nodes(solid: HexSolid, lines: Lines) -> Integers:
     """(nx + 1, ny + 1) numbers of the nodes at z = 0."""
     p = solid.basis.mesh.p
     top = np.flatnonzero(p[2] == 0.0)
-    nodes: Integers = top[on_grid(p[:, top], (lines.x.size, lines.y.size))]
-    return nodes
+    return top[on_grid(p[:, top], (lines.x.size, lines.y.size))]

@@ -30,10 +30,8 @@ class UnsolvedError(ArithmeticError):
 
 
 class Preconditioner:
-    """Approximate inverse of the stiffness matrix between the free degrees of freedom.
-
-    pattern: of the stiffness matrix, three degrees of freedom per node in turn; points: (3, n_nodes); far:
-    (n_nodes,) bool, nodes that are never free.
+    """Approximate inverse between the free degrees of freedom. points: (3, n_nodes); far:
+    (n_nodes,) bool.
     """
 
     def __init__(self, pattern: sp.csr_matrix, points: Array, far: Bools):
@@ -72,7 +70,7 @@ class Preconditioner:
             max_coarse=COARSEST,
         )
         *finer, last = made.levels
-        levels, coarsest = [Level(each.A, each.P, each.R) for each in finer], Coarsest(last.A)
+        levels, coarsest = [Level(level.A, level.P, level.R) for level in finer], Coarsest(last.A)
 
         def apply(r: Array) -> Array:
             z = np.zeros(r.size)
@@ -103,8 +101,7 @@ class Level:
 
     def residual(self, x: Array) -> Array:
         """Return b - A x for the x of `forwards`."""
-        found: Array = self.diagonal * x - self.upper @ x
-        return found
+        return self.diagonal * x - self.upper @ x
 
     def backwards(self, x: Array, b: Array) -> Array:
         """Return x after a sweep backwards: (upper) x = b less what is below the diagonal."""
@@ -124,9 +121,7 @@ def v_cycle(levels: Sequence[Level], coarsest: Coarsest, b: Array) -> Array:
 
 
 class Coarsest:
-    """Direct solution on the coarsest level. Rows of candidates that an aggregate has not, all zero, give
-    zero. Raises UnsolvedError.
-    """
+    """Direct solution of the coarsest level; rows of zeros give zero. Raises UnsolvedError."""
 
     def __init__(self, A: sp.sparray):
         dense = A.toarray()
@@ -139,8 +134,7 @@ class Coarsest:
 
     def __call__(self, b: Array) -> Array:
         """Return the solution for the right-hand side b."""
-        found: Array = cho_solve(self.factor, np.where(self.there, b, 0.0))
-        return found
+        return cho_solve(self.factor, np.where(self.there, b, 0.0))
 
 
 def rigid_modes(points: Array) -> Array:

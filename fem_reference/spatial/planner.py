@@ -34,9 +34,7 @@ ALLOWS = "the three-dimensional finite-element model allows"
 SHAPES = ("sphere", "ellipsoid")
 ROUGH_SHAPES = (*SHAPES, "flat")
 WIDTH = 1.4
-"""Uniform part of the mesh to both sides of the contact, in its radii: the edge of contact never comes to
-larger elements.
-"""
+"""Uniform part of the mesh to both sides of the contact in its radii: the edge stays inside."""
 DEPTH = 1.2
 """Uniform part of the mesh in depth, in radii of the contact: the largest plastic strain is well inside."""
 
@@ -65,9 +63,7 @@ class SpatialPlan(Plan):
 
     @property
     def coating_layers(self) -> int | None:
-        """Layers of elements above the lower face of the coating, also where the material of the half-space
-        takes its place.
-        """
+        """Layers of elements above the lower face of the coating."""
         return None if self.interface is None else int(np.searchsorted(self.lines.z, self.interface))
 
     @property
@@ -189,9 +185,7 @@ def check(scene: Scene) -> None:
 
 
 def _combinations(scene: Scene) -> list[Problem]:
-    """What cannot be put together here: a rough body and a coating, given tractions and a map of
-    coefficients.
-    """
+    """What cannot be put together: rough and coated, a renewed surface, a pressure and a map."""
     problems, coating = [], scene.body.coating
     first, opposite = scene.patch_surface, scene.counter_surface
     if first is not None and coating is not None:
@@ -216,24 +210,19 @@ def curvatures(scene: Scene) -> tuple[float, float]:
 
 
 def semi_axes(curvature: tuple[float, float]) -> tuple[float, float]:
-    """Semi-axes along x and y of the contact over the radius of that of a sphere, about: (ratio of
-    curvatures)^(1/3).
-    """
+    """Semi-axes along x and y over a sphere's contact radius: (ratio of curvatures)^(1/3)."""
     along_x, along_y = curvature
     return (along_y / along_x) ** (1.0 / 3.0), (along_x / along_y) ** (1.0 / 3.0)
 
 
 def friction_weights(scene: Scene, lines: Lines, units: Scales) -> Array:
-    """(nx + 1, ny + 1) coefficient of friction over the largest one: of the map's cell that holds the node,
-    or the nearest.
-    """
+    """(nx + 1, ny + 1) coefficient of friction at the nodes over the largest one."""
     if scene.constant_friction or scene.coefficient == 0.0:
         return np.ones((lines.x.size, lines.y.size))
-    found, cells = required(required(scene.friction).path), []
-    for line, side, n in zip((lines.x, lines.y), found.extent, found.cells, strict=True):
+    grid_map, cells = required(required(scene.friction).path), []
+    for line, side, n in zip((lines.x, lines.y), grid_map.extent, grid_map.cells, strict=True):
         cells.append(np.clip(np.floor((line * units.length / side + 0.5) * n), 0, n - 1).astype(int))
-    weights: Array = required(found.values)[np.ix_(*cells)] / scene.coefficient
-    return weights
+    return required(grid_map.values)[np.ix_(*cells)] / scene.coefficient
 
 
 def _grown(scene: Scene) -> float:
@@ -266,9 +255,7 @@ def choose_lines(scene: Scene) -> tuple[Lines, tuple[float, float, float]]:
 
 
 UNIFORM_DEPTH = 0.2
-"""Depth over the shorter side of a patch of square cells down to which elements are cubes; spots of a few
-asperities take a tenth.
-"""
+"""Depth of the cubes over the shorter side of a patch; spots of a few asperities take a tenth."""
 DEPTH_GROWTH = 1.6
 """Ratio of neighbouring elements below the cubes; 1.2 changes pressures and loads of spots by 3e-4."""
 SIDE_GROWTH = 2.2
@@ -315,9 +302,7 @@ def choose_patch(scene: Scene) -> Patch:
 
 
 def rough_scales(scene: Scene, patch: Patch) -> Scales:
-    """Units of a rough contact: half of the longer side, and the displacement that makes the force 4/3, as
-    of a sphere; or the approach that is given.
-    """
+    """Units of a rough contact: half the longer side; the approach, or what makes the force 4/3."""
     modulus, length = contact_modulus(scene), 0.5 * max(patch.sides)
     if scene.loading.approach is not None:
         return Scales(length, scene.loading.approach, modulus, 4.0 / 3.0)

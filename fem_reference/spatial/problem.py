@@ -35,11 +35,7 @@ from fem_reference.spatial.hexahedra import HexSolid
 from fem_reference.spatial.multigrid import Preconditioner, UnsolvedError, solve
 
 ACCURACY = 3e-3
-"""Residual of a linear solve over its right-hand side; the loop around it measures the forces afterwards.
-
-From 1e-1 to 1e-4 the linear iterations of a step are the same to a tenth; here the sum with those of Newton
-takes least time.
-"""
+"""Residual of a linear solve over its right-hand side: from 1e-1 to 1e-4 this costs least time."""
 SLOWER = 2
 """A hierarchy is made anew after a solve of so many times the iterations of its first one."""
 NodalForces = Callable[[Load], Array]
@@ -47,9 +43,7 @@ NodalForces = Callable[[Load], Array]
 
 @dataclass(frozen=True)
 class System:
-    """A linear system: the product with its matrix, its right-hand side, and whether the matrix is
-    symmetric.
-    """
+    """A linear system: product with its matrix, right-hand side, symmetry."""
 
     apply: Callable[[Array], Array]
     right: Array
@@ -123,11 +117,7 @@ class SlidingProblem:
         return u
 
     def _coating_effect(self, place: tuple[float, float], offset: Array, sliding: bool) -> Array:
-        """(2, 3, n) what the coating changes far away under unit forces along z and x at `place`; computed
-        once for each.
-
-        The second ones are zero unless `sliding`.
-        """
+        """`coating_effect` at `place`, computed once for each."""
         key = *place, sliding
         if key not in self._coating_effects and self.solid.coating is not None:
             effect = coating_effect(self.solid.coating, self.elastic, offset, sliding=sliding)
@@ -135,9 +125,7 @@ class SlidingProblem:
         return self._coating_effects[key]
 
     def respond(self, u: Array, start: History | None) -> Response:
-        """Response at u in a step that starts from `start`; the caller decides whether its end becomes
-        history.
-        """
+        """Response at u in a step from `start`; the caller decides whether it becomes history."""
         if self.material is None or start is None:
             return Response(self.solid.stiffness @ u, self.solid.stiffness, None)
         update = self.material.update(self.solid.strain(u), start)
@@ -146,13 +134,11 @@ class SlidingProblem:
 
     def gap(self, u: Array, approach: float) -> Array:
         """gap0 + u_z - delta at the candidates."""
-        found: Array = self.gap0 + u[self.normal] - approach
-        return found
+        return self.gap0 + u[self.normal] - approach
 
     def reaction(self, response: Response) -> Array:
         """Force (n_candidates,) of the counter-body on each candidate, if that is in contact."""
-        found: Array = response.force[self.normal]
-        return found
+        return response.force[self.normal]
 
     def free(self, active: Bools) -> Bools:
         """Degrees of freedom (bool) that are not prescribed."""
@@ -167,9 +153,7 @@ class SlidingProblem:
         return slipping
 
     def overall(self, load: Load, response: Response, active: Bools) -> Load:
-        """The load with the ratio of the whole tangential force to the whole normal one, as of the
-        reactions in `response`.
-        """
+        """The load with the ratio of the whole forces, as of the reactions in `response`."""
         if not active.any() or (self.weights == 1.0).all():
             return load
         pressing = np.clip(response.force[self.normal[active]], 0.0, None)
@@ -177,9 +161,7 @@ class SlidingProblem:
         return replace(load, ratio=load.ratio * float(share))
 
     def out_of_balance(self, response: Response, active: Bools, load: Load) -> float:
-        """Largest force on a free degree of freedom, or what the multipliers lack of the force; of the
-        whole body.
-        """
+        """Largest force on a free degree of freedom or missing in the sum."""
         force = response.force - (self.tractions(load) if self.tractions else 0.0)
         inside = np.abs(self.unbalanced(force, active, load.ratio)[self.free(active)]).max()
         lacking = abs(force[self.normal[active]].sum() - self.share * load.force) if active.any() else 0.0
@@ -188,8 +170,7 @@ class SlidingProblem:
     def newton_step(
         self, u: Array, response: Response, active: Bools, *, load: Load, kept: Kept
     ) -> tuple[Array, float]:
-        """Displacements and approach that balance the forces linearised at u, with the given nodes in
-        contact.
+        """Displacements and approach that balance the forces linearised at u.
 
         Without contact the approach is that of first touch. Raises NotDefiniteError.
         """

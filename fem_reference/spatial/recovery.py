@@ -114,31 +114,21 @@ def with_face(part: Stresses, depth: float) -> Stresses:
 
 
 def with_interface(s: Stresses) -> list[Stresses]:
-    """The layers of a body, from above: of a coated one its coating, and the body with its face at the
-    interface.
-    """
+    """The layers from above: of a coated body its coating, and the rest with its upper face."""
     return [s] if s.interface is None else [s.layer(True), with_face(s.layer(False), s.interface)]
 
 
 def at_zero(values: Array, line: Array, axis: int) -> Array:
-    """Values of elements between the planes of `line`, interpolated to its zero; even where the line begins
-    there.
-
-    Where zero is the middle of an element, the value of that.
-    """
+    """Elements between the planes of `line`, interpolated to its zero; even where it begins there."""
     zero = int(np.searchsorted(line, 0.0))
     if line[zero] > 0.0:
-        found: Array = np.take(values, zero - 1, axis=axis)
-        return found
+        return np.take(values, zero - 1, axis=axis)
     places = [zero - 2, zero - 1, zero, zero + 1] if zero else [1, 0, 0, 1]
     return np.moveaxis(np.take(values, places, axis=axis), axis, -1) @ MIDPOINT
 
 
 def largest_mises(s: Stresses) -> Peak:
-    """Largest von Mises stress in Pa and its depth in m, see `largest`; never across an interface.
-
-    Where it has yielded it is that of the elements: interpolated stresses can pass the yield stress.
-    """
+    """Largest von Mises stress in Pa and its depth in m; of an element that has yielded as it is."""
     if s.coating_layers is not None:
         return max((largest_in_layer(s, coating) for coating in (True, False)), key=lambda peak: peak[0])
     q, plane = mises(s.stress), mises(s.plane)
@@ -146,9 +136,7 @@ def largest_mises(s: Stresses) -> Peak:
 
 
 def largest_in_layer(s: Stresses, coating: bool) -> Peak:
-    """Largest von Mises stress in Pa of the coating or below it, its faces included, and its depth in m;
-    see `with_face`.
-    """
+    """Largest von Mises stress in Pa of the coating or below it, with its faces, and depth in m."""
     part, interface = s.layer(coating), required(s.interface)
     if not part.peeq.any():
         for depth in (0.0, interface) if coating else (interface,):

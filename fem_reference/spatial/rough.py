@@ -28,9 +28,7 @@ from sam.scene.surface import Surface, heights, mean_deviation, with_relief
 OVERLAP_LENGTH = 0.75 * np.pi
 """Overlapping volume of a sphere and a plane times E* over the force, in contact radii: 3 pi/4 by Hertz."""
 SPOTS_GROWTH = 2.0 / 3.0
-"""Power of the force with which the area of elastic spots of Hertz grows; of plastic ones it grows as the
-force itself.
-"""
+"""Power of the force of the area of elastic spots (Hertz); of plastic ones it is 1."""
 Place = tuple[float, float]
 """(x, y) of the counter-body."""
 
@@ -48,9 +46,7 @@ class RoughModel(Model):
 
     @cached_property
     def initial_gap(self) -> Array:
-        """(nx + 1, ny + 1) gap before loading, zero where the bodies touch first, infinite outside of the
-        patch.
-        """
+        """(nx + 1, ny + 1) gap before loading, 0 at first touch, infinite beside the patch."""
         return gap_of(self.plan, between(self.plan, self.heights + self.opposite, self.place), self.first)
 
     def placed(self, load: Load) -> Self:
@@ -86,11 +82,7 @@ class RoughModel(Model):
         return max(int(state.active.sum()) for state in states) < FEWEST_NODES
 
     def starting_set(self, force: float, previous: Equilibrium) -> Bools:
-        """Nodes that probably touch: from no contact see `overlapping`, else as many more or fewer as the
-        force.
-
-        Those in contact in the order of their pressure, then the others in that of their gap.
-        """
+        """Nodes that probably touch: `overlapping`, or by pressure, gap and force of before."""
         areas = self.lines.areas.ravel()[self.candidates]
         if previous.force == 0.0:
             return overlapping(self.initial_gap, self.lines.areas, force).ravel()[self.candidates]
@@ -143,12 +135,12 @@ def build(plan: SpatialPlan) -> RoughModel:
     lines, bodies, patch, start = plan.lines, plan.bodies, of_rough(plan), start_of(plan)
     solid = HexSolid(block(lines), bodies.elastic[0])
     surface = surface_nodes(solid, lines)
-    flat = np.zeros(patch.cells)
-    found = flat if patch.surface is None else heights_of(patch, patch.surface)
-    opposite = flat
+    body = opposite = np.zeros(patch.cells)
+    if patch.surface is not None:
+        body = heights_of(patch, patch.surface)
     if patch.counter is not None:
         opposite = counter_heights_of(patch, patch.counter, in_metres(plan, start))
-    inside = between(plan, found + opposite, start)
+    inside = between(plan, body + opposite, start)
     gap = gap_of(plan, inside, float(inside.min()))
     candidates = np.argsort(gap, axis=None, kind="stable")[: patch.cells[0] * patch.cells[1]]
     touching = Candidates(
@@ -165,7 +157,7 @@ def build(plan: SpatialPlan) -> RoughModel:
         share=lines.share,
         material=material(bodies, plan.scales, solid),
     )
-    return RoughModel(plan, problem, surface, candidates, found, opposite, float(inside.min()), place=start)
+    return RoughModel(plan, problem, surface, candidates, body, opposite, float(inside.min()), place=start)
 
 
 def of_rough(plan: SpatialPlan) -> Patch:
@@ -177,12 +169,16 @@ def of_rough(plan: SpatialPlan) -> Patch:
 
 def heights_of(patch: Patch, surface: Surface) -> Array:
     """(nx, ny) heights of the body in m at the centres of the cells, positive out of it."""
-    return _at_centres(patch, surface)
+    x, y = patch.centres
+    raw = heights(surface, x, y, patch.sides)
+    if not patch.relief:
+        return raw
+    return with_relief(raw, (x, y), patch.sides, mean_deviation(surface, patch.sides))
 
 
 def counter_heights_of(patch: Patch, surface: Surface, place: Place) -> Array:
     """The same of the counter-body at a place in m, positive out of that."""
-    return _at_centres(patch, surface) if patch.strip is None else patch.strip.at(0, place)
+    return heights_of(patch, surface) if patch.strip is None else patch.strip.at(0, place)
 
 
 def start_of(plan: SpatialPlan) -> Place:
@@ -196,17 +192,9 @@ def in_metres(plan: SpatialPlan, place: Place) -> Place:
     return place[0] * plan.scales.length, place[1] * plan.scales.length
 
 
-def _at_centres(patch: Patch, surface: Surface) -> Array:
-    x, y = patch.centres
-    found: Array = heights(surface, x, y, patch.sides)
-    if not patch.relief:
-        return found
-    return with_relief(found, (x, y), patch.sides, mean_deviation(surface, patch.sides))
-
-
-def between(plan: SpatialPlan, found: Array, place: Place) -> Array:
+def between(plan: SpatialPlan, both: Array, place: Place) -> Array:
     """(nx, ny) in m: the counter-body at a place less the heights of both bodies."""
-    patch, (x0, y0), inside = of_rough(plan), in_metres(plan, place), -found
+    patch, (x0, y0), inside = of_rough(plan), in_metres(plan, place), -both
     x, y = patch.centres
     if patch.radii is not None:
         rx, ry = patch.radii
@@ -221,12 +209,10 @@ def gap_of(plan: SpatialPlan, inside: Array, first: float) -> Array:
 
 def on_mesh(plan: SpatialPlan, inside: Array, beside: float) -> Array:
     """(nx + 1, ny + 1) at all surface nodes, of values (nx, ny) at those of the patch."""
-    found = np.full((plan.lines.x.size, plan.lines.y.size), beside)
-    i, j = (
-        slice((nodes - n) // 2, (nodes + n) // 2) for nodes, n in zip(found.shape, inside.shape, strict=True)
-    )
-    found[i, j] = inside
-    return found
+    field = np.full((plan.lines.x.size, plan.lines.y.size), beside)
+    i, j = ((nodes - n) // 2 for nodes, n in zip(field.shape, inside.shape, strict=True))
+    field[i : i + inside.shape[0], j : j + inside.shape[1]] = inside
+    return field
 
 
 def surface_table(state: str, model: RoughModel, equilibrium: Equilibrium) -> Table:

@@ -38,18 +38,13 @@ VTK_CORNERS = [0, 3, 6, 2, 1, 5, 7, 4]
 
 
 def axis_table(state: str, s: Stresses) -> dict[str, Any]:
-    """Stresses and strains under the origin, at the depths of the centres of the elements; at the interface
-    of a coating with the values below it.
-    """
+    """Stresses and strains under the origin, at the centres of elements and below the interface."""
     layers = with_interface(s)
     return stacked([columns(AXIS, [state, p.z, p.axis_peeq, mises(p.axis), *p.axis]) for p in layers])
 
 
 def line_table(state: str, model: Model, equilibrium: Equilibrium, s: Stresses) -> dict[str, Any]:
-    """Surface nodes on y = 0 from one side of the block to the other. No gap where the pressure is given.
-
-    plastic_shear_m: see `plastic_shear`; it and ux_m without friction: NaN.
-    """
+    """Surface nodes on y = 0; NaN without a gap, and in ux_m and plastic_shear_m without friction."""
     unit, y = model.scales, model.lines.y
     ux, _, uz = (on_plane(equilibrium.u[dofs[model.surface]], y) for dofs in model.body.basis.nodal_dofs)
     gap = on_plane(model.at(equilibrium.load).initial_gap, y) + uz - equilibrium.approach
@@ -64,9 +59,7 @@ def line_table(state: str, model: Model, equilibrium: Equilibrium, s: Stresses) 
 
 
 def on_plane(values: Array, line: Array) -> Array:
-    """Values at zero of those (..., n) on the planes of `line` (n,); the mean of both sides if no plane is
-    there.
-    """
+    """Values at zero of those (..., n) on the planes of `line` (n,), or the mean of both sides."""
     zero = int(np.searchsorted(line, 0.0))
     return values[..., zero] if line[zero] == 0.0 else 0.5 * (values[..., zero - 1] + values[..., zero])
 
@@ -77,9 +70,7 @@ def at_origin(values: Array, model: Model) -> float:
 
 
 def plastic_shear(model: Model, s: Stresses) -> Array:
-    """(nx,) in m: what the surface moves along x by the plastic shear below it, -integral of 2 e_p_xz over
-    z, at y = 0.
-    """
+    """(nx,) in m: what plastic shear moves the surface along x, -integral of 2 e_p_xz over z."""
     if s.plastic_strain is None:
         return np.zeros(s.x.size)
     in_plane = at_zero(s.plastic_strain[4], model.lines.y, 1)
@@ -87,11 +78,7 @@ def plastic_shear(model: Model, s: Stresses) -> Array:
 
 
 def plane_table(state: str, s: Stresses) -> dict[str, Any]:
-    """The plane y = 0, to which the elements beside it are extrapolated, at the x and z of their centres, x
-    by x.
-
-    At the interface of a coating as well, with the values below it.
-    """
+    """The plane y = 0, extrapolated, at the centres of the elements and below an interface, x by x."""
     layers = with_interface(s)
     x, z = np.meshgrid(s.x, np.concatenate([part.z for part in layers]), indexing="ij")
     peeq, plane = (
@@ -101,11 +88,7 @@ def plane_table(state: str, s: Stresses) -> dict[str, Any]:
 
 
 def cut_table(state: str, model: Model, equilibrium: Equilibrium, s: Stresses) -> dict[str, Any]:
-    """The plane y = const through the node of the largest pressure: the mean of the elements on both of its
-    sides.
-
-    In y = 0 the values of `plane_table`, of which the elements beside it are no better ones.
-    """
+    """The plane y = const through the largest pressure: the mean of the elements beside it."""
     pressure = model.nodal_pressure(equilibrium)
     j = int(np.unravel_index(pressure.argmax(), pressure.shape)[1])
     y = float(model.lines.y[j])
@@ -122,9 +105,7 @@ def cut_table(state: str, model: Model, equilibrium: Equilibrium, s: Stresses) -
 
 
 def field_mesh(model: Model, equilibrium: Equilibrium, s: Stresses) -> FieldMesh:
-    """The block (of a half: y >= 0), pressure and displacement at the nodes, stress and plastic strain in
-    the elements.
-    """
+    """The block: pressure and displacement at the nodes, stress and strain in the elements."""
     unit, mesh = model.scales, model.problem.mesh
     pressure = np.zeros(mesh.p.shape[1])
     pressure[model.surface] = model.nodal_pressure(equilibrium) * unit.pressure
@@ -146,9 +127,7 @@ def field_mesh(model: Model, equilibrium: Equilibrium, s: Stresses) -> FieldMesh
 
 
 def surface_grid(model: Model, equilibrium: Equilibrium) -> GridFields:
-    """The surface nodes (of a half: y >= 0): pressure, displacement, with friction traction and coefficient,
-    and the gap where it is finite everywhere.
-    """
+    """The surface nodes: pressure, displacement, friction, and the gap where it is finite."""
     unit, pressure = model.scales, model.nodal_pressure(equilibrium) * model.scales.pressure
     u = equilibrium.u[model.body.basis.nodal_dofs[:, model.surface]] * unit.displacement
     points = {"p_Pa": pressure, "displacement_m": u}
@@ -233,7 +212,7 @@ def _contact_quantities(model: Model, peak: Equilibrium) -> Quantities:
     """Quantities of the contact at the peak."""
     unit, area = model.scales, model.contact_area(peak)
     centre = at_origin(model.nodal_pressure(peak), model) * unit.pressure
-    found = {
+    quantities = {
         "force_N": model.plan.force * model.share(peak),
         "contact_area_m2": area,
         "contact_radius_m": float(np.sqrt(area / np.pi)),
@@ -241,17 +220,17 @@ def _contact_quantities(model: Model, peak: Equilibrium) -> Quantities:
         "pressure_centroid_x_m": model.centroid(peak) * unit.length,
     }
     if model.plan.sliding.coefficient > 0.0:
-        found["tangential_displacement_center_m"] = _centre(model, peak, 0)
-    return found
+        quantities["tangential_displacement_center_m"] = _centre(model, peak, 0)
+    return quantities
 
 
 def _residual_quantities(model: Model, left: Equilibrium, s: Stresses) -> Quantities:
     """Quantities of the surface after unloading."""
-    found: Quantities = {"residual_uz_center_m": _centre(model, left, 2)}
+    quantities: Quantities = {"residual_uz_center_m": _centre(model, left, 2)}
     if model.plan.sliding.coefficient > 0.0:
-        found["residual_ux_center_m"] = _centre(model, left, 0)
-        found["plastic_shear_center_m"] = float(np.interp(0.0, s.x, plastic_shear(model, s)))
-    return found
+        quantities["residual_ux_center_m"] = _centre(model, left, 0)
+        quantities["plastic_shear_center_m"] = float(np.interp(0.0, s.x, plastic_shear(model, s)))
+    return quantities
 
 
 def _centre(model: Model, state: Equilibrium, component: int) -> float:
@@ -266,25 +245,23 @@ def _of_path(
     """What a counter-body that moves adds to the tables and quantities."""
     if not model.plan.sliding.moves:
         return {}, {}
-    found: tuple[dict[str, Table], Quantities] = import_module(TRACK).path_results(
-        model, steps, states, fields
-    )
-    return found
+    track = import_module(TRACK)
+    return track.path_results(model, steps, states, fields)
 
 
 def _tables(
     model: Model, states: Mapping[str, Equilibrium], fields: Mapping[str, Stresses]
 ) -> dict[str, Table]:
     """Tables of the states."""
-    (name, first), *_ = states.items()
+    (shown, first), *_ = states.items()
     out = {
-        "axis": stacked([axis_table(each, fields[each]) for each in states]),
-        "line": stacked([line_table(each, model, states[each], fields[each]) for each in states]),
-        "plane": stacked([plane_table(each, fields[each]) for each in states]),
+        "axis": stacked([axis_table(name, fields[name]) for name in states]),
+        "line": stacked([line_table(name, model, states[name], fields[name]) for name in states]),
+        "plane": stacked([plane_table(name, fields[name]) for name in states]),
     }
     leaves = bool(model.plan.sliding.places.any())  # the origin
     if first.force and (leaves or model.plan.kind == "rough"):
-        out["cut"] = cut_table(name, model, first, fields[name])
+        out["cut"] = cut_table(shown, model, first, fields[shown])
     return out | model.tables_of_patch(states)
 
 

@@ -20,11 +20,7 @@ POINTS = 4
 
 
 def hertz_forces(x: Array, y: Array, centre: tuple[float, float]) -> Array:
-    """(nx, ny) consistent nodal forces of 3/(2 pi) sqrt(1 - r^2), the Hertz pressure of unit force and
-    radius, at `centre`.
-
-    Integrals of pressure times bilinear shape function on the mesh lines x (nx,), y (ny,).
-    """
+    """(nx, ny) consistent nodal forces, on the lines x, y, of Hertz's pressure at `centre`."""
     (px, hats_x), (py, hats_y) = (_hats(line) for line in (x, y))
     pressure = hertz_pressure(np.hypot(px[:, None] - centre[0], py[None, :] - centre[1]))
     return hats_x @ pressure @ hats_y.T
@@ -66,10 +62,8 @@ def contact_area(x: Array, y: Array, pressure: Array, gap: Array, *, half: bool)
 
 
 def _edge(line: Array, others: Array, pressure: Array, gap: Array) -> Array:
-    """(2, n) places at which contact ends on lines along the first axis: `line` (nx,) and `others` (ny,) from
-    the centre.
-    """
-    inside, found, width = pressure > 0.0, [], np.gradient(others)
+    """(2, n) places where contact ends on lines along the first axis, from the centre."""
+    inside, edge, width = pressure > 0.0, [], np.gradient(others)
     for first, second in ((0, 1), (1, 0)):  # leaving the contact upwards, downwards
         here, there = slice(first, line.size - second), slice(second, line.size - first)
         i, j = np.nonzero(inside[here] & ~inside[there])
@@ -77,8 +71,8 @@ def _edge(line: Array, others: Array, pressure: Array, gap: Array) -> Array:
         u, v = start / step + 0.5, others[j] / width[j]  # in elements
         slant, size = np.abs(u) / np.hypot(u, v), np.hypot(u, v) / np.hypot(u / step, v / width[j])
         share = edge_share(pressure[here][i, j], gap[there][i, j], size, np.maximum(slant, STEEP))
-        found.append(np.stack([start + step * share, others[j]])[:, slant >= STEEP])
-    return np.concatenate(found, axis=1)
+        edge.append(np.stack([start + step * share, others[j]])[:, slant >= STEEP])
+    return np.concatenate(edge, axis=1)
 
 
 STEEP = np.sqrt(0.5)
@@ -100,5 +94,5 @@ def edge_share(pressure: Array, gap: Array, size: Array, slant: Array) -> Array:
     as nodes in contact clamp the surface beyond the edge; on a line with the cosine `slant` to the normal of
     the edge by OBLIQUE sin^2 of an element more. All (n,), pressure and gap with E* = 1.
     """
-    found: Array = SHARE(pressure / (pressure + 0.75 * gap / size))
-    return found - OBLIQUE * (1.0 - slant**2) / slant
+    straight: Array = SHARE(pressure / (pressure + 0.75 * gap / size))
+    return straight - OBLIQUE * (1.0 - slant**2) / slant

@@ -49,8 +49,7 @@ class Track:
     @cached_property
     def ends(self) -> Array:
         """(2, 2) start and end."""
-        found: Array = self.model.plan.sliding.places[[0, -1]] * self.model.scales.length
-        return found
+        return self.model.plan.sliding.places[[0, -1]] * self.model.scales.length
 
     @cached_property
     def length(self) -> float:
@@ -60,8 +59,7 @@ class Track:
     @cached_property
     def direction(self) -> Array:
         """(2,) unit vector from start to end."""
-        found: Array = (self.ends[1] - self.ends[0]) / self.length
-        return found
+        return (self.ends[1] - self.ends[0]) / self.length
 
     @property
     def along_x(self) -> bool:
@@ -81,8 +79,7 @@ class Track:
 
     def way(self, x: Array | float) -> Array:
         """Distances of places on a path along x from its start."""
-        found: Array = (np.asarray(x) - self.ends[0, 0]) * self.direction[0]
-        return found
+        return (np.asarray(x) - self.ends[0, 0]) * self.direction[0]
 
     def steady(self, way: Array) -> Bools:
         """Whether these distances lie in the steady part."""
@@ -122,8 +119,7 @@ class Track:
     def surface(self, state: Equilibrium) -> Array:
         """(nx + 1, ny + 1) displacement of the surface in m."""
         dofs = self.model.body.basis.nodal_dofs[2][self.model.surface]
-        found: Array = state.u[dofs] * self.model.scales.displacement
-        return found
+        return state.u[dofs] * self.model.scales.displacement
 
     def along(self, values: Array) -> Array:
         """(nx + 1,) of those (nx + 1, ny + 1) at the nodes, on the path."""
@@ -148,14 +144,12 @@ class Track:
 def path_results(
     model: Model, steps: Sequence[Step], states: Mapping[str, Equilibrium], fields: Mapping[str, Stresses]
 ) -> tuple[dict[str, Table], dict[str, float | None]]:
-    """The columns that the history gets, the tables track, cross and passes of a body that has yielded below
-    a path along x, and every name of PATH_QUANTITIES.
-    """
+    """Columns of the history, the tables track, cross and passes, and PATH_QUANTITIES."""
     track, solved = Track(model), [step for step in steps if step.state.converged]
     driven = [track.driven(step.state) for step in solved]
     columns_of = zip(PATH_HISTORY, ("way", "force", "offset"), strict=True)
-    found: dict[str, Table] = {
-        "history": {name: [getattr(each, part) for each in driven] for name, part in columns_of}
+    tables: dict[str, Table] = {
+        "history": {name: [getattr(drive, part) for drive in driven] for name, part in columns_of}
     }
     cycles = sorted({step.cycle for step in solved})
     ways = {c: [d for d, step in zip(driven, solved, strict=True) if step.cycle == c] for c in cycles}
@@ -164,10 +158,10 @@ def path_results(
         values["rolling_coefficient"] = _sense(ways[cycles[-1]]) * _mean(track, ways[cycles[-1]])[1]
     if solved and solved[-1].state.yielded:
         passes = _passes(track, solved, ways)
-        found["passes"] = passes
+        tables["passes"] = passes
         if track.along_x and UNLOADED in states:
-            found["track"] = _track(track, states[UNLOADED], fields[UNLOADED])
-            found["cross"] = _cross(track, states[UNLOADED], fields[UNLOADED])
+            tables["track"] = _track(track, states[UNLOADED], fields[UNLOADED])
+            tables["cross"] = _cross(track, states[UNLOADED], fields[UNLOADED])
             groove = track.groove(states[UNLOADED])  # of the last pass
             values |= {
                 "groove_depth_m": groove.depth,
@@ -182,7 +176,7 @@ def path_results(
     numbers = {
         name: float(value) for name, value in values.items() if value is not None and not np.isnan(value)
     }
-    return found, {name: numbers.get(name) for name in PATH_QUANTITIES}
+    return tables, {name: numbers.get(name) for name in PATH_QUANTITIES}
 
 
 def _sense(driven: Sequence[Driven]) -> int:
@@ -192,14 +186,14 @@ def _sense(driven: Sequence[Driven]) -> int:
 
 def _mean(track: Track, driven: Sequence[Driven]) -> tuple[float, float]:
     """(mean driving force in N, the part of the pressure over the normal force) in the steady part."""
-    found = [
-        (each.force, each.rolling)
-        for each in driven
-        if not np.isnan(each.rolling) and track.steady(np.array(each.way))
+    inside = [
+        (drive.force, drive.rolling)
+        for drive in driven
+        if not np.isnan(drive.rolling) and track.steady(np.array(drive.way))
     ]
-    if not found:
+    if not inside:
         return nan, nan
-    force, rolling = np.mean(found, axis=0)
+    force, rolling = np.mean(inside, axis=0)
     return float(force), float(rolling)
 
 
@@ -222,31 +216,27 @@ def _passes(track: Track, steps: Sequence[Step], ways: Mapping[int, Sequence[Dri
 
 
 def _track(track: Track, state: Equilibrium, s: Stresses) -> Table:
-    """Along the path at the surface nodes; strains and stresses of the elements interpolated to them, in the
-    uppermost layer and in that of the largest strain of the steady part.
-    """
+    """Along the path at the surface nodes: the top layer and the most strained one."""
     model, x = track.model, track.model.lines.x * track.model.scales.length
     plane = at_zero(s.stress, model.lines.y - track.y, 2)
     inside = track.steady(track.way(s.x))
-    own = np.maximum(s.peeq.max(axis=1), s.plane_peeq if track.y == 0.0 else 0.0)
-    layer = int((own[inside] if inside.any() else own).max(axis=0).argmax())
-    found: dict[str, Any] = {
+    strain = np.maximum(s.peeq.max(axis=1), s.plane_peeq if track.y == 0.0 else 0.0)
+    layer = int((strain[inside] if inside.any() else strain).max(axis=0).argmax())
+    values: dict[str, Any] = {
         "x_m": x,
         "uz_m": track.along(track.surface(state)),
-        "peeq_max": np.interp(x, s.x, own.max(axis=1)),
+        "peeq_max": np.interp(x, s.x, strain.max(axis=1)),
         "steady": track.steady(track.way(x)).astype(int),
     }
     for place, k in (("top", 0), ("deep", layer)):
-        found[f"{place}_z_m"] = s.z[k]
+        values[f"{place}_z_m"] = s.z[k]
         for name, component in (("sxx", XX), ("syy", YY), ("sxz", XZ)):
-            found[f"{place}_{name}_Pa"] = np.interp(x, s.x, plane[component][:, k])
-    return columns(TRACK, [found[name] for name in TRACK])
+            values[f"{place}_{name}_Pa"] = np.interp(x, s.x, plane[component][:, k])
+    return columns(TRACK, [values[name] for name in TRACK])
 
 
 def _cross(track: Track, state: Equilibrium, s: Stresses) -> Table:
-    """The elements in the plane x = const in the middle of the steady part, z running first; of a half body
-    those of its half.
-    """
+    """The elements in the plane x = const in the middle of the steady part, z running first."""
     model = track.model
     line = model.lines.x - track.middle / model.scales.length
     stress, peeq = at_zero(s.stress, line, 1), np.maximum(at_zero(s.peeq, line, 0), 0.0)

@@ -96,9 +96,9 @@ def worn_cycles(scene: Scene, depths: Sequence[Array] | None = None) -> list[Wor
     """
     limits = limits_of(scene)
     model = build(plan(scene.model_copy(update={"wear": None})))
-    state, worn, found = model.virgin(), np.zeros(model.heights.shape), []
+    state, worn, cycles = model.virgin(), np.zeros(model.heights.shape), []
     for cycle in range(1, scene.loading.cycles + 1):
-        targets = [each for each in model.plan.schedule.targets if each.cycle == cycle]
+        targets = [target for target in model.plan.schedule.targets if target.cycle == cycle]
         steps = follow(model, Progressed(state, targets))
         state = steps[-1].state
         if not state.converged or state.history is None:
@@ -111,8 +111,8 @@ def worn_cycles(scene: Scene, depths: Sequence[Array] | None = None) -> list[Wor
         model, state = lowered(model, state, depth)
         uz = state.u[model.body.basis.nodal_dofs[2][model.surface]] * model.scales.displacement
         moved = uz[np.isfinite(model.initial_gap)].reshape(worn.shape)
-        found.append(WornCycle(tables, largest_peeq(fields)[0], worn, moved))
-    return found
+        cycles.append(WornCycle(tables, largest_peeq(fields)[0], worn, moved))
+    return cycles
 
 
 def columns_of_points(model: RoughModel) -> Integers:
@@ -130,8 +130,8 @@ def own_depth(model: RoughModel, state: Equilibrium, limits: Limits) -> Array:
     patch = np.isfinite(model.initial_gap)[1:-1, 1:-1]
     z, strain = points[2, columns[0, 0]] * model.scales.length, below[patch]
     layer, bulk = (depth_above(limit, z, strain) for limit in (limits.layer, limits.bulk))
-    found = np.where(layer < limits.thickness, layer, np.maximum(bulk, limits.thickness))
-    return found.reshape(model.heights.shape)
+    depth = np.where(layer < limits.thickness, layer, np.maximum(bulk, limits.thickness))
+    return depth.reshape(model.heights.shape)
 
 
 def depth_above(limit: float, z: Array, strain: Array) -> Array:
@@ -144,14 +144,14 @@ def depth_above(limit: float, z: Array, strain: Array) -> Array:
     slope = (strain[:, 1] - strain[:, 0]) / (z[1] - z[0])
     surface = np.maximum(strain[:, 0] - slope * z[0], 0.0)
     z, strain = np.append(0.0, z), np.column_stack([surface, strain])
-    below, found = strain <= limit, np.zeros(len(strain))
+    below, depth = strain <= limit, np.zeros(len(strain))
     if not below.any(axis=1).all():
         raise ValueError("all of a column is above the strain limit")
     rows = np.flatnonzero(~below[:, 0])
     last = np.argmax(below[rows], axis=1)
     upper, lower = strain[rows, last - 1], strain[rows, last]
-    found[rows] = z[last - 1] + (upper - limit) / (upper - lower) * (z[last] - z[last - 1])
-    return found
+    depth[rows] = z[last - 1] + (upper - limit) / (upper - lower) * (z[last] - z[last - 1])
+    return depth
 
 
 def lowered(model: RoughModel, state: Equilibrium, depth: Array) -> tuple[RoughModel, Equilibrium]:
@@ -171,10 +171,7 @@ def lowered(model: RoughModel, state: Equilibrium, depth: Array) -> tuple[RoughM
 
 
 def moved_up(model: RoughModel, history: History, nodal: Array) -> History:
-    """The history with each column of Gauss points moved up by the depth there, linear between the nodes.
-
-    nodal: (nx + 1, ny + 1) in lengths of the model.
-    """
+    """The history moved up by the depth `nodal` (nx + 1, ny + 1) in lengths of the model."""
     columns, points = columns_of_points(model), model.body.points.reshape(3, -1)
     x, y, z = points[0, columns[:, 0, 0]], points[1, columns[0, :, 0]], points[2, columns[0, 0]]
     depth = RegularGridInterpolator((model.lines.x, model.lines.y), nodal)

@@ -25,7 +25,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sam.arrays import Array, Mask
-from sam.contact.convolution import mirror_half, unfolded
+from sam.contact.convolution import BoxConvolution, MirroredConvolution, mirror_half, unfolded
 from sam.contact.operators import SurfaceOperators
 from sam.grid.cells import Window
 
@@ -189,10 +189,8 @@ def _mirrored(field: Array) -> bool:
 
 
 class BoxContact:
-    """A contact restricted to a box of cells: its operators are built once and serve any gap and load (Eq. 9
-    and 10). Without a traction, and where the gap is mirrored in x and in y, a quarter of the box is
-    iterated. residuals are those of the last solve: after each pass, without a traction after each iteration
-    that left no p < 0.
+    """A contact on a box of cells, whose operators serve any gap and load (Eq. 9 and 10). Of a gap
+    that is mirrored a quarter is iterated, without a traction; residuals: of the last solve.
     """
 
     def __init__(self, operators: SurfaceOperators, box: Window):
@@ -211,10 +209,8 @@ class BoxContact:
     def solve(
         self, gap0: Array, control: Control, start: Array, *, tolerance: float, limit: int, sign: float = 1.0
     ) -> Solution:
-        """Solve the contact on the box, all residuals below the tolerance, or the last iterate. gap0: (nx,
-        ny) in cells hx, inf where the counter-body ends; control: sum of p_hat, or approach in cells hx;
-        start: (nx, ny) p_hat; tolerance: on the residuals of `Contact`; limit: most iterations; sign: of the
-        traction along x.
+        """p_hat on the box, its residuals below the tolerance or the last. gap0: (nx, ny) in cells
+        hx, inf beside the counter-body; start: p_hat; limit: iterations; sign: of the traction.
         """
         gap0, p, self.residuals = np.minimum(gap0, NOTHING_OPPOSITE), start, []
         if self.tangential is None:
@@ -256,7 +252,8 @@ class _Iteration:
     def __init__(self, operators: SurfaceOperators, box: Window, mirrored: bool):
         self.box, self.counters, self.bodies = box, operators.counters, operators.bodies
         self.self_influence, self.mirrored = operators.self_influence, mirrored
-        self.operator = operators.box_operator(box, mirrored)
+        convolution = MirroredConvolution if mirrored else BoxConvolution
+        self.operator = convolution(operators.coefficients, box.shape, operators.counters)
         self.precondition = operators.preconditioner(box, mirrored)
         self.residuals: list[float] = []
         self.count: Array | float = 1.0

@@ -66,9 +66,7 @@ def half_length(n: int) -> int:
 
 
 def forward(kept: Real, half: int, odd: bool, axis: int, *, between: bool = False) -> Real:
-    """Transform kept values (..., n) or (..., n, m) along axis -1 or -2 to half + 1 numbers. odd: about the
-    point; between: whether they stand at j + 1/2; values beyond those that the transform takes are left out.
-    """
+    """Transform (..., n) or (..., n, m) kept values to half + 1 numbers, between or at points."""
     n = min(kept.shape[axis], half if between else half + 1)
     if n < kept.shape[axis]:
         kept = kept[..., :n] if axis == -1 else kept[..., :n, :]
@@ -86,9 +84,7 @@ def back(spectrum: Real, n: int, odd: bool, axis: int, *, between: bool = False)
 
 
 def real_spectrum(kernel: Real, half: tuple[int, int], odd: Sequence[bool | int]) -> Real:
-    """Transform of (..., nx, ny) lags >= 0 without its phase, (..., N_x + 1, N_y + 1): over the lags -N ..
-    N-1 it is (-i)^(o_x + o_y) times this, o = 1 for odd, which is even or odd in the wave number.
-    """
+    """Transform of lags >= 0 without its phase (-i)^(o_x + o_y), o = 1 for odd."""
     for axis, (length, is_odd) in enumerate(zip(half, odd, strict=True), start=-2):
         kernel = forward(kernel, length, bool(is_odd), axis)
     return kernel
@@ -263,10 +259,8 @@ def folded(field: Array, at: int, lags: int) -> Array:
 
 
 class RowConvolution:
-    """The same sums as of `Convolution` for an observed window of few rows: sums over y are taken as they
-    stand, transforms are along x alone. A field is first folded about the observed row, f(y - l) + parity f(y
-    + l), so that each lag l >= 0 is met once. Along x both windows lie in one frame; the transform of a
-    kernel there is real, times -i if it is odd in x.
+    """The sums of `Convolution` for few rows: a field is folded about the row, f(y - l) + parity
+    f(y + l), and transformed along x alone, where kernels are real, times -i if odd.
     """
 
     def __init__(
@@ -335,11 +329,9 @@ def convolution_onto(
 def row_sums(
     kernels: Array, fields: Array, source: Window, observed: Window, *, odd_out: Parity, odd_in: Parity
 ) -> Array:
-    """Kernels (m, g, z, n, lags in x, lags in y) times fields (g, n, nx, ny), summed over components, layers
-    and cells on an observed window of few rows: (m, z, nx, rows). No transform is needed: fields are folded
-    about a row, their products with the kernels taken for every lag in x, and summed along x - x' = lag.
-    odd_out, odd_in: (2, m) and (2, g), whether odd in x, in y, each kind a run of neighbours; a kernel is odd
-    where they differ.
+    """Kernels (m, g, z, n, lags in x, lags in y) times fields (g, n, nx, ny), summed over
+    components, layers and cells on few rows: (m, z, nx, rows), folded, without a transform;
+    odd_out, odd_in: (2, m), (2, g).
     """
     (m, _, depths, *_, lags_x, lags_y), columns = kernels.shape, np.arange(source.nx)
     lag = np.subtract.outer(observed.i0 + np.arange(observed.nx), source.i0 + columns)
@@ -365,10 +357,8 @@ def _run(chosen: Array) -> slice:
 
 
 class BoxConvolution:
-    """f on a box of cells -> sum over its cells of K[lag] f, on the same box; K even in x and in y, so its
-    transform is real. kernel: lags >= 0, at least (nx, ny) of them, whose transform is not counted, as it is
-    made when first needed. Works in double, or on request in single precision: then good to about 1e-6 of the
-    largest value, in half the time.
+    """f -> sum over the cells of a box of K[lag] f on it, K even in x and y and real; in single
+    precision good to 1e-6 of the largest value in half the time.
     """
 
     def __init__(self, kernel: Real, shape: tuple[int, int], counters: Counters):
@@ -456,9 +446,7 @@ def _by_parity(field: Real, odd: Parity, *, n: int, half: int, axis: int, invers
 
 
 class Transforms:
-    """Transforms of fields on a box of cells, mirrored in x (only together with y) and in y. shape: of a kept
-    field; half: the N of the module's text; single: whether in single precision.
-    """
+    """Transforms of fields on a box, mirrored in x (with y) and in y; half: the N of the text."""
 
     def __init__(
         self, cells: tuple[int, int], mirror: tuple[bool, bool], *, single: bool, counters: Counters

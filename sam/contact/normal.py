@@ -69,10 +69,7 @@ def control_of(given: float | Approach, hx: float, force_unit: float) -> Control
 
 @dataclass(frozen=True)
 class Search:
-    """How a contact is solved. tolerance: on the dimensionless residuals, see `Contact`; start: (nx, ny)
-    pressure of a neighbouring problem, in any unit, else coarser grids provide one; max_iterations: that of
-    the bodies if it is not given; counters: where the work is counted.
-    """
+    """How a contact is solved; tolerance: on residuals; start: (nx, ny) pressure of a neighbour."""
 
     tolerance: float = 1e-10
     start: Array | None = None
@@ -82,17 +79,13 @@ class Search:
 
 @dataclass(frozen=True)
 class Contact:
-    """Solution of a normal contact on the full grid: pressure in Pa, displacement in m of both bodies
-    together, positive when they approach less, and gap in m, all (nx, ny); approach in m; force in N, the
-    given one, or hx hy sum p; box: the cells that were allowed into contact. gap_residual, penetration: max
-    |gap| over the cells in contact and max(-gap) over the others, on the returned fields, divided by the
-    displacement that the largest pressure causes in its own cell: they estimate a relative pressure error;
-    tension, load_error: max(-p)/max p and |hx hy sum p - F|/F (0 where the approach is given); converged:
-    whether the residuals are within the tolerance; area: in m^2, where the scene gives it; residuals: the
-    larger one of both in the iterations that leave no pressure below zero (sliding: in the passes, each a
-    contact with the traction of the last), at the end that of the returned fields; ending: in words, if not
-    converged; compliance: displacement in m per Pa that the pressure of one cell causes at its centre; 0
-    without a search.
+    """Solution of a normal contact on the full grid: pressure in Pa, displacement of both bodies
+    (positive: apart) and gap in m, all (nx, ny); approach in m; force in N; box: allowed cells.
+
+    gap_residual, penetration: max |gap| in contact and max(-gap) beside it, over the displacement
+    that the largest pressure causes in its own cell; tension, load_error: max(-p)/max p and the
+    missing share of the force; area in m^2; residuals: the larger of both, by iteration; ending: in
+    words; compliance: displacement per pressure of one cell, in m/Pa.
     """
 
     pressure: Array
@@ -280,10 +273,7 @@ def measured(
     given: float | Approach,
     tolerance: float,
 ) -> Contact:
-    """The Contact of p_hat and u_hat on the full grid, with its residuals measured there. gap0: (nx, ny) in
-    m, with residual displacement; converged within twice the tolerance (rounding of a sum over another
-    window).
-    """
+    """The Contact of p_hat and u_hat on the full grid, with its residuals there; gap0 in m."""
     p, hx = solved.p, units.hx
     separation, control = gap0 / hx + solved.u, control_of(given, hx, units.force)
     gap, contact = gap_of_contact(p, separation, control), p > 0
@@ -326,9 +316,7 @@ FEWEST_IN_SPOT = round(pi * FEWEST_CELLS**2)
 
 
 def fit_of(contact: Contact, rough: bool = False) -> Status:
-    """CONVERGED, or what is wrong with a contact on the full grid; no contact fits. rough: single spots may
-    be small, which costs warnings; all cells in contact together must resolve one spot.
-    """
+    """CONVERGED, or what is wrong with a contact on the full grid; rough: all spots count together."""
     if not contact.converged:
         return Status.NOT_CONVERGED
     touching = contact.pressure > 0

@@ -20,10 +20,8 @@ from scipy import fft
 
 from sam.arrays import Array
 from sam.contact.convolution import (
-    BoxConvolution,
     Convolution,
     Counters,
-    MirroredConvolution,
     convolution_onto,
     cropped,
     filtered,
@@ -75,11 +73,9 @@ HALF_SPACES = HalfSpaces()
 
 
 class CoatedBodies(HalfSpaces):
-    """A coated body 1 and a homogeneous body 2; the coupling of a traction is then its coefficient mu. A
-    stiff coating bends like a plate, whose compliance falls like k^-4: the iteration then rests long and
-    moves on, and short waves are lost in the rounding of long ones. hx: cell in m; modulus: E* in Pa, of the
-    unit of p_hat; compliance, tangential: (1 - nu2^2)/E2, (1 - 2 nu2)/mu2 in 1/Pa of body 2, which carries
-    the opposite traction; 0 if it is rigid.
+    """A coated body 1 and a homogeneous body 2; a traction's coupling is its coefficient. Plates
+    bend with a compliance like k^-4, so that the iteration may rest long. modulus: E* in Pa;
+    compliance, tangential: (1 - nu2^2)/E2, (1 - 2 nu2)/mu2 in 1/Pa of body 2, 0 if rigid.
     """
 
     most_iterations = 5000  # limit: a plate rests long before it moves on
@@ -154,9 +150,8 @@ Operator = Callable[[Array], Array]
 
 
 class SurfaceOperators:
-    """Makes the dimensionless operators between windows of a grid of (nx, ny) cells with aspect hy/hx, which
-    share their coefficients. coupling: of the traction, a number or (nx, ny), with 0 nothing is built for it;
-    self_influence: displacement that p_hat = 1 causes in its own cell.
+    """Makes the operators between windows of (nx, ny) cells, which share coefficients; coupling: of
+    the traction, a number or (nx, ny); self_influence: displacement of p_hat = 1 in its own cell.
     """
 
     def __init__(
@@ -192,12 +187,6 @@ class SurfaceOperators:
 
         return apply
 
-    def box_operator(self, box: Window, mirrored: bool) -> BoxConvolution | MirroredConvolution:
-        """p_hat on a box -> u_hat there, also in single precision; mirrored: on a quarter of the box."""
-        return (MirroredConvolution if mirrored else BoxConvolution)(
-            self.coefficients, box.shape, self.counters
-        )
-
     def tangential(self, source: Window, observed: Window) -> Operator | None:
         """p_hat on `source` -> u_hat on `observed` of its traction, paper Eq. 5 with D_31; None without."""
         if self.coupling is None:
@@ -231,10 +220,7 @@ class SurfaceOperators:
         return u if tangential is None else u + sign * tangential(p_hat)
 
     def preconditioner(self, box: Window, mirrored: bool) -> Operator:
-        """r -> F^-1 s(|k|) F r on the box or its mirrored quarter: the inverse of the operator on the whole
-        plane, p_k = s(|k|) u_k, but for a factor. In single precision where the bodies allow: it has to be
-        near, not exact.
-        """
+        """r -> F^-1 s(|k|) F r, near the inverse operator; in single precision if it may."""
         real: type[np.floating[Any]] = np.float32 if self.bodies.single else np.float64
         if mirrored:
             half = tuple(map(half_length, box.shape))
@@ -333,9 +319,7 @@ class CoatedPair:
     def counter_uz(
         self, grid: CellGrid, pressure: Array, traction: Array | None, counters: Counters
     ) -> Array:
-        """Displacement of the counter-body away from the body in the rows at y = 0, (nx, rows) in m.
-        traction: on the body, None where it does not count; the counter-body carries the opposite one.
-        """
+        """Displacement of the counter-body away in the rows at y = 0, (nx, rows) in m."""
         if not (self.compliance and pressure.any()):
             return np.zeros(grid.axis_rows.shape)
         kernel = half_space_kernel(grid, 0.0)

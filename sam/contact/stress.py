@@ -136,9 +136,8 @@ def elastic_strain(stress: Array, young: float, poisson: float) -> Array:
 
 
 def surface_strain(stress: Array, plastic: Array, depths: Array, *, young: float, poisson: float) -> Array:
-    """Total strains xx, yy, xy, zz of the surface, (4, nx, ny), from stress in Pa and plastic strain, (6,
-    n_layers, nx, ny), of the two uppermost layers (centres in m). They are continuous across layers in the
-    plane, and extrapolated linearly to z = 0; of one layer its mean is taken.
+    """Total strains xx, yy, xy, zz of the surface, (4, nx, ny), from stress in Pa and plastic
+    strain, (6, n_layers, nx, ny): linear to z = 0 from two layers, the mean of one.
     """
     total = elastic_strain(stress[:, :2], young, poisson) + plastic[[0, 1, 5, 2], :2]
     if total.shape[1] < 2:

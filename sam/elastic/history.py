@@ -26,9 +26,7 @@ CYCLE = "elastic: equal to cycle 1"
 
 
 def solve_elastic(problem: ElasticProblem, report: Progress) -> History:
-    """The load history of a body that stays elastic: unloading in one step, the last cycle stands for all
-    unless the counter-surface is renewed. Where the traction changes its sign the cycles are mirror images.
-    """
+    """The load history of an elastic body: one cycle stands for all but on a renewed surface."""
     plan, grid = problem.plan, problem.plan.grid
     rows: list[Row] = []
     snapshots: dict[str, Snapshot] = {}

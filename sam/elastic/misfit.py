@@ -67,10 +67,7 @@ PROFILES: Mapping[str, Profile] = {
 
 @dataclass(frozen=True)
 class MisfitSphere:
-    """A misfit strain about the point (0, 0, depth), and the stress that it makes of an elastic body. depth,
-    radius in m; strain: linear, at the centre; free: whether the surface is, else it is held by the tractions
-    of the infinite body.
-    """
+    """A misfit strain, linear, about (0, 0, depth) in m; free: z = 0 has no tractions."""
 
     body: ElasticConstants
     depth: float

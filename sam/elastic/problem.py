@@ -105,10 +105,7 @@ Demand = GridDemand | MisfitDemand | RoughDemand
 
 @dataclass(frozen=True)
 class Places:
-    """Where the largest stress and the contact may be. anywhere: below all of a rough patch; beside: below
-    the row of the largest pressure, as a load on a smooth body ends beside y = 0; off_origin: the contact at
-    the peak may be elsewhere than around the origin.
-    """
+    """Where the largest stress and the contact may be: all of a patch, beside y = 0, off the origin."""
 
     anywhere: bool = False
     beside: bool = False

@@ -58,10 +58,8 @@ class Stresses:
 
 
 def stresses_of(state: Loaded, row: int | None = None) -> Stresses:
-    """Stresses of a state, also in a row of cells. The largest von Mises stress is looked for in the rows at
-    y = 0, or in the row if the load ends beside it; under a rough body on the whole grid. Without friction it
-    lies below the middle of the contact, with friction in the plane along x through it: the other cells would
-    take eight to twenty times as long.
+    """Stresses of a state, with the largest von Mises stress in the plane through the contact; on
+    the whole grid, which takes eight to twenty times as long, under a rough body.
     """
     problem = state.problem
     if problem.plan.places.anywhere:
@@ -132,9 +130,8 @@ def sliding_of(state: Loaded) -> Sliding | None:
 
 @dataclass(frozen=True)
 class ElasticPeak:
-    """The contact at the largest load if the body stayed elastic, and the von Mises stress, (nz, n) in Pa:
-    below a smooth body in y = 0, below a rough one the largest of the grid. A tribofilm may fail and raise
-    the traction: then with its high coefficient everywhere.
+    """The contact at the largest load of an elastic body, and von Mises stress (nz, n) in Pa: in y
+    = 0, of a rough one the largest; of a tribofilm with its high coefficient.
     """
 
     contact: Contact

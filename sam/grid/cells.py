@@ -42,10 +42,8 @@ class Room:
 
 @dataclass(frozen=True)
 class CellGrid:
-    """nx x ny cells of hx x hy in m, centres x_i = (i - (nx - 1)/2) hx. depths: (nz,) for output in m,
-    ascending; faces: (nz + 1,) in m, of the layers of the volume grid, whose centres are the depths, None for
-    an elastic body; border: cells at each end in x and y that do not count for maxima once the contact
-    touches the edge (rough bodies only); room: with which it was chosen.
+    """nx x ny cells of hx x hy in m about the origin. depths: (nz,) of output in m; faces: (nz +
+    1,) of layers, or None; border: cells at each end that count for no maximum; room: as chosen.
     """
 
     nx: int

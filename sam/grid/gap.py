@@ -34,9 +34,7 @@ class Paraboloid:
 
 @dataclass(frozen=True)
 class Punch:
-    """The flat end of a cylinder, radius in m: no gap under it, an infinite one beside it. Its cells are
-    those nearest to the axis with its area, as closely as whole rings allow.
-    """
+    """The flat end of a cylinder: its cells have its area, as closely as whole rings allow."""
 
     radius: float
 
@@ -65,9 +63,8 @@ HALVINGS = 60  # of a bracket: to the last digit
 
 @dataclass(frozen=True)
 class RoundedPunch:
-    """The gap (r - flat)^2/(2 radius) beyond the flat end, zero below it; flat, radius (of the edge) in m.
-    Contact of a rigid one with an elastic half-space: Ciavarella, Hills & Monno, Proc. Inst. Mech. Eng. C 212
-    (1998) 319; here from the Abel transform of the gap. With cos t = flat/a the contact radius is a.
+    """The gap (r - flat)^2/(2 radius) beyond the flat end in m (Ciavarella, Hills & Monno, Proc.
+    Inst. Mech. Eng. C 212 (1998) 319), by Abel's transform; cos t = flat/a.
     """
 
     flat: float
@@ -114,10 +111,7 @@ Shape = Paraboloid | Punch | Uniform | RoundedPunch
 
 @dataclass(frozen=True)
 class InitialGap:
-    """The gap before the first load at the cell centres. heights: of a rough body, (nx, ny) in m, positive
-    out of it; opposite: of the counter-body, by number of the stretch and place. With either the gap is zero
-    where the unworn bodies touch first, for each stretch by itself; on a path at its start.
-    """
+    """The gap before the first load at the cell centres, zero at first touch of each stretch."""
 
     shape: Shape
     grid: CellGrid
@@ -156,10 +150,7 @@ EQUAL = 1e-4  # relative difference of the radii below which the ellipse is a ci
 
 
 def elliptic_contact(force: float, radii: tuple[float, float], modulus: float) -> tuple[float, float]:
-    """Contact semi-axes (a along x, b along y) in m under a force in N, radii (Rx, Ry) in m, E* in Pa
-    (Johnson 1985, Eq. 4.26), by the ratio of the axes and complete elliptic integrals of m = e^2 = 1 -
-    ratio^2.
-    """
+    """Semi-axes (a along x, b along y) in m by complete elliptic integrals (Johnson 1985, Eq. 4.26)."""
     from scipy.optimize import brentq  # noqa: PLC0415 - a tenth of a second, for ellipses alone
     from scipy.special import ellipe, ellipk  # noqa: PLC0415
 

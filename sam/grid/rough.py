@@ -42,9 +42,7 @@ LAYER_GROWTH = 1.25  # ratio of the thicknesses of layers
 
 @dataclass(frozen=True)
 class RoughPatch:
-    """The rough surfaces of body, counter-body or both on (nx, ny) cells over (Lx, Ly) in m. relief: whether
-    heights fall off at the border; strip: of a rough counter-body that moves.
-    """
+    """Rough surfaces on (nx, ny) cells over (Lx, Ly) in m; strip: of one that moves."""
 
     surface: Surface | None
     cells: tuple[int, int]
@@ -105,9 +103,7 @@ def _heights(surface: Surface, cells: tuple[int, int], extent: tuple[float, floa
 
 @dataclass(frozen=True)
 class RoughDemand:
-    """What the grid of a rough scene is chosen from: patch, [grid], thickness of a coating in m, and the
-    depth in m that a plastic zone may reach if all summits act like one (`point_load_reach`).
-    """
+    """What the grid of a rough scene is chosen from; reach: of `point_load_reach` in m."""
 
     patch: RoughPatch
     given: Grid | None
@@ -145,9 +141,7 @@ def _depths(cell: float, deepest: float) -> Array:
 
 
 def _faces(plasticity: Plasticity, cell: float, deepest: float, reach: float) -> Array:
-    """Faces of layers of a body that yields: half a cell thick at the surface, thinner where the yield stress
-    varies; the one nearest to a kink is moved there, as a layer has the yield stress at its centre.
-    """
+    """Faces of layers of a body that yields; the one next to a kink is moved there."""
     thin = [cell / 2]
     if plasticity.profile is not None:
         thin.append(plasticity.profile[-1][0] / LAYERS_IN_PROFILE or cell / 2)

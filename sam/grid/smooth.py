@@ -63,10 +63,8 @@ class PlasticDemand:
 
 @dataclass(frozen=True)
 class GridDemand:
-    """What the grid of a smooth scene is chosen from. given: the table [grid]; axes: estimated semi-axes in
-    m; extent: sides in contact radii; wider: factor on them, for a second contact that has to fit; farthest:
-    largest |x| and |y| in m of a travelling load; film: thickness of a coating in m; moves: whether a
-    counter-body travels; largest_cell: in m, that resolves the contact.
+    """What the grid of a smooth scene is chosen from. axes: estimated semi-axes in m; extent: sides
+    in contact radii; wider: factor on them; farthest: |x|, |y| of a load in m; film: thickness.
     """
 
     given: Grid | None
@@ -99,10 +97,8 @@ class GridDemand:
         return a, b
 
     def grid(self, room: Room) -> CellGrid:
-        """The grid, larger by the factors of a room. What [grid] leaves out is chosen: 129 x 129 cells over
-        four contact radii each way; with plasticity 65 x 65, and layers as thick as a cell where most of the
-        plastic strain is. Cells of the same size and further layers are added where the plastic zone goes
-        further, and along a path.
+        """The grid, larger by the factors of a room. Chosen are 129 x 129 cells over four contact
+        radii each way, 65 x 65 with plasticity, with layers as thick as a cell; more along a path.
         """
         given, plastic = self.given, self.plastic
         zone, longer = plastic.reach if plastic else 0.0, []
@@ -140,20 +136,16 @@ def given_depths(given: Grid | None) -> Array | None:
 
 
 def point_load_reach(force: float, poisson: float, bulk_yield: float, radius: float) -> float:
-    """Depth in m at which a point force in N brings unstrained bulk material to yield: on the axis of
-    Boussinesq's, szz = -3F/(2 pi z^2), srr = (1 - 2 nu) F/(4 pi z^2) (Johnson 1985, Eq. 3.19), von Mises
-    stress (7/2 - nu) F/(2 pi z^2). By Saint-Venant's principle a plastic zone much larger than the contact
-    ends about there, whatever the hardening. bulk_yield in Pa; radius: of contact in m, FARTHEST of them at
-    most.
+    """Depth in m to which a point force in N, in unstrained bulk, yields, by von Mises (7/2 - nu)
+    F/(2 pi z^2) (Johnson 1985, Eq. 3.19), at most FARTHEST radii: there a large zone ends.
     """
     reach = sqrt((3.5 - poisson) * force / (2 * pi * bulk_yield))
     return min(reach, FARTHEST * radius)
 
 
 def _layer_faces(thickness: float, radius: float, plastic: PlasticDemand, room: float) -> Array:
-    """Faces of equal layers down to EVEN_DEPTH radii, then of growing ones to LAYER_RANGE and beyond the
-    reach of the plastic zone; room: factor on both. Kinks are faces too, as a layer has the yield stress at
-    its centre, with LAYERS_IN_PROFILE or more down to the last, none thinner than thickness/SLENDEST.
+    """Faces of equal layers to EVEN_DEPTH radii, then growing to LAYER_RANGE and the plastic zone;
+    kinks are faces, with LAYERS_IN_PROFILE or more, none thinner than thickness/SLENDEST.
     """
     faces, kinks = [0.0], [z for z in plastic.kinks if 0 < z < EVEN_DEPTH * radius]
     thin = max(min([thickness, *(z / LAYERS_IN_PROFILE for z in kinks[-1:])]), thickness / SLENDEST)
@@ -177,9 +169,7 @@ ELASTIC_SIDE = 2.0  # radii of the sphere, where nothing yields: the half side o
 
 @dataclass(frozen=True)
 class MisfitDemand:
-    """What the grid of a misfit sphere is chosen from. given: the table [grid]; depth, radius: of the sphere
-    in m; zone: radius of the plastic zone in m, 0 where nothing yields, None of an elastic body.
-    """
+    """What the grid of a misfit sphere is chosen from; zone: plastic radius in m, or None."""
 
     given: Grid | None
     depth: float
@@ -246,9 +236,8 @@ def room_for_bare(scale: float) -> float:
 
 
 def depths_with_film(depths: Array, thickness: float) -> Array:
-    """Output depths of a bare body, ascending from 0, made those of a coated one: in the coating the given
-    ones, at least LEVELS, and the coating's side of the interface; then the interface, with values of the
-    body below, and deeper ones; none of these where the interface is out of REACH.
+    """Depths of a bare body made those of a coated one: LEVELS or more in the coating and both
+    sides of the interface, if that is in REACH.
     """
     deepest, spacing = depths[-1], depths[1] - depths[0]
     inside: Array = depths[depths < thickness - CLOSE * spacing]
@@ -287,9 +276,7 @@ def mean_compliance(response: Callable[[Array], Array], radius: float) -> float:
 def contact_radius(
     response: Callable[[Array], Array], force: float, radius: float, bare: tuple[float, float]
 ) -> float:
-    """Radius in m of the contact of a paraboloid (radius in m) under a force in N. response: k in 1/m ->
-    c_zz(k) of both bodies in m/Pa; bare: Hertz radii on the bare coating and on the bare body.
-    """
+    """Radius in m of a paraboloid's contact; response: k -> c_zz(k) in m/Pa; bare: Hertz radii."""
     from scipy.optimize import brentq  # noqa: PLC0415 - a tenth of a second, for coatings alone
 
     def excess(log_a: float) -> float:

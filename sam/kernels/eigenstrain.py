@@ -46,9 +46,7 @@ FOURTH = tuple(
         key=lambda indices: PARITIES.index((indices.count(0) % 2, indices.count(1) % 2)),
     )
 )
-"""Index sets of the 15 fourth derivatives of the triple antiderivative of R that the full-space part is made
-of, by parity.
-"""
+"""Fourth derivatives of the triple antiderivative of R, of the full-space part, by parity."""
 
 
 Term = tuple[int, int, int, int, int]
@@ -82,10 +80,7 @@ def displacement_parity(component: int, j: int) -> tuple[int, int]:
 
 @dataclass(frozen=True)
 class Block:
-    """The coefficients of one parity in x and y: rows 6 I + J as sums of functions. of_image, of_full: which
-    of `image_orders` and of FOURTH; image: (4, rows, functions), factors of 1, face, z and z face; full:
-    (rows, functions).
-    """
+    """Coefficients of one parity, rows 6 I + J: image (4, rows, functions), full (rows, functions)."""
 
     odd: tuple[int, int]
     rows: NDArray[np.intp]
@@ -97,9 +92,7 @@ class Block:
 
 @cache
 def blocks(nu: float) -> list[Block]:
-    """The four blocks, in the order of PARITIES, in place of paper Eq. 22 to 26. A term z^p z'^q of the table
-    is integrated over z' by parts: z' P[a,b,c] - P[a,b,c-1] for q = 1.
-    """
+    """The four blocks by PARITIES, for paper Eq. 22 to 26; z^p z' is integrated over z' by parts."""
     terms, coefficients = _matrix("stress", ENTRIES, nu)
     orders, scale = image_orders(), 8 * pi * (1 - nu)
     image = np.zeros((2, 2, 36, len(orders)))  # by powers of z and of the face
@@ -143,9 +136,8 @@ def image_functions(x: Array, y: Array, z: Array) -> Iterator[Array]:
 
 
 def surface_displacement_coefficients(cuboids: Cuboids, *, component: int = 3) -> Array:
-    """Displacement of the surface at (i hx, j hy, 0) by a unit eigenstrain in the cuboids at the origin, (6,
-    n, nx, ny) in the unit of the faces: eigenstrain J, layer, lags i, j >= 0. Paper Eq. 19 is component 3 (>
-    0 into the body), printed twice too large; 1 and 2 are not printed.
+    """Displacement at (i hx, j hy, 0) by a unit eigenstrain in the cuboids at the origin, (6, n,
+    nx, ny). Paper Eq. 19 is component 3 (> 0 into the body), printed twice too large.
     """
     x, y = cuboids.lags.corners()
     source = cuboids.depths[:, None, None]
@@ -253,10 +245,8 @@ def _full_space_matrix(nu: float) -> Array:
 
 
 def own_stress(nu: float) -> Array:
-    """What is subtracted inside, (6, 6): 2 e + (lam/mu) tr e, with the term of P_kk that `_full_space_matrix`
-    leaves out. Paper: the last term of Eq. 3, printed once more in the appendix for the stress inside the
-    volume. lam/mu = 2 nu/(1 - 2 nu); the term left out is lam/mu * 8 pi nu/(8 pi (1 - nu)) tr e: together 2
-    nu/(1 - nu) tr e.
+    """What is subtracted inside, (6, 6): the last term of paper Eq. 3, 2 e + (lam/mu) tr e, and the
+    P_kk that `_full_space_matrix` leaves out, together 2 e + 2 nu/(1 - nu) tr e.
     """
     out = 2 * np.eye(6)
     out[:3, :3] += 2 * nu / (1 - nu)

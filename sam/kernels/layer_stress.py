@@ -36,11 +36,10 @@ DIGITS = 9  # to which depths are compared, in thicknesses of the thinnest layer
 def residual_stress_coefficients(
     cuboids: Cuboids, z: ArrayLike, *, off: tuple[float, float] = (0.0, 0.0)
 ) -> Array:
-    """Stress/mu at (i hx, j hy, z) by a unit eigenstrain in the cuboids at the origin: (6, 6, nz, n, nx, ny),
-    stress I, eigenstrain J, depth, layer, lags i, j >= 0. Paper: S_pl of Eq. 7, in the appendix the stress
-    outside and inside the plastic volume with Eq. 22 to 26; the eigenstrain's own stress is subtracted in the
-    cuboid itself. z: (nz,) >= 0 in the unit of hx, none on a face but z = 0 (ValueError); off: the mean over
-    four points, this far from the centre on either side in x and y.
+    """Stress/mu at (i hx, j hy, z) by a unit eigenstrain in the cuboids at the origin, (6, 6, nz,
+    n, nx, ny): S_pl of paper Eq. 7, in the appendix the stress outside and inside with Eq. 22 to
+    26. z: (nz,) in hx, none on a face but 0 (ValueError); off: the mean over four points so far
+    away.
     """
     z_observed, faces = np.atleast_1d(np.asarray(z, float)), cuboids.depths
     if np.any(z_observed < 0) or np.isin(z_observed, faces[faces > 0]).any():
@@ -71,9 +70,8 @@ def mesh(lags: Lags, points: Points = ((0.0, 0.0),), *, first: int = 0) -> tuple
 
 
 class CornerFunctions:
-    """The functions that the coefficients are sums of, differenced over the corners of cells in x and y.
-    shape: (nx, ny) lags of the answer; meshes: of corners, (points, X, Y) each; here one, over whose points
-    the mean is taken.
+    """The functions that coefficients are sums of, differenced over the corners of cells; meshes:
+    of corners, (points, X, Y), over whose points the mean is taken.
     """
 
     def __init__(self, shape: tuple[int, int], *meshes: tuple[Array, Array]):
@@ -178,9 +176,7 @@ class LayerStress:
     def _sums(
         self, image: bool, offsets: Array, weights: Callable[[Block], Array], own: Array | None = None
     ) -> Array:
-        """Sums of functions at offsets (sets, n), n points and faces: (sets, d, 36, X, Y). weights: block ->
-        (sets or 1, d, rows, n, functions); own: (sets, 36), subtracted in the cell itself.
-        """
+        """Sums of functions at offsets (sets, n): (sets, d, 36, X, Y); own: subtracted inside."""
         _, first, index = np.unique(np.round(offsets, self.digits), return_index=True, return_inverse=True)
         functions, index = self.functions(image, offsets.ravel()[first]), index.reshape(offsets.shape)
         of_parity = [
@@ -206,10 +202,7 @@ class LayerStress:
 
 
 class _Shared:
-    """What pairs of layers with equal offsets share, made when first needed and kept until the last need.
-    offsets: (observed, sources, points and faces), equal to so many digits; make(numbers of pairs, their
-    offsets, whether shared) -> one array for each, for at most `at_once` of them.
-    """
+    """What pairs of layers with equal offsets share, made when first needed, kept to the last."""
 
     def __init__(
         self, offsets: Array, digits: int, make: Callable[[Numbers, Array, bool], Array], at_once: int

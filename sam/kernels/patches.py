@@ -31,9 +31,7 @@ from sam.kernels.primitives import Corners, primitive
 
 @dataclass(frozen=True)
 class Lags:
-    """The offsets (i hx, j hy), 0 <= i < nx and 0 <= j < ny, from the centre of a loaded cell to that of an
-    observed one: as many lags as a box has cells, with sides in any unit of length.
-    """
+    """Offsets (i hx, j hy), 0 <= i < nx and 0 <= j < ny, from a loaded cell to an observed one."""
 
     nx: int
     ny: int
@@ -68,10 +66,8 @@ class Lags:
 
 @dataclass(frozen=True)
 class Cuboids:
-    """The half-space z >= 0 below cells of its surface, divided into layers: a cuboid hx x hy x thickness in
-    each. lags: between the columns of cuboids; faces: depths of the n + 1 faces of n layers of any
-    thicknesses, ascending from a depth >= 0, in the unit of hx, else ValueError; nu: Poisson's ratio, 0 <= nu
-    <= 1/2.
+    """The half-space below cells of its surface in layers; faces: depths of the n + 1 faces,
+    ascending from >= 0, in the unit of hx, else ValueError; nu: 0 <= nu <= 1/2.
     """
 
     lags: Lags
@@ -97,9 +93,7 @@ class Cuboids:
 STRESS = ("11", "22", "33", "23", "13", "12")
 """Index order of the stress components, here and everywhere."""
 Row = tuple[int, int, int, int, tuple[float, ...]]
-"""A term of the derived table: z^p times the derivative of orders a, b, c, and its coefficients of 1, nu,
-nu^2.
-"""
+"""A term of the derived table: z^p times a derivative a, b, c, and coefficients of 1, nu, nu^2."""
 
 
 @cache

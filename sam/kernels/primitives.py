@@ -27,11 +27,9 @@ _SYMMETRIC = ("t", "lz", "vz", "wz", "uz")  # the functions that an exchange of 
 
 
 class Corners:
-    """The functions of corner coordinates that the primitives are made of, each computed once on demand. x,
-    y, z: arrays that broadcast against each other, in one length unit; z >= 0. Logarithms and fractions are
-    written so that no difference of nearly equal numbers appears for negative x or y. Points with x = y = z =
-    0, and points on the extension of an edge (y = z = 0, x < 0), are not representable; grids of cell centres
-    have none.
+    """The functions of corner coordinates x, y, z >= 0 that primitives are made of, each computed
+    on demand and without a difference of nearly equal numbers. Not at x = y = z = 0, nor at y = z =
+    0, x < 0.
     """
 
     def __init__(self, x: Array, y: Array, z: Array, radius: Array | None = None):

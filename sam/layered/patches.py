@@ -58,9 +58,7 @@ from sam.layered.response import Layers, Response, normal_compliance
 
 STEP = 0.1
 COUNT = 2048
-"""Samples of f: steps in ln k, and their number (even). The range, e^{+-102}, is generous: a k^(1/2) has to
-die out in it.
-"""
+"""Samples of f (steps in ln k, even number): a k^(1/2) dies out in e^{+-102}."""
 REFINE = 4
 """Steps of the spline per step of the samples: 0.025, where the quintic spline errs by less than 1e-12."""
 SUPPORT = 6
@@ -73,9 +71,8 @@ def wave_numbers() -> Array:
 
 
 class RadialTable:
-    """Splines of g and G for functions f of order m, sampled at `wave_numbers`, (functions, COUNT). bias: q,
-    between -m and 2 for a bounded f, between -m and 1 for f ~ 1/k, so that f k^2 e^{-q x} and r^q g vanish at
-    both ends. Rounding errors of g are 1e-16 of the largest r^q g, over r^q.
+    """Splines of g and G for functions f of order m at `wave_numbers`, (functions, COUNT); bias: q,
+    between -m and 2, or 1 for f ~ 1/k, so that f k^2 e^{-q x} and r^q g vanish at both ends.
     """
 
     def __init__(self, samples: Array, order: int, bias: float):
@@ -88,7 +85,8 @@ class RadialTable:
         mellin = np.exp((s - 1) * np.log(2) + loggamma((order + s) / 2) - loggamma(1 + (order - s) / 2)) / (
             2 * np.pi
         )
-        spectrum = np.conj(spectrum * mellin) / spline_symbol(w * STEP / REFINE)
+        angle = w * STEP / REFINE  # of the sum of the quintic B-spline at the integers times e^{i n angle}
+        spectrum = np.conj(spectrum * mellin) / ((33 + 26 * np.cos(angle) + np.cos(2 * angle)) / 60)
         self.point = _series(spectrum)
         self.disc = _series(spectrum / np.conj(2 - s))
 
@@ -101,18 +99,6 @@ def _series(spectrum: Array) -> Array:
     """Real sum over the frequencies at REFINE COUNT points y = -x; the phases of both origins cancel."""
     size = REFINE * COUNT
     return np.ascontiguousarray(np.fft.irfft(spectrum * size, size, axis=-1).T)
-
-
-def spline_symbol(angle: Array) -> Array:
-    """Sum of the quintic B-spline at the integers times e^{i n angle}."""
-    return (33 + 26 * np.cos(angle) + np.cos(2 * angle)) / 60
-
-
-def spline_weights(r: Array) -> tuple[NDArray[np.int32], Array]:
-    """First coefficient and the SUPPORT weights, (points, SUPPORT), of the spline in ln r at radii r > 0."""
-    place = np.log(r) * (REFINE / STEP) + REFINE * COUNT / 2
-    first = np.floor(place).astype(np.int32)
-    return first - 2, quintic(place - first)
 
 
 def quintic(t: Array) -> Array:
@@ -131,15 +117,11 @@ def quintic(t: Array) -> Array:
 
 
 NEAR = 8
-"""Distance in cells below which the corners are used: 4 changes stresses by 1e-12 of the
-largest, 2 by 8e-10.
-"""
+"""Distance in cells below which the corners are used: 4 changes 1e-12 of the largest, 2 8e-10."""
 BANDS = ((5, 16.0), (4, 32.0), (3, 64.0), (2, np.inf))
 """Beyond: Gauss points in each direction, up to a distance in cells."""
 NODES = 32
-"""Gauss points in u: 24 give the same to 1e-11 of the largest coefficient for square cells, 1e-9 for cells of
-10 to 1.
-"""
+"""Gauss points in u: 24 change 1e-11 of the largest for square cells, 1e-9 for 10 to 1."""
 BLOCK = 1 << 15
 """Far cells in one sparse matrix: bounds the memory."""
 
@@ -165,9 +147,10 @@ class Angular:
 def spline_matrix(r: Array, weights: Array, power: float, columns: int) -> csr_array:
     """Rows: sum of weights r^power times the spline at r; r, weights: (rows, points)."""
     rows, points = r.shape
-    first, spline = spline_weights(r.ravel())
-    values = spline * (weights * r**power).reshape(-1, 1)
-    indices = first[:, None] + np.arange(SUPPORT, dtype=np.int32)
+    place = np.log(r.ravel()) * (REFINE / STEP) + REFINE * COUNT / 2
+    first = np.floor(place).astype(np.int32)
+    values = quintic(place - first) * (weights * r**power).reshape(-1, 1)
+    indices = (first - 2)[:, None] + np.arange(SUPPORT, dtype=np.int32)
     pointers = np.arange(rows + 1) * (points * SUPPORT)
     return csr_array((values.ravel(), indices.ravel(), pointers), shape=(rows, columns))
 
@@ -301,9 +284,7 @@ _EXCHANGED_AXES = {1: 2, 2: 1, 3: 3}
 
 DISPLACEMENT_BIAS = 0.5
 STRESS_BIAS = 1.0
-"""q of `RadialTable`: in the middle of what is allowed for all orders m, so that no radius is lost to
-rounding; 0.2 and 0.8, or 0.5 and 1.5, change 1e-13 and 3e-13 of the largest coefficient.
-"""
+"""q of `RadialTable`, in the middle of what all orders m allow: 0.2 and 0.8 change 1e-13."""
 
 
 class LayeredPatches:
@@ -329,19 +310,8 @@ class LayeredPatches:
         return Response(self.layers, k * self.layers.thickness).surface / self.layers.shear
 
     def displacement(self, lags: Lags, *, component: int = 3, load: int = 3) -> Array:
-        """Surface displacement at (i hx, j hy) per unit traction on the cell at the origin.
-
-        Parameters
-        ----------
-        lags
-            Where the displacement is wanted, in m (negative lags: `sam.kernels.patches.parity`).
-        component, load
-            Directions of the displacement and of the traction on the body: 1, 2 or 3 (> 0 into the body).
-
-        Returns
-        -------
-        Array
-            (nx, ny) in m/Pa.
+        """Surface displacement (nx, ny) in m/Pa at lags in m, >= 0, per unit traction on the cell
+        at the origin; component, load: 1, 2 or 3 (> 0 into the body).
         """
         if load == 2:
             return self.displacement(lags.exchanged, component=_EXCHANGED_AXES[component], load=1).T
@@ -358,28 +328,9 @@ class LayeredPatches:
         return out * (h / self.layers.shear)
 
     def stress(self, lags: Lags, z: ArrayLike, *, load: int = 3, names: Sequence[str] = STRESS) -> Array:
-        """Stress at (i hx, j hy, z) per unit traction on the cell at the origin.
-
-        Parameters
-        ----------
-        lags
-            Where the stress is wanted, in m (negative lags: `sam.kernels.patches.parity`).
-        z
-            Depths (nz,) >= 0 in m; z < thickness lies in the coating, z >= thickness in the body.
-        load
-            Direction of the traction on the body: 1, 2 or 3.
-        names
-            Components of the stress, of `sam.kernels.patches.STRESS`.
-
-        Returns
-        -------
-        Array
-            (len(names), nz, nx, ny), without a unit.
-
-        Raises
-        ------
-        ValueError
-            For a depth that is negative or not finite.
+        """Stress (len(names), nz, nx, ny) at lags, >= 0, and depths z, in m, per unit traction
+        `load` (1, 2 or 3); z < thickness is in the coating. ValueError for a depth that is not >=
+        0.
         """
         depths = np.atleast_1d(np.asarray(z, dtype=float))
         if not np.all((depths >= 0) & np.isfinite(depths)):

@@ -43,9 +43,7 @@ from sam.arrays import Array
 
 @dataclass(frozen=True)
 class Layers:
-    """A coating on a half-space. young, poisson, thickness: of the coating, in Pa > 0, 0 to 0.5, in m > 0;
-    young_body, poisson_body: of the half-space. ValueError for a number outside of its range.
-    """
+    """A coating on a half-space, in Pa and m. ValueError for a number outside of its range."""
 
     young: float
     poisson: float
@@ -186,9 +184,7 @@ class Response:
         )
 
     def stress(self, depth: float) -> tuple[Array, Array]:
-        """Stress at a depth in m: (load p or q_L, component zz LL TT zL, ...), and under q_T (component zT
-        LT, ...); in the coating for depth < thickness, in the body from there on.
-        """
+        """Stress at a depth in m of p or q_L (zz LL TT zL), and of q_T (zT LT)."""
         height = depth / self.layers.thickness
         if height < 1:
             return self._in_coating(height, self._down, self._out_of_plane)

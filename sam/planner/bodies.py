@@ -167,10 +167,7 @@ class Bodies:
 
     @cached_property
     def scale(self) -> float:
-        """Estimated contact radius of the coated body over that of the bare one; 1 where it is given and
-        without force. An ellipse is scaled like the circle of the geometric mean of its radii, what has no
-        radii like the sphere of the same contact with the bare body.
-        """
+        """Estimated contact radius of the coated body over that of the bare one; else 1."""
         other, pair, coated = self.scene.counterbody, self.pair, self.coated
         if other is None or SHAPES[other.shape].given or self.force == 0.0 or coated is None:
             return 1.0
@@ -252,10 +249,8 @@ def _half_of_patch(bodies: Bodies, _: CounterBody) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Opposite:
-    """What the model asks of a shape: its gap; the semi-axes (a along x, b along y) in m of its contact with
-    the body without coating, 0 where there is none without force; whether the force leaves them as they are;
-    about which force in N an approach in m takes; the sides of a chosen grid in contact radii, and the
-    largest cell in m that resolves the contact.
+    """What the model asks of a shape: gap; semi-axes in m on the bare body, and whether given;
+    force in N of an approach in m; sides of a grid in radii; largest cell in m.
     """
 
     gap: Callable[[CounterBody], Shape]

@@ -35,10 +35,10 @@ def stages_of(scene: Scene, plan: Plan) -> tuple[Stage, ...]:
     """The stages of a scene: those that it needs in their order, then those that it does not need."""
     solving = [*_surface(scene, plan), *_load(scene, plan), *_plastic(scene, plan), *_output(scene, plan)]
     if plan.schedule.peak.rests:
-        solving = [Stage(each.stage, False, NO_FORCE) if each.runs else each for each in solving]
+        solving = [Stage(stage.stage, False, NO_FORCE) if stage.runs else stage for stage in solving]
     stages = [*_cells(scene, plan), *solving]
-    needed = [each for each in stages if each.runs or each.reason == NO_FORCE]
-    left = [each for each in stages if not each.runs and each.reason != NO_FORCE]
+    needed = [stage for stage in stages if stage.runs or stage.reason == NO_FORCE]
+    left = [stage for stage in stages if not stage.runs and stage.reason != NO_FORCE]
     return (*needed, *sorted(left, key=lambda each: LEFT_ORDER.index(each.stage)))
 
 
@@ -229,10 +229,8 @@ def _output(scene: Scene, plan: Plan) -> Iterator[Stage]:
     if plan.coated is None:
         return
     why_not = "loading.force = 0: no contact" * plan.schedule.peak.rests
-    words, thickness = (
-        "the same contact and stresses without film, from the coated pressure on",
-        plan.coated.thickness,
-    )
+    words = "the same contact and stresses without film, from the coated pressure on"
+    thickness = plan.coated.thickness
     yield _stage("bare comparison", why_not, words, steps=1)
     if grid.depths[0] >= thickness:
         yield _stage("stresses in the film", f"no output depth above the interface, z = {thickness:g} m")
@@ -242,9 +240,7 @@ def _output(scene: Scene, plan: Plan) -> Iterator[Stage]:
 
 
 def stress_coefficients(plan: Plan) -> int:
-    """Influence coefficients of the stresses at the output depths, of one load: in y = 0 of the lags to the
-    contact of Hertz, four components if one row of cells lies in it; below a rough patch all.
-    """
+    """Coefficients of the stresses at the output depths, of one load; below a patch all lags."""
     grid = plan.grid
     if plan.places.anywhere:
         return 6 * len(grid.depths) * grid.nx * grid.ny

@@ -49,10 +49,8 @@ def first_extent(
     both_ways: bool = False,
     path: Sequence[tuple[float, float]] = ((0.0, 0.0),),
 ) -> Extent:
-    """Box around the contact and the cells that would yield if the body stayed elastic at the peak. limit:
-    yield stress at the depths of the grid, (nz,) in Pa; anywhere: islands of plasticity lie anywhere below a
-    rough surface, and flattened summits bring others into contact, so the box is as wide as the grid, and
-    grows in depth; both_ways: whether the traction changes its sign; path: places of the load in m.
+    """Box around the contact and the cells that would yield; limit: yield stress (nz,) in Pa;
+    anywhere: as wide as the grid, below a rough surface; path: places of the load in m.
     """
     exceeds = yielding(peak.mises, limit[:, None])
     if anywhere:
@@ -71,10 +69,8 @@ def first_extent(
     widest = int(margins.max())
     before, after = (widest, widest) if both_ways else margins
     swept = np.array(path) / (grid.hx, grid.hy)
-    (left, low), (right, high) = (
-        np.floor(swept.min(axis=0)).astype(int),
-        np.ceil(swept.max(axis=0)).astype(int),
-    )
+    left, low = np.floor(swept.min(axis=0)).astype(int)
+    right, high = np.ceil(swept.max(axis=0)).astype(int)
     i0, j0 = max(int(box.i0 - before + left), 0), max(int(box.j0 - widest + low), 0)
     i1, j1 = min(int(end + after + right), grid.nx), min(int(box.j0 + box.ny + widest + high), grid.ny)
     return Extent(Window(i0, j0, i1 - i0, j1 - j0), _layers(deep, grid))
@@ -135,10 +131,7 @@ def edge_reached(trial: Trial, *, cut_beside: bool) -> Sides:
 
 @dataclass(frozen=True)
 class ExpectedBox:
-    """A box of nx x ny cells and layers on which plastic strain is expected. tolerance: of the plastic
-    iteration, on which the precision of the coefficients depends; exchange: whether x and y may be exchanged,
-    so that half of them are stored.
-    """
+    """A box on which plastic strain is expected; tolerance: of the iteration; exchange: of x and y."""
 
     nx: int
     ny: int
@@ -153,9 +146,7 @@ class ExpectedBox:
 
     @property
     def coefficients(self) -> int:
-        """For every wave number, the 6 x 6 components between every two layers: 36 nz^2 (N_x + 1)(N_y + 1)
-        real numbers. Where x and y may be exchanged, those with k_x <= k_y.
-        """
+        """Numbers of the coefficients: 36 nz^2 (N_x + 1)(N_y + 1), with k_x <= k_y if exchanged."""
         nx, ny = half_length(self.nx) + 1, half_length(self.ny) + 1
         return 36 * self.layers**2 * (nx * (nx + 1) // 2 if self.exchange else nx * ny)
 
@@ -171,10 +162,8 @@ class ExpectedBox:
 
 @dataclass(frozen=True)
 class Zone:
-    """What is guessed of a smooth contact with semi-axes in m and of the plastic zone below it. wide, deep:
-    radius and depth in which the elastic stress exceeds the yield stress, needed: radius and depth of the
-    plastic zone, in semi-axes; ratio: largest elastic von Mises stress over the yield stress; path: cells
-    that the load passes in x and in y.
+    """A smooth contact, and the zone beyond yield below it: wide, deep of elastic stress, needed of
+    plastic strain, in semi-axes; ratio of stress to yield stress; path in cells.
     """
 
     axes: tuple[float, float]

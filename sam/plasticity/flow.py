@@ -8,9 +8,9 @@ accumulated plastic strain solves
 
     q - 3 m dgamma = sigma_y(alpha + dgamma),        d eps_p = 3/2 dgamma s^tr/q,                      (a)
 
-where m is the stiffness with which the plastic strain of a cell lowers its own stress. For a homogeneously
-strained body m = mu. A fixed point of trial = sigma(eps_p) + 2 m d eps_p is the same for every m > 0, so m is
-free to speed it up.
+where m, in Pa, is the stiffness of the return map: that with which plastic strain lowers its own stress. For
+a homogeneously strained body m = mu. A fixed point of trial = sigma(eps_p) + 2 m d eps_p is the same for
+every m > 0, so m is free to speed it up. Equations (a) to (g) are counted through `sam.plasticity`.
 
 Back-stresses: nonlinear kinematic hardening of Armstrong & Frederick (1966), several of them as Chaboche
 (1986), integrated exactly along a constant direction of flow.
@@ -89,9 +89,8 @@ def plastic_multiplier(
     m3: float,
     near: Array | None = None,
 ) -> Array:
-    """dgamma of (a), (n,), zero where paper Eq. 8 holds: q <= sigma_y; q, alpha, factor, near: (n,); m3: 3 m
-    in Pa. Newton's method from `near`, or from zero, kept inside (0, q/m3): monotone from the left of the
-    answer for a concave curve, bracketed for any other that does not soften.
+    """dgamma of (a), (n,), zero where paper Eq. 8 holds; m3: 3 m. Newton's method from `near`, or zero,
+    bracketed: monotone from the left of the answer for a concave curve.
     """
     low, high = np.zeros_like(q), q / m3
     gamma = np.zeros_like(q) if near is None else np.minimum(near, high)
@@ -251,9 +250,8 @@ def kinematic_multiplier(
     m3: float,
     near: Array,
 ) -> tuple[Array, Array]:
-    """(dp, (n,), and eta in Pa, (6, n)) of (d) for n cells that yield: Newton's method from `near`, kept
-    inside the bracket. trial: deviatoric, in Pa, (6, n); start, back: their back-stresses at the beginning
-    and the constants; curve: yield stress over the increment; m3: 3 m in Pa.
+    """(dp, (n,), and eta in Pa, (6, n)) of (d) for n cells that yield, as `plastic_multiplier`; trial:
+    deviatoric; start, back: back-stresses at the beginning and their constants.
     """
     turns = _Turns.of(trial, start)
     low, high = np.zeros(trial.shape[1]), (turns.square**0.5 - curve(np.zeros(trial.shape[1]))[0]) / m3
@@ -303,9 +301,8 @@ class BackStresses:
 
 @dataclass(frozen=True)
 class _Turns:
-    """How eta of (d) turns with dp: eta = xi + sum (1 - b_k) X_k0; 3/2 eta : eta is a quadratic form of 1 -
-    b_k, which is zero for Prager's law. xi: trial stress less all X_k0, (6, n); square: 3/2 xi : xi, (n,);
-    cross: 3/2 xi : X_k0, (N, n).
+    """eta = xi + sum (1 - b_k) X_k0 of (d): 3/2 eta : eta is a quadratic form of 1 - b_k. xi: trial stress
+    less all X_k0, (6, n); square: 3/2 xi : xi, (n,); cross: 3/2 xi : X_k0, (N, n).
     """
 
     xi: Array
@@ -414,16 +411,12 @@ class KinematicFlow(Flow):
 
     def effective(self, x: Array, s: Array) -> Array:
         """The deviatoric stress less the back-stresses at the end of an increment x."""
-        end = self.start + self._change(x, equivalent_strain(x))
+        end = self.start + self.back.change(self.start, x, equivalent_strain(x))
         return s - self.back.of_strains(end).sum(axis=0)
-
-    def _change(self, x: Array, length: Array) -> Array:
-        """What an increment adds to the strains of the back-stresses; exactly zero where it is zero."""
-        return self.back.change(self.start, x, length)
 
     def increment(self, x: Array, length: Array) -> MaterialFields:
         """Increment of all fields of the material by a plastic strain x of this accumulated length."""
-        return MaterialFields(strain=x, peeq=length, back=self._change(x, length))
+        return MaterialFields(strain=x, peeq=length, back=self.back.change(self.start, x, length))
 
     def dissipated(self, increment: MaterialFields) -> Array:
         """Energy that an increment dissipates in J/m^3, without what the back-stresses store."""

@@ -60,9 +60,8 @@ def solve_plastic(
     start: Progressed | None = None,
     peak: ElasticPeak | None = None,
 ) -> tuple[History, Progressed]:
-    """The load history of a body that yields, from its beginning or from a record on, and the last record.
-    keep: called as keep(record, done, total) after each committed step, or part of one, with the number of
-    load steps; peak: of the body if it stayed elastic, which the first box is chosen from.
+    """The load history of a body that yields, from its beginning or a record, and the last record;
+    keep: called as keep(record, done, total); peak: of an elastic body, for the first box.
     """
     model = Model(problem)
     if start is not None:  # the model and its counters as they were when the record was made
@@ -101,9 +100,7 @@ def first_box(model: Model, peak: ElasticPeak) -> Extent:
 
 
 def onward(model: Model, record: Progressed) -> Progressed:
-    """Make one attempt further, of a history that has not ended: a committed step or part of one, or the same
-    state and smaller steps; of the model only the counters change.
-    """
+    """Make one attempt further: a step or a part of one, or the same state and smaller steps."""
     target = record.targets[0]
     if target.step == 1 and not record.cuts:
         record = _cycle_begun(model, record)
@@ -121,9 +118,7 @@ def onward(model: Model, record: Progressed) -> Progressed:
 
 
 def _cycle_begun(model: Model, record: Progressed) -> Progressed:
-    """The record that counts the strain of a cycle and of a period from here on, with a new tribofilm on the
-    surface as it is; below a counter-body that moves a film is made anew in each visit.
-    """
+    """The record that counts a cycle and period from here, with a new tribofilm on the surface."""
     material, state, film = record.state.material, record.state, record.tribofilm
     if model.plan.schedule.cycles > 1:
         record = replace(record, cycle_start=CycleStart(record.extent, material.peeq))
@@ -142,9 +137,9 @@ def _cycle_begun(model: Model, record: Progressed) -> Progressed:
 
 
 def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, Trial | None]:
-    """A step to a load on a box that holds it, and the record after it, committed if the step converged. The
-    box grows, and the tribofilm is tested, until neither changes any more; each time the step is made again
-    from the committed state. None, and a record that has ended, if the grid cannot hold the step.
+    """A step to a load, and the record after it, committed if it converged: made again from the
+    committed state until box and film stay; None and a record that has ended if the grid cannot
+    hold it.
     """
     law, track, film = model.plan.tribofilm, model.plan.track, record.tribofilm
     if law is not None and film is not None and track is not None:
@@ -274,7 +269,7 @@ def _reached(model: Model, record: Progressed, target: Target, trial: Trial, *, 
     record = with_outside(model, record, stress=True)
     history = record.history
     if target.snapshot == PEAK:
-        history = replace(history, certificate=_residuals(trial))
+        history = replace(history, certificate=trial.excesses)
     snapshots = {**history.snapshots, target.snapshot: snapshot(model, record, target.snapshot, trial)}
     return replace(record, history=replace(history, snapshots=snapshots))
 
@@ -296,9 +291,9 @@ def _worn(model: Model, record: Progressed, trial: Trial) -> tuple[Progressed, T
     """What is strained too much is removed, and equilibrium found again; the same trial if nothing is."""
     if model.plan.wear is None or record.wear is None:
         return record, trial
-    peeq, points, faces = (
-        record.state.material.peeq,
+    points, peeq, faces = (
         record.state.points.by_name(),
+        record.state.material.peeq,
         model.faces(record.extent),
     )
     wear, below = model.plan.wear.removed(record.wear, points, faces, record.extent.window, peeq=peeq)
@@ -325,14 +320,8 @@ def _joined(*notes: str) -> str:
     return "; ".join(filter(None, notes))
 
 
-def _residuals(trial: Trial) -> dict[str, float]:
-    return {"yield_excess": trial.yield_excess, "flow_residual": trial.flow_residual}
-
-
 def on_larger_grid(record: Progressed, grid: CellGrid, larger: CellGrid) -> Progressed | None:
-    """The same record in the middle of a grid with further cells of the same size, or above further layers;
-    None if it has fields of the whole grid, or other layers.
-    """
+    """The same record in the middle of a larger grid of equal cells, or None if it cannot be."""
     wider, faces = grid.shape != larger.shape, grid.layer_faces
     of_whole_grid = wider and (record.wear is not None or record.tribofilm is not None)
     same_layers = np.array_equal(faces, larger.layer_faces[: len(faces)])
@@ -361,24 +350,18 @@ def on_larger_grid(record: Progressed, grid: CellGrid, larger: CellGrid) -> Prog
 
 
 def finished(model: Model, record: Progressed) -> History:
-    """The history of a record that has ended, with what is measured at its end; of one that broke off before
-    the peak with its last state, as LAST.
-    """
+    """The history of a record that has ended, with what is measured at its end, or its LAST state."""
     history = record.history
     snapshots, residuals, plan = dict(history.snapshots), history.certificate, model.plan
     if not residuals:
         last = record.last
-        if (
-            last is None or last.increment.strain.shape != record.state.material.strain.shape
-        ):  # the box has grown
+        strain = record.state.material.strain
+        if last is None or last.increment.strain.shape != strain.shape:  # the box has grown
             last = problem_of(model, record).step(record.state, record.state.load)
         record = with_outside(model, record, stress=True)
-        snapshots[LAST], residuals = snapshot(model, record, LAST, last), _residuals(last)
-    states = {
-        name: with_last_period(model, record, snapshots[name])
-        for name in (PEAK, LAST, UNLOADED)
-        if name in snapshots
-    }
+        snapshots[LAST], residuals = snapshot(model, record, LAST, last), last.excesses
+    names = [name for name in (PEAK, LAST, UNLOADED) if name in snapshots]
+    states = {name: with_last_period(model, record, snapshots[name]) for name in names}
     first, window = next(iter(states.values())), record.extent.window
     # of the stress in y = 0 outside the box, where no plastic strain was allowed
     excess = von_mises(first.in_plane) / plan.initial_yield[:, None] - 1

@@ -12,13 +12,13 @@ of its own cell depends on the cell: in a flat one at the surface, a tenth of it
 the layer by 0.1 mu for a unit strain, one in the plane by 1.6 mu. A soft layer that a traction shears flows
 most by the first. Where the strain grows by x, the yield stress sigma_y resists a turn of x by
 
-    T = 2 sigma_y/(3 dgamma),     dgamma = sqrt(2/3 x : x),                                               (a)
+    T = 2 sigma_y/(3 dgamma),     dgamma = sqrt(2/3 x : x),                                               (f)
 
 so that a change of the stress changes the return map by 1/(2 m + T), and the solution, as far as the cell
-alone makes it, by 1/(a + T) with the stiffness a of the part in its own cell. The change of a part of x by
+alone makes it, by 1/(k + T) with the stiffness k of the part in its own cell. The change of a part of x by
 the return map is therefore multiplied by
 
-    (2 m + T)/(a + T).                                                                                    (b)
+    (2 m + T)/(k + T).                                                                                    (g)
 
 The fixed point is the same for every factor.
 """
@@ -38,7 +38,7 @@ from sam.contact.normal import control_of
 from sam.plasticity.flow import SHEAR, Material, deviator, equivalent_strain
 from sam.plasticity.points import POINTS, CellFlow, whole
 from sam.plasticity.spectra import BoxOperator
-from sam.plasticity.state import Change, MaterialFields, Residual, State, Trial
+from sam.plasticity.state import Change, MaterialFields, ResidualFields, State, Trial
 from sam.schedule import UNLOADED, Load
 
 CONTACT_LIMIT = 400  # iterations of a contact solve, ten times what a step takes; more halve the step
@@ -104,9 +104,8 @@ PressureSource = ContactPressure | GivenPressure
 # yield stresses, 25 x 25 cells, 4 steps and back at 1e-6: 40 applications and 150 ci with the values below.
 # Iterates that the acceleration combines: 47 with 2 of them, 41 with 4, 40 with 16.
 WINDOW = 8
-# Stiffness over mu with which a part of a cell relaxes, see `sam.plasticity.points`: about that of a sphere
-# in its surroundings, 0.52 for nu = 0.3 (Eshelby 1957). It is part of the discretisation, and of the
-# fixed-point map: 53 applications with 0.25, 46 with 1.
+# m over mu, see (a) and (e): about that of a sphere in its surroundings, 0.52 for nu = 0.3 (Eshelby 1957). It
+# is part of the discretisation, and of the fixed-point map: 53 applications with 0.25, 46 with 1.
 STIFFNESS = 0.5
 # Most iterations of a step before it is halved: 30 and 120 change nothing, steps that converge take
 # fewer.
@@ -147,7 +146,7 @@ class Problem:
     def virgin(self) -> State:
         """The body before the first load."""
         shape = (self.operator.layers, *self.operator.shape)
-        nothing = Residual(np.zeros((6, *shape)), np.zeros(self.operator.shape))
+        nothing = ResidualFields(np.zeros((6, *shape)), np.zeros(self.operator.shape))
         return State(self.material.virgin((POINTS, *shape)), nothing, self.pressure.start(UNLOADED))
 
     def traction(self, pressure: Array, load: Load) -> Array | None:
@@ -161,15 +160,15 @@ class Problem:
         stress = self.operator.stress(keep(pressure), response, None if traction is None else keep(traction))
         return stress if self.misfit is None else stress + load.misfit * keep(self.misfit)
 
-    def residual(self, before: Residual, x: Array) -> Residual:
+    def residual(self, before: ResidualFields, x: Array) -> ResidualFields:
         """The residual fields `before` and those of a plastic strain x: one application of the operator."""
         operator = self.operator
         transformed = operator.transformed(operator.keep(x))
         displacement = operator.whole(operator.displacement(transformed))
         stress = operator.whole(operator.stress(None, operator.response(transformed)))
-        return before.plus(Residual(stress, displacement))
+        return before.plus(ResidualFields(stress, displacement))
 
-    def residual_of(self, material: MaterialFields) -> Residual:
+    def residual_of(self, material: MaterialFields) -> ResidualFields:
         """The residual fields of a material; nothing is applied where it is unstrained."""
         nothing = self.virgin().residual
         return self.residual(nothing, material.strain) if material.strain.any() else nothing
@@ -186,7 +185,7 @@ class Problem:
 
     @property
     def stiffness(self) -> float:
-        """Stiffness in Pa with which the plastic strain of a part of a cell lowers its own stress."""
+        """m of the return map (a) in Pa."""
         return STIFFNESS * self.material.mu
 
     def step(
@@ -198,9 +197,8 @@ class Problem:
         start: Array | None = None,
         tolerance: float | None = None,
     ) -> Trial:
-        """The end of a load step from a committed state, converged or not: a fixed point of the increment x.
-        x: (6, n_layers, nx, ny) on the cells that the symmetry keeps. guess: change of the plastic strain to
-        start from; start: p_hat to start from, (nx, ny); tolerance: in place of that of the problem.
+        """The end of a load step from a committed state, converged or not: a fixed point of the increment x,
+        (6, n_layers, nx, ny) on the cells that the symmetry keeps. guess, start: change and p_hat before.
         """
         K, goal = self.operator, self.tolerance if tolerance is None else tolerance
         window, most = (LONG_WINDOW, LONG_ITERATIONS) if self.longer else (WINDOW, ITERATIONS)
@@ -224,15 +222,15 @@ class Problem:
             if worst <= goal:
                 accuracy = finest  # once more, with the contact as good as promised
                 continue
-            own = stiffness_of_parts(K.own_stress)
-            image = preconditioned(x, returned.image, flow.limit, m=self.stiffness, own=own)
+            of_parts = stiffness_of_parts(K.own_stress)
+            image = preconditioned(x, returned.image, flow.limit, m=self.stiffness, own=of_parts)
             x = anderson.next(x, image)
             strain = K.transformed(x)
             displacement = state.residual.displacement + K.whole(K.displacement(strain))  # paper Eq. 6
             base, response = K.keep(state.residual.stress), K.response(strain)  # paper Eq. 7, second sum
             self.counters.plastic_iterations += 1
         if response is not None:  # of the stress, what the load does not make: paper Eq. 4
-            residual = Residual(K.whole(stress - self.stress(pressure, load)), displacement)
+            residual = ResidualFields(K.whole(stress - self.stress(pressure, load)), displacement)
         return Trial(
             load=self.pressure.loaded(load, pressure),
             points=flow.increment(returned).each(partial(whole, K.transforms)),
@@ -250,30 +248,29 @@ class Problem:
 
 class Anderson:
     """Anderson acceleration of x = g(x) (Walker & Ni 2011, type II): combines the last `window` iterates so
-    that their residuals g(x) - x cancel best. weight: of each entry in the least-squares sense. The normal
-    equations are scaled to a unit diagonal, and singular values below `cutoff` dropped: directions the window
-    already holds.
+    that g(x) - x cancels best, each entry with its `weight`. Singular values below `cutoff` of the scaled
+    normal equations are dropped: directions the window already holds.
     """
 
     def __init__(self, window: int, weight: Array, cutoff: float = 1e-12):
         self.window, self.weight, self.cutoff = window, weight, cutoff
         self.count = 0  # differences so far; they take turns in the rows of
-        self.steps = self.changes = np.empty((window, 0))  # g(x), and of the weighted residual
+        self.steps = self.changes = np.empty((window, 0))  # of g(x), and of the weighted g(x) - x
         self.gram = np.zeros((window, window))
         self.last: tuple[Array, Array] | None = None
 
     def next(self, x: Array, image: Array) -> Array:
         """The next iterate after g(x) = image."""
-        flat, residual = image.ravel(), ((image - x) * self.weight).ravel()
+        flat, distance = image.ravel(), ((image - x) * self.weight).ravel()
         if self.last is not None:
-            self._add(flat - self.last[0], residual - self.last[1])
-        self.last = (flat, residual)
+            self._add(flat - self.last[0], distance - self.last[1])
+        self.last = (flat, distance)
         n = min(self.count, self.window)
         if not n:
             return image
         gram = self.gram[:n, :n]
         size = np.sqrt(np.maximum(gram.diagonal(), np.finfo(float).tiny))
-        right = self.changes[:n] @ residual / size
+        right = self.changes[:n] @ distance / size
         coefficients = np.linalg.lstsq(gram / np.outer(size, size), right, rcond=self.cutoff)[0] / size
         return (flat - coefficients @ self.steps[:n]).reshape(image.shape)
 
@@ -297,16 +294,15 @@ ACROSS = slice(2, 4)  # the shears across the layer: one stiffness for both
 
 
 def stiffness_of_parts(own_stress: Array) -> Array:
-    """Stiffness a of (b) in Pa, (5, n_layers), from `BoxOperator.own_stress`, (6, 6, n_layers) in Pa."""
+    """Stiffness k of (g) in Pa, (5, n_layers), from `BoxOperator.own_stress`, (6, 6, n_layers) in Pa."""
     stiffness: Array = -np.einsum("ai,ijk,aj->ak", PARTS * ROOT, own_stress, PARTS / ROOT)
     stiffness[ACROSS] = stiffness[ACROSS].mean(axis=0)
     return stiffness
 
 
 def preconditioned(x: Array, image: Array, limit: Array, *, m: float, own: Array) -> Array:
-    """The image (6, n_layers, nx, ny) of an increment x by the return map, its change multiplied by (b) where
-    it flows. limit: yield stress in Pa, (n_layers, nx, ny); m: stiffness of the return map in Pa; own: of the
-    parts of the strain, see `stiffness_of_parts`.
+    """The image (6, n_layers, nx, ny) of an increment x by the return map, its change multiplied by (g);
+    limit: yield stress in Pa, (n_layers, nx, ny); own: k of `stiffness_of_parts`.
     """
     out, flowing = image.copy(), image.any(axis=0)
     start, end = x[:, flowing], image[:, flowing]

@@ -60,10 +60,7 @@ def contact_in_box(model: Model, record: Progressed, trial: Trial) -> Contact:
 
 
 def contact_on_grid(model: Model, record: Progressed, trial: Trial) -> Contact:
-    """The contact on the full grid, its residuals measured there: pile-up outside the box counts. Where the
-    displacement by plastic strain, a sum over the steps in single precision, misses that of the full grid by
-    more than the contact may, the pressure is found once more on that.
-    """
+    """The contact on the full grid, found once more where single precision left it too far."""
     window, load, moved = record.extent.window, trial.load, known_outside(record).displacement
     gap, source = model.gap(load, record.wear) + moved, problem_of(model, record).pressure
     if load.force == 0:
@@ -121,9 +118,8 @@ def _residual_stress(model: Model, record: Progressed) -> Array:
     grid, window, rows = model.grid, record.extent.window, model.grid.axis_rows
     across = window.j0 <= rows.j0 and rows.j0 + rows.ny <= window.j0 + window.ny
     covered = record.extent.layers if across and window.nx == grid.nx else 0
-    below = residual_stress(
-        _strained(model, record), grid.depths[covered:], rows, mu=model.plan.pair.body.shear
-    )
+    strained, mu = _strained(model, record), model.plan.pair.body.shear
+    below = residual_stress(strained, grid.depths[covered:], rows, mu=mu)
     return np.concatenate([np.zeros((6, covered, *below.shape[2:])), below], axis=1)
 
 
@@ -286,13 +282,9 @@ def cycle_end(model: Model, record: Progressed, cycle: int, new: Array) -> Cycle
     )
     if model.plan.wear is None or wear is None:
         return end
-    margin, of_cycle = (
-        model.plan.wear.margin(record.state.material.peeq, model.faces(record.extent)),
-        (0.0, 0.0),
-    )
-    if len(wear.volumes) == cycle:
-        of_cycle = wear.volumes[-1], wear.roofed_volumes[-1]
-    worn, roofed = of_cycle
+    margin = model.plan.wear.margin(record.state.material.peeq, model.faces(record.extent))
+    ends = len(wear.volumes) == cycle
+    worn, roofed = (wear.volumes[-1], wear.roofed_volumes[-1]) if ends else (0.0, 0.0)
     return replace(end, moved=moved, worn=wear.depth, margin=margin, wear_of_cycle=worn, roofed=roofed)
 
 
@@ -362,9 +354,7 @@ class Strained:
 
 
 def residual_stress(source: Strained, depths: Array, observed: Window, *, mu: float) -> Array:
-    """Stress of the plastic strain in a box at depths in m, none on a face of it, and cells of the grid, (6,
-    n_depths, nx, ny) in Pa; mu in Pa. Paper Eq. 7.
-    """
+    """Stress of the plastic strain at depths in m, (6, n_depths, nx, ny) in Pa. Paper Eq. 7."""
     out = np.zeros((6, len(depths), *observed.shape))
     part = source.part()
     if part is None:
@@ -382,9 +372,7 @@ def residual_stress(source: Strained, depths: Array, observed: Window, *, mu: fl
 def surface_displacement(
     source: Strained, observed: Window, *, counters: Counters, component: int = 3
 ) -> Array:
-    """Displacement of the observed cells of the surface by the plastic strain in a box, (nx, ny) in m. Paper
-    Eq. 6. component: 3 for u_z (> 0 into the body), 1 for u_x; counters: where transforms are counted.
-    """
+    """u_z (3, into the body) or u_x (1) of the plastic strain, (nx, ny) in m. Paper Eq. 6."""
     part = source.part()
     if part is None:
         return np.zeros(observed.shape)
@@ -401,11 +389,7 @@ def surface_displacement(
 
 
 def at_centres(means: Array, faces: Array, interval: NDArray[np.intp] | None = None) -> Array:
-    """Values at the centres of cells from the means over them, (n_layers, nx, ny) >= 0. A direction counts
-    where both neighbours are strained too: beyond the border of the plastic zone, a kink, nothing is known.
-    faces: of the layers, (n_layers + 1,), in any unit; interval: (n_layers,) numbers, depth counts between
-    layers of the same one.
-    """
+    """Values at centres from means (n_layers, nx, ny), where both neighbours are strained."""
     out = means.copy()
     for axis, edges in enumerate((faces, np.arange(means.shape[1] + 1.0), np.arange(means.shape[2] + 1.0))):
         if len(edges) > 3:
@@ -432,9 +416,7 @@ def _bend(means: Array, edges: Array) -> Array:
 
 
 def largest(values: Array, depths: Array, interval: NDArray[np.intp] | None = None) -> tuple[float, float]:
-    """(depth, value) of the largest of (n_layers, nx, ny), from a cubic in each direction through it, its
-    neighbours and the next value beside the larger of these; interval: as of `at_centres`.
-    """
+    """(depth, value) of the largest of (n_layers, nx, ny), from a cubic in each direction."""
     at = tuple(map(int, np.unravel_index(int(values.argmax()), values.shape)))
     depth, height = float(depths[at[0]]), float(values[at])
     for axis, k in enumerate(at):
@@ -451,9 +433,7 @@ def largest(values: Array, depths: Array, interval: NDArray[np.intp] | None = No
 
 
 def _summit(x: Array, y: Array, k: int, same: NDArray[np.bool_]) -> tuple[float, float]:
-    """How far the maximum lies from the k-th point, the highest, and how much higher, by the curve through
-    three points, or four where the fourth is strained too; 0 without both neighbours.
-    """
+    """Offset and height of the maximum over the k-th point, of three or four points; 0 at an end."""
     if not 0 < k < len(y) - 1 or not (same[k - 1] and same[k + 1]):
         return 0.0, 0.0
     ends = [k - 1, k + 1]

@@ -130,9 +130,7 @@ class Model:
     def problem(
         self, extent: Extent, film: TribofilmState | None = None, wear: WearState | None = None
     ) -> Problem:
-        """The problem of a load step on a box, with friction and gap of the surface as it is. What was built
-        last is taken again as far as it is for the same box and the same arrays of film and wear.
-        """
+        """The problem of a load step on a box; what was built last is kept if the same."""
         last, old = self.built, self.built.problem
         failed = film.film.failed if film is not None else None
         depth = wear.depth if wear is not None else None

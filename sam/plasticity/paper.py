@@ -20,7 +20,7 @@ from sam.contact.stress import von_mises, yielding
 from sam.plasticity.flow import contraction, deviator, equivalent_strain
 from sam.plasticity.load_step import CONTACT_SHARE, Problem
 from sam.plasticity.points import POINTS
-from sam.plasticity.state import Change, MaterialFields, Residual, State, Trial
+from sam.plasticity.state import Change, MaterialFields, ResidualFields, State, Trial
 from sam.schedule import Load
 
 OUTER = 60  # alternations of contact and displacement; they end by their criterion, or the step is halved
@@ -33,7 +33,7 @@ class Sum:
 
     x: Array
     length: Array
-    residual: Residual
+    residual: ResidualFields
     stopped: bool = False
 
 

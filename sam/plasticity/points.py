@@ -7,15 +7,15 @@ As within a finite element (Simo & Hughes 1998), the law of the material is ther
 at Gauss points, and the plastic strain E of the cell is the mean over its points, E = mean E_g. The stress at
 a point is
 
-    s_g = [s + 2 m E]_g - 2 m E_g,      [v]_g = v +- h_x/(2 sqrt 3) dv/dx +- h_y/(2 sqrt 3) dv/dy,         (a)
+    s_g = [s + 2 m E]_g - 2 m E_g,      [v]_g = v +- h_x/(2 sqrt 3) dv/dx +- h_y/(2 sqrt 3) dv/dy,         (e)
 
 with central differences between cells. A part of a cell that strains more than the rest lowers its own stress
 by 2 m of the difference; s + 2 m E is what the surroundings alone make, and it is smooth where E is not. The
-mean of (a) over the points is s again. With x_g = E_g - E_g0 over a step, (a) is the return map of the trial
+mean of (e) over the points is s again. With x_g = E_g - E_g0 over a step, (e) is the return map of the trial
 stress [s + 2 m E]_g - 2 m E_g0, and the mean of the x_g is the increment of the cell.
 
 The state (plastic strain, accumulated strain, back-stresses) belongs to the points. If it were made anew from
-the cells at the beginning of each step, the stresses (a) that the step before ended with would be forgotten,
+the cells at the beginning of each step, the stresses (e) that the step before ended with would be forgotten,
 and a load that stays the same would strain the body again.
 
 The points stand in the order (-x, -y), (-x, +y), (+x, -y), (+x, +y), on the axis before the layers.
@@ -100,24 +100,19 @@ class Linear:
 
 
 def stress_at_points(stress: Array, strain: Array, m: float) -> Array:
-    """The stress (a) at the points of all cells of a box, (6, 4, n_layers, nx, ny) in Pa, of the stress of
-    the cells, (6, n_layers, nx, ny), and plastic strain at the points; m: stiffness in Pa with which a part
-    of a cell relaxes.
+    """The stress (e) at the points of all cells of a box, (6, 4, n_layers, nx, ny) in Pa, of the stress of
+    the cells, (6, n_layers, nx, ny), and plastic strain at the points; m: of the return map (a).
     """
-    every = np.ones(stress.shape[1:], dtype=bool)
-    smooth = Linear((stress.shape[-2], stress.shape[-1])).at_points(
-        stress + 2 * m * strain.mean(axis=1), every
-    )
+    linear, every = Linear((stress.shape[-2], stress.shape[-1])), np.ones(stress.shape[1:], dtype=bool)
+    smooth = linear.at_points(stress + 2 * m * strain.mean(axis=1), every)
     return smooth.reshape(strain.shape) - 2 * m * strain
 
 
 @dataclass(frozen=True)
 class Returned:
-    """What the return map makes of an increment x and the deviatoric stress that goes with it. image: the
-    mean of the increments at the points, (6, n_layers, nx, ny); cells: that may flow; points: their
-    increments (6, 4, n), which have the mean x; stress: deviatoric, that goes with these, in Pa; flow: how
-    the points yield; flow_residual: 2 m |image - x| over the initial yield stress, the stress by which the
-    mean over the points differs from that of the cell.
+    """The return map of an increment x: image, its mean over the points, (6, n_layers, nx, ny);
+    cells that may flow; their points (6, 4, n), with the mean x; deviatoric stress there in Pa;
+    flow_residual: 2 m |image - x| over the initial yield stress.
     """
 
     image: Array
@@ -138,9 +133,8 @@ class Returned:
 
 
 class CellFlow:
-    """How cells yield over a step: the return map of their material at the points. before: the fields at the
-    points at its beginning, on the cells that the transforms keep; m: stiffness in Pa with which a part of a
-    cell relaxes, see (a).
+    """How cells yield over a step, the return map at their points. before: the fields there at its beginning,
+    on the cells that the transforms keep; m: of the return map (a).
     """
 
     def __init__(self, material: Material, before: MaterialFields, transforms: Transforms, m: float):
@@ -158,7 +152,7 @@ class CellFlow:
         return self.material.at(self.cells).flow(self.before.each(lambda values: values[..., self.cells]))
 
     def trial(self, x: Array, s: Array) -> Array:
-        """The trial stress (a) at the points of the cells that may yield, (6, 4, n)."""
+        """The trial stress (e) at the points of the cells that may yield, (6, 4, n)."""
         smooth = s + 2 * self.m * (self.strain + x)
         may_yield: Mask = yielding(self.linear.farthest(mises(smooth)), self.least)
         may_yield |= x.any(axis=0)
@@ -178,8 +172,8 @@ class CellFlow:
         change = means - image[:, self.cells]
         points += change[:, None]
         points[:, :, ~means.any(axis=0)] = 0.0  # what is accepted without an increment strains nothing
-        residual = 2 * self.m * np.sqrt(contraction(change, change).max(initial=0.0))
-        stress, relative = trial - 2 * self.m * points, float(residual / self.material.initial_yield)
+        unequal = 2 * self.m * np.sqrt(contraction(change, change).max(initial=0.0))
+        stress, relative = trial - 2 * self.m * points, float(unequal / self.material.initial_yield)
         return Returned(image, self.cells, points, stress, self.flow, relative)
 
     def near(self, means: Array) -> Array:

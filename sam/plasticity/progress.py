@@ -29,10 +29,7 @@ from sam.wear import WearState
 
 @dataclass(frozen=True)
 class Added:
-    """What a period added on a box: accumulated and the norm of the strain, (n_layers, nx, ny), and the
-    strain, (6, n_layers, nx, ny), of the last two periods; worn: depth in m at its beginning, (nx, ny), or
-    None.
-    """
+    """What a period added on a box, (n_layers, nx, ny) and (6, ...); worn: depth in m before it."""
 
     extent: Extent
     accumulated: Array
@@ -43,7 +40,7 @@ class Added:
     def on(self, extent: Extent, before: Array | None) -> Period:
         """The cells of a box in one row. before: worn depth at the beginning of the period before it."""
         where, shape = self.extent.inside(extent), extent.shape
-        accumulated, norm = (surrounded(each, where, shape).ravel() for each in (self.accumulated, self.norm))
+        accumulated, norm = (surrounded(part, where, shape).ravel() for part in (self.accumulated, self.norm))
         strain = None if self.strain is None else surrounded(self.strain, where, shape).reshape(6, -1)
         restarted = None
         if self.worn is not None and before is not None:
@@ -81,7 +78,7 @@ class Periods:
         """The same with the period that a state ends, before anything is removed from it."""
         if self.begun is None or model.plan.judging is None:
             raise ValueError("no period has begun")
-        earlier = (*(replace(each, strain=None) for each in self.last[:-1]), *self.last[-1:])
+        earlier = (*(replace(period, strain=None) for period in self.last[:-1]), *self.last[-1:])
         added = (*earlier, self.begun.added(state, extent))
         verdict = verdict_on(
             _compared(added, extent),
@@ -104,14 +101,16 @@ class Periods:
         """The same on another grid. place: of a box on it."""
         begun = self.begun and replace(self.begun, extent=place(self.begun.extent))
         return replace(
-            self, begun=begun, last=tuple(replace(each, extent=place(each.extent)) for each in self.last)
+            self,
+            begun=begun,
+            last=tuple(replace(period, extent=place(period.extent)) for period in self.last),
         )
 
 
 def _compared(added: Sequence[Added], extent: Extent) -> list[Period]:
     """The periods on one box."""
-    before = [None, *(each.worn for each in added)]
-    return [each.on(extent, worn) for each, worn in zip(added, before, strict=False)]
+    before = [None, *(period.worn for period in added)]
+    return [period.on(extent, worn) for period, worn in zip(added, before, strict=False)]
 
 
 def _yield_strain(model: Model, extent: Extent) -> Array:
@@ -173,15 +172,11 @@ class CycleStart:
 
 @dataclass(frozen=True)
 class Progressed:
-    """A history after a committed step, or part of one. state, extent: the plastic state, and the box that it
-    is on; room: of the grid; targets: ends of load steps to come; counters: work done so far; tribofilm,
-    wear: what the surface remembers; last, change: the trial that was committed last, and what it changed;
-    cuts: loads on the way to the first target, itself the last, empty before its step begins; parts: what is
-    committed of that step; history: what is recorded so far; recalled: p_hat at the end of earlier steps, by
-    their force or approach; outside: fields outside of the box, None where they are to be computed; longer:
-    whether steps to come are made by the longer iteration; cycle_start: what the strain of the cycle is
-    counted from, None where there is only one; periods: of a repeated load that is judged; dissipated: energy
-    in J of the cycle so far, where it is asked for.
+    """A history after a committed step, or part of one: state on a box, targets to come, work, what
+    the surface remembers; last, change: the trial committed last; cuts: loads to the first target;
+    parts: committed of it; recalled: p_hat of earlier steps by load; outside: None where to be
+    computed; longer: the longer iteration; cycle_start, periods: what strain counts from;
+    dissipated: J.
     """
 
     state: State

@@ -53,9 +53,7 @@ def _points(faces: Array) -> Array:
 
 
 class CellMeans(CornerFunctions):
-    """The functions of its base class as means over the observed cell in x and y: by four Gauss points up to
-    NEAR cells away, beyond, where the stress is smooth, by second differences.
-    """
+    """The same functions as means over the cell in x and y: by Gauss points up to NEAR cells away."""
 
     def __init__(self, lags: Lags):
         self.near = min(NEAR, lags.nx), min(NEAR, lags.ny)
@@ -89,17 +87,16 @@ def mean_stress_of_load(cuboids: Cuboids, load: int = 3) -> Array:
     _plane_mean(_with_lag_before(far.mean(axis=2), ODD_X ^ int(load == 1), ODD_Y), out)
     near = min(NEAR, nx), min(NEAR, ny)
     few = _first(lags, near)
-    at = [stress_coefficients(few, depths, nu, load=load, shift=shift) for shift in _shifts(lags)]
+    shifts = [(lags.hx * x / 2, lags.hy * y / 2) for x in GAUSS for y in GAUSS]
+    at = [stress_coefficients(few, depths, nu, load=load, shift=shift) for shift in shifts]
     out[..., : near[0], : near[1]] = np.mean(at, axis=0).reshape(*shape, *near).mean(axis=2)
     return out
 
 
 def _plane_mean(kernel: Array, out: Array) -> None:
     """Mean over the cell in x and y, K + (d_x^2 K + d_y^2 K)/24, from lags -1 .. n at lags 0 .. n - 1."""
-    row, flat = (
-        kernel.shape[-1],
-        kernel.reshape(-1),
-    )  # sums of neighbours in one go; those over the border are not kept
+    row, flat = kernel.shape[-1], kernel.reshape(-1)
+    # sums of neighbours in one go; those over the border are not kept
     pairs = flat[row:] + flat[1 : 1 - row]  # one further in x and one further in y
     mean = 20 * flat  # 24 - 4
     inner = mean[row + 1 : -row]
@@ -117,16 +114,8 @@ def _with_lag_before(kernel: Array, odd_x: Parities, odd_y: Parities) -> Array:
     return np.concatenate([sign_y * kernel[..., 1:2], kernel], axis=-1)
 
 
-def _shifts(lags: Lags) -> list[tuple[float, float]]:
-    """Gauss points of a cell in the plane, from its centre."""
-    return [(lags.hx * x / 2, lags.hy * y / 2) for x in GAUSS for y in GAUSS]
-
-
 class BoxSpectra:
-    """Real transforms of the coefficients of cuboids, in the unit of their cells hx, with mu = 1. stored: of
-    (N_x + 1) (N_y + 1) wave numbers, those that `strain_to_stress` (6 n_layers, stored, 6 n_layers) holds:
-    all, or with `exchange` those with k_x <= k_y.
-    """
+    """Real transforms of coefficients of cuboids, with mu = 1; stored: of which wave numbers."""
 
     def __init__(self, cuboids: Cuboids, single: bool, exchange: bool = False):
         self.cuboids, self.half = cuboids, cuboids.lags.shape
@@ -189,13 +178,10 @@ def spectra_of(cuboids: Cuboids, single: bool, exchange: bool) -> BoxSpectra:
 
 
 class BoxOperator:
-    """Stress in the cells of a box and normal displacement of its surface, of plastic strain and of loads, on
-    the cells that `keep` leaves of the box; `whole` goes back. box: as many cells as lags, with sides in m,
-    layers from the surface, 0, downwards; mu in Pa; sliding: whether tractions are to come; single:
-    coefficients and transforms in single precision, 1e-7 of the largest stress, in half the time and memory;
-    mirror: whether all fields are mirrored in x and in y (x only with y); exchange: whether they stay the
-    same when x and y are exchanged, on a mirrored box of n x n square cells: the products for half of the
-    wave numbers then give all.
+    """Stress in the cells of a box and u_z of its surface, of plastic strain and loads, on the
+    cells that `keep` leaves. box: cells as lags, in m, layers from 0; mu in Pa; sliding: tractions
+    come; single: precision, 1e-7 of the largest stress, in half the time; mirror: of all fields in
+    x (with y) and y; exchange: of x and y, half of the wave numbers give all.
     """
 
     def __init__(

@@ -3,11 +3,11 @@
 
 Three kinds of fields make up a state, and nothing else has to know their names:
 
-* fields of the material (`MaterialFields`), a tensor of any shape in each cell. When the box grows there are
-zeros around
-  them; when the surface wears the columns of cells move up; a step adds its increment.
-* fields that follow from the plastic strain (`Residual`). They are computed anew when the box grows and when
-it wears. * fields of the loaded surface (the pressure). When the box grows there are zeros around them.
+* fields of the material (`MaterialFields`), tensors of any shape in each cell: when the box grows there are
+  zeros around them; when the surface wears the columns of cells move up; a step adds its increment;
+* residual fields, what is left without load and follows from the plastic strain (`ResidualFields`): they
+  are computed anew when the box grows and when it wears;
+* fields of the loaded surface (the pressure): when the box grows there are zeros around them.
 
 A law that needs more memory (the misfit strain of a phase, say) adds a field to `MaterialFields`. A
 checkpoint takes the records apart by their fields, and needs no rule of its own.
@@ -28,10 +28,9 @@ from sam.schedule import UNLOADED, Load
 
 @dataclass(frozen=True)
 class MaterialFields:
-    """What the material remembers at the points of the cells of a box, see `sam.plasticity.points`, or its
-    increment over a step; or means over the points. strain: plastic, (6, 4, n_layers, nx, ny), of means (6,
-    n_layers, nx, ny), and so on; peeq: accumulated, (4, n_layers, nx, ny); back: strains a_k of the
-    back-stresses, (N, 6, 4, n_layers, nx, ny), or None.
+    """What the material remembers at the points of the cells of a box, its increment over a step, or means
+    over the points, without the axis of 4: plastic strain, (6, 4, n_layers, nx, ny); peeq: accumulated;
+    back: strains a_k of the back-stresses, (N, 6, 4, ...), or None.
     """
 
     strain: Array
@@ -68,23 +67,23 @@ class MaterialFields:
 
 
 @dataclass(frozen=True)
-class Residual:
+class ResidualFields:
     """What plastic strain makes without load: stress (6, n_layers, nx, ny) in Pa, u_z (nx, ny) in m."""
 
     stress: Array
     displacement: Array
 
-    def plus(self, other: Residual) -> Residual:
+    def plus(self, other: ResidualFields) -> ResidualFields:
         """The residual fields of the sum of two strains."""
-        return Residual(self.stress + other.stress, self.displacement + other.displacement)
+        return ResidualFields(self.stress + other.stress, self.displacement + other.displacement)
 
-    def minus(self, other: Residual) -> Residual:
+    def minus(self, other: ResidualFields) -> ResidualFields:
         """The residual fields of the difference of two strains."""
-        return Residual(self.stress - other.stress, self.displacement - other.displacement)
+        return ResidualFields(self.stress - other.stress, self.displacement - other.displacement)
 
-    def times(self, ratio: float) -> Residual:
+    def times(self, ratio: float) -> ResidualFields:
         """The residual fields of the strain times a number."""
-        return Residual(ratio * self.stress, ratio * self.displacement)
+        return ResidualFields(ratio * self.stress, ratio * self.displacement)
 
 
 @dataclass(frozen=True)
@@ -92,7 +91,7 @@ class State:
     """A committed state of the box: material at the points, residual fields, p_hat (nx, ny), load."""
 
     points: MaterialFields
-    residual: Residual
+    residual: ResidualFields
     pressure: Array
     load: Load = UNLOADED
 
@@ -115,7 +114,7 @@ class Change:
     """An increment of the plastic strain, (6, n_layers, nx, ny), and what it adds to the residual fields."""
 
     strain: Array
-    residual: Residual
+    residual: ResidualFields
 
     def times(self, ratio: float) -> Change:
         """All is linear in the increment."""
@@ -124,16 +123,15 @@ class Change:
 
 @dataclass(frozen=True)
 class Trial:
-    """The end of a load step, converged or not: nothing is committed yet. points: increment of the material
-    at the points of the cells; stress in Pa, (6, n_layers, nx, ny); residual: at the end of the step;
-    yield_excess, flow_residual: see `sam.plasticity.points.Returned`; history: their larger one, by
-    iteration; goal: that it is to fall to; rise: change of what is given, see `sam.schedule.Load.rise`.
+    """The end of a load step, converged or not, not committed; points: increment there; stress in
+    Pa, (6, n_layers, nx, ny); residual: fields at its end; history: larger residual by iteration;
+    goal: of it; rise: of the load.
     """
 
     load: Load
     points: MaterialFields
     stress: Array
-    residual: Residual
+    residual: ResidualFields
     pressure: Array
     yield_excess: float
     flow_residual: float
@@ -146,6 +144,11 @@ class Trial:
     def increment(self) -> MaterialFields:
         """The means over the points of each cell."""
         return self.points.means()
+
+    @property
+    def excesses(self) -> dict[str, float]:
+        """How far the step is from obeying the yield condition and the flow rule, by name."""
+        return {"yield_excess": self.yield_excess, "flow_residual": self.flow_residual}
 
     @property
     def plastic(self) -> bool:
@@ -190,7 +193,7 @@ def surrounded(values: Array, where: tuple[slice, ...], shape: tuple[int, ...]) 
 
 
 def on_larger_box(
-    state: State, old: Extent, new: Extent, residual: Callable[[MaterialFields], Residual]
+    state: State, old: Extent, new: Extent, residual: Callable[[MaterialFields], ResidualFields]
 ) -> State:
     """The same state on a larger box. residual: what the material makes there."""
     where = old.inside(new)

@@ -30,10 +30,7 @@ OF_CYCLE = ("new_strain_max", "yielding_cells", "wear_of_cycle_m3")  # zero of a
 
 @dataclass(frozen=True)
 class Moved:
-    """Of a counter-body that moves. way: from the start of the path in m; force: along the path in N, that
-    drives it, not a number under a punch; offset: of the centroid of the pressure from its middle along the
-    path in m; at_edge: whether the contact touches the edge of the grid there.
-    """
+    """Of a moving counter-body: way from the start, force, offset of the pressure; m and N."""
 
     way: float
     force: float
@@ -43,10 +40,7 @@ class Moved:
 
 @dataclass(frozen=True)
 class PassEnd:
-    """What a pass over a path leaves; see `sam.scene.groove` for the lengths in m. direction: 1 from start to
-    end, -1 back; strain: largest accumulated plastic strain that it adds in the steady part; drive: mean
-    force along the path there in N; rolling: that of the pressure over the normal force.
-    """
+    """What a pass over a path leaves; lengths as of `sam.scene.groove`; drive: mean force in N."""
 
     cycle: int
     direction: int
@@ -120,14 +114,11 @@ def largest_pressure(contact: Contact, grid: CellGrid) -> float:
 
 
 def contact_area(contact: Contact, grid: CellGrid) -> float:
-    """Area in m^2 within an outline between the cells with p > 0 and the others. At a distance d from the
-    edge of a contact the pressure inside is in proportion to sqrt(d), and the gap outside to d^(3/2) (Johnson
-    1985, Sec. 4.2). Of two neighbouring cells, one in contact, q = gap E*/(p h) therefore tells where between
-    their centres the edge is: q grows from 0 to infinity while it moves inwards by a cell. h is the distance
-    of lines of centres that follow the edge: in cells that are not square it is found in a second pass.
-    Straight lines join these places in each square of four centres (marching squares); arcs add an eighth of
-    a cell for each corner that turns outwards. At the end of the counter-body and of the grid the outline is
-    halfway, which gives the area of the cells.
+    """Area in m^2 within an outline between the cells with p > 0 and the others. q = gap E*/(p h)
+    of two neighbours tells where between them the edge is (Johnson 1985, Sec. 4.2), h being the
+    distance of lines of centres along it, in other cells than square ones of a second pass.
+    Straight lines join these places in squares of four centres, arcs add to corners; at an end of
+    the grid it is halfway.
     """
     if contact.area is not None:
         return contact.area
@@ -161,9 +152,7 @@ def _shares(p: Array, gap: Array, unit: Array) -> Array:
 
 
 def _distances(normal: tuple[Array, Array], axis: int, cell: tuple[float, float]) -> Array:
-    """In m, of lines of centres that follow the outline, at each line to a next cell. normal: of the outline
-    in squares of four centres, in cells; axis: along which two squares share such a line.
-    """
+    """In m, of lines of centres along the outline (normal in cells) at each line to a next cell."""
     width = [(1, 1) if each == axis else (0, 0) for each in (0, 1)]
     u, v = (sliding_window_view(np.pad(part, width), 2, axis).sum(axis=-1) for part in normal)
     reach, distance = np.hypot(u / cell[0], v / cell[1]), np.full(u.shape, min(cell))
@@ -183,13 +172,9 @@ def history_table(rows: Sequence[Row]) -> dict[str, list[Any]]:
 
 @dataclass(frozen=True)
 class CycleEnd:
-    """The surface after a cycle. wear_volume: of all cycles so far in m^3; roughness: without force, None if
-    smooth. new_strain, yielding: largest new plastic strain of a cell in this cycle, and in how many there is
-    any; dissipated: energy in J of the cycle, where it is asked for; wear_of_cycle: in m^3; margin: of the
-    cell that is left nearest to its limit, 1 less strain over limit, None: nothing can wear; roofed: volume
-    in m^3 beyond its limit that stays, as sound material lies above it. applications: of the residual-stress
-    operator in all cycles so far; moved: by plastic strain into the body, worn: depth in all cycles so far,
-    both (nx, ny) in m, None: nothing can wear, or of another grid.
+    """The surface after a cycle: wear_volume so far in m^3; roughness, None if smooth; new_strain,
+    yielding: the largest and in how many cells; dissipated in J; wear_of_cycle, roofed in m^3;
+    margin: of the cell nearest to its limit; moved, worn: (nx, ny) in m, None without.
     """
 
     cycle: int
@@ -213,10 +198,7 @@ def cycles_table(
     at_peak: Callable[[int, int], bool],
     roughness: Roughness | None = None,
 ) -> dict[str, list[Any]]:
-    """The table cycles: a row for each cycle that came to its peak, with volume and roughness at its end.
-    at_peak: whether a cycle's step ends there; roughness: before the first load. What there is not (skewness)
-    is None.
-    """
+    """The table cycles: a row for each cycle that came to its peak; None for what there is not."""
     peaks: dict[int, Row] = {}
     for row in rows:
         if at_peak(row.cycle, row.step):
@@ -278,13 +260,9 @@ def loops_table(grid: CellGrid, rows: Sequence[LoopRow]) -> dict[str, list[Any]]
 
 @dataclass(frozen=True)
 class History:
-    """What is recorded of a load history, elastic or plastic, while it is solved and at its end. rows: of the
-    load steps; snapshots: name of the state -> it, in the order of the tables; ends: of the cycles; passes:
-    of those over a path; loops: of three cells over the last period; status: CONVERGED, or why the history
-    ended; reached: sides of the grid that plastic zone or contact reached; ending: of the last iteration, in
-    words; certificate: residuals of the load step to the peak, and what is measured at the end; unfinished:
-    cycle, step and attempts of the step that was not reached; floor: strain below which a period counts as
-    without plastic strain.
+    """What is recorded of a load history: rows of load steps; snapshots by state; ends of cycles;
+    passes; loops of three cells; status; reached: sides of the grid; ending in words; certificate:
+    residuals at the peak; unfinished: cycle, step and attempts; floor: strain of no plastic strain.
     """
 
     rows: tuple[Row, ...] = ()

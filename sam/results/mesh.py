@@ -19,9 +19,7 @@ from sam.scene import FieldMesh, GridFields
 
 
 def field_mesh(grid: CellGrid, snapshot: Snapshot, height: Array | None = None) -> FieldMesh:
-    """The mesh of a state: stress and strain at the nodes of the plane, pressure (with friction traction and
-    coefficient, of a rough body heights, (nx, ny) in m) in the cells of the surface.
-    """
+    """The mesh of a state: stress and strain in the plane, pressure in the cells of the surface."""
     xs, ys = (np.append(c - h / 2, c[-1] + h / 2) for c, h in ((grid.x, grid.hx), (grid.y, grid.hy)))
     surface = np.stack([*np.meshgrid(xs, ys, indexing="ij"), np.zeros((len(xs), len(ys)))], axis=-1).reshape(
         -1, 3
@@ -122,9 +120,7 @@ def _surface(grid: CellGrid, snapshot: Snapshot, share: float, height: Array | N
 
 
 def _on_cells(grid: CellGrid, cells: Mapping[str, Array | None]) -> GridFields:
-    """Fields of the cells of the surface, (nx, ny), without those that are None; the displacement at a node,
-    to be drawn as a deformed surface, is the mean of the cells around it.
-    """
+    """Fields (nx, ny) of the surface but for None; displacements at nodes as means of the cells."""
     points, moved = {}, cells.get("uz_m")
     if moved is not None:
         around = np.pad(moved, 1, mode="edge")

@@ -40,10 +40,7 @@ def refined_peak(z: Array, values: Array, kinks: Kinks = EVEN) -> tuple[float, f
 
 
 def largest_mises(z: Array, peak: Snapshot, kinks: Kinks = EVEN) -> tuple[float, float]:
-    """Depth and value of the largest von Mises stress, refined by a parabola over depth unless its cell has
-    yielded: it is then on the yield surface, which a parabola would pass; so the value is the same whichever
-    way the body is turned.
-    """
+    """Depth and value of the largest von Mises stress, refined over depth where it has not yielded."""
     mises = peak.mises
     k, column = np.unravel_index(mises.argmax(), mises.shape)
     if peak.flowed is not None and peak.flowed[k, column]:
@@ -150,9 +147,7 @@ SECOND_ORDER = tuple(
 
 
 def with_extrapolation(before: Result, fine: Result, *, finds_force: bool) -> Result:
-    """The result on the finer grid, extrapolated from the coarser one, or with the reason why not where that
-    does not converge or resolve the contact. finds_force: the force is one of the quantities.
-    """
+    """The result on the finer grid, extrapolated from the coarser, or with the reason why not."""
     cost = {name: (value or 0) + (before.cost[name] or 0) for name, value in fine.cost.items()}
     cells = before.discretisation["cells"]
     if before.status is not Status.CONVERGED or not fine.converged:

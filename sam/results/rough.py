@@ -108,10 +108,7 @@ class RoughRecord:
 
 
 def too_few_cells(pressure: Array) -> str:
-    """What a user should know about the spots of a contact (nx, ny) in Pa; empty if those that matter are
-    resolved. A spot hangs together over sides of its cells: two that touch at a corner have a saddle between
-    them, and as one they would pass for resolved.
-    """
+    """What to know about spots (nx, ny) in Pa that few cells resolve, joined at their sides."""
     from scipy import ndimage  # noqa: PLC0415 - for rough scenes alone
 
     spots, _ = ndimage.label(pressure > 0)

@@ -17,11 +17,9 @@ SHEAR = 4  # index of the component 13 in the order 11 22 33 23 13 12
 
 @dataclass(frozen=True)
 class Sliding:
-    """What friction adds to a state. traction: q_x on the body, (nx, ny) in Pa. The others in the rows of
-    cells that touch y = 0, (nx, rows) in m. ux: displacement of the surface along x, by pressure, traction
-    and plastic strain; residual_ux: the part of the plastic strain; uz: what u_z of the body has beyond its
-    share of the contact's displacement; shear: -integral of 2 eps_p_13 over depth, by which plastic flow
-    carries the surface along x over the unstrained depth.
+    """What friction adds to a state: traction q_x, (nx, ny) in Pa; in the rows at y = 0, (nx, rows)
+    in m, ux, residual_ux of the plastic strain, uz beyond its share, and shear, -integral of 2
+    eps_p_13.
     """
 
     traction: Array
@@ -64,10 +62,7 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Coated:
-    """What a coating adds to a state. thickness in m; counter_uz: of the counter-body away from the body,
-    (nx, rows) in m, which the contact counts and the body has not; comparison: with the bare body, under
-    force.
-    """
+    """What a coating adds to a state; counter_uz: (nx, rows) in m; comparison: with the bare body."""
 
     thickness: float
     counter_uz: Array
@@ -76,10 +71,7 @@ class Coated:
 
 @dataclass(frozen=True)
 class Box:
-    """The cells that may yield, with all that is known of them. x, y, z: faces of the cells in m, z below the
-    current surface; stress in Pa, strain: plastic, both (6, nz, nx, ny); peeq: (nz, nx, ny); repeated: of
-    repeated loading, name -> (nz, nx, ny) or (6, nz, nx, ny).
-    """
+    """The cells that may yield: faces x, y, z in m; stress in Pa, strain (6, nz, nx, ny), peeq."""
 
     x: Array
     y: Array
@@ -92,15 +84,10 @@ class Box:
 
 @dataclass(frozen=True)
 class Snapshot:
-    """A state that goes into the tables: "peak" or "unloaded", or "last" where the peak was not reached.
-    contact: on the full grid; residual_displacement: of the surface, (nx, ny) in m; stress: (6, nz, nx, rows)
-    in Pa, strain: plastic, (6, nz, nx, rows), peeq: (nz, nx, rows), all in the rows of cells that touch y =
-    0; mises: von Mises stress of (nz, n) points in Pa, among which the largest is; flowed: which of them have
-    plastic strain, None: none; top: depth in m and value of the largest peeq anywhere, between the cells,
-    None where nothing yields; sliding: None without friction; coated: None without coating; worn: depth in m,
-    (nx, ny), None: nothing can wear; cut: None: not at the peak, or the contact is in y = 0; box: None: the
-    body is elastic; stretch, place: of the counter-body that is opposite, see `sam.schedule.Load`; repeated:
-    fields of repeated loading, name -> (nz, nx, rows) or (6, nz, nx, rows).
+    """A state that goes into the tables. contact: on the full grid; residual_displacement: (nx, ny)
+    in m; stress in Pa, strain: plastic, (6, nz, nx, rows), peeq: (nz, nx, rows) in the rows at y =
+    0; mises: (nz, n) in Pa, among which the largest is; flowed: with plastic strain; top: depth in
+    m and value of the largest peeq; worn in m; None for what a scene has not; repeated: by name.
     """
 
     state: str

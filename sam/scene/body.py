@@ -43,9 +43,7 @@ MICROSTRAIN = 1e6  # alpha of Swift's law in the paper, Eq. 18: the strain in mi
 
 @dataclass(frozen=True)
 class Law:
-    """A hardening law: what makes its curve of the values of its keys, in this order; the keys that it needs,
-    and those that have a default.
-    """
+    """A hardening law: what makes its curve of its keys in this order, and the keys with a default."""
 
     curve: Callable[..., YieldCurve]
     needed: tuple[str, ...]
@@ -124,9 +122,7 @@ class Hardening(Section):
         yield from of_choice(given, keys, (law.needed, law.keys), (needed, f"{taken}: remove it"))
 
     def curve(self) -> YieldCurve:
-        """The yield stress in Pa as a function of the accumulated plastic strain, where the factor over depth
-        is 1.
-        """
+        """The yield stress in Pa over the accumulated plastic strain, where the factor is 1."""
         law = LAWS[self.law]
         return law.curve(*(stated(getattr(self, key)) for key in law.keys))
 
@@ -180,9 +176,7 @@ class Plasticity(Hardening):
 
     @property
     def bounds_strain(self) -> bool:
-        """Whether every part has a back-stress that never recovers (Prager's law): its energy, quadratic in
-        the plastic strain, bounds the strain under any number of cycles.
-        """
+        """Whether all parts have a back-stress of Prager, whose energy bounds the strain."""
         backs = (law.back_stress() for law in self._laws)
         return all(back is not None and isinf(back.saturation) for back in backs)
 
@@ -246,9 +240,7 @@ class Body(Section):
         )
 
     def excesses(self) -> Iterator[Conflict]:
-        """A yield stress in another unit than Young's modulus, by the law of the body or of a layer, or by
-        the factors over depth.
-        """
+        """A yield stress in another unit than Young's modulus, by a law or its factors."""
         if self.plasticity is None:
             return
         factors = self.plasticity.depth_profile().factor

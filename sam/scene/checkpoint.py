@@ -81,9 +81,7 @@ def decode(tree: JSON, arrays: Arrays, kind: type[T]) -> T:
 
 
 def unpacked(tree: JSON, arrays: Arrays) -> Any:
-    """Give the plain values: tables in place of dataclasses, and the arrays where they belong. Raises
-    CodecError.
-    """
+    """Give the plain values, with the arrays where they belong. Raises CodecError."""
     try:
         return _unpacked(tree, arrays)
     except (LookupError, TypeError, ValueError, AttributeError, RecursionError) as error:
@@ -91,9 +89,7 @@ def unpacked(tree: JSON, arrays: Arrays) -> Any:
 
 
 def build(values: object, kind: type[T]) -> T:
-    """Build a record from its plain values, a part of another one perhaps. Raises CodecError, as `decode`
-    does.
-    """
+    """Build a record from its plain values, or a part of one. Raises CodecError."""
     try:
         return _CONVERTER.structure(values, kind)
     except Exception as error:  # of damaged values, and cattrs has a dozen types of its own
@@ -159,9 +155,7 @@ def _unpacked(tree: Any, arrays: Arrays) -> Any:
 
 
 def _leaf(kind: Any) -> tuple[type, ...]:
-    """What a field of this type may hold if it is a leaf, or a choice of leaves; empty
-    for all other types.
-    """
+    """What a field of this type may hold if it is a leaf or a choice of these; else empty."""
     if get_origin(kind) in (Union, UnionType):
         choice = [_leaf(part) for part in get_args(kind)]
         return tuple(leaf for leaves in choice for leaf in leaves) if all(choice) else ()
@@ -181,9 +175,7 @@ def _leaf_hook(kind: Any) -> Hook:
 
 
 def _entries(value: Any, change: Callable[[Any], Any]) -> Any:
-    """The sequence with its entries changed: a list stays a list, a tuple a tuple; an array, or a text, stays
-    as it is.
-    """
+    """The sequence with its entries changed, of its own kind; an array or a text as it is."""
     return type(value)([change(entry) for entry in value]) if isinstance(value, list | tuple) else value
 
 
@@ -255,9 +247,7 @@ class Checkpoint:
         return build(self.tree(), kind)
 
     def tree(self) -> dict[str, Any]:
-        """The record for a reader that does not know its type: tables with the names of its fields, arrays
-        and values.
-        """
+        """The record as tables of arrays and values, for a reader that does not know its type."""
         return cast(dict[str, Any], unpacked(self.values["tree"], self.arrays))
 
     def with_cost(self, more: Mapping[str, float | int]) -> Checkpoint:
@@ -281,9 +271,7 @@ class Checkpoint:
 
 
 Keep = Callable[[Checkpoint], None]
-"""Called by a solver after each committed load step. It decides itself which checkpoints it writes, and
-where.
-"""
+"""Called by a solver after each committed load step; it decides which checkpoints it writes."""
 
 
 def check_model(start: Checkpoint | None, model: str) -> None:

@@ -80,9 +80,7 @@ class Friction(Section):
 
     @classmethod
     def conflicts(cls, given: Given) -> Iterator[Conflict]:
-        """Keys that the law needs, or has no use for; of a film either a strain limit, or all that the growth
-        needs.
-        """
+        """Keys that the law needs, or has no use for; a strain limit, or a growth."""
         law = given.text("law") if "law" in given else "constant"
         if law not in LAWS:
             return
@@ -108,9 +106,7 @@ class Friction(Section):
             yield "film_poisson", "less than 0.5"
 
     def excesses(self) -> Iterator[Conflict]:
-        """A high coefficient below the low one, a contact that is wider than the track, or a yield stress in
-        another unit than Young's modulus.
-        """
+        """A wide contact, or a yield stress of another unit than Young's modulus."""
         if self.film and stated(self.high) < (low := stated(self.low)):
             yield "high", f"at least low, {low:g}"
         if self.film_yield is not None:
@@ -134,9 +130,7 @@ class Friction(Section):
 
     @property
     def growth(self) -> float | None:
-        """Thickness in m that the film gains in a cycle on bare metal: K_0 sqrt(t), t = (track -
-        contact_width)/speed.
-        """
+        """Thickness in m of a cycle on bare metal: K_0 sqrt((track - contact_width)/speed)."""
         if self.track is None:
             return None
         k0 = self.growth_coefficient
@@ -147,9 +141,7 @@ class Friction(Section):
 
     @property
     def growth_rate(self) -> float | None:
-        """Thickness that the film gains on bare metal in a way of 1 m over its own, in 1/sqrt(m); None of one
-        with a given limit.
-        """
+        """Growth on bare metal in 1 m over the thickness, in 1/sqrt(m), or None."""
         if self.growth is None:
             return None
         way = stated(self.track) - stated(self.contact_width)

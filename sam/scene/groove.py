@@ -23,27 +23,19 @@ WITHIN = 0.02  # of the steady depth, after which the groove counts as steady
 
 
 def steady_part(way: Array, radius: float, length: float) -> Mask:
-    """Whether places at these distances from the start lie in the steady part of a path; radius: of the
-    contact along x.
-    """
+    """Whether places at these distances from the start are steady; radius: of the contact along x."""
     return (way >= RUN_IN * radius) & (way <= length - RUN_OUT * radius)
 
 
 def passes_to_steady(strains: Sequence[float]) -> int | None:
-    """The first pass, counted from 1, whose largest new strain is below a share of that of the first one;
-    None if none is.
-    """
+    """The first pass with a new strain below a share of the first one, from 1; None if none is."""
     return next((k for k, strain in enumerate(strains, start=1) if strain < STEADY * strains[0]), None)
 
 
 @dataclass(frozen=True)
 class Groove:
-    """Lengths in m; not a number where a path is too short for a steady part.
-
-    depth: mean over the steady part; deepest, deepest_at: largest depth along the path, and its distance from
-    the start; middle: depth in the middle of the steady part; at_start, at_end, beside: heights of the
-    shoulders before the start, behind the end and beside the middle; transient: distance from the start after
-    which the depth stays within 2 % of the steady one.
+    """Lengths in m, not a number without a steady part: depth, mean over that; deepest and where;
+    middle; shoulders at_start, at_end, beside; transient: before the depth is within 2 %.
     """
 
     depth: float
@@ -59,9 +51,7 @@ class Groove:
     def of(
         cls, way: Array, uz: Array, steady: Mask, length: float, *, across: Array, peak: tuple[float, float]
     ) -> Groove:
-        """Of u_z (n,) in m at distances from the start (n,), ascending; across: u_z beside the middle; peak:
-        place and value of the largest u_z, between the given ones too.
-        """
+        """Of u_z (n,) in m at ascending distances; peak: place and value of the largest."""
         depth, middle, transient = nan, nan, nan
         at, deepest = peak
         if steady.any():

@@ -44,9 +44,7 @@ class InputError(ValueError):
 
 
 def open_file(path: str | Path) -> BinaryIO:
-    """An ordinary file, open for reading bytes, to be closed by the caller. OSError for any other: a pipe or
-    a device could block, or never end.
-    """
+    """An ordinary file, open for reading bytes; OSError for a pipe or a device, which could block."""
 
     def without_waiting(name: str, flags: int) -> int:
         return os.open(name, flags | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0))
@@ -71,9 +69,7 @@ def read_limited(path: str | Path, largest: int = LARGEST_FILE) -> bytes:
 
 
 def below(folder: Path, name: str, what: str) -> Path:
-    """The path of a file that another one names, in the folder of that one or below it, links followed.
-    InputError if it is elsewhere; what: the file is that names it.
-    """
+    """The path of a named file in a folder or below it; InputError if it is elsewhere."""
     try:
         home = folder.resolve()
         path = (home / name).resolve()
@@ -86,9 +82,7 @@ def below(folder: Path, name: str, what: str) -> Path:
 
 @dataclass
 class Inputs:
-    """The folder of a scene file, and the contents that have been read from it, by name as the scene spells
-    it.
-    """
+    """The folder of a scene file, and what has been read of it, by name as the scene spells it."""
 
     folder: Path
     contents: dict[str, bytes] = field(default_factory=dict)
@@ -102,12 +96,9 @@ class Inputs:
 def read_apart(
     reader: Path, *arguments: str, content: bytes = b"", memory: int
 ) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
-    """What a reader makes of a file in a process of its own that takes at most `memory` bytes of address
-    space.
-
-    reader: a script that defines `answer(content, *arguments)`, which returns what JSON holds and arrays by
-    name; its process imports nothing of this package. InputError if it raised, did not end in time, ended
-    without an answer or answered nonsense.
+    """What `answer(content, *arguments)` of the script `reader` makes of a file in a process of its
+    own with `memory` bytes: what JSON holds, and arrays by name. InputError if it failed or took
+    too long.
     """
     command = [sys.executable, "-P", str(CHILD), str(reader), str(memory), str(SECONDS / 2), *arguments]
     # the library of instruments loads matplotlib, which else makes a folder in that of the user
@@ -136,9 +127,7 @@ def read_apart(
 
 
 def content_of(value: object, info: ValidationInfo, kind: str, largest: int = LARGEST_FILE) -> bytes:
-    """The content of the file that a scene file names; an error "allowed" for what is no name of one. kind:
-    in words.
-    """
+    """The content of a named file; an error "allowed" for what is no name. kind: in words."""
     if not isinstance(value, str) or not value:
         raise refused(f"the name of {kind}")
     inputs: Inputs | None = info.context.get("inputs") if info.context else None
@@ -169,9 +158,7 @@ class TwoColumns:
         return f"columns {' and '.join(self.columns)}, 1 to {MOST_ROWS} rows"
 
     def check(self, value: object, info: ValidationInfo) -> Rows:
-        """The rows of the file that a scene file names, or in Python of the rows given; an error "allowed"
-        for others.
-        """
+        """The rows of a named file, or given in Python; an error "allowed" for others."""
         if file := in_file(info):
             content = content_of(value, info, f"a CSV file: {self.allowed}")
             try:

@@ -49,9 +49,7 @@ def read_scene(path: str | Path) -> tuple[Scene, dict[str, bytes]]:
 
 
 def parse_scene(content: bytes, source: str, inputs: Inputs | None = None) -> Scene:
-    """The scene in the bytes of a TOML file, UTF-8, whose name in errors is `source`. inputs: what reads the
-    files that the scene names; without it they are refused. SceneError as of `load_scene`.
-    """
+    """The scene in bytes of TOML, whose name is `source`; inputs: reads the files that it names."""
     table = parse_toml(content, source)
     if not table:
         raise _whole_file("empty: a scene needs the tables [body], [counterbody] and [loading]", source)
@@ -59,9 +57,7 @@ def parse_scene(content: bytes, source: str, inputs: Inputs | None = None) -> Sc
 
 
 def parse_toml(content: bytes, source: str) -> dict[str, Any]:
-    """The tables in the bytes of a TOML file, as tomllib has them. SceneError for bytes that are not UTF-8 or
-    not TOML, or tables in too many others; source: the name of the file in it.
-    """
+    """The tables in bytes of TOML; SceneError for others, or tables in too many."""
     pieces = _BETWEEN.split(content)  # every second one is a separator
     if any(
         name.count(b".") > _MOST_DOTS and end in b"=]"

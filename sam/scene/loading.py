@@ -25,9 +25,7 @@ HERTZ, MISFIT_SPHERE = "hertz", "misfit-sphere"
 
 @dataclass(frozen=True)
 class Prescribed:
-    """A load that is given in place of a force: the keys that it needs, those that it may have with their
-    defaults (None: none), and both in words.
-    """
+    """A load in place of a force: keys that it needs, may have (with defaults), both in words."""
 
     needed: tuple[str, ...]
     further: Mapping[str, str | None]
@@ -139,9 +137,7 @@ class Strokes:
     in_passes: bool = False
 
     def places(self) -> tuple[tuple[float, float], ...]:
-        """Places of the load on its way forth after each step, the start first; the origin alone without
-        path.
-        """
+        """Places of the load on its way forth, the start first; the origin alone without path."""
         if self.path is None:
             return ((0.0, 0.0),)
         (x0, y0), (x1, y1) = self.path.start, self.path.end
@@ -217,9 +213,7 @@ class Loading(Section):
 
     @classmethod
     def conflicts(cls, given: Given) -> Iterator[Conflict]:
-        """None of force, approach and what is given in their place, or more than one; keys without the one
-        that they need.
-        """
+        """No load or more than one; keys without the one that they need."""
         named, load = "prescribed" in given, PRESCRIBED.get(given.text("prescribed"))
         force, approach = "force" in given, "approach" in given
         if not named or load is not None:

@@ -56,9 +56,7 @@ QUANTITIES = _names(
 STRAINED = 0.01
 """Of peeq_max: the plastic volume is where the accumulated plastic strain is above this."""
 EXCEEDING = 0.05
-"""Of the plastic volume: peeq_p95 is the accumulated plastic strain that this share exceeds. Unlike peeq_max
-it does not live in one row of cells or elements.
-"""
+"""Share of the plastic volume that has more than peeq_p95; peeq_max is of one row of cells."""
 PATH_QUANTITIES = _names(
     "groove_depth_m groove_deepest_m groove_deepest_x_m shoulder_start_m shoulder_end_m shoulder_side_m "
     "transient_length_m rolling_coefficient passes_to_steady"
@@ -79,9 +77,7 @@ AXIS = ("state", "z_m", "peeq", "mises_Pa", *STRESSES)
 LINE = ("state", "x_m", "p_Pa", "qx_Pa", "gap_m", "uz_m", "ux_m", "plastic_shear_m")
 PLANE = ("state", "x_m", "z_m", "peeq", "mises_Pa")
 CUT = ("state", "x_m", "y_m", "z_m", "peeq", "mises_Pa", *STRESSES)
-"""The plane y = const through the largest pressure at the peak, of scenes whose contact need not be at the
-origin.
-"""
+"""The plane y = const through the largest pressure, of contacts that may lie beside the origin."""
 COUNTER_HEIGHT = "counterbody_height_m"  # last column of the table surface under a rough counter-body
 SURFACE = ("state", "x_m", "y_m", "height_m", "p_Pa", "worn_m", "friction")
 PLASTIC_STRAINS = ("epxx", "epyy", "epzz", "epyz", "epxz", "epxy")
@@ -185,9 +181,7 @@ NO_FORCE = "loading.force is zero: no contact"
 
 
 def left_out_of(stages: Iterable[Stage]) -> list[LeftOut]:
-    """The stages that the scene does not need, as a result has them; those without force are needed, and
-    idle.
-    """
+    """The stages that the scene does not need; those without force are needed, and idle."""
     idle = [stage for stage in stages if not stage.runs]
     return [LeftOut(stage.stage, stage.reason) for stage in idle if stage.reason != NO_FORCE]
 
@@ -264,9 +258,7 @@ class Result:
 
 
 def of_load(state: str, quantities: Mapping[str, float | None]) -> dict[str, Mapping[str, float | None]]:
-    """The fields quantities and last_fitting of a Result, from the quantities of the first state of its
-    tables.
-    """
+    """The fields quantities and last_fitting of a Result, of the first state of its tables."""
     if state == PEAK:
         return {"quantities": quantities}
     return {"quantities": dict.fromkeys(quantities), "last_fitting": quantities}
@@ -278,10 +270,7 @@ FALLS = 0.5  # it does if they bring its smallest value below this share of that
 
 @dataclass(frozen=True)
 class Attempt:
-    """An attempt at a load, a whole step or a part of it. accepted: False if it was discarded, and the way to
-    it halved; residuals: after each iteration, in the measure by which the solver stops (zero: nothing to
-    do); goal: the residual at which it may stop.
-    """
+    """An attempt at a load: accepted, not discarded; residuals by iteration, that may stop at goal."""
 
     accepted: bool
     residuals: tuple[float, ...]
@@ -306,12 +295,7 @@ def stagnates(residuals: Sequence[float]) -> bool:
 
 
 def unfinished(what: str, residuals: Sequence[float], goal: float, stalled: bool | None = None) -> str:
-    """Why an iteration ended above its goal: it diverged, it stagnates, or it ran out of iterations while it
-    still fell.
-
-    stalled: whether it gave up before its limit because the residual no longer fell; None: judged by the
-    history.
-    """
+    """Why an iteration ended above its goal; stalled: no residual fell, None: judged here."""
     finite = [value for value in residuals if np.isfinite(value)]
     if not finite or len(finite) < len(residuals) or finite[-1] > max(10.0 * finite[0], 1.0):
         return f"{what} diverged"

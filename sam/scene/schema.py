@@ -136,18 +136,14 @@ class Scene(Section):
 
     @property
     def patch_surface(self) -> Surface | None:
-        """The surface that says which cells the patch has, see `sam.scene.surface.leading`; None if both are
-        smooth. That of the body before that of a counter-body that moves, which is longer than the patch.
-        """
+        """The surface whose cells the patch has, the body's before a moving one's; or None."""
         if self.moves:
             return self.surface or self.counter_surface
         return leading(self.surface, self.counter_surface)
 
     @property
     def counter_strip(self) -> Strip | None:
-        """What of a rough counter-body comes to lie opposite the patch while it moves; None of one in place
-        or smooth.
-        """
+        """What of a rough counter-body lies opposite while it moves; else None."""
         surface, grid = self.counter_surface, self.grid
         if surface is None or not self.moves:
             return None
@@ -267,9 +263,7 @@ class Scene(Section):
             yield "grid.extent", f"{words}, the grid of friction.path"
 
     def _excesses_of_solver(self) -> Iterator[Conflict]:
-        """What has no other cells for [solver]: what belongs to its grid, says its cells, or has a threshold,
-        as wear and film breakdown, which jump with the cells.
-        """
+        """What rules out extrapolation: a grid or cells of its own, or a threshold."""
         solver, grid, friction = self.solver, self.grid, self.friction
         rough, mapped = self.patch_surface is not None, friction is not None and friction.path is not None
         layers, key = None, "grid.layers"
@@ -343,7 +337,5 @@ def resolved(scene: Scene) -> dict[str, Any]:
 
 
 def solved_part(content: Mapping[str, Any]) -> dict[str, Any]:
-    """What a result depends on, of a resolved scene: all but [compare], which only says how results are
-    judged.
-    """
+    """What a result depends on, of a resolved scene: all but [compare]."""
     return {name: table for name, table in content.items() if name != "compare"}

@@ -63,9 +63,7 @@ MISSING_INPUT = _Missing()
 
 @dataclass(frozen=True)
 class Problem:
-    """An error of a scene: the dotted key, empty for the file as a whole; the value as TOML would spell it,
-    "missing" if it is; and what is allowed, in words.
-    """
+    """An error of a scene: dotted key; value as TOML spells it, or "missing"; what is allowed."""
 
     key: str
     value: str
@@ -134,9 +132,7 @@ class Given(dict[str, Any]):
     """The keys of a section that are given, with their values."""
 
     def at(self, key: str) -> Any:
-        """The value at a dotted key of nested tables and sections, also where a key of one of these has dots;
-        None without one.
-        """
+        """The value at a dotted key of nested tables, whose keys may have dots; or None."""
         value: Any = self
         while key and value is not None:
             if isinstance(value, Mapping):
@@ -168,11 +164,7 @@ def of_choice(
     choice: tuple[Collection[str], Collection[str]],
     words: Conflict,
 ) -> Iterator[Conflict]:
-    """The conflicts of a section whose keys depend on the value of one of them, such as a law.
-
-    keys: those that depend on it; choice: the ones that its value needs, and all that it takes; words: of one
-    that is needed and not given, and of one that is given and not taken.
-    """
+    """The conflicts of keys that depend on a choice, such as a law: what it needs and takes."""
     needed, taken = choice
     for key in keys:
         if key in needed and key not in given:
@@ -258,9 +250,7 @@ class Section(BaseModel):
 
     @classmethod
     def _unknown(cls, name: str, is_table: bool) -> str:
-        """What is allowed in place of an unknown key; with the place where it belongs, tables before values
-        if it is one, or keys that look alike.
-        """
+        """What is allowed for an unknown key: the place it belongs to, or keys that look alike."""
         known = [field.alias or key for key, field in cls.model_fields.items()]
         near: Sequence[str] = difflib.get_close_matches(name, known, n=_MOST_ALIKE, cutoff=_ALIKE)
         if cls.of_scene and cls.whole is not None:
@@ -299,9 +289,7 @@ def _line(loc: tuple[int | str, ...], value: object, allowed: str) -> InitErrorD
 
 @cache
 def places_of(section: type[Section], above: str = "") -> dict[str, tuple[str, ...]]:
-    """Key -> every place that has it in the tables of a section, as a scene file spells it: "[body.coating]",
-    "body.young".
-    """
+    """Key -> every place that has it, as a file spells it: "[body.coating]", "body.young"."""
     known: dict[str, tuple[str, ...]] = {}
     for key, field in section.model_fields.items():
         name, parts = field.alias or key, (field.annotation, *get_args(field.annotation))

@@ -25,9 +25,7 @@ from pydantic import PlainSerializer, ValidationInfo
 from pydantic_core import PydanticCustomError, core_schema
 
 IN_FILE = {"spelling": "file"}
-"""Validation context of a scene file; without it numbers are SI floats. "inputs": where the files it names
-are.
-"""
+"""Validation context of a scene file; "inputs": of the files it names. Else numbers are SI."""
 
 _FACTOR = r"[A-Za-zµμ_]{1,24}(?:(?:\^|\*\*)-?[0-9]{1,2}(?:\.[0-9]{1,3})?)?"
 _QUANTITY = re.compile(
@@ -124,9 +122,7 @@ def _real(value: object, whole: bool) -> float | int | None:
 
 
 def in_unit(value: object, unit: str) -> Decimal | None:
-    """How many units, as pint spells them, a string NUMBER UNIT is, exactly; None if it is no such string or
-    has another dimension.
-    """
+    """How many units of pint a string NUMBER UNIT is, exactly; None for another dimension."""
     parts = number_and_unit(value)
     if parts is None:
         return None
@@ -146,18 +142,14 @@ def number_and_unit(value: object) -> tuple[str, str] | None:
 
 
 def metres_in(unit: object) -> float | None:
-    """How many m are in a unit of length, as pint spells it; None for what is none, and for a pixel, which
-    pint takes for one of a screen.
-    """
+    """How many m are in a unit of length of pint; None for none, and for pint's pixel of a screen."""
     factor = in_unit(f"1 {unit}", "m") if isinstance(unit, str) and "px" not in unit else None
     return None if factor is None else float(factor)
 
 
 @cache
 def _registry() -> Any:
-    """The units of pint: 0.3 s, needed by scene files only. It loads dask where that is installed; dask asks
-    psutil for the cores, which fails where there is no /proc, and then pint has to do without.
-    """
+    """The units of pint, 0.3 s. Its dask asks psutil, which fails without /proc: then without."""
     try:
         pint = import_module("pint")
     except Exception:
@@ -178,9 +170,7 @@ PREFIXES = {"": 0, "n": -9, "u": -6, "\N{MICRO SIGN}": -6, "m": -3, "k": 3, "M":
 
 @lru_cache(maxsize=1000)
 def _factor(text: str, unit: str) -> Decimal | None:
-    """How many `unit` are in one `text`; None for an unknown unit or another dimension. What is a unit with a
-    prefix needs no pint.
-    """
+    """How many `unit` are in one `text`, without pint for a prefix; None for another dimension."""
     prefix = text.removesuffix(unit) if unit in PLAIN and text.endswith(unit) else None
     if prefix in PREFIXES:
         return Decimal(1).scaleb(PREFIXES[prefix])

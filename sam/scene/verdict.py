@@ -76,11 +76,9 @@ def norm_of(strain: Array) -> Array:
 
 @dataclass(frozen=True)
 class Judging:
-    """How a scene is judged. period: load cycles of a period; floor: strain below which a period counts as
-    without plastic strain, over the yield strain (initial yield stress over Young's modulus); noise: what the
-    solver leaves undetermined of the strain of a period, likewise; worst: what the hardening law lets happen
-    at worst, see `classes`; loaded: whether periods end below the load, which stays on between them, and not
-    unloaded.
+    """How a scene is judged. period: cycles; floor: strain of no plastic strain over the yield
+    strain; noise: likewise of the solver; worst: of the hardening law, see `classes`; loaded: the
+    load stays on.
     """
 
     period: int
@@ -134,9 +132,7 @@ def classes(
 def _open_strain(
     periods: Sequence[Period], dp: Array, yield_strain: Array, judging: Judging
 ) -> tuple[Mask, Mask, Array]:
-    """Of cells with steady dp: whether the strain of a period closes; whether it lasts; else how many further
-    periods will tell.
-    """
+    """Of cells with steady dp: whether the strain closes; lasts; or after how many periods we know."""
     e, first = np.array([period.norm for period in periods]), np.ones(dp.shape, dtype=int)
     for number, period in enumerate(periods, start=1):
         if period.restarted is not None:
@@ -173,18 +169,15 @@ def _open_strain(
 def cell_fields(
     periods: Sequence[Period], total: Array, yield_strain: Array, judging: Judging
 ) -> dict[str, Array]:
-    """Fields of the last of some periods, as the meshes have them, name -> (n,): peeq_step, dp; strain_step,
-    de; class, the place in `ORDER`. Arguments as of `classes`.
-    """
+    """Fields of the last period, (n,): peeq_step dp, strain_step de, class of ORDER."""
     last = periods[-1]
     places = classes(periods, total, yield_strain, judging)[0].astype(float)
     return {"peeq_step": last.accumulated, "strain_step": last.norm, "class": places}
 
 
 def loop_places(accumulated: Array, total: Array) -> list[int]:
-    """Three different places, or as many as there are points, whose loops over the last period are recorded:
-    where dp of the period before, (n,), was largest, and those nearest to a half and to a tenth of that; by
-    the accumulated plastic strain of all, (n,), if nothing flowed.
+    """Three points whose loops are recorded: of the largest dp of the period before, (n,), of about
+    a half and a tenth of it; by the accumulated strain if nothing flowed.
     """
     values = accumulated if accumulated.any() else total
     share, chosen = values / (values.max() or 1.0), list[int]()
@@ -203,17 +196,11 @@ def last_period(judging: Judging, cycles: int) -> range:
 
 @dataclass(frozen=True)
 class Verdict:
-    """Of the body after a period.
-
-    behaviour: the worst class that carries a hundredth of the plastic strain of the period; undecided where
-    cells may ratchet, and de of undecided ones is more than OPEN of that strain; cells that ratchet count as
-    undecided where de of both together falls: then strain moves from cell to cell. accumulated, strain:
-    largest dp of a cell, and largest de. ratio, closure: in the cell of the largest dp, dp over that of the
-    period before, None in the first; de over dp. remaining, periods_to_floor: where the cell of the largest
-    dp settles, accumulated strain still to come, and periods until dp is below the floor; else None. flowing,
-    volumes: in m^3, of the cells whose dp is beyond the floor, and of the cells of each class.
-    periods_to_decide: further periods after which an undecided body will be decided if it goes on like this;
-    None if it is decided, or noise never lets it be.
+    """Of the body after a period. behaviour: the worst class that carries a hundredth of the
+    plastic strain; undecided where cells may ratchet, and de of undecided ones is more than OPEN of
+    it, or falls together. accumulated, strain: largest dp and de; ratio, closure: in the cell of
+    the largest dp, dp over that before and de over dp; remaining, periods_to_floor: where it
+    settles; flowing, volumes in m^3; periods_to_decide: None if decided, or never.
     """
 
     behaviour: Behaviour
@@ -244,9 +231,7 @@ UNSTRAINED = Verdict(
 def verdict_on(
     periods: Sequence[Period], total: Array, yield_strain: Array, judging: Judging, *, volume: Array
 ) -> Verdict:
-    """Sum up the cells of a body after the last of some periods; volume: of each in m^3, (n,), the others as
-    of `classes`.
-    """
+    """Sum up the cells of a body after the last period; volume: of each in m^3, (n,)."""
     (place, further), last = classes(periods, total, yield_strain, judging), periods[-1]
     floor = judging.floor * yield_strain
     flow = np.where(last.accumulated > floor, last.accumulated * volume, 0.0)
@@ -295,9 +280,7 @@ def _until(further: Array, undecided: Array, small: float) -> int | None:
 def verdict_columns(
     cycles: Sequence[int], verdicts: Sequence[Verdict], cycles_in_period: int
 ) -> dict[str, list[Any]]:
-    """VERDICT_COLUMNS of the table cycles with the rows of these cycles: a period in that of its last cycle,
-    the others None.
-    """
+    """VERDICT_COLUMNS of the table cycles: a period in its last cycle, the others None."""
     rows: dict[int, tuple[Any, ...]] = {
         number * cycles_in_period: (number, *verdict.columns)
         for number, verdict in enumerate(verdicts, start=1)
@@ -307,9 +290,7 @@ def verdict_columns(
 
 
 def summary(verdicts: Sequence[Verdict], cycles_in_period: int, floor: float) -> dict[str, Any]:
-    """What summary.json says of the last of some verdicts; decided_at_cycle: since when the class is the
-    same; floor: the smallest of a cell.
-    """
+    """What summary.json says of verdicts; floor: the smallest of a cell."""
     last, first = verdicts[-1], len(verdicts)
     while first > 1 and verdicts[first - 2].behaviour is last.behaviour:
         first -= 1
@@ -331,9 +312,7 @@ def summary(verdicts: Sequence[Verdict], cycles_in_period: int, floor: float) ->
 
 
 def _trend(largest: Sequence[float]) -> str | None:
-    """How the largest dp goes on: "steady"; falling, "geometric" or as a "power" of the number of periods,
-    slower than any geometric series; None where it grows, or nothing is seen yet.
-    """
+    """How the largest dp goes on: "steady", "geometric", "power" (slower), or None."""
     values = np.array(largest[-max(NEEDED, len(largest) // 2) :])
     if len(largest) <= NEEDED or values.min() <= 0:
         return None
@@ -388,9 +367,7 @@ def periods_of(scene: Scene) -> int:
 
 
 def cycles_in_period(scene: Scene) -> int:
-    """Cycles after which the load is the same again: 2 where the sign of the traction alternates, or a
-    counter-body goes back.
-    """
+    """Cycles after which the load is the same: 2 where the traction alternates or goes back."""
     friction = scene.friction
     alternates = friction is not None and scene.coefficient > 0 and friction.direction == "alternating"
     return 2 if alternates or scene.strokes.goes_back(2) else 1

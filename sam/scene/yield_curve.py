@@ -43,11 +43,7 @@ SMALL, TERMS = 0.5, 18
 
 
 def off_unit(usual: float, young: float, key: str) -> str:
-    """What a yield stress at a plastic strain of OFFSET may be beside Young's modulus, where it can only be
-    in another unit; else empty. A law that rises from nearly 0 has one there.
-
-    usual, young: in Pa; key: of Young's modulus. A yield stress that is never reached may be of any size.
-    """
+    """What a yield stress at OFFSET may be, if it is in another unit than Young's modulus."""
     if usual >= young / SOFTEST:
         return ""
     return (
@@ -136,9 +132,7 @@ class Tabulated(Everywhere):
 
 @dataclass(frozen=True)
 class Layered:
-    """The curves of the points of a body with a layer: inside, of a shape that broadcasts with peeq, says
-    which points lie in the layer.
-    """
+    """The curves of a body with a layer; inside: which points lie in it, as peeq."""
 
     body: YieldCurve
     layer: YieldCurve
@@ -177,9 +171,7 @@ class BackStress:
 
 @dataclass(frozen=True)
 class DepthProfile:
-    """Factor on the yield stress over depth (m, ascending): linear between the rows, constant before and
-    after them.
-    """
+    """Factor on the yield stress over depth in m: linear between rows, constant beyond."""
 
     depth: tuple[float, ...] = (0.0,)
     factor: tuple[float, ...] = (1.0,)
@@ -202,9 +194,8 @@ class Kinks:
 
 @dataclass(frozen=True)
 class Strength:
-    """The yield stress over depth z and accumulated plastic strain: profile(z) times `curve`, or in a layer,
-    z < thickness in m, times that of the layer. back, layer_back: constants of the back-stresses in the body
-    and in the layer, whose moduli have the factor too.
+    """The yield stress over depth and accumulated strain: profile(z) times `curve`, or the layer's
+    above thickness in m; back, layer_back: constants of back-stresses, with the factor.
     """
 
     curve: YieldCurve
@@ -225,9 +216,7 @@ class Strength:
         return self.profile(z) * self.curve_at(z).stress(peeq)
 
     def back_at(self, z: Array | float) -> tuple[Array, Array] | None:
-        """Moduli in Pa and recoveries of the back-stresses at depths z in m, (N, ...) both; None without
-        back-stress. Where there are fewer than N the others have the modulus 0.
-        """
+        """Moduli in Pa and recoveries at depths in m, (N, ...), 0 beyond fewer; or None."""
         if self.back is None and self.layer_back is None:
             return None
         none, z = BackStress((), ()), np.asarray(z, dtype=float)
@@ -264,9 +253,7 @@ class Strength:
 
 @dataclass(frozen=True)
 class StepEnergies:
-    """Of the back-stresses over a step, summed over them, in J/m^3: stored: W_1 - W_0; dissipated: D of (a);
-    error: E of (b).
-    """
+    """Of back-stresses over a step in J/m^3: stored W_1 - W_0, dissipated D of (a), error E of (b)."""
 
     stored: Array
     dissipated: Array
@@ -289,20 +276,15 @@ def plastic_work(curve: YieldCurve, peeq: Array, before: Array | float = 0.0) ->
 
 
 def stored_energy(modulus: Array, strains: Array) -> Array:
-    """The energy W that back-stresses store, summed over them, in J/m^3, (cells). modulus: C_k in Pa, (N,
-    ...), which broadcasts with (N, cells); strains: a_k, (N, n, cells), normal components first, then shears
-    of the tensor.
-    """
+    """Energy W of back-stresses in J/m^3, (cells); modulus: C_k in Pa; strains: a_k, (N, n, cells)."""
     return cast(Array, (modulus * _contraction(strains, strains)).sum(axis=0) / 3)
 
 
 def step_energies(
     modulus: Array, recovery: Array, start: Array, strain: Array, *, length: Array
 ) -> StepEnergies:
-    """Energies of back-stresses over a step, (cells), zero where dp is. modulus, recovery: C_k in Pa and g_k,
-    (N, ...), which broadcast with (N, cells); start: a_k at the beginning, (N, n, cells), as of
-    `stored_energy`; strain: increment x of the plastic strain, (n, cells), a tensor; length: its accumulated
-    length dp, (cells).
+    """Energies of back-stresses over a step, (cells), from C_k in Pa, g_k, a_k at the start, (N, n,
+    cells), and a strain x, (n, cells), of the accumulated length dp, (cells).
     """
     u = recovery * length
     b = np.exp(-u)

@@ -43,10 +43,7 @@ from sam.scene.section import stated
 
 @dataclass(frozen=True, eq=False)
 class FilmState:
-    """The film since the start of the cycle. plastic: plastic strain (6, nx, ny), tensor components in the
-    order 11 22 33 23 13 12; failed: (nx, ny) bool. A failed cell keeps the strain at which it failed; where
-    no equilibrium exists, that of the step before.
-    """
+    """Plastic strain (6, nx, ny) of the film since the start of the cycle, and its failed cells."""
 
     plastic: Array
     failed: Mask
@@ -78,9 +75,8 @@ class Material:
 
 @dataclass(frozen=True)
 class Loads:
-    """What acts on n whole cells of a film at the end of a load step. plastic: strain at its beginning, (6,
-    n), order 11 22 33 23 13 12; strain: of the body's surface since the start of the cycle, xx, yy, xy, (3,
-    n), and bulk_normal its zz, (n,), for the printed form only; pressure and shear: P and s_xz in Pa, (n,).
+    """What acts on n whole cells of a film: plastic strain (6, n) at the beginning; strain of the
+    surface, (3, n), and bulk_normal, its zz; pressure and shear in Pa, (n,).
     """
 
     plastic: Array
@@ -126,9 +122,7 @@ def flow(trial: Array, shear: Array, radius: Array, material: Material) -> Array
 
 
 def multiplier(along: Array, across: Array, radius: Array, moduli: tuple[float, float]) -> Array:
-    """lambda >= 0 in 1/Pa of (b), (n,), where along = S_tr^2/4 and across = 3 D_tr^2/4 + 3 T_tr^2 in Pa^2;
-    radius: k in Pa; moduli: a and b of (a) in Pa. ArithmeticError for numbers that are not finite.
-    """
+    """lambda >= 0 in 1/Pa of (b), (n,); along: S_tr^2/4, across: 3 D_tr^2/4 + 3 T_tr^2."""
     (a, b), factor = moduli, np.zeros_like(along)
     for _ in range(ITERATIONS):
         x, y = 1.0 + a * factor, 1.0 + b * factor
@@ -173,9 +167,8 @@ def radial_flow(stress: Array, plastic: Array, material: Material) -> Array:
 
 @dataclass(frozen=True)
 class FilmLaw:
-    """The law of a tribofilm, which decides where the coefficient of friction is low and where it is high.
-    young, yield_stress: in Pa, perfectly plastic; poisson: below 1/2; limit: largest loss of thickness in a
-    cycle, as a strain (paper Eq. 17); printed: whether Eq. 12 and 13 are taken as printed.
+    """The law of a tribofilm, in Pa. limit: largest loss of thickness in a cycle, as a strain
+    (paper Eq. 17); printed: Eq. 12 and 13 as printed.
     """
 
     young: float
@@ -216,29 +209,11 @@ class FilmLaw:
         bulk_normal: ArrayLike | None = None,
         limit: Array | None = None,
     ) -> FilmState:
-        """The state at the end of a load step that starts from `state`, which is left as it is.
-
-        Where the pressure is 0 the film may flow but not fail.
-
-        Parameters
-        ----------
-        state
-            The film on (nx, ny) cells.
-        strain
-            (3, nx, ny) strains xx, yy, xy of the body's surface since the start of the cycle.
-        pressure
-            (nx, ny) in Pa, >= 0.
-        sign
-            Of the traction on the body along x, s_xz = -sign low p.
-        bulk_normal
-            (nx, ny) strain zz of the body, for the printed form only.
-        limit
-            (nx, ny) largest loss of thickness of each cell, in place of that of the law.
-
-        Raises
-        ------
-        ValueError
-            For other shapes, or numbers that are not finite.
+        """The state at the end of a load step from `state` on (nx, ny) cells; without pressure a
+        film may flow but not fail. strain: (3, nx, ny) xx, yy, xy of the body's surface since the
+        start of the cycle; pressure in Pa; sign: of s_xz = -sign low p; bulk_normal: zz, for the
+        printed form; limit: largest loss, (nx, ny). ValueError for other shapes, or numbers that
+        are not finite.
         """
         strain, pressure, bulk = self._checked(state, strain, pressure, bulk_normal)
         bears = (bearable_radius(self.low * pressure, self.yield_stress) > 0.0) | self.printed

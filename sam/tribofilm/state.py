@@ -39,11 +39,9 @@ def bins_of_visits(period: float) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Visits:
-    """When the cells of a surface were in contact with a counter-body that moves. clock: way of the
-    counter-body at the end of the last step in m; inside: which cells were in contact then; left: the clock
-    when a cell left, NaN of one that never was inside; limit: largest thinning of the film in the present
-    visit; strain: as `reference` of `TribofilmState`, at the end of the last step, (4, nx, ny); counts: of
-    visits by the way between two of them, see `bins_of_visits`. All but that (nx, ny).
+    """When the cells of a surface were in contact with a moving body. clock: its way in m; inside:
+    now; left: the clock at the end of contact, or NaN; limit: thinning of this visit; strain: (4,
+    nx, ny) at the last step; counts: of visits by the way between them.
     """
 
     clock: float
@@ -61,9 +59,8 @@ class Visits:
 
 @dataclass(frozen=True, eq=False)
 class TribofilmState:
-    """The tribofilm on the cells of a surface, and the strain of the surface at the start of the cycle. film:
-    on (nx, ny) cells; reference: total strains xx, yy, xy (tensor), zz of the surface when the film was new,
-    (4, nx, ny). The printed form of the law alone needs zz. visits: below a counter-body that moves.
+    """The tribofilm on (nx, ny) cells; reference: total strains xx, yy, xy, zz of the surface at
+    its start, (4, nx, ny); visits: below a counter-body that moves.
     """
 
     film: FilmState
@@ -73,9 +70,7 @@ class TribofilmState:
 
 @dataclass(frozen=True)
 class VisitLaw:
-    """How a film begins each visit. rate: of the thinning that may be lost, in 1/sqrt(m) of the way out of
-    contact, None: the same in every visit; period: way in m from one pass to the next.
-    """
+    """How a film begins each visit; rate: of thinning in 1/sqrt(m) or None; period: way in m."""
 
     rate: float | None
     period: float
@@ -137,10 +132,8 @@ class FilmOnCells:
     def tested(
         self, committed: TribofilmState, tried: TribofilmState, strain: Array, *, pressure: Array, sign: float
     ) -> TribofilmState:
-        """The film at the end of a load step that was solved with the friction of `tried`. committed: at its
-        beginning; strain: of the surface at its end, (4, nx, ny); pressure in Pa, (nx, ny); sign: of the
-        traction. The film flows from where it was committed, and what failed in an earlier pass of the step
-        stays so; where no further cell fails, `failed` is the array of `tried`.
+        """The film at the end of a step solved with the friction of `tried`, from `committed`;
+        strain: (4, nx, ny); `failed` is the array of `tried` if no further cell fails.
         """
         before = FilmState(committed.film.plastic, tried.film.failed)
         since = strain - committed.reference

@@ -27,34 +27,13 @@ from pathlib import Path
 
 import sympy as sp
 
-from derivations.load_table import STRESS, as_text, n1, n2, nu, s, wave_response
+from derivations.load_table import LAM, STRESS, as_text, n1, n2, navier, nu, rows, s, stress, wave_response
 
 TABLE = Path(__file__).parents[2] / "sam" / "kernels" / "eigenstrain_table.json"
 
 s_source = sp.Symbol("s_source")  # s' = k z'
-E = sp.Matrix(
-    3, 3, lambda i, j: sp.Symbol(f"e{min(i, j) + 1}{max(i, j) + 1}")
-)  # eigenstrain in the frame (n, t, z)
-LAM = 2 * nu / (1 - 2 * nu)  # mu = 1
-
-
-def grad(w: sp.Expr) -> sp.Matrix:
-    """(d_n, d_t, d_z) of a scalar field that varies as exp(i x_n); k = 1."""
-    return sp.Matrix([sp.I * w, 0, sp.diff(w, s)])
-
-
-def stress(u: sp.Matrix) -> sp.Matrix:
-    """Hooke's law, mu = 1."""
-    jac = sp.Matrix.hstack(*(grad(u[j]) for j in range(3)))
-    return jac + jac.T + LAM * jac.trace() * sp.eye(3)
-
-
-def navier(u: sp.Matrix, decay: sp.Expr) -> list[sp.Expr]:
-    """Coefficients of (1 - 2 nu) lap u + grad div u, which have to vanish; u is a polynomial in s times
-    decay.
-    """
-    residual = ((1 - 2 * nu) * (u.diff(s, 2) - u) + grad(grad(u[0])[0] + grad(u[2])[2])) / decay
-    return [c for e in residual for c in sp.Poly(sp.expand(sp.simplify(e)), s).coeffs()]
+# eigenstrain in the frame (n, t, z)
+E = sp.Matrix(3, 3, lambda i, j: sp.Symbol(f"e{min(i, j) + 1}{max(i, j) + 1}"))
 
 
 def full_space_above() -> sp.Matrix:
@@ -92,21 +71,6 @@ def half_space_response() -> tuple[sp.Matrix, sp.Matrix]:
     return surface, image
 
 
-def rows(expr: sp.Expr, order: int) -> list[list]:
-    """Table rows of a polynomial in (s, s', n1, n2) times k^order e^{-k(z + z')}; order: 1 for stress, 0
-    displacement.
-    """
-    expr = sp.rem(sp.expand(expr), n1**2 + n2**2 - 1, n2)  # n2^2 = 1 - n1^2: one canonical form, b <= 1
-    out = []
-    for (p, q, a, b), coef in sp.Poly(sp.expand(expr), s, s_source, n1, n2).terms():
-        c = p + q + order + 1 - a - b
-        value = sp.expand(sp.simplify(coef / (sp.I ** (a + b) * sp.Integer(-1) ** c)))
-        if value != 0:
-            powers = [str(k) for k in reversed(sp.Poly(value, nu).all_coeffs())]
-            out.append([int(p), int(q), int(a), int(b), int(c), powers])
-    return sorted(out, key=lambda row: row[:5])
-
-
 def derive() -> dict[str, dict[str, list]]:
     """The whole table: {"stress": {"11,11": rows, ...}, "displacement": {"1,11": rows, ...}}."""
     # axes of (n, t, z) in (x, y, z): n = (n1, n2), t = (-n2, n1)
@@ -122,9 +86,11 @@ def derive() -> dict[str, dict[str, list]]:
         in_wave_frame = dict(zip(E, rot.T * unit * rot, strict=True))
         for name in STRESS:
             component = image[int(name[0]) - 1, int(name[1]) - 1].subs(in_wave_frame)
-            table["stress"][f"{name},{column}"] = rows(component, 1)
+            table["stress"][f"{name},{column}"] = rows(component, 1, (s, s_source))
         for k in range(3):
-            table["displacement"][f"{k + 1},{column}"] = rows(surface[k].subs(in_wave_frame), 0)
+            table["displacement"][f"{k + 1},{column}"] = rows(
+                surface[k].subs(in_wave_frame), 0, (s, s_source)
+            )
     return table
 
 

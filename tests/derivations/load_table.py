@@ -26,31 +26,36 @@ TABLE = Path(__file__).parents[2] / "sam" / "kernels" / "load_table.json"
 STRESS = ("11", "22", "33", "23", "13", "12")
 LOADS = ("F1", "F2", "F3")
 
-nu, s, k, z, n1, n2 = sp.symbols("nu s k z n1 n2")
+nu, s, n1, n2 = sp.symbols("nu s n1 n2")
+LAM = 2 * nu / (1 - 2 * nu)  # mu = 1
+
+
+def grad(w: sp.Expr) -> sp.Matrix:
+    """(d_n, d_t, d_z) of a scalar field that varies as exp(i x_n); k = 1, so that s = z."""
+    return sp.Matrix([sp.I * w, 0, sp.diff(w, s)])
+
+
+def stress(u: sp.Matrix) -> sp.Matrix:
+    """Hooke's law, mu = 1."""
+    jac = sp.Matrix.hstack(*(grad(u[j]) for j in range(3)))  # jac[i, j] = d_i u_j
+    return jac + jac.T + LAM * jac.trace() * sp.eye(3)
+
+
+def navier(u: sp.Matrix, decay: sp.Expr) -> list[sp.Expr]:
+    """Coefficients of (1 - 2 nu) lap u + grad div u, which vanish; u: polynomials in s times decay."""
+    residual = ((1 - 2 * nu) * (u.diff(s, 2) - u) + grad(grad(u[0])[0] + grad(u[2])[2])) / decay
+    return [c for e in residual for c in sp.Poly(sp.expand(sp.simplify(e)), s).coeffs()]
 
 
 def wave_response(f: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
-    """Displacement times mu k and stress (3 x 3), both times e^{kz}, in the frame (n, t, z).
-
-    f: the traction (F_n, F_t, F_z). Both are polynomials in s = k z. Unit wave number, so that s = z; unit
-    mu.
+    """Displacement times mu k and stress (3 x 3), both times e^{kz}, in the frame (n, t, z): polynomials in
+    s = k z, under the traction f = (F_n, F_t, F_z).
     """
-    consts = sp.symbols("A B C D G")
-    A, B, C, D, G = consts
+    A, B, C, D, G = consts = sp.symbols("A B C D G")
     decay = sp.exp(-s)
     u = sp.Matrix([(A + B * s) * decay, G * decay, (C + D * s) * decay])
-
-    def grad(w):
-        """(d_n, d_t, d_z) of a scalar field that varies as exp(i x_n)."""
-        return sp.Matrix([sp.I * w, 0, sp.diff(w, s)])
-
-    div = grad(u[0])[0] + grad(u[2])[2]
-    navier = ((1 - 2 * nu) * (u.diff(s, 2) - u) + grad(div)) / decay
-    equations = [c for e in navier for c in sp.Poly(sp.expand(sp.simplify(e)), s).coeffs()]
-    jac = sp.Matrix.hstack(*(grad(u[j]) for j in range(3)))  # jac[i, j] = d_i u_j
-    sigma = jac + jac.T + 2 * nu / (1 - 2 * nu) * div * sp.eye(3)
-    at_surface = sigma.subs(s, 0)
-    equations += [at_surface[i, 2] + f[i] for i in range(3)]
+    sigma = stress(u)
+    equations = navier(u, decay) + list(sigma.subs(s, 0)[:, 2] + f)
     solution = sp.solve(equations, consts, dict=True)[0]
 
     def clean(m):
@@ -59,19 +64,19 @@ def wave_response(f: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
     return clean(u), clean(sigma)
 
 
-def rows(expr: sp.Expr, order: int) -> list[list]:
-    """Table rows of a polynomial in (s, n1, n2) times k^order e^{-kz}; order: 0 for stress, -1 for
-    displacement.
+def rows(expr: sp.Expr, order: int, depths: tuple[sp.Symbol, ...] = (s,)) -> list[list]:
+    """Table rows of a polynomial in depths times k, n1 and n2, times k^order and the decay; order: 0 for the
+    stress of a load, -1 for a displacement, and one more per unit of eigenstrain times volume.
     """
     expr = sp.rem(sp.expand(expr), n1**2 + n2**2 - 1, n2)  # n2^2 = 1 - n1^2: one canonical form, b <= 1
     out = []
-    for (p, a, b), coef in sp.Poly(sp.expand(expr), s, n1, n2).terms():
-        c = p + order + 1 - a - b
+    for (*powers, a, b), coef in sp.Poly(sp.expand(expr), *depths, n1, n2).terms():
+        c = sum(powers) + order + 1 - a - b
         value = sp.expand(sp.simplify(coef / (sp.I ** (a + b) * sp.Integer(-1) ** c)))
         if value != 0:
-            powers = [str(q) for q in reversed(sp.Poly(value, nu).all_coeffs())]
-            out.append([int(p), int(a), int(b), int(c), powers])
-    return sorted(out, key=lambda row: row[:4])
+            of_nu = [str(q) for q in reversed(sp.Poly(value, nu).all_coeffs())]
+            out.append([*map(int, (*powers, a, b, c)), of_nu])
+    return sorted(out, key=lambda row: row[:-1])
 
 
 def derive() -> dict[str, dict[str, list]]:

@@ -28,8 +28,6 @@ from fem_reference.finite_strain.kinematics import (
 from fem_reference.finite_strain.material import Hencky
 from sam.scene.yield_curve import Linear, Swift
 from verification.cases.limits import model_limits, model_limits_curves
-from verification.judging import Measured, evaluate
-from verification.rows import load_rows
 
 YOUNG, POISSON = 200.0, 0.3
 CURVES = {
@@ -59,7 +57,7 @@ def scene(force, cells=8, poisson=0.3, **plasticity):
 
 
 @pytest.mark.parametrize("name", CURVES)
-@pytest.mark.parametrize("stretch", [0.4, 0.99, 1.02, 2.5])
+@pytest.mark.parametrize("stretch", [0.4, 0.99, 2.5])
 def test_uniaxial_stress_is_that_of_logarithmic_strains(name, stretch):
     """Along z in one step: t = E (ln stretch - e_p), |t| <= Y(|e_p|); the lateral stretch leaves no lateral
     stress.
@@ -169,14 +167,10 @@ def test_a_patch_of_distorted_elements_carries_a_uniform_state_exactly():
     assert volume.sum() == pytest.approx(np.pi * 1.2**2 * 0.7 * (2.0**2 - 0.5**2), rel=1e-12)
 
 
-PERFECT = {"law": "perfect", "yield_stress": 1e-2}
-LAWS = {"elastic": {}, "perfect": PERFECT}
-
-
-@pytest.mark.parametrize("law, force", [("elastic", 1e-3), ("perfect", 1e-4)])
+@pytest.mark.parametrize("law, force", [({}, 1e-3), ({"law": "perfect", "yield_stress": 1e-2}, 1e-4)])
 def test_the_tangent_of_the_contact_problem_is_the_derivative_of_its_forces(law, force):
     """Body alone; the curvature of the sphere shows in Newton's method, see the next test."""
-    model = study.build(scene(force, 4, **LAWS[law]), "finite")
+    model = study.build(scene(force, 4, **law), "finite")
     state = study.load_to(model, [0.5, 1.0])[0].state
     rng = np.random.default_rng(1)
     direction, h = rng.standard_normal(state.u.size), 1e-6
@@ -195,20 +189,17 @@ def test_newtons_method_converges_quadratically(kind):
     assert after <= max(5.0 * before**2, 1e-11)
 
 
-@pytest.mark.parametrize("law, force", [("elastic", 1e-12), ("perfect", 7e-12)])
 @pytest.mark.parametrize("kind", ["sphere", "finite"])
-def test_the_limit_of_a_small_load_is_the_model_of_the_scenes(kind, law, force):
-    """Relative differences fall with a/R, 1e-4 and 2e-4 here."""
-    law = {} if law == "elastic" else {"law": "perfect", "yield_stress": 3e-5}
+def test_the_limit_of_a_small_load_is_the_model_of_the_scenes(kind):
+    """Relative differences fall with a/R, 1e-6 here."""
     curves = []
-    for each in ("flat", kind):
-        model = study.build(scene(force, 6, **law), each)
+    for one in ("flat", kind):
+        model = study.build(scene(1e-18, 4), one)
         curves.append(study.curve_of(model, study.load_to(model, [0.3, 1.0])))
     flat, true = curves
-    assert true.radius[-1] < 1e-3 and (flat.strain[-1] > 0.0) == bool(law)
-    for name in ("radius", "approach", "pressure"):
-        assert getattr(true, name) == pytest.approx(getattr(flat, name), rel=5e-4)
-    assert true.strain[-1] == pytest.approx(flat.strain[-1], rel=2e-3)
+    assert true.radius[-1] < 1e-5 and not true.strain.any()
+    for name in ("force", "radius", "approach", "pressure"):
+        assert getattr(true, name) == pytest.approx(getattr(flat, name), rel=1e-5)
 
 
 @pytest.mark.parametrize("kind", ["sphere", "finite"])
@@ -233,73 +224,27 @@ def test_a_state_that_is_turned_inside_out_is_not_converged():
     assert not model.load(Load(model.scales.peak_force), model.virgin()).converged
 
 
-def test_true_geometry_changes_radius_and_approach_by_the_first_order_of_theory(tmp_path):
-    """And every gate of the small load holds; a change of its closed form or of the answer by 3 % turns its
-    gate red.
-    """
-    values = {f"model-limits.{name}": value for name, value in model_limits.small_load().items()}
-    assert red(values) == set()
-    for name, measured in values.items():
-        assert red(values | {name: replace(measured, value=1.035 * measured.value)}) == {name}
+X = np.linspace(0.1, 0.4, 7)
 
 
-def red(values):
-    """Red gates among these values, all of one case."""
-    verdicts = evaluate(load_rows(), {next(iter(values)).split(".")[0]: values})
-    return {v.row.id for v in verdicts if v.error is not None and v.status.red}
+def test_a_limit_is_where_the_fit_passes_five_per_cent():
+    fit = model_limits.Difference.of(X, -0.1 * X - 0.5 * X**2)
+    limit = fit.limit()
+    assert -0.1 * limit - 0.5 * limit**2 == pytest.approx(-model_limits.LIMIT, abs=1e-4)
+    assert fit.limit(1.0) == fit.limit(-1.0) == fit.good_to() == limit
 
 
-class TestLimit:
-    X = np.linspace(0.1, 0.4, 7)
+def test_a_limit_has_a_range_by_the_scatter():
+    noise = 1e-3 * np.array([1, -1, 1, -1, 1, -1, 1])
+    fit = model_limits.Difference.of(X, 0.25 * X + noise)
+    assert fit.limit(1.0) < fit.limit() < fit.limit(-1.0) and fit.limit() == pytest.approx(0.2, abs=5e-3)
+    assert fit.limit(-1.0) - fit.limit() == pytest.approx(fit.error(0.2) / 0.25, rel=0.3)
+    assert 1e-3 < fit.error(0.2) < 2.5e-3  # seven points, two standard deviations
 
-    def test_is_where_the_fit_passes_five_per_cent(self):
-        fit = model_limits.Difference.of(self.X, -0.1 * self.X - 0.5 * self.X**2)
-        limit = fit.limit()
-        assert -0.1 * limit - 0.5 * limit**2 == pytest.approx(-model_limits.LIMIT, abs=1e-4)
-        assert fit.limit(1.0) == fit.limit(-1.0) == fit.good_to() == limit
 
-    def test_has_a_range_by_the_scatter(self):
-        noise = 1e-3 * np.array([1, -1, 1, -1, 1, -1, 1])
-        fit = model_limits.Difference.of(self.X, 0.25 * self.X + noise)
-        assert fit.limit(1.0) < fit.limit() < fit.limit(-1.0) and fit.limit() == pytest.approx(0.2, abs=5e-3)
-        assert fit.limit(-1.0) - fit.limit() == pytest.approx(fit.error(0.2) / 0.25, rel=0.3)
-        assert 1e-3 < fit.error(0.2) < 2.5e-3  # seven points, two standard deviations
-
-    def test_is_beyond_the_largest_contact_when_it_is_not_passed(self):
-        fit = model_limits.Difference.of(self.X, 0.1 * self.X)
-        assert fit.limit() == np.inf and fit.good_to() == 0.4 and model_limits.words(fit) == "> 0.40"
-
-    @pytest.mark.parametrize(
-        ("gate", "good", "bad"),
-        [
-            ("model-limits.pressure-limit", 0.165, 0.14),
-            ("model-limits.radius-limit", 0.32, 0.28),
-            ("model-limits.approach-limit", 0.375, 0.28),
-            ("model-limits-plastic.pressure-limit", 0.42, 0.38),
-            ("model-limits-plastic.radius-limit", 0.42, 0.38),
-            ("model-limits-plastic.approach-limit", 0.42, 0.38),
-            ("model-limits-plastic.strain-limit", 0.14, 0.06),
-            ("model-limits-plastic.perfect-limit", 0.22, 0.15),
-            ("model-limits.table", 1e-4, 0.01),
-            ("model-limits-plastic.table", 1e-4, 0.01),
-            ("model-limits-stated.elastic", 1.1, 2.5),
-            ("model-limits-stated.yields", 1.0, np.inf),
-            *((f"model-limits.{name}-mesh", 1e-3, 0.02) for name in ("pressure", "radius", "approach")),
-            *((f"model-limits-plastic.{name}-mesh", 1e-3, -0.05) for name in model_limits.QUANTITIES),
-        ],
-    )
-    def test_a_smaller_limit_or_another_mesh_turns_its_gate_red(self, gate, good, bad):
-        assert red({gate: Measured(good)}) == set() and red({gate: Measured(bad)}) == {gate}
-
-    @pytest.mark.parametrize(
-        ("factor", "red_gates"), [(0.97, set()), (0.9, {"model-limits-plastic.hardness"})]
-    )
-    def test_another_plateau_of_the_mean_pressure_turns_red(self, factor, red_gates):
-        body = model_limits.PLASTIC[1]
-        pressure = factor * model_limits.PLATEAU / 300.0 * (1.0 - body.poisson**2)
-        radius = np.linspace(0.05, 0.3, 11)
-        curve = study.Curve(radius, radius, radius, np.full(11, pressure), radius)
-        assert red({"model-limits-plastic.hardness": model_limits.hardness(curve, body)}) == red_gates
+def test_a_limit_is_beyond_the_largest_contact_when_it_is_not_passed():
+    fit = model_limits.Difference.of(X, 0.1 * X)
+    assert fit.limit() == np.inf and fit.good_to() == 0.4 and model_limits.words(fit) == "> 0.40"
 
 
 @pytest.mark.parametrize(
@@ -325,17 +270,6 @@ def test_differences_are_at_equal_force_and_of_resolved_contacts():
     assert found["radius"].x.min() >= 0.5 * found["radius"].x.max() and found[
         "radius"
     ].x.max() == pytest.approx(0.3)
-
-
-def test_the_approach_converges_with_second_order_in_the_element_size():
-    """At a/R = 0.19; on coarser meshes than these it depends on where the edge is between two nodes."""
-    approach = []
-    for cells in (8, 16, 32):
-        model = study.build(model_limits.Body("", 0.3, 0.2, cells, 1).scene(cells), "finite")
-        approach.append(study.load_to(model, [0.4, 1.0])[-1].state.approach)
-    coarse, fine = np.diff(approach)
-    assert 1.5 < np.log2(coarse / fine) < 2.5
-    assert abs(fine) < 1e-4 * approach[-1]
 
 
 def test_a_load_step_that_is_lost_is_no_point_of_a_curve(monkeypatch):

@@ -1,22 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""The chemical film: return map against closed forms, a general solver and rates, failures."""
+"""The chemical film: return map against closed forms and a general solver, failures, tables; the strain of
+the surface below it.
+"""
 
-import time
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from sam.contact.stress import elastic_strain, surface_strain
 from sam.scene.friction import GROWTH_ROWS, Friction, growth_coefficient
 from sam.tribofilm import FilmLaw, FilmState
-from sam.tribofilm.law import multiplier
+from sam.tribofilm.law import Loads, Material, multiplier, printed_stress, radial_flow
 from verification.cases.film import film_law
-from verification.reference.bonded_film import (
-    in_plane_strain,
-    overall_coefficient,
-    plastic_strain,
-    printed_thinning,
-)
+from verification.reference.bonded_film import in_plane_strain, overall_coefficient, printed_thinning
 from verification.reference.film_flow import Film, FlowPoint, deviator, mises
 from verification.reference.film_tables import growth_coefficients, mean_of, table
 from verification.reference.regime import thinning
@@ -50,7 +47,7 @@ class TestClosedForms:
         state = at_centre(replace(LAW, low=low), pressures)
         assert 100.0 * state.thinning[:, 0] == pytest.approx(percent, abs=5.1e-4) and not state.failed.any()
 
-    @pytest.mark.parametrize(("nu", "body_nu"), [(0.0, 0.3), (0.3, 0.0), (0.25, 0.49), (0.45, 0.45)])
+    @pytest.mark.parametrize(("nu", "body_nu"), [(0.0, 0.3), (0.25, 0.49), (0.3, 0.0)])
     def test_any_poisson_ratio(self, nu, body_nu):
         """Equal strains: exact in one step, at rounding; the excess over the yield stress loses two digits at
         most.
@@ -58,88 +55,51 @@ class TestClosedForms:
         pressures, body = (1.9e9, 2.7e9, 3.3e9), (150e9, body_nu)
         for low in (0.0, 0.1):
             law = replace(LAW, poisson=nu, low=low)
-            strains = [in_plane_strain(p, *body) for p in pressures]
-            exact = [
-                thinning(p, low, e, (law.young, nu, law.yield_stress))
-                for p, e in zip(pressures, strains, strict=True)
-            ]
-            assert at_centre(law, pressures, body).thinning[:, 0] == pytest.approx(
-                exact, rel=1e-12, abs=1e-16
-            )
-            if low == 0.0:
-                other = [
-                    plastic_strain(p, e, (law.young, nu, law.yield_stress))
-                    for p, e in zip(pressures, strains, strict=True)
-                ]
-                assert other == pytest.approx(exact, rel=1e-12, abs=1e-16)
-
-    def test_equal_strains_do_not_depend_on_the_path(self):
-        state, e = FilmState.fresh((1, 1)), in_plane_strain(3.5e9, *STEEL)
-        for share in (0.3, 0.5, 0.55, 0.9, 1.0):
-            state = LAW.step(state, cells([e], [e], [0.0]) * share, cells(3.5e9) * share)
-        once = at_centre(LAW, [3.5e9])
-        assert state.thinning == pytest.approx(once.thinning, rel=1e-12)
-        assert abs(state.plastic[4] - once.plastic[4]).max() > 1e-3  # the shear along x does
+            film = (law.young, nu, law.yield_stress)
+            exact = [thinning(p, low, in_plane_strain(p, *body), film) for p in pressures]
+            found = at_centre(law, pressures, body).thinning[:, 0]
+            assert found == pytest.approx(exact, rel=1e-12, abs=1e-16)
 
     def test_printed_form_thickens(self):
+        """And relieves what it has strained: a second step at the same strains adds nothing."""
         law, film = replace(LAW, printed=True), (LAW.young, LAW.poisson, LAW.yield_stress)
         pressures = (0.5e9, 1e9, 3e9, 6e9)
         exact = [printed_thinning(p, LAW.low, film, STEEL) for p in pressures]
         assert exact[0] == 0.0 and exact[-1] < -0.05
         state = at_centre(law, pressures)
         assert state.thinning[:, 0] == pytest.approx(exact, rel=1e-12) and not state.failed.any()
-
-    def test_printed_form_relieves_what_it_has_strained(self):
-        """A second step at the same strains adds nothing."""
-        law, e, p = replace(LAW, printed=True), in_plane_strain(3e9, *STEEL), cells(3e9)
-        args, bulk = (cells([e], [e], [1e-3]), p), cells(2.0 * e)
-        first = law.step(FilmState.fresh((1, 1)), *args, bulk_normal=bulk)
-        assert law.step(first, *args, bulk_normal=bulk).plastic == pytest.approx(first.plastic, abs=1e-16)
+        e = cells(*(in_plane_strain(p, *STEEL) for p in pressures))
+        again = law.step(state, np.stack([e, e, 0.0 * e]), cells(*pressures), bulk_normal=2.0 * e)
+        assert again.plastic == pytest.approx(state.plastic, abs=1e-16)
 
 
 class TestGeneralSolver:
-    @pytest.mark.parametrize("nu", [0.0, 0.3, 0.49])
-    @pytest.mark.parametrize("sign", [1.0, -1.0])
+    @pytest.mark.parametrize(("nu", "sign"), [(0.0, -1.0), (0.3, 1.0), (0.49, -1.0)])
     def test_random_steps(self, nu, sign):
         """Same implicit equations, another solver, which meets its stresses within 1e-10 of the yield
         stress.
         """
-        law, film, rng, n = (
-            replace(LAW, poisson=nu),
-            Film(LAW.young, nu, LAW.yield_stress),
-            np.random.default_rng(4),
-            40,
-        )
+        law, film = replace(LAW, poisson=nu), Film(LAW.young, nu, LAW.yield_stress)
+        rng, n = np.random.default_rng(4), 40
         pressure, strain = rng.uniform(0.0, 3.7e9, n), rng.normal(scale=5e-3, size=(3, n))
         plastic = rng.normal(scale=3e-3, size=(6, n))
         plastic[2] = -plastic[0] - plastic[1]
         start = FilmState(plastic[..., None], np.zeros((n, 1), dtype=bool))
         found = law.step(start, strain[..., None], pressure[:, None], sign=sign).plastic[..., 0]
-        right = np.stack(
-            [
-                film.implicit_step(plastic[:, k], FlowPoint(strain[:, k], p, -sign * 0.1 * p))
-                for k, p in enumerate(pressure)
-            ]
-        ).T
+        points = (FlowPoint(strain[:, k], p, -sign * 0.1 * p) for k, p in enumerate(pressure))
+        right = np.stack([film.implicit_step(plastic[:, k], point) for k, point in enumerate(points)]).T
         assert np.abs(found - right).max() < 1e-9 * np.abs(right).max()
         assert np.sum(np.abs(right - plastic).max(axis=0) > 1e-6) > n / 2  # most of them flow
-        wrong = replace(law, young=1.001 * law.young).step(
-            start, strain[..., None], pressure[:, None], sign=sign
-        )
-        assert np.abs(wrong.plastic[..., 0] - right).max() > 1e-6
-
-    def test_beyond_what_the_film_can_bear_the_solver_finds_nothing(self):
-        with pytest.raises(ArithmeticError, match="no strains off the plane"):
-            Film(80e9, 0.3, 1e9).implicit_step(np.zeros(6), FlowPoint(np.zeros(3), 1e9, 0.6e9))
 
     def test_rates_meet_the_closed_form_in_equal_strains(self):
         p = 3.5e9
         e = in_plane_strain(p, *STEEL)
         path = [FlowPoint(np.zeros(3), 0.0, 0.0), FlowPoint(np.array([e, e, 0.0]), p, -0.1 * p)]
         exact = thinning(p, 0.1, e, (LAW.young, LAW.poisson, LAW.yield_stress))
-        assert -Film(80e9, 0.3, LAW.yield_stress).along(path)[2] == pytest.approx(
-            exact, rel=1e-9
-        )  # digits 1e-12
+        found = -Film(80e9, 0.3, LAW.yield_stress).along(path)[2]
+        assert found == pytest.approx(exact, rel=1e-9)  # digits 1e-12
+        with pytest.raises(ArithmeticError, match="no strains off the plane"):
+            Film(80e9, 0.3, 1e9).implicit_step(np.zeros(6), FlowPoint(np.zeros(3), 1e9, 0.6e9))
 
 
 class TestReturnMap:
@@ -156,39 +116,15 @@ class TestReturnMap:
         stress = np.stack([sxx, syy, -pressure, zero, -0.1 * pressure, E / (1.0 + nu) * xy])
         q, flowed = np.array([mises(s) for s in stress.T]), np.abs(plastic).max(axis=0) > 0.0
         # sigma_y^2 - 3 tau^2 loses three digits at 99.8 % of the bearable shear, the elastic strain two
-        assert q[flowed] == pytest.approx(LAW.yield_stress, rel=1e-10) and np.all(
-            q[~flowed] <= LAW.yield_stress
-        )
-        assert flowed.sum() > n / 2
-        s, e = (
-            each / np.linalg.norm(each, axis=1)[:, None] for each in (stress.T[flowed], plastic.T[flowed])
-        )
-        along = [deviator(a) @ b / np.linalg.norm(deviator(a)) for a, b in zip(s, e, strict=True)]
-        assert np.min(along) == pytest.approx(1.0, abs=1e-10)  # flow along the deviator
-
-    @pytest.mark.parametrize("size", [1.0 + 1e-12, 1.5, 1e3, 1e9])
-    def test_newton_climbs_to_the_root_from_any_distance(self, size):
-        share = np.linspace(0.0, 1.0, 21)
-        radius = np.ones(21)
-        factor = multiplier(size**2 * share, size**2 * (1.0 - share), radius, (1.0, 3.0))
-        q = size * np.sqrt(share / (1.0 + factor) ** 2 + (1.0 - share) / (1.0 + 3.0 * factor) ** 2)
-        assert q == pytest.approx(radius, rel=1e-13) and np.all(factor > 0.0)
+        assert q[flowed] == pytest.approx(LAW.yield_stress, rel=1e-10) and flowed.sum() > n / 2
+        assert np.all(q[~flowed] <= LAW.yield_stress)
+        for s, e in zip(stress.T[flowed], plastic.T[flowed], strict=True):  # flow along the deviator
+            along = deviator(s) @ e / np.linalg.norm(deviator(s)) / np.linalg.norm(e)
+            assert along == pytest.approx(1.0, abs=1e-10)
 
     def test_numbers_that_are_not_finite_end_in_an_error(self):
         with pytest.raises(ArithmeticError, match="not finite"):
             multiplier(np.array([np.nan]), np.zeros(1), np.ones(1), (1.0, 3.0))
-
-    def test_fast_enough_for_every_pass_of_a_load_step(self):
-        rng = np.random.default_rng(0)
-        pressure = np.zeros((64, 64))
-        pressure.flat[rng.choice(4096, 300, replace=False)] = rng.uniform(0.0, 5e9, 300)
-        strain, state = rng.normal(scale=3e-3, size=(3, 64, 64)), FilmState.fresh((64, 64))
-        times = []
-        for _ in range(10):
-            start = time.process_time()
-            LAW.step(state, strain, pressure)
-            times.append(time.process_time() - start)
-        assert min(times) < 5e-3  # of the processor; 1.2 ms measured
 
 
 class TestFailure:
@@ -220,12 +156,6 @@ class TestFailure:
         assert state.thinning[0, 0] > 1e-3 and not state.failed.any()
         assert law.step(state, strain, cells(1e6)).failed.all()
 
-    def test_state_before_the_step_is_left_alone(self):
-        state = at_centre(LAW, [3e9])
-        kept = state.plastic.copy()
-        LAW.step(state, np.full((3, 1, 1), 0.02), cells(1e9))
-        assert np.array_equal(state.plastic, kept)
-
     def test_sign_of_the_traction_mirrors_the_shear_alone(self):
         strain, pressure = cells([1e-3], [-4e-3], [2e-3]), cells(3e9)
         plus, minus = (LAW.step(FilmState.fresh((1, 1)), strain, pressure, sign=sign) for sign in (1.0, -1.0))
@@ -233,40 +163,28 @@ class TestFailure:
         assert np.array_equal(minus.plastic, mirrored) and plus.plastic[4, 0, 0] < 0.0  # s_xz = -q
 
     @pytest.mark.parametrize(
-        ("change", "message"),
+        ("law", "change", "message"),
         [
-            ({"strain": np.zeros((3, 2, 1))}, "must be"),
-            ({"strain": np.full((3, 1, 1), np.nan)}, "must be finite"),
-            ({"pressure": cells(-1.0)}, "nowhere below 0"),
-            ({"pressure": cells(np.inf)}, "must be finite"),
+            ({}, {"strain": np.zeros((3, 2, 1))}, "must be"),
+            ({}, {"strain": np.full((3, 1, 1), np.nan)}, "must be finite"),
+            ({}, {"pressure": cells(-1.0)}, "nowhere below 0"),
+            ({}, {"pressure": cells(np.inf)}, "must be finite"),
+            ({"printed": True}, {}, "bulk_normal"),
         ],
     )
-    def test_bad_input(self, change, message):
+    def test_bad_input(self, law, change, message):
         with pytest.raises(ValueError, match=message):
-            LAW.step(
-                FilmState.fresh((1, 1)), **{"strain": np.zeros((3, 1, 1)), "pressure": cells(1e9)} | change
-            )
-
-    def test_printed_form_needs_the_strain_along_z(self):
-        with pytest.raises(ValueError, match="bulk_normal"):
-            replace(LAW, printed=True).step(FilmState.fresh((1, 1)), np.zeros((3, 1, 1)), cells(1e9))
+            loads = {"strain": np.zeros((3, 1, 1)), "pressure": cells(1e9)} | change
+            replace(LAW, **law).step(FilmState.fresh((1, 1)), **loads)
 
 
 class TestScene:
     def test_law_of_a_scene(self):
-        law = FilmLaw.of(film_law.friction_of(100.0))
-        assert (law.young, law.poisson, law.yield_stress, law.low, law.high) == (
-            80e9,
-            0.3,
-            2e9 / 3.0,
-            0.1,
-            0.4,
-        )
-        assert law.limit == pytest.approx(0.020415, abs=5e-7) and not law.printed
-        printed = film_law.friction_of(100.0).model_copy(update={"form": "printed"})
-        assert FilmLaw.of(printed).printed
-
-    def test_other_laws_have_no_film(self):
+        of_bath = film_law.friction_of(100.0)
+        law = FilmLaw.of(of_bath)
+        assert (law.young, law.poisson, law.yield_stress, law.low) == (80e9, 0.3, 2e9 / 3.0, 0.1)
+        assert law.limit == pytest.approx(0.020415, abs=5e-7) and not law.printed and law.high == 0.4
+        assert FilmLaw.of(of_bath.model_copy(update={"form": "printed"})).printed
         with pytest.raises(ValueError, match="chemical-film"):
             FilmLaw.of(Friction(coefficient=0.1))
 
@@ -283,18 +201,75 @@ class TestScene:
         assert mean_of(table(2), "thickness") == (pytest.approx(111.0, abs=0.5), 17)
 
 
-class TestOverallCoefficient:
-    def test_shares_of_the_load(self):
-        """0.17 overall is 23.3 % of the load on bare spots (0.07/0.3)."""
-        load = np.array([[7.0, 76.67], [16.33, 0.0]]) * 1e9
-        failed = np.array([[True, False], [True, True]])
-        assert overall_coefficient(load, failed, 0.1, 0.4, cell_area=1e-12) == pytest.approx(
-            0.1 + 0.3 * 0.2333, rel=1e-12
-        )
-        assert overall_coefficient(load, ~failed | failed, 0.1, 0.4, cell_area=1e-12) == pytest.approx(
-            0.4, rel=1e-15
-        )
+def test_shares_of_the_load():
+    """0.17 overall is 23.3 % of the load on bare spots (0.07/0.3)."""
+    load = np.array([[7.0, 76.67], [16.33, 0.0]]) * 1e9
+    failed = np.array([[True, False], [True, True]])
+    found = overall_coefficient(load, failed, 0.1, 0.4, cell_area=1e-12)
+    assert found == pytest.approx(0.1 + 0.3 * 0.2333, rel=1e-12)
+    with pytest.raises(ValueError, match="load"):
+        overall_coefficient(np.zeros(3), np.zeros(3, dtype=bool), 0.1, 0.4, cell_area=1.0)
 
-    def test_without_load_there_is_none(self):
-        with pytest.raises(ValueError, match="load"):
-            overall_coefficient(np.zeros(3), np.zeros(3, dtype=bool), 0.1, 0.4, cell_area=1.0)
+
+# Hooke's law and radial return against forms that are written otherwise
+
+YOUNG = 80e9
+
+
+def moduli(poisson):
+    """Bulk and shear modulus."""
+    return YOUNG / (3 - 6 * poisson), YOUNG / (2 + 2 * poisson)
+
+
+@pytest.mark.parametrize("poisson", [0.0, 0.45])
+def test_printed_stress_has_the_shear_modulus_once_and_lames_constant(poisson):
+    bulk, shear = moduli(poisson)
+    strain, normal = np.array([[1e-3], [-4e-4], [7e-4]]), np.array([2e-4])
+    loads = Loads(np.zeros((6, 1)), strain, np.array([1e8]), np.array([3e7]), normal)
+    found = printed_stress(loads, Material(YOUNG, poisson, 3e8))[:, 0]
+    normals = np.array([1e-3, -4e-4, 2e-4])
+    expected = (bulk - 2 / 3 * shear) * normals.sum() + shear * normals + [0.0, 0.0, 1e8]
+    np.testing.assert_allclose(found, [*expected, 0.0, 3e7, 0.0], rtol=1e-12)
+
+
+@pytest.mark.parametrize("component", range(6))
+def test_printed_flow_of_one_component_ends_on_the_yield_surface(component):
+    """Pure shear yields at k = sigma_y/sqrt(3), tension at sigma_y; what flows takes the rest of the elastic
+    strain.
+    """
+    _, shear = moduli(0.3)
+    stress, plastic = np.zeros((6, 1)), np.zeros((6, 1))
+    stress[component] = 9e8
+    yield_stress, size = 3e8, 1.5 ** (component < 3)  # of a tension s the deviator is 2/3 s along it
+    material = Material(YOUNG, 0.3, yield_stress)
+    flow = radial_flow(stress, plastic, material)[:, 0]
+    bearable = yield_stress if component < 3 else yield_stress / np.sqrt(3)
+    assert flow[component] == pytest.approx((9e8 - bearable) / size / (2 * shear), rel=1e-12)
+    assert flow[:3].sum() == pytest.approx(0.0, abs=1e-18)
+    held = np.full((6, 1), 1e-3) * np.array([[1.0], [-0.5], [-0.5], [0.4], [0.3], [0.2]])
+    moved = radial_flow(stress + 2 * shear * held, held, material)[:, 0]
+    np.testing.assert_allclose(moved, flow, rtol=1e-10, atol=1e-18)
+
+
+@pytest.mark.parametrize("poisson", [0.0, 0.3])
+def test_elastic_strain_is_the_inverse_of_lames_law_in_any_frame(poisson):
+    bulk, shear = moduli(poisson)
+    strain = np.random.default_rng(3).normal(size=(3, 3)) * 1e-3
+    strain = strain + strain.T
+    stress = (bulk - 2 / 3 * shear) * np.trace(strain) * np.eye(3) + 2 * shear * strain
+    found = elastic_strain(stress[[0, 1, 2, 1, 0, 0], [0, 1, 2, 2, 2, 1]], YOUNG, poisson)
+    np.testing.assert_allclose(found, strain[[0, 1, 0, 2], [0, 1, 1, 2]], rtol=1e-11)
+
+
+def test_surface_strain_follows_a_line_through_two_layers():
+    """Strain that is linear in depth, half elastic and half plastic."""
+    depths, slope = np.array([0.3, 1.1]), np.array([2e-3, -1e-3, 5e-4, 4e-4])
+    total = np.array([1e-3, 2e-3, -1e-3, 3e-4])[:, None] + slope[:, None] * depths
+    bulk, shear = moduli(0.3)
+    half = np.zeros((6, 2))
+    half[[0, 1, 5, 2]] = total / 2
+    stress = 2 * shear * half
+    stress[:3] += (bulk - 2 / 3 * shear) * half[:3].sum(axis=0)
+    fields = (each[:, :, None, None] for each in (stress, half))
+    found = surface_strain(*fields, depths, young=YOUNG, poisson=0.3)[:, 0, 0]
+    np.testing.assert_allclose(found, [1e-3, 2e-3, -1e-3, 3e-4], rtol=1e-11)

@@ -1,351 +1,95 @@
 # SPDX-License-Identifier: MIT
-"""A counter-body that moves: elastic contact at any place, the groove of a yielding body, its passes."""
+"""A counter-body that moves: its path, the groove of a yielding body, a rough counter-body over rough bodies,
+film and wear on its way.
+"""
 
 import itertools
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
-from plastic_start import begin
+from builders import (
+    CHEMICAL_FILM,
+    PATH,
+    SWIFT_YIELD,
+    hertz_force,
+    parsed,
+    running_in,
+    scene,
+)
+from hypothesis import given, strategies as st
+from pydantic import ValidationError
 
 import sam
-from sam.contact import Counters
-from sam.elastic.problem import GivenHertz
 from sam.grid.cells import CellGrid, Window
 from sam.moving import Track
-from sam.plasticity import Model, onward
-from sam.plasticity.progress import Progressed
+from sam.planner.make import schedule_of
 from sam.results.quantities import refined_peak
-from sam.scene import Checkpoint, Plasticity, Scene, Status
+from sam.scene import HeightMap, Path, Scene, Status, Strokes, resolved
 from sam.scene.groove import Groove
+from sam.scene.surface import CounterSurface, Strip, heights, with_relief
 from sam.schedule import Load
+from sam.tribofilm.law import FilmLaw, FilmState
+from sam.tribofilm.state import FilmOnCells, VisitLaw, bins_of_visits
 
-YOUNG, POISSON, RADIUS = 210e9, 0.3, 1e-2
-MODULUS = YOUNG / (1 - POISSON**2)
-SWIFT = {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121}
-YIELD = 945e6 * 20**0.121
-P0 = 4 * YIELD
-A = np.pi * P0 * RADIUS / (2 * MODULUS)  # of Hertz, Johnson 1985, Eq. 4.24
-FORCE = 2 / 3 * np.pi * P0 * A**2
+# the path and its passes
 
 
-def moving(cells: int, path: dict, *, track: float, plasticity: dict | None = SWIFT, **tables) -> Scene:
-    """A rigid sphere at p0 = 4 yield stresses on `cells` cells in a, the path in a about the origin."""
-    h = A / cells
-    nx, ny = 2 * round((track / 2 + 2.2) * cells) + 1, 2 * round(1.8 * cells) + 1
-    depths = tuple(h * np.append(np.arange(round(1.5 * cells) + 1), [1.8 * cells, 2.2 * cells, 3 * cells]))
-    loading = {"force": FORCE, "steps": 2, "unload": True} | tables.pop("loading", {})
-    ends = {"start": (-track / 2 * A, 0.0), "end": (track / 2 * A, 0.0)}
-    other = tables.pop("counterbody", {"shape": "sphere", "radius": RADIUS})
-    return Scene(
-        body={"young": YOUNG, "poisson": POISSON, "plasticity": plasticity},
-        counterbody=other,
-        loading=loading | {"path": ends | path},
-        grid={"cells": (nx, ny), "extent": (nx * h, ny * h)} | ({"depths": depths} if plasticity else {}),
-        solver={"tolerance": 1e-4},
-        **tables,
-    )
+def test_a_scene_with_a_path_is_read_and_written():
+    text = PATH.replace("steps = 4", 'steps = 4, return = "to-and-fro"')
+    found = parsed(('"105 um"', '"105 um"\nslip = 0.5'), add=text)
+    path = found.loading.path
+    assert (path.start, path.end, path.steps, path.to_and_fro) == ((-9e-6, 0.0), (9e-6, 0.0), 4, True)
+    assert found.counterbody.slip == 0.5
+    assert resolved(found)["loading"]["path"]["return"] == "to-and-fro"
+    assert Scene(**resolved(found)) == found
 
 
-class TestElastic:
-    @pytest.fixture(scope="class")
-    @classmethod
-    def found(cls):
-        """Steps of 2.125 cells; a = 8 cells."""
-        return sam.solve(moving(8, {"steps": 8}, track=2.125, plasticity=None, loading={"steps": 1}))
-
-    def test_is_hertz_at_every_place(self, found):
-        """The cells leave 1.1e-3 of p_max and 5e-4 of the approach, whatever part of a cell the way is."""
-        history = found.tables["history"]
-        p_max, approach = (np.array(history[name])[:-1] for name in ("p_max_Pa", "approach_m"))
-        assert found.converged and len(p_max) == 9
-        np.testing.assert_allclose(p_max, P0, rtol=2e-3)
-        np.testing.assert_allclose(approach, A**2 / RADIUS, rtol=2e-3)
-
-    def test_nothing_drives_it(self, found):
-        """The centroid of the pressure is in the middle but for a share of a cell: F_x = F x_c/R."""
-        history = found.tables["history"]
-        assert np.abs(np.array(history["fx_N"])).max() < 1e-3 * A / RADIUS * FORCE
-        np.testing.assert_allclose(history["s_m"][:-1], 2.125 * A * np.arange(9) / 8, rtol=1e-12)
-        assert found.quantities["groove_depth_m"] is None and "track" not in found.tables
-
-    def test_whole_cells_change_nothing(self):
-        scene = moving(8, {"steps": 2}, track=2.0, plasticity=None, loading={"steps": 1})
-        history = sam.solve(scene).tables["history"]
-        assert np.ptp(history["p_max_Pa"][:-1]) < 1e-7 * P0
-
-    def test_all_of_friction_is_along_the_motion(self):
-        """q moves a rigid sphere on: F_x = mu F, and the offset that the coupling makes."""
-        path = {"steps": 3, "return": "to-and-fro"}
-        loading, friction = {"steps": 1, "cycles": 2}, {"coefficient": 0.2}
-        scene = moving(4, path, track=2.0, plasticity=None, loading=loading, friction=friction)
-        history = sam.solve(scene).tables["history"]
-        force, coefficient = np.array(history["fx_N"])[:-1], np.array(history["friction_coefficient"])[:-1]
-        offset, forth = np.array(history["pressure_offset_m"])[:-1], np.array(history["cycle"])[:-1] == 1
-        signed = np.where(forth, coefficient, -coefficient)
-        np.testing.assert_allclose(force / FORCE, signed + offset / RADIUS, rtol=1e-9)
-        np.testing.assert_array_equal(coefficient, 0.2)
-        assert offset[3] == pytest.approx(-offset[-1], rel=1e-4) != 0
+def test_steps_are_counted_in_radii_of_hertz():
+    """a = (3 F R/(4 E*))^(1/3) = 6.053 um for this sphere: 18 um in steps of a/4 are 11.89, so 12."""
+    path = PATH.replace("steps = 4", "step_per_radius = 4")
+    assert parsed(add=path).strokes.count == 12
+    assert parsed(('force = "0.65 N"', 'approach = "0.349 um"'), add=path).strokes.count == 12  # a^2/R
 
 
-COARSE = {"steps": 8}
-TRACK = 6.0
+@given(steps=st.integers(1, 40), cycles=st.integers(1, 6), back=st.booleans(), unload=st.booleans())
+def test_a_pass_begins_where_the_load_is(steps, cycles, back, unload):
+    """To and fro each pass begins where the last one ended; "lifted", at the start, where it is put on."""
+    how = {"return": "to-and-fro" if back else "lifted"}
+    path = Path(start=(-1.0, 0.5), end=(2.0, 0.5), steps=steps, **how)
+    strokes = Strokes(path, path.count(1.0), cycles, unload, with_motion=True)
+    passes = [strokes.of_cycle(cycle) for cycle in range(1, cycles + 1)]
+    for before, after in pairwise(passes):
+        assert after.pressed is before.unloads is not back
+        assert after.places[0] == (before.places[-1] if back else path.start)
+        assert after.sign == (-before.sign if back else before.sign)
+    assert passes[0].pressed and passes[-1].unloads is unload
+    assert {len(each.places) for each in passes} == {steps + 1}
+    assert all({each.places[0], each.places[-1]} == {path.start, path.end} for each in passes)
 
 
-@pytest.fixture(scope="module")
-def passes():
-    """Two passes on few cells in coarse steps, and the checkpoints after each step."""
-    kept = []
-    scene = moving(4, COARSE, track=TRACK, loading={"cycles": 2})
-    return scene, sam.solve(scene, checkpoint=kept.append), kept
-
-
-def halved(scene: Scene, kept: Checkpoint):
-    """The result of a scene that goes on from a checkpoint with half of the next step."""
-    now = kept.record(Progressed)
-    end = now.targets[0].load
-    cut = replace(now, cuts=(now.state.load.halfway_to(end), end))
-    return sam.solve(scene, start=Checkpoint.of("sam", cut, done=kept.done, total=kept.total, cost=kept.cost))
-
-
-LARGEST = ("mises_max_Pa", "mises_max_depth_m", "residual_mises_max_Pa", "peeq_max", "p_max_Pa")
-
-
-@pytest.mark.parametrize("rolls", [False, True])
-@pytest.mark.parametrize("plasticity", [None, SWIFT])
-@pytest.mark.parametrize("cells", [(24, 30), (25, 31)])
-def test_a_turned_scene_has_the_same_largest_stresses(cells, plasticity, rolls):
-    """An ellipsoid on its longer axis, and the same with x and y exchanged. Sums are taken in another order,
-    and iterations end at solver.tolerance: ten times that is asked. Searched in one plane, the stress was .2
-    to .3 % off, and what is left of it up to 3 %.
-    """
-    path = {"start": (-A, 0.0), "end": (A / 2, 0.0), "steps": 3} if rolls else None
-    found = []
-    for turn in (slice(None), slice(None, None, -1)):
-        loading = {"force": FORCE, "steps": 2, "unload": True}
-        if path is not None:
-            loading["path"] = path | {end: path[end][turn] for end in ("start", "end")}
-        grid = {"cells": cells[turn], "extent": tuple(n * A / 5 for n in cells[turn])}
-        if plasticity:
-            grid["depths"] = tuple(A / 5 * np.append(np.arange(8), [9, 11, 15]))
-        radii = dict(zip(("radius_x", "radius_y"), (RADIUS, 1.5 * RADIUS)[turn], strict=True))
-        scene = Scene(
-            body={"young": YOUNG, "poisson": POISSON, "plasticity": plasticity},
-            counterbody={"shape": "ellipsoid", **radii},
-            loading=loading,
-            grid=grid,
-            solver={"tolerance": 1e-7},
-        )
-        found.append(sam.solve(scene).quantities)
-    assert [found[1][name] for name in LARGEST] == pytest.approx(
-        [found[0][name] for name in LARGEST], rel=1e-6
-    )
-
-
-class TestGroove:
-    def test_has_its_measures(self, passes):
-        _, found, _ = passes
-        quantities, table = found.quantities, found.tables["track"]
-        steady = np.array(table["steady"]) == 1
-        assert found.converged and found.status == Status.CONVERGED
-        assert quantities["groove_depth_m"] == pytest.approx(table["uz_m"][steady].mean())
-        assert -3 * A < quantities["groove_deepest_x_m"] < -2 * A
-        assert quantities["groove_deepest_m"] > quantities["groove_depth_m"] > 0
-        assert 0 < quantities["shoulder_start_m"] < quantities["shoulder_end_m"]
-        assert quantities["rolling_coefficient"] > 0
-        line = found.tables["line"]
-        unloaded = np.array(line["state"]) == "unloaded"
-        np.testing.assert_array_equal(np.asarray(line["uz_m"])[unloaded], table["uz_m"])
-
-    def test_has_a_cross_section_of_the_body(self, passes):
-        _, found, _ = passes
-        cross, quantities = found.tables["cross"], found.quantities
-        track, rows = found.tables["track"], len(np.unique(cross["z_m"]))
-        middle = np.abs(track["x_m"] - 0.75 * A).argmin()  # of 3 a to 4.5 a after the start
-        assert cross["peeq"].max() == track["peeq_max"][middle]
-        assert -cross["uz_m"].min() == pytest.approx(quantities["shoulder_side_m"])
-        k = int(np.argmin(np.abs(cross["y_m"])))  # the uppermost cell at y = 0; z runs first
-        assert k % rows == 0 and cross["sxx_Pa"][k] == pytest.approx(track["top_sxx_Pa"][middle])
-
-    def test_a_second_pass_adds_less(self, passes):
-        table = passes[1].tables["passes"]
-        first, second = table["new_strain_max"]
-        assert list(table["pass"]) == [1, 2] and list(table["direction"]) == [1, 1]
-        assert second < first / 3 and table["groove_m"][1] > table["groove_m"][0]
-        assert 0 < table["rolling"][1] < table["rolling"][0]
-        assert passes[1].quantities["passes_to_steady"] is None
-
-    def test_goes_on_from_the_middle_of_a_way(self, passes):
-        scene, found, kept = passes
-        half = next(each for each in kept if each.done == 14)  # in the second pass
-        again = sam.solve(scene, start=half)
-        for name in ("history", "track", "cross", "passes"):
-            for column, values in found.tables[name].items():
-                np.testing.assert_array_equal(values, again.tables[name][column], err_msg=f"{name}: {column}")
-        assert again.quantities == found.quantities
-
-    def test_a_step_that_is_halved_on_the_way_leaves_the_same_groove(self, passes):
-        """Half of a step is half the way: a step of 0.75 a leaves 6 % of the groove there, of a/4 0.7 %."""
-        scene, found, kept = passes
-        again = halved(scene, next(each for each in kept if each.done == 7))
-        assert "cut into 2 steps" in again.tables["history"]["note"][7] and again.converged
-        uz = found.tables["track"]["uz_m"]
-        np.testing.assert_allclose(again.tables["track"]["uz_m"], uz, atol=0.08 * uz.max())
-        np.testing.assert_array_equal(again.tables["history"]["s_m"], found.tables["history"]["s_m"])
-
-    def test_long_steps_are_warned_of(self, passes):
-        scene, found, _ = passes
-        assert any("steps of 0.75 contact radii" in words for words in found.warnings)
-        stage = next(each for each in sam.plan(scene).stages if each.stage == "moving counter-body")
-        assert "about 6 % of the groove, 18 % of the plastic strain" in stage.reason
-        assert stage.size["passes"] == 2 and stage.size["steps"] == 8 and stage.size["cells"] == [32, 8]
-
-    def test_is_mirrored_with_the_direction(self, passes):
-        """Only the iterations differ, which end at the tolerance of 1e-4."""
-        _, found, _ = passes
-        ends = {"start": (TRACK / 2 * A, 0.0), "end": (-TRACK / 2 * A, 0.0)}
-        other = sam.solve(moving(4, COARSE | ends, track=TRACK, loading={"cycles": 2}))
-        uz, mirrored = found.tables["track"]["uz_m"], other.tables["track"]["uz_m"][::-1]
-        np.testing.assert_allclose(mirrored, uz, atol=1e-5 * uz.max())
-        force, same = (np.array(each.tables["history"]["fx_N"]) for each in (other, found))
-        np.testing.assert_allclose(force, same, atol=1e-3 * same.max())
-        for name in ("rolling_coefficient", "groove_depth_m", "shoulder_end_m", "transient_length_m"):
-            assert other.quantities[name] == pytest.approx(found.quantities[name], rel=1e-4)
-
-    def test_says_where_the_plastic_zone_left_the_grid(self):
-        scene = moving(4, COARSE, track=TRACK)
-        grid = scene.grid.model_copy(update={"depths": scene.grid.depths[:3]})
-        found = sam.solve(scene.model_copy(update={"grid": grid}))
-        assert found.status == Status.PLASTIC_ZONE_AT_GRID_EDGE
-        assert "grid.depth" in found.message and "the counter-body is at x = " in found.message
-
-    @pytest.mark.parametrize("law", [None, {"law": "perfect", "yield_stress": 2.3 * YIELD}])
-    def test_says_where_the_contact_left_the_grid(self, law):
-        """The grid ends 1.1 radii behind the path: a body that yields ends there, an elastic one says from
-        where on its tables are wrong.
-        """
-        scene = moving(4, COARSE | {"start": (-2 * A, 0.0)}, track=TRACK)
-        grid, h = scene.grid, A / 4
-        narrow = {"cells": (33, grid.cells[1]), "extent": (33 * h, grid.extent[1])}
-        narrow |= {"depths": grid.depths if law else None}
-        body = scene.body.model_copy(update={"plasticity": law and Plasticity(**law)})
-        found = sam.solve(scene.model_copy(update={"grid": grid.model_copy(update=narrow), "body": body}))
-        assert found.status == Status.CONTACT_AT_GRID_EDGE
-        assert "raise grid.extent" in found.message and "after" in found.message
-        assert len(found.tables["history"]["step"]) > 5
-        assert set(found.tables["line"]["state"]) == ({"last"} if law else {"peak", "unloaded"})
-
-
-class TestOtherBodies:
-    def test_an_approach_that_is_given_stays(self):
-        """At the approach of Hertz a body that yields bears less than his force, and less in its groove."""
-        loading = {"force": None, "approach": A**2 / RADIUS, "steps": 1}
-        found = sam.solve(moving(4, {"steps": 4}, track=2.0, loading=loading))
-        history = found.tables["history"]
-        assert found.converged and list(history["approach_m"][:5]) == [A**2 / RADIUS] * 5
-        force = np.array(history["force_N"])[:5]
-        assert force[-1] < force[0] < FORCE and force.min() > 0.5 * FORCE
-
-    def test_an_ellipsoid_is_driven_by_its_own_slope(self):
-        other = {"shape": "ellipsoid", "radius_x": 2 * RADIUS, "radius_y": RADIUS}
-        scene = moving(4, {"steps": 3}, track=2.0, counterbody=other, loading={"steps": 1})
-        found = sam.solve(scene)
-        history = {
-            name: np.array(found.tables["history"][name])[:4] for name in ("fx_N", "pressure_offset_m")
-        }
-        assert found.converged and history["fx_N"][-1] > 0
-        drive = FORCE * history["pressure_offset_m"] / (2 * RADIUS)
-        np.testing.assert_allclose(history["fx_N"], drive, rtol=1e-6, atol=1e-9 * FORCE)
-
-    def test_a_punch_keeps_its_pressure_and_has_no_slope(self):
-        """A flat end of 4 cells in the radius, whole cells further: nothing changes but the place."""
-        scene = moving(
-            4, {"steps": 2}, track=2.0, plasticity=None, counterbody={"shape": "punch", "radius": A}
-        )
-        history = sam.solve(scene).tables["history"]
-        assert np.ptp(history["p_max_Pa"][1:4]) < 1e-6 * history["p_max_Pa"][1]
-        assert (
-            np.isnan(history["fx_N"][:4]).all() and np.abs(history["pressure_offset_m"][:4]).max() < 1e-6 * A
-        )
-
-    def test_back_stresses_move_too_and_their_passes_are_judged(self):
-        law = {"law": "perfect", "yield_stress": YIELD, "kinematic": {"modulus": (0.05 * YOUNG,)}}
-        loading = {"steps": 1, "cycles": 4}
-        found = sam.solve(moving(4, {"steps": 2}, track=1.5, plasticity=law, loading=loading))
-        assert found.converged and found.verdict is not None
-        strains = found.tables["passes"]["new_strain_max"]
-        assert len(strains) == 4 and found.tables["cycles"]["new_strain_max"][1] > 0
-
-    def test_to_and_fro_a_period_has_two_passes_and_ends_below_the_load(self):
-        """What unloading adds is in no period: the same four whether passes follow or not."""
-        law = {"law": "perfect", "yield_stress": YIELD, "kinematic": {"modulus": (YOUNG,)}}
-        path = {"steps": 1, "return": "to-and-fro"}
-        short, long = (
-            sam.solve(moving(3, path, track=1.0, plasticity=law, loading={"steps": 1, "cycles": cycles}))
-            for cycles in (8, 10)
-        )
-        found, expected = (each.tables["cycles"] for each in (short, long))
-        assert found["period"] == [None, 1, None, 2, None, 3, None, 4]
-        assert found["peeq_step_max"][1::2] == expected["peeq_step_max"][1:8:2]
-        assert found["verdict"] == expected["verdict"][:8] and short.verdict["cycles_in_period"] == 2
-
-
-def known(load: Load) -> tuple[float, float]:
-    """Share of the force and place: a force that was found is that of the scene but for rounding."""
-    return round(load.force / FORCE, 9), load.x
-
-
-class Replayed:
-    """Pressures in Pa on the whole grid by pass, force and place, in place of a counter-body."""
-
-    contact = GivenHertz(P0, A).contact
-
-    def __init__(self, found: dict, change: float):
-        self.found, self.change, self.cycle = found, change, 1
-
-    def pressure(self, grid, load, window):
-        """Of a load of the pass that is on."""
-        nothing = np.zeros((grid.nx, grid.ny))
-        return self.change * self.found.get((self.cycle, *known(load)), nothing)[window.slices]
-
-
-def all_steps(model: Model, now: Progressed) -> tuple[Progressed, dict]:
-    """The record after a history, and the pressure under each of its loads."""
-    found, given = {}, model.plan.given
-    while not now.ended:
-        cycle = now.targets[0].cycle
-        if given is not None:
-            given.cycle = cycle
-        now, pressure = onward(model, now), np.zeros((model.grid.nx, model.grid.ny))
-        if now.last is not None:
-            pressure[now.extent.window.slices] = now.last.pressure * model.unit
-            found[cycle, *known(now.last.load)] = pressure
-    return now, found
-
-
-def test_pressures_that_are_given_again_leave_the_same_strains():
-    """The body knows the pressures alone: strains to 1e-6, as both iterations end at 1e-8; others where they
-    are a ten-thousandth higher.
-    """
-    scene = moving(3, {"steps": 2}, track=1.5, loading={"steps": 1, "cycles": 2})
-    scene = scene.model_copy(update={"solver": scene.solver.model_copy(update={"tolerance": 1e-8})})
-    model, start = begin(scene)
-    start = replace(start, targets=model.plan.schedule.targets)
-    end, found = all_steps(model, start)
-    strain, off = end.state.material.strain, []
-    for change in (1.0, 1.0001):
-        plan = replace(model.plan, given=Replayed(found, change))
-        again, _ = all_steps(Model(plan.problem(Counters())), start)
-        assert end.extent == again.extent and not end.targets and not again.targets
-        off.append(np.abs(again.state.material.strain - strain).max() / np.abs(strain).max())
-    assert off[0] < 1e-6 and off[1] > 1e-5
+def test_the_steps_of_a_scene_to_and_fro():
+    loading = {"force": 0.65, "steps": 2, "unload": True, "cycles": 2}
+    path = {"start": (-9e-6, 0.0), "end": (9e-6, 0.0), "steps": 4, "return": "to-and-fro"}
+    schedule = schedule_of(scene(loading=loading | {"path": path}, friction=0.1))
+    loads = [(t.cycle, t.step, round(t.load.x * 1e6, 9), t.load.force, t.load.sign) for t in schedule.targets]
+    full = [(1, 2 + k, -9 + 4.5 * k, 0.65, 1.0) for k in range(5)]
+    back = [(2, k, 9 - 4.5 * k, 0.65, -1.0) for k in range(1, 5)]
+    assert loads == [(1, 1, -9.0, 0.325, 1.0), *full, *back, (2, 5, -9.0, 0.0, -1.0)]
+    peaks = [t.step for t in schedule.targets if schedule.at_peak(t.cycle, t.step)]
+    assert peaks == [2, 3, 4, 5, 6, 1, 2, 3, 4]
+    assert schedule.targets[-2].snapshot == "peak" and schedule.targets[-1].snapshot == "unloaded"
+    backwards = {"force": 0.65, "path": {"start": (9e-6, 0.0), "end": (-9e-6, 0.0), "steps": 4}, "cycles": 2}
+    signs = {target.load.sign for target in schedule_of(scene(loading=backwards, friction=0.1)).targets}
+    assert signs == {-1.0}
 
 
 class TestTrack:
     GRID = CellGrid(8, 6, 1.0, 1.0, np.zeros(1))
     TRACK = Track((-2.0, 0.5), (2.0, 0.5), 0.5, (0.1, 0.2))
 
-    @pytest.mark.parametrize("i, j", [*itertools.product((-2, 0, 3), (-1, 0, 2))])
+    @pytest.mark.parametrize("i, j", [*itertools.product((-2, 0, 3), (-1, 2))])
     def test_carries_a_pressure_and_lets_none_come_in_on_the_other_side(self, i, j):
         pressure = np.arange(1.0, 49.0).reshape(8, 6)
         moved = self.TRACK.carried(self.GRID, pressure, Load(1.0), Load(1.0, x=i + 0.3, y=j - 0.4))
@@ -358,25 +102,28 @@ class TestTrack:
         pressure[0] = 1.0
         assert self.TRACK.carried(self.GRID, pressure, Load(1.0), Load(1.0, x=-1.0)) is None
 
+    def test_a_contact_is_at_the_edge_where_its_cells_are_the_outermost(self):
+        pressure = np.zeros((8, 6))
+        assert not Track.at_edge(self.GRID, pressure, self.GRID.whole)
+        pressure[3:5, 2:4] = 1.0
+        assert not Track.at_edge(self.GRID, pressure, self.GRID.whole)
+        pressure[7, 3] = 1.0
+        assert Track.at_edge(self.GRID, pressure, self.GRID.whole)
+
     def test_two_rows_of_cells_touch_a_path_between_them(self):
         track = Track((-2.0, 0.0), (2.0, 0.0), 0.5, None)
         assert track.touched(self.GRID.y, 1.0).tolist() == [False, False, True, True, False, False]
 
     def test_force_of_a_pressure_on_a_slope(self):
-        """Of one cell, p dA (x - s)/R, and mu p dA of friction."""
+        """Of one cell, p dA (x - s)/R, and mu p dA of friction; across the grid that along the path."""
         pressure = np.zeros((3, 2))
         pressure[2, 0] = 4.0
         load, window = Load(4.0, x=1.0, y=0.5), Window(4, 2, 3, 2)  # the cell at x = 2.5, y = -0.5
         found = self.TRACK.moved(self.GRID, load, pressure, window=window, traction=0.3)
         assert (found.way, found.offset) == (3.0, 1.5)
         assert found.force == pytest.approx(4.0 * (0.1 * 1.5 + 0.3))
-
-    def test_across_the_grid_the_force_is_that_along_the_path(self):
-        track = Track((0.0, -1.0), (0.0, 1.0), 0.5, (0.1, 0.2))
-        pressure = np.ones((1, 1))
-        found = track.moved(
-            self.GRID, Load(1.0), pressure, window=Window(4, 3, 1, 1), traction=0.0
-        )  # the cell at x = 0.5, y = 0.5
+        track, cell = Track((0.0, -1.0), (0.0, 1.0), 0.5, (0.1, 0.2)), Window(4, 3, 1, 1)  # x = y = 0.5
+        found = track.moved(self.GRID, Load(1.0), np.ones((1, 1)), window=cell, traction=0.0)
         assert (found.way, found.offset) == (1.0, 0.5) and found.force == pytest.approx(0.2 * 0.5)
 
     def test_measures_of_a_made_groove(self):
@@ -385,10 +132,8 @@ class TestTrack:
         uz = np.where(way >= 0, 1 + np.exp(-way), 2 + 3 * way)
         uz[way < -0.5] = -0.1
         uz[way > 10] = -0.3
-        steady = (way >= 3) & (way <= 8.5)
-        found = Groove.of(
-            way, uz, steady, 10.0, across=np.array([1.0, -0.2, 0.0]), peak=refined_peak(way, uz)
-        )
+        steady, across = (way >= 3) & (way <= 8.5), np.array([1.0, -0.2, 0.0])
+        found = Groove.of(way, uz, steady, 10.0, across=across, peak=refined_peak(way, uz))
         depth = 1 + (np.exp(-3) - np.exp(-8.5)) / 5.5
         assert (found.at_start, found.at_end, found.beside) == (0.1, 0.3, 0.2)
         assert found.depth == pytest.approx(depth, rel=1e-3)
@@ -400,6 +145,367 @@ class TestTrack:
         way = np.linspace(-2.0, 3.0, 11)
         uz = np.exp(-(way**2))
         found = Groove.of(way, uz, way > 5, 1.0, across=np.zeros(3), peak=refined_peak(way, uz))
-        assert np.isnan(
-            [found.depth, found.middle, found.transient]
-        ).all() and found.deepest == pytest.approx(1.0)
+        assert np.isnan([found.depth, found.middle, found.transient]).all()
+        assert found.deepest == pytest.approx(1.0)
+
+    @pytest.mark.parametrize("share, warned", [(0.5, False), (0.5004, True)])
+    def test_half_a_radius_is_not_warned_of(self, share, warned):
+        assert bool(Track((0.0, 0.0), (4.0, 0.0), 1.0, (0.1, 0.1), share).warnings) is warned
+
+
+# smooth bodies
+
+RADIUS, P0 = 1e-2, 4 * SWIFT_YIELD
+A = np.pi * P0 * RADIUS / (2 * 210e9 / 0.91)  # of Hertz, Johnson 1985, Eq. 4.24
+FORCE = hertz_force(P0, RADIUS)
+SWIFT = {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121}
+
+
+def moving(path: dict, *, track=2.0, plasticity=SWIFT, grid=None, **tables) -> Scene:
+    """A sphere at p0 = 4 yield stresses on 4 cells in a, the path in a about the origin."""
+    h, nx = A / 4, 2 * round((track / 2 + 2.2) * 4) + 1
+    depths = {"depths": tuple(h * np.append(np.arange(7), [7.2, 8.8, 12]))} if plasticity else {}
+    ends = {"start": (-track / 2 * A, 0.0), "end": (track / 2 * A, 0.0)}
+    loading = {"force": FORCE, "steps": 1, "unload": True, "path": ends | path}
+    return scene(
+        body={"plasticity": plasticity},
+        loading=loading | tables.pop("loading", {}),
+        grid={"cells": (nx, 15), "extent": (nx * h, 15 * h)} | depths | (grid or {}),
+        solver={"tolerance": 1e-4},
+        **{"counterbody": {"shape": "sphere", "radius": RADIUS}} | tables,
+    )
+
+
+def test_all_of_friction_is_along_the_motion():
+    """q moves a rigid sphere on: F_x = mu F, and the offset that the coupling makes."""
+    path = {"steps": 3, "return": "to-and-fro"}
+    history = sam.solve(moving(path, plasticity=None, loading={"cycles": 2}, friction=0.2)).tables["history"]
+    force, coefficient = np.array(history["fx_N"])[:-1], np.array(history["friction_coefficient"])[:-1]
+    offset, forth = np.array(history["pressure_offset_m"])[:-1], np.array(history["cycle"])[:-1] == 1
+    signed = np.where(forth, coefficient, -coefficient)
+    np.testing.assert_allclose(force / FORCE, signed + offset / RADIUS, rtol=1e-9)
+    np.testing.assert_array_equal(coefficient, 0.2)
+    assert offset[3] == pytest.approx(-offset[-1], rel=1e-4) != 0
+
+
+LONG = {"path": {"steps": 8}, "track": 6.0}
+
+
+class TestGroove:
+    @pytest.fixture(scope="class")
+    @classmethod
+    def found(cls):
+        """A pass on few cells in coarse steps."""
+        return sam.solve(moving(**LONG, loading={"steps": 2}))
+
+    def test_has_its_measures(self, found):
+        quantities, table = found.quantities, found.tables["track"]
+        steady = np.array(table["steady"]) == 1
+        assert found.converged and found.status == Status.CONVERGED
+        assert quantities["groove_depth_m"] == pytest.approx(table["uz_m"][steady].mean())
+        assert -3 * A < quantities["groove_deepest_x_m"] < -2 * A
+        assert quantities["groove_deepest_m"] > quantities["groove_depth_m"] > 0
+        assert 0 < quantities["shoulder_start_m"] < quantities["shoulder_end_m"]
+        assert quantities["rolling_coefficient"] > 0
+        line = found.tables["line"]
+        unloaded = np.array(line["state"]) == "unloaded"
+        np.testing.assert_array_equal(np.asarray(line["uz_m"])[unloaded], table["uz_m"])
+
+    def test_has_a_cross_section_of_the_body(self, found):
+        cross, quantities = found.tables["cross"], found.quantities
+        track, rows = found.tables["track"], len(np.unique(cross["z_m"]))
+        middle = np.abs(track["x_m"] - 0.75 * A).argmin()  # of 3 a to 4.5 a after the start
+        assert cross["peeq"].max() == track["peeq_max"][middle]
+        assert -cross["uz_m"].min() == pytest.approx(quantities["shoulder_side_m"])
+        k = int(np.argmin(np.abs(cross["y_m"])))  # the uppermost cell at y = 0; z runs first
+        assert k % rows == 0 and cross["sxx_Pa"][k] == pytest.approx(track["top_sxx_Pa"][middle])
+
+    def test_long_steps_are_warned_of(self, found):
+        assert any("steps of 0.75 contact radii" in words for words in found.warnings)
+        stages = {each.stage: each for each in sam.plan(moving(**LONG)).stages}
+        stage = stages["moving counter-body"]
+        assert "about 6 % of the groove, 18 % of the plastic strain" in stage.reason
+        assert stage.size["passes"] == 1 and stage.size["steps"] == 8 and stage.size["cells"] == [32, 8]
+
+
+def test_says_where_the_plastic_zone_left_the_grid():
+    few = {"depths": tuple(A / 4 * np.arange(3))}
+    found = sam.solve(moving({"steps": 3}, grid=few))
+    assert found.status == Status.PLASTIC_ZONE_AT_GRID_EDGE
+    assert "grid.depth" in found.message and "the counter-body is at x = " in found.message
+
+
+@pytest.mark.parametrize("law", [None, {"law": "perfect", "yield_stress": 2.3 * SWIFT_YIELD}])
+def test_says_where_the_contact_left_the_grid(law):
+    """The grid ends 1.1 radii behind the path: a body that yields ends there, an elastic one says from where
+    on its tables are wrong.
+    """
+    narrow = {"cells": (33, 15), "extent": (33 * A / 4, 15 * A / 4)}
+    path = {"steps": 8, "start": (-2 * A, 0.0)}
+    found = sam.solve(moving(path, track=6.0, plasticity=law, grid=narrow, loading={"steps": 2}))
+    assert found.status == Status.CONTACT_AT_GRID_EDGE
+    assert "raise grid.extent" in found.message and "after" in found.message
+    assert len(found.tables["history"]["step"]) > 5
+    assert set(found.tables["line"]["state"]) == ({"last"} if law else {"peak", "unloaded"})
+
+
+def test_back_stresses_move_too_and_their_passes_are_judged():
+    law = {"law": "perfect", "yield_stress": SWIFT_YIELD, "kinematic": {"modulus": (10.5e9,)}}
+    found = sam.solve(moving({"steps": 1}, track=1.0, plasticity=law, loading={"cycles": 4}))
+    assert found.converged and found.verdict is not None
+    assert len(found.tables["passes"]["new_strain_max"]) == 4
+    assert found.tables["cycles"]["new_strain_max"][1] > 0
+
+
+# rough bodies
+
+SIDE, CELLS = 16e-6, 24
+CELL = SIDE / CELLS
+WAVES = {"kind": "self-affine", "cutoff_long": SIDE, "cutoff_short": SIDE / 2, "hurst": 0.8}
+COUNTER = {**WAVES, "sq": 20e-9, "seed": 7}
+X = (np.arange(CELLS) - (CELLS - 1) / 2) * CELL
+
+
+def strip(surface, start=(-6 * CELL, 0.0), way=(12 * CELL, 0.0), share=1.0, *more) -> Strip:
+    """Of a counter-body over the patch; surface: its keys."""
+    return Strip(CounterSurface(**surface), (CELLS,) * 2, (SIDE,) * 2, start, way, share, *more)
+
+
+class TestStrip:
+    @pytest.mark.parametrize("cells", [-6, -1, 6])
+    def test_slides_over_the_patch(self, cells):
+        """c(x - s): heights of the strip, periodic over its own length, at shifted places."""
+        found = strip(COUNTER).at(0, (cells * CELL, 0.0))
+        expected = heights(CounterSurface(**COUNTER), X - cells * CELL, X, (36 * CELL, SIDE))
+        np.testing.assert_allclose(found, expected, atol=1e-12 * np.ptp(expected))
+
+    @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
+    def test_a_way_back_and_across_meets_the_same_heights(self, share):
+        """A path of -6 cells along x and 8 along y, of which half is slid."""
+        over = strip(COUNTER, (0.0, CELL), (-3 * CELL, 4 * CELL), 0.5)
+        found = over.at(0, (-6 * CELL * share, CELL + 8 * CELL * share))
+        x, y = X + 3 * CELL * (share - 0.5), X - 4 * CELL * (share - 0.5)
+        between = (-CELL / 2, CELL / 2) if share == 0.5 else (0.0,)  # two cells along x
+        shifted = [heights(over.surface, x + d, y, (27 * CELL, 28 * CELL)) for d in between]
+        expected = sum(shifted) / len(shifted)
+        np.testing.assert_allclose(found, expected, atol=1e-12 * np.ptp(expected))
+
+    def test_the_border_falls_off_and_stays_in_place(self):
+        falling, even = strip(COUNTER, (-6 * CELL, 0.0), (12 * CELL, 0.0), 1.0, True), strip(COUNTER)
+        one, two = (falling.at(0, (x, 0.0)) - even.at(0, (x, 0.0)) for x in (0.0, 3 * CELL))
+        np.testing.assert_allclose(one, two, atol=1e-12 * np.ptp(one))
+        flat = with_relief(np.zeros((CELLS,) * 2), (X, X), (SIDE, SIDE), 1.0)
+        np.testing.assert_allclose(one / one.min(), flat / flat.min(), atol=1e-9)
+
+    def test_of_a_map_the_middle_is_taken(self):
+        values = np.random.Generator(np.random.PCG64(1)).normal(size=(40, 26))
+        of_map = {"kind": "file", "path": HeightMap(values, (40 * CELL, 26 * CELL))}
+        over = strip(of_map, (0.0, 0.0))
+        np.testing.assert_array_equal(over.at(0, (0.0, 0.0)), values[14:38, 1:25])
+        np.testing.assert_array_equal(over.at(0, (12 * CELL, 0.0)), values[2:26, 1:25])
+        used = CounterSurface(kind="file", path=HeightMap(values[2:38, 1:25], (36 * CELL, 24 * CELL)))
+        falling = replace(over, relief=True)
+        alone = replace(falling, surface=used)  # the border falls by the heights that come over the patch
+        np.testing.assert_array_equal(falling.at(0, (0.0, 0.0)), alone.at(0, (0.0, 0.0)))
+
+    @pytest.mark.parametrize("cells, warned", [(8, False), (7.996, True)])
+    def test_an_eighth_of_a_wave_is_not_warned_of(self, cells, warned):
+        over = strip(of_wave(cells), (0.0, 0.0), (4 * CELL, 0.0))
+        track = Track((0.0, 0.0), (4 * CELL, 0.0), SIDE, (0.0, 0.0), CELL, plane=True, strip=over)
+        assert bool(track.warnings) is warned
+
+    @pytest.mark.parametrize("cells, refused", [(12, False), (11.99, True)])
+    def test_a_quarter_of_a_wave_is_the_longest_step(self, cells, refused):
+        over = strip(of_wave(cells), (0.0, 0.0), (3 * CELL, 0.0))
+        assert bool(list(over.excesses(1))) is refused
+
+
+def of_wave(cells: float) -> dict:
+    return {"kind": "sinusoid", "amplitude": 20e-9, "wavelength_x": cells * CELL}
+
+
+def sliding(surface, *, body=None, **loading) -> Scene:
+    """A plane with a surface that slides over an elastic patch of 24 x 24 cells."""
+    path = {"start": (-6 * CELL, 0.0), "end": (6 * CELL, 0.0), "steps": 6} | loading.pop("path", {})
+    return scene(
+        counterbody={"shape": "flat", "surface": surface},
+        surface=body,
+        loading={"force": 0.01, "steps": 1, "path": path} | loading,
+        grid={"cells": (CELLS, CELLS), "extent": (SIDE, SIDE), "border": "relief"},
+        solver={"tolerance": 1e-4},
+    )
+
+
+def test_a_wave_carries_its_pressure_with_it():
+    """A crest across a smooth body, in steps of whole cells: the same pressure, further on."""
+    wave = of_wave(48) | {"wavelength_y": 2 * SIDE}
+    ends = (
+        {"start": (-2 * CELL, 0.0), "end": (2 * CELL, 0.0)},
+        {"start": (-4 * CELL, 0.0), "end": (0.0, 0.0)},
+    )
+    whole, half = (sam.solve(sliding(wave, path=each | {"steps": 2})) for each in ends)
+    history = whole.tables["history"]
+    assert whole.converged and len(history["s_m"]) == 3
+    for name in ("surface", "line"):  # only the middle of the way counts
+        np.testing.assert_array_equal(whole.tables[name]["p_Pa"], half.tables[name]["p_Pa"])
+    np.testing.assert_allclose(history["p_max_Pa"], history["p_max_Pa"][0], rtol=1e-6)
+    np.testing.assert_allclose(history["pressure_offset_m"], [-2 * CELL, 0, 2 * CELL], atol=1e-3 * CELL)
+
+
+def test_a_body_that_yields_only_further_along_the_path():
+    """The first place stays elastic by itself, and a later one does not."""
+    loading = {"force": 0.01, "path": {"start": (-3 * CELL, 0.0), "end": (3 * CELL, 0.0), "steps": 6}}
+    keys = {"counterbody": {"shape": "sphere", "radius": 400e-6}, "loading": loading, "cycles": 1, "steps": 1}
+    law = {"law": "perfect", "yield_stress": 3.8e9}
+    found = sam.solve(running_in(plasticity=law, film=None, wear=None, **keys))
+    peeq = np.array(found.tables["history"]["peeq_max"])
+    assert peeq[0] == 0 < peeq[-1]
+
+
+def test_a_map_alone_asks_for_a_grid():
+    values = np.random.Generator(np.random.PCG64(1)).normal(scale=1e-8, size=(36, 24))
+    found = sliding({"kind": "file", "path": HeightMap(values, (36 * CELL, 24 * CELL))})
+    assert found.counter_strip.whole == (36, 24) and found.patch[0] == (CELLS, CELLS)
+    with pytest.raises(ValidationError, match="longer than the patch"):
+        Scene(**{**dict(found), "grid": None})
+
+
+# film and wear on the way
+
+LIMIT, RATE, TRACK = 0.02, 3.0, 10.0
+LAW = FilmLaw(80e9, 0.3, 2e9 / 3, 0.1, 0.4, LIMIT)
+ALONG = (np.arange(40) + 0.5) / 4  # cells of 1/4 along a path of 10
+HALF = 1.0  # of the contact
+
+
+def swept(track: Track, cycles: int, steps: int = 40):
+    """The film after each step of a contact of half-width HALF over cells in a row, unloaded after each pass
+    unless that goes back: (cycle, place, film).
+    """
+    film_of = FilmOnCells(LAW, (len(ALONG), 1), VisitLaw(RATE, track.period))
+    film = film_of.fresh(np.zeros((4, len(ALONG), 1)))
+    for cycle in range(1, cycles + 1):
+        ways = np.linspace(0.0, TRACK, steps + 1)
+        for x in ways[::-1] if track.returns and cycle % 2 == 0 else ways:
+            before = film_of.entered(film, track.clock(cycle, Load(1.0, x=x)))
+            pressure = np.where(np.abs(ALONG - x) <= HALF, 1e8, 0.0)[:, None]
+            film = film_of.tested(before, before, np.zeros((4, len(ALONG), 1)), pressure=pressure, sign=1.0)
+            yield cycle, film
+        if not track.returns:
+            film = replace(film, visits=film.visits.unloaded(film.visits.strain))
+
+
+def test_one_way_a_cell_is_out_of_contact_for_the_closed_track_less_the_contact():
+    """Eq. 16 and 17: K_0 sqrt((track - 2 a)/V)/h from the second pass on, first that of the scene."""
+    track = Track((0.0, 0.0), (TRACK, 0.0), HALF, None, period=25.0)
+    first, second = np.full(len(ALONG), np.nan), np.full(len(ALONG), np.nan)
+    for cycle, film in swept(track, 2):
+        found, inside = (first, second)[cycle - 1], film.visits.inside[:, 0]
+        found[inside] = film.visits.limit[inside, 0]
+    middle = (ALONG > HALF) & (ALONG < TRACK - HALF)
+    np.testing.assert_array_equal(first, LIMIT)
+    np.testing.assert_allclose((second / RATE)[middle] ** 2, 25.0 - 2 * HALF, atol=0.26)  # a step
+    counts = film.visits.counts
+    assert counts.sum() == len(ALONG) and counts[-1] == len(ALONG)  # all longer than 25/sqrt(2)
+    bins = bins_of_visits(25.0)
+    assert bins[-1] == 25.0 and bins[1:] / bins[:-1] == pytest.approx(np.sqrt(2.0), rel=1e-12)
+
+
+def test_to_and_fro_the_film_thins_least_near_the_ends():
+    """At d from the end the cell is out of contact for 2 (d - a), and not at all for d < a."""
+    track = Track((0.0, 0.0), (TRACK, 0.0), HALF, None, period=TRACK, returns=True)
+    back = np.full(len(ALONG), np.nan)
+    for cycle, film in swept(track, 2):
+        if cycle == 2:
+            inside = film.visits.inside[:, 0]
+            back[inside] = film.visits.limit[inside, 0]
+    out, end = (back / RATE) ** 2, TRACK - ALONG
+    left = end > HALF + 0.25
+    np.testing.assert_allclose(out[left], 2 * (end - HALF)[left], atol=0.26)
+    np.testing.assert_array_equal(back[end < HALF - 0.25], LIMIT)  # still the first visit
+
+
+def test_a_failure_lasts_for_the_visit_and_unloading_in_place_ends_none():
+    film_of, shape = FilmOnCells(LAW, (2, 1), VisitLaw(RATE, 1.0)), (2, 1)
+    film = film_of.fresh(np.zeros((4, *shape)))
+    too_much = np.array([[5e9], [0.0]])  # more than the film bears
+
+    def step(film, clock, pressure):
+        before = film_of.entered(film, clock)
+        return film_of.tested(before, before, np.ones((4, *shape)), pressure=pressure, sign=1.0)
+
+    film = step(film, 0.0, too_much)
+    assert film.film.failed.ravel().tolist() == [True, False]
+    unloaded = replace(film, visits=film.visits.unloaded(film.visits.strain))
+    again = step(unloaded, 1e-16, np.full(shape, 1e6))
+    assert again.film.failed.ravel().tolist() == [True, False]  # nothing has moved
+    away = step(film, 0.5, np.zeros(shape))
+    assert away.film.failed.ravel().tolist() == [True, False]
+    back = film_of.entered(away, 0.75)
+    assert not back.film.failed.any() and back.visits.limit[0, 0] == pytest.approx(RATE * 0.5)
+    np.testing.assert_array_equal(back.reference[:, 0], 1.0)  # strain counts from there and then
+    np.testing.assert_array_equal(back.film.plastic[:, 0], 0.0)
+    assert film_of.entered(back, 0.75).film.failed is back.film.failed  # nothing is solved anew
+
+
+def test_a_limit_of_each_cell_takes_the_place_of_that_of_the_law():
+    strain, pressure = np.full((3, 2, 1), 5e-3), np.full((2, 1), 2.4e9)
+    lost = LAW.step(FilmState.fresh((2, 1)), strain, pressure).thinning[0, 0]
+    limits = np.array([[lost * 0.9], [lost * 1.1]])
+    found = LAW.step(FilmState.fresh((2, 1)), strain, pressure, limit=limits)
+    assert found.failed.ravel().tolist() == [True, False] and lost > 0
+
+
+def worn(**path) -> Scene:
+    """A rough pin that a renewed disc wears, with a film, in two passes of 6 cells."""
+    growth = {"growth_coefficient": 3.644e-9, "track": 0.31415, "contact_width": 300e-6, "speed": 1.0}
+    film = {key: value for key, value in CHEMICAL_FILM.items() if key != "strain_limit"} | growth
+    ends = {"start": (-3 * CELL, 0.0), "end": (3 * CELL, 0.0), "steps": 3} | path
+    disc = {**COUNTER, "seed": 8, "renew": True}
+    return running_in(steps=2, film=film, counterbody={"surface": disc}, loading={"path": ends})
+
+
+class TestPasses:
+    @pytest.fixture(scope="class")
+    @classmethod
+    def found(cls):
+        return sam.solve(worn())
+
+    def test_wear_friction_and_work_of_each_pass(self, found):
+        passes, cycles, history = (found.tables[name] for name in ("passes", "cycles", "history"))
+        wear = np.array(passes["wear_of_pass_m3"])
+        np.testing.assert_allclose(np.cumsum(wear), cycles["wear_volume_m3"])
+        np.testing.assert_allclose(passes["wear_per_length_m2"], wear / (6 * CELL))
+        full = (np.array(history["cycle"]) == 1) & (np.array(history["step"]) >= 2)
+        full &= np.array(history["force_N"]) > 0.05
+        s, drive, friction = (np.array(history[n])[full] for n in ("s_m", "fx_N", "friction_coefficient"))
+        assert wear[0] > 0 and passes["work_J"][0] == pytest.approx(np.trapezoid(drive, s))
+        assert passes["friction_mean"][0] == pytest.approx(friction.mean())
+        assert 0 <= passes["protected_mean"][0] < 1 and 0.1 <= passes["friction_mean"][1] <= 0.4
+
+    def test_visits_tell_how_long_cells_were_out_of_contact(self, found):
+        """Thinning that a visit may take, K_0 sqrt(t)/h of the time without contact."""
+        visits = found.tables["visits"]
+        assert visits["way_m"][-1] == pytest.approx(6 * CELL) and sum(visits["visits"]) > 0
+        np.testing.assert_allclose(visits["time_s"], np.array(visits["way_m"]) / 1.0)
+        np.testing.assert_allclose(visits["thinning_limit"], 3.644e-9 * np.sqrt(visits["time_s"]) / 100e-9)
+
+
+def test_an_elastic_body_with_a_film_meets_every_pass():
+    """No pass stands for all: the film of a later one may thin by less."""
+    scene = worn()
+    body = scene.body.model_copy(update={"plasticity": None})
+    grid = scene.grid.model_copy(update={"depths": None})
+    elastic = scene.model_copy(update={"body": body, "grid": grid, "wear": None})
+    history = sam.solve(elastic).tables["history"]
+    cycle, friction = (np.array(history[name]) for name in ("cycle", "friction_coefficient"))
+    first, second = friction[cycle == 1], friction[cycle == 2]
+    assert len(first) == len(second) and "elastic: equal" not in "".join(history["note"])
+    assert second[:-1].mean() != first[:-1].mean()
+
+
+def test_a_body_that_wears_is_unloaded_at_each_reversal():
+    targets = schedule_of(worn(**{"return": "to-and-fro"})).targets
+    assert [(t.cycle, round(t.load.x / CELL)) for t in targets if t.load.force == 0] == [(1, 3), (2, -3)]
+    pressed = [t for t in targets if t.cycle == 2 and t.step <= 2]
+    assert [(t.load.force, round(t.load.x / CELL)) for t in pressed] == [(0.03, 3), (0.06, 3)]

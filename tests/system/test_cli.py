@@ -15,12 +15,13 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from builders import MODULUS, RADIUS, parsed, scene_text
+from builders import HARDENING, MODULUS, RADIUS, parsed, scene_text
 
 import fem_reference.axisymmetric.planner
 import fem_reference.spatial.planner
-import sam.planner.make
-from sam.contact.convolution import half_length
+import sam
+from sam.half_space import circular_contact_radius
+from sam.planner import bodies, make, stages
 from sam.scene import LeftOut
 from samfem.cli import main
 from verification.cost.plan import plan
@@ -161,8 +162,8 @@ def test_a_defect_shows_where_when_asked(folder, monkeypatch):
 
 
 def test_an_interrupt_in_a_process_of_its_own(folder):
-    """The signal arrives while a command runs; one that waits stands for it. Tests in a background job would
-    ignore it.
+    """The signal arrives while a command runs; one that waits stands for it. Tests in a background
+    job would ignore it.
     """
     code = "import sys, time; from samfem import cli, planning\n"
     code += "planning.plan = lambda **_: (print('runs', flush=True), time.sleep(60))\n"
@@ -245,58 +246,45 @@ def test_estimates_grow_with_the_work():
         assert b["memory_bytes"] > 1.5 * a["memory_bytes"] and b["time_s"] > 2.5 * a["time_s"] > 0
 
 
-def test_plan_makes_the_plan_of_each_model_once():
-    planners = (sam.planner.make, fem_reference.axisymmetric.planner, fem_reference.spatial.planner)
-    names = {planner.plan.__code__: planner.__name__ for planner in planners}
+def calls_of(functions, act) -> dict[str, int]:
+    """How often each of the functions is called while `act` runs, by the name of its module and its own."""
+    names = {function.__code__: f"{function.__module__}.{function.__name__}" for function in functions}
     calls = Counter()
 
     def count(frame, event, _argument):
         if event == "call" and frame.f_code in names:
             calls[names[frame.f_code]] += 1
 
-    scene = parsed(add=GRID)
     sys.setprofile(count)
     try:
-        plan(scene)
+        act()
     finally:
         sys.setprofile(None)
-    assert calls == dict.fromkeys(names.values(), 1)
+    assert len(names) == len(functions)
+    return {name: calls[name] for name in names.values()}
 
 
-def test_plan_of_a_scene_without_force():
-    for entry in plan(parsed(("0.65 N", "0 N")))["models"]:
-        (contact,) = (stage for stage in entry["stages"] if stage["stage"] == "contact search")
-        assert (contact["runs"], contact["reason"]) == (False, "loading.force is zero: no contact")
+def test_plan_makes_the_plan_of_each_model_once():
+    planners = (make.plan, fem_reference.axisymmetric.planner.plan, fem_reference.spatial.planner.plan)
+    assert set(calls_of(planners, lambda: plan(parsed(add=GRID))).values()) == {1}
+
+
+SMALL = "[grid]\ncells = [9, 9]\n[solver]\ntolerance = 1e-3\n"
+ONCE = (make.check_bodies, make.plan_of, make.schedule_of, stages.stages_of, bodies._by_hertz)
+
+
+@pytest.mark.parametrize("add", [SMALL, SMALL + f"[body.plasticity]\n{HARDENING['swift']}"])
+def test_a_solve_checks_plans_and_estimates_a_scene_once(folder, add):
+    """The command also before it begins, where too much is refused, and in `models.solve`."""
+    scene, functions = parsed(("0.65 N", "0.05 N"), add=add), (*ONCE, circular_contact_radius)
+    (folder / "small.toml").write_text(scene_text(("0.65 N", "0.05 N"), add=add))
+    assert set(calls_of(functions, lambda: sam.solve(scene)).values()) == {1}
+    called = calls_of(ONCE[:2], lambda: main(["solve", "small.toml"]))
+    assert called == {"sam.planner.make.check_bodies": 3, "sam.planner.make.plan_of": 2}
 
 
 PLASTIC = '[body.plasticity]\nlaw = "table"\nfile = "curve.csv"\n'
 GRID = '[grid]\ncells = [65, 65]\nlayers = 20\ndepth = "10 um"\n'
-
-
-def test_plan_of_a_plastic_scene_names_what_plasticity_adds(folder, samfem):
-    (folder / "curve.csv").write_text("peeq,yield_stress_Pa\n0,1e9\n")
-    plans = []
-    for more in ("", PLASTIC):
-        (folder / "scene.toml").write_text(scene_text(add=f"steps = 4\nunload = true\n{GRID}{more}"))
-        plans.append(planned(samfem, "scene.toml"))
-    for before, after in zip(*plans, strict=True):
-        for name in ("memory_bytes", "time_s"):
-            assert after["estimate"][name] > before["estimate"][name]
-    stages = {stage["stage"]: stage for entry in plans[1] for stage in entry["stages"] if stage["runs"]}
-    volume = stages["volume grid"]
-    assert volume["size"]["layers"] == 20 and volume["reason"] == "layers of [grid]"
-    nx, ny, nz = stages["eigenstrain kernels"]["size"]["box_cells"]
-    assert nx == ny
-    waves = (half_length(nx) + 1) * (half_length(nx) + 2) // 2  # a sphere at rest: x and y may be exchanged
-    assert nz == 20 and stages["eigenstrain kernels"]["size"]["bytes"] == 8 * 36 * nz**2 * waves
-    assert 2 * A < nx * stages["grid"]["size"]["cell_m"][0] and nx <= 65
-    assert stages["plastic loop"]["size"] == {"steps": 4, "unload_steps": 4}
-    assert stages["return mapping and plastic history"]["size"]["points"] > 1000
-    for entry in plans[1]:
-        computed, left_out = (
-            {stage["stage"] for stage in entry["stages"] if stage["runs"] is runs} for runs in (True, False)
-        )
-        assert not computed & left_out
 
 
 def test_a_file_that_the_scene_names_is_hashed_with_it(folder, samfem):

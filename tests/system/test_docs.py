@@ -1,12 +1,18 @@
 # SPDX-License-Identifier: MIT
-"""The documentation is right: its links, commands, scenes, file names, symbols and numbers are checked."""
+"""The documentation is right: its links, commands, scenes, file names and symbols are checked, and
+the stories of the guide are run, one command after the other, in an empty folder.
 
-import json
+The first story, `first-contact`, is run by `.ci/wheel`, with the package installed as its reader
+installs it.
+"""
+
+import os
 import re
 import shlex
 import shutil
+import subprocess
+import sys
 import tomllib
-from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -16,31 +22,34 @@ import pytest
 from sam.scene import SceneError
 from sam.scene.inputs import Inputs
 from sam.scene.load import scene_of
-from samfem.cli import _options
+from samfem.cli import COMMANDS, _options
 from verification.cases import all_cases
 from verification.rows import read_cases
 from verification.runs.study import read_study
 
 ROOT = Path(__file__).resolve().parents[2]
-README = ROOT / "README.md"
-PAGES = (README, ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md")))
-LONGEST_README = 120
-NUMBERS = ("No", "One", "Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine", "Ten")
+GUIDE, ARCHITECTURE = ROOT / "docs" / "guide", ROOT / "docs" / "architecture.md"
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+PAGES = {
+    path: path.read_text(encoding="utf-8")
+    for path in (*ROOT.glob("*.md"), *sorted((ROOT / "docs").rglob("*.md")))
+}
+LONGEST_README, LONGEST_PATH = 120, 2800  # lines
+LONGEST_S = 120  # what a reader of a story is promised
 PLACEHOLDER = "NAME"
 """Stands for a name that the reader chooses."""
+STORIES = {
+    "own-data": ("sphere-compare/compare.csv", "page/report.html"),
+    "continuous-integration": ("ball-compare/compare.csv", "contacts.xml", "contacts/report.html"),
+    "measured-surface": ("pin-sam/surface.csv", "pin-sam/figures/pressure.png", "running-in.toml"),
+}
+"""Page -> files that are there at its end."""
 
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-LINK = re.compile(r"\]\(([^)\s]+)\)")
 CODE = re.compile(r"`([^`\n]+)`")
 PATH_OF_SOURCE = re.compile(r"(samfem|sam|fem_reference|verification|tests|docs|reports)/[\w./*-]+")
 SYMBOLS_IN_FILE = re.compile(r"((?:`[\w.]+`(?:, | and ))*`[\w.]+`) in `([\w/]+\.py)`")
-NUMBER_OF_GATE = re.compile(
-    r"\| ([0-9.]+) (%|times) \| `([a-z0-9.-]+)` \| \[[^]]+\]\((reports/[\w-]+\.html)\) \|"
-)
-
-
-def text_of(page: Path) -> str:
-    return page.read_text(encoding="utf-8")
+every_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 
 
 def prose(text: str) -> str:
@@ -53,21 +62,16 @@ def blocks(text: str, language: str) -> list[str]:
     return [content for name, content in FENCE.findall(text) if name == language]
 
 
-def anchors(text: str) -> set[str]:
-    """The anchors of the headings: lower case, without punctuation, hyphens for spaces."""
-    headings = re.findall(r"^#+ (.+)$", prose(text), re.MULTILINE)
-    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
-
-
 def broken_links(text: str, folder: Path) -> list[str]:
     """Relative links without a file, or whose anchor is no heading of the page."""
     broken = []
-    for link in LINK.findall(prose(text)):
+    for link in re.findall(r"\]\(([^)\s]+)\)", prose(text)):
+        name, _, anchor = link.partition("#")
         if re.match(r"[a-z]+:", link):
             continue
-        name, _, anchor = link.partition("#")
-        target = folder / name
-        if not name or not target.exists() or (anchor and anchor not in anchors(text_of(target))):
+        headings = re.findall(r"^#+ (.+)$", prose(PAGES.get((folder / name).resolve(), "")), re.MULTILINE)
+        anchors = {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+        if not name or not (folder / name).exists() or (anchor and anchor not in anchors):
             broken.append(link)
     return broken
 
@@ -80,216 +84,166 @@ def commands(text: str) -> list[list[str]]:
     return [shlex.split(match.group(1), comments=True) for match in found if match]
 
 
-def wrong_command(words: list[str]) -> str:
-    """Why the command line is refused; empty if it is not. Nothing runs."""
-    try:
-        options = _options(words)
-    except SystemExit as stop:
-        return f"exit code {stop.code}: samfem {' '.join(words)}"
-    named = {name for name in getattr(options, "case", ()) if not name.endswith(".toml")}
-    unknown = named - {*all_cases(), PLACEHOLDER}
-    return f"unknown cases {unknown}" if unknown else ""
+def wrong_commands(text: str) -> list[list[str]]:
+    """The command lines that the parser refuses, or that name an unknown case. Nothing runs."""
+    wrong = []
+    for words in commands(text):
+        try:
+            named = getattr(_options(words), "case", ())
+        except SystemExit:
+            wrong.append(words)
+            continue
+        if {name for name in named if not name.endswith(".toml")} - {*all_cases(), PLACEHOLDER}:
+            wrong.append(words)
+    return wrong
 
 
-@cache
-def scene_of_readme() -> str:
-    return blocks(text_of(README), "toml")[0]
-
-
-def with_fragment(scene: dict, fragment: dict) -> dict:
-    """The scene with the tables of a fragment in place of its own; of [body] only the keys that it gives."""
-    merged = scene | fragment
-    merged["body"] = scene["body"] | fragment.get("body", {})
-    if "prescribed" in merged["loading"]:
-        merged.pop("counterbody", None)
-    return merged
-
-
-def fragments() -> list[tuple[str, str, str]]:
-    """(section, earlier fragments of the section, fragment) of every block of TOML outside of the README."""
+def fragments() -> list[tuple[str, list[str]]]:
+    """(section, its first blocks of TOML, up to one that is tested) outside of the README."""
     found = []
-    for page in PAGES[1:]:
-        for section in re.split(r"^## ", text_of(page), flags=re.MULTILINE):
-            before: list[str] = []
-            for block in blocks(section, "toml"):
-                found.append((f"{page.stem}: {section.splitlines()[0]}", tuple(before), block))
-                before.append(block)
+    for page, text in PAGES.items():
+        for section in re.split(r"^## ", text, flags=re.MULTILINE) if page.name != "README.md" else ():
+            inside = blocks(section, "toml")
+            found += [
+                (f"{page.stem}: {section.splitlines()[0]}", inside[:k]) for k in range(1, len(inside) + 1)
+            ]
     return found
 
 
-@pytest.fixture
-def folder(tmp_path) -> Path:
-    """A folder with the scene of the README and the files that the fragments name."""
-    (tmp_path / "sphere.toml").write_text(scene_of_readme(), encoding="utf-8")
-    scenes = ROOT / "verification" / "scenes"
-    shutil.copy(scenes / "curve-b.csv", tmp_path)
-    shutil.copy(scenes / "pin.csv", tmp_path)
-    return tmp_path
-
-
-def accept(fragment: str, before: tuple[str, ...], folder: Path) -> None:
-    """Raises SceneError unless the fragment is a study, a case, or makes a scene with that of the README."""
-    if "rows" in tomllib.loads(fragment):
-        (folder / "hertz-ellipse.toml").write_text(fragment, encoding="utf-8")
+def accept(parts: list[str], folder: Path) -> None:
+    """Raises SceneError unless the last part is a study, a case, or makes a scene with the parts
+    before it and that of the README; of [body] a part changes only the keys that it gives.
+    """
+    (folder / "sphere.toml").write_text(blocks(README, "toml")[0], encoding="utf-8")
+    for name in ("curve-b.csv", "pin.csv"):
+        shutil.copy(ROOT / "verification" / "scenes" / name, folder)
+    kind = tomllib.loads(parts[-1])
+    if "rows" in kind:
+        (folder / "hertz-ellipse.toml").write_text(parts[-1], encoding="utf-8")
         assert read_cases(folder / "hertz-ellipse.toml")[0].rows
-        return
-    if "vary" in tomllib.loads(fragment):
-        (folder / "study.toml").write_text(fragment, encoding="utf-8")
+    elif "vary" in kind:
+        (folder / "study.toml").write_text(parts[-1], encoding="utf-8")
         read_study(folder / "study.toml")
-        return
-    scene = tomllib.loads(scene_of_readme())
-    for part in (*before, fragment):  # no file of an instrument is shipped: heights in CSV take its place
-        scene = with_fragment(scene, tomllib.loads(part.replace("pin.al3d", "pin.csv")))
-    scene_of(scene, "fragment", Inputs(folder))
+    else:
+        scene = tomllib.loads(blocks(README, "toml")[0])
+        for part in parts:  # no file of an instrument is shipped: heights in CSV take its place
+            changes = tomllib.loads(part.replace("pin.al3d", "pin.csv"))
+            scene = scene | changes | {"body": scene["body"] | changes.get("body", {})}
+            if "prescribed" in scene["loading"]:
+                scene.pop("counterbody", None)
+        scene_of(scene, "fragment", Inputs(folder))
 
 
 def test_the_readme_is_one_page():
-    assert len(text_of(README).splitlines()) <= LONGEST_README
+    assert len(README.splitlines()) <= LONGEST_README
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
-def test_every_relative_link_has_its_file(page):
-    assert broken_links(text_of(page), page.parent) == []
-
-
-@pytest.mark.parametrize("link", ["missing.md", "docs/theory.md#no-such-heading", "reports/none.html"])
-def test_a_broken_link_is_seen(link):
-    assert broken_links(f"[page]({link}) and [good](docs/theory.md#conventions)", ROOT) == [link]
-
-
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
-def test_every_command_line_is_accepted_by_the_parser(page):
-    assert [wrong_command(words) for words in commands(text_of(page)) if wrong_command(words)] == []
-
-
-def test_the_commands_are_found():
-    assert {words[0] for page in PAGES for words in commands(text_of(page))} == {
-        "compare", "completion", "examples", "export", "new", "pages", "plan", "publish", "report",
-        "schema", "solve", "store", "sweep", "verify", "view",
-    }  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    "line", ["samfem solve", "samfem solve a.toml --modle sam", "samfem verify no-such-case", "samfem sove a"]
-)
-def test_a_wrong_command_line_is_seen(line):
-    (words,) = commands(f"```sh\n{line}  # a comment\n```\n")
-    assert wrong_command(words)
-
-
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
-def test_every_target_of_make_and_every_module_to_run_is_there(page):
-    text, makefile = text_of(page), text_of(ROOT / "Makefile")
+@every_page
+def test_links_commands_targets_modules_and_paths_are_right(page):
+    text, makefile = PAGES[page], (ROOT / "Makefile").read_text(encoding="utf-8")
+    assert broken_links(text, page.parent) == []
+    assert wrong_commands(text) == []
     targets = set(re.findall(r"(?:^|`)make ([a-z.]+)", text, re.MULTILINE))
     assert {target for target in targets if f"\n{target}:" not in makefile} == set()
     modules = set(re.findall(r"python -m (verification[\w.]*)", text))
     assert {module for module in modules if find_spec(module) is None} == set()
-
-
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
-def test_every_path_that_is_named_exists(page):
-    named = {code for code in CODE.findall(prose(text_of(page))) if PATH_OF_SOURCE.fullmatch(code)}
+    named = {code for code in CODE.findall(prose(text)) if PATH_OF_SOURCE.fullmatch(code)}
     kept = {path for path in named if PLACEHOLDER not in path and not path.startswith("reports/latest")}
     assert {path for path in kept if not any(ROOT.glob(path.rstrip("/")))} == set()
 
 
+def test_every_command_is_documented():
+    assert {words[0] for text in PAGES.values() for words in commands(text)} == set(COMMANDS)
+
+
+def test_a_broken_link_and_a_wrong_command_line_are_seen():
+    for link in ("missing.md", "docs/theory.md#no-such-heading", "reports/none.html"):
+        assert broken_links(f"[page]({link}) and [good](docs/theory.md#conventions)", ROOT) == [link]
+    for line in ("samfem solve", "samfem solve a.toml --modle sam", "samfem verify no-such"):
+        assert wrong_commands(f"```sh\n{line}  # a comment\n```\n")
+
+
 def test_every_symbol_stands_in_the_file_that_the_architecture_names():
-    found = SYMBOLS_IN_FILE.findall(text_of(ROOT / "docs" / "architecture.md"))
+    found = SYMBOLS_IN_FILE.findall(PAGES[ARCHITECTURE])
     places = [(symbol, path) for symbols, path in found for symbol in CODE.findall(symbols)]
     assert len(places) >= 10
-    for symbol, path in places:
-        name = symbol.split(".")[-1]
-        assert re.search(rf"^\s*(def|class) {name}\b", text_of(ROOT / path), re.MULTILINE), (symbol, path)
+    assert [place for place in places if not defines(place[1], place[0].split(".")[-1])] == []
+
+
+def defines(path: str, name: str) -> bool:
+    """Whether a file defines a function or class of that name."""
+    source = (ROOT / path).read_text(encoding="utf-8")
+    return re.search(rf"^\s*(def|class) {name}\b", source, re.MULTILINE) is not None
 
 
 def test_the_architecture_names_every_package():
-    text = text_of(ROOT / "docs" / "architecture.md")
     folders = {path.parent for name in ("samfem", "sam", "fem_reference", "verification") for path in
                (ROOT / name).rglob("__init__.py")}  # fmt: skip
     parts = {folder.relative_to(ROOT).as_posix() for folder in folders}
     parts = {part for part in parts if not part.startswith("verification/cases/")}  # families of cases
-    missing = {part for part in parts if f"`{part.replace('/', '.')}`" not in text}
+    missing = {part for part in parts if f"`{part.replace('/', '.')}`" not in PAGES[ARCHITECTURE]}
     assert missing <= {"sam/scene/surface", "verification", "verification/peers/programs"}
 
 
-def test_the_scene_of_the_readme_is_complete(folder):
-    scene_of(tomllib.loads(scene_of_readme()), "README", Inputs(folder))
+def test_the_reading_path_is_short_and_each_file_defines_what_is_to_be_read_in_it():
+    section = PAGES[ARCHITECTURE].split("### A reading path")[1].split("\n## ")[0]
+    path = dict(re.findall(r"^\| `([^`]+)` \| (.+) \|$", section, re.MULTILINE))
+    assert next(iter(path)) == "sam/solver.py" and list(path)[-1].startswith("sam/kernels/")
+    lines = [len((ROOT / file).read_text(encoding="utf-8").splitlines()) for file in path]
+    assert 1000 < sum(lines) <= LONGEST_PATH
+    for file, words in path.items():
+        parts = [part for name in CODE.findall(words) for part in name.split(".")]
+        assert parts and [part for part in parts if not defines(file, part)] == [], file
 
 
-@pytest.mark.parametrize("where, before, fragment", fragments(), ids=[found[0] for found in fragments()])
-def test_every_fragment_of_a_scene_or_study_is_accepted(folder, where, before, fragment):
-    accept(fragment, before, folder)
+def test_the_scene_of_the_readme_is_complete(tmp_path):
+    accept([blocks(README, "toml")[0]], tmp_path)
+
+
+@pytest.mark.parametrize("where, parts", fragments(), ids=[found[0] for found in fragments()])
+def test_every_fragment_of_a_scene_or_study_is_accepted(tmp_path, where, parts):
+    accept(parts, tmp_path)
 
 
 @pytest.mark.parametrize(
     "fragment",
-    ["[friction]\ncoeficient = 0.2\n", '[loading]\nforce = "-1 N"\n', "[solver]\nextrapolate = 1\n",
+    ["[friction]\ncoeficient = 0.2\n",
      'scene = "sphere.toml"\nmodel = "sam"\nmode = "grid"\n[vary]\n"loading.forse" = { list = ["1 N"] }\n'],
 )  # fmt: skip
-def test_a_wrong_fragment_is_seen(folder, fragment):
+def test_a_wrong_fragment_is_seen(tmp_path, fragment):
     with pytest.raises(SceneError):
-        accept(fragment, (), folder)
+        accept([fragment], tmp_path)
 
 
 def test_every_public_function_of_the_python_page_is_public():
-    rows = re.findall(
-        r"^\| `([\w.]+)` \|[^|]*\| (.+) \|$", text_of(ROOT / "docs/guide/python.md"), re.MULTILINE
-    )
+    rows = re.findall(r"^\| `([\w.]+)` \|[^|]*\| (.+) \|$", PAGES[GUIDE / "python.md"], re.MULTILINE)
     assert {package for package, _ in rows} == {"sam", "fem_reference", "fem_reference.spatial"}
     for package, names in rows:
         assert set(CODE.findall(names)) <= set(import_module(package).__all__), package
 
 
-@cache
-def published() -> dict:
-    return json.loads(text_of(ROOT / "reports" / "results.json"))
+@pytest.fixture(scope="module")
+def store(tmp_path_factory):
+    """One store: the stories begin with the same scene."""
+    return tmp_path_factory.mktemp("store")
 
 
-def wrong_numbers(text: str) -> list[str]:
-    """Gates whose printed number is not that of the published page to half a unit of its last digit, or which
-    do not stand on that page.
-    """
-    wrong = []
-    for number, unit, gate, page in NUMBER_OF_GATE.findall(text):
-        verdict = next(v for v in published()["gates"] if v["id"] == gate)
-        value = verdict["error"] * (100 if unit == "%" else 1)
-        half = 0.5 * 10.0 ** -len(number.partition(".")[2])
-        right = verdict["status"] == "passed" and abs(float(number) - value) <= half * (1 + 1e-9)
-        if not right or f'id="{gate}"' not in text_of(ROOT / page):
-            wrong.append(gate)
-    return wrong
-
-
-def not_named_red(text: str) -> set[str]:
-    """Gates that failed and that the text does not name, or names although they hold."""
-    states = {gate["id"]: gate["status"] for gate in published()["gates"]}
-    red = {name for name, status in states.items() if status in ("failed", "unchecked")}
-    numbers = {gate for *_, gate, _ in NUMBER_OF_GATE.findall(text)}
-    return red ^ ({name for name in CODE.findall(text) if name in states} - numbers)
-
-
-def test_the_numbers_are_those_of_the_published_pages():
-    assert len(NUMBER_OF_GATE.findall(text_of(README))) == 5 and wrong_numbers(text_of(README)) == []
-
-
-def test_the_readme_names_every_gate_that_failed():
-    text = text_of(README)
-    failed = published()["summary"]["failed"] + published()["summary"]["unchecked"]
-    assert not_named_red(text) == set()
-    count = NUMBERS[failed] if failed < len(NUMBERS) else failed
-    assert not failed or f"{count} gate{'s' if failed > 1 else ''} fail" in text
-
-
-def test_another_number_is_seen():
-    text = text_of(README)
-    rows = re.findall(r"\| ([0-9.]+)( (?:%|times)) \| `([^`]+)`", text)
-    assert len(rows) == 5
-    for number, unit, gate in rows:
-        other = text.replace(f"| {number}{unit} | `{gate}`", f"| {1.1 * float(number):.4g}{unit} | `{gate}`")
-        assert wrong_numbers(other) == [gate]
-
-
-def test_a_red_gate_that_is_not_named_is_seen():
-    assert not_named_red(text_of(README) + " `pavement.fox`") == {"pavement.fox"}
-    red = [gate["id"] for gate in published()["gates"] if gate["status"] == "failed"]
-    assert not_named_red("") == set(red)
+@pytest.mark.parametrize("name", STORIES)
+def test_a_story_runs_as_it_stands(tmp_path, store, name):
+    (programs := tmp_path / "bin").mkdir()
+    for program, words in (("samfem", " -m samfem.cli"), ("python", "")):
+        (programs / program).write_text(f'#!/bin/sh\nexec "{sys.executable}"{words} "$@"\n')
+        (programs / program).chmod(0o755)
+    (folder := tmp_path / "empty").mkdir()
+    path = os.pathsep.join([str(programs), os.environ["PATH"]])
+    script = "\n".join(["set -euo pipefail", *blocks(PAGES[GUIDE / f"{name}.md"], "sh")])
+    ended = subprocess.run(
+        ["bash", "-c", script],
+        cwd=folder,
+        env={**os.environ, "PATH": path, "PYTHONPATH": str(ROOT), "SAMFEM_STORE": str(store)},
+        capture_output=True,
+        text=True,
+        timeout=LONGEST_S,
+    )
+    assert ended.returncode == 0, ended.stdout[-2000:] + ended.stderr[-2000:]
+    assert [file for file in STORIES[name] if not (folder / file).exists()] == []

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Every hardening law, shape and reference solution is known wherever one of each is asked for: what is
-forgotten of a new one is named here.
+"""Every hardening law, shape and reference solution is known wherever one of each is asked for:
+what is forgotten of a new one is named here.
 """
 
 import math
 import pkgutil
 import re
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -41,96 +40,43 @@ def hardened(law: str, folder: Path):
 
 
 @pytest.mark.parametrize("law", LAWS)
-class TestEveryLaw:
-    def test_is_written_once_more_by_the_checks(self, law, tmp_path):
-        found = hardened(law, tmp_path)
-        peeq, z = np.meshgrid([0.0, 5e-4, 3e-3, 0.03], [0.0, 4e-7, 2e-6])
-        expected = found.body.plasticity.depth_profile()(z) * found.body.plasticity.curve().stress(peeq)
-        # fewer than ten roundings, of terms no larger than three times the result
-        assert yield_stress(found, peeq, z) == pytest.approx(expected, rel=1e-14, abs=0.0)
-
-    def test_has_the_slope_of_its_stress_and_does_not_soften(self, law, tmp_path):
-        """Five-point differences with a step of 1/1000 of the strain: 1e-12 + rounding 1e-13/1e-3."""
-        curve, peeq = (
-            hardened(law, tmp_path).body.plasticity.curve(),
-            np.array([[2e-6, 3e-4], [0.004, 0.022]]),
-        )
-        step = 1e-3 * peeq
-        f = [curve.stress(peeq + k * step) for k in (-2, -1, 1, 2)]
-        difference = (f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step)
-        np.testing.assert_allclose(curve.slope(peeq), difference, rtol=1e-8, atol=1e-8 * 1e9)
-        assert (curve.slope(peeq) >= 0.0).all()
-
-    def test_is_in_the_guide(self, law):
-        assert f'`"{law}"`' in GUIDE and f'"{law}"' in README
+def test_every_law_is_written_once_more_by_the_checks_and_in_the_guide(law, tmp_path):
+    found = hardened(law, tmp_path)
+    peeq, z = np.meshgrid([0.0, 5e-4, 3e-3, 0.03], [0.0, 4e-7, 2e-6])
+    expected = found.body.plasticity.depth_profile()(z) * found.body.plasticity.curve().stress(peeq)
+    # fewer than ten roundings, of terms no larger than three times the result
+    assert yield_stress(found, peeq, z) == pytest.approx(expected, rel=1e-14, abs=0.0)
+    assert f'`"{law}"`' in GUIDE and f'"{law}"' in README
 
 
 @pytest.mark.parametrize("shape", SHAPES_OF_SCENES)
-class TestEveryShape:
-    def test_has_the_same_gap_in_the_checks(self, shape):
-        smooth = scene()
-        other = type(smooth.counterbody)(**SHAPES[shape])
-        grid = CellGrid(64, 64, 0.4e-6, 0.4e-6, np.zeros(1))
-        x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
-        gap = bodies.SHAPES[shape].gap(other).gap(grid)
-        found = GAPS[shape](other, x, y)
-        # the cells of a punch have its area as closely as whole rings allow: of its edge two cells are free
-        edge = np.abs(np.hypot(x, y) - (other.radius if shape == "punch" else math.inf)) < 0.8e-6
-        np.testing.assert_allclose(found[~edge], gap[~edge], rtol=1e-14)
-
-    def test_is_in_the_guide(self, shape):
-        assert f'`"{shape}"`' in GUIDE and f'"{shape}"' in README
+def test_every_shape_has_the_same_gap_in_the_checks_and_is_in_the_guide(shape):
+    other = type(scene().counterbody)(**SHAPES[shape])
+    grid = CellGrid(64, 64, 0.4e-6, 0.4e-6, np.zeros(1))
+    x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
+    # the cells of a punch have its area as closely as whole rings allow: of its edge two cells are free
+    edge = np.abs(np.hypot(x, y) - (other.radius if shape == "punch" else math.inf)) < 0.8e-6
+    gap = bodies.SHAPES[shape].gap(other).gap(grid)
+    np.testing.assert_allclose(GAPS[shape](other, x, y)[~edge], gap[~edge], rtol=1e-14)
+    assert f'`"{shape}"`' in GUIDE and f'"{shape}"' in README
 
 
-@dataclass(frozen=True)
-class Cone:
-    """A shape that no scene file knows, without radii of curvature."""
+def test_one_row_of_the_table_is_enough_for_a_shape_without_radii_which_needs_a_force(monkeypatch):
+    monkeypatch.setitem(
+        bodies.SHAPES, "cone", Opposite(lambda _: None, lambda found, _: (2e-6 * bool(found.force),) * 2)
+    )
 
-    slope: float
+    def cone(**tables):
+        found = scene(**tables)
+        shape = found.counterbody.model_copy(update={"shape": "cone", "radius": None})
+        return found.model_copy(update={"counterbody": shape})
 
-    def gap(self, grid, at=(0.0, 0.0)):
-        return self.slope * np.hypot(grid.x[:, None] - at[0], grid.y[None, :] - at[1])
-
-
-class TestAShapeWithoutRadii:
-    """One row of the table is enough for elastic, coated and yielding bodies; without force it is refused."""
-
-    SLOPE = 0.02
-
-    @pytest.fixture
-    def pressed(self, monkeypatch):
-        def semi_axes(found, _):
-            """Sneddon (1965): the mean pressure is E*/2 times the slope."""
-            modulus = found.pair.contact_modulus
-            return (math.sqrt(2 * found.force / (math.pi * modulus * self.SLOPE)),) * 2
-
-        monkeypatch.setitem(bodies.SHAPES, "cone", Opposite(lambda _: Cone(self.SLOPE), semi_axes))
-
-        def make(**tables):
-            found = scene(**tables)
-            cone = found.counterbody.model_copy(update={"shape": "cone", "radius": None})
-            return found.model_copy(update={"counterbody": cone})
-
-        return make
-
-    def test_is_solved(self, pressed):
-        cone = pressed(grid={"cells": (65, 65)})
-        approach = sam.solve(cone).quantities["approach_m"]
-        # Sneddon's pi/2 a times the slope; the pressure is infinite at the apex, in the middle of a cell
-        exact = math.pi / 2 * bodies.hertz_semi_axes(cone)[0] * self.SLOPE
-        assert approach == pytest.approx(exact, rel=0.01)
-
-    def test_has_a_plan_on_a_coated_and_on_a_yielding_body(self, pressed):
-        a = bodies.hertz_semi_axes(pressed())[0]
-        coated = sam.plan(pressed(body={"coating": FILM})).grid
-        assert 0.3 * a < coated.nx * coated.hx / 4 < 3 * a
-        yielding = pressed(body={"plasticity": {"law": "perfect", "yield_stress": 1e9}})
-        assert plastic_boxes(yielding, sam.plan(yielding).grid)
-        assert advice_of(yielding, ["sam"])["kind"] is None
-
-    def test_is_refused_without_force_by_name(self, pressed):
-        with pytest.raises(UnsupportedScene, match=r'loading\.force = 0.*"cone".*above 0'):
-            check(pressed(loading={"force": 0.0}))
+    coated = sam.plan(cone(body={"coating": FILM})).grid
+    assert 0.6e-6 < coated.nx * coated.hx / 4 < 6e-6
+    yielding = cone(body={"plasticity": {"law": "perfect", "yield_stress": 1e9}})
+    assert plastic_boxes(yielding, sam.plan(yielding).grid) and advice_of(yielding, ["sam"])["kind"] is None
+    with pytest.raises(UnsupportedScene, match=r'loading\.force = 0.*"cone".*above 0'):
+        check(cone(loading={"force": 0.0}))
 
 
 def test_every_reference_solution_is_asked_for_by_a_test():

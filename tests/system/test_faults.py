@@ -14,6 +14,7 @@ import pytest
 
 from samfem import cli
 from verification.cases.robustness import faults as case
+from verification.robustness import kills
 from verification.robustness.kills import (
     Ended,
     KillTrial,
@@ -21,13 +22,11 @@ from verification.robustness.kills import (
     compare,
     fault_of,
     finish,
-    finished_points,
     inspect,
     killed_solve,
     killed_sweep,
     left_behind,
     start,
-    tables,
 )
 from verification.runs import files, lock
 from verification.runs.files import FolderError, write_atomically
@@ -75,11 +74,15 @@ def test_the_lock_of_a_killed_process_is_free_and_leaves_no_file(tmp_path, holde
         assert list((tmp_path / "run").iterdir()) == []
 
 
-def test_two_blocks_of_one_process_exclude_each_other(tmp_path):
-    with locked(tmp_path):
+def test_two_blocks_of_one_process_exclude_each_other_until_one_ends_or_fails(tmp_path):
+    with pytest.raises(ZeroDivisionError), locked(tmp_path):
         with pytest.raises(FolderError), locked(tmp_path):
             pass
+        raise ZeroDivisionError
     with locked(tmp_path):
+        pass
+    (tmp_path / "file").touch()
+    with pytest.raises(FolderError, match="cannot be used"), locked(tmp_path / "file" / "run"):
         pass
 
 
@@ -89,24 +92,10 @@ def test_a_locked_folder_is_made_and_goes_again_if_it_stays_empty(tmp_path):
     assert list(tmp_path.iterdir()) == []
     with locked(tmp_path / "a" / "b"):
         (tmp_path / "a" / "b" / "file").touch()
-    assert (tmp_path / "a" / "b" / "file").exists()
     (tmp_path / "empty").mkdir()
     with locked(tmp_path / "empty"):
         pass
-    assert (tmp_path / "empty").is_dir()
-
-
-def test_an_error_in_the_block_comes_out_and_releases_the_lock(tmp_path):
-    with pytest.raises(ZeroDivisionError), locked(tmp_path):
-        raise ZeroDivisionError
-    with locked(tmp_path):
-        pass
-
-
-def test_a_folder_that_cannot_be_made_is_a_folder_error(tmp_path):
-    (tmp_path / "file").touch()
-    with pytest.raises(FolderError, match="cannot be used"), locked(tmp_path / "file" / "run"):
-        pass
+    assert (tmp_path / "a" / "b" / "file").exists() and (tmp_path / "empty").is_dir()
 
 
 def test_without_locks_of_the_system_there_is_none(tmp_path, monkeypatch):
@@ -141,23 +130,19 @@ def test_a_file_that_is_cut_is_found(tmp_path, name, good, bad):
     assert set(trial.findings) == {"broken-files"}
 
 
-def test_an_early_summary_and_left_over_files_are_found(tmp_path):
+def test_early_summaries_left_over_files_and_changed_tables_are_found(tmp_path):
     (tmp_path / "summary.json").write_text("{}")
     (tmp_path / ".history.csv.1.part").write_text("cut")
+    (tmp_path / "a.csv").write_bytes(b"x\n1\n")
     killed, finished = KillTrial(), KillTrial()
     inspect(tmp_path, killed)
     inspect(tmp_path, finished, unfinished=False)
     assert set(killed.findings) == {"early-summaries"}
     assert set(finished.findings) == {"early-summaries", "broken-files"}
-
-
-def test_a_changed_or_missing_table_is_found(tmp_path):
-    (tmp_path / "a.csv").write_bytes(b"x\n1\n")
     for expected, names in (({"a.csv": b"x\n1\n"}, 0), ({"a.csv": b"x\n2\n"}, 1), ({"b.csv": b"x\n1\n"}, 2)):
         trial = KillTrial()
         compare(tmp_path, expected, trial)
         assert len(trial.findings.get("changed-tables", ())) == names
-    assert tables(tmp_path) == {"a.csv": b"x\n1\n"}
 
 
 def test_every_finding_turns_its_gate_red():
@@ -177,30 +162,23 @@ def test_kills_cover_the_whole_run():
 
 FAKE = """import pathlib, sys, time
 folder = pathlib.Path(sys.argv[sys.argv.index("--out") + 1]); folder.mkdir(parents=True, exist_ok=True)
+def write(name, text): (folder / name).write_text(text)
 """
 
 
 def fake(monkeypatch, body: str) -> None:
     """A command in place of samfem."""
-    command = (sys.executable, "-c", FAKE + body)
-    real = start
-    monkeypatch.setattr(
-        "verification.robustness.kills.start",
-        lambda words, store, **how: real(words, store, **how | {"command": command}),
-    )
+    monkeypatch.setattr(kills, "SAMFEM", (sys.executable, "-c", FAKE + body))
 
 
 @pytest.mark.parametrize(
     ("body", "gates"),
     [
-        ("(folder / 'a.csv').write_text('x\\n1\\n')", set()),
-        ("(folder / 'a.csv').write_text('x\\n2\\n')", {"changed-tables"}),
-        ("(folder / 'a.csv').write_text('x,y\\n1')", {"broken-files", "changed-tables"}),
-        ("(folder / 'a.csv').write_text('x\\n1\\n'); sys.exit(1)", {"wrong-endings"}),
-        (
-            "(folder / 'a.csv').write_text('x\\n1\\n'); (folder / 'summary.json').write_text('{}')",
-            {"early-summaries"},
-        ),
+        ("write('a.csv', 'x\\n1\\n')", set()),
+        ("write('a.csv', 'x\\n2\\n')", {"changed-tables"}),
+        ("write('a.csv', 'x,y\\n1')", {"broken-files", "changed-tables"}),
+        ("write('a.csv', 'x\\n1\\n'); sys.exit(1)", {"wrong-endings"}),
+        ("write('a.csv', 'x\\n1\\n'); write('summary.json', '{}')", {"early-summaries"}),
     ],
 )
 def test_a_solve_that_leaves_something_wrong_is_found(tmp_path, monkeypatch, body, gates):
@@ -210,25 +188,13 @@ def test_a_solve_that_leaves_something_wrong_is_found(tmp_path, monkeypatch, bod
 
 
 def test_a_sweep_that_solves_finished_points_again_is_found(tmp_path, monkeypatch):
-    table = "index,status\n0,converged\n1,converged\n"
-    fake(
-        monkeypatch,
-        f"""
-if "again" in [path.name for path in folder.iterdir()]:
-    (folder / "sweep.json").write_text('{{"counts": {{"reused": 0}}}}'); sys.exit(0)
-(folder / "sweep.csv").write_text({table!r}); (folder / "again").touch(); time.sleep(30)
-""",
-    )
-    trial = killed_sweep(
-        ["sweep"], tmp_path / "s", table.encode(), 1.0, whom="parent", rng=random.Random(1), base=tmp_path
-    )
+    table = "index,status\n0,converged\n1,converged\n2,refused\n"
+    counts = """write('sweep.json', '{"counts": {"reused": 0}}')"""
+    again = f"(folder / 'again').exists() and ({counts}, sys.exit(0))\n"
+    fake(monkeypatch, f"{again}write('sweep.csv', {table!r}); write('again', ''); time.sleep(30)")
+    how = {"whom": "parent", "rng": random.Random(1), "base": tmp_path}
+    trial = killed_sweep(["sweep"], tmp_path / "s", table.encode(), 1.0, **how)
     assert set(trial.findings) == {"lost-points"} and len(trial.findings["lost-points"]) == 2
-
-
-def test_finished_points_are_the_converged_rows(tmp_path):
-    assert finished_points(tmp_path) == 0
-    (tmp_path / "sweep.csv").write_text("index,status\n0,converged\n1,refused\n2,not-converged\n")
-    assert finished_points(tmp_path) == 1
 
 
 @needs_proc
@@ -251,22 +217,22 @@ def test_a_command_that_does_not_end_is_ended(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("ended", "gates"),
+    ("code", "text", "gates"),
     [
-        (Ended(2, "samfem: error: use another", 0.0), set()),
-        (Ended(1, "samfem: error: use another", 0.0), {"wrong-endings"}),
-        (Ended(2, "samfem: error: no", 0.0), {"wrong-endings"}),
-        (Ended(2, "Traceback (most recent call last)\nsamfem: error: another", 0.0), {"wrong-endings"}),
+        (2, "samfem: error: use another", set()),
+        (1, "samfem: error: use another", {"wrong-endings"}),
+        (2, "samfem: error: no", {"wrong-endings"}),
+        (2, "Traceback (most recent call last)\nsamfem: error: another", {"wrong-endings"}),
     ],
 )
-def test_a_fault_that_ends_wrongly_is_found(tmp_path, ended, gates):
-    fault = case.Fault("x", lambda base, seconds: (ended, base), (2,), "another")
-    assert set(case.judge_fault(fault, tmp_path / "f", 1.0)[1].findings) == gates
+def test_a_fault_that_ends_wrongly_is_found(tmp_path, code, text, gates):
+    fault = case.Fault("x", lambda base: (Ended(code, text, 0.0), base), (2,), "another")
+    assert set(case.judge_fault(fault, tmp_path / "f")[1].findings) == gates
 
 
 def test_a_folder_of_another_version_is_refused_and_stays(tmp_path):
     fault = next(fault for fault in case.FAULTS if fault.make is case.other_version)
-    (_, code, message), trial = case.judge_fault(fault, tmp_path / "f", 1.0)
+    (_, code, message), trial = case.judge_fault(fault, tmp_path / "f")
     assert trial.findings == {} and code == "2" and "another version" in message
 
 

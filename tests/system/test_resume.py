@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A solve that was stopped and continued gives the same bytes; a checkpoint of anything else is refused by
-name.
+"""A solve that was stopped and continued gives the same bytes; a checkpoint of anything else is
+refused by name.
 """
 
 import json
@@ -98,6 +98,7 @@ CASES = {
     "SAM, longer iteration": (SAM, sphere(PERFECT, force=0.0167, steps=2), longer),
     "SAM, growing box": (SAM, sphere(), small_first_box),
     "SAM, unloading in steps": (SAM, PUNCH, None),
+    "SAM, given approach": (SAM, sphere(force=None, approach=0.1e-6), None),
     "SAM, renewed counter-surface": (SAM, running_in(cycles=3, steps=2, counterbody={"surface": DISC}), None),
     "SAM, parts of a map on a sphere": (SAM, running_in(steps=1, counterbody=MAP_ON_SPHERE), None),
     "SAM, judged, growing box": (SAM, judged(), small_first_box),
@@ -108,54 +109,31 @@ CASES = {
     "FEM, three dimensions, back-stresses": (FEM_3D, RUBBED, None),
     "FEM, cut steps": (FEM, sphere(PERFECT, force=0.0685, steps=2), None),
     "FEM, unloading in steps": (FEM, PUNCH, None),
+    "FEM, given approach": (FEM, sphere(force=None, approach=0.1e-6), None),
 }
 
 
-def every_checkpoint(scene: Scene, model: str) -> list[Checkpoint]:
-    """The checkpoints of an undisturbed solve."""
-    made: list[Checkpoint] = []
-    models.solve(scene, model, checkpoint=made.append)
-    return made
-
-
-def stopped(scene: Scene, model: str, count: int) -> Checkpoint:
-    """The last checkpoint of a solve that is stopped when it has made `count`."""
-    made = []
+def made_by(scene: Scene, model: str, folder: Path | None = None, *, start=None, stop: int = 0):
+    """The result of a solve from `start` on, None where it is stopped after so many checkpoints,
+    and these, or the files in a folder that each is written to before the solve goes on.
+    """
+    made: list = []
 
     def keep(checkpoint):
-        made.append(checkpoint)
-        if len(made) == count:
+        made.append(checkpoint if folder is None else folder / f"{len(made)}.npz")
+        if folder is not None:
+            write_archive(made[-1], checkpoint.arrays, dict(checkpoint.values))
+        if len(made) == stop:
             raise StoppedError
 
-    with pytest.raises(StoppedError):
-        models.solve(scene, model, checkpoint=keep)
-    return made[-1]
+    try:
+        return models.solve(scene, model, start=start, checkpoint=keep), made
+    except StoppedError:
+        return None, made
 
 
-def written(scene: Scene, model: str, folder: Path) -> tuple[object, list[Path]]:
-    """The result of an undisturbed solve, and files with its checkpoints, each written before the solve goes
-    on.
-    """
-    paths: list[Path] = []
-
-    def keep(checkpoint):
-        paths.append(folder / f"{len(paths)}.npz")
-        write_archive(paths[-1], checkpoint.arrays, dict(checkpoint.values))
-
-    return models.solve(scene, model, checkpoint=keep), paths
-
-
-def next_of(scene: Scene, model: str, start: Path, folder: Path) -> Path:
-    """The file of the next checkpoint of a solve that is continued from a file, and stopped then."""
-    path = folder / "next.npz"
-
-    def keep(checkpoint):
-        write_archive(path, checkpoint.arrays, dict(checkpoint.values))
-        raise StoppedError
-
-    with pytest.raises(StoppedError):
-        models.solve(scene, model, start=Checkpoint(model, *read_archive(start)), checkpoint=keep)
-    return path
+def read(path: Path, model: str) -> Checkpoint:
+    return Checkpoint(model, *read_archive(path))
 
 
 def state_of(path: Path) -> tuple[dict[str, tuple], str]:
@@ -177,60 +155,59 @@ def contents(result, scene: Scene, folder: Path) -> dict[str, bytes]:
 
 @pytest.mark.parametrize("name", CASES)
 def test_a_solve_continued_from_any_checkpoint_gives_the_same_bytes(name, tmp_path, monkeypatch):
-    """From the file of each of its checkpoints in turn: the next checkpoint, bit by bit, is the undisturbed
-    run's.
+    """From the file of each of its checkpoints in turn: the next checkpoint, bit by bit, is the
+    undisturbed run's.
 
-    By induction every continued solve ends like it. From the first, a middle and the last one, the end itself
-    is compared: every file of the run.
+    By induction every continued solve ends like it. From the first, a middle and the last one, the
+    end itself is compared: every file of the run.
     """
     model, scene, change = CASES[name]
     if change is not None:
         change(monkeypatch)
-    result, made = written(scene, model, tmp_path)
+    for folder in (kept := tmp_path / "kept", further := tmp_path / "further"):
+        folder.mkdir()
+    result, made = made_by(scene, model, kept)
     expected = contents(result, scene, tmp_path / "whole")
     assert {"history.csv", "axis.csv", "line.csv", "plane.csv", "fields.vtu"} <= set(expected)
     assert ("cycles.csv" in expected) == (scene.loading.cycles > 1)
     assert (result.verdict is not None) == ("judged" in name) and result.quantities["peeq_max"] > 0
     assert len(made) >= len(result.tables["history"]["step"])
+    is_what_its_name_says(name, result, made)
     for path, following in pairwise(made):
-        assert state_of(next_of(scene, model, path, tmp_path)) == state_of(following), f"after {path.name}"
+        _, (found,) = made_by(scene, model, further, start=read(path, model), stop=1)
+        assert state_of(found) == state_of(following), f"after {path.name}"
     for path in (made[0], made[len(made) // 2], made[-1]):
-        again = models.solve(scene, model, start=Checkpoint(model, *read_archive(path)))
+        again = models.solve(scene, model, start=read(path, model))
         assert contents(again, scene, tmp_path / "parts") == expected, f"from {path.name} of {len(made)}"
+
+
+def is_what_its_name_says(name: str, result, made: list[Path]) -> None:
+    """Cuts are pending in a checkpoint; a box grows between steps; unloading takes more than one step."""
+    if name == "SAM, cut steps":
+        assert any(read_archive(path)[1]["tree"]["cuts"] for path in made)
+    if name == "SAM, growing box":
+        assert len({read_archive(path)[1]["tree"]["extent"]["layers"] for path in made}) > 1
+    if name == "FEM, cut steps":
+        assert result.cost["step_cuts"] > 0
+    if "unloading in steps" in name:
+        history = result.tables["history"]
+        assert history["step"] == [1, 2, 3, 4, 5] and history["note"][-1] == ""
 
 
 @pytest.mark.parametrize("model", [SAM, FEM])
 def test_a_solve_that_breaks_off_leaves_checkpoints_as_good(model, tmp_path):
-    """The callback raises: what it was given before does not change, and no caller's array is written to
-    later.
+    """The callback raises: what it was given before does not change, and no caller's array is
+    written to later. Its arrays are numbers in C order: a file gives them back in it, and sums go
+    along the memory.
     """
     scene = sphere()
     expected = contents(models.solve(scene, model), scene, tmp_path / "whole")
     for count in (1, 3):
-        start = stopped(scene, model, count)
-        for array in start.arrays.values():
+        start = made_by(scene, model, stop=count)[1][-1]
+        for name, array in start.arrays.items():
+            assert array.flags.c_contiguous and array.dtype.kind in "fb", name
             array.flags.writeable = False
         assert contents(models.solve(scene, model, start=start), scene, tmp_path / "parts") == expected
-
-
-def test_the_cases_are_what_their_names_say(monkeypatch):
-    """Cuts are pending in a checkpoint; a box grows between steps; unloading takes more than one step."""
-    trees = {}
-    for name in ("SAM, cut steps", "SAM, growing box"):
-        model, scene, change = CASES[name]
-        with monkeypatch.context() as patch:
-            change(patch)
-            trees[name] = [one.values["tree"] for one in every_checkpoint(scene, model)]
-    assert any(tree["cuts"] for tree in trees["SAM, cut steps"])
-    assert len({tree["extent"]["layers"] for tree in trees["SAM, growing box"]}) > 1
-    assert models.solve(CASES["FEM, cut steps"][1], FEM).cost["step_cuts"] > 0
-
-
-@pytest.mark.parametrize("name", ["SAM, unloading in steps", "FEM, unloading in steps"])
-def test_the_punch_is_unloaded_in_more_than_one_step(name):
-    model, scene, _ = CASES[name]
-    history = models.solve(scene, model).tables["history"]
-    assert history["step"] == [1, 2, 3, 4, 5] and history["note"][-1] == ""
 
 
 @pytest.mark.parametrize(
@@ -240,7 +217,7 @@ def test_a_perturbed_checkpoint_gives_other_bytes(model, changed, tmp_path):
     """The comparison can fail: one part in 1e12 of the plastic strain, or one counter, shows."""
     scene = sphere()
     expected = contents(models.solve(scene, model), scene, tmp_path / "whole")
-    start = stopped(scene, model, 2)
+    start = made_by(scene, model, stop=2)[1][-1]
     tree = json.loads(json.dumps(start.values["tree"]))
     if model == SAM:
         tree["counters"]["ffts"] += 1
@@ -254,25 +231,16 @@ def test_a_perturbed_checkpoint_gives_other_bytes(model, changed, tmp_path):
         assert found[file] != expected[file]
 
 
-@pytest.mark.parametrize("model", [SAM, FEM])
-def test_arrays_of_a_checkpoint_are_in_the_order_that_a_file_keeps(model):
-    """Numbers in C order: a file gives them back in it, and sums go along the memory."""
-    for made in every_checkpoint(sphere(cycles=2), model):
-        assert made.arrays
-        for name, array in made.arrays.items():
-            assert array.flags.c_contiguous and array.dtype.kind in "fb", name
-
-
 def test_equal_arrays_are_stored_once():
     """Residual stress of the state and of the last step are one object, before and after."""
-    made = every_checkpoint(sphere(), SAM)[1]
+    made = made_by(sphere(), SAM, stop=2)[1][-1]
     assert "state.residual.stress" in made.arrays and "last.residual.stress" not in made.arrays
     tree = made.tree()
     assert tree["last"]["residual"]["stress"] is tree["state"]["residual"]["stress"]
 
 
 def test_times_add_up_over_the_parts():
-    start = stopped(sphere(), SAM, 2)
+    start = made_by(sphere(), SAM, stop=2)[1][-1]
     assert start.cost["cpu_s"] > 0 and start.cost["solve_s"] > 0
     long = {"setup_s": 10.0, "solve_s": 20.0, "cpu_s": 30.0, "peak_memory_bytes": 10**15}
     cost = models.solve(sphere(), SAM, start=start.with_cost(long)).cost
@@ -282,6 +250,6 @@ def test_times_add_up_over_the_parts():
 
 @pytest.mark.parametrize("model, other", [(SAM, FEM), (FEM, SAM)])
 def test_a_checkpoint_of_another_model_is_refused_in_python(model, other):
-    start = stopped(sphere(steps=2), other, 1)
+    start = made_by(sphere(steps=2), other, stop=1)[1][-1]
     with pytest.raises(ValueError, match=f"model {other}, needed is one of {model}"):
         models.solve(sphere(steps=2), model, start=start)

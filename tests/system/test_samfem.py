@@ -74,11 +74,7 @@ def test_a_run_in_memory_is_the_run_that_is_written_and_read(tmp_path, model):
 def test_a_run_is_shown_short_and_as_html(run):
     assert repr(run).startswith("<samfem.Run sam, converged: p_max 8.47 GPa") and len(repr(run)) < 120
     page = run._repr_html_()
-    assert page.count("<details") == page.count("</details>") == 3
-    assert "8.46" in page and "history" in page and "<script" not in page
-
-
-def test_titles_are_escaped_in_html():
+    assert page.count("<details") == page.count("</details>") == 3 and "8.46" in page and "history" in page
     titled = samfem.Scene(title="<script>", body=STEEL, counterbody=BALL, loading={"force": 0.1})
     assert "<script" not in samfem.solve(titled)._repr_html_()
 
@@ -91,18 +87,14 @@ def test_figures_are_named_and_an_unknown_one_is_refused(run, comparison):
         samfem.plot(run, "colour")
 
 
-def test_a_comparison_passes_and_fails_with_its_rows(comparison):
+def test_a_comparison_passes_and_fails_with_its_rows_and_is_read_back(folder, comparison):
     assert comparison.passed and comparison.check() is None
     assert (comparison.frame["difference"] <= comparison.frame["tolerance"]).all()
     assert "of its tolerance" in repr(comparison) and "<table" in comparison._repr_html_()
     strict = samfem.compare(parsed(), tolerances={"p_max_Pa": 1e-9})
     with pytest.raises(AssertionError, match="p_max_Pa"):
         strict.check()
-
-
-def test_a_comparison_is_read_back(tmp_path, comparison, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "sphere.toml").write_text(scene_text())
+    (folder / "sphere.toml").write_text(scene_text())
     assert main(["compare", "sphere.toml", "--out", "both"]) == 0
     read = samfem.read("both")
     columns = ["quantity", "sam", "fem", "tolerance", "passed"]

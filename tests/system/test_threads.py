@@ -18,8 +18,8 @@ COUNTERS = ("contact_iterations", "plastic_iterations", "newton_iterations", "st
 
 
 def twice(of, model=SAM):
-    """Both results, which end alike, and the relative difference that is allowed: of rounding, or of the
-    tolerance where an iteration more or less was taken.
+    """Both results, which end alike, and the relative difference that is allowed: of rounding, or
+    of the tolerance where an iteration more or less was taken.
     """
     one, two = (solve_alone(of, model, threads) for threads in (1, 2))
     assert one.status is two.status and one.status in (Status.CONVERGED, Status.UNDER_RESOLVED)
@@ -50,8 +50,8 @@ def test_every_number_of_a_load_step_is_that_of_one_thread(model, mu):
 
 @two_cores
 def test_the_same_cells_are_worn_and_lose_their_film():
-    """Where iteration counts differ a load step differs by its tolerance: cycles at random add up to five
-    times that.
+    """Where iteration counts differ a load step differs by its tolerance: cycles at random add up
+    to five times that.
     """
     one, two, _ = twice(running_in(cycles=3))
     first, second = (

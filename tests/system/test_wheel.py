@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What is in the wheel: all that runs, nothing that only tests and maintainers need, and no package of an
-extra at import.
+"""What is in the wheel: all that runs, nothing that only tests and maintainers need, and no package
+of an extra at import.
 """
 
 import ast
@@ -38,34 +38,18 @@ def in_wheel() -> set[str]:
     """Paths of the files that setuptools takes, by the rules of pyproject.toml."""
     tools = PROJECT["tool"]["setuptools"]
     patterns = ["*.py", *tools["package-data"]["*"]]
-    folders = [
-        ROOT / name.replace(".", "/") for name in find_namespace_packages(ROOT, **tools["packages"]["find"])
-    ]
-    files = [path for folder in folders for path in folder.iterdir() if path.is_file()]
-    return {
-        path.relative_to(ROOT).as_posix()
-        for path in files
-        if any(fnmatch.fnmatch(path.name, pattern) for pattern in patterns)
-    }
-
-
-def in_source() -> set[str]:
-    """Every file of the packages."""
-    files = [path for name in OWN for path in (ROOT / name).rglob("*") if path.is_file()]
-    return {path.relative_to(ROOT).as_posix() for path in files if "__pycache__" not in path.parts}
+    packages = find_namespace_packages(ROOT, **tools["packages"]["find"])
+    files = [path for name in packages for path in (ROOT / name.replace(".", "/")).iterdir()]
+    wanted = [path for path in files if any(fnmatch.fnmatch(path.name, each) for each in patterns)]
+    return {path.relative_to(ROOT).as_posix() for path in wanted if path.is_file()}
 
 
 def test_the_wheel_has_every_file_of_the_packages_but_the_mutation_check():
-    left_out = in_source() - in_wheel()
+    files = [path for name in OWN for path in (ROOT / name).rglob("*") if path.is_file()]
+    source = {path.relative_to(ROOT).as_posix() for path in files if "__pycache__" not in path.parts}
+    left_out = source - in_wheel()
     assert left_out and all(name.startswith(LEFT_OUT) for name in left_out)
     assert {name.split("/")[0] for name in in_wheel()} == set(OWN)
-    assert {
-        "verification/cases/hertz/hertz.toml",
-        "verification/suite/templates/index.html.j2",
-    } <= in_wheel()
-
-
-def test_the_licence_and_the_readme_are_named_and_there():
     project = PROJECT["project"]
     assert project["license"] == "MIT" and project["license-files"] == ["LICENSE"]
     assert (ROOT / "LICENSE").read_text(encoding="utf-8").startswith("MIT License")
@@ -73,8 +57,8 @@ def test_the_licence_and_the_readme_are_named_and_there():
 
 
 def loaded_at_import(path: Path) -> set[str]:
-    """Modules that a file imports when it is itself imported, in no function and not for type checkers
-    alone.
+    """Modules that a file imports when it is itself imported, in no function and not for type
+    checkers alone.
     """
     found, nodes = set(), list(ast.parse(path.read_text(encoding="utf-8")).body)
     while nodes:
@@ -118,23 +102,13 @@ def test_a_case_that_is_not_run_does_not_stop_the_others(tmp_path, monkeypatch, 
     """The page and results.json have the reason; nothing of it is red."""
     from test_report import CASES, ROWS  # noqa: PLC0415 - found once its folder is collected
 
-    unmet = FakeCase(
-        "slow",
-        "Slow case",
-        "Does it hold?",
-        needs=lambda: "install nothing: pip install x",
-        does=pytest.fail,
-    )
+    why = "install nothing: pip install x"
+    unmet = FakeCase("slow", "Slow case", "Does it hold?", needs=lambda: why, does=pytest.fail)
     monkeypatch.setattr(verify, "all_cases", lambda: CASES | {"slow": unmet})
     monkeypatch.setattr(verify, "load_rows", lambda: ROWS)
     assert verify.main(["good", "slow"], "quick", tmp_path / "out") == 0
-    assert "slow: not run: install nothing: pip install x" in capsys.readouterr().out
-    records = {
-        case["name"]: case for case in json.loads((tmp_path / "out/results.json").read_text())["cases"]
-    }
-    assert (records["slow"]["status"], records["slow"]["unmet"]) == (
-        "not run",
-        "install nothing: pip install x",
-    )
-    assert records["good"]["status"] == "passed" and records["good"]["unmet"] == ""
-    assert ": install nothing: pip install x" in (tmp_path / "out/other.html").read_text()
+    assert f"slow: not run: {why}" in capsys.readouterr().out
+    found = json.loads((tmp_path / "out/results.json").read_text())["cases"]
+    records = {case["name"]: (case["status"], case["unmet"]) for case in found}
+    assert records["slow"] == ("not run", why) and records["good"] == ("passed", "")
+    assert f": {why}" in (tmp_path / "out/other.html").read_text()

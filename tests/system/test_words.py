@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What the commands say: reasons that name the key to change, suggestions, advice first, sizes that a person
-can read.
+"""What the commands say: reasons that name the key to change, suggestions, advice first, sizes that
+a person can read.
 """
 
 import csv
@@ -24,8 +24,7 @@ from sam.scene.section import OTHER_NAMES, Section, places_of
 from samfem import comparing
 from samfem.cli import CLAIMS
 from verification.compare.rows import judged
-from verification.cost import estimates, plan as plan_module
-from verification.cost.plan import check_needs
+from verification.cost import plan as plan_module
 from verification.judging import Measured
 from verification.runs import checkpoints, models
 from verification.runs.store import identity
@@ -71,35 +70,25 @@ def read_csv(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(stream))
 
 
-class TestReasonsOfCompare:
-    def test_a_rough_scene_with_an_elastic_counter_body(self, scene_file, samfem):
-        """Each model with the key that stops it; removing what fem-3d names makes the comparison possible."""
-        said = samfem("compare", scene_file(FLAT, ELASTIC_COUNTER, add=ROUGH), code=2).err
-        _, axisymmetric, spatial = said.splitlines()
-        assert axisymmetric.startswith("  fem-axisymmetric: ") and "remove [surface]" in axisymmetric
-        assert spatial.startswith("  fem-3d: counterbody.young = ") and "remove young and poisson" in spatial
-        assert not Path("scene-compare").exists()
-        assert models.cheapest_reference(PATCH) == models.FEM_3D
-
-    def test_every_reason_of_a_model_is_named_at_once(self, scene_file, samfem):
-        film = '[friction]\nlaw = "chemical-film"\nlow = 0.1\nhigh = 0.4\nfilm_thickness = "100 nm"\n'
-        film += 'film_young = "80 GPa"\nfilm_poisson = 0.3\nfilm_yield = "0.6 GPa"\nstrain_limit = 0.02\n'
-        said = samfem("compare", scene_file(FLAT, ELASTIC_COUNTER, add=ROUGH + film), code=2).err
-        spatial = said.splitlines()[-1]
-        assert "counterbody.young" in spatial and 'friction.law = "chemical-film"' in spatial
-
-    def test_a_rough_coated_scene(self, scene_file, samfem):
-        message = samfem("compare", scene_file(FLAT, add=ROUGH + FILM), code=2).err
-        assert re.search(r"fem-3d: body.coating.thickness = .*: remove it, or \[surface\]", message)
-
-    def test_a_model_that_was_asked_for_gives_its_own_reason(self, scene_file, samfem):
-        message = samfem("compare", scene_file(FLAT, add=ROUGH), "--model", models.FEM, code=2).err
-        assert "model fem-axisymmetric: " in message and "fem-3d" not in message
+def test_a_comparison_names_what_stops_every_model_at_once(scene_file, samfem):
+    """Removing what fem-3d names makes the comparison possible; a model that was asked for stands alone."""
+    film = '[friction]\nlaw = "chemical-film"\nlow = 0.1\nhigh = 0.4\nfilm_thickness = "100 nm"\n'
+    film += 'film_young = "80 GPa"\nfilm_poisson = 0.3\nfilm_yield = "0.6 GPa"\nstrain_limit = 0.02\n'
+    said = samfem("compare", scene_file(FLAT, ELASTIC_COUNTER, add=ROUGH + film), code=2).err
+    _, axisymmetric, spatial = said.splitlines()
+    assert axisymmetric.startswith("  fem-axisymmetric: ") and "remove [surface]" in axisymmetric
+    assert spatial.startswith("  fem-3d: counterbody.young = ") and "remove young and poisson" in spatial
+    assert 'friction.law = "chemical-film"' in spatial and not Path("scene-compare").exists()
+    assert models.cheapest_reference(PATCH) == models.FEM_3D
+    said = samfem("compare", scene_file(FLAT, add=ROUGH + FILM), code=2).err
+    assert re.search(r"fem-3d: body.coating.thickness = .*: remove it, or \[surface\]", said)
+    said = samfem("compare", scene_file(FLAT, add=ROUGH), "--model", models.FEM, code=2).err
+    assert "model fem-axisymmetric: " in said and "fem-3d" not in said
 
 
 class TestClaim:
-    """A film of 0.08 contact radii and a third of the stiffness changes pressure and stress by 6 and 7 %: not
-    negligible.
+    """A film of 0.08 contact radii and a third of the stiffness changes pressure and stress by 6
+    and 7 %: not negligible.
     """
 
     film = FILM.replace("100 nm", "500 nm")
@@ -122,17 +111,13 @@ class TestClaim:
             verdict = json.loads(Path("scene-compare/verdict.json").read_text())
             assert verdict["film_negligible"] is False and verdict["change_p_max"] < -0.05
 
-    def test_a_claim_about_no_film_is_refused(self, scene_file, samfem):
+    def test_a_claim_that_is_none_is_refused(self, scene_file, samfem):
         said = samfem("compare", scene_file(), "--claim", "negligible-film", code=2).err
         assert '--claim = "negligible-film": only for a scene with [body.coating]' in said
         assert "compare.claim" in samfem("plan", scene_file(add=self.asked), code=2).err
-
-    def test_an_unknown_claim_is_refused(self, scene_file, samfem):
         unknown = scene_file(add=FILM + '[compare]\nclaim = "no-film"\n')
         assert 'one of "negligible-film"' in samfem("plan", unknown, code=2).err
         samfem("compare", scene_file(add=FILM), "--claim", "no-film", code=2)
-
-    def test_the_command_line_knows_the_claims_of_the_scene(self):
         assert get_args(get_args(Compare.model_fields["claim"].annotation)[0]) == CLAIMS
 
     def test_a_result_does_not_depend_on_the_claim(self):
@@ -143,23 +128,20 @@ class TestClaim:
         assert resolved(asked)["compare"] == {"claim": "negligible-film", "tolerances": None}
 
 
-@pytest.mark.parametrize(
-    ("value", "unit", "text"),
-    [
+def test_values_and_times_for_a_person():
+    for value, unit, text in (
         (1.2e13, "B", "12 TB"),
-        (9.96e8, "B", "996 MB"),
         (9.999e8, "B", "1 GB"),
-        (0.5, "B", "0.5 B"),
         (0.0, "B", "0 B"),
         (8.62e-6, "m", "8.62 um"),
         (999.9e-9, "m", "1 um"),
         (-2.5e9, "Pa", "-2.5 GPa"),
         (1e-20, "m", "1e-08 pm"),
         (float("inf"), "m", "inf m"),
-    ],
-)
-def test_values_with_a_prefix(value, unit, text):
-    assert with_prefix(value, unit) == text
+    ):
+        assert with_prefix(value, unit) == text
+    times = [with_time(seconds) for seconds in (0.0123, 99.0, 150.0, 9e4, 1e6)]
+    assert times == ["0.012 s", "99 s", "2.5 min", "25 h", "12 days"]
 
 
 class TestMisplacedKeys:
@@ -185,40 +167,16 @@ class TestMisplacedKeys:
         with pytest.raises(SceneError, match=re.escape(f"unknown key, did you mean {place}?")):
             parsed(add=table)
 
-    def test_a_key_like_no_other_gets_no_suggestion(self):
+    def test_other_keys_get_no_such_suggestion_and_suggestions_exist(self, tmp_path):
         with pytest.raises(SceneError, match="unknown key, allowed here: title, body"):
             parsed(add="[zzz]\na = 1\n")
-
-    def test_other_names_lead_to_places_that_exist(self):
-        known = {place for places in places_of(Section.whole).values() for place in places}
-        assert {place.split(" with ")[0] for found in OTHER_NAMES.values() for place in found} <= known
-
-    def test_a_study_is_not_told_the_places_of_a_scene(self, tmp_path):
         (tmp_path / "s.toml").write_text(
             'scene = "x.toml"\nforce = 1\n[vary]\n"loading.force" = {list = [1]}\n'
         )
         with pytest.raises(SceneError, match="force = 1: unknown key, allowed here: title, scene"):
             read_study(tmp_path / "s.toml")
-
-
-def test_sizes_of_a_plan_have_units_that_a_person_reads(scene_file, samfem):
-    """Bytes in MB or GB, lengths in um or nm: no number with an exponent."""
-    plastic = '[body.plasticity]\nlaw = "perfect"\nyield_stress = "2 GPa"\n'
-    shown = samfem("plan", scene_file(add=plastic)).out
-    assert "bytes" not in shown
-    assert re.search(r"\de[-+]?\d", shown) is None
-    assert re.search(r"^sam: about \d+ MB and [\d.]+ s$", shown, re.MULTILINE)
-    assert re.search(r"cell \d+\.?\d* nm x \d+\.?\d* nm", shown)
-    assert re.search(r"largest_depth [\d.]+ um", shown)
-
-
-@pytest.mark.parametrize(
-    ("needed", "text"), [(1.2e13, "about 12 TB"), (4.56e10, "about 45.6 GB"), (2e8, "about 200 MB")]
-)
-def test_memory_that_is_not_there_is_told_in_gb_and_tb(monkeypatch, needed, text):
-    monkeypatch.setattr(estimates, "estimate", lambda *_: estimates.Estimate(round(needed), 1.0))
-    with pytest.raises(models.ModelError, match=f"{text} of memory needed, 1.5 MB available: lower"):
-        check_needs(SMOOTH, models.SAM, available=1.5e6)
+        known = {place for places in places_of(Section.whole).values() for place in places}
+        assert {place.split(" with ")[0] for found in OTHER_NAMES.values() for place in found} <= known
 
 
 @pytest.mark.parametrize("command", [["solve", "--model", "fem-axisymmetric"], ["compare", "--no-store"]])
@@ -241,14 +199,6 @@ def test_what_is_predicted_to_take_more_than_a_day_is_begun_only_when_asked(
 
     monkeypatch.setattr(models, "solve", begun)
     assert "begun" in samfem(*command, name, "--anyway", code=130).err
-
-
-@pytest.mark.parametrize(
-    ("seconds", "text"),
-    [(0.0123, "0.012 s"), (99.0, "99 s"), (150.0, "2.5 min"), (9e4, "25 h"), (1e6, "12 days")],
-)
-def test_times_for_a_person(seconds, text):
-    assert with_time(seconds) == text
 
 
 class TestPrintedResult:
@@ -296,51 +246,48 @@ def with_changes(scene, **sections):
     )
 
 
+TOLERANCE, STEPS = {"solver": {"tolerance": 0.1}}, {"loading": {"steps": 1000}}
+AT_LIMIT = [
+    (advice, Status.NOT_CONVERGED, TOLERANCE, "solver.tolerance"),
+    (advice, Status.STEP_CUT_LIMIT, TOLERANCE, "solver.tolerance"),
+    (advice, Status.STEP_CUT_LIMIT, STEPS, "loading.steps"),
+    (advice, Status.UNDER_RESOLVED, {"grid": {"cells": (4097, 4097)}}, "grid.cells"),
+    (message_of, Status.UNDER_RESOLVED, {"fem": {"cells_per_radius": 256}}, "fem.cells_per_radius"),
+    (message_of, Status.PLASTIC_ZONE_AT_GRID_EDGE, {"fem": {"box": 1000.0}}, "fem.box"),
+    (message_of, Status.STEP_CUT_LIMIT, STEPS, "loading.steps"),
+]
+
+
 class TestAdviceOfWhatCanBeChanged:
-    """Every status of every model: no key at its limit, none that the scene has not, none that is set
-    already.
+    """Every status of every model: no key at its limit, none that the scene has not, none that is
+    set already.
     """
 
     @pytest.mark.parametrize("advise", [advice, message_of])
-    @pytest.mark.parametrize("status", [status for status in Status if status is not Status.CONVERGED])
-    def test_every_status_says_what_to_change(self, advise, status):
+    def test_every_status_says_what_to_change(self, advise):
         for scene in (SMOOTH, PATCH):
-            what = advise(scene, status).partition(": ")[2]
-            assert re.match("raise|lower|change|refine|give", what), (scene.title, what)
+            for status in set(Status) - {Status.CONVERGED}:
+                what = advise(scene, status).partition(": ")[2]
+                assert re.match("raise|lower|change|refine|give", what), (scene.title, what)
 
-    @pytest.mark.parametrize(
-        ("advise", "status", "limit", "key"),
-        [
-            (advice, Status.NOT_CONVERGED, {"solver": {"tolerance": 0.1}}, "solver.tolerance"),
-            (advice, Status.STEP_CUT_LIMIT, {"solver": {"tolerance": 0.1}}, "solver.tolerance"),
-            (advice, Status.STEP_CUT_LIMIT, {"loading": {"steps": 1000}}, "loading.steps"),
-            (advice, Status.UNDER_RESOLVED, {"grid": {"cells": (4097, 4097)}}, "grid.cells"),
-            (message_of, Status.UNDER_RESOLVED, {"fem": {"cells_per_radius": 256}}, "fem.cells_per_radius"),
-            (message_of, Status.PLASTIC_ZONE_AT_GRID_EDGE, {"fem": {"box": 1000.0}}, "fem.box"),
-            (message_of, Status.STEP_CUT_LIMIT, {"loading": {"steps": 1000}}, "loading.steps"),
-        ],
-    )
+    @pytest.mark.parametrize(("advise", "status", "limit", "key"), AT_LIMIT)
     def test_a_key_at_its_limit_is_not_advised(self, advise, status, limit, key):
         assert f"raise {key}" in advise(SMOOTH, status)
         assert key not in advise(with_changes(SMOOTH, **limit), status)
 
-    @pytest.mark.parametrize("advise", [advice, message_of])
-    def test_a_given_pressure_is_lowered_by_its_own_key(self, advise):
+    def test_a_load_and_friction_are_lowered_by_the_keys_of_their_law(self):
         pressure = {"force": None, "prescribed": "hertz", "p0": 1e9, "radius": 1e-6}
         given = with_changes(SMOOTH.model_copy(update={"counterbody": None}), loading=pressure)
-        said = advise(given, Status.CONTACT_AT_GRID_EDGE)
-        assert "loading.p0" in said and "loading.force" not in said
-
-    def test_friction_by_the_key_of_its_law(self):
+        for advise in (advice, message_of):
+            said = advise(given, Status.CONTACT_AT_GRID_EDGE)
+            assert "loading.p0" in said and "loading.force" not in said
         assert "friction" not in advice(SMOOTH, Status.NOT_CONVERGED)
         slides = with_changes(SMOOTH, friction={"coefficient": 4.0})
         assert "lower friction.coefficient, 4" in advice(slides, Status.NOT_CONVERGED)
         said = advice(with_changes(SMOOTH, friction={**CHEMICAL_FILM, "high": 5.0}), Status.NOT_CONVERGED)
         assert "lower friction.high, 5" in said and "friction.coefficient" not in said
-
-    def test_a_film_that_flows_without_friction_is_not_told_to_lower_it(self):
-        coating = {"thickness": 1e-7, "young": 8e10, "poisson": 0.3, "yield_stress": 1e9}
-        coated = with_changes(SMOOTH, body={**resolved(SMOOTH)["body"], "coating": coating})
+        film = {"thickness": 1e-7, "young": 8e10, "poisson": 0.3, "yield_stress": 1e9}
+        coated = with_changes(SMOOTH, body={**resolved(SMOOTH)["body"], "coating": film})
         _, said = advice_of(coated).outcome(Status.CONVERGED, 1e3)
         assert "raise body.coating.yield_stress" in said and "friction" not in said
 
@@ -365,12 +312,9 @@ class TestAdviceOfWhatCanBeChanged:
         resampled = advice(Scene(**data), Status.UNDER_RESOLVED)
         assert "raise grid.cells = [32, 32]" in resampled and "resample" not in resampled
         assert "surface.crop" in plan_module._smaller(measured, models.SAM)
-
-    def test_cells_that_are_given_are_advised_with_their_value(self):
         assert "raise grid.cells = [16, 16]" in advice(PATCH, Status.UNDER_RESOLVED)
-        assert advice(SMOOTH, Status.UNDER_RESOLVED).endswith(
-            "raise grid.cells, or give a smaller grid.extent"
-        )
+        given = "raise grid.cells, or give a smaller grid.extent"
+        assert advice(SMOOTH, Status.UNDER_RESOLVED).endswith(given)
 
 
 class TestJudgement:

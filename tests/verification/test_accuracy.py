@@ -2,23 +2,22 @@
 """Accuracy on demand: what is chosen, how it is refined, what is refused and what is not reached."""
 
 import json
-from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 from builders import PERFECT, SPHERE, STEEL, scene_text
-from made_results import context, red
+from made_results import context, of_frame, red
 from pydantic import ValidationError
 
 from sam import choose_grid
 from sam.scene import Result, Scene, Status
-from verification.cases.cost.accuracy import CASES, Run, runs_of, subjects
+from verification.cases.case import with_keys
+from verification.cases.cost import accuracy as case
 from verification.cost import accuracy
-from verification.cost.accuracy import NEAREST, missed, solve
+from verification.cost.accuracy import Choice, chosen_scene, expected, first_choice, missed, solve
 from verification.cost.advice import table
-from verification.cost.choice import Choice, chosen_scene, expected, first_choice
 from verification.cost.plan import plan
-from verification.judging import Measured
 from verification.reference.hertz import CircularContact
 from verification.runs.models import FEM, SAM, ModelError
 
@@ -87,19 +86,6 @@ def test_what_is_missing_is_refined_and_nothing_else(of_cells, of_steps, cells, 
     several = [label for label in labels if "load steps" in label]
     assert all(label.endswith("on 17 cells") for label in several)  # the coarsest
     assert (len(several) > 3) == steps
-
-
-def test_the_uncertainty_of_a_refined_grid_is_that_of_its_own_solves():
-    """The same three grids by themselves, none of them hardly coarser than the one before."""
-    result, _ = searched(asked(0.05), lambda scene: made(scene, 300.0, 0.0))
-    entry, grid = result.uncertainty["peeq_max"], result.discretisation["cells"][0]
-    assert grid == entry["cells"][0] and entry["values"] == pytest.approx(
-        [1 + 300 / n**2 for n in entry["cells"]]
-    )
-    ratios = np.array(entry["cells"][0]) / entry["cells"]
-    changes = np.abs(np.array(entry["values"][0]) - entry["values"])[1:] / (ratios[1:] ** 2 - 1)
-    assert entry["u_cells"] == pytest.approx(3 * changes.max(), rel=1e-12)
-    assert np.diff(np.log(ratios)).min() > np.log(NEAREST) and len(result.discretisation["accuracy"]) > 2
 
 
 def test_what_is_not_reached_is_said_with_what_it_would_take():
@@ -230,35 +216,24 @@ def test_the_command_reaches_it(folder, samfem):
 
 
 def test_the_case_counts_what_is_missed_without_a_word():
-    """Of four runs one is reached, one is said not to be, one is refused, one is missed unsaid."""
-    times = {"seconds": 12.0, "finest": 6.0, "fixed": 1.0}
-    good, said = (
-        Run("a", 0.05, True, 0.04, 0.01, **times),
-        Run("a", 0.01, False, 0.04, 0.01, why="few", **times),
-    )
-    refused, unsaid = Run("a", 1e-3, why="no"), Run("a", 0.01, True, 0.009, 0.02)
-    found = CASES[0].measure([good, said, refused, unsaid])
-    assert found == {"reached": 0.25, "unsaid": 1.0, "over-fixed": 12.0}
-    values = {name: Measured(value) for name, value in found.items()}
-    assert red("accuracy", values, whole=True) == {"reached", "unsaid", "over-fixed"}
-    (words,) = CASES[0].notes([good, said])
-    assert words.startswith("Scenes that stay elastic: processor time is 12 times")
-    assert "6 times as much as that one" in words and "2 times as much as the finest" in words
-    good = replace(good, seconds=2.5)
-    values = {name: Measured(value) for name, value in CASES[0].measure([good]).items()}
-    assert red("accuracy", values, whole=True) == set()
-    (table,) = CASES[0].tables([good, said, refused])
-    assert [row[2] for row in table.rows] == ["reached", "few", "no"]
+    """Of three runs one is reached, one is refused, one is missed unsaid."""
+    good = {"sweep": "", "model": "sam", "reached": 1.0, "unsaid": 0.0, "over-fixed": 2.5}
+    refused = {**good, "reached": 0.0, "over-fixed": np.nan}
+    unsaid = {**good, "reached": 0.0, "unsaid": 1.0, "over-fixed": 12.0}
+
+    def red_of(*rows):
+        return red("accuracy", of_frame("accuracy", pd.DataFrame(rows)), whole=True)
+
+    assert red_of(good) == set() and red_of(good, refused) == {"reached"}
+    assert red_of(good, refused, unsaid) == {"reached", "unsaid", "over-fixed"}
 
 
-def test_the_scenes_of_the_case_have_closed_forms_that_the_quantity_is_of(tmp_path):
+def test_the_scenes_of_the_case_have_a_first_choice_and_rows(tmp_path):
     where = context("accuracy", tmp_path)
-    own = subjects(where)
-    assert len(own) == 10 and all(first_choice(with_accuracy(each.scene), SAM) for each in own)
-    (run,) = runs_of(where, own[0], [0.05])
-    assert run.reached and not run.unsaid and 0.0 < run.error < 0.05
-    assert run.seconds > run.finest > 0.0 and run.seconds > run.fixed > 0.0
-
-
-def with_accuracy(scene: Scene) -> Scene:
-    return scene.model_copy(update={"solver": scene.solver.model_copy(update={"accuracy": 0.02})})
+    own = case.subjects(where)
+    asked = (with_keys(scene, "solver", accuracy=0.02) for scene, _ in own.values())
+    assert len(own) == 10 and all(first_choice(scene, SAM) for scene in asked)
+    scene, truth = own["elastic sphere"]
+    (row,) = case.searched(where, scene, truth(where, scene), [0.05])
+    assert row["reached"] and not row["unsaid"] and 0.0 < row["error"] < 0.05
+    assert row["all"] > row["finest"] > 0.0 and row["all"] / row["best-fixed"] == row["over-fixed"]

@@ -15,7 +15,7 @@ from sam.contact.normal import Search, solve_contact
 from sam.scene import FrictionMap, Status
 from sam.scene.result import Attempt, residual_table, stagnates, unfinished
 from verification.cases.case import Context, with_loading
-from verification.cases.certificates import certificates, step_cutting
+from verification.cases.certificates import certificates
 from verification.cases.certificates.certificates import PATCH_CELLS, rough, sliding, yielding_film
 from verification.cases.recipes import Resolution
 from verification.checks import axisymmetric as fem_checks, spatial as spatial_checks
@@ -72,76 +72,69 @@ def test_all_conditions_hold(name, request):
         assert value <= limit(what), what
 
 
-class TestSteps:
-    """What is formed anew of the displacements and histories."""
-
-    def test_equilibrium(self, slid):
-        def more(u):
-            u = u.copy()
-            u[u.size // 2] *= 1.0001
-            return u
-
-        assert steps_of(slid, {"u": more})[1].equilibrium()["equilibrium"] > limit("equilibrium")
-        doubled = steps_of(slid, {"u": lambda u: 1.00001 * u})[1].equilibrium()
-        assert doubled["load"] > limit("load") and doubled["friction"] > limit("friction")
-
-    def test_a_node_that_pulls_is_no_longer_free(self, slid):
-        pulling = steps_of(slid, {"active": last_released})[1]
-        assert pulling.equilibrium()["equilibrium"] > limit("equilibrium")
-
-    def test_another_coefficient(self, slid, patch):
-        scene, result, records = slid
-        other = scene.friction.model_copy(update={"coefficient": 0.2001})
-        changed = scene.model_copy(update={"friction": other}), result, records
-        assert steps_of(changed, {})[1].equilibrium()["friction"] > limit("friction")
-        scene, result, records = patch
-        given = scene.friction.path
-        other = scene.friction.model_copy(update={"path": FrictionMap(given.values[:, ::-1], given.extent)})
-        changed = scene.model_copy(update={"friction": other}), result, records
-        assert spatial_checks.steps_of(scene, records)[0].equilibrium()["friction"] < limit("friction")
-        assert spatial_checks.steps_of(changed[0], records)[0].equilibrium()["friction"] > limit("friction")
-
-    @pytest.mark.parametrize("part", ["plastic_strain", "peeq"])
-    def test_yield_and_flow(self, slid, part):
-        before, now = steps_of(slid, {"history": lambda h: replace(h, **{part: 1.0001 * getattr(h, part)})})
-        found = by_rule(now.flow(before))
-        assert found["flow"] > limit("flow") and found["consistency"] > limit("consistency")
-
-    def test_a_stress_beyond_yield(self, slid):
-        _, now = steps_of(slid, {"u": lambda u: 1.001 * u})
-        assert now.yields() > limit("yield")
+def middle_node_moved(u):
+    u = u.copy()
+    u[u.size // 2] *= 1.0001
+    return u
 
 
-class TestReturned:
-    """What is read off the result."""
+def more_of(part):
+    """A history with 1.0001 times a part of it."""
+    return lambda history: replace(history, **{part: 1.0001 * getattr(history, part)})
 
-    @pytest.mark.parametrize("name", ["slid", "patch"])
-    def test_surface(self, name, request):
+
+@pytest.mark.parametrize(
+    ("changes", "seen"),
+    [
+        ({"u": middle_node_moved}, "equilibrium"),
+        ({"u": lambda u: 1.00001 * u}, "load friction"),
+        ({"active": last_released}, "equilibrium"),  # a node that pulls is no longer free
+        ({"history": more_of("plastic_strain")}, "flow consistency"),
+        ({"history": more_of("peeq")}, "flow consistency"),
+        ({"u": lambda u: 1.001 * u}, "yield"),
+    ],
+)
+def test_a_wrong_state_of_a_step_is_seen(slid, changes, seen):
+    before, now = steps_of(slid, changes)
+    found = now.equilibrium() | by_rule(now.flow(before)) | {"yield": now.yields()}
+    assert all(found[what] > limit(what) for what in seen.split())
+
+
+def test_another_coefficient_is_seen(slid, patch):
+    scene, _, records = patch
+    given = scene.friction.path
+    mirrored = {"path": FrictionMap(given.values[:, ::-1], given.extent)}
+    for (scene, _, records), other in ((slid, {"coefficient": 0.2001}), (patch, mirrored)):
+        changed = scene.model_copy(update={"friction": scene.friction.model_copy(update=other)})
+        right, wrong = (spatial_checks.steps_of(each, records)[0].equilibrium() for each in (scene, changed))
+        assert right["friction"] < limit("friction") < wrong["friction"]
+
+
+BOTH = ("slid", "patch")
+WRONG = [
+    (BOTH, lambda r: with_field(r, "point_data", "uz_m", lambda u: 1.00001 * u), "complementarity"),
+    (BOTH, lambda r: with_field(r, "point_data", "p_Pa", lambda p: 1.00001 * p), "load"),
+    (BOTH, lambda r: with_field(r, "point_data", "p_Pa", lambda p: p - 1e-6 * p.max()), "load"),
+    (BOTH, lambda r: with_column(r, "line", "qx_Pa", lambda q: 1.00001 * q), "friction"),
+    (BOTH[:1], lambda r: with_column(r, "line", "gap_m", lambda gap: gap - 1e-12), "complementarity"),
+    (BOTH[1:], lambda r: with_column(r, "surface", "height_m", lambda h: 1.0001 * h), "complementarity"),
+]
+
+
+@pytest.mark.parametrize(("names", "change", "seen"), WRONG)
+def test_what_is_returned_wrong_is_seen(names, change, seen, request):
+    """Penetration after unloading on the sphere, heights of the patch."""
+    for name in names:
         scene, result, _ = request.getfixturevalue(name)
-        moved = with_field(result, "point_data", "uz_m", lambda u: 1.00001 * u)
-        assert spatial_checks.surface(scene, moved)["complementarity"] > limit("complementarity")
-        pressed = with_field(result, "point_data", "p_Pa", lambda p: 1.00001 * p)
-        assert spatial_checks.surface(scene, pressed)["load"] > limit("load")
-        pulled = with_field(result, "point_data", "p_Pa", lambda p: p - 1e-6 * p.max())
-        assert spatial_checks.surface(scene, pulled)["load"] > limit("load")
-        slipping = with_column(result, "line", "qx_Pa", lambda q: 1.00001 * q)
-        assert spatial_checks.surface(scene, slipping)["friction"] > limit("friction")
+        assert spatial_checks.surface(scene, change(result))[seen] > limit(seen)
 
-    def test_penetration_without_force(self, slid):
-        scene, result, _ = slid
-        inside = with_column(result, "line", "gap_m", lambda gap: gap - 1e-12)
-        assert spatial_checks.surface(scene, inside)["complementarity"] > limit("complementarity")
 
-    def test_heights(self, patch):
-        scene, result, _ = patch
-        higher = with_column(result, "surface", "height_m", lambda height: 1.0001 * height)
-        assert spatial_checks.surface(scene, higher)["complementarity"] > limit("complementarity")
-
-    @pytest.mark.parametrize("name", ["stress_Pa", "peeq", "plastic_strain"])
-    def test_fields(self, slid, name):
-        scene, result, records = slid
+def test_fields_of_elements_that_are_returned_wrong_are_seen(slid):
+    scene, result, records = slid
+    steps = spatial_checks.steps_of(scene, records)
+    for name in ("stress_Pa", "peeq", "plastic_strain"):
         changed = with_field(result, "cell_data", name, lambda field: 1.0001 * field)
-        assert spatial_checks.fields(spatial_checks.steps_of(scene, records), changed)[name] > limit("fields")
+        assert spatial_checks.fields(steps, changed)[name] > limit("fields")
 
 
 def test_a_film_in_three_dimensions(context):
@@ -156,9 +149,7 @@ def test_a_film_in_three_dimensions(context):
 
 
 def test_a_film_that_yields(context):
-    """In the axisymmetric model: film and body flow by laws of their own, the film at its own yield
-    stress.
-    """
+    """Film and body flow by laws of their own, the film at its own yield stress."""
     scene = yielding_film(context)["film that yields"]
     result, records = solved(scene, FEM)
     for what, value in of_fem(scene, result, records).values.items():
@@ -191,45 +182,28 @@ def test_all_conditions_of_the_axisymmetric_model_hold(solves, name):
         assert value <= LIMITS[f"certificates.fem-{what}"] * (2.5 if what in ("surface", "planes") else 1.0)
 
 
-class TestFem:
-    """Each condition of the axisymmetric FEM, right and perturbed."""
-
-    def changed(self, solves, **keys):
-        """The last step with other entries of its state, by functions of them."""
-        scene, _, records = solves["Swift", FEM]
-        model, steps = fem_checks.steps_of(scene, records)
-        steps = [step for step in steps if not step.unloads]
-        state = steps[-1].state
-        state = replace(state, **{key: change(getattr(state, key)) for key, change in keys.items()})
-        last, before = (
-            fem_checks.Finite(scene, model, step) for step in (replace(steps[-1], state=state), steps[-2])
-        )
-        return scene, last, before
-
-    def test_equilibrium(self, solves):
-        _, finite, _ = self.changed(solves, u=lambda u: u * (1 + 1e-6))
-        found = finite.equilibrium()
-        assert found["equilibrium"] > LIMITS["certificates.fem-equilibrium"] and found["load"] > 1e-7
-
-    def test_a_node_that_pulls_is_no_longer_free(self, solves):
-        _, finite, _ = self.changed(solves, active=last_released)
-        assert finite.equilibrium()["equilibrium"] > LIMITS["certificates.fem-equilibrium"]
-
-    @pytest.mark.parametrize("part", ["plastic_strain", "peeq"])
-    def test_yield_and_flow(self, solves, part):
-        def more(history):
-            return replace(history, **{part: 1.0001 * getattr(history, part)})
-
-        _, finite, before = self.changed(solves, history=more)
-        found = by_rule(finite.flow(before))
-        assert found["flow"] > LIMITS["certificates.fem-flow"]
-        assert found["consistency"] > LIMITS["certificates.fem-consistency"]
-
-    def test_planes_and_surface(self, solves):
-        _, finite, _ = self.changed(solves, u=lambda u: 1.1 * u)
-        depths, errors = finite.planes()
-        assert np.abs(errors[depths < fem_checks.DEEPEST]).max() > LIMITS["certificates.fem-planes"]
-        assert max(finite.surface().values()) > LIMITS["certificates.fem-surface"]
+@pytest.mark.parametrize(
+    ("changes", "seen"),
+    [
+        ({"u": lambda u: u * (1 + 1e-6)}, "equilibrium"),
+        ({"active": last_released}, "equilibrium"),
+        ({"history": more_of("plastic_strain")}, "flow consistency"),
+        ({"history": more_of("peeq")}, "flow consistency"),
+        ({"u": lambda u: 1.1 * u}, "planes surface"),
+    ],
+)
+def test_a_wrong_state_of_the_axisymmetric_model_is_seen(solves, changes, seen):
+    """In the last step of loading."""
+    scene, _, records = solves["Swift", FEM]
+    model, steps = fem_checks.steps_of(scene, records)
+    *_, before, last = [step for step in steps if not step.unloads]
+    state = replace(last.state, **{key: of(getattr(last.state, key)) for key, of in changes.items()})
+    finite = fem_checks.Finite(scene, model, replace(last, state=state))
+    depths, errors = finite.planes()
+    found = finite.equilibrium() | by_rule(finite.flow(fem_checks.Finite(scene, model, before)))
+    found |= {"surface": max(finite.surface().values())}
+    found |= {"planes": np.abs(errors[depths < fem_checks.DEEPEST]).max()}
+    assert all(found[what] > LIMITS[f"certificates.fem-{what}"] for what in seen.split())
 
 
 class TestHistories:
@@ -300,33 +274,3 @@ class TestEndings:
         monkeypatch.setattr(fem_reference.common.contact, constant, value)
         result = models.solve(solves[name, FEM][0], FEM)
         assert result.status is status and f"Newton's method {words}" in result.message
-
-
-class TestStepCutting:
-    """Discarded attempts leave nothing behind, in both models."""
-
-    @pytest.fixture
-    def scene(self, context):
-        return step_cutting.scene_of(context.scene("plastic-perfect"), 6.2, (4, 4), steps=2)
-
-    def test_sam_cuts_and_goes_on(self, scene, monkeypatch):
-        """With fewer iterations than two steps take, steps are cut; the answer is that of smaller steps."""
-        whole = models.solve(scene, SAM)
-        monkeypatch.setattr(sam.plasticity.load_step, "ITERATIONS", 14)
-        cut = models.solve(scene, SAM)
-        assert whole.converged and whole.cost["step_cuts"] == 0
-        assert (
-            cut.converged
-            and cut.cost["step_cuts"] > 0
-            and any("cut into" in note for note in cut.tables["history"]["note"])
-        )
-        assert sum(not each.accepted for _, each in curves_of(cut)) == cut.cost["step_cuts"]
-        assert cut.quantities["approach_m"] == pytest.approx(whole.quantities["approach_m"], rel=0.02)
-
-    def test_fem_cuts_and_goes_on(self, scene):
-        result = models.solve(
-            scene.model_copy(update={"loading": scene.loading.model_copy(update={"steps": 1})}), FEM
-        )
-        assert result.converged and result.cost["step_cuts"] > 0
-        assert result.tables["history"]["note"] == [f"cut into {result.cost['step_cuts'] + 1} steps"]
-        assert sum(not each.accepted for _, each in curves_of(result)) == result.cost["step_cuts"]

@@ -21,28 +21,22 @@ def report(*gates: dict) -> dict:
 @pytest.mark.parametrize(
     ("before", "after", "differs"),
     [
-        (gate("a", 1e9), gate("a", 1e9), False),
         (gate("a", 1e9), gate("a", 1e9 * (1 + 0.5 * EQUAL)), False),
         (gate("a", 1e9), gate("a", 1e9 * (1 + 3 * EQUAL)), True),
         (gate("a", 1e-15, unit=""), gate("a", 3e-15, unit=""), False),
         (gate("a", 1e-15), gate("a", 3e-15), True),
         (gate("a", 1e-3, unit=""), gate("a", 1e-3 + 2 * EQUAL, unit=""), True),
-        (gate("a", None, 0.5), gate("a", None, 0.5), False),
         (gate("a", None, 0.5, ""), gate("a", None, 0.5001, ""), True),
-        (gate("a", None, None), gate("a", None, None), False),
         (gate("a", None, None), gate("a", 1.0), True),
     ],
     ids=str,
 )
 def test_a_gate_differs_by_its_value_or_its_error(before, after, differs):
     assert bool(changes(report(before), report(after))) is differs
-
-
-def test_gates_that_came_and_went_are_changes():
-    found = changes(report(gate("old", 1.0), gate("same", 2.0)), report(gate("same", 2.0), gate("new", 3.0)))
-    assert [(each.gate, each.before, each.after) for each in found] == [
-        ("new", None, 3.0),
-        ("old", 1.0, None),
+    came = changes(report(before), report(before, gate("new", 3.0)))
+    went = changes(report(before, gate("old", 1.0)), report(before))
+    assert [(one.gate, one.before, one.after) for one in came + went] == [
+        *(("new", None, 3.0), ("old", 1.0, None))
     ]
 
 

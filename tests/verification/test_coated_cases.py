@@ -14,8 +14,8 @@ from verification.cases.case import with_keys
 from verification.cases.coated import films, layered
 from verification.cases.recipes import RECIPES
 from verification.compare.rough_measures import Depths, compared_depths
-from verification.figures.coated import change_maps, film_planes, response_errors
-from verification.figures.film import in_body
+from verification.figures.maps import compared_mises, in_body
+from verification.figures.specials import change_maps
 from verification.judging import error_of
 from verification.quantities import QUANTITIES
 from verification.reference.layered_errors import Worst
@@ -251,9 +251,6 @@ def test_the_strain_on_either_side_of_a_jump_is_found_and_not_between_the_points
 
 
 def test_figures_hold_their_numbers():
-    kh = np.geomspace(1e-2, 1e2, 5)
-    drawing = response_errors(dict.fromkeys(layered.NAMES.values(), (kh, kh * 1e-15)), {"all": 1e-9})
-    assert len(drawing.data["kh"]) == 25 and max(drawing.data["error"]) == pytest.approx(1e-13, abs=0)
     h, e = np.geomspace(0.01, 2.0, 5), np.geomspace(0.1, 10.0, 4)
     change = pd.DataFrame(np.outer(h, np.log(e)), h, e)
     maps = change_maps({"one": change, "two": -change}, (80 / 210, {"1": 0.1}))
@@ -269,6 +266,6 @@ def test_planes_of_a_coated_body_leave_the_interface_blank():
     half = {name: np.asarray(values)[own["x_m"] >= 0] for name, values in own.items()}
     peak = {"mises_max_depth_m": 0.3, "mises_max_Pa": 2.0}
     models = Made(peak, {"plane": own}), Made(peak, {"plane": half}, model=FEM)
-    drawing = film_planes(*models, (1.0, 1.0), film=0.5, element=0.3)
+    drawing = compared_mises(*models, 1.0, 1.0, film=0.5, element=0.3)
     assert not np.any(np.abs(np.asarray(drawing.data["z/a_0"]) - 0.5) < 0.25 * 0.3)
     assert np.nanmax(np.abs(drawing.data["SAM"] - drawing.data["FEM"])) < 1e-11

@@ -1,22 +1,35 @@
 # SPDX-License-Identifier: MIT
-"""Reference solutions of the coated half-space: field equations, limits, potentials of their own, tables,
-changed answers.
+"""Reference solutions of the coated half-space, under waves, a sphere, a disc and a sliding traction: field
+equations, limits, potentials of their own, tables.
 """
 
-import dataclasses
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
-from closed_form_checks import assert_elastic
 from scipy.integrate import quad
 from scipy.special import ellipkm1, j0, j1
+from test_closed_forms import assert_elastic
 
-from verification.reference.burmister import disc_stress
+from verification.reference.burmister import disc_stress, interface_stress
 from verification.reference.coated_changes import (
+    breaking_thickness,
     film_contact,
+    largest_bare_mises,
+    largest_mises,
+    mises_change,
+    pressure_change,
 )
 from verification.reference.coated_sphere import solve_force, solve_radius, thin_layer
+from verification.reference.coated_traction import (
+    antiplane,
+    coated_sliding_stress,
+    hertz_transform,
+    largest_von_mises as largest_of_traction,
+)
+from verification.reference.hamilton import sliding_stress
+from verification.reference.hertz import largest_von_mises, subsurface_stress
 from verification.reference.layered import ManyDigits
 from verification.reference.layered_axisymmetric import (
     CoatedHalfSpace,
@@ -24,6 +37,7 @@ from verification.reference.layered_axisymmetric import (
     wave_numbers,
     wave_pressure_ratio,
 )
+from verification.reference.stress import von_mises
 
 PAPER = 80 / 210  # E1/E2 of Table 1 of Bosman & Schipper (2011)
 STEEL = 1.0  # a counter-body of the body's material
@@ -34,7 +48,7 @@ LAYERS = [
 ]
 
 
-# --- response to J0(k r) ------------------------------------------------------------------------------------
+# response to J0(k r)
 
 
 def harmonic(layers, k, film):
@@ -53,9 +67,7 @@ def harmonic(layers, k, film):
 
 
 def radial_slopes(layers, k, r, z, film):
-    """u_r and du_z/dr on one side: u_r = r e_tt, du_z/dr = 2 e_rz - du_r/dz, with a central difference of
-    order 8.
-    """
+    """u_r and du_z/dr on one side: u_r = r e_tt, du_z/dr = 2 e_rz - du_r/dz by differences."""
     E, nu = (layers.young, layers.poisson) if film else (layers.young_body, layers.poisson_body)
     stress = harmonic(layers, k, film)
 
@@ -99,40 +111,6 @@ def test_harmonics_meet_surface_and_interface(layers, k):
     assert u_z_slope == pytest.approx(-k * float(layers.compliance(k)[0]) * j1(k * r), rel=1e-10)
 
 
-@pytest.mark.parametrize("nu, nu_body", [(0.3, 0.3), (0.5, 0.5), (0.0, 0.4)])
-def test_compliance_has_its_limits(nu, nu_body):
-    """Long waves see the body, short ones the film; to first order in k h, and to exp(-2 k h) (k h)^2."""
-    layers = CoatedHalfSpace(3.0, nu, 0.5, 1.0, nu_body)
-    for k, modulus, accuracy in ((1e-8, layers.modulus_body, 1e-7), (1e2, layers.modulus, 1e-14)):
-        assert float(layers.compliance(k)[0]) * k * modulus / 2 == pytest.approx(1.0, abs=accuracy)
-
-
-def test_waves_on_a_thin_film_on_a_rigid_base():
-    """c = h/M with the oedometer modulus M; incompressible (k h)^2 h/(3 mu) (Johnson 1985, 5.8): next order
-    (k h)^2.
-    """
-    k = 1e-2
-    compressible = CoatedHalfSpace(1.0, 0.3, 1.0, 1e12, 0.3).compliance(k)[0]
-    assert compressible == pytest.approx(1.3 * 0.4 / 0.7, rel=1e-4)
-    incompressible = CoatedHalfSpace(1.0, 0.5, 1.0, 1e12, 0.3).compliance(k)[0]
-    assert incompressible == pytest.approx(k**2, rel=1e-3)  # mu = 1/3
-
-
-def test_equal_materials_and_extreme_ratios():
-    """Equal materials: the bare answer to rounding. Elsewhere finite, positive, between film and body (equal
-    nu).
-    """
-    k = np.logspace(-8, 4, 40)
-    bare = CoatedHalfSpace(1.0, 0.3, 1.0, 1.0, 0.3)
-    np.testing.assert_allclose(bare.compliance(k) * k / 2 * bare.modulus, 1.0, rtol=1e-13)
-    for ratio in (1e-6, 1e6):
-        layers = CoatedHalfSpace(ratio, 0.3, 1.0, 1.0, 0.3)
-        moduli = 2 / (layers.compliance(k) * k)
-        low, high = sorted((layers.modulus, layers.modulus_body))
-        # condition of the system: the ratio of the moduli times rounding
-        assert np.all(moduli > low * (1 - 1e-8)) and np.all(moduli < high * (1 + 1e-8))
-
-
 @pytest.mark.parametrize(
     "young, nu, nu_body", [(PAPER, 0.3, 0.3), (1e3, 0.2, 0.4), (1e-3, 0.5, 0.0), (1e6, 0.3, 0.3)]
 )
@@ -157,9 +135,7 @@ def test_harmonics_equal_the_plane_wave_of_many_digits(young, nu, nu_body, kh):
 
 
 def test_waves_of_full_contact():
-    """p = z/c_zz(k), film of Table 1 (0.1 um), rigid and steel: values of another program, all digits
-    given.
-    """
+    """p = z/c_zz(k), film of Table 1 (0.1 um), rigid and steel: values of another program."""
     layers = CoatedHalfSpace(80e9, 0.3, 0.1e-6, 210e9, 0.3)
     waves = np.array([1, 2, 5, 10, 20, 50]) * 1e-6
     rigid = wave_pressure_ratio(layers, waves)
@@ -176,7 +152,7 @@ def test_wave_numbers_integrate_a_decaying_oscillation():
         assert np.sum(weight * np.exp(-0.7 * k) * np.cos(k * r)) == pytest.approx(exact, abs=1e-13)
 
 
-# --- coated sphere ------------------------------------------------------------------------------------------
+# coated sphere
 
 # rigid paraboloid, nu = 0.3, values of another program: E1/E2, h/a0: p(0)/p0, a/a0, approach ratio
 TABLE = {
@@ -221,9 +197,7 @@ def ring_displacement(contact, r):
 
 
 def test_pressure_bends_the_surface_into_the_paraboloid():
-    """The whole chain without the expansion: p(r) from outside, rings for the film's half-space, a Hankel sum
-    for the rest.
-    """
+    """From p(r) alone: rings for the film's half-space, a Hankel sum for the rest."""
     contact = solve_radius(CoatedHalfSpace(PAPER, 0.3, 0.3, 1.0, 0.3), 2.0, 1.0, counter_modulus=STEEL)
     k, weight = wave_numbers(0.3, 2.0, 20.0)
     angle, share = np.polynomial.legendre.leggauss(40)
@@ -250,18 +224,14 @@ def test_equal_materials_are_hertz():
 
 @pytest.mark.parametrize("young", [0.1, 10.0])
 def test_thick_film_is_its_own_half_space(young):
-    """p(0)/p0 -> (E1/E2)^(2/3), a/a0 -> (E2/E1)^(1/3); the next term is the body's mean displacement, of
-    order (a/h)^3.
-    """
+    """p(0)/p0 -> (E1/E2)^(2/3), a/a0 -> (E2/E1)^(1/3); the next term is of order (a/h)^3."""
     contact = film_contact(300.0, young)
     assert contact.central_pressure / contact.bare.peak_pressure == pytest.approx(young ** (2 / 3), rel=1e-6)
     assert contact.contact_radius == pytest.approx(young ** (-1 / 3), rel=1e-6)
 
 
 def test_thin_layer_on_a_rigid_base():
-    """Johnson 5.8: ratios 1 + c h/a + ...: extrapolated linearly they are 1 to the square of h/a (0.02
-    here).
-    """
+    """Johnson 5.8: ratios 1 + c h/a, extrapolated linearly, are 1 to the square of h/a (0.02)."""
     ratios = []
     for h in (0.02, 0.01):
         layers = CoatedHalfSpace(1.0, 0.3, h, 1e8, 0.3)
@@ -273,9 +243,7 @@ def test_thin_layer_on_a_rigid_base():
 
 
 def test_stiff_thin_film_presses_off_the_axis():
-    """E1/E2 = 10, h = 0.2 a0: centre 1.106, largest 1.176 (values of another program); the search finds what
-    a scan finds.
-    """
+    """E1/E2 = 10, h = 0.2 a0, of another program; the search finds what a scan finds."""
     contact = film_contact(0.2, 10.0)
     largest, r = contact.largest_pressure()
     assert contact.central_pressure / contact.bare.peak_pressure == pytest.approx(1.106, abs=5e-4)
@@ -285,16 +253,222 @@ def test_stiff_thin_film_presses_off_the_axis():
     assert largest == pytest.approx(float(contact.pressure(r)), rel=1e-12)
 
 
-@pytest.mark.parametrize("order", [0, 3])
-def test_a_changed_coefficient_is_noticed(order):
-    contact = film_contact(0.3, 2.0)
-    coefficients = contact.coefficients.copy()
-    coefficients[order] *= 1 + 1e-6
-    changed = dataclasses.replace(contact, coefficients=coefficients)
-    assert contact.residual() < 1e-12 < 1e-9 < changed.residual()
+# stresses
+
+R = np.array([0.0, 0.4, 0.95, 1.3])
 
 
-# --- bad input ----------------------------------------------------------------------------------------------
+def test_stresses_of_equal_materials_are_those_of_huber():
+    contact = solve_radius(CoatedHalfSpace(1.0, 0.3, 0.2, 1.0, 0.3), 1.0, 1.0)
+    z = np.array([0.0, 0.05, 0.2, 0.5, 2.0])
+    bare = subsurface_stress(R[:, None], 0.0, z, contact.bare.peak_pressure, contact_radius=1.0, nu=0.3)
+    np.testing.assert_allclose(contact.stress(R, z), bare, rtol=0, atol=1e-11 * contact.bare.peak_pressure)
+
+
+@pytest.mark.parametrize("young, nu, h", [(PAPER, 0.3, 0.1), (10.0, 0.3, 0.3), (0.5, 0.5, 1.0)])
+def test_stresses_of_the_coated_contact(young, nu, h):
+    """Surface: the pressure. Interface: tractions and hoop strain equal. Any plane carries the force."""
+    contact = film_contact(h, young, poisson=nu, poisson_body=0.25)
+    layers, p = contact.layers, contact.central_pressure
+    r = R * contact.contact_radius
+    surface = contact.stress(r, 0.0)[:, 0]
+    np.testing.assert_allclose(surface[:, 2], -contact.pressure(r), rtol=0, atol=1e-11 * p)
+    np.testing.assert_allclose(surface[:, 4], 0.0, rtol=0, atol=1e-12 * p)
+    above, below = contact.stress(r, h, film=True)[:, 0], contact.stress(r, h)[:, 0]
+    np.testing.assert_allclose(above[:, [2, 4]], below[:, [2, 4]], rtol=0, atol=1e-11 * p)
+
+    def hoop(s, E, ratio):
+        return (s[:, 1] - ratio * (s[:, 0] + s[:, 2])) / E
+
+    jump = hoop(above, layers.young, nu) - hoop(below, layers.young_body, 0.25)
+    assert np.max(np.abs(jump)) < 1e-11 * p / min(layers.young, layers.young_body)
+    edges = contact.contact_radius * np.array([0, 0.5, 0.8, 0.95, 1, 1.05, 1.2, 1.5, 2.5, 6, 15, 40, 80])
+    t, w = np.polynomial.legendre.leggauss(20)
+    half = np.diff(edges)[:, None] / 2  # panels graded towards the rim
+    s, ds = (edges[:-1, None] + half * (1 + t)).ravel(), (half * w).ravel()
+    for z in (0.5 * h, h, 2 * h):
+        carried = 2 * math.pi * -contact.stress(s, z)[:, 0, 2] * s * ds
+        missing = [1 - np.sum(carried[s < end]) / contact.force for end in edges[-2:]]
+        # a point force leaves (z/R)^3 of itself beyond R: little, and nearly an eighth of it beyond 2 R
+        assert abs(missing[1]) < 1e-4
+        assert abs(missing[1] - (missing[0] - missing[1]) / 7) < 0.3 * abs(missing[1]) + 1e-9
+
+
+def test_largest_von_mises_of_the_bare_contact():
+    """The search in the plane against Hertz on the axis, and at the interface of a thick film."""
+    contact = film_contact(0.1, PAPER)
+    found = largest_bare_mises(contact)
+    value, z = largest_von_mises(contact.bare.peak_pressure, contact.bare.contact_radius, 0.3)
+    assert (
+        found.value == pytest.approx(value, rel=1e-6)
+        and found.z == pytest.approx(z, abs=2e-3)
+        and found.r == 0
+    )
+    assert largest_bare_mises(film_contact(1.0, PAPER)).z == 1.0
+
+
+def test_largest_von_mises_is_not_below_a_finer_scan():
+    contact = film_contact(0.2, 10.0)
+    found = largest_mises(contact)
+    film = largest_mises(contact, film=True)
+    r, z = np.linspace(0, 1.2, 61), np.linspace(0.2, 1.5, 66)
+    scan = np.max(von_mises(contact.stress(r, z)))
+    assert 1 - 1e-6 < found.value / scan < 1 + 2e-3  # the scan's own spacing
+    assert film.value > found.value and film.z <= 0.2 <= found.z
+
+
+@pytest.mark.parametrize(
+    "young, counter, limit, expected",
+    [
+        (PAPER, math.inf, 0.05, 0.065),
+        (40 / 210, STEEL, 0.05, 0.052),
+        (130 / 210, math.inf, 0.05, 0.171),
+        (PAPER, STEEL, 0.01, 0.024),
+    ],
+)
+def test_breaking_thickness_of_the_pressure(young, counter, limit, expected):
+    """Values of another program, to their last digit; the change there is the limit."""
+    h = breaking_thickness(young, counter=counter, limit=limit)
+    assert h == pytest.approx(expected, abs=6e-4)
+    assert abs(pressure_change(film_contact(h, young, counter=counter))) == pytest.approx(limit, rel=1e-5)
+
+
+def test_breaking_thickness_of_the_von_mises_stress():
+    h = breaking_thickness(PAPER, counter=STEEL, change=mises_change)
+    assert h == pytest.approx(0.112, abs=6e-4)
+
+
+def test_a_film_of_the_body_never_breaks_and_a_soft_one_at_once():
+    assert breaking_thickness(1.0) == math.inf
+    with pytest.raises(ValueError, match=r"limit = 1e-06 is passed at thickness/a0 = 0\.002"):
+        breaking_thickness(PAPER, limit=1e-6)
+
+
+@pytest.mark.parametrize("young", [10.0, 1000.0])
+def test_pavement_equals_adaptive_quadrature(young):
+    """The same Hankel integral by another rule (QUADPACK, period by period of the Bessel function): 1e-9."""
+    layers = CoatedHalfSpace(young, 0.5, 1.0, 1.0, 0.5)
+
+    def integrand(k):
+        k = np.array([k])
+        return -float(layers.profiles(k, layers.amplitudes(k), 1.0, film=False)[0, 0]) * 2.0 * j1(2.0 * k[0])
+
+    pieces = [0, 1e-3, 1e-2, 0.1, 0.5, 1, 2, 4, 8, 16, 40]
+    total = sum(quad(integrand, a, b, epsabs=1e-11, epsrel=1e-9)[0] for a, b in pairwise(pieces))
+    assert interface_stress(2.0, young) == pytest.approx(total, abs=1e-9)
+
+
+def test_pavement_is_smooth_at_the_incompressible_limit():
+    """No 1/(1 - 2 nu) in the solution: nu = 0.5 - 1e-9 differs by that order."""
+    assert interface_stress(1.0, 10.0, 0.5 - 1e-9, 0.5 - 1e-9) == pytest.approx(
+        interface_stress(1.0, 10.0), abs=1e-8
+    )
+
+
+def test_disc_on_one_material_in_closed_form():
+    """s_rr/p = -(1 + 2 nu)/2 + (1 + nu) z/w - z^3/(2 w^3), w^2 = a^2 + z^2 (Johnson 3.32)."""
+    nu, z = 0.3, np.array([0.1, 0.5, 1.0, 3.0])
+    stress = disc_stress(CoatedHalfSpace(1.0, nu, 1.0, 1.0, nu), 1.0, 0.0, z)[0]
+    c = z / np.hypot(1.0, z)
+    np.testing.assert_allclose(stress[:, 2], -1 + c**3, rtol=0, atol=1e-12)
+    for component in (0, 1):
+        np.testing.assert_allclose(
+            stress[:, component], -(1 + 2 * nu) / 2 + (1 + nu) * c - c**3 / 2, rtol=0, atol=1e-12
+        )
+
+
+# traction
+
+X = np.array([-1.4, -0.95, -0.3, 0.0, 0.5, 1.0, 1.2])
+SOFT, STIFF = CoatedHalfSpace(80.0, 0.3, 0.1, 210.0, 0.25), CoatedHalfSpace(900.0, 0.2, 0.4, 210.0, 0.3)
+COATED = pytest.mark.parametrize("layers", [SOFT, STIFF], ids=["soft", "stiff"])
+ROUNDING = 1e-12
+"""Of the pressure: sums over some 1000 wave numbers of terms of order 1, and systems of condition 10 to 1000.
+"""
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
+def test_one_material_is_hamilton(nu):
+    """The body by quadrature alone; the film by what the interface sends back, nothing."""
+    layers = CoatedHalfSpace(2.0, nu, 0.1, 2.0, nu)
+    for film, z in ((True, np.array([0.0, 0.05, 0.1])), (False, np.array([0.1, 0.3, 1.0]))):
+        found = coated_sliding_stress(layers, 3.0, 1.0, 0.4, x=X, z=z, film=film)
+        exact = sliding_stress(X[:, None], 0.0, z[None, :], 3.0, contact_radius=1.0, nu=nu, friction=0.4)
+        assert np.abs(found - exact).max() < 3.0 * ROUNDING
+
+
+@COATED
+def test_the_surface_carries_the_load(layers):
+    stress = coated_sliding_stress(layers, 1.0, 1.0, 0.4, x=X, z=0.0, film=True)[:, 0]
+    pressure = np.sqrt(np.clip(1.0 - X**2, 0.0, None))
+    assert np.abs(stress[:, 2] + pressure).max() < ROUNDING
+    assert np.abs(stress[:, 4] + 0.4 * pressure).max() < ROUNDING
+
+
+@COATED
+def test_the_interface_holds_together(layers):
+    """Both sides have the tractions and the strains along the interface in common, and nothing else."""
+    h = layers.thickness
+    film, body = (
+        coated_sliding_stress(layers, 1.0, 1.0, 0.4, x=X, z=h, film=side)[:, 0].T for side in (True, False)
+    )
+    assert np.abs(film - body)[2:5].max() < ROUNDING
+    strains = []
+    for (xx, yy, zz, *_), young, nu in (
+        (film, layers.young, layers.poisson),
+        (body, layers.young_body, layers.poisson_body),
+    ):
+        strains.append(np.array([xx - nu * (yy + zz), yy - nu * (xx + zz)]) / young)
+    assert np.abs(strains[0] - strains[1]).max() < ROUNDING * np.abs(strains[0]).max() * 100
+    assert np.abs(film - body)[:2].max() > 0.1
+
+
+@COATED
+@pytest.mark.parametrize("k", [0.3, 4.0, 30.0])
+def test_waves_of_traction_have_many_digits(layers, k):
+    """Amplitudes under shear, and the antiplane wave, against a solve of other potentials."""
+    h, ratio = layers.thickness, layers.young / layers.young_body
+    exact = ManyDigits(k * h, ratio, layers.poisson, layers.poisson_body)
+    for z, film in ((0.4 * h, True), (h, True), (h, False), (1.7 * h, False)):
+        zz, shear, along, side, _ = layers.profiles(np.array([k]), layers.amplitudes(k, shear=True), z, film)[
+            :, 0
+        ]
+        right = [float(v) for v in exact.state(k * z, 1, not film)[2:]]
+        assert [zz, along, side, shear] == pytest.approx(right, abs=ROUNDING)
+        turned = antiplane(layers, np.array([k]), z, film)[:, 0] + film * np.exp(-k * z) * np.array([-1, 1])
+        right = [float(v) for v in exact.antiplane_stress(k * z, not film)]
+        assert turned == pytest.approx(right, abs=ROUNDING)
+
+
+def test_transform_of_the_hertz_pressure():
+    """Where the series ends and the closed form begins as well."""
+    for ka in (1e-3, 0.0999, 0.1001, 1.0, 7.0):
+        exact = quad(lambda s, ka=ka: np.sqrt(1.0 - s * s) * j0(ka * s) * s, 0.0, 1.0, epsabs=1e-13)[0]
+        assert hertz_transform(np.array([ka]))[0] == pytest.approx(exact, abs=1e-10)  # of the quadrature
+
+
+def test_largest_of_one_material_is_that_of_hertz():
+    layers = CoatedHalfSpace(2.0, 0.3, 0.1, 2.0, 0.3)
+    peak, (value, depth) = (
+        largest_of_traction(layers, 1.0, 1.0, 0.0, film=False),
+        largest_von_mises(1.0, 1.0, 0.3),
+    )
+    assert peak.value == pytest.approx(value, rel=1e-6) and abs(peak.r) < 2e-3
+    assert peak.z == pytest.approx(depth, abs=2e-3)
+
+
+@pytest.mark.parametrize("film", [True, False])
+def test_largest_is_not_below_a_finer_scan(film):
+    x = np.linspace(-1.2, 1.2, 401)
+    z = np.linspace(0.0, 0.1, 11) if film else np.linspace(0.1, 1.0, 41)
+    scan = von_mises(coated_sliding_stress(SOFT, 1.0, 1.0, 0.4, x=x, z=z, film=film)).max()
+    peak = largest_of_traction(SOFT, 1.0, 1.0, 0.4, film=film)
+    assert scan <= peak.value * (1.0 + 1e-9) and peak.value < 1.01 * scan
+    at = von_mises(coated_sliding_stress(SOFT, 1.0, 1.0, 0.4, x=peak.r, z=peak.z, film=film))
+    assert float(at[0, 0]) == pytest.approx(peak.value, rel=1e-9)
+
+
+# bad input
 
 
 @pytest.mark.parametrize(
@@ -313,6 +487,14 @@ def test_a_changed_coefficient_is_noticed(order):
         (lambda: disc_stress(LAYERS[0], 1.0, 0.0, 0.0), "z must be >= contact_radius/1000"),
         (lambda: thin_layer(LAYERS[1], 1.0, 1.0), "poisson = 0.5: an incompressible"),
         (lambda: wave_pressure_ratio(LAYERS[0], 0.0), "wavelength"),
+        (
+            lambda: coated_sliding_stress(SOFT, 1.0, 1.0, 0.4, x=X, z=0.2, film=True),
+            "z must be <= thickness = 0.1 m everywhere",
+        ),
+        (
+            lambda: coated_sliding_stress(SOFT, 1.0, 1.0, 0.4, x=X, z=0.05),
+            "z must be >= thickness = 0.1 m everywhere",
+        ),
     ],
 )
 def test_bad_input_names_the_argument(call, message):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`samfem compare` with several scenes, own data, tolerances, a page and a JUnit file."""
+"""The command `compare`: one scene and several, own data, tolerances, a page and a JUnit file."""
 
 import csv
 import json
@@ -12,7 +12,7 @@ from builders import COARSE, scene_text
 
 from samfem.compared import NOT_COMPARED
 from verification.compare.rows import COLUMNS
-from verification.figures.compared import curves, history
+from verification.figures.compared import LOOKS, PANELS, curves, history
 from verification.runs.files import read_run
 
 WIDE = '[compare.tolerances]\n"p_Pa over the contact" = "20 %"\n"mises_Pa in the plane y = 0" = 0.2\n'
@@ -42,6 +42,55 @@ def own(scenes, samfem):
 def rows_of(path) -> dict[str, dict[str, str]]:
     with open(path, encoding="utf-8", newline="") as stream:
         return {row["quantity"]: row for row in csv.DictReader(stream)}
+
+
+def test_compare_holds_on_the_default_meshes_and_writes_both_runs(sphere_folder, samfem):
+    shown = samfem("compare", "sphere.toml").out
+    rows = list(rows_of(sphere_folder / "sphere-compare" / "compare.csv").values())
+    assert tuple(rows[0]) == COLUMNS
+    assert COLUMNS[:7] == ("quantity", "sam", "fem", "metric", "difference", "tolerance", "passed")
+    assert len(rows) == 10 and {row["passed"] for row in rows} == {"True"}
+    assert all(float(row["difference"]) <= float(row["tolerance"]) and row["reason"] for row in rows)
+    assert all(row["quantity"] in shown for row in rows)
+    assert all(read_run(sphere_folder / "sphere-compare" / part).converged for part in ("sam", "fem"))
+
+
+def test_compare_on_coarse_meshes_fails_and_says_what_to_change(sphere_folder, samfem):
+    coarser = scene_text(add="[grid]\ncells = [17, 17]\n[fem]\ncells_per_radius = 5\n")
+    (sphere_folder / "coarse.toml").write_text(coarser)
+    shown = samfem("compare", "coarse.toml", "--out", "out", code=1)
+    assert "FAILED" in shown.out and "outside the tolerance" in shown.err
+    assert "raise grid.cells = [17, 17], or raise fem.cells_per_radius = 5" in shown.err
+    samfem("compare", "sphere.toml", "--out", "out")  # an older comparison is replaced
+    assert "FAILED" not in (sphere_folder / "out" / "compare.csv").read_text(encoding="utf-8")
+
+
+def test_compare_draws_both_models_over_each_other(sphere_folder, samfem):
+    """What is drawn is what the tables of both runs hold; figures of an older comparison do not stay."""
+    (sphere_folder / "none.toml").write_text(scene_text(("0.65 N", "0 N"), add=COARSE))
+    files = {f"{name}.{kind}" for name in ("line", "axis", "history") for kind in ("png", "csv")}
+    for scene, code in (("coarse", 1), ("none", 0)):
+        shown = samfem("compare", f"{scene}.toml", "--out", "out", "--figures", code=code)
+        assert {entry.name for entry in (sphere_folder / "out" / "figures").iterdir()} == files
+        assert "out/figures/line.png" in shown.out
+        runs = {
+            model: read_run(sphere_folder / "out" / part) for model, part in (("SAM", "sam"), ("FEM", "fem"))
+        }
+        for table in PANELS:
+            panels = curves(runs, table).figure.axes
+            for panel, (column, factor) in zip(panels, PANELS[table].values(), strict=True):
+                assert [line.get_label() for line in panel.lines] == list(LOOKS)
+                for line, run in zip(panel.lines, runs.values(), strict=True):
+                    rows = run.tables[table]["state"] == "peak"
+                    known = set((run.tables[table][column][rows] * factor).tolist())
+                    assert len(line.get_ydata()) > 5 and set(np.asarray(line.get_ydata()).tolist()) <= known
+    samfem("compare", "none.toml", "--out", "out")
+    assert not list((sphere_folder / "out" / "figures").iterdir())
+
+
+def test_compare_does_not_write_over_a_single_run(sphere_folder, samfem):
+    samfem("solve", "coarse.toml", "--out", "out")
+    assert "single run" in samfem("compare", "coarse.toml", "--out", "out", code=2).err
 
 
 def test_several_scenes_have_a_line_and_a_folder_each_and_one_verdict(scenes, samfem):

@@ -134,9 +134,7 @@ def test_where_nothing_flows_any_more_no_cycle_is_like_the_one_before():
 
 @pytest.mark.parametrize("wrong", [False, True])
 def test_misfit_sphere_in_cycles(wrong, monkeypatch):
-    """The exact strains in both models, decided and told as exactly; each run, known by its periods, wrong in
-    its own way.
-    """
+    """The exact strains and verdicts in both models; each run, known by its periods, wrong in its way."""
     monkeypatch.setattr(misfit_cycles, "REACHES", np.linspace(0.3, 3.0, 28))
     monkeypatch.setattr(misfit_cycles, "sphere_cells", lambda scene, size: scene)
     changes = {

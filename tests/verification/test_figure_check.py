@@ -5,15 +5,16 @@ import json
 import numpy as np
 import pytest
 from fake_case import FakeCase
+from matplotlib.contour import ContourSet
 from matplotlib.text import Text
 from matplotlib.ticker import FixedLocator
 from PIL import Image
 
 from verification.cases.case import Outcome, Plot
 from verification.figures.check import findings
-from verification.figures.maps import FieldPair, MapPeak, plane_maps
-from verification.figures.style import BLUE, VERMILION, Drawing, save, sheet, style
-from verification.suite import pdf, verify
+from verification.figures.maps import FieldPair, MapPeak, plane_maps, readable
+from verification.figures.style import BLUE, VERMILION, Drawing, save, sheet
+from verification.suite import verify
 
 X = np.linspace(0.0, 10.0, 21)
 
@@ -157,11 +158,10 @@ def test_a_figure_that_cannot_be_read_fails_its_case_in_every_record(
         plot = Plot(Drawing(figure, {"x": [1.0]}), "curve", "A curve", "Two lines", "Caption")
         return Outcome(figures=[context.save(plot)])
 
-    for module in (verify, pdf):
-        own = FakeCase("own", "Own", "Is it read?", does=does)
-        monkeypatch.setattr(module, "all_cases", lambda own=own: {"own": own})
+    own = FakeCase("own", "Own", "Is it read?", does=does)
+    monkeypatch.setattr(verify, "all_cases", lambda: {"own": own})
     assert verify.main(["own"], "quick", tmp_path / "out") == code
-    (drawn,) = pdf.draw_pdf(tmp_path / "out", print, None)
+    (drawn,) = verify.draw_pdf(tmp_path / "out", print, None)
     assert drawn == tmp_path / "out" / "figures" / "own-curve.pdf" and drawn.read_bytes()[:5] == b"%PDF-"
     case = json.loads((tmp_path / "out" / "results.json").read_text())["cases"][0]
     assert case["status"] == ("failed" if code else "passed") and bool(
@@ -174,13 +174,40 @@ def test_a_figure_that_cannot_be_read_fails_its_case_in_every_record(
     assert ("figures" in (tmp_path / "out" / "junit.xml").read_text()) == bool(code)
 
 
-def test_a_map_keeps_its_colours(tmp_path):
-    with sheet(3.0, 2.0, layout="none") as (figure, axis):
-        figure.colorbar(axis.pcolormesh(np.linspace(0.0, 1.0, 400)[None, :]), ax=axis)
-    save(Drawing(figure, {}), tmp_path / "map", data=False)
-    with style():
-        figure.savefig(tmp_path / "exact.png", dpi=200)
-    drawn, exact = (
-        np.asarray(Image.open(tmp_path / name).convert("RGB"), dtype=int) for name in ("map.png", "exact.png")
-    )
-    assert Image.open(tmp_path / "map.png").mode == "RGB" and np.abs(drawn - exact).max() <= 2
+U, V = np.linspace(-1.5, 1.5, 61), np.linspace(0.0, 1.9, 39)
+LEVELS = [0.4, 0.6, 0.8]
+
+
+def bell(width: float, second: float = 0.9):
+    """What draws maps of a bell of this width with iso-lines at some levels."""
+    field = np.exp(-(U[:, None] ** 2 + (V - 0.5) ** 2) / width**2)
+    pair = FieldPair(U, V, field, second * field, ("SAM", "FEM"), ("$x/a$", "$z/a$"), "plastic strain [%]")
+    peaks = [MapPeak(0.0, 0.5, 1.0), MapPeak(0.0, 0.5, second)]
+    return lambda levels: plane_maps(pair, peaks, levels)
+
+
+def lines_of(drawing) -> list[list[float]]:
+    """Levels that are drawn in the panels of both fields."""
+    return [
+        [
+            level
+            for lines in panel.findobj(ContourSet)
+            for level, path in zip(lines.levels, lines.get_paths(), strict=True)
+            if len(path.vertices)
+        ]
+        for panel in drawing.figure.axes[:2]
+    ]
+
+
+@pytest.mark.parametrize("keep", LEVELS[:2])
+def test_of_lines_whose_numbers_touch_the_one_to_keep_stays(keep):
+    draw = bell(0.15)
+    assert any("collide" in finding for finding in findings(draw(LEVELS).figure))
+    drawing = readable(draw, LEVELS, keep=(keep,))
+    assert findings(drawing.figure) == [] and lines_of(drawing) == [pytest.approx([keep])] * 2
+
+
+def test_numbers_that_stand_apart_stay_and_a_level_that_a_field_does_not_reach_needs_none():
+    assert lines_of(readable(bell(1.0), LEVELS)) == [pytest.approx(LEVELS)] * 2
+    half = readable(bell(1.0, second=0.5), LEVELS)
+    assert lines_of(half) == [pytest.approx(LEVELS), pytest.approx(LEVELS[:1])]

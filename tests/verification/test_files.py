@@ -18,7 +18,7 @@ import pyvista
 from sam.scene import Body, CounterBody, FieldMesh, LeftOut, Loading, Plasticity, Result, Scene, Status
 from sam.scene.result import AXIS, COST, HISTORY, LINE, PLANE, QUANTITIES
 from verification.runs import files
-from verification.runs.files import FolderError, json_text, read_run, write_atomically, write_run
+from verification.runs.files import FolderError, json_text, read_run, write_run
 from verification.runs.meshes import is_mesh
 from verification.runs.provenance import collect
 from verification.runs.tables import csv_text
@@ -91,8 +91,6 @@ def test_a_run_reads_back_to_the_last_digit(tmp_path):
     "law",
     [
         {"law": "swift", "B": 1e9 * THIRD, "C": 4.0, "n": THIRD, "layer_thickness": 1e-6 * THIRD},
-        {"law": "linear", "yield_stress": 1e9, "modulus": 0.0},
-        {"law": "perfect", "yield_stress": 1e9 * THIRD},
         {
             "law": "table",
             "file": [(0.0, 1e9), (THIRD, 2e9)],
@@ -151,15 +149,10 @@ def test_what_is_no_number_is_null_in_json_and_empty_in_csv(tmp_path):
     assert np.isnan(read_run(tmp_path).tables["line"]["gap_m"]).all()
 
 
-@pytest.mark.parametrize(
-    "value", [0.1, 1 / 3, 1e-300, 5e-324, 1.7976931348623157e308, -0.0, 123456789.12345679]
-)
+@pytest.mark.parametrize("value", [1 / 3, 5e-324, 1.7976931348623157e308, -0.0])
 def test_numbers_keep_every_digit_in_csv(value):
     cell = csv_text(("x",), [(np.float64(value),)]).splitlines()[1]
     assert float(cell) == value and math.copysign(1, float(cell)) == math.copysign(1, value)
-
-
-def test_csv_quotes_commas_and_keeps_integers_whole():
     assert csv_text(("a", "b"), [(np.int64(3), "one, two"), (True, None)]) == 'a,b\n3,"one, two"\nTrue,\n'
 
 
@@ -187,25 +180,21 @@ def test_a_table_with_other_columns_is_refused_before_anything_is_written(tmp_pa
         rows["uz_m"] = [1.0] * 2
     with pytest.raises(ValueError, match=r"columns|shorter"):
         write_run(a_result(tables={"line": rows}), SCENE, tmp_path / "run")
+    with pytest.raises(ValueError, match="volume_m3"):  # a quantity outside the interface
+        write_run(a_result(quantities={"volume_m3": 1.0}), SCENE, tmp_path / "run")
     assert not (tmp_path / "run").exists()
 
 
-def test_a_quantity_outside_the_interface_is_refused(tmp_path):
-    with pytest.raises(ValueError, match="volume_m3"):
-        write_run(a_result(quantities={"volume_m3": 1.0}), SCENE, tmp_path / "run")
-
-
-@pytest.mark.parametrize(
-    "broken", ["history.csv", "axis.csv", "line.csv", "plane.csv", "fields.vtu", "run.pvd", "summary.json"]
-)
+@pytest.mark.parametrize("broken", ["history.csv", "fields.vtu", "summary.json"])
 def test_a_write_that_breaks_off_leaves_no_result(tmp_path, monkeypatch, broken):
     """Whichever file fails, the older result is gone, no half file is left, and the next write succeeds."""
     write_run(a_result(), SCENE, tmp_path)
-    rename = os.replace
+    rename, order = os.replace, []
 
     def failing(source, target):
         if os.path.basename(target) == broken:
             raise OSError("disk full")
+        order.append(target.name)
         rename(source, target)
 
     monkeypatch.setattr(os, "replace", failing)
@@ -219,9 +208,9 @@ def test_a_write_that_breaks_off_leaves_no_result(tmp_path, monkeypatch, broken)
     )
     with pytest.raises(FolderError, match=r"no result: it has no summary\.json"):
         read_run(tmp_path)
-    monkeypatch.setattr(os, "replace", rename)
+    order, broken = [], ""
     write_run(a_result(), SCENE, tmp_path)
-    assert read_run(tmp_path).converged
+    assert read_run(tmp_path).converged and order[-1] == "summary.json" and len(order) == 7
 
 
 def test_a_killed_process_leaves_no_result(tmp_path):
@@ -246,15 +235,6 @@ def test_a_killed_process_leaves_no_result(tmp_path):
     write_run(a_result(), SCENE, tmp_path)
     names = {entry.name for entry in tmp_path.iterdir()}
     assert {name for name in names if not is_mesh(name)} <= set(files.RUN_FILES)
-
-
-def test_the_summary_is_the_last_file_written(tmp_path, monkeypatch):
-    order, rename = [], os.replace
-    monkeypatch.setattr(
-        os, "replace", lambda source, target: (order.append(target.name), rename(source, target))
-    )
-    write_run(a_result(), SCENE, tmp_path)
-    assert order[-1] == "summary.json" and len(order) == 7
 
 
 def test_an_older_run_is_replaced_and_nothing_else(tmp_path):
@@ -287,28 +267,6 @@ def test_reading_says_what_is_no_result(tmp_path):
         read_run(tmp_path)
 
 
-def test_write_atomically_replaces_whole_files(tmp_path):
-    path = tmp_path / "a.txt"
-    write_atomically(path, b"one")
-    write_atomically(path, b"two")
-    assert path.read_bytes() == b"two" and [entry.name for entry in tmp_path.iterdir()] == ["a.txt"]
-
-
-def test_json_text_holds_what_python_holds():
-    content = {
-        "status": Status.CONVERGED,
-        "array": np.arange(3.0),
-        "nested": ({"x": np.bool_(True)}, None),
-        "n": 3,
-    }
-    assert json.loads(json_text(content)) == {
-        "status": "converged",
-        "array": [0.0, 1.0, 2.0],
-        "nested": [{"x": True}, None],
-        "n": 3,
-    }
-
-
 def test_provenance_names_versions_machine_and_inputs():
     found = collect({"scene.toml": b"title"}, seeds=[3])
     assert found["input_sha256"] == {"scene.toml": sha256(b"title").hexdigest()} and found["seeds"] == [3]
@@ -316,3 +274,9 @@ def test_provenance_names_versions_machine_and_inputs():
     assert found["machine"]["cores"] >= 1 and found["time_utc"].endswith("+00:00")
     assert set(found) >= {"commit", "dirty", "threads"}
     assert json.loads(json_text(found)) == found
+    assert json.loads(
+        json_text({"a": np.arange(2.0), "b": ({"x": np.bool_(True)}, None, Status.CONVERGED)})
+    ) == {
+        "a": [0.0, 1.0],
+        "b": [{"x": True}, None, "converged"],
+    }

@@ -45,9 +45,7 @@ class TestBondedFilm:
         assert in_plane_strain(self.p, 210e9, 0.28) == pytest.approx(expected, rel=1e-12)
 
     def state(self, e, plastic):
-        """Stresses for strains e, e in the surface and the normal one that gives -p, plastic strains (1/2,
-        1/2, -1).
-        """
+        """Stresses for strains e, e in the surface, szz = -p and plastic strains (1/2, 1/2, -1)."""
         C, flow = self.stiffness(), np.array([0.5, 0.5, -1.0]) * plastic
         return C @ (np.array([e, e, (-self.p - C[2, :2].sum() * e + C[2] @ flow) / C[2, 2]]) - flow)
 
@@ -116,9 +114,7 @@ class TestFrame:
 
 
 def test_a_flowing_film_keeps_the_contact_of_the_step_before():
-    """A node too many, as the set scaled with the force may have, squeezes it to where no step converges,
-    however small.
-    """
+    """A node too many squeezes the film to where no step converges, however small."""
     scene = scene_of(BASE, FLOWING, 6)
     for film in (True, False):
         whole = plan(scene)

@@ -41,9 +41,10 @@ def record(results) -> dict:
     return next(case for case in results["cases"] if case["name"] == CASE)
 
 
-def test_what_is_as_the_code_is_not_named(report, samfem):
+def test_what_is_as_the_code_is_not_named(report, samfem, refused):
     assert record(report)["code"] == version_of_cases()
     assert said_of(samfem, report) == f"{OTHERS} stale, 1 as the code in front of you"
+    assert "no finished verification report" in refused("pages", "none", "--stale")
 
 
 def test_what_was_published_is_named_where_it_cannot_run(report, monkeypatch):
@@ -77,7 +78,3 @@ def test_a_report_of_all_that_is_asked_is_not_stale(report, samfem, monkeypatch)
     samfem("pages", ".")
     for name in ("index.html", "README.md"):
         assert "older than the code" in (text := Path(name).read_text(encoding="utf-8")) and CASE in text
-
-
-def test_without_a_report_there_is_one_error(refused):
-    assert "no finished verification report" in refused("pages", "none", "--stale")

@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""The closed form of a sphere that grows in an elasto-plastic body, and the semi-analytical model against
-it.
-"""
+"""The closed form of a sphere that grows in an elasto-plastic body."""
 
 import numpy as np
 import pytest
-from growing_sphere_checks import LAWS, NU, YOUNG, check_cycled_sphere, check_growing_sphere
+from growing_sphere_checks import LAWS, NU, YOUNG, radial_elements
+from scipy.integrate import solve_ivp
 
-import sam
-from sam.scene import Scene
 from verification.reference import misfit_sphere
 from verification.reference.misfit_sphere import GrowingSphere
 
@@ -16,11 +13,52 @@ A = 1e-5  # radius in m
 
 
 def test_radial_elements_meet_the_closed_form_with_second_order():
-    check_growing_sphere(misfit_sphere)
+    """The closed form against radial elements: all laws, loading, removal, and growing anew.
+
+    The plastic strain and the stresses over E err by at most 8e-6 with the first of the counts. The radial
+    stress at the centre sums up the errors of all elements, and is left out.
+    """
+    counts, leaves = (200, 400), 8e-6
+    for name, (misfit, law) in LAWS.items():
+        for shares in ((1.0,), (1.0, 0.0), (1.0, 0.0, 1.0)):
+            exact = GrowingSphere(YOUNG, NU, law, misfit, 1.0, shares=shares)
+            for count in counts:
+                found = radial_elements(
+                    law, lambda x, top=misfit: top * misfit_sphere.smooth(x)[0], shares, count
+                )
+                fields, most = exact.fields(found.x), leaves * (counts[0] / count) ** 2
+                assert np.abs(found.peeq - fields.peeq).max() < most, (name, shares)
+                assert np.abs(found.deviator - fields.deviator).max() < most * YOUNG, (name, shares)
+                off = np.abs(found.radial - exact.radial_stress(found.x))
+                assert off[found.x > 0.2].max() < most * YOUNG, (name, shares)
 
 
 def test_rates_with_a_back_stress_meet_the_exact_solution():
-    check_cycled_sphere(misfit_sphere)
+    """With a back-stress and constant yield stress, growing and shrinking: against the rates at a radius,
+    integrated from where it begins to yield. They follow from D = x +- Y, the law of x and equilibrium.
+    """
+    yields, compliance, r = 1e9, (1 - NU) / YOUNG, np.array([0.6, 1.0, 1.255, 2.0])
+    for modulus, recovery in ((160e9, 0.0), (160e9, 90.0), (40e9, 300.0)):
+        law, shares = LAWS["perfect"][1], (1.0, 0.0) * 3
+        sphere = GrowingSphere(YOUNG, NU, law, 0.07, 1.0, "gauss", shares, modulus, recovery)
+        found = np.array([(each.plastic, each.peeq) for each in sphere.history(r)])
+        for k, excess in enumerate(0.07 * misfit_sphere.gauss(r)[1]):
+            q = peeq = back = share = 0.0
+            for number, end in enumerate(shares):
+                sign = 1.0 if end > share else -1.0
+                begin = (q + compliance * (back + sign * yields)) / excess
+                if sign * (end - begin) > 0:
+
+                    def rates(_, state, law=(modulus, recovery), sign=sign, excess=excess):
+                        slope = 2 * (law[0] - law[1] * sign * state[1])
+                        rate = excess / (1 + compliance * slope)
+                        return rate, slope * rate, 2 * sign * rate
+
+                    way = begin, end
+                    ends = solve_ivp(rates, way, (q, back, peeq), rtol=1e-11, atol=(1e-16, 1e-3, 1e-16))
+                    q, back, peeq = ends.y[:, -1]
+                share = end
+                assert np.abs(found[number, :, k] - (q, peeq)).max() < 1e-11, (modulus, recovery, number)
 
 
 def test_the_pressure_in_a_ball_is_that_of_an_expanding_cavity():
@@ -60,26 +98,3 @@ def test_bad_input_is_named(name):
     good = {"young": YOUNG, "nu": NU, "law": LAWS["linear"][1], "misfit": 0.02, "radius": 1.0}
     with pytest.raises(ValueError, match=name):
         GrowingSphere(**good | {name: "cube" if name == "profile" else -1.0})
-
-
-def held(**loading):
-    return Scene(
-        body={
-            "young": YOUNG,
-            "poisson": NU,
-            "plasticity": {"law": "linear", "yield_stress": 1e9, "modulus": 10e9},
-        },
-        loading={"prescribed": "misfit-sphere", "radius": A, "misfit": 0.02, "surface": "held", **loading},
-        solver={"tolerance": 1e-4},
-    )
-
-
-def test_the_semi_analytical_model_meets_the_closed_form():
-    """1.2 times what was measured at 8 cells in the radius; of second order, see the case misfit-sphere."""
-    found = sam.solve(held(depth=1.5 * A))
-    body = found.grids["peak"]["body"]
-    volume = np.prod([np.diff(edges)[0] for edges in (body.x, body.y)]) * np.diff(body.z)
-    exact = GrowingSphere(YOUNG, NU, LAWS["linear"][1], 0.02, A)
-    total = float((body.cell_data["peeq"] * volume).sum())
-    assert total == pytest.approx(exact.total(), rel=0.027)
-    assert found.quantities["approach_m"] is None and found.quantities["force_N"] == 0.0

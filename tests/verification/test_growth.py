@@ -4,31 +4,26 @@ memory.
 """
 
 import os
-from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
-from builders import LINEAR, PERFECT, RUN_IN_STEEL, SWIFT, SWIFT_YIELD, hertz_force, running_in, scene
+from builders import PERFECT, RUN_IN_STEEL, SWIFT, hertz_force, running_in, scene
+from made_results import of_frame, red
 
 import sam
 from sam import choose_grid
-from verification.cases import all_cases
 from verification.cases.case import Context, with_loading
 from verification.cases.cost import growth as case
 from verification.cases.cyclic.repeated import law
 from verification.cases.recipes import even_cells, rubbed
 from verification.cost import estimates, growth
-from verification.cost.growth import Applied, Taken
-from verification.cost.measured import alone, idle_bytes, solve_alone
-from verification.judging import judge
+from verification.cost.measured import alone, idle_bytes
 from verification.reference.convergence import fit_power
-from verification.rows import load_rows
 from verification.runs.models import FEM, SAM
 from verification.runs.threads import EVERY_LIBRARY as THREADS
 
 CELLS = np.array([1e3, 4e3, 16e3, 64e3])
-MB = 1e6
 
 
 def test_a_power_is_found_with_its_uncertainty():
@@ -72,65 +67,23 @@ def test_a_process_measures_its_own_memory_and_one_thread(idle):
     assert alone(os.getenv, THREADS[0]) == "1" and {name: os.environ.get(name) for name in THREADS} == before
 
 
-@pytest.mark.parametrize(
-    "rung",
-    [growth.elastic((401,), "elastic")[0], growth.rough((150,))[0], growth.plastic((41,), steps=2)[0]],
-    ids=["elastic", "rough", "plastic"],
-)
-def test_memory_is_predicted_within_a_fifth(rung, idle, monkeypatch):
-    """Sizes that the factors were not fitted to."""
-    monkeypatch.setattr(growth, "REPEATS", 1)  # of the time
-    taken = growth.measured_at(rung, idle)
-    assert taken.converged and taken.memory > 80 * MB
-    assert taken.expected.memory_bytes == pytest.approx(taken.memory, rel=0.2)
+def test_a_rung_is_measured(idle, monkeypatch):
+    monkeypatch.setattr(growth, "REPEATS", 1)
+    made = growth.measured_at(growth.square("elastic", (33,), "hertz-sphere", **growth.ONE_STEP)[0], idle)
+    assert made["converged"] and made["size"] == 33**2 and made["cpu-s"] > 0 and made["memory"] > 0
 
 
-@pytest.mark.parametrize("slides", [False, True], ids=["pressed", "with traction"])
-def test_memory_of_repeated_loads_is_predicted_within_a_fifth(slides, idle, tmp_path):
-    """Four cycles with back-stresses; the zone below a given pressure is wider than below a sphere."""
+def test_back_stresses_and_a_larger_zone_take_more(tmp_path):
+    """Below a given pressure, with traction and without; a step of Newton that is halved takes more."""
     given = Context("growth", tmp_path, "quick", lambda *_: None).scene("repeated-hertz")
-    ready = with_loading(law(given, "chaboche"), steps=1, cycles=4)
-    if slides:
-        ready = with_loading(rubbed(even_cells(ready, (6, 2.4, 2.4, 3.0)), {"coefficient": 0.2}), p0=3.8e9)
-    else:
-        ready = even_cells(ready, (9, 1.6, 1.6, 2.0))
-    result = solve_alone(ready, SAM)
-    taken = result.cost["peak_memory_bytes"] - idle
-    said = estimates.estimate(ready, SAM).memory_bytes - estimates.IDLE_BYTES
-    assert result.converged and taken > 100 * MB
-    assert said == pytest.approx(taken, rel=0.2)
-
-
-@pytest.mark.parametrize(("ratio", "cells"), [(2.0, 45), (6.2, 45)])
-def test_the_box_of_a_plastic_scene_is_predicted(ratio, cells):
-    """The box that the solution ends with, from the pressure of Hertz alone."""
-    scene = growth.plastic((cells,), steps=3)[0].scene
-    force = scene.loading.force * (ratio / 4) ** 3  # the scene is at 4
-    scene = scene.model_copy(update={"loading": scene.loading.model_copy(update={"force": force})})
-    found = sam.solve(scene).discretisation
-    expected = estimates.plastic_box(scene, choose_grid(scene))
-    nx, ny = map(int, found["plastic_box_cells"])
-    actual = replace(expected, nx=nx, ny=ny, layers=found["plastic_box_layers"])
-    assert expected.coefficients == pytest.approx(actual.coefficients, rel=0.2)
-
-
-@pytest.mark.parametrize(("law", "ratio"), [(PERFECT, 3.0), (PERFECT, 10.0), (LINEAR, 4.0), (SWIFT, 6.0)])
-def test_the_iterations_of_a_plastic_scene_are_predicted(law, ratio):
-    """From a small plastic zone to a deep one, perfectly plastic or hardening, within a factor of 1.5."""
-    force = hertz_force(ratio * law.get("yield_stress", SWIFT_YIELD))
-    body = {"plasticity": law}
-    ready = scene(body=body, loading={"force": force, "steps": 5}, grid={"cells": (25, 25)})
-    found = sam.solve(ready).cost["plastic_iterations"] / ready.loading.steps
-    assert found / 1.5 < estimates.plastic_iterations(ready, choose_grid(ready)) < 1.5 * found
-
-
-@pytest.mark.parametrize("renew", [False, True], ids=["the same plane", "a new plane in each cycle"])
-def test_the_iterations_of_running_in_are_predicted(renew):
-    plane = {"kind": "self-affine", "sq": 20e-9, "cutoff_long": 16e-6, "cutoff_short": 8e-6, "hurst": 0.8}
-    ready = running_in(cycles=3, steps=2, counterbody={"surface": plane | {"seed": 5, "renew": renew}})
-    steps, further = estimates.rough_iterations(ready, sam.plan(ready))
-    found = sam.solve(ready).cost["plastic_iterations"]
-    assert found / 1.5 < estimates.ELASTIC_ITERATIONS * steps + further < 1.5 * found
+    three, one = (even_cells(law(given, name), (6, 2.4, 2.4, 3.0)) for name in ("chaboche", "prager"))
+    rubs = with_loading(rubbed(three, {"coefficient": 0.2}), p0=1.2 * three.loading.p0)
+    needs = [estimates.estimate(each, SAM) for each in (one, three, rubs)]
+    assert needs[0].memory_bytes < needs[1].memory_bytes < needs[2].memory_bytes
+    assert needs[0].time_s < needs[1].time_s < needs[2].time_s
+    forces = (hertz_force(ratio * PERFECT["yield_stress"]) for ratio in (3, 9))
+    low, high = (scene(body={"plasticity": PERFECT}, loading={"force": force}) for force in forces)
+    assert 2.0 * estimates.newton_iterations(low) < estimates.newton_iterations(high)
 
 
 def test_more_iterations_for_a_softer_layer_a_film_and_another_plane():
@@ -148,7 +101,7 @@ def test_more_iterations_for_a_softer_layer_a_film_and_another_plane():
 
 
 def test_a_scene_that_hardly_yields_has_a_box():
-    scene = growth.plastic((45,))[0].scene
+    scene = growth.square("plastic", (45,), growth.YIELDING, **growth.LOADED)[0].scene
     for force in (1e-6, 1e3, 0.0):
         loading = scene.loading.model_copy(update={"force": force})
         weak = scene.model_copy(
@@ -169,6 +122,12 @@ def test_factors_are_found_from_counts():
     counts = [{"a": a, "b": b} for a, b in np.random.default_rng(1).uniform(1e6, 1e8, (8, 2))]
     measured = [5 * each["a"] + 2 * each["b"] for each in counts]
     assert growth.fitted(counts, measured, 1.0) == pytest.approx({"a": 5.0, "b": 2.0}, rel=1e-6)
+    ladders = ("axisymmetric", "axisymmetric, plastic", "axisymmetric, steps")
+    rungs = [rung for name in ladders for rung in growth.FAMILIES[name]()]
+    work = [estimates.counted(rung.scene, FEM) for rung in rungs]
+    taken = [{"model": FEM, "memory": 7.0 * c.bytes["unknowns"], "cpu-s": c.work["factors"]} for c in work]
+    memory, seconds = growth.factors(rungs, taken)
+    assert memory[FEM]["unknowns"] == pytest.approx(7.0) and seconds[FEM]["factors"] == pytest.approx(1.0)
 
 
 def test_every_count_has_a_factor():
@@ -181,72 +140,59 @@ def test_every_count_has_a_factor():
 
 def test_a_box_is_applied():
     box = growth.applied(6, 5, 3)
-    assert box.cells == 90 and box.setup_s > 0 and box.apply_s > 0 and box.stored >= 36 * 9 * 30 * 4
+    assert box["cells"] == 90 and box["set-up-s"] > 0 and box["cpu-s"] > 0
+    assert box["stored"] >= 36 * 9 * 30 * 4
 
 
 def synthetic(power: float = 1.0) -> tuple[dict, dict]:
     """Measurements that grow as they should (their time to `power`) and are as the plan says."""
     found = {}
     for name, make in growth.FAMILIES.items():
-        rungs = make()
         found[name] = []
-        for k, rung in enumerate(rungs):
+        for k, rung in enumerate(make()):
             size = rung.size or 1e4 * 3**k
-            seconds = 1e-3 * (size if name == "cycles" else size / 1e3) ** power
-            if name == "stresses":
-                seconds *= 2
-            taken = Taken(rung, size, seconds, 1, 1, True)
-            found[name].append(replace(taken, memory=max(taken.expected.memory_bytes, 1)))
-    boxes = {
-        name: [
-            Applied(
-                nx, ny, nz, 1e-5 * nx * ny * nz, (1e-8 * nx * ny * nz**2) ** power, 8 * nx * ny, 9 * nx * ny
-            )
-            for nx, ny, nz in sizes
-        ]
-        for name, sizes in (("cells", case.BOXES), ("plane", case.PLANES), ("depth", case.DEPTHS))
-    }
+            seconds = 1e-3 * (size if name == "cycles" else size / 1e3) ** power * (1 + (name == "stresses"))
+            said = estimates.estimate(rung.scene, rung.model)
+            memory = max(said.memory_bytes - round(estimates.IDLE_BYTES), 1)
+            row = {"model": rung.model, "family": rung.family, "scene": rung.label, "size": size}
+            row |= {"cpu-s": seconds, "predicted-s": said.time_s, "memory": memory}
+            found[name].append(row | {"predicted-memory": memory, "converged": True})
+    boxes = {name: [box_of(power, *sizes) for sizes in each] for name, each in case.BOXES.items()}
     return found, boxes
 
 
-def verdicts(found, boxes, place: Path | None = None) -> dict:
-    """The gates, judged; place: folder for the figures, which take most of the time. None: they are not
-    written.
-    """
-    context = Context("growth", place or Path(), "full", lambda *_: None)
-    if place is None:
-        context.save = lambda *_, **__: None
-    outcome = case.CASES[0].collect(context, case.Climbed(found, boxes))
-    assert place is None or all((place / figure.png).is_file() for figure in outcome.figures)
-    gates = [gate for gate in load_rows() if gate.case == "growth"]
-    assert {gate.id for gate in gates} == outcome.values.keys()
-    return {gate.id: judge(gate, outcome.values[gate.id]) for gate in gates}
+def box_of(power: float, nx: int, ny: int, nz: int) -> dict:
+    cells = nx * ny
+    cost = {"cpu-s": (1e-8 * cells * nz**2) ** power, "set-up-s": 1e-5 * cells * nz, "stored": 8 * cells}
+    size = {"cells": cells * nz, "plane": cells, "depth": nz}
+    return {"model": SAM, "scene": "box", **size, **cost, "memory": 9 * cells}
+
+
+def gates(found, boxes) -> tuple[pd.DataFrame, dict, set[str]]:
+    """The frame, the values of the rows and those that are red."""
+    frame = pd.DataFrame(case.rows_of(found, boxes))
+    values = of_frame("growth", frame)
+    return frame, values, red("growth", values, whole=True)
 
 
 def test_growth_as_it_should_be_passes(tmp_path):
-    found, boxes = synthetic()
-    judged = verdicts(found, boxes, tmp_path)
-    red = [name for name, verdict in judged.items() if verdict.status.red and name != "growth.time-factor"]
-    assert not red
-    assert judged["growth.exponent-contact"].value == pytest.approx(1.0)
-    assert judged["growth.memory-error"].value == pytest.approx(0.0, abs=1e-6)
+    frame, values, wrong = gates(*synthetic())
+    assert wrong <= {"time-factor"}
+    assert values["exponent-contact"].value == pytest.approx(1.0)
+    assert values["memory-error"].value == pytest.approx(0.0, abs=1e-6)
+    assert case.exponents(frame).rows[0][-1] == "1.00 ± 0.00"
+    context = Context("growth", tmp_path, "full", lambda *_: None)
+    for plot in (case.time_and_memory(None, frame), case.predicted(None, frame)):
+        assert (tmp_path / context.save(plot).png).is_file()
 
 
 def test_growth_that_is_too_fast_is_red():
-    found, boxes = synthetic(power=1.4)
-    judged = verdicts(found, boxes)
-    for name in ("contact", "stresses", "operator", "cycles"):
-        assert judged[f"growth.exponent-{name}"].status.red
+    own = {f"exponent-{name}" for name in ("contact", "stresses", "operator", "cycles")}
+    assert own <= gates(*synthetic(power=1.4))[2]
 
 
 def test_memory_that_was_not_predicted_and_a_solve_that_failed_are_red():
     found, boxes = synthetic()
     last = found["contact"][-1]
-    found["contact"][-1] = replace(last, memory=round(1.25 * last.memory), converged=False)
-    judged = verdicts(found, boxes)
-    assert judged["growth.memory-error"].status.red and judged["growth.unconverged"].status.red
-
-
-def test_the_case_is_of_the_full_level():
-    assert all_cases()["growth"].levels == ("full",)
-    assert {rung.model for rung in growth.finite_elements(FEM, (4,))} == {FEM}
+    last |= {"memory": round(1.25 * last["memory"]), "converged": False}
+    assert {"memory-error", "unconverged"} <= gates(found, boxes)[2]

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The headline of the pages: what it says of made studies, and of studies that did not run."""
 
-import copy
 from dataclasses import replace
 
 import numpy as np
@@ -12,21 +11,19 @@ from page_checks import PageReader, faults_of
 
 from verification.cases import all_cases
 from verification.cases.running_in import running_in_physics, running_in_sensitivity
-from verification.cases.running_in.study import BULK, HARDENING, NAMES, STATEMENTS
+from verification.cases.running_in.study import BULK, HARDENING, STATEMENTS
 from verification.runs.files import plain
 from verification.suite.pages import write_report
-from verification.suite.pages.findings import Evidence, PaperStatements
+from verification.suite.pages.answers import Evidence, statements as of_paper
 from verification.suite.pages.headline import COLUMNS, MEANING, NOTHING, headline_of
 from verification.suite.pages.judged import (
     FINER,
-    FOLLOWS,
     INPUTS,
     NOT_RUN,
     PHYSICS,
     READINGS,
     WORDS,
     Judged,
-    counted,
 )
 from verification.suite.pages.stored import read_stored
 
@@ -40,22 +37,11 @@ def record(name, data, tables=(), notes=(), setup=()):
     ]
     words = {"title": name, "question": "", "failure": "", "status": "passed", "reused": None}
     lists = {"equations": [], "runs": [], "setup": list(map(list, setup)), "notes": list(notes)}
-    figures = [
-        {
-            "title": "",
-            "alt": "",
-            "caption": "",
-            "csv": "",
-            "embedded": True,
-            "png": f"figures/{name}-{own}.png",
-        }
-        for own in ("probabilities", "volume")
-    ]
-    return (
-        {"name": name, "seconds": 1.0, "tables": shown, "figures": figures, "data": plain(data)}
-        | words
-        | lists
-    )
+    figure = dict.fromkeys(("title", "alt", "caption", "csv"), "") | {"embedded": True}
+    own = ("probabilities", "volume")
+    figures = [figure | {"png": f"figures/{name}-{each}.png"} for each in own]
+    made = {"name": name, "seconds": 1.0, "tables": shown, "figures": figures, "data": plain(data)}
+    return made | words | lists
 
 
 def older(case):
@@ -109,49 +95,40 @@ def test_each_statement_has_a_row_with_what_decides_it_and_what_makes_it_hold(re
     assert failed["holds under"] == "0 of 24" and failed["share of points (90 %)"].startswith("0 %")
     assert rows["curve B: still wears linearly"]["holds under"] == "1 of 24"
     assert rows["hardening: wears as much as bulk"]["what makes it hold"] == "the second reading"
-    (good,) = Judged(read_stored(stored(*studies))).under("curve B: still wears linearly")
-    assert good == tuple(WORDS[each] for each in reversed(GOOD))
-
-
-def test_every_other_physics_of_the_study_has_words():
     plain, *others = running_in_physics.ALL
     assert set(WORDS) == {key for each in others for key in each} - set(plain)
-
-
-def test_physics_without_a_run_are_said_to_say_nothing(readings, studies):
-    inputs, physics = copy.deepcopy(studies)
-    physics["data"]["statements"][0]["verdicts"][2:6] = ["not decided"] * 4
-    (row, *_) = headline_of(read_stored(stored(readings, inputs, physics))).rows
-    assert row[6] == "20 of 24, says nothing under 4"
-
-
-def test_statements_are_counted_by_the_median_and_without_those_that_follow():
-    later, first = next(iter(FOLLOWS.items()))
-    found = [(first, "held"), (later, "held"), ("even", "failed"), ("soft", "not decided")]
-    said = [{"statement": words, "by_median": verdict} for words, verdict in found]
-    assert counted(said) == (
-        "2 held, 1 failed, 1 not decided, of 4; of the 3 independent ones 1 held, 1 failed, 1 not decided"
-    )
-    assert counted(said[2:]) == "0 held, 1 failed, 1 not decided, of 2"
+    (good,) = Judged(read_stored(stored(*studies))).under("curve B: still wears linearly")
+    assert good == tuple(WORDS[each] for each in reversed(GOOD))
 
 
 def said(headline):
     return " ".join([headline.answer, *(text for _, text in headline.depends)])
 
 
-def test_the_answer_counts_what_the_tables_hold(readings, studies):
-    found = headline_of(read_stored(stored(readings, *studies)))
+def test_the_answer_counts_what_the_tables_hold_and_the_index_and_the_page_begin_with_it(
+    readings, studies, tmp_path
+):
+    results = stored(readings, *studies)
+    found = headline_of(read_stored(results))
     text = said(found)
     assert text.startswith("In part. With the printed inputs, 15 of its 17 statements")
     assert "of the 15 independent ones 13 hold, in the second reading 14." in text and "curve C" in text
     assert "(a soft layer) 16 and 16" in text and "40 points, 5 materials" in text
     assert "deviation of the layer, factor (" in text and f"1 holds ({NEVER}) under nothing" in text
     assert "In the study over hardening and loading cycles 21 to 25 add more than 0.1 %" in text
-    assert "Fitted" in found.fitted["caption"] and "hardness" in found.fitted_note
-    assert [each["png"][8:-4] for each in found.pictures] == [
-        "running-in-sensitivity-probabilities",
-        "running-in-physics-volume",
+    assert [each["png"][19:-4] for each in found.pictures] == [
+        *("sensitivity-probabilities", "physics-volume")
     ]
+    write_report(results, tmp_path)
+    page, index = (
+        PageReader((tmp_path / name).read_text(encoding="utf-8"))
+        for name in ("running-in.html", "index.html")
+    )
+    for each in (page, index):
+        assert faults_of(each) == [] and found.answer[:80] in each.text and MEANING[:40] in each.text
+    assert page.text.index(found.question) < page.text.index("Closest to its limit")
+    (*_, most, under) = of_paper(Evidence(read_stored(results), []), "")
+    assert most.value == under.value == "15 of 17"
 
 
 def test_what_finer_cells_refute_is_not_counted_and_named(readings, studies):
@@ -161,22 +138,6 @@ def test_what_finer_cells_refute_is_not_counted_and_named(readings, studies):
     text = headline_of(read_stored(stored(readings, *studies, finer))).answer
     assert "1 of these 13 (bulk: worn in the first six cycles) failed on finer cells" in text
     assert text.endswith("not counting such, 12 of 15 hold.")
-
-
-def test_a_statement_that_follows_from_another_holds_where_that_one_does():
-    """Bulk by any volumes that grow; the order of friction where it is kept by all that is asked of it."""
-    rng, base, surfaces = np.random.default_rng(1), as_the_paper_says(), []
-    for _ in range(100):
-        steps = rng.random(25) ** 4
-        steps[6:] *= rng.random() / 9.0 * steps[:6].sum() / steps[6:].sum()
-        own = {case: replace(base[case], friction=rng.uniform(0.1, 0.4, 25)) for case in NAMES}
-        surfaces.append({**own, BULK: replace(own[BULK], volume=np.cumsum(steps))})
-    asked, found = {each.words: each for each in STATEMENTS}, verdicts(surfaces)
-    values = {each["statement"]: each["values"] for each in found}
-    (later, early), (below, order) = FOLLOWS.items()
-    assert all(map(asked[early].holds, values[early])) and all(map(asked[later].holds, values[later]))
-    kept = [low for low, high in zip(values[below], values[order], strict=True) if asked[order].holds(high)]
-    assert kept and max(kept) < 0.0
 
 
 def test_the_pressures_that_remove_metal_and_the_last_cycles_are_said(readings, studies):
@@ -204,7 +165,7 @@ def test_a_study_that_did_not_run_is_said_not_to_have_run(readings, studies):
     text = said(found)
     assert all(f"(case {name}) did not run." in text for name in (INPUTS, PHYSICS))
     assert {row[4] for row in found.rows} == {row[6] for row in found.rows} == {NOT_RUN}
-    assert found.fitted == {} and found.pictures == [] and headline_of(read_stored(stored())) is None
+    assert found.pictures == [] and headline_of(read_stored(stored())) is None
     short = record(INPUTS, {})
     assert headline_of(read_stored(stored(short))) is None
     assert "was made without" in said(headline_of(read_stored(stored(readings, short))))
@@ -222,23 +183,9 @@ def test_studies_of_an_older_version_have_to_run_again(readings, studies, tmp_pa
     found = headline_of(read_stored(results))
     assert found.answer.endswith("made by an older version and have to run again.")
     assert not [*found.depends, *found.rows]
-    (none,) = PaperStatements().find(Evidence(read_stored(results), []))
+    (none,) = of_paper(Evidence(read_stored(results), []), "")
     assert none.value == "No number" and [each.name for each in none.cases] == [READINGS, INPUTS, PHYSICS]
     write_report(results, tmp_path)
     for name in ("running-in.html", "index.html"):
         page = PageReader((tmp_path / name).read_text(encoding="utf-8"))
         assert faults_of(page) == [] and found.answer in page.text and MEANING[:40] not in page.text
-
-
-def test_the_index_and_the_page_begin_with_it(readings, studies, tmp_path):
-    results = stored(readings, *studies)
-    write_report(results, tmp_path)
-    page = PageReader((tmp_path / "running-in.html").read_text(encoding="utf-8"))
-    index = PageReader((tmp_path / "index.html").read_text(encoding="utf-8"))
-    found = headline_of(read_stored(results))
-    assert faults_of(page) == faults_of(index) == []
-    for each in (page, index):
-        assert found.answer[:80] in each.text and NEVER in each.text and MEANING[:40] in each.text
-    assert page.text.index(found.question) < page.text.index("Closest to its limit")
-    (*_, most, under) = PaperStatements().find(Evidence(read_stored(results), []))
-    assert most.value == under.value == "15 of 17"

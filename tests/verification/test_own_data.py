@@ -14,7 +14,7 @@ from stored import BOTH
 from sam.scene import Scene, SceneError, resolved
 from samfem.compared import NOT_COMPARED, asked, compared
 from samfem.refusals import SeveralError
-from verification.compare.smooth import CENTRE
+from verification.compare.comparison import CENTRE
 from verification.runs import models
 from verification.runs.files import write_run
 from verification.runs.store import Store

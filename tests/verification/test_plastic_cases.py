@@ -12,7 +12,7 @@ from made_results import Made, context, square_mesh
 
 from verification.cases.compared import refinement, scene_of
 from verification.cases.recipes import initial_yield, layer_faces
-from verification.figures.plastic import iso_lines
+from verification.figures.maps import iso_levels
 from verification.judging import error_of
 from verification.quantities import QUANTITIES, Solved
 from verification.reference.convergence import extrapolate
@@ -72,9 +72,9 @@ def test_what_refinement_allows(name):
 
 
 def test_iso_line_of_the_proof_strain_is_drawn_when_it_is_reached():
-    assert 0.2 in iso_lines(0.5) and 0.2 in iso_lines(3.0) and 0.2 not in iso_lines(0.19)
+    assert 0.2 in iso_levels(0.5) and 0.2 in iso_levels(3.0) and 0.2 not in iso_levels(0.19)
     for largest in (0.011, 0.5, 3.0):
-        levels = iso_lines(largest)
+        levels = iso_levels(largest)
         assert levels.size >= 3 and np.all(np.diff(levels) > 0.0) and levels[-1] < largest
 
 

@@ -1,5 +1,6 @@
-"""Error against cost: brackets, interpolation, references with an uncertainty, and the curve of the case made
-of them.
+# SPDX-License-Identifier: MIT
+"""Error against cost: brackets, interpolation, references with an uncertainty, and the curves of the case
+made of them.
 """
 
 import math
@@ -8,44 +9,31 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
-from made_results import red
+from made_results import of_frame, red
 
 from sam.scene import load_scene
+from verification.cases import all_cases
 from verification.cases.case import Context
-from verification.cases.cost import (
-    work_precision as case,
-    work_precision_problems as problems,
-    work_precision_study as measuring,
-)
-from verification.cases.cost.work_precision_problems import (
-    AXISYMMETRIC,
-    COUPLED,
-    ELLIPSOID,
-    PROBLEMS,
-    SPATIAL,
-    TWICE,
-    loaded,
-)
-from verification.cases.cost.work_precision_study import SolvePoint
-from verification.cost.advice import advice_of
-from verification.cost.advice_rows import NEVER, columns_of, read_rows, table_text
+from verification.cases.cost import work_precision as case, work_precision_problems as problems
+from verification.cases.cost.work_precision_problems import AXISYMMETRIC, COUPLED, SPATIAL, TWICE
+from verification.cases.sweep import tables_of
+from verification.cost.advice import NEVER, read_rows, table_text
 from verification.cost.precision import (
     Ladder,
     Reached,
-    Reference,
     agreed,
     at_error,
     bracket,
     limit_of,
-    time_to_error,
 )
-from verification.figures.check import findings
 from verification.figures.style import save
-from verification.figures.work_precision import Line, curves, overview
+from verification.figures.work_precision import overview
 from verification.runs import models
 
 SCENES = Path(problems.__file__).parents[2] / "scenes"
+FILE = all_cases()["work-precision"].file
 
 
 @pytest.mark.parametrize(
@@ -55,7 +43,6 @@ SCENES = Path(problems.__file__).parents[2] / "scenes"
         ([0.1, 0.001, 0.02, 0.005], 0.01, (2, 3)),  # small by chance on the way through zero
         ([0.005, 0.001], 0.01, (0, 0)),
         ([0.1, 0.01], 0.01, (0, 1)),
-        ([0.1, 0.02], 0.01, None),
         ([0.1, 0.001, 0.02], 0.01, None),
         ([0.1, 0.001, math.nan], 0.01, None),
         ([math.nan, 0.001], 0.01, (0, 1)),
@@ -67,19 +54,16 @@ def test_the_bracket_is_where_the_error_falls_below_the_target_for_good(errors, 
 
 
 def test_time_is_interpolated_in_the_logarithms():
-    """error = 0.4/n^2, time = 0.01 n^3: time = 0.01 (0.4/error)^1.5 at every error between the ends."""
+    """error = 0.4/n^2, time = 0.01 n^3: time = 0.01 (0.4/error)^1.5 at every error between the ends; none is
+    claimed below the floor.
+    """
     n = np.array([2.0, 4.0, 8.0, 16.0])
-    for target in (0.05, 0.01, 0.003):
-        assert time_to_error(0.01 * n**3, 0.4 / n**2, target) == pytest.approx(0.01 * (0.4 / target) ** 1.5)
-        assert at_error(n, 0.4 / n**2, target).value == pytest.approx((0.4 / target) ** 0.5)
-    assert time_to_error(n, 0.4 / n**2, 1e-4) is None
+    for target in (0.05, 0.003):
+        assert at_error(0.01 * n**3, 0.4 / n**2, target).value == pytest.approx(0.01 * (0.4 / target) ** 1.5)
+    assert at_error(n, 0.4 / n**2, 1e-4).value is None
     assert at_error(n, 0.4 / n**2, 0.5) == Reached(2.0, True, pytest.approx(0.4 / 256))
     assert at_error([1.0, 2.0], [math.nan, 0.001], 0.01).value == 2.0  # nothing to interpolate from
     assert at_error([1.0, 2.0], [0.1, 0.0], 0.01).value == 2.0
-
-
-def test_no_error_below_the_floor_is_claimed():
-    n = np.array([2.0, 4.0, 8.0, 16.0])
     assert at_error(n, 0.4 / n**2, 0.003, floor=0.004) == Reached(None, False, 0.004)
     assert at_error(n, 0.4 / n**2, 0.01, floor=0.004).value == pytest.approx(np.sqrt(40.0))
 
@@ -90,8 +74,8 @@ def test_values_that_fit_no_error_are_refused(values, errors):
         at_error(values, errors, 0.01)
 
 
-def power_law(name: str, limit: float, factor: float, order: float, cells=(4, 8, 16, 32)) -> Ladder:
-    h = 1.0 / np.array(cells)
+def power_law(name: str, limit: float, factor: float, order: float) -> Ladder:
+    h = 1.0 / np.array([4, 8, 16, 32])
     return Ladder(name, list(h), list(limit * (1.0 + factor * h**order)))
 
 
@@ -105,252 +89,205 @@ def test_limits_of_two_models_become_one_reference():
     assert both.error(2.01 * both.value / 2.0) == pytest.approx(0.005) and math.isnan(both.error(None))
     alone = agreed(one)
     assert alone.uncertainty == pytest.approx(0.3 / 32, rel=1e-3) and alone.origin == "SAM"
+    none = limit_of(Ladder("SAM", [0.25, 0.125, 0.0625], [1.0, 1.2, 1.0]))  # follows no power
+    assert none.value == 1.0 and none.uncertainty == pytest.approx(0.2)
 
 
-def test_values_that_follow_no_power_are_their_own_limit_with_their_last_change():
-    found = limit_of(Ladder("SAM", [0.25, 0.125, 0.0625], [1.0, 1.2, 1.0]))
-    assert found.value == 1.0 and found.uncertainty == pytest.approx(0.2)
+HERTZ, SLIDING = case.STUDIED["hertz"], case.STUDIED["friction-0-2"]
 
 
-HERTZ = next(problem for problem in PROBLEMS if problem.name == "hertz")
-SLIDING = next(problem for problem in PROBLEMS if problem.name == "friction-0-2")
+def scene_of(problem):
+    return problem.scene(load_scene(SCENES / f"{problem.file}.toml"))
+
+
+def method(problem, name):
+    return next(each for each in problem.methods if each.name == name)
 
 
 def test_every_problem_has_its_methods_its_five_resolutions_and_a_scene_each_model_takes():
-    for problem in (*PROBLEMS, ELLIPSOID):
-        scene = problem.scene(load_scene(SCENES / f"{problem.file}.toml"))
-        for method in (*problem.methods, *problem.steps):
-            assert len(method.ladder) >= (3 if method.model == models.FEM_3D else 5), (
-                problem.name,
-                method.name,
-            )
-            assert list(method.ladder) == sorted(set(method.ladder))
-            models.check(method.at(scene, method.ladder[0]), method.model)
+    for problem in case.STUDIED.values():
+        scene = scene_of(problem)
+        for each in (*problem.methods, *problem.steps):
+            assert len(each.ladder) >= (3 if each.model == models.FEM_3D else 5), (problem.name, each.name)
+            assert list(each.ladder) == sorted(set(each.ladder))
+            models.check(each.at(scene, each.ladder[0]), each.model)
         assert (problem.exact is None) == bool(problem.references)
-        assert all(len(problem.method(name).ladder) >= problem.tops for name in problem.references)
+        assert all(len(method(problem, name).ladder) >= problem.tops for name in problem.references)
+        assert f"errors {problem.name}" in FILE.figures
 
 
 def test_what_each_method_changes_in_the_scene():
-    scene = SLIDING.scene(load_scene(SCENES / f"{SLIDING.file}.toml"))
-    for name, coupling, solver in (
-        (COUPLED, True, "backward-euler"),
-        ("SAM, decoupled", False, "backward-euler"),
-    ):
-        chosen = SLIDING.method(name).at(scene, 4)
-        assert (chosen.friction.coupling, chosen.solver.method) == (coupling, solver)
-    paper = SLIDING.method("SAM, the paper's loop").at(scene, 4)
+    scene = scene_of(SLIDING)
+    assert method(SLIDING, COUPLED).at(scene, 4).friction.coupling
+    assert not method(SLIDING, "SAM, decoupled").at(scene, 4).friction.coupling
+    paper = method(SLIDING, "SAM, the paper's loop").at(scene, 4)
     assert (paper.friction.coupling, paper.solver.method, paper.solver.stop) == (False, "paper", "stress")
-    assert SLIDING.method(SPATIAL).at(scene, 6).fem.cells_per_radius == 6
+    assert method(SLIDING, SPATIAL).at(scene, 6).fem.cells_per_radius == 6
     assert SLIDING.steps[0].at(scene, 40).loading.steps == 40
     worn = problems.worn_cells(load_scene(SCENES / "running-in-curve-b.toml"), 64)
     assert len(worn.grid.depths) - 1 == 26 and worn.grid.cells == (64, 64)
 
 
 def test_methods_take_turns_rung_by_rung():
-    turns = list(measuring.in_turn({"a": (1, 2, 3), "b": (4,), "c": (5, 6)}))
-    assert turns == [("a", 1), ("b", 4), ("c", 5), ("a", 2), ("c", 6), ("a", 3)]
+    assert list(case.in_turn([(1, 2, 3), (4,), (5, 6)])) == [(0, 1), (1, 4), (2, 5), (0, 2), (2, 6), (0, 3)]
 
 
-def solved_points(
-    factor: float, order: float, seconds: float, method: str, cells=(4, 8, 16, 32)
-) -> list[SolvePoint]:
-    """Errors factor/n^order at seconds n^2, of a largest plastic strain of 0.5 %."""
-    exact = {"peeq_max": 0.005, "p_max_Pa": HERTZ_P0}
+VALUES = {"peeq_max": 0.005, "p_max_Pa": 1e9, "contact_area_m2": 1e-11, "wear_volume_m3": 1e-18}
+OF = {COUPLED: (0.3, 1.0, 1e-3), TWICE: (3.0, 1.0, 1e-3), AXISYMMETRIC: (-0.2, 2.0, 2e-3)}
+OF |= {
+    SPATIAL: (-0.5, 1.0, 0.5),
+    "SAM, decoupled": (0.4, 1.0, 1e-3),
+    "SAM, the paper's loop": (3.0, 1.0, 1e-3),
+}
+"""Method -> factor, order and seconds: errors factor/n^order at seconds n^2."""
+SMOOTH = {COUPLED: (0.2, 2.0, 1e-3), SPATIAL: (-0.5, 1.0, 1.0)}
+"""The same of elastic contacts and of those that only yield."""
+
+
+def made(name: str, of: tuple, values: dict, refined: str = "resolution") -> list[dict]:
+    """Rows of a method."""
+    (factor, order, seconds), costs = of, {"setup_s": 0.1, "solve_s": 0.2, "peak_memory_bytes": 1e8}
     return [
-        SolvePoint(
-            method, n, "converged", seconds * n**2, 0.1, 0.2, 1e8, 0.1,
-            values={name: size * (1.0 + factor / n**order) for name, size in exact.items()},
-            counters={"operator_applications": 10},
-        )
-        for n in cells
-    ]  # fmt: skip
+        {"refined": refined, "method": name, "resolution": n, "cpu_s": seconds * n**2, **costs}
+        | {"kernel": 0.1, "spread": 1.0, "status": "converged", "profile": None, "applications": 10}
+        | {"values": {quantity: size * (1.0 + factor / n**order) for quantity, size in values.items()}}
+        for n in (4, 8, 16, 32)
+    ]
 
 
-HERTZ_P0 = problems._hertz(HERTZ.scene(load_scene(SCENES / "hertz-sphere.toml")))["p_max_Pa"]
+def study(problem, own=None, change=lambda rows: rows) -> pd.DataFrame:
+    """Of made solves; own: methods that differ; change: of the rows before errors are taken."""
+    scene = scene_of(problem)
+    values = VALUES | problem.exact(scene) if problem.exact else VALUES
+    of = OF | (SMOOTH if problem.name != "friction-0-2" else {}) | (own or {})
+    rows = [row for each in problem.methods for row in made(each.name, of[each.name], values)]
+    for each in problem.steps:
+        rows += made(each.name, (0.5, 1.0, 0.01), values, case.STEPS)
+    return pd.DataFrame(case.with_errors(problem, scene, change(rows)))
 
 
-def study(problem, **factors) -> measuring.ProblemStudy:
-    """Synthetic: method -> (factor, order, seconds)."""
-    points = {method.name: solved_points(*factors[method.name], method.name) for method in problem.methods}
-    steps = {method.name: solved_points(0.5, 1.0, 0.01, method.name) for method in problem.steps}
-    return measuring.ProblemStudy(
-        problem, problem.scene(load_scene(SCENES / f"{problem.file}.toml")), points, steps
-    )
+def of_grid(rows: pd.DataFrame) -> pd.DataFrame:
+    return rows[rows["refined"] == "resolution"]
 
 
-@pytest.fixture
-def studies():
-    elastic = study(
-        HERTZ, **{COUPLED: (0.2, 2.0, 1e-3), AXISYMMETRIC: (-0.2, 2.0, 2e-3), SPATIAL: (-0.5, 1.0, 1.0)}
-    )
-    rubbed = study(
-        SLIDING,
-        **{
-            COUPLED: (0.3, 1.0, 1e-3),
-            TWICE: (3.0, 1.0, 1e-3),
-            "SAM, decoupled": (0.4, 1.0, 1e-3),
-            "SAM, the paper's loop": (3.0, 1.0, 1e-3),
-            SPATIAL: (-0.5, 1.0, 0.5),
-        },
-    )
-    return [elastic, rubbed]
+@pytest.fixture(scope="module")
+def every() -> pd.DataFrame:
+    return pd.concat(map(study, case.STUDIED.values()))
 
 
-def red_of(*studies) -> set[str]:
-    return red("work-precision", case.gated(studies))
+def red_with(every: pd.DataFrame, changed: pd.DataFrame) -> set[str]:
+    """The rows that are red where a problem has other solves."""
+    frame = pd.concat([every[every["sweep"] != changed["sweep"].iloc[0]], changed])
+    return red("work-precision", of_frame("work-precision", frame), whole=True)
 
 
-def test_gates_of_the_case_turn_red_when_a_model_becomes_slow_or_errs(studies):
-    elastic, rubbed = studies
-    assert elastic.floor == measuring.EXACT and rubbed.floor < 0.01
-    values = case.gated(studies)
-    assert set(values) == {
-        *("hertz-1", "hertz-0-3", "friction-0-2-faster", "hertz-monotone-sam", "hertz-monotone-fem"),
-    }
-    assert red("work-precision", values) == set()
-    slow = replace(elastic, points=elastic.points | {COUPLED: solved_points(0.2, 2.0, 5e-3, COUPLED)})
-    assert red_of(slow) == {"hertz-1", "hertz-0-3"}
-    never = replace(elastic, points=elastic.points | {COUPLED: solved_points(2.0, 0.1, 1e-3, COUPLED)})
-    assert red_of(never) == {"hertz-1", "hertz-0-3"}
-    wavy = [*elastic.points[COUPLED][:2], elastic.points[COUPLED][0], elastic.points[COUPLED][3]]
-    assert "hertz-monotone-sam" in red_of(replace(elastic, points=elastic.points | {COUPLED: wavy}))
-    dear = replace(rubbed, points=rubbed.points | {COUPLED: solved_points(0.3, 1.0, 0.5, COUPLED)})
-    assert red_of(dear) == {"friction-0-2-faster"}
-    twice = replace(dear, points=dear.points | {TWICE: solved_points(0.01, 1.0, 1e-3, TWICE)})
-    assert red_of(twice) == set()  # the better of one grid and two counts
+def test_gates_of_the_case_turn_red_when_a_model_becomes_slow_or_errs(every):
+    floors = of_grid(every).groupby("sweep")["floor"].max()
+    assert floors["hertz"] == case.EXACT and floors["friction-0-2"] < 0.01
+    assert red_with(every, study(HERTZ)) == set()
+    for worse in ((0.2, 2.0, 5e-3), (2.0, 0.1, 1e-3)):  # slow, and an error that is never reached
+        assert red_with(every, study(HERTZ, {COUPLED: worse})) >= {"hertz-1", "hertz-0-3"}
+
+    def wavy(rows):
+        return [{**row, "values": rows[0]["values"]} if k == 2 else row for k, row in enumerate(rows)]
+
+    assert "hertz-monotone-sam" in red_with(every, study(HERTZ, change=wavy))
+    dear = {COUPLED: (0.3, 1.0, 0.5)}
+    assert red_with(every, study(SLIDING, dear)) == {"friction-0-2-faster"}
+    assert red_with(every, study(SLIDING, dear | {TWICE: (0.01, 1.0, 1e-3)})) == set()  # the better one
 
 
-def test_a_model_that_never_gets_there_counts_with_its_finest_point(studies):
-    """0.5/32 = 1.6 %: 3D does not reach 1 %, and needed more than 0.5 * 32^2 s."""
-    rubbed = studies[1]
-    assert rubbed.curves[SPATIAL].time(0.01).value is None
-    assert case.time_ratio(rubbed, SPATIAL, 0.01) == pytest.approx(
-        rubbed.curves[COUPLED].time(0.01).value / 512.0
-    )
+def test_a_model_that_never_gets_there_counts_with_its_finest_point():
+    """1/32 = 3 %: the axisymmetric model does not reach 1 %, and needed more than 2e-3 * 32^2 s."""
+    rows = of_grid(study(HERTZ, {AXISYMMETRIC: (-1.0, 1.0, 2e-3)}))
+    own = case.reached(rows, COUPLED, 0.01).value
+    assert case.ratio_at_one(rows, "") == pytest.approx(own / (2e-3 * 32**2))
+    assert case.ratio_at_a_third(rows, "") > case.ratio_at_one(rows, "")
 
 
-def test_the_ratio_is_taken_at_the_smallest_error_that_both_reach(studies):
-    """3D ends at 0.5/32 = 1.6 % after 512 s, where SAM, 0.3/n, has 19.2 cells: a sixtieth of a power."""
-    rubbed = studies[1]
-    ratio, error = case.faster(rubbed, SPATIAL)
-    assert error == pytest.approx(0.5 / 32, rel=0.01)
-    assert ratio == pytest.approx(512.0 / rubbed.curves[COUPLED].time(error).value)
-    least, most = case.faster_range(rubbed, SPATIAL)
+def test_the_ratio_is_taken_at_the_smallest_error_that_both_reach(every):
+    """3D ends at 0.5/32 = 1.6 % after 512 s, where SAM, 0.3/n, has 19.2 cells: a sixtieth of a power. Below
+    what is known of the reference no methods are compared.
+    """
+    rows = of_grid(every[every["sweep"] == "friction-0-2"])
+    ratio, error = case.faster(rows, SPATIAL)
+    assert error == pytest.approx(0.5 / 32, rel=0.01) and case.faster_than_spatial(rows, "") == ratio
+    assert ratio == pytest.approx(512.0 / case.reached(rows, COUPLED, error).value)
+    least, most = case.faster_range(rows, SPATIAL)
     assert least <= ratio <= most and least < most
-    assert math.isnan(case.faster(rubbed, AXISYMMETRIC)[0])  # has no such model
-    last = [*rubbed.points[SPATIAL][:-1], replace(rubbed.points[SPATIAL][-1], values={})]
-    broken = replace(rubbed, points=rubbed.points | {SPATIAL: last})
-    assert "friction-0-2-faster" in red_of(broken)
+    assert math.isnan(case.faster(rows, AXISYMMETRIC)[0])  # has no such model
+    assert case.faster(rows.assign(floor=0.05), SPATIAL)[1] == pytest.approx(0.15)
+    lost = study(SLIDING, change=lambda own: [{**r, "values": {}} if r["cpu_s"] == 512 else r for r in own])
+    assert "friction-0-2-faster" in red_with(every, lost)
 
 
-def test_below_what_is_known_of_the_reference_no_methods_are_compared(studies):
-    vague = replace(studies[1])
-    vars(vague)["floor"] = 0.05  # which is worked out once
-    assert case.faster(vague, SPATIAL)[1] == pytest.approx(0.15)
-
-
-def test_tables_and_advice_of_a_study(studies):
-    rows = case.advice_rows(studies)
-    assert {(row.method, row.bound) for row in rows if row.kind == HERTZ.kind and row.error == 0.05} == {
-        ("sam", "<"), ("fem-axisymmetric", "<"), ("fem-3d", "")
-    }  # fmt: skip
-    one = next(
-        row for row in rows if (row.kind, row.method, row.error) == (HERTZ.kind, "fem-axisymmetric", 0.01)
-    )
-    assert one.relative == pytest.approx(2.0, rel=1e-6) and one.resolution == pytest.approx(
-        np.sqrt(20.0), rel=1e-4
-    )
+def test_tables_and_advice_of_a_study(every):
+    some = every[every["sweep"].isin(["hertz", "friction-0-2"])]
+    rows = list(case.advice_rows(some))
+    coarse = {(row.method, row.bound) for row in rows if row.kind == HERTZ.kind and row.error == 0.05}
+    assert coarse == {("sam", "<"), ("fem-axisymmetric", "<"), ("fem-3d", "")}
+    one = next(r for r in rows if (r.kind, r.method, r.error) == (HERTZ.kind, "fem-axisymmetric", 0.01))
+    assert one.relative == pytest.approx(2.0, rel=1e-6)
+    assert one.resolution == pytest.approx(np.sqrt(20.0), rel=1e-4)
     assert one.kernels == pytest.approx(10.0 * one.seconds)
-    steps = [row for row in rows if row.method == "load steps" and row.error == 0.05]
-    assert len(steps) == 1 and steps[0].resolution == pytest.approx(10.0, rel=0.01)
-    assert any(row.bound == NEVER for row in rows)
-    kept = read_rows(table_text(rows))
-    assert table_text(kept) == table_text(rows) and columns_of(kept) == columns_of(rows)
-    for table in (case.times_table, case.faster_table, case.references_table, case.steps_table):
-        found = table(studies)
-        assert found.rows and all(len(row) == len(found.columns) for row in found.rows)
-    assert all(
-        len(row) == len(case.points_table(studies[0]).columns) for row in case.points_table(studies[0]).rows
-    )
-    assert any("not reached (1.6 %)" in row for row in case.times_table(studies).rows)
+    (steps,) = (row for row in rows if row.method == "load steps" and row.error == 0.05)
+    assert steps.resolution == pytest.approx(10.0, rel=0.01) and any(row.bound == NEVER for row in rows)
+    assert table_text(read_rows(table_text(rows))) == table_text(rows)
+    own = (case.times, case.beside_elements, case.references)
+    tables = [*(table(some) for table in own), *tables_of(FILE, some)]
+    assert len(tables) == 5 and all(len(row) == len(t.columns) for t in tables for row in t.rows)
+    assert any("not reached (1.6 %)" in row for row in case.times(some).rows)
+    (of_hertz, of_friction) = (times for _, _, times in case.to_one_percent(some)["times"])
+    assert of_hertz["FEM, axisymmetric"][0] == pytest.approx(one.seconds) and not of_hertz["SAM"][1]
+    assert of_friction["FEM, 3D"] == (None, False)
 
 
 def test_a_solve_that_breaks_off_or_does_not_converge_is_shown_and_counts_as_no_answer():
-    scene = HERTZ.scene(load_scene(SCENES / "hertz-sphere.toml"))
-
     def breaks(scene, model):
         raise RuntimeError("out of luck")
 
-    found = measuring.once(HERTZ, HERTZ.methods[0], scene, 4, solve=breaks)
-    assert found.status == "RuntimeError: out of luck" and not found.values and math.isnan(found.cpu_s)
-    cost = dict.fromkeys(("cpu_s", "setup_s", "solve_s", "peak_memory_bytes"), 1.0)
-    bad = SimpleNamespace(
-        converged=False,
-        cost=cost,
-        quantities={"p_max_Pa": 1e9},
-        status=SimpleNamespace(value="under-resolved"),
-        last_fitting={},
-        tables={},
-    )
-    strict = measuring.once(HERTZ, HERTZ.methods[0], scene, 4, solve=lambda *_: bad)
-    lenient = measuring.once(HERTZ, replace(HERTZ.methods[0], strict=False), scene, 4, solve=lambda *_: bad)
-    assert not strict.values and lenient.values == {"p_max_Pa": 1e9}
-    drawn = measuring.curve([found, strict, lenient], {"p_max_Pa": Reference(2e9, 0.0, "")})
-    assert np.isnan(drawn.errors[:2]).all() and drawn.errors[2] == 0.5 and drawn.time(0.6).value == 1.0
+    scene, first = scene_of(HERTZ), HERTZ.methods[0]
+    found = case.once(HERTZ, first, scene, 4, solve=breaks)
+    assert found["status"] == "RuntimeError: out of luck" and not found["values"]
+    assert math.isnan(found["cpu_s"])
+    cost, status = dict.fromkeys(case.COSTS, 1.0), SimpleNamespace(value="under-resolved")
+    bad = SimpleNamespace(converged=False, cost=cost, status=status, last_fitting={})
+    bad.quantities = {"p_max_Pa": 2.0 * HERTZ.exact(scene)["p_max_Pa"]}
+    strict = case.once(HERTZ, first, scene, 4, solve=lambda *_: bad)
+    lenient = case.once(HERTZ, replace(first, strict=False), scene, 4, solve=lambda *_: bad)
+    rows = [row | {"refined": "resolution", "kernel": 0.1} for row in (found, strict, lenient)]
+    frame = pd.DataFrame(case.with_errors(HERTZ, scene, rows))
+    assert np.isnan(frame["error"][:2]).all() and frame["error"][2] == pytest.approx(1.0)
+    assert case.reached(frame, COUPLED, 1.1).value == 1.0
+    with pytest.raises(RuntimeError, match="2 usable resolutions, 3 are needed"):
+        case.limits(HERTZ, made(COUPLED, OF[COUPLED], VALUES)[:2], [COUPLED])
 
 
 def test_repeats_become_their_median():
-    found = measuring.merged(solved_points(0.2, 2.0, 1.0, COUPLED, cells=(1, 2, 3)))
-    assert (found.cpu_s, found.spread, found.repeats) == (4.0, 9.0, 3)
+    found = case.merged(made(COUPLED, (0.2, 2.0, 1.0), VALUES)[:3])
+    assert (found["cpu_s"], found["spread"]) == (64.0, 16.0)
 
 
 def test_distance_of_profiles():
     z = np.linspace(0.0, 1.0, 11)
-    assert measuring.profile_distance((z, 1.01 * z), (z, z)) == pytest.approx(0.01)
-    assert math.isnan(measuring.profile_distance(None, (z, z)))
+    assert case.profile_distance((z, 1.01 * z), (z, z)) == pytest.approx(0.01)
 
 
 def test_a_small_study_from_end_to_end(tmp_path, monkeypatch):
     """Two coarse rungs more than an extrapolation needs, in this process: the pieces fit the solvers."""
-    monkeypatch.setattr(measuring.measured, "alone", lambda function, *arguments: 0.1)
-    monkeypatch.setattr(measuring, "REPEATS", 1)
+    monkeypatch.setattr(case.measured, "alone", lambda function: 0.1)
+    monkeypatch.setattr(case, "REPEATS", 1)
     ladders = {COUPLED: (3, 4, 6), AXISYMMETRIC: (4, 6, 8)}
-    small = replace(
-        HERTZ,
-        methods=tuple(replace(HERTZ.method(name), ladder=ladder) for name, ladder in ladders.items()),
-    )
+    small = tuple(replace(method(HERTZ, name), ladder=ladder) for name, ladder in ladders.items())
+    monkeypatch.setitem(case.STUDIED, "hertz", replace(HERTZ, methods=small))
     context = Context("work-precision", tmp_path, "full", lambda *_: None)
-    outcome = replace(case.CASES[0], problems=(small,), solver=models.solve).run(context)
-    assert {name.split(".")[1] for name in outcome.values} == {
-        *("hertz-1", "hertz-0-3", "hertz-monotone-sam", "hertz-monotone-fem")
-    }
-    assert outcome.values["work-precision.hertz-monotone-sam"].value < 1.0
-    assert [figure.png for figure in outcome.figures] == [
-        f"figures/work-precision-{n}.png" for n in ("advice", "hertz")
-    ]
-    assert read_rows((tmp_path / "figures/work-precision-advice.csv").read_text(encoding="utf-8"))
-    assert len(outcome.tables) == 5
-
-
-def test_figures_of_synthetic_curves(tmp_path):
-    n = np.array([2, 4, 8, 16])
-    lines = {
-        "SAM": Line(0.01 * n**2.0, 0.2 / n**2.0, n),
-        "FEM, 3D": Line(1.0 * n**3.0, np.where(n > 2, 0.3 / n, np.nan), n),
-        "another": Line(np.full(4, np.nan), np.full(4, np.nan), n),
-    }
-    drawing = curves({"resolution": (lines, 1e-3), "load steps": (lines, 0.0)}, "error")
-    assert len(drawing.data["method"]) == 2 * 12
-    labels = [text.get_text() for text in drawing.figure.legends[0].get_texts()]
-    assert labels[:-2] == ["SAM", "FEM, 3D"] and findings(drawing.figure) == []
-    assert save(drawing, tmp_path / "curves")[0].stat().st_size > 5000
-    times = {"elastic": {"SAM": Reached(0.1, False, 0.0), "FEM, 3D": Reached(None, False, 0.02)}}
-    assert len(overview(times, "1 %").data["kind"]) == 2
+    frame = pd.DataFrame(case.frame(context, ["hertz"], models.solve))
+    assert len(frame) == 6 and (frame["error"] < 0.1).all()
+    assert case.growth(frame[frame["method"] == COUPLED], "error") < 1.0
+    figures = [context.save(plot) for plot in (case.advice(FILE, frame), case.errors(FILE, frame, "hertz"))]
+    assert all((tmp_path / figure.png).stat().st_size > 1000 and not figure.findings for figure in figures)
+    none = case.errors(FILE, frame.assign(error=math.nan), "hertz").drawing  # without an answer: no curve
+    assert len(none.figure.legends[0].get_texts()) == 2 and len(none.data["method"]) == 6
     nowhere = overview({"running-in": {"SAM": Reached(None, False, 0.04)}}, "1 %")
     assert save(nowhere, tmp_path / "nowhere")[0].stat().st_size > 1000
-
-
-def test_advice_for_a_scene_without_a_measurement():
-    scene = loaded(load_scene(SCENES / "flat-punch.toml"))
-    assert advice_of(scene, ("sam",))["kind"] is None
-    assert "no error against run time" in advice_of(scene, ("sam",))["words"]
+    assert read_rows((tmp_path / "figures/work-precision-advice.csv").read_text(encoding="utf-8"))

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A publication that is killed on the way goes on with what is missing, to the same values and figures."""
 
+import gzip
 import json
 from concurrent.futures import Executor, Future
 from dataclasses import replace
@@ -12,10 +13,10 @@ from test_report import sketch
 
 from sam.scene import Status
 from samfem import publishing
-from verification.cases.case import Case, Context, NotDrawnError, Outcome, Plot, with_loading
+from verification.cases.case import Case, Context, Figure, NotDrawnError, Outcome, Plot, with_loading
 from verification.judging import Measured
 from verification.runs import models
-from verification.suite import earlier, freshness, outcomes, verify
+from verification.suite import freshness, outcomes, verify
 
 NAMES = ("timed", "first", "second")
 ROWS = [row(f"{name}.one") for name in NAMES]
@@ -71,11 +72,15 @@ def published(monkeypatch, counted):
     made = Published()
     for module in (publishing, freshness):
         monkeypatch.setattr(module, "all_cases", lambda: {name: made.case(name) for name in NAMES})
-    for module in (verify, freshness, earlier):
+    for module in (verify, freshness):
         monkeypatch.setattr(module, "load_rows", lambda: ROWS)
     monkeypatch.setattr(publishing, "Processes", Here)
     monkeypatch.setattr(Here, "started", [])
     return made
+
+
+def report_in(base, name="out") -> dict:
+    return json.loads((base / name / "results.json").read_text(encoding="utf-8"))
 
 
 def run(base, out="out", store="store", code=0) -> dict[str, bytes]:
@@ -98,6 +103,11 @@ def test_killed_twice_it_gives_the_same_gates_and_figures_and_repeats_nothing(tm
     assert published.runs == ["first", "second", "second", "timed", "timed"] and counted == [models.SAM]
     assert found == run(tmp_path, "other", "other-store")
     assert {"gates.csv", *(f"{name}-curve.png" for name in NAMES)} <= found.keys()
+    table = tmp_path / "other" / "figures" / "first-curve.csv"
+    table.write_text("x,y\n" * 2000)
+    figure = outcomes.packed(Figure("", "", "", "", "figures/first-curve.csv"), tmp_path / "other")
+    assert gzip.decompress((tmp_path / "other" / figure.csv).read_bytes()) == b"x,y\n" * 2000
+    assert outcomes.packed(figure, tmp_path / "other") == figure and not table.exists()
     assert not (tmp_path / "store" / publishing.SCRATCH).exists()
     assert not (tmp_path / "out" / "runs").exists()
 
@@ -106,11 +116,14 @@ def test_what_measures_times_runs_last_and_alone_and_is_kept_too(tmp_path, publi
     first = run(tmp_path)
     assert Here.started == [("first", 2), ("second", 2), ("timed", 1)]
     assert run(tmp_path, "again") == first and len(published.runs) == 3
+    before = report_in(tmp_path)
+    assert run(tmp_path, store="new") == first and len(published.runs) == 3  # of this code, without a store
+    assert [report_in(tmp_path)[key] for key in ("cases", "gates")] == [before["cases"], before["gates"]]
 
 
 def test_the_longest_begin_and_of_other_code_nothing_is_taken(tmp_path, published, monkeypatch):
     run(tmp_path)
-    results = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
+    results = report_in(tmp_path)
     for case in results["cases"]:
         case |= {"seconds": {"second": 9.0, "first": 1.0}.get(case["name"]), "code": "of other code"}
     (tmp_path / "out" / "results.json").write_text(json.dumps(results))
@@ -121,22 +134,12 @@ def test_the_longest_begin_and_of_other_code_nothing_is_taken(tmp_path, publishe
     assert published.runs == ["second", "first", "timed"]
 
 
-def test_what_a_report_holds_of_this_code_stays_in_it_without_a_store(tmp_path, published, capsys):
-    before = run(tmp_path)
-    results = (tmp_path / "out" / "results.json").read_text(encoding="utf-8")
-    assert run(tmp_path, store="new") == before and len(published.runs) == 3
-    again = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
-    assert [again[key] for key in ("cases", "gates")] == [
-        json.loads(results)[key] for key in ("cases", "gates")
-    ]
-
-
 def test_one_case_of_other_code_runs_again_beside_what_stays_and_a_kill_loses_nothing(
     tmp_path, published, monkeypatch
 ):
     before = run(tmp_path)
     place = tmp_path / "out" / "results.json"
-    results = json.loads(place.read_text(encoding="utf-8"))
+    results = report_in(tmp_path)
     results["cases"][1]["code"] = results["cases"][2]["code"] = "of other code"
     del results["cases"][2]["inputs"]  # of an older format
     place.write_text(json.dumps(results))
@@ -145,10 +148,10 @@ def test_one_case_of_other_code_runs_again_beside_what_stays_and_a_kill_loses_no
     with monkeypatch.context() as killed, pytest.raises(KeyboardInterrupt):
         killed.setattr(verify, "finish", interrupted)
         publishing.publish([NAMES[1]], store=tmp_path / "new", **where)
-    assert not json.loads(place.read_text(encoding="utf-8"))["complete"]
+    assert not report_in(tmp_path)["complete"]
     assert publishing.publish([NAMES[1]], store=tmp_path / "newer", **where) == 0
     assert published.runs == 2 * [NAMES[1]]  # the third is older too, and was not asked for
-    codes = [case["code"] for case in json.loads(place.read_text(encoding="utf-8"))["cases"]]
+    codes = [case["code"] for case in report_in(tmp_path)["cases"]]
     assert codes[0] == codes[1] != codes[2] == "of other code"
     assert run(tmp_path, store="newer") == before and published.runs[2:] == [NAMES[2]]
 
@@ -157,14 +160,13 @@ def test_what_stays_is_judged_by_the_gates_of_today_unless_they_measure_somethin
     tmp_path, published, monkeypatch
 ):
     def gates(**changed):
-        for module in (verify, freshness, earlier):
+        for module in (verify, freshness):
             monkeypatch.setattr(module, "load_rows", lambda: [row(ROWS[0].id, **changed), *ROWS[1:]])
 
     run(tmp_path)
-    place = tmp_path / "out" / "results.json"
     gates(tolerance=0.001)
     run(tmp_path, store="new", code=1)
-    results = json.loads(place.read_text(encoding="utf-8"))
+    results = report_in(tmp_path)
     assert [case["status"] for case in results["cases"]] == ["failed", "passed", "passed"]
     assert [gate["tolerance"] for gate in results["gates"]] == [0.001, 0.1, 0.1] and len(published.runs) == 3
     gates(metric="absolute")
@@ -174,14 +176,6 @@ def test_what_stays_is_judged_by_the_gates_of_today_unless_they_measure_somethin
 
 def interrupted(*arguments, **keys):
     raise KeyboardInterrupt
-
-
-def test_a_report_of_another_level_is_left_alone(tmp_path, published, capsys):
-    before = run(tmp_path)
-    where = {"out": tmp_path / "out", "store": tmp_path / "store", "workers": 2}
-    assert publishing.publish([], level="quick", **where) == 2
-    assert "out holds a report of level full: choose another folder" in capsys.readouterr().err
-    assert run(tmp_path) == before
 
 
 class Shared(Case):
@@ -212,7 +206,7 @@ def test_scenes_of_a_long_case_are_solved_ahead_and_the_case_says_their_time(
     order = [name for name, _ in Here.started]
     assert order == ["first", "long", "long", "long"]  # two scenes, and the case
     assert counted == 3 * [models.SAM]  # "first" has one of the scenes, and the second leads to another
-    results = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
+    results = report_in(tmp_path)
     assert results["cases"][0]["seconds"] > 0.0 and not results["cases"][0]["failure"]
 
 
@@ -261,7 +255,7 @@ def test_of_a_figure_that_cannot_be_drawn_the_rest_and_the_gates_are_published(
     monkeypatch.setattr(publishing, "all_cases", lambda: cases)
     monkeypatch.setattr(verify, "load_rows", lambda: [row(f"{name}.one") for name in cases])
     assert {"first-curve.png", "second-curve.png"} <= run(tmp_path, code=1).keys()
-    results = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
+    results = report_in(tmp_path)
     first, second = results["cases"]
     assert (first["status"], first["failure"], second["status"]) == ("failed", "", "passed")
     assert "ValueError: no place for a label (test_publish.py" in first["figures"][1]["findings"][0]
@@ -273,7 +267,7 @@ def test_of_a_figure_that_cannot_be_drawn_the_rest_and_the_gates_are_published(
 def test_a_case_that_breaks_off_is_red_and_runs_again(tmp_path, published, capsys):
     published.problem = "second"
     run(tmp_path, code=1)
-    results = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
+    results = report_in(tmp_path)
     status = {case["name"]: (case["status"], case["failure"][:16]) for case in results["cases"]}
     assert status["second"] == ("failed", "RuntimeError: no") and status["first"] == ("passed", "")
     assert "of 3: second: RuntimeError: no" in capsys.readouterr().out
@@ -290,3 +284,11 @@ def test_an_unknown_case_and_a_folder_of_something_else_are_refused(tmp_path, pu
     assert publishing.publish([], out=tmp_path / "mine", **where) == 2
     assert "first" in (said := capsys.readouterr().err) and "no verification report" in said
     assert published.runs == []
+
+
+def test_a_report_of_another_level_is_left_alone(tmp_path, published, capsys):
+    before = run(tmp_path)
+    where = {"out": tmp_path / "out", "store": tmp_path / "store", "workers": 2}
+    assert publishing.publish([], level="quick", **where) == 2
+    assert "out holds a report of level full: choose another folder" in capsys.readouterr().err
+    assert run(tmp_path) == before

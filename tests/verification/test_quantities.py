@@ -32,9 +32,7 @@ def peak(**columns):
 
 
 def made(model: str, change=lambda field: field):
-    """A result with these fields. change: of the pressure on the cells, (nx, ny), and of every other
-    field.
-    """
+    """A result with these fields; change: of the pressure (nx, ny), and of every other field."""
     corners = np.stack(
         np.meshgrid(*((np.append(c, c[-1] + h) - h / 2) for c, h in ((X, 0.5), (Y, 0.5))), indexing="ij")
     )

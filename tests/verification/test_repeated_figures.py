@@ -9,7 +9,7 @@ import pytest
 from sam.scene.verdict import loop_places
 from tests.system.test_repeated_loading import MELAN, PRAGER, YIELD, pressed
 from verification.figures.check import findings
-from verification.figures.repeated import classified, drawings_of
+from verification.figures.repeated import drawings_of
 from verification.figures.run import drawings_of as drawings_of_run
 from verification.runs.files import read_run, write_run
 from verification.runs.models import FEM, SAM, solve
@@ -51,14 +51,6 @@ def test_loops_close_where_the_body_alternates(run):
         volume = loop[["epxx", "epyy", "epzz"]].to_numpy().sum(axis=1)
         assert np.abs(volume).max() < 1e-9
     assert first["szz_Pa"].iloc[-1] == pytest.approx(first["szz_Pa"].iloc[0], rel=0.05)
-
-
-def test_the_map_has_the_cells_beside_the_plane(run):
-    corners, found = classified(run.folder)
-    assert corners[..., 1].min() == 0 and set(found) <= set(range(6)) and 3 in found
-    x, z = corners.mean(axis=1).T
-    alternating = found == 3
-    assert np.abs(x[alternating]).max() < 1e-5 and z[alternating].max() < 2e-5
 
 
 def test_points_of_loops_are_different():

@@ -3,7 +3,6 @@
 
 import json
 import re
-from html.parser import HTMLParser
 from importlib import resources
 from xml.etree import ElementTree
 
@@ -12,6 +11,7 @@ import pytest
 from builders import scene_text
 from fake_case import FakeCase, row
 from matplotlib.lines import Line2D
+from page_checks import PageReader, broken_links, faults_of
 from stored import COARSE, COARSE_KEYS
 
 from samfem.cli import main
@@ -22,7 +22,7 @@ from verification.figures.style import Drawing, new_figure, save
 from verification.judging import Measured
 from verification.references import contact_of
 from verification.runs.files import FolderError
-from verification.suite import listing, verify
+from verification.suite import verify
 
 ROWS = [
     row(f"{case}.{name}", quantity=f"quantity {name}, FEM", reason=f"because of {name}")
@@ -74,9 +74,8 @@ CASES = {
 
 @pytest.fixture(autouse=True)
 def _small_cases(monkeypatch):
-    for module in (verify, listing):
-        monkeypatch.setattr(module, "all_cases", lambda: CASES)
-        monkeypatch.setattr(module, "load_rows", lambda: ROWS)
+    monkeypatch.setattr(verify, "all_cases", lambda: CASES)
+    monkeypatch.setattr(verify, "load_rows", lambda: ROWS)
 
 
 def run(out, *cases, level="quick"):
@@ -90,24 +89,6 @@ def results(out):
     return json.loads((out / "results.json").read_text(encoding="utf-8"), parse_constant=no_constant)
 
 
-class Page(HTMLParser):
-    """Tags with their attributes, and the text."""
-
-    def __init__(self, text):
-        super().__init__()
-        self.tags, self.text = [], ""
-        self.feed(text)
-
-    def handle_starttag(self, tag, attrs):
-        self.tags.append((tag, dict(attrs)))
-
-    def handle_data(self, data):
-        self.text += data
-
-    def all(self, name):
-        return [attributes for tag, attributes in self.tags if tag == name]
-
-
 def test_all_gates_held_is_exit_code_0(tmp_path, capsys):
     assert run(tmp_path / "out", "good") == 0
     assert "2 gates passed, 0 failed" in capsys.readouterr().out
@@ -118,41 +99,32 @@ def test_one_red_gate_is_exit_code_1(tmp_path, case):
     assert run(tmp_path / "out", "good", case) == 1
 
 
-def test_broken_case_does_not_stop_the_others(tmp_path, capsys):
-    assert run(tmp_path / "out") == 1
-    status = {case["name"]: case["status"] for case in results(tmp_path / "out")["cases"]}
+def gates_of(out) -> dict[str, str]:
+    return {gate["id"]: gate["status"] for gate in results(out)["gates"]}
+
+
+def test_broken_case_does_not_stop_the_others_and_each_level_has_its_cases(tmp_path, capsys):
+    out = tmp_path / "out"
+    assert run(out) == 1
+    status = {case["name"]: case["status"] for case in results(out)["cases"]}
     assert status == {"good": "passed", "bad": "failed", "broken": "failed", "slow": "not run"}
-    gates = {gate["id"]: gate["status"] for gate in results(tmp_path / "out")["gates"]}
-    assert (
-        gates["broken.one"] == "unchecked" and gates["bad.one"] == "failed" and gates["slow.one"] == "not run"
-    )
+    found = gates_of(out)
+    assert [found[f"{name}.one"] for name in CASES] == ["passed", "failed", "unchecked", "not run"]
     assert "no</b> convergence" in capsys.readouterr().out
-
-
-def test_level_full_runs_more(tmp_path):
-    run(tmp_path / "out", level="full")
-    assert {gate["id"]: gate["status"] for gate in results(tmp_path / "out")["gates"]}[
-        "slow.one"
-    ] == "unchecked"
-
-
-def test_named_case_runs_at_any_level(tmp_path):
-    run(tmp_path / "out", "slow")
-    assert [case["name"] for case in results(tmp_path / "out")["cases"] if case["status"] != "not run"] == [
-        "slow"
-    ]
-    assert {case["unmet"] for case in results(tmp_path / "out")["cases"]} == {"", "not asked for"}
+    run(out, level="full")
+    assert gates_of(out)["slow.one"] == "unchecked"
+    run(out, "slow")  # at any level, where it is named
+    cases = results(out)["cases"]
+    assert [case["name"] for case in cases if case["status"] != "not run"] == ["slow"]
+    assert {case["unmet"] for case in cases} == {"", "not asked for"}
 
 
 def test_unknown_case_is_exit_code_2_and_nothing_is_created(tmp_path, capsys):
     assert run(tmp_path / "out", "goood") == 2
     message = capsys.readouterr().err
     assert "'goood' (did you mean good?)" in message and "verify --list" in message
+    assert run(tmp_path / "out", level="half") == 2
     assert list(tmp_path.iterdir()) == []
-
-
-def test_unknown_level_is_exit_code_2(tmp_path):
-    assert run(tmp_path / "out", level="half") == 2 and list(tmp_path.iterdir()) == []
 
 
 def test_folder_with_other_files_is_left_alone(tmp_path):
@@ -192,8 +164,10 @@ def test_list_has_one_line_a_case_and_gates_the_rest(tmp_path, monkeypatch, caps
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("flags", [[], ["--list"], ["--gates"]])
-@pytest.mark.parametrize(("name", "near"), [("goood", "good"), ("br", "broken"), ("slwo", "slow")])
+@pytest.mark.parametrize(
+    ("flags", "name", "near"),
+    [([], "goood", "good"), (["--list"], "br", "broken"), (["--gates"], "slwo", "slow")],
+)
 def test_an_unknown_case_suggests_near_names(tmp_path, monkeypatch, capsys, flags, name, near):
     monkeypatch.chdir(tmp_path)
     assert main(["verify", name, "good", *flags]) == 2
@@ -203,7 +177,7 @@ def test_an_unknown_case_suggests_near_names(tmp_path, monkeypatch, capsys, flag
 
 
 def page_of(out, name="other.html"):
-    return Page((out / name).read_text(encoding="utf-8"))
+    return PageReader((out / name).read_text(encoding="utf-8"))
 
 
 def test_pages_need_no_script_and_what_they_link_is_there(tmp_path):
@@ -211,31 +185,16 @@ def test_pages_need_no_script_and_what_they_link_is_there(tmp_path):
     run(out)
     pages = {name: page_of(out, name) for name in ("index.html", "other.html")}
     assert "Good case" in pages["other.html"].text and "Good case" not in pages["index.html"].text
-    ids = {name: {each.get("id") for _, each in page.tags} for name, page in pages.items()}
-    for name, page in pages.items():
-        assert (
-            not page.all("script") and not page.all("link") and all(each["alt"] for each in page.all("img"))
-        )
-        for link in [each["href"] for each in page.all("a")] + [each["src"] for each in page.all("img")]:
-            target, _, place = link.partition("#")
-            assert (out / target).exists() and (not place or place in ids[target or name]), link
+    assert [faults_of(page) for page in pages.values()] == [[], []]
+    written = {name: page_of(out, name) for name in ("README.md", "gates.csv", "results.json")}
+    assert broken_links(pages | {name: PageReader("") for name in written}, out) == []
     assert [image["src"] for image in pages["other.html"].all("img")] == ["figures/good-curve.png"]
+    assert "figures/good-aside.png" in {anchor["href"] for anchor in pages["other.html"].all("a")}
     assert 'url=index.html"' in (out / "report.html").read_text(encoding="utf-8")
-
-
-def test_a_single_file_has_everything_in_it(tmp_path):
-    run(tmp_path / "out")
-    assert main(["report", str(tmp_path / "out"), "--single-file"]) == 0
-    page = page_of(tmp_path / "out", "report.html")
+    assert main(["report", str(out), "--single-file"]) == 0
+    page = page_of(out, "report.html")
     assert [image["src"][:22] for image in page.all("img")] == ["data:image/png;base64,"]
     assert all(words in page.text for words in ("Good case", "Bad case", "Broken case", "because of two"))
-
-
-def test_figure_beside_the_page_is_linked_and_not_shown(tmp_path):
-    run(tmp_path / "out", "good")
-    page = page_of(tmp_path / "out")
-    assert "Another curve" in page.text and len(page.all("img")) == 1
-    assert "figures/good-aside.png" in {anchor["href"] for anchor in page.all("a")}
 
 
 def in_space(context):
@@ -245,41 +204,26 @@ def in_space(context):
     return outcome
 
 
-@pytest.fixture
-def seen(tmp_path, monkeypatch):
-    """The page of a case with a picture in space, drawn by the function that is given."""
-
-    def of(draw):
-        monkeypatch.setattr(space, "draw", draw)
-        monkeypatch.setitem(CASES, "good", FakeCase("good", "Good", "Does it hold?", does=in_space))
-        run(tmp_path / "out", "good")
-        return page_of(tmp_path / "out")
-
-    return of
-
-
-def test_a_picture_in_space_is_on_the_page_and_links_to_itself_alone(tmp_path, seen):
+def test_a_picture_in_space_is_on_the_page_or_why_the_machine_cannot_draw_it(tmp_path, monkeypatch):
     save(sketch(), tmp_path / "picture", data=False)
-    asked = []
+    monkeypatch.setitem(CASES, "good", FakeCase("good", "Good", "Does it hold?", does=in_space))
+    out = tmp_path / "out"
 
     def draw(folder, name):
-        asked.append((folder, name))
+        assert (folder, name) == (out / "runs" / "good" / "sam", "worn")
         return {name: (tmp_path / "picture.png").read_bytes()}
 
-    page = seen(draw)
-    assert asked == [(tmp_path / "out" / "runs" / "good" / "sam", "worn")]
-    assert "In space" in page.text and len(page.all("img")) == 2
-    links = {anchor["href"] for anchor in page.all("a")}
-    assert "figures/good-space.png" in links and not links & {"", "figures/good-space.csv"}
-
-
-def test_a_machine_that_cannot_draw_in_space_says_so_on_the_page(tmp_path, seen):
-    def draw(folder, name):
+    def cannot(folder, name):
         raise space.CannotDrawError("no pictures in space: install EGL")
 
-    page = seen(draw)
-    assert "No pictures in space: install EGL." in page.text and len(page.all("img")) == 1
-    assert not (tmp_path / "out" / "figures" / "good-space.png").exists()
+    for how, count in ((draw, 2), (cannot, 1)):
+        monkeypatch.setattr(space, "draw", how)
+        run(out, "good")
+        page = page_of(out)
+        links = {anchor["href"] for anchor in page.all("a")}
+        assert len(page.all("img")) == count and ("figures/good-space.png" in links) is (how is draw)
+        assert not links & {"", "figures/good-space.csv"}
+        assert ("No pictures in space: install EGL." in page.text) is (how is cannot)
 
 
 def test_page_says_what_held_and_why(tmp_path):
@@ -288,25 +232,12 @@ def test_page_says_what_held_and_why(tmp_path):
     assert "2 of 4 gates hold, 2 failed" in index and "1 further case: 1 of the full level." in index
     text = page_of(tmp_path / "out").text
     assert "2 of 3 cases failed." in text and "Not in this report" in text
-    assert [text.index(f"{each} case") for each in ("Bad", "Good", "Slow")] == sorted(
-        text.index(f"{each} case") for each in ("Bad", "Good", "Slow")
-    )
-    for expected in (
-        "Does it hold?",
-        "because of two",
-        "Force",
-        "a<b&c",
-        "not a finite number",
-        "scene.toml",
-        "Small",
-    ):
-        assert expected in text
-
-
-def test_page_escapes_what_cases_say(tmp_path):
-    run(tmp_path / "out", "broken")
-    text = (tmp_path / "out" / "other.html").read_text(encoding="utf-8")
-    assert "<b>no</b>" not in text and "&lt;b&gt;no&lt;/b&gt; convergence" in text
+    places = [text.index(f"{each} case") for each in ("Bad", "Good", "Slow")]
+    assert places == sorted(places)
+    said = ("Does it hold?", "because of two", "Force", "a<b&c", "not a finite number", "scene.toml", "Small")
+    assert [words for words in said if words not in text] == []
+    raw = (tmp_path / "out" / "other.html").read_text(encoding="utf-8")
+    assert "<b>no</b>" not in raw and "&lt;b&gt;no&lt;/b&gt; convergence" in raw
 
 
 def test_junit_has_one_testcase_a_gate(tmp_path):
@@ -349,13 +280,9 @@ def test_rebuild_writes_the_same_page_without_running(tmp_path, monkeypatch):
     monkeypatch.setattr(verify, "older", lambda results: {})  # the small cases are not of the suite
     assert verify.rebuild(out) == 0
     assert {name: (out / name).read_bytes() for name in pages} == pages
-
-
-def test_rebuild_shows_a_missing_figure(tmp_path):
-    run(tmp_path / "out", "good")
-    (tmp_path / "out" / "figures" / "good-curve.png").unlink()
-    assert verify.rebuild(tmp_path / "out") == 0
-    assert "figures/good-curve.png is missing" in page_of(tmp_path / "out").text
+    (out / "figures" / "good-curve.png").unlink()
+    assert verify.rebuild(out) == 0
+    assert "figures/good-curve.png is missing" in page_of(out).text
 
 
 def test_rebuild_refuses_a_folder_without_a_finished_report(tmp_path, monkeypatch, capsys):
@@ -369,11 +296,7 @@ def test_rebuild_refuses_a_folder_without_a_finished_report(tmp_path, monkeypatc
         run(tmp_path / "out", "good")
     assert main(["report", str(tmp_path / "out")]) == 2
     assert not (tmp_path / "out" / "index.html").exists() and "no finished" in capsys.readouterr().err
-
-
-def test_interrupted_report_can_be_run_again(tmp_path):
-    (tmp_path / "results.json").write_text('{"format": "samfem-verification", "complete": false}')
-    assert run(tmp_path, "good") == 0
+    assert run(tmp_path / "out", "bad") == 1  # an interrupted report can be run again
 
 
 def test_figures_are_deterministic_and_say_their_numbers(tmp_path):

@@ -41,17 +41,6 @@ def some():
     )
 
 
-@pytest.fixture
-def answer(monkeypatch):
-    """Puts a function of the result in the place of every solve's result."""
-
-    def put(change):
-        solve = models.solve
-        monkeypatch.setattr(models, "solve", lambda scene, model: change(solve(scene, model)))
-
-    return put
-
-
 def test_rows_are_complete():
     assert len(ROWS) == len(EVERY) and {row.topic for row in EVERY} == set(TOPICS)
     assert all({SAM, FEM} <= set(row.expected) and row.what for row in EVERY)
@@ -72,71 +61,55 @@ def test_right_cells_and_expected_errors_hold_every_gate(some):
     assert [len(table.rows) for table in tables] == [len(rows), 8, 9]  # matrix, right cells, errors
 
 
+def times(quantity: str, factor: float):
+    """A result with a quantity times a factor, which is the quantity of one that has none."""
+
+    def change(result):
+        value = factor * (result.quantities[quantity] or 1.0)
+        return replace(result, quantities={**result.quantities, quantity: value})
+
+    return change
+
+
+def ended(status: Status, message: str):
+    return lambda result: replace(result, status=status, message=message)
+
+
+def overflow(result):
+    with warnings.catch_warnings():
+        return np.exp(np.array([1e3]))
+
+
 @pytest.mark.parametrize(
-    ("name", "quantity", "factor"),
+    ("name", "model", "change", "said"),
     [
-        ("poisson-0", "p_center_Pa", 1.006),
-        ("force-1e-15", "approach_m", 0.997),
-        ("poisson-0.5", "mises_max_Pa", 1.02),
+        ("poisson-0", SAM, times("p_center_Pa", 1.006), "> 0.0"),
+        ("force-1e-15", SAM, times("approach_m", 0.997), "> 0.0"),
+        ("poisson-0.5", SAM, times("mises_max_Pa", 1.02), "> 0.0"),
+        ("poisson-0", SAM, times("residual_uz_center_m", np.nan), "not finite: residual_uz_center_m"),
+        ("one-cell", SAM, ended(Status.CONVERGED, ""), "converged, but an error was expected"),
+        ("one-cell", SAM, ended(Status.UNDER_RESOLVED, "failed"), "does not say"),
+        ("one-cell", SAM, ended(Status.NOT_CONVERGED, "failed"), "expected under-resolved"),
+        ("poisson-0", FEM, ended(Status.NOT_CONVERGED, "raise it"), "not-converged: raise it"),
+        ("poisson-0", SAM, lambda result: 1 / 0, "ZeroDivisionError: division by zero"),
+        ("poisson-0", SAM, overflow, "overflow encountered in exp"),
     ],
 )
-def test_a_wrong_answer_turns_the_matrix_red(answer, name, quantity, factor):
-    answer(
-        lambda result: replace(
-            result, quantities={**result.quantities, quantity: factor * result.quantities[quantity]}
-        )
-    )
-    rows, cells = judged(name)
-    assert cells[name][SAM].kind is Kind.WRONG and "> 0.0" in cells[name][SAM].text
-    assert red_of(rows, cells) == {"wrong"}
-
-
-def test_what_is_not_finite_is_wrong(answer):
-    answer(lambda result: replace(result, quantities={**result.quantities, "residual_uz_center_m": np.nan}))
-    assert judge(ROWS["poisson-0"], SAM, Bench()).text == "not finite: residual_uz_center_m"
-
-
-def test_an_answer_where_an_error_is_expected_is_wrong(answer):
-    answer(lambda result: replace(result, status=Status.CONVERGED, message=""))
-    rows, cells = judged("one-cell")
-    assert cells["one-cell"][SAM].text == "converged, but an error was expected"
-    assert red_of(rows, cells) == {"wrong"}
-
-
-@pytest.mark.parametrize("status", [Status.UNDER_RESOLVED, Status.NOT_CONVERGED])
-def test_an_error_without_advice_or_of_another_kind_is_wrong(answer, status):
-    answer(lambda result: replace(result, status=status, message="failed"))
-    cell = judge(ROWS["one-cell"], SAM, Bench())
-    assert cell.kind is Kind.WRONG
-    assert ("does not say" if status is Status.UNDER_RESOLVED else "expected under-resolved") in cell.text
-
-
-def test_an_error_where_an_answer_is_expected_is_wrong(answer):
-    answer(lambda result: replace(result, status=Status.NOT_CONVERGED, message="raise something"))
-    assert judge(ROWS["poisson-0"], FEM, Bench()).text == "not-converged: raise something"
-
-
-def test_another_exception_and_a_warning_are_wrong(monkeypatch):
-    def divide(scene, model):
-        return 1 / 0
-
-    monkeypatch.setattr(models, "solve", divide)
-    assert judge(ROWS["poisson-0"], SAM, Bench()).text == "ZeroDivisionError: division by zero"
-
-    def overflow(scene, model):
-        with warnings.catch_warnings():
-            return np.exp(np.array([1e3]))
-
-    monkeypatch.setattr(models, "solve", overflow)
-    cell = judge(ROWS["poisson-0"], SAM, Bench())
-    assert cell.kind is Kind.WRONG and "overflow encountered in exp" in cell.text
+def test_what_is_not_as_expected_is_wrong_and_turns_the_matrix_red(monkeypatch, name, model, change, said):
+    """A wrong answer, an answer in place of an error, an error without advice or of another kind, an error in
+    place of an answer, another exception, a warning.
+    """
+    solve, row = models.solve, ROWS[name]
+    monkeypatch.setattr(models, "solve", lambda scene, model: change(solve(scene, model)))
+    cell = judge(row, model, Bench())
+    assert cell.kind is Kind.WRONG and said in cell.text
+    rest = {other: Cell(Kind.RIGHT) for other in row.expected}
+    assert "wrong" in red_of([row], {name: rest | {model: cell}})
 
 
 @pytest.mark.parametrize("apart, kind", [(0.0, Kind.RIGHT), (0.05, Kind.RIGHT), (0.2, Kind.WRONG)])
 def test_a_value_is_compared_within_the_refinement_uncertainty_of_both(monkeypatch, apart, kind):
-    """Both models converge at first order, SAM to 1 and FEM to 1 + apart; each errs by 4 % on the cells of
-    the row.
-    """
+    """SAM converges to 1, FEM to 1 + apart, at first order; each errs by 4 % on the cells of the row."""
     coarser = {SAM: plastic.larger_cells, FEM: plastic.larger_elements}
 
     def first_order(scene, model):
@@ -162,29 +135,18 @@ def test_a_check_that_compares_nothing_is_wrong():
     assert judge(empty, SAM, Bench()).text == "nothing was compared"
 
 
-def test_a_cell_without_verdict_and_a_kind_without_row_turn_red(some):
+def test_a_cell_without_verdict_a_kind_without_row_and_an_error_without_reason_turn_red(some):
     rows, cells = some
     assert red_of(rows, {**cells, "poisson-0": {SAM: cells["poisson-0"][SAM]}}) == {"rows"}
     assert red_of(rows, cells, "full") == {"topics-missing"}
-
-
-def test_an_error_without_reason_turns_red(some):
-    rows, cells = some
-    bare = [
-        replace(row, expected={**row.expected, FEM: Refused("", ["poisson"])})
-        for row in rows
-        if row.name == "poisson-0.5"
-    ]
-    assert red_of(bare, {"poisson-0.5": cells["poisson-0.5"]}) == {"errors-explained"}
-    silent = {"poisson-0.5": cells["poisson-0.5"] | {FEM: Cell(Kind.ERROR)}}
-    assert red_of([ROWS["poisson-0.5"]], silent) == {"errors-explained"}
+    row, own = ROWS["poisson-0.5"], cells["poisson-0.5"]
+    bare = replace(row, expected={**row.expected, FEM: Refused("", ["poisson"])})
+    assert red_of([bare], {row.name: own}) == {"errors-explained"}
+    assert red_of([row], {row.name: own | {FEM: Cell(Kind.ERROR)}}) == {"errors-explained"}
 
 
 def test_an_absent_cell_is_not_solved(monkeypatch):
     monkeypatch.setattr(models, "solve", None)
-    row = Row("x", "edge", "x", {}, {FEM: Absent("of the other model")})
-    assert judge(row, FEM, Bench()) == Cell(Kind.ABSENT, "of the other model")
-
-
-def test_both_models_once():
-    assert both(Absent("a")) == {SAM: Absent("a"), FEM: Absent("a")}
+    row = Row("x", "edge", "x", {}, both(Absent("of the other model")))
+    for model in (SAM, FEM):
+        assert judge(row, model, Bench()) == Cell(Kind.ABSENT, "of the other model")

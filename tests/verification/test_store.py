@@ -9,7 +9,6 @@ import signal
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import get_args
 
 import numpy as np
 import pytest
@@ -19,7 +18,7 @@ from stored import BOTH, COARSE, flipped, same
 from sam.scene import Scene, Section, Status, load_scene, read_scene, resolved
 from verification.runs import checkpoints, models, store
 from verification.runs.archive import DIGEST, read_archive, write_archive
-from verification.runs.code_version import OF_CASES, PLACES, ROOT, code_version, version_of_cases
+from verification.runs.code_version import OF_CASES, ROOT, code_version, version_of_cases
 from verification.runs.files import json_text, write_run
 from verification.runs.store import FOLDER, Store, default_store, identity, solve_or_reuse
 
@@ -32,6 +31,7 @@ def test_a_result_comes_back_with_every_type_and_bit_and_writes_the_same_run(
 ):
     found = kept.lookup(COARSE, model)
     assert found.note == "" and same(found.result, coarse_results[model])
+    assert not same(replace(found.result, message="x"), coarse_results[model])
     assert found.result.status is Status.CONVERGED and found.created
     for name, result in (("own", coarse_results[model]), ("stored", found.result)):
         write_run(result, COARSE, tmp_path / name, {})
@@ -40,11 +40,6 @@ def test_a_result_comes_back_with_every_type_and_bit_and_writes_the_same_run(
     assert all(
         (tmp_path / "own" / name).read_bytes() == (tmp_path / "stored" / name).read_bytes() for name in files
     )
-
-
-@pytest.mark.parametrize("change", [{"message": "x"}, {"warnings": []}, {"quantities": {}}])
-def test_the_comparison_of_this_test_sees_a_difference(coarse_results, change):
-    assert not same(replace(coarse_results[models.SAM], **change), coarse_results[models.SAM])
 
 
 # what it is found by
@@ -90,6 +85,9 @@ def test_a_key_at_its_default_changes_no_identity_and_no_byte(name):
     assert json_text(resolved(written)) == json_text(resolved(scene))
     assert identity(written, models.SAM) == identity(scene, models.SAM)
     assert checkpoints.identity(written, models.SAM) == checkpoints.identity(scene, models.SAM)
+    beyond = scene.model_copy(update={"solver": scene.solver.model_copy(update={"beyond_model": True})})
+    assert identity(beyond, models.SAM) != identity(scene, models.SAM)
+    assert resolved(beyond)["solver"]["beyond_model"] is True
 
 
 def _whole(section):
@@ -97,32 +95,6 @@ def _whole(section):
     fields = type(section).model_fields
     values = {field.alias or key: getattr(section, key) for key, field in fields.items()}
     return {key: _whole(value) if isinstance(value, Section) else value for key, value in values.items()}
-
-
-def test_these_scenes_have_every_table():
-    found = {type(each) for name in IDENTITIES for each in _sections(scene_of(name))}
-    assert {each.__name__ for each in _tables(Scene)} - {each.__name__ for each in found} == {"Compare"}
-
-
-def _sections(section):
-    yield section
-    for key in type(section).model_fields:
-        if isinstance(value := getattr(section, key), Section):
-            yield from _sections(value)
-
-
-def _tables(kind):
-    yield kind
-    for field in kind.model_fields.values():
-        for part in (field.annotation, *get_args(field.annotation)):
-            if isinstance(part, type) and issubclass(part, Section):
-                yield from _tables(part)
-
-
-def test_another_value_of_an_unwritten_key_is_written_and_another_identity():
-    scene = COARSE.model_copy(update={"solver": COARSE.solver.model_copy(update={"beyond_model": True})})
-    assert identity(scene, models.SAM) != identity(COARSE, models.SAM)
-    assert Scene(**resolved(scene)) == scene and resolved(scene)["solver"]["beyond_model"] is True
 
 
 def test_a_file_that_a_scene_names_counts_by_its_content(tmp_path):
@@ -158,13 +130,11 @@ def test_a_result_is_solved_once_and_fresh_on_request(tmp_path, counted):
     assert counted == [models.SAM] * 3
 
 
-def test_what_did_not_converge_is_not_kept(tmp_path, coarse_results):
-    own = Store(tmp_path)
-    own.keep(COARSE, models.SAM, replace(coarse_results[models.SAM], status=Status.UNDER_RESOLVED))
-    assert own.entries() == []
-
-
 def test_a_result_is_not_kept_if_the_code_changed_meanwhile(tmp_path, coarse_results, monkeypatch, capsys):
+    Store(tmp_path).keep(
+        COARSE, models.SAM, replace(coarse_results[models.SAM], status=Status.UNDER_RESOLVED)
+    )
+    assert Store(tmp_path).entries() == []  # neither what did not converge
     monkeypatch.setattr(store, "unchanged", lambda model: False)
     Store(tmp_path).keep(COARSE, models.SAM, coarse_results[models.SAM])
     assert Store(tmp_path).entries() == [] and "changed since the command began" in capsys.readouterr().err
@@ -197,21 +167,15 @@ def untouched(tree) -> tuple[str, ...]:
     ("path", "changes"),
     [
         ("sam/contact/normal.py", (1, 0, 1)),
-        ("sam/kernels/load_table.json", (1, 0, 1)),
         ("sam/scene/yield_curve.py", (1, 1, 1)),
         ("fem_reference/common/plasticity.py", (0, 1, 1)),
         ("verification/runs/models.py", (1, 1, 1)),
         ("verification/cases/case.py", (0, 0, 1)),
-        ("verification/cases/coated/layered.py", (0, 0, 1)),
-        ("verification/figures/style.py", (0, 0, 1)),
         ("verification/figures/space/child.py", (0, 0, 1)),
-        ("samfem/sweeping.py", (0, 0, 1)),
         ("verification/data/advice.csv", (0, 0, 1)),
         ("tests/sam/test_wear.py", (0, 0, 0)),
         ("verification/runs/code_version.py", (0, 0, 0)),
-        ("verification/suite/pages/site.py", (0, 0, 0)),
         ("verification/cases/hertz/hertz.toml", (0, 0, 0)),
-        ("verification/suite/templates/pages.css", (0, 0, 0)),
         ("verification/scenes/hertz-sphere.toml", (0, 0, 0)),
     ],
 )
@@ -220,13 +184,8 @@ def test_one_byte_changes_the_version_of_what_depends_on_it(tree, untouched, pat
     (tree / path).write_bytes(content[:-1] + b"#")
     after = versions(tree)
     (tree / path).write_bytes(content)
+    assert versions(tree) == untouched  # written again, and the same
     assert tuple(int(a != b) for a, b in zip(untouched, after, strict=True)) == changes
-
-
-def test_a_file_that_is_written_again_changes_no_version(tree, untouched):
-    path = tree / "sam" / "contact" / "normal.py"
-    path.write_bytes(path.read_bytes())
-    assert versions(tree) == untouched
 
 
 def test_a_new_file_and_another_numpy_change_the_version_too(tree, untouched, monkeypatch):
@@ -241,10 +200,6 @@ def test_a_new_file_and_another_numpy_change_the_version_too(tree, untouched, mo
     assert all(a != b for a, b in zip(untouched, versions(tree), strict=True))
 
 
-def test_every_model_has_a_version():
-    assert set(PLACES) == set(models.MODELS)
-
-
 # damage
 
 
@@ -256,17 +211,14 @@ def test_no_flipped_byte_and_no_shortened_file_gives_another_result(kept, coarse
     for place in (0, len(whole) - 1, *places.tolist()):
         flipped(path, place)
         found = kept.lookup(COARSE, models.FEM)
-        damaged += found.note.startswith("damaged: ")
-        assert found.result is None or same(
-            found.result, coarse_results[models.FEM]
-        )  # a byte of padding or of a date is none of it
+        damaged += found.note.startswith("damaged: ")  # a byte of padding or of a date is none of it
+        assert found.result is None or same(found.result, coarse_results[models.FEM])
         path.write_bytes(whole)
     assert damaged > 35
-    for length in (0, 1, len(whole) // 2, len(whole) - 1):
+    for length in (0, len(whole) - 1):
         path.write_bytes(whole[:length])
         found = kept.lookup(COARSE, models.FEM)
         assert found.result is None and found.note.startswith("damaged: ") and str(path) in found.note
-        path.write_bytes(whole)
 
 
 def test_a_damaged_entry_is_solved_again(kept, counted):
@@ -274,11 +226,8 @@ def test_a_damaged_entry_is_solved_again(kept, counted):
         flipped(entry.path, entry.size // 2)
     assert [entry.state for entry in kept.entries()] == ["damaged", "damaged"]
     _, reuse = solve_or_reuse(kept, COARSE, models.SAM)
-    assert (
-        counted == [models.SAM]
-        and reuse.text.startswith("damaged: ")
-        and reuse.text.endswith(": computed again")
-    )
+    assert counted == [models.SAM] and reuse.text.startswith("damaged: ")
+    assert reuse.text.endswith(": computed again")
     assert sorted(entry.state for entry in kept.entries()) == ["current", "damaged"]
 
 
@@ -311,23 +260,12 @@ def test_right_checksums_of_the_container_are_not_enough(kept, save, change, wor
     assert sorted(entry.state for entry in kept.entries()) == ["current", "damaged"]
 
 
-@pytest.mark.parametrize("content", [3, {"Outcome": []}, {"dict": []}, None])
+@pytest.mark.parametrize("content", [3, {"Outcome": []}])
 def test_an_entry_with_other_content_is_damage(kept, content):
     (path,) = [entry.path for entry in kept.entries() if entry.what == models.SAM]
     inside, values = read_archive(path)
     write_archive(path, inside, values | {"content": content})
     assert kept.lookup(COARSE, models.SAM).note.startswith("damaged: ")
-
-
-def test_nothing_is_unpickled(kept, tmp_path):
-    class Trap:
-        def __reduce__(self):
-            return os.mkdir, (str(tmp_path / "sprung"),)
-
-    (path,) = [entry.path for entry in kept.entries() if entry.what == models.SAM]
-    np.savez(path, **{"values.json": np.array([Trap()], dtype=object)})
-    assert kept.lookup(COARSE, models.SAM).note.startswith("damaged: ")
-    assert not (tmp_path / "sprung").exists()
 
 
 # faults and company
@@ -414,10 +352,3 @@ def test_the_folder_of_the_store(monkeypatch, tmp_path):
     ):
         monkeypatch.setenv("XDG_CACHE_HOME", caches)
         assert default_store().folder == expected / "samfem"
-
-
-def test_the_scene_kept_is_the_resolved_one(kept):
-    _, values = read_archive(kept.entries()[0].path)
-    assert values["identity"]["scene"] == {
-        key: value for key, value in resolved(COARSE).items() if key not in ("title", "compare")
-    }

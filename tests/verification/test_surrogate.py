@@ -18,9 +18,7 @@ def linear(shares: np.ndarray) -> np.ndarray:
 
 
 def test_shares_of_a_linear_function_are_those_of_its_slopes():
-    """Slopes squared over their sum: 0.68, 0.30, 0.02; 64 points and ranks in place of values move them by
-    some hundredths.
-    """
+    """Slopes squared over their sum: 0.68, 0.30, 0.02; 64 points and ranks move them by hundredths."""
     found = surrogate(design(UNIFORM, INPUTS, 64, 3), linear(design(UNIFORM, INPUTS, 64, 3)))
     assert found.predicted > 0.9
     assert found.shares[:3] == pytest.approx(SLOPES**2 / (SLOPES**2).sum(), abs=0.08)
@@ -50,9 +48,7 @@ def test_points_that_say_nothing_are_left_out():
 
 
 def test_what_has_no_cause_is_not_predicted():
-    """At most one of 60 results without any cause is believed, and most are predicted worse than by the
-    mean.
-    """
+    """At most one of 60 results is believed, and most are predicted worse than by the mean."""
     rng = np.random.default_rng(4)
     found = [surrogate(SHARES, rng.normal(size=POINTS)) for _ in range(60)]
     assert sum(each.predicted >= PREDICTS for each in found) <= 1

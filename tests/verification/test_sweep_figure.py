@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The figure of a sweep: scales, crosses, rows of panels."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from builders import scene_text
@@ -10,33 +8,29 @@ from builders import scene_text
 from verification.figures.sweep import summary
 from verification.runs.study import read_study
 
-STUDY = 'scene = "sphere.toml"\n[vary]\n"loading.force" = { range = ["0.1 N", "0.4 N"], count = 4 }\n'
+STUDY = """
+title = "odd $\\\\x"
+scene = "sphere.toml"
+[vary]
+"loading.force" = { range = ["0.1 N", "0.4 N"], count = 4 }
+"counterbody.radius" = { log = ["10 um", "1 mm"], count = 3 }
+"title" = { list = ["$\\\\bad", "b"] }
+"""
 
 
-@pytest.fixture
-def folder(folder) -> Path:
-    (folder / "sphere.toml").write_text(scene_text())
-    (folder / "study.toml").write_text(STUDY)
-    return folder
-
-
-def rows_of(content) -> list[dict]:
-    """Rows as a sweep has them, of a made-up result; the last point has none."""
-    rows = []
+def test_the_figure_marks_what_failed_and_has_the_scales_of_the_study(tmp_path):
+    """Of a made result of which the last point has none; plastic strain has a row of panels if there is
+    any.
+    """
+    (tmp_path / "sphere.toml").write_text(scene_text())
+    (tmp_path / "study.toml").write_text(STUDY)
+    content, rows = read_study(tmp_path / "study.toml"), []
     for point in content.points:
         values = dict(zip(content.study.vary, point.shown, strict=True))
         numbers = {"p_max_Pa": 1e9, "contact_radius_m": 1e-6, "approach_m": 1e-7, "peeq_max": 0.0}
         rows.append({"index": point.index, **values, "status": "converged", **numbers})
     rows[-1] |= {"status": "failed", **dict.fromkeys(numbers)}
-    return rows
-
-
-def test_the_figure_marks_what_failed_and_has_the_scales_of_the_study(folder):
-    vary = '"counterbody.radius" = { log = ["10 um", "1 mm"], count = 3 }\n'
-    vary += '"title" = { list = ["$\\\\bad", "b"] }\n'
-    (folder / "study.toml").write_text('title = "odd $\\\\x"\n' + STUDY + vary)
-    content = read_study("study.toml")
-    figure = summary(content.study, rows_of(content)).figure
+    figure = summary(content.study, rows).figure
     panels = np.array(figure.axes).reshape(3, 3)
     assert [panel.get_xscale() for panel in panels[-1]] == ["linear", "log", "linear"]
     assert panels[-1, 1].get_xlabel() == "counterbody.radius [um]"
@@ -45,11 +39,5 @@ def test_the_figure_marks_what_failed_and_has_the_scales_of_the_study(folder):
     points = [line for line in panels[0, 1].lines if line.get_marker() == "o"]
     assert sum(line.get_xdata().size for line in points) == len(content.points) - 1
     figure.draw_without_rendering()
-
-
-def test_plastic_strain_has_a_row_of_panels_if_there_is_any(folder):
-    content = read_study("study.toml")
-    rows = rows_of(content)
-    assert len(summary(content.study, rows).figure.axes) == 3
     rows[0]["peeq_max"] = 0.01
-    assert len(summary(content.study, rows).figure.axes) == 4
+    assert len(summary(content.study, rows).figure.axes) == 12

@@ -14,7 +14,6 @@ from samfem import read as samfem_read
 from samfem.compared import Uncertain
 from samfem.comparison_page import _uncertainties
 from verification.cost.plan import plan
-from verification.reference.hertz import CircularContact
 from verification.runs import models
 from verification.runs.files import read_run
 from verification.runs.models import FEM, FEM_3D, SAM
@@ -46,15 +45,12 @@ def test_the_larger_of_both_changes_counts():
     assert not converging((1.0, 1.6, 1.8), (1, 2, 3)) and order_seen((1.0, 1.6, 1.8), (1, 2, 3)) is None
 
 
-@pytest.mark.parametrize("order, seen", [(12.0, 11.995), (1e-3, 1.0005e-3)])
-def test_orders_are_looked_for_between_a_thousandth_and_twelve(order, seen):
-    sizes, beyond = np.array([1.0, 1.3, 1.8]), order**2 / seen
-    assert order_seen(7.0 - 5.0 * sizes**seen, sizes) == pytest.approx(seen, rel=1e-6)
-    assert order_seen(7.0 - 5.0 * sizes**beyond, sizes) is None
-
-
-def test_a_change_as_large_as_the_one_before_has_no_order():
-    """Though an order would make it of sizes that are not in one ratio."""
+def test_orders_are_looked_for_between_a_thousandth_and_twelve_where_changes_fall():
+    """A change as large as the one before has none, though one would make it of sizes in different ratios."""
+    sizes = np.array([1.0, 1.3, 1.8])
+    for order, seen in ((12.0, 11.995), (1e-3, 1.0005e-3)):
+        assert order_seen(7.0 - 5.0 * sizes**seen, sizes) == pytest.approx(seen, rel=1e-6)
+        assert order_seen(7.0 - 5.0 * sizes ** (order**2 / seen), sizes) is None
     sizes = (1.0, 2.0, 2.9)
     assert order_seen((1.0, 1.9998, 3.0), sizes) is not None and order_seen((1.0, 2.0002, 3.0), sizes) is None
 
@@ -151,9 +147,7 @@ def test_cells_and_steps_are_added_up():
 
 
 def test_values_that_agree_by_chance_leave_what_the_edge_of_the_contact_does():
-    """0.1 of the value, of the area 0.3, over the square of the cells in the radius; not where no edge falls
-    between cells.
-    """
+    """0.1 of the value, of the area 0.3, over the square of the cells in the radius."""
     scene = Scene(**ELASTIC | {"grid": {"cells": (65, 65), "extent": (4e-4, 4e-4)}})
     area = {"contact_area_m2": np.pi * 1e-8}
     result = made(scene)
@@ -162,12 +156,8 @@ def test_values_that_agree_by_chance_leave_what_the_edge_of_the_contact_does():
     exact = 0.1 * result.quantities["peeq_max"] / 16.25**2
     assert found["peeq_max"]["u_cells"] == found["peeq_max"]["u_num"] == pytest.approx(exact, rel=1e-12)
     assert found["contact_area_m2"]["u_cells"] == pytest.approx(0.3 * np.pi * 1e-8 / 16.25**2, rel=1e-12)
-    assert (
-        solve(scene, FEM, lambda *_: Result(**vars(touching) | {"model": FEM})).uncertainty["peeq_max"][
-            "u_cells"
-        ]
-        == 0.0
-    )
+    nodal = solve(scene, FEM, lambda *_: Result(**vars(touching) | {"model": FEM})).uncertainty
+    assert nodal["peeq_max"]["u_cells"] == 0.0
 
 
 def test_the_edge_of_a_contact_inside_an_element_leaves_something_of_the_approach_alone():
@@ -238,18 +228,15 @@ def test_a_coarser_grid_that_the_model_refuses_gives_none():
     assert found["u_num"] is None and "grid.cells" in found["flag"]
 
 
-def test_the_error_of_an_elastic_contact_is_covered():
-    """Hertz on 65 to 29 cells: pressure and approach within their uncertainty of the closed form."""
-    exact = CircularContact(0.1, SPHERE["radius"], STEEL["young"] / (1 - 0.3**2))
-    run = solve(Scene(**ELASTIC | {"grid": {"cells": (65, 65)}}), SAM)
-    for name, value in (("p_max_Pa", exact.peak_pressure), ("approach_m", exact.approach)):
-        assert abs(run.quantities[name] - value) < run.uncertainty[name]["u_num"] < 1e-2 * value
-
-
 def test_of_a_rough_body_only_what_the_balance_of_forces_decides():
-    found = solve(Scene(**ROUGH), SAM).uncertainty
+    found = entries(Scene(**ROUGH), lambda each, _: rough(each))
     assert found["approach_m"]["u_num"] > 0.0 and found["approach_m"]["cells"] == [48, 32, 22]
     assert found["p_max_Pa"]["u_num"] is None and "single spot" in found["p_max_Pa"]["flag"]
+
+
+def rough(scene: Scene) -> Result:
+    values = {"approach_m": 1 + 1 / scene.grid.cells[0], "p_max_Pa": 1.0}
+    return Result(**vars(made(scene)) | {"quantities": values})
 
 
 FINER = ELASTIC | {"grid": {"cells": (39, 39)}}
@@ -257,13 +244,7 @@ FILM = {"coating": {"young": 5e10, "poisson": 0.3, "thickness": 1e-6}}
 
 
 @pytest.mark.parametrize(
-    "tables, share",
-    [
-        (FINER | {"body": STEEL | FILM}, 0.6),
-        (FINER | {"friction": {"coefficient": 0.4}}, 0.6),
-        (ROUGH, 0.1),
-    ],
-    ids=["coated", "sliding", "rough"],
+    "tables, share", [(FINER | {"body": STEEL | FILM}, 0.6), (ROUGH, 0.1)], ids=["coated", "rough"]
 )
 def test_depths_without_a_maximum_are_left_out_of_the_others_and_change_nothing(tables, share):
     scene, seen = Scene(**tables), []

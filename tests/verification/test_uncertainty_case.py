@@ -1,64 +1,63 @@
 # SPDX-License-Identifier: MIT
-"""The case uncertainty: its problems, what counts, and that another rule turns it red."""
+"""The case uncertainty: what counts, and that another rule turns it red."""
 
-from dataclasses import replace
-
+import pandas as pd
 import pytest
-from made_results import context, red
+from made_results import context, of_frame, red
 
 from verification.cases.cost import uncertainty as study
-from verification.cases.cost.uncertainty import Found, Row, covered, of_program, of_textbook
-from verification.judging import Measured
 
 CASE = "uncertainty"
 
 
 @pytest.fixture(scope="module")
-def rows(tmp_path_factory) -> list[Row]:
+def frame(tmp_path_factory) -> pd.DataFrame:
     """The bare elastic problems, whose answers are closed forms."""
     where = context(CASE, tmp_path_factory.mktemp("case"))
     closed = ("Hertz", "sliding", "ellipsoid", "rounded")
-    own = [each for each in study.subjects(study=True) if each.kind.startswith(closed)]
-    return [row for subject in own for row in study.rows_of(where, subject)]
+    own = [each for each in study.subjects(study=True) if each[0].startswith(closed)]
+    return pd.DataFrame([row for subject in own for row in study.rows_of(where, *subject)])
 
 
-def gates(rows, rule=of_program) -> set[str]:
-    found = Found(rows)
-    values = dict(study.CASES[0].measure(found)) | {"covered": covered(rows, rule)}
-    return red(CASE, {name: Measured(value) for name, value in values.items()}, whole=True)
+def gates(frame: pd.DataFrame, factor: float = 1.0) -> set[str]:
+    """Those that are red where the uncertainties are wider by a factor."""
+    wider = frame.assign(**{"over-error": factor * frame["over-error"]})
+    wider["covered-by-uncertainty"] = (wider["error"] <= factor * frame["uncertainty"]).astype(float)
+    return red(CASE, of_frame(CASE, wider), whole=True)
 
 
-def widened(rows, factor: float) -> list[Row]:
-    return [replace(row, entry={**row.entry, "u_num": factor * row.entry["u_num"]}) for row in rows]
+def test_the_rule_holds_and_another_factor_turns_it_red(frame):
+    """The textbook rule fails here; a sixth of the uncertainty covers too little; six times say nothing."""
+    assert gates(frame) == set()
+    assert "covered" in gates(frame, 1 / 6) and {"not-too-wide", "area-not-too-wide"} <= gates(frame, 6.0)
+    assert gates(frame.assign(**{"covered-by-textbook": 1.0})) == {"textbook"}
 
 
-def test_the_rule_holds_and_the_textbook_turns_red(rows):
-    assert gates(rows) == set() and gates(rows, of_textbook) == {"covered"}
+def test_what_a_doubtful_reference_says_does_not_count():
+    entry = {"values": [1.0, 1.2, 1.5], "cells": [4, 3, 2], "u_num": 0.3, "u_steps": 0.0, "u_box": 0.0}
+    known, unknown = (study.judged(entry, 1.0, doubt=0.3 / each) for each in (3.1, 2.9))
+    assert known["covered-by-uncertainty"] == 1.0 and "over-error" not in unknown
+    assert study.judged(entry, 2.0, doubt=0.0)["covered-by-uncertainty"] == 0.0
+    frame = pd.DataFrame([{"problem": "a", **known}, {"problem": "b", **unknown}])
+    assert study.problems(frame, "over-error") == 1.0
 
 
-@pytest.mark.parametrize(
-    "factor, gate", [(1 / 6, "covered"), (6.0, "not-too-wide"), (6.0, "area-not-too-wide")]
-)
-def test_another_factor_turns_it_red(rows, factor, gate):
-    """A sixth of the uncertainty covers too little; six times as much says nothing."""
-    assert gate in gates(widened(rows, factor))
-
-
-def test_what_a_doubtful_reference_says_does_not_count(rows):
-    row = replace(rows[0], truth=rows[0].entry["values"][0])
-    assert row.known and not replace(row, doubt=of_program(row) / 2.9).known
-    missed = replace(row, truth=row.truth - 5.0 * of_program(row), doubt=of_program(row))
-    assert missed.known, "a reference that shows a miss counts"
-    doubtful = Found([row, replace(row, doubt=row.truth)])
-    assert doubtful.known == [row] and ("Values that do not count", "1 of 2") <= next(
-        words for words in study.CASES[0].setup(doubtful) if words[0].startswith("Values")
-    )
+def test_medians_are_of_quantities_with_three_values():
+    of = {
+        "peeq_max": (2.0, 3.0, 9.0),
+        "p_max_Pa": (4.0, 5.0, 6.0),
+        study.AREA: (7.0, 8.0, 9.0),
+        "few": (1.0, 1.0),
+    }
+    rows = pd.DataFrame([{"quantity": name, "x": each} for name, own in of.items() for each in own])
+    assert study.smallest_median(rows, "x") == 3.0 and study.largest_median(rows, "x") == 5.0
 
 
 def test_the_study_has_problems_that_differ():
     """Forty; one elastic sphere at rest, every law, and grids of at least five sizes."""
-    scenes = [each.drawn(0) for each in study.subjects(study=True)]
-    assert len(scenes) == 40 == len({each.kind for each in study.subjects(study=True)})
+    own = list(study.subjects(study=True))
+    scenes = [drawn(0) for _, drawn, _ in own]
+    assert len(scenes) == 40 == len({name for name, *_ in own})
     elastic = [each for each in scenes if each.body.plasticity is None and each.counterbody.shape == "sphere"]
     assert sum(each.body.coating is None and not each.coefficient for each in elastic) == 1
     laws = {each.body.plasticity.law for each in scenes if each.body.plasticity}

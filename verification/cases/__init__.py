@@ -20,6 +20,7 @@ from typing import Any
 from sam.scene import Problem, SceneError, spelling
 from verification.cases.case import Case
 from verification.cases.compared import Compared
+from verification.cases.recipes import beside
 from verification.quantities import QUANTITIES
 from verification.references import REFERENCES
 from verification.rows import FOLDER, LEVELS, CaseFile, case_files
@@ -37,7 +38,8 @@ def case_of(file: CaseFile) -> Case:
     if file.own:
         _check(file)
     if file.scene or file.frame:
-        return Compared(file.name, **said, alone=file.own, file=file)
+        needs = (lambda: beside(file, file.cannot, {})()) if file.cannot else str
+        return Compared(file.name, **said, alone=file.own or file.alone, needs=needs, file=file)
     module = import_module(f"{__name__}.{file.path.parent.name}.{file.path.stem}")
     (case,) = (case for case in module.CASES if case.name == file.name)
     return replace(case, **said, file=file)

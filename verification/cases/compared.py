@@ -193,10 +193,12 @@ class Compared(Case):
                 yield _differences(self.file, found)
             return
         solved = found[""]
+        yield from (beside(self.file, name, {})(solved.frame) for name in self.file.tables)
         yield from tables_of(self.file, solved.frame) if self.file.takes else ()
         if set(solved.results) != {"sam", "fem"}:
             return
-        rows = _side_by_side(*solved.results.values())
+        both = beside_each_other(*solved.results.values())
+        rows = [(q, number(a, 5), number(b, 5), f"{1e2 * (a / b - 1.0):+.2f} %") for q, a, b in both]
         yield SmallTable("Results", ("quantity", "SAM", "FEM", "difference"), rows)
         costs = [each.cost for each in solved.results.values()]
         rows = [(words, *(number(cost.get(n), 3) for cost in costs)) for n, words in COUNTED.items()]
@@ -206,6 +208,21 @@ class Compared(Case):
             rows = [(q.words, *(f"{1e2 * share:.2f} %" for share in refinement(solved, q))) for q in named]
             columns = "quantity", "uncertainty of SAM", "of FEM", "difference", "largest of 1 % and their sum"
             yield SmallTable("Refinement uncertainties", columns, rows)
+
+    def data(self, found: Mapping[str, Solved]) -> dict[str, Any]:
+        """Under `pairs` each quantity of SAM beside that of FEM, of variants the largest values; and what the
+        file hands on of its frame.
+        """
+        pairs: list[tuple[str, float, float]] = []
+        handed = beside(self.file, self.file.data, {})(found[""].frame) if self.file.data else {}
+        for name, solved in found.items():
+            if {"sam", "fem"} <= set(solved.results) and name not in self.file.also:
+                said = f" ({self.file.variants[name]['words'].replace('mu = ', 'μ = ')})" if name else ""
+                for words, sam, fem in beside_each_other(*(solved.results[run] for run in ("sam", "fem"))):
+                    where = words.startswith("depth of")  # a place, which the mesh decides
+                    if words.startswith("largest ") or not (name or where):
+                        pairs.append((words + said, sam, fem))
+        return {"pairs": pairs} | handed
 
     def figures(self, found: Mapping[str, Solved]) -> Iterator[Plot]:
         from verification.cases.kinds import KINDS, OVER_VARIANTS, SWEPT  # noqa: PLC0415 - loads matplotlib
@@ -327,12 +344,9 @@ def _differences(file: CaseFile, found: Mapping[str, Solved]) -> SmallTable:
     return SmallTable("What rows hold, of every variant", ("", *(QUANTITIES[q].words for q in metrics)), rows)
 
 
-def _side_by_side(sam: Result, fem: Result) -> list[tuple[str, ...]]:
-    rows = []
+def beside_each_other(sam: Result, fem: Result) -> Iterator[tuple[str, float, float]]:
+    """The quantities that both results have and that are not zero, in words."""
     for quantity in QUANTITIES.values():
         values = [each.quantities.get(quantity.row) for each in (sam, fem)]
         if all(values):
-            off = f"{1e2 * (values[0] / values[1] - 1.0):+.2f} %"
-            words = f"{quantity.words} [{quantity.unit}]" if quantity.unit else quantity.words
-            rows.append((words, *(number(value, 5) for value in values), off))
-    return rows
+            yield f"{quantity.words} [{quantity.unit}]" if quantity.unit else quantity.words, *values

@@ -17,16 +17,35 @@ from verification.cases.case import Plot, View
 from verification.cases.sweep import BOTH, fitted, spelt, words_of
 from verification.compare.rough_measures import Depths, PatchPressure, residual_line, spots
 from verification.compare.sliding_measures import SHALLOWEST
-from verification.figures import coated, rough
-from verification.figures.film import sliding_sections
-from verification.figures.friction import CYCLES, LOOKS, Curve, compared_planes, curves, profile_of
-from verification.figures.maps import FieldPair, pressure_maps
-from verification.figures.moving import grooves, new_strains
-from verification.figures.plastic import PERCENT, axis_profiles, compared_peeq, residual_surface
-from verification.figures.profiles import Profile, convergence, profiles
-from verification.figures.refinement import refinement
+from verification.figures.lines import (
+    CYCLES,
+    LOOKS,
+    PERCENT,
+    Curve,
+    below_spots,
+    convergence,
+    curves,
+    film_pressures,
+    grooves,
+    new_strains,
+    profile_of,
+    refinement,
+    residual,
+)
+from verification.figures.maps import (
+    SURFACE_AXES,
+    VON_MISES,
+    FieldPair,
+    compared_mises,
+    compared_peeq,
+    compared_planes,
+    compared_pressure,
+    pressure_maps,
+    rough_pressures,
+    sliding_sections,
+)
+from verification.figures.profiles import Profile, axis_profiles, profiles, residual_surface
 from verification.figures.style import Drawing
-from verification.figures.views import SURFACE_AXES, VON_MISES, compared_mises, compared_pressure
 from verification.quantities import OF_TRACKS, Solved, ladders, of_passes, planes, refined, strain_below
 from verification.reference.convergence import extrapolate
 from verification.references import REFERENCES, coated_contact, contact_of
@@ -201,14 +220,14 @@ def _mises_maps(found: Solved) -> Drawing:
     if not (film := found.scene.body.coating):
         return compared_mises(*found.results.values(), *units)
     element = coated_contact(found.scene).bare.contact_radius / found.scene.fem.cells_per_radius
-    return coated.film_planes(*found.results.values(), units, film=film.thickness, element=element)
+    return compared_mises(*found.results.values(), *units, film=film.thickness, element=element)
 
 
 def _spot_pressures(found: Solved) -> Plot:
     own, fem = (PatchPressure.of(each.tables) for each in found.results.values())
     words = "Maps of the pressure by SAM and FEM at peak load, and their difference."
     return Plot(
-        rough.pressures(own.x, own.y, {"SAM": own.p, "FEM": fem.p}, reach=3.2e-6),
+        rough_pressures(own.x, own.y, {"SAM": own.p, "FEM": fem.p}, reach=3.2e-6),
         "pressure",
         "Pressure of the spots",
         words,
@@ -227,7 +246,7 @@ def _spot_strains(found: Solved) -> Plot:
         panels[f"x = {spot.x * 1e6:.2f} µm"] = (*curves_of, first)
     words = "Plastic strain over depth below each spot, in y = 0 at peak load: SAM on the points of FEM."
     caption = f"{words} Grey: too near the surface to be compared."
-    return Plot(rough.below_spots(panels), "strain", "Plastic strain below the spots", words, caption)
+    return Plot(below_spots(panels), "strain", "Plastic strain below the spots", words, caption)
 
 
 def _residual_line(found: Solved) -> Plot:
@@ -235,7 +254,7 @@ def _residual_line(found: Solved) -> Plot:
     side = found.scene.patch_surface.path.extent[0]
     near = ((x[use := np.abs(x) <= side / 2], uz[use]) for x, uz in lines)
     words = "Change of the heights along y = 0 after unloading, by SAM and FEM."
-    return Plot(rough.residual(*near), "residual", "Residual heights", words, words)
+    return Plot(residual(*near), "residual", "Residual heights", words, words)
 
 
 def _pressure_line(found: Solved) -> Plot:
@@ -340,9 +359,8 @@ def _cost_of_errors(found: Solved) -> Plot:
         )
     looks = dict(zip(series, CYCLES, strict=False))
     drawing = curves(
-        {"Cost of an error": series}, "processor time [s]", "error [%]", looks=looks, logarithmic=True
+        {"Cost of an error": series}, "processor time [s]", "error [%]", looks=looks, logarithmic="xy"
     )
-    drawing.figure.axes[0].set_xscale("log")
     words = (
         "The largest error of groove, depth and strain over the processor time, against the limit of the two "
         "finest runs of each model in second order; in the same steps along the path."
@@ -496,7 +514,7 @@ def _film_pressures(file: CaseFile, frame: DataFrame) -> Plot:
     words = "Pressure over the radius for each film: lines of the spectral solution, points of SAM and FEM."
     caption = f"{words} Dotted: Hertz, without film. Every fourth cell along y = 0 and every fourth node."
     title = "Contact pressure with and without film"
-    return Plot(coated.film_pressures(panels), "pressure", title, words, caption)
+    return Plot(film_pressures(panels), "pressure", title, words, caption)
 
 
 SWEPT: Mapping[str, Callable[..., Plot]] = {

@@ -13,6 +13,7 @@ import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import product
+from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -151,9 +152,13 @@ STATISTICS: Mapping[str, Callable[[DataFrame, str], float | Measured]] = {
     "first": lambda rows, column: rows[column].iloc[0],
     "last": lambda rows, column: rows[column].iloc[-1],
     "ratio": lambda rows, column: rows[column].iloc[0] / rows[column].iloc[-1],
+    "mean": lambda rows, column: rows[column].mean(),
+    "median": lambda rows, column: rows[column].median(),
+    "total": lambda rows, column: float(rows[column].sum()),
 }
 """Word of a row -> what it takes of a column. pair: the value of SAM beside that of FEM; order, limit: under
-refinement; ratio: first over last; nan where one is missing.
+refinement; ratio: first over last; nan where one is missing; mean, median, total: of the values that there
+are.
 """
 
 
@@ -227,7 +232,7 @@ def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
             values = [column for column, how in sweep.columns.items() if how == "value"]
             shown |= {f"{column} expected": f"{shown[column]}, expected" for column in values}
         known = {c: rows[c].dropna() for c in shown if c in rows}
-        shown = {c: shown[c] for c, own in known.items() if len(own) and np.ndim(own.iloc[0]) == 0}
+        shown = {c: shown[c] for c, own in known.items() if len(own) and isinstance(own.iloc[0], str | Real)}
         lines = [
             (*(spelt(row[axis]) for axis in axes), row["model"].upper(), *(_cell(row[c]) for c in shown))
             for _, row in rows.iterrows()
@@ -237,7 +242,8 @@ def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
             if any(orders):
                 cells = (f"order {order.order:.2f}" if order else "" for order in orders)
                 lines.append((*[""] * len(axes), model.upper(), *cells))
-        yield SmallTable(f"Points {name}".strip(), (*map(_plain, axes), "model", *shown.values()), lines)
+        caption = f"Points {name}".strip() if file.sweeps else name
+        yield SmallTable(caption or "Points", (*map(_plain, axes), "model", *shown.values()), lines)
 
 
 def _cell(value: Any) -> str:

@@ -7,58 +7,85 @@ Strains, stresses and nodal forces are formed anew here; as in `verification.che
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from skfem import LinearForm, asm
 
 from fem_reference import Model, Step, load_steps
 from sam.scene import Checkpoint, Scene
-from verification.checks.conditions import EDGE, planes
+from verification.checks.conditions import planes, tractions
 from verification.checks.material import back_stress, elastic_stress, flow_of_parts, limit_of, von_mises
 
 DEEPEST = 3.0  # Hertz radii: down to there is the force through planes judged; below it elements are long
 
 
-class Finite:
-    """A step of the axisymmetric FEM, everything formed anew from its displacements and plastic strains.
+class Formed:
+    """A step of a finite-element model, everything formed anew from its displacements and plastic strains.
 
-    strain, stress: (4, n_elements, n_points), components rr, tt, zz, rz (no engineering shear), in the units
-    of the model.
+    strain, stress: (n, ...), no engineering shear, in the units of the model; depths: of the Gauss points
+    in m.
     """
 
-    def __init__(self, scene: Scene, model: Model, step: Step):
+    def __init__(self, scene: Scene, model: Any, step: Any, depths: np.ndarray):
         self.scene, self.model, self.state = scene, model, step.state
-        self.basis = model.problem.blocks[0].solid.basis
-        field = self.basis.interpolate(model.problem.body(step.state.u, 0))
-        self.r, self.z = np.asarray(self.basis.global_coordinates())
-        grad = field.grad
-        total = np.stack([grad[0, 0], field[0] / self.r, grad[1, 1], 0.5 * (grad[0, 1] + grad[1, 0])])
-        history = step.state.history
-        shear = np.array([1.0, 1.0, 1.0, 0.5])[:, None, None]
-        self.plastic = np.zeros_like(total) if history is None else history.plastic_strain * shear
-        self.peeq = np.zeros_like(self.r) if history is None else history.peeq
-        self.stress = elastic_stress(scene, total - self.plastic, self.depths) / model.scales.modulus
+        self.depths = depths * model.scales.length
+
+    def form(self, total: np.ndarray, shear: Sequence[float]) -> None:
+        """Of the total strain; shear: factors of the components of the model's plastic strain."""
+        history = self.state.history
+        factors = np.array(shear)[:, None, None]
+        self.plastic = np.zeros_like(total) if history is None else history.plastic_strain * factors
+        self.peeq = np.zeros(total.shape[1:]) if history is None else history.peeq
+        elastic = elastic_stress(self.scene, total - self.plastic, self.depths)
+        self.stress = elastic / self.model.scales.modulus
+
+    def six(self, tensor: np.ndarray) -> np.ndarray:
+        """Components 11 22 33 23 13 12."""
+        return tensor
 
     @property
-    def depths(self) -> np.ndarray:
-        """Of the Gauss points in m."""
-        return self.z * self.model.scales.length
-
-    def pressures(self) -> np.ndarray:
-        """Stress as six components in Pa."""
-        return _six(self.stress * self.model.scales.pressure)
+    def unit(self) -> float:
+        """Strain of a strain of the model."""
+        return self.model.scales.displacement / self.model.scales.length
 
     def effective(self) -> np.ndarray:
         """Stress less the back-stresses as six components in Pa."""
-        history = self.state.history
+        history, stress = self.state.history, self.six(self.stress * self.model.scales.pressure)
         if history is None or history.back is None:
-            return self.pressures()
-        return self.pressures() - _six(back_stress(self.scene, history.back * self.unit, self.depths))
+            return stress
+        return stress - self.six(back_stress(self.scene, history.back * self.unit, self.depths))
+
+    def yields(self) -> float:
+        """Largest (mises - sigma_y)/sigma_y at the Gauss points."""
+        limit = limit_of(self.scene, self.peeq * self.unit, self.depths)
+        return float((von_mises(self.effective()) / limit - 1.0).max())
+
+    def flow(self, before: Formed) -> dict[str, float]:
+        """`flow_of_parts` in the step that ends here and began at `before`."""
+        strain = self.six((self.plastic - before.plastic) * self.unit)
+        peeq = before.peeq * self.unit, self.peeq * self.unit
+        return flow_of_parts(self.scene, strain, *peeq, stress=self.effective(), z=self.depths)
+
+
+class Finite(Formed):
+    """Of the axisymmetric model: (4, n_elements, n_points), components rr, tt, zz, rz."""
+
+    def __init__(self, scene: Scene, model: Model, step: Step):
+        self.basis = model.problem.blocks[0].solid.basis
+        field = self.basis.interpolate(model.problem.body(step.state.u, 0))
+        self.r, self.z = np.asarray(self.basis.global_coordinates())
+        super().__init__(scene, model, step, self.z)
+        grad = field.grad
+        total = np.stack([grad[0, 0], field[0] / self.r, grad[1, 1], 0.5 * (grad[0, 1] + grad[1, 0])])
+        self.form(total, (1.0, 1.0, 1.0, 0.5))
+
+    def six(self, tensor: np.ndarray) -> np.ndarray:
+        rr, tt, zz, rz = tensor
+        return np.stack([rr, tt, zz, 0 * rr, rz, 0 * rr])
 
     def equilibrium(self) -> dict[str, float]:
-        """Nodal forces: the largest on a free degree of freedom, and the sum over the contact less F; over
-        F.
-        """
+        """Nodal forces: the largest on a free degree of freedom, and their sum less F; over F."""
 
         @LinearForm
         def internal(v, w):
@@ -86,29 +113,8 @@ class Finite:
         """Of the degrees of freedom along r (0) or z (1)."""
         return np.concatenate([self.basis.nodal_dofs[component], self.basis.facet_dofs[component]])
 
-    def yields(self) -> float:
-        """Largest (mises - sigma_y)/sigma_y at the Gauss points."""
-        return float(
-            (
-                von_mises(self.effective()) / limit_of(self.scene, self.peeq * self.unit, self.depths) - 1.0
-            ).max()
-        )
-
-    @property
-    def unit(self) -> float:
-        """Strain of a strain of the model."""
-        return self.model.scales.displacement / self.model.scales.length
-
-    def flow(self, before: Finite) -> dict[str, float]:
-        """`flow_of_parts` in the step that ends here and began at `before`."""
-        strain = _six((self.plastic - before.plastic) * self.unit)
-        peeq = before.peeq * self.unit, self.peeq * self.unit
-        return flow_of_parts(self.scene, strain, *peeq, stress=self.effective(), z=self.depths)
-
     def surface(self) -> dict[str, float]:
-        """Tractions in the elements at the surface against the nodal pressure, as `sam_surface`, linear from
-        the Gauss points.
-        """
+        """Tractions in the elements at the surface against the nodal pressure, as `sam_surface`."""
         top = np.isclose(self.z.min(axis=1), self.z.min())
         z = self.z[top]
         order = np.lexsort((z, np.round(self.r[top] / self.r[top].max(), 9)))
@@ -121,12 +127,7 @@ class Finite:
         pressure = self.model.nodal_pressure(self.state)
         a, nodes = self.model.contact_radius(self.state), self.model.surface
         p = np.interp(r, nodes[::2], pressure[::2])
-        normal, shear = np.abs(zz + p) / pressure.max(), np.abs(rz) / pressure.max()
-        out, inside = r > (1 + EDGE) * a, r < (1 - EDGE) * a
-        return {
-            "free": float(max(normal[out].max(), shear[out].max())),
-            "inside contact": float(max(normal[inside].max(), shear[inside].max())),
-        }
+        return tractions(r / a, np.abs(zz + p) / pressure.max(), np.abs(rz) / pressure.max())
 
     def planes(self) -> tuple[np.ndarray, np.ndarray]:
         """(z, `planes`) at the depths of the Gauss points."""
@@ -141,14 +142,6 @@ class Finite:
         return depths, np.array(errors)
 
 
-def _six(tensor: np.ndarray) -> np.ndarray:
-    """Components 11 22 33 23 13 12 of rr, tt, zz, rz."""
-    rr, tt, zz, rz = tensor
-    return np.stack([rr, tt, zz, 0 * rr, rz, 0 * rr])
-
-
 def steps_of(scene: Scene, records: Sequence[Checkpoint]) -> tuple[Model, list[Step]]:
-    """The model of a scene and its steps, of the last record, or, of an elastic body that has none, taken
-    again.
-    """
+    """The model of a scene and its steps, of the last record, taken again where there is none."""
     return load_steps(scene, records[-1] if records else None)

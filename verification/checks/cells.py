@@ -38,9 +38,7 @@ TWICE = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
 
 
 def displaced(scene: Scene, result: Result, records: Sequence[Checkpoint]) -> dict[str, float]:
-    """`conditions` of all cells, their displacement summed directly; records: after each load step, none of
-    an elastic body.
-    """
+    """`conditions` of all cells, displaced by direct sums; records: after each load step, of plasticity."""
     x, y, p = surface_of(result)
     cell, q = result.discretisation["cell_m"], traction_of(scene, result)
     u = half_space(scene.body.young, scene.body.poisson, x, y, p=p, q=q, cell=cell)
@@ -55,9 +53,7 @@ def displaced(scene: Scene, result: Result, records: Sequence[Checkpoint]) -> di
 
 
 def left(scene: Scene, result: Result, records: Sequence[Checkpoint]) -> float:
-    """What is left without force, returned on y = 0 and summed directly, over the approach; an odd number of
-    rows.
-    """
+    """What is left without force on y = 0 less direct sums, over the approach; an odd number of rows."""
     shape = surface_of(result)[2].shape
     own = residual_uz(scene, records[-1].tree(), result.discretisation["cell_m"], shape)[:, shape[1] // 2]
     returned = peak_rows(result, "line", "unloaded")["uz_m"]
@@ -65,10 +61,9 @@ def left(scene: Scene, result: Result, records: Sequence[Checkpoint]) -> float:
 
 
 def stress(scene: Scene, result: Result) -> float:
-    """Stress of an elastic body in y = 0, DEEP cells and deeper, less sums over points of the cells in
-    contact; over p_max.
-
-    Of Boussinesq's and Cerruti's stress of point forces, in about COLUMNS columns of the plane.
+    """Stress of an elastic body in y = 0, DEEP cells and deeper, less sums over points of the cells
+    in contact; over p_max. Of Boussinesq's and Cerruti's stress of point forces, in about COLUMNS
+    columns of the plane.
     """
     (x, y, p), q = surface_of(result), traction_of(scene, result)
     cell, (at, z, returned) = result.discretisation["cell_m"], plane_of(result)
@@ -103,10 +98,8 @@ def half_space(
 
 
 def love(x: np.ndarray, y: np.ndarray, p: np.ndarray, cell: Sequence[float]) -> np.ndarray:
-    """(nx, ny) sums of p times the integral of dA/r over each cell, at the centres x (nx,) and y (ny,), in m
-    Pa.
-
-    x ln(y + r) + y ln(x + r) at the corners, by asinh, which loses no digits.
+    """(nx, ny) sums of p times the integral of dA/r over each cell, at the centres x (nx,) and y
+    (ny,), in m Pa. x ln(y + r) + y ln(x + r) at the corners, by asinh, which loses no digits.
     """
     return _corners(
         x, y, p, cell, primitive=lambda X, Y: X * np.arcsinh(Y / np.abs(X)) + Y * np.arcsinh(X / np.abs(Y))
@@ -114,9 +107,7 @@ def love(x: np.ndarray, y: np.ndarray, p: np.ndarray, cell: Sequence[float]) -> 
 
 
 def cerruti(x: np.ndarray, y: np.ndarray, q: np.ndarray, cell: Sequence[float]) -> np.ndarray:
-    """(nx, ny) sums of q times the integral of x/r^2 dA over each cell, likewise: y ln(r) + x atan(y/x) at
-    the corners.
-    """
+    """The same of x/r^2 and q: y ln(r) + x atan(y/x) at the corners."""
     return _corners(
         x, y, q, cell, primitive=lambda X, Y: 0.5 * Y * np.log(X**2 + Y**2) + X * np.arctan(Y / X)
     )
@@ -153,9 +144,7 @@ def residual_uz(scene: Scene, tree: Mapping, cell: Sequence[float], shape: tuple
 def reciprocal(
     cell: tuple[float, float], reach: tuple[int, int], faces: tuple[float, ...], poisson: float
 ) -> np.ndarray:
-    """(6, nz, 2 rx + 1, 2 ry + 1) integrals over cells, by their distance in cells, of the stress of a unit
-    force.
-    """
+    """(6, nz, 2 rx + 1, 2 ry + 1) integrals of a unit force's stress over cells, by their distance."""
     lags = [h * np.arange(-r, r + 1) for r, h in zip(reach, cell, strict=True)]
     out = np.empty((6, len(faces) - 1, *(lag.size for lag in lags)))
     for layer, z in enumerate(pairwise(faces)):

@@ -49,9 +49,7 @@ NAMES = {
 
 @dataclass
 class Conditions:
-    """What is measured of a scene with one model: condition (of NAMES) -> value; curves: (load step,
-    attempt).
-    """
+    """Of a scene with one model: condition (of NAMES) -> value; curves: (load step, attempt)."""
 
     values: dict[str, float] = field(default_factory=dict)
     curves: list[tuple[str, Attempt]] = field(default_factory=list)
@@ -108,9 +106,7 @@ def of_coated(scene: Scene, result: Result, _records: list) -> Conditions:
 
 
 def of_fem(scene: Scene, result: Result, records: list) -> Conditions:
-    """All conditions of a result of the axisymmetric FEM; its steps are taken again for an elastic body,
-    which hands out none.
-    """
+    """All conditions of the axisymmetric FEM; an elastic body hands out no steps: they are taken again."""
     values = common(scene, result)
     model, steps = fem_checks.steps_of(scene, records)
     finite = [fem_checks.Finite(scene, model, step) for step in steps]

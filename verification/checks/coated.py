@@ -9,6 +9,8 @@ smooth over the film's thickness: a few points in each cell do.
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from numpy.polynomial.chebyshev import Chebyshev
 from scipy.interpolate import CubicSpline
@@ -43,35 +45,32 @@ def displaced(scene: Scene, result: Result) -> dict[str, float]:
     return conditions(initial_gap(scene, x[:, None], y[None, :], 0.0) + u, p, result)
 
 
-def compliance(scene: Scene, load: int) -> Chebyshev:
+@cache
+def compliance(ratio: float, nu: float, nu_body: float, load: int) -> Chebyshev:
     """mu_1 k c_zz (load 0) or c_zL (1) of the film on its body less that of short waves, of ln(k h)."""
     from verification.reference.layered import ManyDigits  # noqa: PLC0415 - loads mpmath, of an extra
 
-    film, body = scene.body.coating, scene.body
+    short, ends = (1 - nu, -(1 - 2 * nu) / 2)[load], np.log([LONGEST, SHORTEST])
 
-    def of(kh: float) -> float:
-        return float(ManyDigits(kh, film.young / body.young, film.poisson, body.poisson).surface()[load])
+    def of(logarithms: np.ndarray) -> np.ndarray:
+        exact = (ManyDigits(float(np.exp(t)), ratio, nu, nu_body).surface() for t in logarithms)
+        return np.array([float(surface[load]) - short for surface in exact])
 
-    short = (1 - film.poisson, -(1 - 2 * film.poisson) / 2)[load]
-    ends = np.log([LONGEST, SHORTEST])
-    return Chebyshev.interpolate(
-        lambda t: np.array([of(float(np.exp(each))) - short for each in t]), ORDER, ends
-    )
+    return Chebyshev.interpolate(of, ORDER, ends)
 
 
 def cell_means(
     scene: Scene, reach: float, load: int, shape: tuple[int, int], *, cell: tuple[float, float]
 ) -> np.ndarray:
-    """(nx, ny) means over a cell, i hx and j hy away, of u_z by the body below, in m/N: of a unit force along
-    z or x.
-
-    With c cos(k x) under p = cos(k x) or q = sin(k x): (1/2 pi) times the integral of c J0(k r) k dk, and
-    -cos(theta)/2 pi times that of c J1(k r) k dk.
+    """(nx, ny) means over a cell, i hx and j hy away, of u_z by the body below, in m/N: of a unit
+    force along z or x. With c cos(k x) under p = cos(k x) or q = sin(k x): (1/2 pi) times the
+    integral of c J0(k r) k dk, and -cos(theta)/2 pi times that of c J1(k r) k dk.
     """
     film = scene.body.coating
     mu, h = film.young / (2 * (1 + film.poisson)), film.thickness
     k, weight = wave_numbers(h, reach, SHORTEST)
-    c = compliance(scene, load)(np.log(np.clip(k * h, LONGEST, SHORTEST))) / mu
+    of_logarithm = compliance(film.young / scene.body.young, film.poisson, scene.body.poisson, load)
+    c = of_logarithm(np.log(np.clip(k * h, LONGEST, SHORTEST))) / mu
     r = np.linspace(0.0, reach, RADII)
     bessel = j0(np.outer(r, k)) if load == 0 else -j1(np.outer(r, k))
     radial = CubicSpline(r, bessel @ (weight * c) / (2 * np.pi))
@@ -86,9 +85,7 @@ def cell_means(
 
 
 def summed(influence: np.ndarray, load: np.ndarray, odd: bool) -> np.ndarray:
-    """(nx, ny) sums over the loaded cells of `influence` (nx, ny) of their distances, odd or even in that
-    along x.
-    """
+    """(nx, ny) sums over the loaded cells of `influence` of their distances, odd or even along x."""
     i, j = np.nonzero(load)
     di, dj = (np.arange(n)[:, None] - at for n, at in zip(load.shape, (i, j), strict=True))
     sign = np.sign(di) if odd else np.ones_like(di)
@@ -97,10 +94,8 @@ def summed(influence: np.ndarray, load: np.ndarray, odd: bool) -> np.ndarray:
 
 
 def interface(scene: Scene, result: Result) -> dict[str, float]:
-    """Jumps at the interface in y = 0: of szz, syz, sxz over the largest pressure, of exx, eyy, exy over that
-    of E of the softer.
-
-    The film's side is the last depth above the interface.
+    """Jumps at the interface in y = 0: of szz, syz, sxz over the largest pressure, of exx, eyy, exy
+    over that of E of the softer. The film's side is the last depth above the interface.
     """
     _, z, stress = plane_of(result)
     film, body = scene.body.coating, scene.body

@@ -74,9 +74,7 @@ def missed_approach(scene: Scene, result: Result) -> float:
 
 
 def simpson_rings(r: np.ndarray) -> np.ndarray:
-    """Weights of nodal values of ring pressures on quadratic edges, corner and mid nodes in turn: Simpson's
-    rule of 2 pi r p.
-    """
+    """Weights of nodal ring pressures on quadratic edges: Simpson's rule of 2 pi r p."""
     weight = np.zeros_like(r)
     width = r[2::2] - r[:-2:2]
     for first, share in ((0, 1.0), (1, 4.0), (2, 1.0)):
@@ -143,9 +141,7 @@ def initial_gap(scene: Scene, x: np.ndarray, y: np.ndarray, height: np.ndarray |
 
 
 def coefficient_at(scene: Scene, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Coefficient of friction at places (n,) in m, by the scene: of a map that of the cell with the nearest
-    centre.
-    """
+    """Coefficient of friction at places (n,) in m, by the scene: of a map the nearest cell's."""
     if scene.friction is None or scene.constant_friction:
         return np.full(x.shape, scene.coefficient)
     given = scene.friction.path
@@ -158,9 +154,8 @@ def coefficient_at(scene: Scene, x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 def traction_of(scene: Scene, result: Result) -> np.ndarray:
     """(nx, ny) mu p of SAM's cells in Pa, by the scene; zero where it does not act on the normal
-    displacement.
-
-    Of a chemical film with the high or the low coefficient, which of them is nearer to the returned traction.
+    displacement. Of a chemical film with the high or the low coefficient, which of them is nearer
+    to the returned traction.
     """
     x, y, p = surface_of(result)
     if scene.friction is None or not scene.friction.coupling:
@@ -209,9 +204,7 @@ def unloaded(scene: Scene, result: Result) -> dict[str, float]:
 
 
 def flow(scene: Scene, records: Sequence[Checkpoint], depths: np.ndarray) -> dict[str, float]:
-    """The flow rule of SAM at the points of its cells, over the steps between records of one box, see
-    `flow_of`; depths: of the layers in m.
-    """
+    """The flow rule at the points of SAM's cells, over the steps of one box; depths: of layers in m."""
     worst: dict[str, float] = {"steps": 0}
     trees = [record.tree() for record in records]
     for before, now in pairwise(trees):
@@ -242,12 +235,11 @@ def at_points(scene: Scene, stress: np.ndarray, strain: np.ndarray) -> np.ndarra
 
 
 def planes(r: np.ndarray, z: np.ndarray, szz: np.ndarray, force: float, *, spread: float) -> np.ndarray:
-    """Force through the planes z = const over the load less 1, (nz,): szz (nr, nz) at radii r, ascending from
-    near zero.
-
-    Trapezoidal sums of 2 pi r szz; beyond the last radius R the stress of a point force (Johnson 1985, Eq.
-    3.19), and of the mean square distance `spread` of the pressure from the axis the first term, spread/4
-    times the flux through r = R of the gradient of that stress.
+    """Force through the planes z = const over the load less 1, (nz,): szz (nr, nz) at radii r,
+    ascending from near zero. Trapezoidal sums of 2 pi r szz; beyond the last radius R the stress of
+    a point force (Johnson 1985, Eq. 3.19), and of the mean square distance `spread` of the pressure
+    from the axis the first term, spread/4 times the flux through r = R of the gradient of that
+    stress.
     """
     inside = -2 * np.pi * np.trapezoid(szz * r[:, None], r, axis=0) - np.pi * r[0] ** 2 * szz[0]
     reach = np.hypot(r[-1], z)
@@ -265,17 +257,21 @@ def sam_planes(scene: Scene, result: Result) -> np.ndarray:
 
 
 def sam_surface(scene: Scene, result: Result) -> dict[str, float]:
-    """Tractions below the surface against those on it, over the largest pressure; from the first two depths,
-    linearly.
-
-    Away from the edge of contact, see EDGE. With friction the shear stress against q = mu p.
+    """Tractions below the surface against those on it, over the largest pressure; from the first
+    two depths, linearly. Away from the edge of contact, see EDGE. With friction the shear stress
+    against q = mu p.
     """
     x, z, stress = plane_of(result)
     line = peak_rows(result, "line")
     a, top = result.quantities["contact_radius_m"], line["p_Pa"].max()
     at = stress[:, :, 0] - (stress[:, :, 1] - stress[:, :, 0]) * z[0] / (z[1] - z[0])
     normal, shear = np.abs(at[2] + line["p_Pa"]) / top, np.abs(at[4] + line["qx_Pa"]) / top
-    out, inside = np.abs(x) > (1 + EDGE) * a, np.abs(x) < (1 - EDGE) * a
+    return tractions(np.abs(x) / a, normal, shear)
+
+
+def tractions(r: np.ndarray, normal: np.ndarray, shear: np.ndarray) -> dict[str, float]:
+    """The largest of both beside the contact and in it, r in contact radii, away from its edge, see EDGE."""
+    out, inside = r > 1 + EDGE, r < 1 - EDGE
     return {
         "free": float(max(normal[out].max(), shear[out].max())),
         "inside contact": float(max(normal[inside].max(), shear[inside].max())),

@@ -18,12 +18,10 @@ from verification.reference.film_flow import Film, FlowPoint
 
 
 def states(scene: Scene, records: Sequence[Checkpoint]) -> dict[str, float]:
-    """Of the cells in contact whose film is whole, in every step of loading, the first one from a film
-    without strain.
-
-    flow: plastic strain less that of a backward-Euler step, limit: thinning, traction: beyond what the film
-    bears, each over its limit; healed: cells that had failed before. Why a cell failed cannot be seen here:
-    more friction then changed its pressure.
+    """Of the cells in contact whose film is whole, in every step of loading, the first one from a
+    film without strain. flow: plastic strain less that of a backward-Euler step, limit: thinning,
+    traction: beyond what the film bears, each over its limit; healed: cells that had failed before.
+    Why a cell failed cannot be seen here: more friction then changed its pressure.
     """
     law, film = (
         scene.friction,
@@ -54,9 +52,7 @@ def states(scene: Scene, records: Sequence[Checkpoint]) -> dict[str, float]:
 
 
 def pressure_of(scene: Scene, tree: Mapping) -> np.ndarray:
-    """(nx, ny) in Pa on a box that is the whole patch, from the one over half of E/(1 - nu^2) that is
-    recorded.
-    """
+    """(nx, ny) in Pa on a box that is the whole patch; E/(1 - nu^2)/2 is the unit of the record."""
     return tree["state"]["pressure"] * scene.body.young / (1 - scene.body.poisson**2) / 2
 
 

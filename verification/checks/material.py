@@ -42,9 +42,7 @@ def yield_stress(scene: Scene, peeq: np.ndarray, z: np.ndarray) -> np.ndarray:
 
 
 def back_stress(scene: Scene, strains: np.ndarray | None, z: np.ndarray) -> np.ndarray | float:
-    """Sum of the back-stresses X_k = 2/3 factor C_k a_k in Pa, (n, ...), of the a_k (N, n, ...) at depths in
-    m; zero without them.
-    """
+    """Sum of the back-stresses 2/3 factor C_k a_k in Pa, of a_k (N, n, ...) at depths in m."""
     law = scene.body.plasticity
     if law is None or strains is None:
         return 0.0
@@ -59,9 +57,7 @@ def back_stress(scene: Scene, strains: np.ndarray | None, z: np.ndarray) -> np.n
 
 
 def materials(scene: Scene, z: np.ndarray) -> list[tuple[np.ndarray, Scene]]:
-    """(where, scene) of the materials at depths z, bool of their shape: the body, and its film as a body of
-    its own.
-    """
+    """(where, scene) of the materials at depths z: the body, and its film as a body of its own."""
     body, film = scene.body, scene.body.coating
     if film is None:
         return [(np.ones(z.shape, dtype=bool), scene)]
@@ -129,12 +125,11 @@ def von_mises(s: np.ndarray) -> np.ndarray:
 def flow_of(
     scene: Scene, strain: np.ndarray, length: np.ndarray, stress: np.ndarray, *, limit: np.ndarray
 ) -> dict[str, float]:
-    """Increments of plastic strain (6, ...) and of its length, at the end of a step with the stress (6, ...),
-    in Pa.
-
-    direction: 2 G |d eps - 3/2 dgamma s/q| over the initial yield stress; length: |sqrt(2/3 d eps : d eps) -
-    dgamma| likewise; volume: its trace likewise; consistency: |q - sigma_y|/sigma_y where a cell strains;
-    backwards: -dgamma likewise; yield: the largest (q - sigma_y)/sigma_y.
+    """Increments of plastic strain (6, ...) and of its length, at the end of a step with the stress
+    (6, ...), in Pa. direction: 2 G |d eps - 3/2 dgamma s/q| over the initial yield stress; length:
+    |sqrt(2/3 d eps : d eps) - dgamma| likewise; volume: its trace likewise; consistency: |q -
+    sigma_y|/sigma_y where a cell strains; backwards: -dgamma likewise; yield: the largest (q -
+    sigma_y)/sigma_y.
     """
     unit = (
         scene.body.young / (1 + scene.body.poisson) / float(yield_stress(scene, np.zeros(1), np.zeros(1))[0])

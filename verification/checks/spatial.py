@@ -16,6 +16,7 @@ import numpy as np
 
 from fem_reference.spatial import Model, Step, load_steps
 from sam.scene import Checkpoint, Result, Scene
+from verification.checks.axisymmetric import Formed
 from verification.checks.conditions import (
     both_heights,
     coefficient_at,
@@ -24,46 +25,33 @@ from verification.checks.conditions import (
     missed_approach,
     peak_rows,
 )
-from verification.checks.material import back_stress, elastic_stress, flow_of_parts, limit_of, von_mises
 
 PAIRS = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
 """Components 11 22 33 23 13 12."""
 
 
-class Spatial:
-    """A step of the three-dimensional FEM, everything formed anew from its displacements and plastic strains.
-
-    nodes (3, n), corners (8, n_elements), points (3, n_elements, 8) of Gauss; plastic strain and stress (6,
-    n_elements, 8), no engineering shear; forces (3, n) on the nodes; in the units of the model.
+class Spatial(Formed):
+    """Of the three-dimensional model: (6, n_elements, 8); nodes (3, n), corners (8, n_elements), points (3,
+    n_elements, 8) of Gauss; forces (3, n) on the nodes.
     """
 
     def __init__(self, scene: Scene, model: Model, step: Step):
-        self.scene, self.model, self.state = scene, model, step.state
         basis = model.body.basis
-        self.nodes, self.corners, self.points = (
-            basis.mesh.p,
-            basis.mesh.t,
-            np.asarray(basis.global_coordinates()),
-        )
+        self.nodes, self.corners = basis.mesh.p, basis.mesh.t
+        self.points = np.asarray(basis.global_coordinates())
+        super().__init__(scene, model, step, self.points[2])
         sides = self.nodes[:, self.corners]
         self.low, self.high = sides.min(axis=1), sides.max(axis=1)
-        grad = np.einsum(
-            "ine,jneq->ijeq", step.state.u[basis.nodal_dofs][:, self.corners], slopes := self._slopes(sides)
-        )
+        slopes = self._slopes(sides)
+        grad = np.einsum("ine,jneq->ijeq", step.state.u[basis.nodal_dofs][:, self.corners], slopes)
         total = np.stack([0.5 * (grad[i, j] + grad[j, i]) for i, j in PAIRS])
         dilatation = total[:3].sum(axis=0)
         total[:3] += (dilatation.mean(axis=1, keepdims=True) - dilatation) / 3.0
-        history, shear = step.state.history, np.array([1.0, 1.0, 1.0, 0.5, 0.5, 0.5])[:, None, None]
-        self.plastic = np.zeros_like(total) if history is None else history.plastic_strain * shear
-        self.peeq = np.zeros(total.shape[1:]) if history is None else history.peeq
-        self.depths = self.points[2] * model.scales.length
-        self.stress = elastic_stress(scene, total - self.plastic, self.depths) / model.scales.modulus
+        self.form(total, (1.0, 1.0, 1.0, 0.5, 0.5, 0.5))
         self.forces = self._forces(slopes)
 
     def _slopes(self, sides: np.ndarray) -> np.ndarray:
-        """(3, 8, n_elements, 8) derivatives of the trilinear shape functions of the corners (3, 8,
-        n_elements) at the points.
-        """
+        """(3, 8, n_elements, 8) derivatives of the shape functions of the corners at the points."""
         length = (self.high - self.low)[:, None]
         upper = sides > 0.5 * (self.low + self.high)[:, None]
         share = ((self.points - self.low[..., None]) / length[:, 0, :, None])[:, None]
@@ -89,10 +77,8 @@ class Spatial:
         return coefficient_at(self.scene, *self.nodes[:2] * self.model.scales.length)
 
     def equilibrium(self) -> dict[str, float]:
-        """Largest nodal force that nothing balances, largest |q - mu p| of a node in contact, sum of p less
-        F; over F.
-
-        Without force over the force of the whole loading.
+        """Largest nodal force that nothing balances, largest |q - mu p| of a node in contact, sum
+        of p less F; over F. Without force over the force of the whole loading.
         """
         model, scale = self.model, self.model.scales.peak_force
         in_contact = np.zeros(self.nodes.shape[1], dtype=bool)
@@ -117,36 +103,9 @@ class Spatial:
             "load": abs(float(force[2, in_contact].sum()) / share - self.state.force) / scale,
         }
 
-    @property
-    def unit(self) -> float:
-        """Strain of a strain of the model."""
-        return self.model.scales.displacement / self.model.scales.length
-
-    def yields(self) -> float:
-        """Largest (mises - sigma_y)/sigma_y at the points."""
-        limit = limit_of(self.scene, self.peeq * self.unit, self.depths)
-        return float((von_mises(self.effective()) / limit - 1.0).max())
-
-    def effective(self) -> np.ndarray:
-        """Stress less the back-stresses in Pa."""
-        back, stress = None, self.stress * self.model.scales.pressure
-        if self.state.history is not None and self.state.history.back is not None:
-            back = self.state.history.back * self.unit
-        return stress - back_stress(self.scene, back, self.depths)
-
-    def flow(self, before: Spatial) -> dict[str, float]:
-        """`flow_of_parts` in the step that ends here and began at `before`."""
-        strain, peeq = (
-            (self.plastic - before.plastic) * self.unit,
-            (before.peeq * self.unit, self.peeq * self.unit),
-        )
-        return flow_of_parts(self.scene, strain, *peeq, stress=self.effective(), z=self.depths)
-
 
 def steps_of(scene: Scene, records: Sequence[Checkpoint]) -> list[Spatial]:
-    """The steps of a scene that were not halved, of the last record, or, of an elastic body that has none,
-    taken again.
-    """
+    """The steps of a scene that were not halved, of the last record, taken again where there is none."""
     model, steps = load_steps(scene, records[-1] if records else None)
     return [Spatial(scene, model, step) for step in steps if not step.cuts]
 
@@ -158,17 +117,14 @@ def flows(steps: Sequence[Spatial]) -> dict[str, float]:
 
 
 def surface(scene: Scene, result: Result) -> dict[str, float]:
-    """Of the returned nodes z = 0: sum of p over the load less 1, tension; p gap = 0, gap >= 0; q = mu p on
-    the line y = 0.
-
-    The gap is that of the shapes + uz - approach, of a rough body with the returned heights; without force
-    that on y = 0 as returned. A node has a quarter of each face around it.
+    """Of the returned nodes z = 0: sum of p over the load less 1, tension; p gap = 0, gap >= 0; q =
+    mu p on the line y = 0. The gap is that of the shapes + uz - approach, of a rough body with the
+    returned heights; without force that on y = 0 as returned. A node has a quarter of each face
+    around it.
     """
     top = result.fields.points[:, 2] == 0.0
-    (x, y, _), p, uz = (
-        result.fields.points[top].T,
-        *(result.fields.point_data[name][top] for name in ("p_Pa", "uz_m")),
-    )
+    x, y, _ = result.fields.points[top].T
+    p, uz = (result.fields.point_data[name][top] for name in ("p_Pa", "uz_m"))
     area = np.ones(x.size)
     for at in (x, y):
         line, numbers = np.unique(at, return_inverse=True)

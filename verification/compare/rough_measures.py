@@ -14,7 +14,7 @@ import numpy as np
 from scipy import ndimage
 from scipy.interpolate import RectBivariateSpline
 
-from verification.runs.sampling import rows_of
+from verification.runs.sampling import plane_field, rows_of
 
 LEAST = 0.05  # of the force: a spot that bears less is not compared by itself
 SHALLOWEST = 0.3  # radii of the spot: above it the plastic strain near the surface depends on the mesh
@@ -64,10 +64,8 @@ class Spot:
 
 
 def spots(sam: PatchPressure, fem: PatchPressure) -> list[Spot]:
-    """The spots that bear more than LEAST of the force, by x: connected regions where either model has
-    contact.
-
-    Raises ValueError when the two are not on the same cells.
+    """The spots that bear more than LEAST of the force, by x: connected regions where either model
+    has contact. Raises ValueError when the two are not on the same cells.
     """
     if sam.p.shape != fem.p.shape or not (np.allclose(sam.x, fem.x) and np.allclose(sam.y, fem.y)):
         raise ValueError(f"the patches differ: {sam.p.shape} and {fem.p.shape} cells")
@@ -99,11 +97,8 @@ class Depths:
     @classmethod
     def of(cls, tables, jump: float = 0.0) -> Depths:
         """From the tables of a result or of a run."""
-        x, z, peeq = rows_of(tables["plane"], "peak", "x_m", "z_m", "peeq")
-        xs, zs = np.unique(x), np.unique(z)
-        field = np.zeros((xs.size, zs.size))
-        field[np.searchsorted(xs, x), np.searchsorted(zs, z)] = peeq
-        return cls(xs, zs, field, jump)
+        x, z, peeq = plane_field(tables, "peeq")
+        return cls(x, z, np.nan_to_num(peeq), jump)
 
     def below(self, x: float, z: np.ndarray) -> np.ndarray:
         """The strain at x, depths z, by a bicubic spline on either side of the jump; never below zero."""
@@ -117,9 +112,7 @@ class Depths:
 
 
 def compared_depths(fem: Depths, x: float, radius: float) -> np.ndarray:
-    """Depths from SHALLOWEST radii on, as far as FEM has SHARE of its largest strain there; not between its
-    points on the two sides of a jump.
-    """
+    """Depths from SHALLOWEST radii on, with SHARE of FEM's largest strain there, beside the jump."""
     z = np.arange(SHALLOWEST, fem.z[-1] / radius, SPACING) * radius
     above, under = fem.z[fem.z < fem.jump], fem.z[fem.z >= fem.jump]
     if above.size:

@@ -41,25 +41,28 @@ COLUMNS = ("quantity", "sam", "fem", "metric", "difference", "tolerance", "passe
 class Pair:
     """Two results of one scene.
 
-    radius: contact radius of FEM in m; plastic: the body yields (a spline interpolates SAM); slides: there is
-    friction, which may bring the largest stress to the surface; spatial: FEM is three-dimensional, and both
-    sides of the axis are compared; film: thickness of a coating in m, in which only its largest stress is
-    compared.
+    radius: contact radius of FEM in m; kinds: the tables of `rows.toml` that they have, which also say how
+    they are compared; film: thickness of a coating in m, in which only its largest stress is compared.
     """
 
     sam: Solution
     fem: Solution
-    radius: float
-    punch: bool
-    plastic: bool
-    slides: bool = False
-    spatial: bool = False
+    radius: float = math.nan
+    kinds: frozenset[str] = frozenset()
     film: float = 0.0
 
     @property
+    def both(self) -> tuple[Solution, Solution]:
+        return self.sam, self.fem
+
+    @property
+    def plastic(self) -> bool:
+        return "plastic" in self.kinds
+
+    @property
     def top(self) -> float:
-        """Depth in m from which stresses and strains are compared: in the body, below its film."""
-        return max(BELOW_SURFACE * self.radius if self.slides else 0.0, self.film)
+        """Depth in m from which stresses are compared: below the film, and the peak that friction shifts."""
+        return max(BELOW_SURFACE * self.radius if "slides" in self.kinds else 0.0, self.film)
 
     def floor(self, name: str) -> float:
         """What counts as no residual, from a quantity of FEM at peak load; 0 if it is missing."""
@@ -90,16 +93,14 @@ def number(value: float | None) -> float:
 
 def scalar_row(pair: Pair, name: str, metric: str, limit: Limit) -> Verdict:
     """The row of a quantity that both results have."""
-    a, b = (number(result.quantities.get(name)) for result in (pair.sam, pair.fem))
+    a, b = (number(result.quantities.get(name)) for result in pair.both)
     floor = pair.floor("approach_m") if "residual" in name else 0.0
     scale = pair.radius if metric == "radii" else max(abs(b), floor)
     return judged(name, metric, Measured(a, b, scale=scale), limit)
 
 
 def field_row(pair: Pair, name: str, sample: Callable, limit: Limit) -> Verdict:
-    """The row of a field; sample: from the pair the values of SAM and FEM at the same places, and their
-    weights.
-    """
+    """The row of a field; sample: pair -> values of SAM and FEM at the same places, and their weights."""
     try:
         a, b, weight = sample(pair)
     except (KeyError, IndexError, ValueError):  # a table or state is missing, or too small to interpolate in

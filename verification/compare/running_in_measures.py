@@ -58,9 +58,7 @@ class History:
         return (self.volume_after(last) - self.volume_after(first)) / (last - first)
 
     def straightness(self, first: int, last: int) -> float:
-        """Share of the variance of the volume that a straight line over the cycles explains; NaN where it
-        does not grow.
-        """
+        """Share of the variance of the volume that a straight line explains; NaN where it does not grow."""
         use = (self.cycle >= first) & (self.cycle <= last)
         x, y = self.cycle[use], self.volume[use]
         if x.size < last - first + 1 or not np.ptp(y) > 0.0:
@@ -116,9 +114,7 @@ class Scar:
             return self.in_contact & (self.friction > 0.5 * (low + high))
 
     def coefficient(self, low: float, high: float) -> float:
-        """Overall coefficient of friction, low + (high - low) W_high/W, from the load W_high on failed
-        film.
-        """
+        """Overall coefficient of friction, low + (high - low) W_high/W, W_high: load on failed film."""
         return overall_coefficient(
             np.nan_to_num(self.p), self.unprotected(low, high), low, high, cell_area=self.cell_area
         )
@@ -129,9 +125,7 @@ class Scar:
 
 
 def _gridded(tables: Tables, state: str, *columns: str) -> list[np.ndarray]:
-    """x (nx,), y (ny,) and columns (nx, ny) of surface.csv in a state. Raises ValueError where cells are
-    missing.
-    """
+    """x (nx,), y (ny,) and columns (nx, ny) of surface.csv. ValueError where cells are missing."""
     x, y, *fields = rows_of(tables["surface"], state, "x_m", "y_m", *columns)
     (xs, i), (ys, j) = (np.unique(c, return_inverse=True) for c in (x, y))
     if xs.size * ys.size != x.size or not x.size:

@@ -22,9 +22,7 @@ FINE = 0.005  # of the grid on which contours are measured, in elastic contact r
 
 @dataclass(frozen=True)
 class Plane:
-    """The plastic strain in y = 0. x (nx,), z (nz,) in contact radii of the elastic contact, ascending; peeq:
-    (nx, nz).
-    """
+    """The plastic strain (nx, nz) in y = 0; x (nx,), z (nz,) in elastic contact radii, ascending."""
 
     x: np.ndarray
     z: np.ndarray
@@ -37,9 +35,7 @@ class Plane:
         return cls(x / a, z / a, peeq)
 
     def at(self, x: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """On the grid of x (m,) and z (n,), (m, n), by a bicubic spline; never below zero, NaN outside the
-        own grid.
-        """
+        """At x (m,) and z (n,), (m, n), by a bicubic spline; never below zero, NaN outside."""
         values = RectBivariateSpline(self.x, self.z, self.peeq, s=0)(x, z)
         inside = ((x >= self.x[0]) & (x <= self.x[-1]))[:, None] & ((z >= self.z[0]) & (z <= self.z[-1]))
         return np.where(inside, np.maximum(values, 0.0), np.nan)
@@ -55,18 +51,14 @@ class Plane:
 
 
 def depths_compared(plane: Plane, x: float) -> np.ndarray:
-    """Multiples of SPACING from SHALLOWEST on, as far as the profile at x is at least SHARE of its largest
-    value there.
-    """
+    """Multiples of SPACING from SHALLOWEST on with at least SHARE of the largest value there at x."""
     z = np.arange(SHALLOWEST, plane.z[-1], SPACING)
     peeq = plane.at(np.array([x]), z)[0]
     return z[peeq >= SHARE * np.nanmax(peeq)]
 
 
 def profile_difference(sam: Plane, fem: Plane, x: float) -> float:
-    """Largest |sam - fem|/fem of the plastic strain at x over `depths_compared` of fem; NaN if there are
-    none.
-    """
+    """Largest |sam - fem|/fem of the plastic strain at x over `depths_compared`, NaN without any."""
     z, at = depths_compared(fem, x), np.array([x])
     own, reference = sam.at(at, z)[0], fem.at(at, z)[0]
     return float(np.max(np.abs(own / reference - 1.0), initial=np.nan if z.size == 0 else 0.0))
@@ -74,9 +66,7 @@ def profile_difference(sam: Plane, fem: Plane, x: float) -> float:
 
 @dataclass(frozen=True)
 class Contour:
-    """Extent of the part of y = 0 where the plastic strain is at least a level, in contact radii of the
-    elastic contact.
-    """
+    """Where in y = 0 the plastic strain is at least a level, in elastic contact radii."""
 
     depth: float
     left: float
@@ -105,11 +95,9 @@ def contours(planes: Sequence[Plane], level: float) -> list[Contour | None]:
 
 
 def hat_means(nodes: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """(n, m): means of piecewise constant values over linear shape functions, the integral of each divided by
-    its own.
-
-    nodes: (n,), faces: (m + 1,) of the cells, both ascending; shape functions of the outermost nodes are
-    one-sided.
+    """(n, m): means of piecewise constant values over linear shape functions, the integral of each
+    divided by its own. nodes: (n,), faces: (m + 1,) of the cells, both ascending; shape functions
+    of the outermost nodes are one-sided.
     """
     before, after = np.diff(nodes, prepend=nodes[0]), np.diff(nodes, append=nodes[-1])
 
@@ -124,11 +112,9 @@ def hat_means(nodes: np.ndarray, faces: np.ndarray) -> np.ndarray:
 
 
 def nodal_pressures(sam: Result, fem: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Pressures of SAM and FEM at the surface nodes y >= 0 of FEM, and the areas of the nodes, (nx, ny) each,
-    in Pa and m^2.
-
-    A nodal force of FEM is the integral of the pressure with the shape function of the node: that of SAM is
-    integrated so.
+    """Pressures of SAM and FEM at the surface nodes y >= 0 of FEM, and the areas of the nodes, (nx,
+    ny) each, in Pa and m^2. A nodal force of FEM is the integral of the pressure with the shape
+    function of the node: that of SAM is integrated so.
     """
     x, y, p_fem = surface_nodes(fem)
     u, v, p = surface_pressure(sam.fields.points, sam.fields.cells["quad"], sam.fields.cell_data["p_Pa"])
@@ -150,11 +136,10 @@ def pressure_distance(p: np.ndarray, reference: np.ndarray, area: np.ndarray) ->
 
 
 def patch_pressures(result: Result, fem: Result, width: float) -> np.ndarray:
-    """Means of the pressure over hats of half width `width` (m), (nx, ny), of SAM or of FEM, from its nodal
-    pressures.
-
-    A contact that ends inside an element has its last force on one node or the other: over hats of a length
-    that does not go with the elements both sides of the edge are taken together.
+    """Means of the pressure over hats of half width `width` (m), (nx, ny), of SAM or of FEM, from
+    its nodal pressures. A contact that ends inside an element has its last force on one node or the
+    other: over hats of a length that does not go with the elements both sides of the edge are taken
+    together.
     """
     x, y, p_fem = surface_nodes(fem)
     p = p_fem if result is fem else nodal_pressures(result, fem)[0]
@@ -178,9 +163,7 @@ def spans(line: np.ndarray) -> np.ndarray:
 
 
 def patch_distance(result: Result, fem: Result, width: float) -> float:
-    """Relative L2 norm of the difference of the pressures over hats; those on y = 0 stand for half a hat
-    each.
-    """
+    """Relative L2 difference of the pressures over hats; those on y = 0 count half."""
     p, reference = (patch_pressures(each, fem, width) for each in (result, fem))
     weight = np.ones(p.shape)
     weight[:, 0] = 0.5
@@ -192,9 +175,7 @@ COMPONENTS = ("sxx", "syy", "szz", "syz", "sxz", "sxy")
 
 
 def stresses_inside(result: Result, a: float) -> tuple[tuple[np.ndarray, ...], np.ndarray]:
-    """Places (x, y, z) in m and stresses (n, 6) in Pa: of SAM on the axis, of FEM at the centres of its
-    elements.
-    """
+    """Places (x, y, z) in m, stresses (n, 6) in Pa: of SAM on the axis, of FEM in its elements."""
     if "hexahedron" in result.fields.cells:
         x, y, z = result.fields.points[result.fields.cells["hexahedron"]].mean(axis=1).T
         stress = np.asarray(result.fields.cell_data["stress_Pa"])
@@ -219,10 +200,9 @@ def _inside(x: np.ndarray, z: np.ndarray, a: float) -> np.ndarray:
 def limit_of_strain(
     results: Mapping[str, Result], model: str, *, a: float, x: float, z: np.ndarray
 ) -> np.ndarray:
-    """The strain at (x, z) in contact radii, (n,), without cells and load steps: of second order in the one
-    and of first in the other, whose share is much the same on any cells.
-
-    results: "limit-MODEL-COUNT-STEPS" -> of so many cells or elements in the radius; two counts in one step,
+    """The strain at (x, z) in contact radii, (n,), without cells and load steps: of second order in
+    the one and of first in the other, whose share is much the same on any cells. results:
+    "limit-MODEL-COUNT-STEPS" -> of so many cells or elements in the radius; two counts in one step,
     and one of them in three numbers of steps.
     """
     at = {

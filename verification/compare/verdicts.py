@@ -58,58 +58,49 @@ class FilmVerdict:
         return f"the film is {answer} (limit {self.limit:.0%}): {sizes}" + radius * known
 
 
+def _both(sam: Solution, fem: Solution, name: str) -> list[float]:
+    return [number(solved.quantities.get(name)) for solved in (sam, fem)]
+
+
 def verdict(scene: Scene, sam: Solution, fem: Solution) -> FilmVerdict:
     """Of a coated scene, from both models."""
-    changes = [_larger(sam, fem, name) for name in CHANGES]
+    pairs = [_both(sam, fem, name) for name in CHANGES]
+    changes = [max(pair, key=abs) if all(map(math.isfinite, pair)) else math.nan for pair in pairs]
     negligible = all(abs(change) <= LIMIT for change in changes)
     return FilmVerdict(negligible, *changes, LIMIT, breaking_radius(scene))
 
 
 def breaking_radius(scene: Scene, limit: float = LIMIT) -> float:
-    """Of a sphere of the same materials, in m; see `FilmVerdict`. A sphere on a coated half-space, O'Sullivan
-    & King (1988).
-    """
+    """Of a sphere of the same materials, in m, see `FilmVerdict`; O'Sullivan & King (1988)."""
     body, film, other = scene.body, scene.body.coating, scene.counterbody
     counter = math.inf
     if other is not None and other.elastic:
         counter = other.young / (1.0 - other.poisson**2) / (body.young / (1.0 - body.poisson**2))
-    shares = []
-    for change in (pressure_change, mises_change):
-        try:
-            ratio = film.young / body.young
-            shares.append(
-                breaking_thickness(ratio, film.poisson, body.poisson, counter, limit=limit, change=change)
-            )
-        except ValueError:  # the limit is passed by the thinnest film of the search
-            return math.inf
-    return film.thickness / min(shares)
+    ratio, nu = film.young / body.young, (film.poisson, body.poisson)
+    try:
+        found = min(
+            breaking_thickness(ratio, *nu, counter, limit=limit, change=change)
+            for change in (pressure_change, mises_change)
+        )
+    except ValueError:  # the limit is passed by the thinnest film of the search
+        return math.inf
+    return film.thickness / found
 
 
 def change_rows(sam: Solution, fem: Solution) -> list[Verdict]:
     """The changes by the film of both models against each other."""
-    reason = "differences of results with and without the film, whose errors are mostly equal"
-    rows = []
-    for name in CHANGES:
-        a, b = (number(solved.quantities.get(name)) for solved in (sam, fem))
-        rows.append(judged(name, "absolute", Measured(a, b), (AGREED, reason)))
-    return rows
+    limit = (AGREED, "differences of results with and without the film, whose errors are mostly equal")
+    return [judged(name, "absolute", Measured(*_both(sam, fem, name)), limit) for name in CHANGES]
 
 
 def claim_rows(claim: FilmVerdict, sam: Solution, fem: Solution) -> list[Verdict]:
-    """The larger change of both models against the limit: rows of a comparison that is asked to judge the
-    claim.
-    """
+    """The larger change of both models against the limit: rows that judge the claim."""
     rows = []
     for name, words in CHANGES.items():
-        sizes = [abs(number(solved.quantities.get(name))) for solved in (sam, fem)]
+        sizes = [abs(value) for value in _both(sam, fem, name)]
         worst = max(sizes) if all(map(math.isfinite, sizes)) else math.nan
         reason = f"negligible: it changes the largest {words} by no more (Bosman & Schipper 2011, section 2)"
         held = judged(f"size of {name}", "at_most", Measured(worst), (claim.limit, reason))
         row = held.row.model_copy(update={"metric": CLAIM})
         rows.append(replace(held, row=row, value=sizes[0], expected=sizes[1]))
     return rows
-
-
-def _larger(sam: Solution, fem: Solution, name: str) -> float:
-    values = [number(solved.quantities.get(name)) for solved in (sam, fem)]
-    return max(values, key=abs) if all(map(math.isfinite, values)) else math.nan

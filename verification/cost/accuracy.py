@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Results to an accuracy that a scene asks for.
+"""Results to an accuracy that a scene asks for: the cells, layers and load steps with which it begins, how
+many the table of advice has for it, and the search.
 
 The search begins with the fewest cells and load steps that have an uncertainty, and refines what is missing:
 the parts of the uncertainty by cells and by load steps say how many of each would reach it in the least time.
@@ -16,9 +17,19 @@ from math import ceil, inf, sqrt
 
 import sam
 from sam.grid import Room
-from sam.scene import Result, Scene
+from sam.scene import Grid, Result, Scene
 from verification.cost import estimates
-from verification.cost.choice import MOST_STEPS, RATIOS, Choice, chosen_scene, first_choice, quantities_of
+from verification.cost.advice import (
+    COATED,
+    DEEP,
+    ELASTIC,
+    LOAD_STEPS,
+    NEVER,
+    SLIDING,
+    YIELDING,
+    kind_of,
+    table,
+)
 from verification.runs import models
 from verification.runs.provenance import memory_bytes
 from verification.text.readable import with_prefix, with_time
@@ -34,14 +45,117 @@ from verification.uncertainty import (
     alone,
     assessed,
     bound,
+    coarser,
     cost_of,
     depths_of_maxima,
+    has_history,
     in_one_step,
     members_of_box,
     members_of_steps,
     solve as solve_uncertain,
     under_resolved,
+    why_not,
 )
+
+ADVISED = {ELASTIC: "p_max_Pa", COATED: "p_max_Pa"} | dict.fromkeys((YIELDING, DEEP, SLIDING), "peeq_max")
+"""Kind of scene -> the quantity that its table of advice is about."""
+# Of the accuracy: the errors that the table of advice is asked for. The uncertainty is 3 to 4 times an error
+# in the median (case uncertainty-study), and its parts by cells and load steps add up.
+CELLS_SHARE, STEPS_SHARE = 1 / 4.5, 1 / 9
+FEWEST_CELLS = 4.2  # in the contact radius of the coarsest of three grids: below four it has no uncertainty
+# From each of the first three grids to the next, so that rounding to whole cells leaves 1.3; elements: more.
+RATIOS = {models.SAM: 1.4, models.FEM: RATIO, models.FEM_3D: RATIO}
+FEWEST_STEPS = 6  # 4, 3 and 2 steps may agree by chance: linear hardening, 0.29 of the error
+MOST_STEPS = 1000
+MOST_CELLS = 4097
+
+
+@dataclass(frozen=True)
+class Choice:
+    """cells: in the contact radius; steps: of the load, 0 where they decide nothing."""
+
+    cells: float
+    steps: int
+
+    def __str__(self) -> str:
+        steps = f" and {self.steps} load steps" if self.steps else ""
+        return f"{self.cells:.3g} cells in the contact radius{steps}"
+
+
+def quantities_of(scene: Scene) -> tuple[str, ...]:
+    """Those whose accuracy is asked for: by the scene, else the one of its table of advice."""
+    own = scene.solver.accuracy_of
+    return tuple(own) if own else (ADVISED[kind_of(scene)],)
+
+
+def first_choice(scene: Scene, model: str) -> Choice:
+    """With what the first three grids of a scene end: what the table of advice has, or with a history the
+    fewest cells and steps, as too fine a grid costs more there. Raises ModelError as `expected`, and for
+    quantities without an uncertainty.
+    """
+    advised = expected(scene, model)
+    for name in quantities_of(scene):
+        if reason := why_not(name, scene):
+            raise models.ModelError(f'solver.accuracy_of = ["{name}"]: {reason}: remove it')
+    return Choice(FEWEST_CELLS * RATIOS[model] ** 2, FEWEST_STEPS) if has_history(scene) else advised
+
+
+def expected(scene: Scene, model: str) -> Choice:
+    """What the table of advice has for the accuracy of a scene. Raises ModelError for a kind of scene or an
+    accuracy that was not measured.
+    """
+    accuracy, kind = scene.solver.accuracy, kind_of(scene)
+    if kind not in ADVISED:
+        raise models.ModelError(
+            f"solver.accuracy = {accuracy:g}: remove it, no error was measured for such scenes"
+        )
+    cells = _resolution(kind, model, accuracy * CELLS_SHARE, 0.5)
+    if cells is None:
+        raise models.ModelError(
+            f"solver.accuracy = {accuracy:g}: larger, or another --model: {model} does not reach it"
+        )
+    steps = 0
+    if has_history(scene):
+        steps = ceil(_resolution(kind, LOAD_STEPS, accuracy * STEPS_SHARE, 1.0) or scene.loading.steps)
+    return Choice(
+        max(cells, FEWEST_CELLS * RATIOS[model] ** 2),
+        min(max(steps, FEWEST_STEPS), MOST_STEPS) if steps else 0,
+    )
+
+
+def chosen_scene(scene: Scene, model: str, choice: Choice) -> Scene:
+    """The scene with these cells and load steps, asked for its uncertainty."""
+    scene = alone(scene)
+    changed = scene.model_copy(update={"solver": scene.solver.model_copy(update={"uncertainty": True})})
+    if model == models.SAM:
+        grid = sam.choose_grid(scene)
+        a, b = sam.hertz_semi_axes(scene)
+        factor = sqrt(a * b / (grid.hx * grid.hy)) / choice.cells
+        cells = tuple(min(coarser(count, factor) + 2 * (factor < 1), MOST_CELLS) for count in grid.shape)
+        given = (scene.grid or Grid()).model_copy(update={"cells": cells})
+        changed = changed.model_copy(update={"grid": given})
+    else:
+        fem = scene.fem.model_copy(update={"cells_per_radius": ceil(choice.cells)})
+        changed = changed.model_copy(update={"fem": fem})
+    if not choice.steps:
+        return changed
+    loading = scene.loading
+    steps: dict[str, int] = {"steps": choice.steps}
+    if loading.unload_steps:
+        steps["unload_steps"] = min(ceil(loading.unload_steps * choice.steps / loading.steps), MOST_STEPS)
+    return changed.model_copy(update={"loading": loading.model_copy(update=steps)})
+
+
+def _resolution(kind: str, method: str, error: float, power: float) -> float | None:
+    """Cells or load steps to an error, of the table; beyond its smallest error with a power. None: never."""
+    own = sorted(
+        (row for row in table() if row.kind == kind and row.method == method), key=lambda row: -row.error
+    )
+    if not own:
+        return None
+    row = next((row for row in own if row.error <= error), own[-1])
+    return None if row.bound == NEVER else row.resolution * max(row.error / error, 1.0) ** power
+
 
 LONGEST = 900.0  # processor seconds that are foreseen for all solves of a scene together
 ROUNDS = 8  # of grids, and of numbers of load steps for one of them
@@ -63,10 +177,8 @@ class BeyondError(models.ModelError):
 
 
 def solve(scene: Scene, model: str, solver: Solve | None = None) -> Result:
-    """The result of a scene as it asks for it: plain, with its uncertainty, or to an accuracy.
-
-    Raises what the solver raises, and ModelError as `first_choice` or where even the first grids need too
-    much.
+    """The result of a scene as it asks for it: plain, with its uncertainty, or to an accuracy. Raises what
+    the solver raises, and ModelError as `first_choice` or where even the first grids need too much.
     """
     if scene.solver.accuracy is None:
         return solve_uncertain(scene, model, solver)
@@ -96,10 +208,8 @@ class Solution:
 
 @dataclass
 class Attempt:
-    """What some grids say of the finest of them.
-
-    quantity: the one that is known worst; relative: its uncertainty, None where there is none; why: what
-    keeps the next grid from being solved.
+    """What some grids say of the finest of them: the quantity that is known worst, its relative uncertainty,
+    None where there is none, and why the next grid is not solved.
     """
 
     choice: Choice
@@ -231,25 +341,24 @@ class Search:
         return Attempt(choice, result, worst, relative, why)
 
     def with_companions(self, choice: Choice) -> list[Solution]:
-        """A grid and the next two coarser ones, none of them hardly coarser than the one before. Those of an
-        elastic body are solved in one step, at the depths of its largest stresses alone, or at a single one
-        where the accuracy of no stress is asked for; they have none then.
+        """A grid and the next two coarser ones, none hardly coarser than the one before. Those of an elastic
+        body are solved in one step, at the depths of its largest stresses, or at one where no stress is asked
+        for.
         """
         picked = [self.solution(choice)]
         depths = depths_of_maxima(alone(self.scene), picked[0].result)
         if depths is not None and not any(map(of_stress, quantities_of(self.scene))):
             depths = depths[:1]
         for cells in reversed(self.ladder):
-            coarser = Choice(cells, choice.steps)
-            if len(picked) < 3 and self.member(coarser).size >= NEAREST * picked[-1].member.size:
-                picked.append(self.solution(coarser, depths))
+            fewer = Choice(cells, choice.steps)
+            if len(picked) < 3 and self.member(fewer).size >= NEAREST * picked[-1].member.size:
+                picked.append(self.solution(fewer, depths))
         return picked
 
     def wanted(self, attempt: Attempt, count: int) -> Choice:
         """The cells and load steps that are foreseen to reach the accuracy in the least time, by the parts of
-        the uncertainty: those by cells and box of the last attempt, that by load steps of `count`.
-
-        Raises BeyondError where none does.
+        the uncertainty by cells and box of the last attempt, and by load steps of `count`. Raises BeyondError
+        where none does.
         """
         choice = attempt.choice
         if attempt.relative is None:

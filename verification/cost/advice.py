@@ -8,37 +8,30 @@ data/advice.csv.
 
 from __future__ import annotations
 
+import csv
 import gzip
 import math
 import sys
 from collections.abc import Sequence
+from dataclasses import asdict, astuple, dataclass, fields, replace
 from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from verification.cost.advice_rows import (
-    BELOW,
-    COATED,
-    COLUMNS,
-    DEEP,
-    ELASTIC,
-    LOAD_STEPS,
-    NEVER,
-    ROUGH,
-    ROUGH_YIELDING,
-    RUNNING_IN,
-    SLIDING,
-    YIELDING,
-    AdviceRow,
-    read_rows,
-    table_text,
-)
 from verification.cost.estimates import SETTLES
+from verification.runs.tables import csv_text
 from verification.text.readable import with_time
 
 if TYPE_CHECKING:
     from sam.scene import Scene
 
+ELASTIC, YIELDING, DEEP, SLIDING = "elastic", "yielding", "deeply yielding", "yielding and sliding"
+COATED, ROUGH, ROUGH_YIELDING, RUNNING_IN = "coated", "rough, elastic", "rough, yielding", "running-in"
+ON_TWO_GRIDS = "sam, solver.extrapolate"
+"""Method of the rows of the semi-analytical model that extrapolates from two grids."""
+LOAD_STEPS = "load steps"
+"""Method of the rows that say how many load steps an error takes."""
+BELOW, NEVER = "<", "not reached"
 DEEPER = 4.5
 """p0 of the elastic contact over the initial yield stress: between the two spheres of the case, which have 3
 and 6.2."""
@@ -56,9 +49,60 @@ ORIGIN = "case work-precision (samfem verify work-precision --level full)"
 REPORTED, KEPT = "figures/work-precision-advice.csv", "advice.csv"
 
 
+@dataclass(frozen=True)
+class AdviceRow:
+    """What an error takes, as case work-precision measured it. bound: "", BELOW where even the coarsest
+    measured is better, NEVER where none is. resolution: in `unit`; load_steps: of the measurement; kernels:
+    of the calibration, see verification.cost.measured; relative: time over that of the cheapest method for
+    this error.
+    """
+
+    kind: str
+    quantity: str
+    method: str
+    error: float
+    bound: str
+    resolution: float
+    unit: str
+    load_steps: int
+    seconds: float
+    kernels: float
+    relative: float
+
+
+COLUMNS = tuple(field.name for field in fields(AdviceRow))
+_NUMBERS = ("error", "resolution", "seconds", "kernels", "relative")
+
+
 def table() -> list[AdviceRow]:
     """The committed table."""
     return read_rows(resources.files("verification").joinpath("data", KEPT).read_text(encoding="utf-8"))
+
+
+def read_rows(text: str) -> list[AdviceRow]:
+    """The rows of a table of advice."""
+    return [
+        AdviceRow(
+            **row | {n: float(row[n] or "nan") for n in _NUMBERS} | {"load_steps": int(row["load_steps"])}
+        )
+        for row in csv.DictReader(text.splitlines())
+    ]
+
+
+def shown(value: str | float) -> bool:
+    """Whether it is not a number that is missing."""
+    return isinstance(value, str) or math.isfinite(value)
+
+
+def texts_of(row: AdviceRow) -> list[str]:
+    """The cells of a row; empty where there is no number."""
+    values = astuple(row)
+    return ["" if not shown(v) else f"{v:.3g}" if isinstance(v, float) else str(v) for v in values]
+
+
+def table_text(rows: Sequence[AdviceRow]) -> str:
+    """The file of a table."""
+    return csv_text(COLUMNS, list(map(texts_of, rows)))
 
 
 def kind_of(scene: Scene) -> str | None:
@@ -130,12 +174,9 @@ def _scale(scene: Scene, row: AdviceRow) -> float:
 
 
 def _entry(row: AdviceRow, scale: float) -> dict:
-    entry = {name: getattr(row, name) for name in COLUMNS if name != "kind"}
-    entry["seconds"] = row.seconds * scale
-    return {
-        key: None if isinstance(value, float) and not math.isfinite(value) else value
-        for key, value in entry.items()
-    }
+    entry: dict[str, Any] = asdict(replace(row, seconds=row.seconds * scale))
+    del entry["kind"]
+    return {key: value if shown(value) else None for key, value in entry.items()}
 
 
 def _words(kind: str | None, rows: Sequence[AdviceRow]) -> str:

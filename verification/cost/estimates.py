@@ -150,13 +150,9 @@ def plastic_box(scene: Scene, grid: CellGrid) -> ExpectedBox:
 
 
 def plastic_boxes(scene: Scene, grid: CellGrid, beyond: float = 0.0) -> list[ExpectedBox]:
-    """The boxes around the plastic zone, the first one and what it grows to, as the solver makes them.
-
-    beyond: cells by which the zone is wider than is guessed.
-
-    The contact and the elastic stress that set the first are those of Hertz; the plastic zone that it has to
-    hold is a little wider (SPREAD). Below a rough body it is the whole patch, as islands lie anywhere, and
-    all layers.
+    """The boxes around the plastic zone, the first one and what it grows to, as the solver makes them: a
+    little wider (SPREAD) than the zone of Hertz' elastic stress; below a rough body the patch. beyond: cells
+    by which the zone is wider than is guessed.
     """
     from sam.plasticity import ExpectedBox, expected_sides
 
@@ -251,10 +247,8 @@ def plastic_iterations(scene: Scene, grid: CellGrid) -> float:
 
 def rough_iterations(scene: Scene, plan: Any) -> tuple[float, float]:
     """Load steps of all cycles below a rough body, and iterations beyond those of steps in which nothing
-    yields.
-
-    The mean pressure of an elastic rough contact is E* times half the root mean square slope (Hyun et al.,
-    Phys. Rev. E 70 (2004) 026117).
+    yields, by the elastic mean pressure E* / 2 times the root mean square slope (Hyun et al., Phys. Rev. E 70
+    (2004) 026117).
     """
     opposite, cycles = plan.rough.opposite, plan.schedule.cycles
     slope = plan.rough.roughness(0.0 if opposite is None else -opposite(0, plan.schedule.path[0])).sdq

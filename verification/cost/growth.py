@@ -11,8 +11,9 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import resources
+from typing import Any
 
 import numpy as np
 
@@ -39,71 +40,34 @@ class Rung:
     size: float | None = None
 
 
-@dataclass(frozen=True)
-class Taken:
-    """What the solve of a rung took. memory: bytes above a process that has solved nothing; cpu_s: median of
-    `count` solves.
-    """
-
-    rung: Rung
-    size: float
-    cpu_s: float
-    memory: int
-    count: int
-    converged: bool
-    box: tuple[int, int, int] | None = None
-
-    @property
-    def expected(self) -> estimates.Estimate:
-        """What the plan of the scene says, its memory above that of the process as well."""
-        said = estimates.estimate(self.rung.scene, self.rung.model)
-        return estimates.Estimate(said.memory_bytes - round(estimates.IDLE_BYTES), said.time_s)
-
-
-@dataclass(frozen=True)
-class Applied:
-    """A box of cells and its residual-stress operator: seconds to set it up and of one application, bytes of
-    its coefficients.
-    """
-
-    nx: int
-    ny: int
-    layers: int
-    setup_s: float
-    apply_s: float
-    stored: int
-    memory: int
-
-    @property
-    def cells(self) -> int:
-        return self.nx * self.ny * self.layers
-
-
 def scene_of(name: str) -> Scene:
     """The scene of `verification/scenes/<name>.toml`."""
     with resources.as_file(resources.files("verification").joinpath("scenes", f"{name}.toml")) as path:
         return read_scene(path)[0]
 
 
-def measured_at(rung: Rung, idle: int) -> Taken:
-    """The solve of a rung, each time in a process of its own; idle: see `idle_bytes`."""
+def measured_at(rung: Rung, idle: int) -> dict[str, Any]:
+    """What the solve of a rung took, each time in a process of its own, and what the plan of the scene says:
+    bytes above a process that has solved nothing (idle), median seconds.
+    """
     results = [solve_alone(rung.scene, rung.model)]
     while results[0].cost["cpu_s"] < SHORT_S and len(results) < REPEATS:
         results.append(solve_alone(rung.scene, rung.model))
-    cost, found = [result.cost for result in results], results[0].discretisation
-    box = (*found["plastic_box_cells"], found["plastic_box_layers"]) if "plastic_box_cells" in found else None
-    return Taken(
-        rung,
-        float(found["dofs"]) if rung.size is None else rung.size,
-        float(np.median([each["cpu_s"] for each in cost])),
-        max(each["peak_memory_bytes"] for each in cost) - idle,
-        len(results),
-        all(result.converged for result in results),
-        box and tuple(map(int, box)),
-    )
+    said = estimates.estimate(rung.scene, rung.model)
+    return {
+        "model": rung.model,
+        "family": rung.family,
+        "scene": rung.label,
+        "size": float(rung.size or results[0].discretisation["dofs"]),
+        "cpu-s": float(np.median([result.cost["cpu_s"] for result in results])),
+        "predicted-s": said.time_s,
+        "memory": max(result.cost["peak_memory_bytes"] for result in results) - idle,
+        "predicted-memory": said.memory_bytes - round(estimates.IDLE_BYTES),
+        "converged": all(result.converged for result in results),
+    }
 
 
-def climb(rungs: Sequence[Rung], report: Progress = lambda *_: None) -> list[Taken]:
+def climb(rungs: Sequence[Rung], report: Progress = lambda *_: None) -> list[dict[str, Any]]:
     """`measured_at` for each rung."""
     idle = {model: idle_bytes(model) for model in dict.fromkeys(rung.model for rung in rungs)}
     taken = []
@@ -113,10 +77,14 @@ def climb(rungs: Sequence[Rung], report: Progress = lambda *_: None) -> list[Tak
     return taken
 
 
-def applied(nx: int, ny: int, layers: int) -> Applied:
-    """The residual-stress operator of a box, in single precision, in a process of its own."""
+def applied(nx: int, ny: int, layers: int) -> dict[str, Any]:
+    """The residual-stress operator of a box of cells, in single precision, in a process of its own: seconds
+    of one application and of the set-up, bytes of its coefficients and of all.
+    """
     setup, apply_s, stored, peak = alone(_applied, nx, ny, layers)
-    return Applied(nx, ny, layers, setup, apply_s, stored, peak - idle_bytes(models.SAM))
+    size = {"cells": nx * ny * layers, "plane": nx * ny, "depth": layers}
+    cost = {"cpu-s": apply_s, "set-up-s": setup, "stored": stored, "memory": peak - idle_bytes(models.SAM)}
+    return {"model": models.SAM, "scene": f"{nx} × {ny} × {layers}"} | size | cost
 
 
 def _applied(nx: int, ny: int, layers: int) -> tuple[float, float, int, int]:
@@ -144,86 +112,12 @@ def _applied(nx: int, ny: int, layers: int) -> tuple[float, float, int, int]:
 # The ladders
 
 
-def elastic(sizes: Iterable[int], family: str, depths: tuple[float, ...] | None = None) -> list[Rung]:
-    """Rigid sphere in one step, over four contact radii; depths in m, those of a user who says nothing if
-    None.
-    """
-    scene = _one_step(scene_of("hertz-sphere"))
-    return [
-        Rung(family, f"{n} x {n} cells", models.SAM, _gridded(scene, cells=(n, n), depths=depths), n**2)
-        for n in sizes
-    ]
-
-
-def coated(sizes: Iterable[int]) -> list[Rung]:
-    """Rigid sphere on a soft film, with the bare body to compare with."""
-    scene = _one_step(scene_of("coated-sphere"))
-    return [
-        Rung("coated", f"{n} x {n} cells", models.SAM, _gridded(scene, cells=(n, n)), n**2) for n in sizes
-    ]
-
-
-def rough(sizes: Iterable[int], film: bool = False) -> list[Rung]:
-    """Hard-turned patch with friction, with its film or without."""
-    scene, family = scene_of("rough-patch"), "rough, coated" if film else "rough"
-    if not film:
-        scene = scene.model_copy(update={"body": scene.body.model_copy(update={"coating": None})})
-    return [Rung(family, f"{n} x {n} cells", models.SAM, _gridded(scene, cells=(n, n)), n**2) for n in sizes]
-
-
-def plastic(sizes: Iterable[int], steps: int = 5) -> list[Rung]:
-    """Rigid sphere on Swift steel at four times the load of first yield's pressure, loaded."""
-    scene = _loaded(scene_of("plastic-swift-rigid"), steps=steps, unload=False)
-    return [
-        Rung("plastic", f"{n} x {n} cells", models.SAM, _gridded(scene, cells=(n, n)), n**2) for n in sizes
-    ]
-
-
-def running_in(sizes: Iterable[int], steps: int = 3) -> list[Rung]:
-    """A cycle on a rough patch, with film and wear, in cells of 1 um."""
-    scene = _loaded(scene_of("running-in-bulk"), steps=steps, unload_steps=steps, cycles=1)
-    return [Rung("running-in", f"{n} x {n} cells", models.SAM, _patch(scene, n), n**2) for n in sizes]
-
-
-def cycles(
-    counts: Iterable[int], cells: int = 32, steps: int = 3, *, family: str = "cycles", renewed: bool = False
-) -> list[Rung]:
-    """The same patch, small, over more and more cycles; renewed: against a rough plane, other in each."""
-    scene = _patch(_loaded(scene_of("running-in-bulk"), steps=steps, unload_steps=steps), cells)
-    if renewed:
-        plane = scene.counterbody.model_copy(update={"surface": CounterSurface(**PLANE)})
-        scene = scene.model_copy(update={"counterbody": plane})
-    return [
-        Rung(family, f"{n} cycle{'s' * (n > 1)}", models.SAM, _loaded(scene, cycles=n), n) for n in counts
-    ]
-
-
-def finite_elements(model: str, sizes: Iterable[int], yields: bool = False, steps: int = 1) -> list[Rung]:
-    """The rigid sphere with more and more elements in the contact radius; unknowns are counted. steps: of an
-    elastic body.
-    """
-    scene = (
-        _loaded(scene_of("plastic-swift-rigid"), steps=5, unload=False)
-        if yields
-        else _loaded(scene_of("hertz-sphere"), steps=steps, unload=False)
-    )
-    family = f"{model}, plastic" if yields else f"{model}, {steps} steps" if steps > 1 else model
-    meshed = [
-        scene.model_copy(update={"fem": scene.fem.model_copy(update={"cells_per_radius": n})}) for n in sizes
-    ]
-    return [Rung(family, f"{n} elements in a", model, each) for n, each in zip(sizes, meshed, strict=True)]
-
-
 def _gridded(scene: Scene, **keys) -> Scene:
     return scene.model_copy(update={"grid": (scene.grid or Grid()).model_copy(update=keys)})
 
 
 def _loaded(scene: Scene, **keys) -> Scene:
     return scene.model_copy(update={"loading": scene.loading.model_copy(update=keys)})
-
-
-def _one_step(scene: Scene) -> Scene:
-    return _loaded(scene, steps=1, unload=False)
 
 
 def _patch(scene: Scene, cells: int) -> Scene:
@@ -236,23 +130,72 @@ def _patch(scene: Scene, cells: int) -> Scene:
     )
 
 
+def square(family: str, sizes: Iterable[int], name: str, *, bare: bool = False, **loading) -> list[Rung]:
+    """A scene of SAM on n x n cells; bare: without its film; loading: keys of it."""
+    scene = _loaded(scene_of(name), **loading)
+    if bare:
+        scene = scene.model_copy(update={"body": scene.body.model_copy(update={"coating": None})})
+    return [Rung(family, f"{n} x {n} cells", models.SAM, _gridded(scene, cells=(n, n)), n**2) for n in sizes]
+
+
+def at_surface(rungs: Iterable[Rung]) -> list[Rung]:
+    """The same with the stresses at the surface alone, in place of the depths of a user who names none."""
+    return [replace(rung, scene=_gridded(rung.scene, depths=(0.0,))) for rung in rungs]
+
+
+def running_in(sizes: Iterable[int], steps: int = 3) -> list[Rung]:
+    """A cycle on a rough patch, with film and wear, in cells of 1 um."""
+    scene = _loaded(scene_of("running-in-bulk"), steps=steps, unload_steps=steps, cycles=1)
+    return [Rung("running-in", f"{n} x {n} cells", models.SAM, _patch(scene, n), n**2) for n in sizes]
+
+
+def cycles(counts: Iterable[int], *, family: str = "cycles", renewed: bool = False) -> list[Rung]:
+    """The same patch, small, over more and more cycles; renewed: against a rough plane, other in each."""
+    scene = _patch(_loaded(scene_of("running-in-bulk"), steps=3, unload_steps=3), 32)
+    if renewed:
+        plane = scene.counterbody.model_copy(update={"surface": CounterSurface(**PLANE)})
+        scene = scene.model_copy(update={"counterbody": plane})
+    return [
+        Rung(family, f"{n} cycle{'s' * (n > 1)}", models.SAM, _loaded(scene, cycles=n), n) for n in counts
+    ]
+
+
+def elements(
+    family: str, model: str, sizes: Iterable[int], name: str = "hertz-sphere", *, steps: int = 1
+) -> list[Rung]:
+    """The rigid sphere with more and more elements in the contact radius; unknowns are counted."""
+    scene = _loaded(scene_of(name), steps=steps, unload=False)
+    meshed = {n: scene.fem.model_copy(update={"cells_per_radius": n}) for n in sizes}
+    return [
+        Rung(family, f"{n} elements in a", model, scene.model_copy(update={"fem": fem}))
+        for n, fem in meshed.items()
+    ]
+
+
+ONE_STEP = {"steps": 1, "unload": False}
+LOADED = {"steps": 5, "unload": False}
+YIELDING = "plastic-swift-rigid"
+"""Swift steel at four times the load of first yield's pressure."""
 FAMILIES: Mapping[str, Callable[[], list[Rung]]] = {
-    "contact": lambda: elastic((65, 129, 257, 513, 1025, 2049), "elastic contact", depths=(0.0,)),
-    "stresses": lambda: elastic((65, 129, 257, 513), "elastic, all depths"),
+    "contact": lambda: at_surface(
+        square("elastic contact", (65, 129, 257, 513, 1025, 2049), "hertz-sphere", **ONE_STEP)
+    ),
+    "stresses": lambda: square("elastic, all depths", (65, 129, 257, 513), "hertz-sphere", **ONE_STEP),
     "cycles": lambda: cycles((1, 2, 4, 8, 16)),
     "cycles, renewed": lambda: cycles((1, 2, 4, 8), family="cycles, renewed", renewed=True),
-    "axisymmetric": lambda: finite_elements(models.FEM, (4, 8, 16, 32, 64)),
-    "spatial": lambda: finite_elements(models.FEM_3D, (3, 4, 5, 6, 8)),
-    "rough": lambda: rough((64, 128, 256)),
-    "coated": lambda: coated((65, 129, 257)),
-    "rough, coated": lambda: rough((64, 128), film=True),
-    "plastic": lambda: plastic((33, 45, 63, 89)),
+    "axisymmetric": lambda: elements(models.FEM, models.FEM, (4, 8, 16, 32, 64)),
+    "spatial": lambda: elements(models.FEM_3D, models.FEM_3D, (3, 4, 5, 6, 8)),
+    "rough": lambda: square("rough", (64, 128, 256), "rough-patch", bare=True),
+    "coated": lambda: square("coated", (65, 129, 257), "coated-sphere", **ONE_STEP),
+    "rough, coated": lambda: square("rough, coated", (64, 128), "rough-patch"),
+    "plastic": lambda: square("plastic", (33, 45, 63, 89), YIELDING, **LOADED),
     "running-in": lambda: running_in((32, 48, 64)),
-    "axisymmetric, plastic": lambda: finite_elements(models.FEM, (8, 16, 32), yields=True),
-    "axisymmetric, steps": lambda: finite_elements(models.FEM, (32, 64), steps=4),
+    "axisymmetric, plastic": lambda: elements(
+        f"{models.FEM}, plastic", models.FEM, (8, 16, 32), YIELDING, steps=5
+    ),
+    "axisymmetric, steps": lambda: elements(f"{models.FEM}, 4 steps", models.FEM, (32, 64), steps=4),
 }
-"""The ladders of the case `growth`. The first five have exponents; all are predicted, and the factors fitted
-to them."""
+"""The ladders of the case `growth`, all of which are predicted, and the factors fitted to them."""
 STORED = ("boxes",)  # counts of what is stored, and nothing beside it: their factor is 1
 # bytes over an idle process, and seconds, from which a prediction counts
 MEMORY_MATTERS, TIME_MATTERS = 100e6, 0.5
@@ -267,10 +210,8 @@ def fitted(
     matters: float,
     known: Mapping[str, float] | None = None,
 ) -> dict[str, float]:
-    """Factors >= 0 of the counts: the least sum of the largest relative error of what was measured and the
-    mean one.
-
-    Errors of what is smaller than `matters` weigh less, in proportion. known: factors that are not looked
+    """Factors >= 0 of the counts with the least sum of the largest relative error of what was measured and
+    the mean one, those of what is smaller than `matters` in proportion; known: factors that are not looked
     for.
     """
     from scipy.optimize import linprog
@@ -298,39 +239,33 @@ def fitted(
     return dict(zip(names, (found.x[: len(names)] / scale).tolist(), strict=True)) | dict(known)
 
 
-def factors(taken: Sequence[Taken]) -> tuple[dict[str, dict[str, float]], dict[str, dict[str, float]]]:
+def factors(
+    rungs: Sequence[Rung], taken: Sequence[Mapping[str, Any]]
+) -> tuple[dict[str, dict[str, float]], dict[str, dict[str, float]]]:
     """(MEMORY, TIME) that suit what was measured."""
     memory, seconds = {}, {}
-    for model in dict.fromkeys(each.rung.model for each in taken):
-        those = [each for each in taken if each.rung.model == model]
-        counts = [estimates.counted(each.rung.scene, model) for each in those]
+    for model in dict.fromkeys(rung.model for rung in rungs):
+        counts = [estimates.counted(rung.scene, model) for rung in rungs if rung.model == model]
+        own = [row for row in taken if row["model"] == model]
         known = {name: 1.0 for name in STORED if any(name in count.bytes for count in counts)}
         memory[model] = fitted(
-            [count.bytes for count in counts], [each.memory for each in those], MEMORY_MATTERS, known
+            [count.bytes for count in counts], [row["memory"] for row in own], MEMORY_MATTERS, known
         )
-        seconds[model] = fitted(
-            [count.work for count in counts], [each.cpu_s for each in those], TIME_MATTERS
-        )
+        seconds[model] = fitted([count.work for count in counts], [row["cpu-s"] for row in own], TIME_MATTERS)
     return memory, seconds
 
 
 def main(arguments: Sequence[str]) -> None:
     """Solve the ladders (all, or those that are named) and print the factors."""
-    names = arguments or list(FAMILIES)
-
-    def report(stage: str, k: int, n: int) -> None:
-        print(f"{k} of {n}: {stage}", flush=True)
-
-    taken = climb([rung for name in names for rung in FAMILIES[name]()], report)
-    for each in taken:
-        said = each.expected
+    rungs = [rung for name in arguments or FAMILIES for rung in FAMILIES[name]()]
+    taken = climb(rungs, lambda stage, k, n: print(f"{k} of {n}: {stage}", flush=True))
+    for row in taken:
         print(
-            f"{each.rung.family:24} {each.rung.label:20} {each.cpu_s:8.3g} s, said {said.time_s:8.3g}; "
-            f"{each.memory / 1e6:8.4g} MB, said {said.memory_bytes / 1e6:8.4g}",
-            each.box or "",
-            "" if each.converged else "not converged",
+            f"{row['family']:24} {row['scene']:20} {row['cpu-s']:8.3g} s, said {row['predicted-s']:8.3g}; "
+            f"{row['memory'] / 1e6:8.4g} MB, said {row['predicted-memory'] / 1e6:8.4g}",
+            "" if row["converged"] else "not converged",
         )
-    for name, found in zip(("MEMORY", "TIME"), factors(taken), strict=True):
+    for name, found in zip(("MEMORY", "TIME"), factors(rungs, taken), strict=True):
         print(f"{name} = {{")
         for model, of in found.items():
             print(f"    {model!r}: {{{', '.join(f'{key!r}: {value:.3g}' for key, value in of.items())}}},")

@@ -30,11 +30,8 @@ KERNEL_SIDE, KERNEL_REPEATS = 384, 24  # of the calibration: about 0.2 s on a pr
 
 
 def solve_alone(scene: Scene, model: str, threads: int = 1) -> Result:
-    """`models.solve` in a new process: its cost holds that process' processor time of the solve and peak
-    memory.
-
-    Modules are loaded before the clock starts: 0.2 s of processor time, five times an elastic solve. The peak
-    holds the interpreter and its libraries too, see `idle_bytes`. Raises what the solve raises.
+    """`models.solve` in a new process with loaded modules: its cost holds that process' processor time of the
+    solve and peak memory, interpreter and libraries included (see `idle_bytes`).
     """
     return alone(_solve_loaded, scene, model, threads=threads)
 

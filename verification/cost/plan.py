@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What a scene will compute, what is left out and why, and an estimate of memory and time. Solves nothing.
 
-The stages are those of `verification.cost.stages`, the estimates those of `verification.cost.estimates`.
+The stages are those of the plans of the models, the estimates those of `verification.cost.estimates`.
 """
 
 from __future__ import annotations
@@ -9,11 +9,10 @@ from __future__ import annotations
 from dataclasses import asdict, replace
 from typing import Any
 
-from sam.scene import Scene, Stage, printable
+from sam.scene import NO_FORCE, Scene, Stage, printable
 from verification.cost import estimates
+from verification.cost.accuracy import chosen_scene, expected, first_choice, quantities_of
 from verification.cost.advice import advice_of
-from verification.cost.choice import chosen_scene, expected, first_choice, quantities_of
-from verification.cost.stages import stages_of
 from verification.runs import models
 from verification.runs.model_range import model_range, range_lines
 from verification.runs.provenance import memory_bytes
@@ -51,7 +50,7 @@ def _model(scene: Scene, model: str) -> dict:
         words = f"{asked}: begins with {choice}; the table of advice expects {later}"
         chosen, scene = [Stage("accuracy", True, words)], chosen_scene(scene, model, later)
     made = models.plan(scene, model)
-    stages, estimate = stages_of(scene, made), estimates.estimate(scene, model, made)
+    stages, estimate = _stages(scene, made), estimates.estimate(scene, model, made)
     if scene.solver.uncertainty:
         stage, seconds = _uncertainty(scene, model)
         stages, estimate = [*chosen, *stages, stage], replace(estimate, time_s=estimate.time_s + seconds)
@@ -62,6 +61,20 @@ def _model(scene: Scene, model: str) -> dict:
         "stages": [asdict(stage) for stage in stages],
         "estimate": asdict(estimate),
     }
+
+
+def _stages(scene: Scene, made: Any) -> list[Stage]:
+    """Stages as the plan `made` of a model has them, in the order in which they begin, that of the
+    eigenstrain kernels with the box that plastic strain may fill in SAM; then those that it leaves out.
+    """
+    found = []
+    for stage in (each for each in made.stages if each.runs or each.reason == NO_FORCE):
+        if stage.stage == "eigenstrain kernels" and stage.runs:
+            box = estimates.plastic_box(scene, made.grid)
+            size = {"box_cells": [box.nx, box.ny, box.layers], "coefficients": box.coefficients}
+            stage = replace(stage, size=size | {"bytes": box.width * box.coefficients})
+        found.append(stage)
+    return [*found, *(Stage(entry.stage, False, entry.reason) for entry in made.left_out)]
 
 
 def _uncertainty(scene: Scene, model: str) -> tuple[Stage, float]:
@@ -76,14 +89,11 @@ def _uncertainty(scene: Scene, model: str) -> tuple[Stage, float]:
 
 
 def check_needs(scene: Scene, model: str, available: float | None = None, *, anyway: bool = False) -> None:
-    """Raise ModelError if `model` would need more memory than there is, `available` bytes, by default this
-    machine's; or, unless `anyway`, more time than LONGEST.
+    """Raise ModelError if `model` cannot represent the scene, or would need more memory than there is,
+    `available` bytes, by default this machine's; or, unless `anyway`, more time than LONGEST.
     """
+    models.check(scene, model)
     available = memory_bytes() if available is None else available
-    try:
-        models.check(scene, model)
-    except models.ModelError:
-        return
     needs = estimates.estimate(scene, model)
     if available and needs.memory_bytes > available:
         needed, there = (with_prefix(number, "B") for number in (needs.memory_bytes, available))

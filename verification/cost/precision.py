@@ -34,9 +34,7 @@ class Reached:
 
 def bracket(errors: Sequence[float], target: float) -> tuple[int, int] | None:
     """Numbers of the two points between which the error falls to `target` for good, (0, 0) when the first is
-    as good.
-
-    None where the last point is above it, or an error behind it is not finite.
+    as good; None where the last point is above it, or an error behind it is not finite.
     """
     above = ~(np.asarray(errors, dtype=float) <= target)  # nan is above
     if not above.size or above[-1]:
@@ -47,9 +45,7 @@ def bracket(errors: Sequence[float], target: float) -> tuple[int, int] | None:
 
 def at_error(values: Sequence[float], errors: Sequence[float], target: float, floor: float = 0.0) -> Reached:
     """The value (cost, cells) at which the error is `target`, log-log between the points of the bracket.
-
-    values, errors: (n,), coarse to fine, values positive; floor: uncertainty of the reference, below which no
-    error is claimed: errors count as no smaller, and a smaller target is not reached.
+    values, errors: (n,), coarse to fine, values positive; floor: errors count as no smaller.
     """
     values, errors = np.asarray(values, dtype=float), np.asarray(errors, dtype=float)
     if values.shape != errors.shape or values.ndim != 1 or not np.all(values > 0.0):
@@ -67,15 +63,6 @@ def at_error(values: Sequence[float], errors: Sequence[float], target: float, fl
         return Reached(float(values[fine]), False, smallest)  # nothing to interpolate between
     share = np.log(errors[coarse] / target) / np.log(errors[coarse] / errors[fine])
     return Reached(float(values[coarse] * (values[fine] / values[coarse]) ** share), False, smallest)
-
-
-def time_to_error(
-    seconds: Sequence[float], errors: Sequence[float], target: float, floor: float = 0.0
-) -> float | None:
-    """Seconds to the error `target`, see `at_error`; that of the coarsest point where even that is as good.
-    None: never.
-    """
-    return at_error(seconds, errors, target, floor).value
 
 
 @dataclass(frozen=True)
@@ -101,9 +88,8 @@ class Ladder:
 
 
 def limit_of(ladder: Ladder) -> Reference:
-    """Richardson's limit of a ladder; uncertainty: the last correction, from the finest value to the limit.
-
-    Where no power of h is followed, the finest value itself, with the change from the one before.
+    """Richardson's limit of a ladder with the last correction as uncertainty, or the finest value with the
+    change from the one before where no power of h is followed.
     """
     fitted = extrapolate(ladder.h, ladder.values)
     if fitted.observed:
@@ -113,11 +99,9 @@ def limit_of(ladder: Ladder) -> Reference:
 
 
 def agreed(*ladders: Ladder) -> Reference:
-    """The limits of independent models as one reference.
-
-    Their mean, weighted with the inverse squares of their last corrections. Uncertainty: half the largest
-    disagreement, and no less than a third of the smallest last correction - what an extrapolation of first
-    order with an exponent off by a half leaves.
+    """The limits of independent models as one reference: their mean, weighted with the inverse squares of
+    their last corrections. Uncertainty: half the largest disagreement, and no less than a third of the
+    smallest correction, what an extrapolation of first order with an exponent off by a half leaves.
     """
     limits = [limit_of(ladder) for ladder in ladders]
     tiny = 1e-12

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Figures of a comparison: the curves of both models, and of data of the user, in the same axes, at peak
-load.
+"""Figures of a comparison: the curves of both models, and of data of the user, in the same axes, at
+peak load.
 """
 
 from __future__ import annotations
@@ -32,8 +32,6 @@ MICRO, GIGA = 1e6, 1e-9
 WITHIN = 2.0
 """Of the contact radii: what is drawn. Everything, where a run has no contact radius."""
 LOOKS = {"SAM": SAM, "FEM": FEM}
-OWN, COLORS = {"linestyle": ":", "linewidth": 2.0}, (GREEN, PURPLE, ORANGE, BLACK)
-"""Of data of the user."""
 PANELS = {
     "line": {
         "pressure [GPa]": ("p_Pa", GIGA),
@@ -47,12 +45,10 @@ PANELS = {
     },
 }
 """Table -> label -> column and factor to its unit."""
-PLACES = {"line": "x_m", "axis": "z_m"}
 
 
 def draw_comparison(folder: Path, solutions: Mapping[str, Solution], prefix: str = "") -> list[Path]:
-    """Write the figures of results of one scene into `folder`/figures; returns the paths (PNG, CSV of
-    each).
+    """Write the figures of results of one scene into `folder`/figures; returns the paths (PNG, CSV of each).
 
     solutions: "SAM", "FEM" and names of data -> each; prefix: of the names of the files.
     """
@@ -73,7 +69,7 @@ def curves(runs: Mapping[str, Solution], table: str) -> Drawing:
 
     What data lack is not drawn, and everything only as far as SAM's, or the first with a contact radius.
     """
-    place, looks = PLACES[table], _looks(runs)
+    place, looks = {"line": "x_m", "axis": "z_m"}[table], _looks(runs)
     radius = next((size for run in runs.values() if (size := run.quantities.get("contact_radius_m"))), 0.0)
     data = Columns("panel", "model", place, "value")
     with sheet(3.45 * len(PANELS[table]), 3.2, len(PANELS[table])) as (figure, axes):
@@ -81,9 +77,11 @@ def curves(runs: Mapping[str, Solution], table: str) -> Drawing:
             for model, run in runs.items():
                 if column not in run.tables.get(table, ()):
                     continue
-                x, y = _shown(radius, *peak(run.tables[table], place, column))
-                panel.plot(x * MICRO, y * factor, label=model, **looks[model])
-                data.add(column, model, x, y)
+                x, y = peak(run.tables[table], place, column)
+                order = np.argsort(x, kind="stable")
+                shown = order[np.abs(x[order]) <= WITHIN * radius] if radius else order
+                panel.plot(x[shown] * MICRO, y[shown] * factor, label=model, **looks[model])
+                data.add(column, model, x[shown], y[shown])
             panel.set(xlabel=f"${place[0]}$ [$\\mu$m]", ylabel=label)
         axes[0].legend()
     return Drawing(figure, data)
@@ -92,7 +90,8 @@ def curves(runs: Mapping[str, Solution], table: str) -> Drawing:
 def _looks(runs: Mapping[str, Solution]) -> dict[str, dict]:
     """How each is drawn: the models as everywhere, data in further colours."""
     own = (name for name in runs if name not in LOOKS)
-    return LOOKS | {name: OWN | {"color": color} for name, color in zip(own, cycle(COLORS), strict=False)}
+    dotted = ({"linestyle": ":", "linewidth": 2.0, "color": c} for c in cycle((GREEN, PURPLE, ORANGE, BLACK)))
+    return LOOKS | dict(zip(own, dotted, strict=False))
 
 
 def history(runs: Mapping[str, Solution]) -> Drawing:
@@ -110,10 +109,3 @@ def history(runs: Mapping[str, Solution]) -> Drawing:
         panel.set(xlabel="approach [$\\mu$m]", ylabel="force [N]")
         panel.legend()
     return Drawing(figure, data)
-
-
-def _shown(radius: float, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The rows within the drawn range, along x."""
-    order = np.argsort(x, kind="stable")
-    kept = order[np.abs(x[order]) <= WITHIN * radius] if radius else order
-    return x[kept], y[kept]

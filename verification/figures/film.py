@@ -1,171 +1,64 @@
 # SPDX-License-Identifier: MIT
-"""The figures of films that yield or slide: what they change over the contact radius, pressures, strains,
-sections.
+"""The figures of films that yield, of the frame of `verification.cases.coated.film_yield`: what
+they change over the contact radius, pressures, strains.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import RegularGridInterpolator
 
-from sam.scene import Result
-from verification.figures.friction import Curve, curves, peak_at
-from verification.figures.maps import FieldPair, plane_maps
-from verification.figures.style import (
-    BLACK,
-    BLUE,
-    EXACT,
-    GREEN,
-    VERMILION,
-    Columns,
-    Drawing,
-    sheet,
-    style,
-    zero_line,
-)
-from verification.figures.views import PLANE_AXES, VON_MISES, VON_MISES_LEVELS
-from verification.runs.sampling import peak, plane_field
+from verification.figures.lines import Curve, curves
+from verification.figures.style import BLACK, BLUE, GREEN, VERMILION, Drawing
+from verification.runs.sampling import peak
 
 if TYPE_CHECKING:
-    from pandas import DataFrame, Series
+    from pandas import DataFrame
 
 GIGA, MICRO, PERCENT = 1e-9, 1e6, 1e2
-COLOURS = {"elastic": BLACK, "B 945": BLUE, "B 1780": VERMILION}
-STYLES = {"bare": (0.9, ":"), "elastic": (1.4, "-"), "yields": (1.4, "--")}
-"""Of the film: width and kind of the line."""
-LIMIT = {"color": GREEN, "linewidth": 1.0, "linestyle": "-."}
 
 
-def series(body: str, film: str) -> str:
+def _series(body: str, film: str) -> str:
     """The name of a curve."""
     return f"body {body}, " + ("no film" if film == "bare" else f"film {film}")
 
 
-def looks(marker: str | None = None) -> dict[str, dict]:
-    """Of each curve by its name: colour by body, line by film."""
-    return {
-        series(body, film): {
-            "color": color,
-            "marker": marker,
-            "markersize": 4,
-            "linewidth": w,
-            "linestyle": line,
-        }
-        for body, color in COLOURS.items()
-        for film, (w, line) in STYLES.items()
-    }
+LOOKS = {
+    _series(body, film): {"color": color, "linewidth": width, "linestyle": line}
+    for body, color in {"elastic": BLACK, "B 945": BLUE, "B 1780": VERMILION}.items()
+    for film, width, line in (("bare", 0.9, ":"), ("elastic", 1.4, "-"), ("yields", 1.4, "--"))
+}
+"""Of each curve by its name: colour by body, line by film."""
 
 
 def changes(found: DataFrame, limit: float) -> Drawing:
-    """Changes of the largest pressure and of the body's von Mises stress in % over the contact radius in um.
-    found: frame of `verification.cases.coated.film_yield`, as for the others.
-    """
+    """Changes of the largest pressure and of the von Mises stress of the body over the contact radius."""
     panels: dict[str, dict[str, Curve]] = {}
     ends = MICRO * np.array([found["radius"].min(), found["radius"].max()])
     for name, words in (("p_change", "largest pressure"), ("mises_change", "von Mises in the body")):
         for counter, ones in found.groupby("counterbody"):
             panel = panels[f"{words}, {counter}"] = {}
             for kind, own in ones.sort_values("radius").groupby(["body", "film"], sort=False):
-                panel[series(*kind)] = Curve(*(own[["radius", name]].to_numpy() * (MICRO, PERCENT)).T)
+                xy = (own[["radius", name]].to_numpy() * (MICRO, PERCENT)).T
+                panel[_series(*kind)] = Curve(*xy, look={"marker": "o", "markersize": 4})
             panel["limit"] = Curve(ends, np.full(2, -PERCENT * limit))
-    drawing = curves(panels, r"$a_0$ [$\mu$m]", "change [%]", looks=looks("o") | {"limit": LIMIT})
-    first = drawing.figure.axes[0]
-    entries = first.get_legend_handles_labels()
-    first.get_legend().remove()
-    with style():
-        drawing.figure.legend(*entries, loc="outside lower center", ncols=len(entries[1]))
-    return drawing
+    looks = LOOKS | {"limit": {"color": GREEN, "linewidth": 1.0, "linestyle": "-."}}
+    return curves(panels, r"$a_0$ [$\mu$m]", "change [%]", looks=looks, legend="below")
 
 
 def pressures(found: DataFrame, bare_radius: float) -> Drawing:
     """Pressure in GPa over r/a0: a panel for each contact radius, without film and with each."""
     panels: dict[str, dict[str, Curve]] = {}
     for _, one in found[found["body"] != "B 1780"].iterrows():
-        panel = panels.setdefault(title(one), {})
-        for film, result, a in (
-            ("bare", one["bare"], bare_radius),
-            (one["film"], one["result"], one["radius"]),
-        ):
+        panel = panels.setdefault(_title(one["radius"]), {})
+        runs = (("bare", one["bare"], bare_radius), (one["film"], one["result"], one["radius"]))
+        for film, result, a in runs:
             r, p = peak(result.tables["line"], "x_m", "p_Pa")
-            panel[series(one["body"], film)] = Curve(r[use := r <= 1.4 * a] / a, GIGA * p[use])
-    return curves(panels, "$r/a_0$", "pressure [GPa]", looks=looks())
+            panel[_series(one["body"], film)] = Curve(r[use := r <= 1.4 * a] / a, GIGA * p[use])
+    return curves(panels, "$r/a_0$", "pressure [GPa]", looks=LOOKS)
 
 
-def title(one: Series) -> str:
+def _title(radius: float) -> str:
     """The contact radius of a panel."""
-    return rf"$a_0$ = {MICRO * one['radius']:g} $\mu$m"
-
-
-def strains(found: DataFrame) -> Drawing:
-    """Plastic strain in %, mean of the columns of Gauss points over the film's thickness, over r/a0: a panel
-    for each contact radius, a curve for each body.
-    """
-    panels: dict[str, dict[str, Curve]] = {}
-    for _, one in found.iterrows():
-        r, z, strain = peak(one["result"].tables["plane"], "x_m", "z_m", "peeq")
-        inside = (z < one["scene"].body.coating.thickness) & (r <= 1.4 * one["radius"])
-        x, column = np.unique(np.round(r[inside] / one["radius"], 9), return_inverse=True)
-        mean = np.bincount(column, strain[inside]) / np.bincount(column)
-        panel = panels.setdefault(title(one), {})
-        panel[series(one["body"], one["film"])] = Curve(x, PERCENT * mean)
-        if one["body"] == "elastic":
-            panel["thin film"] = Curve(np.zeros(1), np.array([PERCENT * one["thin_film"]]))
-    marks = {"color": BLACK, "marker": "o", "fillstyle": "none", "linestyle": "none"}
-    used = looks() | {"thin film": marks}
-    return curves(panels, "$r/a_0$", "plastic strain of the film [%]", looks=used)
-
-
-def sliding_sections(
-    sam: Result,
-    fem: Result,
-    units: tuple[float, float],
-    thickness: float,
-    *,
-    reach: float = 1.5,
-    deep: float = 1.4,
-) -> Drawing:
-    """Von Mises stress of the body over p0 in y = 0, from the film's lower face on: SAM | FEM | difference.
-
-    units: a in m and p0 in Pa.
-    """
-    a, p0 = units
-    x, z, own = plane_field(sam.tables, "mises_Pa")
-    use_x, use_z = np.abs(x) <= reach * a, (z >= thickness * (1.0 - 1e-9)) & (z <= deep * a)
-    x, z, own = x[use_x], z[use_z], own[np.ix_(use_x, use_z)]
-    fields = own / p0, in_body(fem, x, z, thickness) / p0
-    edge = fem.quantities["contact_radius_m"] / a
-    pair = FieldPair(x / a, z / a, *fields, ("SAM", "FEM"), PLANE_AXES, VON_MISES, (edge, edge))
-    return plane_maps(pair, [peak_at(x / a, z / a, field) for field in fields], VON_MISES_LEVELS)
-
-
-def in_body(
-    fem: Result, x: np.ndarray, z: np.ndarray, thickness: float, *, column: str = "mises_Pa"
-) -> np.ndarray:
-    """(nx, nz) a column of the three-dimensional model in y = 0 below the film, linear; NaN above its first
-    depth there.
-    """
-    u, w, values = plane_field(fem.tables, column)
-    w[np.isclose(w, thickness, rtol=1e-9, atol=0.0)] = thickness  # to rounding
-    body = w >= thickness
-    at = np.stack(np.meshgrid(x, z, indexing="ij"), axis=-1)
-    return RegularGridInterpolator((u, w[body]), values[:, body], bounds_error=False)(at)
-
-
-def thinning_curves(pressure: np.ndarray, curves: Mapping[str, np.ndarray], limit: float) -> Drawing:
-    """pressure in GPa, (n,); curves: name -> thinning in %, (n,), NaN where there is none; limit in %."""
-    rows = Columns("curve", "pressure_GPa", "thinning_percent")
-    with sheet(4.8, 3.2) as (figure, axis):
-        for (name, thinning), (color, line) in zip(
-            curves.items(), ((BLUE, "-"), (VERMILION, "-"), (GREEN, "--")), strict=True
-        ):
-            axis.plot(pressure, thinning, color=color, linestyle=line, linewidth=1.6, label=name)
-            shown = np.isfinite(thinning)
-            rows.add(name, pressure[shown], thinning[shown])
-        axis.axhline(limit, **EXACT, label=f"growth of a cycle, {limit:.2f} %")
-        zero_line(axis)
-        axis.set(xlabel="pressure [GPa]", ylabel="thinning [%]", xlim=(0.0, pressure.max()))
-        axis.legend()
-    return Drawing(figure, rows)
+    return rf"$a_0$ = {MICRO * radius:g} $\mu$m"

@@ -1,28 +1,35 @@
 # SPDX-License-Identifier: MIT
-"""Two fields on one grid side by side, and their difference."""
+"""Maps of fields: two on one grid side by side and their difference, and what marks a map."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
+from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Ellipse, Patch
 from matplotlib.ticker import MaxNLocator
+from scipy.interpolate import RegularGridInterpolator
 
+from sam.scene import Result
+from verification.compare.sliding_measures import Plane
 from verification.figures.places import edges_of
 from verification.figures.style import BLACK, GREY, Drawing, new_figure, style
+from verification.runs.sampling import Tables, plane_field, plane_field_on, pressure_map, pressure_on
 
 SHOWN_SHARE = 0.995
 """Share of the points whose difference lies within the colour limits."""
 PANEL, AROUND = 2.8, 1.9
 """Inches: the width of one of three panels, and what stands above and below it."""
+VON_MISES_LEVELS = np.arange(0.1, 0.95, 0.1)
 MANY_LINES = 4
 """Iso-lines, from which on every second one has a number."""
 _OUTLINE = {"facecolor": "none", "linestyle": "--", "linewidth": 1.0}
@@ -39,11 +46,11 @@ BAR, CROSS, INTERFACE = (
 
 @dataclass(frozen=True)
 class FieldPair:
-    """Two normalised fields on one grid: u (m,), v (n,), first and second (m, n); NaN where a field is not
-    known.
+    """Two normalised fields on one grid: u (m,), v (n,), first and second (m, n); NaN where a field
+    is not known.
 
-    names: of the two; axes: labels of u and v; quantity: label of the field, e.g. "$p/p_0$"; semi_axes: of
-    the contact in the units of u (and v), for the outline.
+    names: of the two; axes: labels of u and v; quantity: label of the field, e.g. "$p/p_0$";
+    semi_axes: of the contact in the units of u (and v), for the outline.
     """
 
     u: np.ndarray
@@ -192,8 +199,8 @@ def three_panels(pair: FieldPair, *, touching: bool = False, strip: float = 0.0)
 
 
 def _draw_difference(panel: Axes, pair: FieldPair, bar: Mapping, *, touching: bool, strip: float) -> None:
-    """The difference on a symmetric scale that a few points of the edge may exceed; the largest is written
-    above it.
+    """The difference on a symmetric scale that a few points of the edge may exceed; the largest is
+    written above it.
     """
     shown = pair.difference
     if touching:
@@ -211,8 +218,8 @@ def _draw_difference(panel: Axes, pair: FieldPair, bar: Mapping, *, touching: bo
 
 
 def draw_field(panel: Axes, u: np.ndarray, v: np.ndarray, field: np.ndarray, **options):
-    """Colours of a field (m, n) over u (m,) and v (n,), grey where it is NaN; rasterised, so that a PDF stays
-    small.
+    """Colours of a field (m, n) over u (m,) and v (n,), grey where it is NaN; rasterised, so that a
+    PDF stays small.
     """
     panel.set_facecolor(GREY)
     mesh = panel.pcolormesh(
@@ -221,6 +228,14 @@ def draw_field(panel: Axes, u: np.ndarray, v: np.ndarray, field: np.ndarray, **o
     panel.set_aspect("equal")
     panel.grid(False)
     return mesh
+
+
+def coloured(
+    panel: Axes, places: Sequence[np.ndarray], field: np.ndarray, label: str, **options: Any
+) -> None:
+    """A field with its colour bar; places: x and y; options: of `draw_field`."""
+    mesh = draw_field(panel, *places, field, **options)
+    panel.figure.colorbar(mesh, ax=panel, label=label, fraction=0.05, pad=0.03)
 
 
 def outline(panel: Axes, x: np.ndarray, y: np.ndarray, inside: np.ndarray, **look: Any) -> None:
@@ -250,3 +265,204 @@ def mark_interface(axes: Sequence[Axes], depth: float, across: bool = False) -> 
     """A dashed line where the film ends: at x = depth, or across at y = depth."""
     for axis in axes:
         (axis.axhline if across else axis.axvline)(depth, **_INTERFACE)
+
+
+VON_MISES, STRAIN = r"$\sigma_\mathrm{vM}/p_0$", "plastic strain [%]"
+SURFACE_AXES, PLANE_AXES = ("$x/a$", "$y/a$"), ("$x/a$", "$z/a$")
+PERCENT, MICRO, GIGA = 1e2, 1e6, 1e-9
+LINE = 0.2  # %: the proof strain of tensile tests
+CONTOURS = (LINE, 2.0)  # % of plastic strain under a sliding contact
+CLEAR = 0.25
+"""Of an element; the Gauss points of eight-node elements are 0.21 of it from its edges."""
+
+
+def compared_pressure(
+    sam: Result, fem: Tables, a: float, p0: float, *, reach: float = 1.3, edge: float = 1.0, power: int = 2
+) -> Drawing:
+    """p/p0 over (x/a, y/a) to `reach`: SAM | FEM | difference; edge: radius of the contact in a;
+    power: see pressure_on.
+    """
+    x, y, p = pressure_map(sam)
+    use_x, use_y = np.abs(x) <= reach * a, np.abs(y) <= reach * a
+    x, y, p = x[use_x], y[use_y], p[np.ix_(use_x, use_y)]
+    fields = (p / p0, pressure_on(x, y, fem, power) / p0)
+    names, axes = ("SAM", "FEM"), SURFACE_AXES
+    return pressure_maps(FieldPair(x / a, y / a, *fields, names, axes, "$p/p_0$", (edge, edge)))
+
+
+def rough_pressures(
+    x: np.ndarray, y: np.ndarray, fields: Mapping[str, np.ndarray], reach: float = np.inf
+) -> Drawing:
+    """Pressure over (x, y) in m, |y| <= reach, and the difference; fields: two names -> (nx, ny) in Pa."""
+    near, axes = np.abs(y) <= reach, ("$x$ [µm]", "$y$ [µm]")
+    values = (GIGA * p[:, near] for p in fields.values())
+    pair = FieldPair(MICRO * x, MICRO * y[near], *values, tuple(fields), axes, "pressure [GPa]", (0.0, 0.0))
+    return pressure_maps(pair)
+
+
+def sections(
+    x: np.ndarray, z: np.ndarray, coated: np.ndarray, bare: np.ndarray, *, thickness: float
+) -> Drawing:
+    """Von Mises stress over (x, z), z down, (nx, nz) in Pa, around its largest; the interface as a line."""
+    middle = x[int(np.unravel_index(np.argmax(bare), bare.shape)[0])]
+    near, axes = np.abs(x - middle) <= 8e-6, ("$x$ [µm]", "$z$ [µm]")
+    labels = ("coated", "bare"), axes, "von Mises stress [GPa]", (0.0, 0.0)
+    pair = FieldPair(MICRO * x[near], MICRO * z, GIGA * coated[near], GIGA * bare[near], *labels)
+    with style():
+        figure, panels = three_panels(pair)
+        panels[0].invert_yaxis()
+        mark_interface(panels, MICRO * thickness, across=True)
+        name_marks(figure, [INTERFACE])
+    return Drawing(figure, pair.data())
+
+
+def compared_mises(
+    sam: Result, fem: Result, a: float, p0: float, *, film: float | None = None, element: float = 0.0
+) -> Drawing:
+    """Von Mises stress over p0 in y = 0: SAM | FEM | difference.
+
+    film: its thickness, element: size of the elements there, both in m. Between the last Gauss
+    points above and below the interface, within CLEAR of an element, no stress of FEM is known on
+    either side: nothing is drawn there.
+    """
+    clear = None if film is None else (film, CLEAR * element)
+    pair, peaks = _both(sam, fem, "mises", (a, p0), clear=clear)
+    return plane_maps(pair, peaks, VON_MISES_LEVELS, interface=film / a if film else None)
+
+
+def compared_peeq(sam: Result, fem: Result, a: float) -> Drawing:
+    """Plastic strain in % in y = 0: SAM | FEM | difference, with the iso-line of 0.2 %; a: the
+    elastic contact radius in m; the bar over the maps is the contact of FEM.
+    """
+    pair, peaks = _both(sam, fem, "peeq", (a, 1.0 / PERCENT))
+    pair = replace(pair, semi_axes=(edge := fem.quantities["contact_radius_m"] / a, edge))
+    levels = iso_levels(max(peak.value for peak in peaks))
+    return readable(lambda left: plane_maps(pair, peaks, left), levels, keep=(LINE,))
+
+
+def _both(
+    sam: Result,
+    fem: Result,
+    name: str,
+    units: tuple[float, float],
+    *,
+    clear: tuple[float, float] | None = None,
+) -> tuple[FieldPair, list[MapPeak]]:
+    """A quantity of SAM and the axisymmetric model in y = 0, |x/a| <= 1.5, z/a <= 1.9, and the
+    maxima as both quote them, refined in depth, in the column where the field is largest. clear:
+    depth, and how far from it nothing is known.
+    """
+    (a, unit), column, label = units, *(("mises_Pa", VON_MISES) if name == "mises" else (name, STRAIN))
+    x, z, values = plane_field(sam.tables, column)
+    use_x, use_z = np.abs(x) <= 1.5 * a, z <= 1.9 * a
+    if clear is not None:
+        use_z &= np.abs(z - clear[0]) > clear[1]
+    x, z, values = x[use_x], z[use_z], values[np.ix_(use_x, use_z)]
+    fields = values / unit, plane_field_on(x, z, fem.tables, column) / unit
+    axes = PLANE_AXES if clear is None else ("$x/a_0$", "$z/a_0$")
+    peaks = []
+    for result, field in zip((sam, fem), fields, strict=True):
+        largest = result.quantities["mises_max_Pa" if name == "mises" else "peeq_max"] / unit
+        at = int(np.argmax(np.nanmax(np.where(np.isnan(field), -np.inf, field), axis=1)))
+        peaks.append(MapPeak(float(x[at] / a), result.quantities[f"{name}_max_depth_m"] / a, largest))
+    return FieldPair(x / a, z / a, *fields, ("SAM", "FEM"), axes, label), peaks
+
+
+def sliding_sections(sam: Result, fem: Result, units: tuple[float, float], thickness: float) -> Drawing:
+    """Von Mises stress of the body over p0 in y = 0, from the film's lower face on: SAM | FEM | difference.
+
+    units: a in m and p0 in Pa.
+    """
+    a, p0 = units
+    x, z, own = plane_field(sam.tables, "mises_Pa")
+    use_x, use_z = np.abs(x) <= 1.5 * a, (z >= thickness * (1.0 - 1e-9)) & (z <= 1.4 * a)
+    x, z, own = x[use_x], z[use_z], own[np.ix_(use_x, use_z)]
+    fields = own / p0, in_body(fem, x, z, thickness) / p0
+    edge = fem.quantities["contact_radius_m"] / a
+    pair = FieldPair(x / a, z / a, *fields, ("SAM", "FEM"), PLANE_AXES, VON_MISES, (edge, edge))
+    return plane_maps(pair, [peak_at(x / a, z / a, field) for field in fields], VON_MISES_LEVELS)
+
+
+def in_body(fem: Result, x: np.ndarray, z: np.ndarray, thickness: float) -> np.ndarray:
+    """(nx, nz) the von Mises stress of the three-dimensional model in y = 0 below the film, linear;
+    NaN above its first depth there.
+    """
+    u, w, values = plane_field(fem.tables, "mises_Pa")
+    w[np.isclose(w, thickness, rtol=1e-9, atol=0.0)] = thickness  # to rounding
+    body = w >= thickness
+    at = np.stack(np.meshgrid(x, z, indexing="ij"), axis=-1)
+    return RegularGridInterpolator((u, w[body]), values[:, body], bounds_error=False)(at)
+
+
+def compared_planes(
+    first: Plane, second: Plane, names: tuple[str, str], edge: float, *, strip: float = 0.0
+) -> Drawing:
+    """Plastic strain in % in y = 0: first | second | difference, with iso-lines, among them 0.2 % and 2 %.
+
+    edge: contact radius in that of the elastic contact, for the bar over the maps; strip: depth down to which
+    nothing is compared; the maxima are those below it, and what the strip holds is said beside them.
+    """
+    x, z = first.x[np.abs(first.x) <= 1.6], first.z[first.z <= 1.4]
+    fields = tuple(PERCENT * plane.at(x, z) for plane in (first, second))
+    pair, below, peaks = FieldPair(x, z, *fields, names, PLANE_AXES, STRAIN, (edge, edge)), z >= strip, []
+    for field in fields:
+        peak, anywhere = peak_at(x, z[below], field[:, below]), np.nanmax(field)
+        inside = f", {anywhere:#.3g} % in it" if anywhere > peak.value else ""
+        words = f"max {peak.value:#.3g} %" + f" below the strip{inside}" * bool(strip)
+        peaks.append(replace(peak, words=words))
+    largest = max(peak.value for peak in peaks)
+    wanted = [level for level in CONTOURS if level < largest]
+    levels = np.union1d(iso_levels(largest), wanted)
+    return readable(lambda left: plane_maps(pair, peaks, left, strip=strip), levels, keep=wanted)
+
+
+def peak_at(x: np.ndarray, z: np.ndarray, field: np.ndarray) -> MapPeak:
+    """The largest value of a field (nx, nz) that is NaN in places."""
+    i, k = np.unravel_index(np.nanargmax(field), field.shape)
+    return MapPeak(float(x[i]), float(z[k]), float(field[i, k]))
+
+
+def iso_levels(largest: float) -> np.ndarray:
+    """Levels in % up to the largest strain: round numbers, and 0.2 % whenever it is reached."""
+    ticks = MaxNLocator(6).tick_values(0.0, largest)
+    apart = ticks[(ticks > 0.0) & (ticks < largest) & (np.abs(ticks - LINE) > 0.25 * ticks[1])]
+    return np.union1d(apart, [LINE] if largest > LINE else [])
+
+
+def readable(
+    draw: Callable[[Sequence[float]], Drawing], levels: Sequence[float], keep: Collection[float] = ()
+) -> Drawing:
+    """A drawing of iso-lines at `levels`, less those whose number touches another one or finds no place.
+
+    keep: of those that touch, the levels that go last.
+    """
+    left = [float(level) for level in levels]
+    drawing = draw(left)
+    while len(left) > 1 and (going := _unreadable(drawing, left)):
+        left.remove(min(going, key=lambda level: (level in keep, -level)))
+        drawing = draw(left)
+    return drawing
+
+
+def _unreadable(drawing: Drawing, levels: Sequence[float]) -> set[float]:
+    """Levels whose line found no place for a number, in panels where fewer than two have one;
+    without such, those whose number is nearer to another one than half its size.
+    """
+    drawing.figure.draw_without_rendering()  # the layout says where the numbers are
+    without, touching = set(), set()
+    for lines in drawing.figure.findobj(ContourSet):
+        texts = getattr(lines, "labelTexts", ())
+        places = [np.array(text.get_window_extent().extents) for text in texts]
+        said = [float(text.get_text()) for text in texts]
+        numbered = [min(levels, key=lambda level, near=value: abs(level - near)) for value in said]
+        paths = zip(lines.levels, lines.get_paths(), strict=True)
+        drawn = {float(level) for level, path in paths if len(path.vertices)}
+        if len(set(numbered)) < min(len(drawn), 2):
+            without |= drawn - set(numbered)
+        for (text, one, level), (_, other, beside) in combinations(
+            zip(texts, places, numbered, strict=True), 2
+        ):
+            room = 0.5 * text.get_fontsize() * drawing.figure.dpi / 72.0
+            if np.all(np.minimum(one, other)[2:] + room > np.maximum(one, other)[:2]):
+                touching |= {level, beside}
+    return without or touching

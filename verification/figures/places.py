@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Where the contact of a finished run is, and the plane y = const through its largest pressure: what its
-figures show.
+"""Where the contact of a finished run is, and the plane y = const through its largest pressure:
+what its figures show.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ IN_FILM, BELOW = 9, 77
 
 @dataclass(frozen=True)
 class SurfaceMap:
-    """Fields over the cells (or nodes) of the surface at the peak. x (nx,), y (ny,) in m; fields: name ->
-    (nx, ny).
+    """Fields over the cells (or nodes) of the surface at the peak. x (nx,), y (ny,) in m; fields:
+    name -> (nx, ny).
 
     border: cells at each end in x and y that do not count for the largest values.
     """
@@ -80,9 +80,7 @@ def surface_map(run: Run) -> SurfaceMap | None:
 
 
 def _border(run: Run, p: np.ndarray) -> tuple[int, int]:
-    """Cells that do not count: of a rough body, once its contact touches the edge of a patch that ends
-    free.
-    """
+    """Cells that do not count: of a rough body whose contact touches the edge of a patch that ends free."""
     grid, touching = run.summary["scene"].get("grid") or {}, p > 0.0
     at_edge = touching[[0, -1], :].any() or touching[:, [0, -1]].any()
     rough = is_rough(run.summary["scene"])
@@ -95,9 +93,7 @@ def is_rough(scene: Mapping[str, Any]) -> bool:
 
 
 def is_circular(run: Run) -> bool:
-    """Whether the contact is a circle around the origin, whose radius is the unit of length of the
-    figures.
-    """
+    """Whether the contact is a circle around the origin: its radius is the unit of length of the figures."""
     scene = run.summary["scene"]
     loading, other = scene["loading"], scene.get("counterbody") or {}
     if loading.get("prescribed"):
@@ -114,9 +110,7 @@ def interface_of(run: Run) -> float | None:
 
 
 def in_film(z: np.ndarray, film: float) -> np.ndarray:
-    """Which depths are above the interface; values at it are those of the body, and it is known to
-    rounding.
-    """
+    """Which depths are above the interface, known to rounding; values at it are those of the body."""
     return z < film * (1.0 - 1e-9)
 
 
@@ -124,8 +118,8 @@ def in_film(z: np.ndarray, film: float) -> np.ndarray:
 class Section:
     """The plane in which a run is drawn, y = const in m.
 
-    place: x of the largest pressure in it, in m; spots: where it is in contact, (first, last) x in m of each;
-    source: the table with its fields, "plane" (y = 0) or "cut".
+    place: x of the largest pressure in it, in m; spots: where it is in contact, (first, last) x in
+    m of each; source: the table with its fields, "plane" (y = 0) or "cut".
     """
 
     y: float
@@ -172,8 +166,8 @@ def edges_of(x: np.ndarray) -> np.ndarray:
 def plane_of(run: Run, section: Section, column: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """A column in the plane of a section at the peak: x (nx,), z (nz,) in m and the field (nx, nz).
 
-    Of the axisymmetric model between its Gauss points, in a film and below it by themselves; others as they
-    are.
+    Of the axisymmetric model between its Gauss points, in a film and below it by themselves; others
+    as they are.
     """
     if run.model == "fem-axisymmetric":
         return _axisymmetric_plane(run, column)
@@ -208,8 +202,8 @@ def _rows(tables: Tables, use: np.ndarray) -> Tables:
 
 
 def below(run: Run, section: Section, column: str) -> tuple[np.ndarray, np.ndarray]:
-    """Depths (nz,) in m and a column of axis.csv under the largest pressure; NaN, a gap, where a coating
-    ends.
+    """Depths (nz,) in m and a column of axis.csv under the largest pressure; NaN, a gap, where a
+    coating ends.
 
     In a cut it is the column of points next to the place.
     """

@@ -1,46 +1,41 @@
 # SPDX-License-Identifier: MIT
-"""Curves against the closed form with the error underneath, and errors against the cell size."""
+"""Curves against a closed form, a correlation or FEM, with the errors underneath."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from matplotlib.axes import Axes
 
+from sam.scene import Result
+from verification.figures.lines import BAND, GIGA, MICRO, PERCENT, POINTS
 from verification.figures.maps import INTERFACE, mark_interface
 from verification.figures.style import (
-    BLUE,
     EXACT,
     FEM,
-    GREEN,
     ORANGE,
     SAM,
-    VERMILION,
     Columns,
     Drawing,
+    new_figure,
     sheet,
+    style,
     zero_line,
 )
-from verification.reference.convergence import Order
-
-IN_ROW = 3
-"""Panels side by side; more stand in two columns."""
-CLOSED_FORM = "closed form"
-_SERIES = {"SAM": SAM, "FEM": FEM}
-_MARKERS = {
-    "SAM": {"marker": "o", "fillstyle": "none", "linestyle": "none"},
-    "FEM": {"marker": "x", "linestyle": "none"},
-}
+from verification.reference.hertz import CircularContact
+from verification.runs.sampling import rows_of
 
 
 @dataclass(frozen=True)
 class Profile:
-    """One panel: an exact curve, the computed series, and what their difference is divided by.
+    """One panel above its errors: an exact curve, the computed series, and what their difference is divided
+    by.
 
-    exact: x -> y (vectorised); series: "SAM" or "FEM" -> (x, y); scale: the error is 100 (y - exact) / scale;
-    points: draw markers instead of lines; xlim: what is shown (and written).
+    exact: x -> y (vectorised); series: "SAM" or "FEM" -> (x, y); scale: the error is 100 (y - exact) / scale,
+    None: / exact; points: draw markers instead of lines; xlim: what is shown (and written); others: functions
+    like the exact one, beside it; band: of tolerance, in %; logarithmic: x and y.
     """
 
     title: str
@@ -48,17 +43,25 @@ class Profile:
     ylabel: str
     exact: Callable[[np.ndarray], np.ndarray]
     series: Mapping[str, tuple[np.ndarray, np.ndarray]]
-    scale: float
+    scale: float | None
     scale_name: str
     xlim: tuple[float, float]
     points: bool = False
+    others: Mapping[str, Callable[[np.ndarray], np.ndarray]] = field(default_factory=dict)
+    band: float = 0.0
+    logarithmic: bool = False
+
+
+CLOSED_FORM = "closed form"
 
 
 def profiles(
     panels: Sequence[Profile], reference: str = CLOSED_FORM, *, interface: float | None = None
 ) -> Drawing:
-    """Each panel above its error in %; interface: x at which a film ends, a line."""
-    rows, across = profile_rows(reference), len(panels) if len(panels) <= IN_ROW else 2
+    """Each panel above its error in %, more than three in two columns; interface: x at which a film
+    ends, a line.
+    """
+    rows, across = profile_rows(reference), len(panels) if len(panels) <= 3 else 2
     bands = -(-len(panels) // across)
     size = max(3.3 * across, 5.0), 4.2 * bands
     with sheet(*size, (2 * bands, across), height_ratios=(3, 1.3) * bands) as (figure, axes):
@@ -82,60 +85,119 @@ def profile_rows(reference: str) -> Columns:
 def draw_profile(axes: tuple[Axes, Axes], panel: Profile, reference: str, rows: Columns) -> None:
     """A panel above its error; its numbers are added to `rows`."""
     upper, lower = axes
+
+    def off(y: np.ndarray, exact: np.ndarray) -> np.ndarray:
+        return PERCENT * (y - exact) / (panel.scale or exact)
+
     for name, (x, y) in panel.series.items():
-        inside = (x >= panel.xlim[0]) & (x <= panel.xlim[1])
-        x, y = x[inside], y[inside]
+        x, y = x[inside := (x >= panel.xlim[0]) & (x <= panel.xlim[1])], y[inside]
         exact = panel.exact(x)
-        error = 100.0 * (y - exact) / panel.scale
-        look = _SERIES[name] | (_MARKERS[name] if panel.points else {})
+        look = POINTS[name] | {"linestyle": "none"} if panel.points else {"SAM": SAM, "FEM": FEM}[name]
         upper.plot(x, y, **look, label=name)
-        lower.plot(x, error, **look)
-        rows.add(panel.title, name, x, y, exact, error)
-    dense = np.linspace(*panel.xlim, 801)
-    look = EXACT | (FEM if reference == "FEM" else {})
-    upper.plot(dense, panel.exact(dense), **look, label=reference, zorder=3)
-    upper.set(title=panel.title, ylabel=panel.ylabel, xlim=_shown(panel))
+        lower.plot(x, off(y, exact), **look)
+        rows.add(panel.title, name, x, y, exact, off(y, exact))
+    low, high = panel.xlim
+    dense = np.geomspace(low, high, 801) if panel.logarithmic else np.linspace(low, high, 801)
+    upper.plot(
+        dense, panel.exact(dense), **EXACT | (FEM if reference == "FEM" else {}), label=reference, zorder=3
+    )
+    for name, other in panel.others.items():
+        look = {"color": ORANGE, "linestyle": "--", "linewidth": 1.6}
+        upper.plot(dense, other(dense), **look, label=name)
+        lower.plot(dense, off(other(dense), panel.exact(dense)), **look)
+    room = 0.03 * (high - low) if panel.points and not panel.logarithmic else 0.0  # for markers at the ends
     lower.sharex(upper)
+    if panel.logarithmic:
+        upper.set(xscale="log", yscale="log")
+    upper.set(title=panel.title, ylabel=panel.ylabel, xlim=(low - room, high + room))
     upper.tick_params(labelbottom=False)
     zero_line(lower)
+    if panel.band:
+        lower.axhspan(-panel.band, panel.band, **BAND)
     word = "error" if reference == CLOSED_FORM else "difference"
-    lower.set(xlabel=panel.xlabel, ylabel=f"{word}\n[% of {panel.scale_name}]")
+    lower.set(
+        xlabel=panel.xlabel, ylabel=f"{word}\n[% of {panel.scale_name}]" if panel.scale else f"{word} [%]"
+    )
 
 
-def _shown(panel: Profile) -> tuple[float, float]:
-    """The limits of x, with room for markers at the ends."""
-    room = 0.03 * (panel.xlim[1] - panel.xlim[0]) if panel.points else 0.0
-    return panel.xlim[0] - room, panel.xlim[1] + room
+def correlations(
+    panels: Mapping[str, tuple[Mapping[str, Callable], Mapping[str, tuple[np.ndarray, np.ndarray]]]],
+    limits: tuple[float, float],
+    band: float,
+) -> Drawing:
+    """Ratios over w* with published fits, and underneath the distance from the first fit.
 
-
-def convergence(panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Order | None]]]) -> Drawing:
-    """log-log error against cell size; panels: title -> quantity -> (h/a, relative error, fitted order or
-    None).
+    panels: label -> (name of the fit -> function of w*, "SAM" or "FEM" -> (w*, ratio)); band:
+    tolerance, shaded.
     """
-    rows = Columns("panel", "quantity", "h_over_a", "relative_error", "fitted_order")
-    names = dict.fromkeys(name for curves in panels.values() for name in curves)
-    looks = dict(zip(names, ((BLUE, "o"), (VERMILION, "s"), (GREEN, "^"), (ORANGE, "D")), strict=False))
-    with sheet(4.4 * len(panels), 3.9, len(panels), sharey=True) as (figure, axes):
-        for axis, (title, curves) in zip(axes, panels.items(), strict=True):
-            for name, (h, error, order) in curves.items():
-                color, marker = looks[name]
-                axis.loglog(h, error, marker=marker, color=color, linestyle="none")
-                label, line = name, "none"
-                if order is not None:
-                    ends = np.array([np.min(h), np.max(h)])
-                    axis.loglog(ends, order(ends), color=color, linewidth=1.0)
-                    label, line = f"{name}: order {order.order:.2f}", "-"
-                axis.plot([], [], marker=marker, color=color, linestyle=line, linewidth=1.0, label=label)
-                rows.add(title, name, h, error, None if order is None else order.order)
-            _finish(axis, title, [h for h, _, _ in curves.values()])
-        axes[0].set_ylabel("relative error")
+    drawn, how = [], {"points": True, "band": PERCENT * band, "logarithmic": True}
+    for label, (fits, series) in panels.items():
+        (reference, first), *others = fits.items()
+        labels = "", "approach $w^*$", label
+        drawn.append(Profile(*labels, first, series, None, "", limits, others=dict(others), **how))
+    return profiles(drawn, reference)
+
+
+def axis_profiles(sam: Result, fem: Result, a: float, deep: float = 2.0) -> Drawing:
+    """Under the centre: plastic strain and von Mises stress at the peak, von Mises and lateral
+    stress when unloaded.
+    """
+    wanted = (
+        ("Plastic strain", "plastic strain [%]", "peak", "peeq", PERCENT),
+        ("Von Mises, at the peak", r"$\sigma_\mathrm{vM}$ [GPa]", "peak", "mises_Pa", GIGA),
+        ("Von Mises, unloaded", r"$\sigma_\mathrm{vM}$ [GPa]", "unloaded", "mises_Pa", GIGA),
+        ("Residual lateral stress", r"$\sigma_{xx}$ [GPa]", "unloaded", "sxx_Pa", GIGA),
+    )
+    panels = []
+    for title, label, state, column, unit in wanted:
+        read = (rows_of(r.tables["axis"], state, "z_m", column) for r in (sam, fem))
+        panels.append(
+            _against_fem((title, "$z/a$", label), *((z / a, unit * v) for z, v in read), (0.0, deep))
+        )
+    return profiles(panels, reference="FEM")
+
+
+def _against_fem(
+    labels: tuple[str, str, str], sam: tuple, fem: tuple, limits: tuple[float, float]
+) -> Profile:
+    """SAM over the curve of FEM, within what both cover; errors in % of the largest value of FEM.
+
+    labels: title, of x and of y.
+    """
+    x, y = fem
+    limits = (max(limits[0], x.min()), min(limits[1], x.max()))
+    scale = np.max(np.abs(y[(x >= limits[0]) & (x <= limits[1])]))
+    return Profile(*labels, lambda at: np.interp(at, x, y), {"SAM": sam}, scale, "max", limits)
+
+
+def residual_surface(sam: Result, fem: Result, hertz: CircularContact, reach: float = 2.0) -> Drawing:
+    """What is left of the surface after unloading, and the force over the approach with unloading, beside the
+    elastic curve. Unloading in one step is a single point: a line to it would be no load curve.
+    """
+    a, rows = hertz.contact_radius, profile_rows("FEM")
+    found = []
+    for result in (sam, fem):
+        x, u = rows_of(result.tables["line"], "unloaded", "x_m", "uz_m")
+        found.append((x[x >= 0.0] / a, 1e3 * MICRO * u[x >= 0.0]))
+    panel = _against_fem(("Residual surface", "$x/a$", "$u_z$, into the body [nm]"), *found, (0.0, reach))
+    with style():
+        figure = new_figure(8.4, 3.9)
+        axes = figure.subplot_mosaic([["u", "f"], ["e", "f"]], height_ratios=(3, 1.3), width_ratios=(1, 1.15))
+        draw_profile((axes["u"], axes["e"]), panel, "FEM", rows)
+        axes["u"].invert_yaxis()
+        axes["u"].legend()
+        for name, result in (("SAM", sam), ("FEM", fem)):
+            history = result.tables["history"]
+            approach, force = (np.asarray(history[of], dtype=float) for of in ("approach_m", "force_N"))
+            approach, top = MICRO * approach, int(np.argmax(force)) + 1
+            start = top - 1 if force.size > top + 1 else top
+            axes["f"].plot(approach[:top], force[:top], **POINTS[name], markersize=5, label=name)
+            axes["f"].plot(approach[start:], force[start:], **POINTS[name], markersize=5)
+            rows.add("Force [N] over approach [um]", name, approach, force, None, None)
+        share = np.linspace(0.0, 1.0, 101)
+        elastic = MICRO * hertz.approach * share ** (2 / 3), hertz.force * share
+        axes["f"].plot(*elastic, **EXACT, label="elastic (Hertz)")
+        axes["f"].set(title="Load and approach", xlabel=r"approach [$\mu$m]", ylabel="force [N]")
+        axes["f"].legend()
+        figure.align_ylabels([axes["u"], axes["e"]])
     return Drawing(figure, rows)
-
-
-def _finish(axis: Axes, title: str, sizes: Sequence[np.ndarray]) -> None:
-    """Ticks at the cell sizes used, written as a/n."""
-    used = np.unique(np.round(np.concatenate(sizes), 9))
-    axis.set_xticks(used, [f"a/{1.0 / h:.3g}" for h in used])
-    axis.set_xticks([], minor=True)
-    axis.set(title=title, xlabel="cell size")
-    axis.legend(loc="best")

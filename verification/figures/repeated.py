@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Figures of repeated loading: plastic strain of each period, loops of stress and strain of three points, and
-the map of classes in the plane y = 0.
+"""Figures of repeated loading: plastic strain of each period, loops of stress and strain of three
+points, and the map of classes in the plane y = 0.
 """
 
 from __future__ import annotations
@@ -11,18 +11,16 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import MaxNLocator
 
 from sam.scene import PLASTIC_STRAINS
+from verification.figures.lines import PLAIN, Curve, curves
 from verification.figures.style import (
     BLACK,
     BLUE,
-    EXACT,
     GREEN,
     ORANGE,
     PURPLE,
     VERMILION,
-    Columns,
     Drawing,
     log_ticks,
     sheet,
@@ -51,78 +49,72 @@ def drawings_of(run: Run) -> dict[str, Drawing]:
     found = {"strain-per-period": strain_per_period(run)}
     if "loops" in run.tables:
         found["loops"] = loops(run)
-    cells = None if run.folder is None else classified(run.folder)
-    if cells is not None:
+    if run.folder is not None and (cells := classified(run.folder)) is not None:
         found["classes"] = class_map(*cells)
     return found
 
 
 def strain_per_period(run: Run) -> Drawing:
-    """The largest accumulated strain that each period adds, the largest change of the plastic strain, and the
-    floor below which strain counts as none; a marker for the class of the body.
+    """The largest accumulated strain that each period adds, the largest change of the plastic
+    strain, and the floor below which strain counts as none; a marker for the class of the body.
     """
     table = run.tables["cycles"]
     table = table[np.isfinite(table["period"].to_numpy(dtype=float))]
     period, verdict = table["period"].to_numpy(dtype=float), table["verdict"].to_numpy()
-    curves = {
-        "accumulated strain": ("peeq_step_max", BLUE, "-"),
-        "change of the strain": ("strain_step_max", VERMILION, "--"),
+    looks = {
+        "accumulated strain": ("peeq_step_max", {"color": BLUE}),
+        "change of the strain": ("strain_step_max", {"color": VERMILION, "linestyle": "--"}),
     }
-    floor, data = run.summary["verdict"]["floor"], {"period": period}
-    with sheet(5.0, 3.6) as (figure, panel):
-        for label, (name, color, dashes) in curves.items():
-            values = table[name].to_numpy(dtype=float)
-            shown = np.where(values > 0, values, np.nan)
-            panel.semilogy(period, shown, color=color, linestyle=dashes, linewidth=1.4, label=label)
-            for each in dict.fromkeys(verdict):
-                here = np.where(verdict == each, shown, np.nan)
-                look = {"marker": CLASSES[each][1], "color": color, "linestyle": "none", "fillstyle": "none"}
-                panel.plot(period, here, **look)
-            data[name] = values
-        panel.axhline(floor, **EXACT, label="counts as none below")
-        panel.set(xlabel="period", ylabel="largest plastic strain of a period")
-        panel.xaxis.set_major_locator(MaxNLocator(integer=True))
-        log_ticks(panel.yaxis, "{:.0e}".format)
-        marks = [
-            Line2D(
-                [], [], color=BLACK, marker=CLASSES[each][1], linestyle="none", fillstyle="none", label=each
-            )
-            for each in dict.fromkeys(verdict)
-        ]
-        lines, _ = panel.get_legend_handles_labels()
-        figure.legend(handles=[*lines, *marks], loc="outside lower center", ncols=3)
-    return Drawing(figure, {**data, "class": verdict})
+    data, drawn, classes = {"period": period}, {}, dict.fromkeys(verdict)
+    for label, (name, look) in looks.items():
+        values = data[name] = table[name].to_numpy(dtype=float)
+        drawn[label] = Curve(period, shown := np.where(values > 0, values, np.nan), look=PLAIN | look)
+        for each in classes:
+            mark = {**look, "marker": CLASSES[each][1], "linestyle": "none", "fillstyle": "none"}
+            here = np.where(verdict == each, shown, np.nan)
+            drawn[f"{label}, {each}"] = Curve(period, here, look=mark)
+    marks = {"counts as none below": ("y", run.summary["verdict"]["floor"])}
+    how = {"marks": marks, "logarithmic": "y", "count": True, "legend": None, "size": (5.0, 3.6)}
+    drawing = curves({"": drawn}, "period", "largest plastic strain of a period", **how)
+    (panel,) = drawing.figure.axes
+    log_ticks(panel.yaxis, "{:.0e}".format)
+    lines = [line for line in panel.lines if line.get_label() in (*looks, *marks)]
+    look = {"color": BLACK, "linestyle": "none", "fillstyle": "none"}
+    lines += [Line2D([], [], **look, marker=CLASSES[each][1], label=each) for each in classes]
+    drawing.figure.legend(handles=lines, loc="outside lower center", ncols=3, fontsize=8.0, frameon=False)
+    return Drawing(drawing.figure, {**data, "class": verdict})
 
 
 def loops(run: Run) -> Drawing:
-    """Stress over plastic strain of three points in the last period, of each the component that strains most,
-    counted from the start of the period.
+    """Stress over plastic strain of three points in the last period, of each the component that
+    strains most, counted from the start of the period.
     """
-    table, rows = run.tables["loops"], Columns("point", "component", "plastic strain [%]", "stress [GPa]")
-    with sheet(5.0, 3.8) as (figure, panel):
-        for (number, points), color in zip(table.groupby("point"), (BLUE, VERMILION, GREEN), strict=False):
-            strains = {name: PERCENT * points[name].to_numpy(dtype=float) for name in PLASTIC_STRAINS}
-            component = max(strains, key=lambda name: np.ptp(strains[name])).removeprefix("ep")
-            mean = points[["sxx_Pa", "syy_Pa", "szz_Pa"]].to_numpy(dtype=float).mean(axis=1)
-            stress = points[f"s{component}_Pa"].to_numpy(dtype=float)
-            stress = GIGA * (stress - mean * (component[0] == component[1]))
-            x, y, z = (MICRO * float(points[name].iloc[0]) for name in ("x_m", "y_m", "z_m"))
-            place = f"{component} at $x$ = {x:.3g}, $y$ = {y:.3g}, $z$ = {z:.3g} $\\mu$m"
-            strain = strains[f"ep{component}"] - strains[f"ep{component}"][0]
-            panel.plot(strain, stress, color=color, linewidth=1.4, label=place.replace("-", "\N{MINUS SIGN}"))
-            panel.plot(0.0, stress[0], color=color, marker="o", markersize=4, linestyle="none")
-            rows.add(int(number), component, strain, stress)
-        panel.set(xlabel="plastic strain since the start of the period [%]", ylabel="deviatoric stress [GPa]")
-        look = {"color": BLACK, "marker": "o", "markersize": 4, "linestyle": "none"}
-        dot = Line2D([], [], **look, label="start of the period")
-        lines, _ = panel.get_legend_handles_labels()
-        figure.legend(handles=[*lines, dot], loc="outside lower center", ncols=1)
-    return Drawing(figure, rows)
+    drawn: dict[str, Curve] = {}
+    for (number, points), color in zip(
+        run.tables["loops"].groupby("point"), (BLUE, VERMILION, GREEN), strict=False
+    ):
+        strains = {name: PERCENT * points[name].to_numpy(dtype=float) for name in PLASTIC_STRAINS}
+        component = max(strains, key=lambda name: np.ptp(strains[name])).removeprefix("ep")
+        mean = points[["sxx_Pa", "syy_Pa", "szz_Pa"]].to_numpy(dtype=float).mean(axis=1)
+        stress = points[f"s{component}_Pa"].to_numpy(dtype=float)
+        stress = GIGA * (stress - mean * (component[0] == component[1]))
+        x, y, z = (MICRO * float(points[name].iloc[0]) for name in ("x_m", "y_m", "z_m"))
+        place = f"{component} at $x$ = {x:.3g}, $y$ = {y:.3g}, $z$ = {z:.3g} $\\mu$m"
+        strain = strains[f"ep{component}"] - strains[f"ep{component}"][0]
+        line = PLAIN | {"color": color, "label": place.replace("-", "\N{MINUS SIGN}")}
+        drawn[f"point {number}, {component}"] = Curve(strain, stress, look=line)
+        dot = {"color": color, "marker": "o", "markersize": 4, "linestyle": "none", "label": "_"}
+        drawn[f"start of {number}"] = Curve(strain[:1], stress[:1], look=dot)
+    drawn["start of the period"] = Curve(
+        np.empty(0), np.empty(0), look=dot | {"color": BLACK, "label": "start of the period"}
+    )
+    labels = "plastic strain since the start of the period [%]", "deviatoric stress [GPa]"
+    return curves({"": drawn}, *labels, legend="below", size=(5.0, 3.8))
 
 
 def classified(folder: Path) -> tuple[np.ndarray, np.ndarray] | None:
-    """Corners (n, 4, 2) of the cells or elements that touch the plane y = 0, x and z in m, and their classes
-    (n,); None where nothing is judged.
+    """Corners (n, 4, 2) of the cells or elements that touch the plane y = 0, x and z in m, and
+    their classes (n,); None where nothing is judged.
     """
     of_sam = (folder / BODY).exists()
     mesh = mesh_of(folder, BODY if of_sam else FIELDS)
@@ -140,19 +132,17 @@ def classified(folder: Path) -> tuple[np.ndarray, np.ndarray] | None:
 def class_map(corners: np.ndarray, found: np.ndarray) -> Drawing:
     """The classes of the cells of `classified`."""
     names = tuple(CLASSES)
-    strained = corners[found > 0] if (found > 0).any() else corners
-    (x0, _), (x1, z1) = strained.min(axis=(0, 1)) * MICRO, strained.max(axis=(0, 1)) * MICRO
+    strained = MICRO * (corners[found > 0] if (found > 0).any() else corners)
+    (x0, _), (x1, z1) = strained.min(axis=(0, 1)), strained.max(axis=(0, 1))
+    (low, _), (high, deepest) = MICRO * corners.min(axis=(0, 1)), MICRO * corners.max(axis=(0, 1))
     beside = BESIDE * (x1 - x0)
     with sheet(5.4, 4.0, layout="compressed") as (figure, panel):
-        colours = [CLASSES[names[k]][0] for k in found]
-        cells = PolyCollection(
-            MICRO * corners, facecolors=colours, edgecolors="#cccccc", linewidths=0.2, rasterized=True
+        how = {"edgecolors": "#cccccc", "linewidths": 0.2, "rasterized": True}
+        panel.add_collection(
+            PolyCollection(MICRO * corners, facecolors=[CLASSES[names[k]][0] for k in found], **how)
         )
-        panel.add_collection(cells)
-        low, high = MICRO * corners[..., 0].min(), MICRO * corners[..., 0].max()
-        deepest = min((1 + BESIDE) * z1, MICRO * corners[..., 1].max())
-        panel.set(xlim=(max(x0 - beside, low), min(x1 + beside, high)), ylim=(deepest, 0.0))
-        panel.set_aspect("equal")
+        panel.set(xlim=(max(x0 - beside, low), min(x1 + beside, high)), aspect="equal")
+        panel.set(ylim=(min((1 + BESIDE) * z1, deepest), 0.0))
         panel.grid(False)
         panel.set(xlabel="$x$ [$\\mu$m]", ylabel="$z$ [$\\mu$m]")
         entries = [

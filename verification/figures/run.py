@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Figures of one finished run, from its files: pressure, von Mises stress, plastic strain, profiles, wear,
-load.
+"""Figures of one finished run, from its files: pressure, von Mises stress, plastic strain,
+profiles, wear, load.
 
-Every plane and profile goes through the largest pressure, see `verification.figures.places`. Lengths are in
-contact radii below a circular contact around the origin, else in µm.
+Every plane and profile goes through the largest pressure, see `verification.figures.places`.
+Lengths are in contact radii below a circular contact around the origin, else in µm.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from matplotlib.ticker import MaxNLocator
 
 from verification.compare.running_in_measures import History, Scar
 from verification.figures import repeated
+from verification.figures.lines import Curve, curves
 from verification.figures.maps import INTERFACE, mark_interface
 from verification.figures.places import (
     Section,
@@ -29,11 +30,11 @@ from verification.figures.places import (
 )
 from verification.figures.run_maps import contact_map, plane_map, worn
 from verification.figures.running_in import six_panels
-from verification.figures.style import FEM, SAM, Drawing, marked, save, sheet
+from verification.figures.style import FEM, SAM, Drawing, marked, save
 from verification.runs.files import FIGURES, Run, of_last_load, read_run
 from verification.runs.sampling import peak
 
-MICRO, GIGA, PERCENT = 1e6, 1e-9, 1e2
+MICRO, GIGA = 1e6, 1e-9
 NOTHING = 1e-9
 """Of the approach: a gap that is smaller everywhere is rounding, as opposite a punch. So is such a change of
 friction.
@@ -41,8 +42,7 @@ friction.
 
 
 def draw_run(folder: Path, *, pdf: bool = False) -> list[Path]:
-    """Write the figures of a run into its folder `figures`; returns the paths (PNG and CSV of each,
-    or PDF).
+    """Write the figures of a run into its folder `figures`; returns the paths (PNG and CSV of each, or PDF).
 
     Raises FolderError (a ValueError) when the folder holds no result. A run without load has only its history
     to show, one that did not reach its peak the last load that it reached.
@@ -79,7 +79,9 @@ def _drawings_of(run: Run) -> dict[str, Drawing]:
     if "surface" in run.tables and run.summary["scene"].get("wear") is not None:
         drawings["worn"] = worn(run)
     if _runs_in(run):
-        drawings["running-in"] = running_in(run)
+        friction = run.summary["scene"]["friction"]
+        coefficients = friction["low"], friction["high"]
+        drawings["running-in"] = six_panels(Scar.of(run.tables), History.of(run.tables), coefficients)
     return drawings | repeated.drawings_of(run)
 
 
@@ -97,25 +99,16 @@ def _varies(surface: SurfaceMap) -> bool:
     return known.size > 0 and np.ptp(known) > NOTHING * np.abs(known).max()
 
 
-def running_in(run: Run) -> Drawing:
-    """The six panels of Bosman & Schipper (2011), Figs. 13 to 17."""
-    friction = run.summary["scene"]["friction"]
-    return six_panels(Scar.of(run.tables), History.of(run.tables), (friction["low"], friction["high"]))
-
-
-def _look(run: Run) -> dict:
-    return SAM if run.summary["model"] == "sam" else FEM
-
-
-def _curves(run: Run, horizontal: str, curves: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> Drawing:
-    """One panel a curve; curves: label -> (x, y) in the units of its axes."""
-    data = {}
-    with sheet(3.45 * len(curves), 3.2, len(curves)) as (figure, axes):
-        for panel, (label, (x, y)) in zip(axes, curves.items(), strict=True):
-            panel.plot(x, y, **_look(run))
-            panel.set(xlabel=horizontal, ylabel=label)
-            data |= {horizontal: x, label: y}
-    return Drawing(figure, {_plain(label): values for label, values in data.items()})
+def _drawn(run: Run, horizontal: str, found: Mapping[str, tuple[np.ndarray, np.ndarray]], **how) -> Drawing:
+    """One panel a curve; found: label -> (x, y) in the units of its axes."""
+    look = SAM if run.model == "sam" else FEM
+    panels = {label: {"": Curve(x, y, look=look)} for label, (x, y) in found.items()}
+    how = {"size": (3.45, 3.2), "legend": None} | how
+    drawing = curves(panels, horizontal, {label: label for label in found}, **how)
+    for panel in drawing.figure.axes:
+        panel.set_title("")
+    data = {horizontal: next(iter(found.values()))[0]} | {label: y for label, (_, y) in found.items()}
+    return Drawing(drawing.figure, {_plain(label): values for label, values in data.items()})
 
 
 def _plain(label: str) -> str:
@@ -124,48 +117,35 @@ def _plain(label: str) -> str:
 
 
 def line(run: Run, surface: SurfaceMap | None, section: Section) -> Drawing:
-    """Pressure, displacement and gap along the row of the largest pressure.
+    """Pressure, displacement and gap along the row of the largest pressure: all spots of the row with what is
+    beside them, everything when there is no contact.
 
     Beside y = 0, where displacement and gap are not kept, the pressure and the heights of a rough surface.
     """
-    horizontal = "$x$ [$\\mu$m]"
+    horizontal, gap = "$x$ [$\\mu$m]", "gap [$\\mu$m]"
     pitch = np.diff(surface.y).min() if surface is not None and surface.y.size > 1 else 0.0
     if section.source == "cut" and (abs(section.y) > pitch or "surface" in run.tables):
         row = int(np.argmin(np.abs(surface.y - section.y)))
-        x = surface.x
-        columns = {"pressure [GPa]": GIGA * surface.p[:, row]}
+        x, found = surface.x, {"pressure [GPa]": GIGA * surface.p[:, row]}
         if "height_m" in surface.fields:
-            height, lowered = (surface.fields.get(n) for n in ("height_m", "worn_m"))
-            height = height if lowered is None else height - lowered
-            columns["height [$\\mu$m]"] = MICRO * height[:, row]
+            height = surface.fields["height_m"] - surface.fields.get("worn_m", 0.0)
+            found["height [$\\mu$m]"] = MICRO * height[:, row]
         horizontal += f" at $y$ = {MICRO * section.y:.4g} $\\mu$m"
     else:
-        wanted = {
-            "pressure [GPa]": ("p_Pa", GIGA),
-            "displacement of the body [$\\mu$m]": ("uz_m", MICRO),
-            "gap [$\\mu$m]": ("gap_m", MICRO),
-        }
+        wanted = {"pressure [GPa]": ("p_Pa", GIGA), "displacement of the body [$\\mu$m]": ("uz_m", MICRO)}
+        wanted[gap] = ("gap_m", MICRO)
         x = peak(run.tables["line"], "x_m")[0]
-        columns = {label: unit * peak(run.tables["line"], name)[0] for label, (name, unit) in wanted.items()}
+        found = {label: unit * peak(run.tables["line"], name)[0] for label, (name, unit) in wanted.items()}
         least = NOTHING * MICRO * abs(run.quantities["approach_m"] or 0.0)
-        gap = columns["gap [$\\mu$m]"]
-        if not (np.isfinite(gap) & (np.abs(gap) > least)).any():
-            del columns["gap [$\\mu$m]"]
-    shown = _shown(run, section, x)
-    return _curves(run, horizontal, {label: (MICRO * x[shown], y[shown]) for label, y in columns.items()})
-
-
-def _shown(run: Run, section: Section, x: np.ndarray) -> np.ndarray:
-    """Which of the points to draw: all spots of the row with what is beside them, everything when there is no
-    contact.
-    """
-    if not section.spots:
-        return np.full(x.shape, True)
-    if is_circular(run):
-        return np.abs(x) <= 2.0 * run.quantities["contact_radius_m"]
-    first, last = section.spots[0][0], section.spots[-1][1]
-    beside = 0.5 * (last - first)
-    return (x >= first - beside) & (x <= last + beside)
+        if not (np.isfinite(found[gap]) & (np.abs(found[gap]) > least)).any():
+            del found[gap]
+    shown = np.full(x.shape, True)
+    if section.spots and is_circular(run):
+        shown = np.abs(x) <= 2.0 * run.quantities["contact_radius_m"]
+    elif section.spots:
+        first, last = section.spots[0][0], section.spots[-1][1]
+        shown = (x >= first - 0.5 * (last - first)) & (x <= last + 0.5 * (last - first))
+    return _drawn(run, horizontal, {label: (MICRO * x[shown], y[shown]) for label, y in found.items()})
 
 
 def axis(run: Run, section: Section) -> Drawing:
@@ -177,15 +157,15 @@ def axis(run: Run, section: Section) -> Drawing:
     }
     found = {label: below(run, section, column) for label, column in columns.items()}
     reach = 2.0 * run.quantities["contact_radius_m"] if section.source == "plane" else np.inf
-    curves = {label: (MICRO * z[z <= reach], GIGA * v[z <= reach]) for label, (z, v) in found.items()}
+    found = {label: (MICRO * z[z <= reach], GIGA * v[z <= reach]) for label, (z, v) in found.items()}
     horizontal = "$z$ [$\\mu$m]"
     if section.source == "cut":
         horizontal += f" at $x$ = {MICRO * section.place:.4g}, $y$ = {MICRO * section.y:.4g} $\\mu$m"
-    drawing = _curves(run, horizontal, curves)
+    drawing = _drawn(run, horizontal, found)
     if interface_of(run) is not None:
         mark_interface(drawing.figure.axes, MICRO * interface_of(run))
-        model = Line2D([], [], **_look(run), label="SAM" if run.model == "sam" else "FEM")
-        drawing.figure.axes[0].legend(handles=[model, INTERFACE])
+        look, name = (SAM, "SAM") if run.model == "sam" else (FEM, "FEM")
+        drawing.figure.axes[0].legend(handles=[Line2D([], [], **look, label=name), INTERFACE])
     return drawing
 
 
@@ -195,13 +175,13 @@ def history(run: Run) -> Drawing:
     Where the pressure is given there is no approach: over the number of the row.
     """
     approach, force = (run.tables["history"][name].to_numpy() for name in ("approach_m", "force_N"))
-    approach = approach * MICRO
-    label, name = "approach [$\\mu$m]", "approach_um"
-    if not np.isfinite(approach).any():
-        approach, label, name = np.arange(1, force.size + 1), "load step, of all cycles", "load_step"
-    with sheet(4.6, 3.2) as (figure, panel):
-        panel.plot(approach, force, **_look(run) | {"marker": "o", "linestyle": "none"})
-        panel.set(xlabel=label, ylabel="force [N]")
-        if name == "load_step":
-            panel.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=2))
-    return Drawing(figure, {name: approach, "force_N": force})
+    given = not np.isfinite(approach).any()
+    x = np.arange(1, force.size + 1) if given else approach * MICRO
+    label = "load step, of all cycles" if given else "approach [$\\mu$m]"
+    points = {"marker": "o", "linestyle": "none"}
+    drawing = _drawn(run, label, {"force [N]": (x, force)}, size=(4.6, 3.2))
+    (panel,) = drawing.figure.axes
+    panel.lines[0].set(**points)
+    if given:
+        panel.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=2))
+    return Drawing(drawing.figure, {"load_step" if given else "approach_um": x, "force_N": force})

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Maps of one run: fields in the plane through the largest pressure, pressure and friction over the contact,
-wear.
+"""Maps of one run: fields in the plane through the largest pressure, pressure and friction over the
+contact, wear.
 """
 
 from __future__ import annotations
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator
 
@@ -16,6 +15,7 @@ from verification.figures.maps import (
     CROSS,
     INTERFACE,
     MapPeak,
+    coloured,
     draw_field,
     iso_lines,
     mark_interface,
@@ -39,23 +39,29 @@ from verification.runs.files import Run
 MICRO, GIGA, PERCENT, NANO = 1e6, 1e-9, 1e2, 1e9
 UNITS = {"mises_Pa": (GIGA, "GPa"), "peeq": (PERCENT, "%"), "p_Pa": (GIGA, "GPa"), "friction": (1.0, "")}
 """Column -> factor and name of the unit in which it is drawn."""
-LARGEST = {"mises_Pa": "mises_max", "peeq": "peeq_max"}
-"""Column -> the quantity with its largest value anywhere; a stress has its unit behind it."""
 DIGITS = 5e-4
 """Relative; values that differ by less are one number in four digits."""
 
 
 def plane_map(run: Run, section: Section, column: str, label: str) -> Drawing:
-    """A column at the peak in the plane through the largest pressure, with iso-lines, contact and its
-    maximum.
+    """A column at the peak in the plane through the largest pressure, with iso-lines, contact and
+    its maximum; in contact radii of a circle around the origin, else in µm, around the spot of the
+    largest pressure and what is around the largest value.
     """
-    unit, _ = UNITS[column]
+    (unit, _), film = UNITS[column], interface_of(run)
     x, z, values = plane_of(run, section, column)
-    length, names = _lengths(run, section)
-    first, last = _reach(run, section, x, values)
+    if circular := is_circular(run):
+        length = run.quantities["contact_radius_m"]
+        names, last = ("$x/a$", "$z/a$"), REACH * length * (1.0 + 1e-9)
+        first = -last
+    else:
+        where = f" at $y$ = {MICRO * section.y:.4g} $\\mu$m" if section.source == "cut" else ""
+        length, names = 1.0 / MICRO, (f"$x$ [$\\mu$m]{where}", "$z$ [$\\mu$m]")
+        (first, last), at = section.reach, float(x[np.unravel_index(np.nanargmax(values), values.shape)[0]])
+        beside = 0.25 * (last - first)
+        first, last = min(first, at - beside), max(last, at + beside)
     use = (x >= first) & (x <= last)
     u, v, field = x[use] / length, z / length, unit * values[use]
-    film = interface_of(run)
     top = _largest(run, column, field, (u, v), depth=names[1].partition(" [")[0])
     with sheet(5.4, 3.8, layout="compressed") as (figure, panel):
         mesh = draw_field(panel, u, v, field, cmap="viridis", vmin=0.0, vmax=top.value or 1.0)
@@ -68,50 +74,22 @@ def plane_map(run: Run, section: Section, column: str, label: str) -> Drawing:
         mark_spots(panel, [(a / length, b / length) for a, b in inside if a < b])
         panel.invert_yaxis()
         panel.set(xlabel=names[0], ylabel=names[1])
-        names = [BAR, CROSS]
         if film is not None:
             mark_interface([panel], film / length, across=True)
-            names.append(INTERFACE)
         figure.colorbar(mesh, ax=panel, label=label)
-        name_marks(figure, names)
-    places = np.meshgrid(u, v, indexing="ij")
-    columns = ("x/a", "z/a") if is_circular(run) else ("x_um", "z_um")
-    return Drawing(
-        figure, {columns[0]: places[0].ravel(), columns[1]: places[1].ravel(), label: field.ravel()}
-    )
+        name_marks(figure, [BAR, CROSS, *([INTERFACE] if film is not None else [])])
+    places = (each.ravel() for each in np.meshgrid(u, v, indexing="ij"))
+    columns = ("x/a", "z/a") if circular else ("x_um", "z_um")
+    return Drawing(figure, dict(zip((*columns, label), (*places, field.ravel()), strict=True)))
 
 
-def _lengths(run: Run, section: Section) -> tuple[float, tuple[str, str]]:
-    """The unit of length in m and the labels of the axes: contact radii of a circle around the origin, else
-    µm.
-    """
-    if is_circular(run):
-        return run.quantities["contact_radius_m"], ("$x/a$", "$z/a$")
-    where = f" at $y$ = {MICRO * section.y:.4g} $\\mu$m" if section.source == "cut" else ""
-    return 1.0 / MICRO, (f"$x$ [$\\mu$m]{where}", "$z$ [$\\mu$m]")
-
-
-def _reach(run: Run, section: Section, x: np.ndarray, values: np.ndarray) -> tuple[float, float]:
-    """What of x to draw: around the spot of the largest pressure, and what is around the largest value."""
-    if is_circular(run):
-        a = REACH * run.quantities["contact_radius_m"] * (1.0 + 1e-9)
-        return -a, a
-    first, last = section.reach
-    largest = float(x[np.unravel_index(np.nanargmax(values), values.shape)[0]])
-    beside = 0.25 * (last - first)
-    return min(first, largest - beside), max(last, largest + beside)
-
-
-def _largest(
-    run: Run, column: str, field: np.ndarray, places: tuple[np.ndarray, np.ndarray], *, depth: str
-) -> MapPeak:
+def _largest(run: Run, column: str, field: np.ndarray, places: tuple, *, depth: str) -> MapPeak:
     """The largest value that is drawn, and in words also that of summary.json, where it is another number."""
     (i, k), (u, v) = np.unravel_index(np.nanargmax(field), field.shape), places
     (unit, name), drawn = UNITS[column], float(field[i, k])
     after = "" if is_circular(run) else " $\\mu$m"
     words = f"max {drawn:#.4g} {name} at {depth} = {v[k]:.3f}{after}"
-    key = LARGEST[column]
-    anywhere = unit * run.quantities[f"{key}_Pa" if column.endswith("_Pa") else key]
+    anywhere = unit * run.quantities["mises_max_Pa" if column == "mises_Pa" else "peeq_max"]
     if abs(anywhere - drawn) > DIGITS * anywhere:
         refined = "cut" not in run.tables and run.model != "fem-3d"
         where = "refined between the points" if refined else "anywhere, refined"
@@ -120,65 +98,50 @@ def _largest(
 
 
 def contact_map(surface: SurfaceMap, column: str, label: str) -> Drawing:
-    """A field over the contact, nothing out of it, with the outline of the contact and the largest value."""
-    unit, name = UNITS[column]
+    """A field over the contact, nothing out of it, with the outline of the contact and the largest
+    value, of the cells that count: within a dashed frame, where some do not.
+    """
+    (unit, name), touching = UNITS[column], surface.touching
     x, y, field = MICRO * surface.x, MICRO * surface.y, unit * surface.in_contact(column)
     with sheet(5.0, 3.8, layout="compressed") as (figure, panel):
         top = float(np.nanmax(field)) if np.isfinite(field).any() else 0.0
         colours = draw_field(panel, x, y, field, cmap="viridis", vmin=0.0, vmax=top or 1.0)
-        if surface.touching.any():
-            outline(panel, x, y, surface.touching)
+        if touching.any():
+            outline(panel, x, y, touching)
             i, j = surface.largest(column)
-            words = f"max {field[i, j]:#.4g} {name} at $x$ = {x[i]:.3g}, $y$ = {y[j]:.3g} $\\mu$m".replace(
-                "  ", " "
-            )
+            unit_words = f" {name}".rstrip()
+            words = f"max {field[i, j]:#.4g}{unit_words} at $x$ = {x[i]:.3g}, $y$ = {y[j]:.3g} $\\mu$m"
             if any(surface.border):
                 words += "\n(within the dashed frame)"
-                _frame(panel, x, y, surface.border)
+                (bx, by), hx, hy = surface.border, x[1] - x[0], y[1] - y[0]
+                size = (x[-1 - bx] - x[bx] + hx, y[-1 - by] - y[by] + hy)
+                look = {"facecolor": "none", "edgecolor": "black", "linestyle": "--", "linewidth": 0.8}
+                panel.add_patch(Rectangle((x[bx] - 0.5 * hx, y[by] - 0.5 * hy), *size, **look))
             mark_largest(panel, MapPeak(float(x[i]), float(y[j]), float(field[i, j]), words))
         if np.ptp(np.diff(x)) > DIGITS * np.ptp(x):  # a mesh that reaches far beyond the contact
-            panel.set(
-                xlim=_around(x, surface.touching.any(axis=1)), ylim=_around(y, surface.touching.any(axis=0))
-            )
+            for along, places, marked in (("x", x, touching.any(axis=1)), ("y", y, touching.any(axis=0))):
+                first, last = places[marked][[0, -1]]
+                ends = max(places[0], 2 * first - last), min(places[-1], 2 * last - first)
+                panel.set(**{f"{along}lim": ends})
         panel.set(xlabel="$x$ [$\\mu$m]", ylabel="$y$ [$\\mu$m]")
         figure.colorbar(colours, ax=panel, label=label)
     places = np.meshgrid(surface.x, surface.y, indexing="ij")
     return Drawing(figure, {"x_m": places[0].ravel(), "y_m": places[1].ravel(), column: field.ravel() / unit})
 
 
-def _around(x: np.ndarray, touching: np.ndarray) -> tuple[float, float]:
-    """What of x (n,) to see: the contact, and as much on each side of it, where there is so much."""
-    first, last = x[touching][[0, -1]]
-    beside = last - first
-    return max(x[0], first - beside), min(x[-1], last + beside)
-
-
-def _frame(panel: Axes, x: np.ndarray, y: np.ndarray, border: tuple[int, int]) -> None:
-    """A dashed frame around the cells that count for the largest value."""
-    (bx, by), hx, hy = border, x[1] - x[0], y[1] - y[0]
-    corner = (x[bx] - 0.5 * hx, y[by] - 0.5 * hy)
-    size = (x[-1 - bx] - x[bx] + hx, y[-1 - by] - y[by] + hy)
-    panel.add_patch(
-        Rectangle(corner, *size, facecolor="none", edgecolor="black", linestyle="--", linewidth=0.8)
-    )
-
-
 def worn(run: Run) -> Drawing:
-    """The depth worn after the last cycle, and the surface before and after along the row through its deepest
-    cell.
+    """The depth worn after the last cycle, and the surface before and after along the row through
+    its deepest cell.
     """
     scar = Scar.of(run.tables)
     i, j = np.unravel_index(np.nanargmax(scar.worn), scar.worn.shape)
     x, y, depth = MICRO * scar.x, MICRO * scar.y, NANO * np.where(scar.worn > 0.0, scar.worn, np.nan)
+    top = float(NANO * scar.worn[i, j])
     with sheet(8.6, 3.6, 2) as (figure, (left, right)):
-        top = float(NANO * scar.worn[i, j])
-        mesh = draw_field(left, x, y, depth, cmap="viridis", vmin=0.0, vmax=top or 1.0)
-        figure.colorbar(mesh, ax=left, label="depth worn [nm]")
+        coloured(left, (x, y), depth, "depth worn [nm]", cmap="viridis", vmin=0.0, vmax=top or 1.0)
         left.set(xlabel="$x$ [$\\mu$m]", ylabel="$y$ [$\\mu$m]")
-        words = (
-            f"max {top:#.4g} nm at $x$ = {x[i]:.3g}, $y$ = {y[j]:.3g} $\\mu$m" if top else "nothing is worn"
-        )
-        mark_largest(left, MapPeak(float(x[i]), float(y[j]), top, words))
+        words = f"max {top:#.4g} nm at $x$ = {x[i]:.3g}, $y$ = {y[j]:.3g} $\\mu$m"
+        mark_largest(left, MapPeak(float(x[i]), float(y[j]), top, words if top else "nothing is worn"))
         height = MICRO * scar.height[:, j]
         right.plot(x, height, **EXACT, label="before wear")
         right.plot(x, height - MICRO * scar.worn[:, j], **SAM, label="worn")

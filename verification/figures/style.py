@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""One look for all figures, and how they are written. The only place besides its siblings that imports
-matplotlib.
+"""One look for all figures, and how they are written. The only place besides its siblings that
+imports matplotlib.
 """
 
 from __future__ import annotations
@@ -69,7 +69,6 @@ GUIDE = "guide"
 STEP = 4
 """Of the 256 values of a channel of a map: not seen, and a quarter of the bytes less."""
 MANY_DECADES = 2.0
-_DIGITS = 5
 
 
 @dataclass(frozen=True)
@@ -125,7 +124,7 @@ def log_ticks(axis: Axis, words: Callable[[float], str] = "{:g}".format) -> None
         if decades > 1.0
         else (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
     )
-    axis.set_major_locator(LogLocator(subs=steps, numticks=20))
+    axis.set_major_locator(LogLocator(subs=steps, numticks=20 if decades < 8.0 else 7))
     axis.set_major_formatter(lambda value, _: words(value))
     axis.set_minor_formatter(NullFormatter())
 
@@ -169,26 +168,31 @@ def new_figure(width: float, height: float, layout: str = "constrained") -> Figu
 def save(
     drawing: Drawing, stem: Path, data: bool = True, *, pdf: bool = False, long: int = LONG
 ) -> list[Path]:
-    """Write stem.png and, if `data`, stem.csv (beyond `long` bytes compressed, stem.csv.gz), or stem.pdf
-    alone; equal drawings give equal bytes, without a date. Returns what it wrote.
+    """Write stem.png and, if `data`, stem.csv (beyond `long` bytes compressed, stem.csv.gz), or
+    stem.pdf alone; equal drawings give equal bytes, without a date. Returns what it wrote.
     """
     kind, dated = ("pdf", "CreationDate") if pdf else ("png", "Software")
-    buffer, paths = io.BytesIO(), [_suffixed(stem, kind)]
+    buffer, paths = io.BytesIO(), [stem.with_name(f"{stem.name}.{kind}")]
     colours = any(fields_of(panel) or panel.images for panel in drawing.figure.axes)
     with style():
         drawing.figure.savefig(buffer, format=kind, dpi=DPI, metadata={dated: None})
     write_atomically(paths[0], buffer.getvalue() if pdf else _small(buffer, colours))
     if data and not pdf:
-        content = _short(drawing.data).encode()
+        # five digits are more than a figure shows; the runs keep every digit
+        columns = [
+            [float(f"{each:.5g}") if isinstance(each, float) else each for each in column]
+            for column in drawing.data.values()
+        ]
+        content = csv_text(list(drawing.data), list(zip(*columns, strict=True))).encode()
         packed = len(content) > long
-        paths.append(_suffixed(stem, "csv.gz" if packed else "csv"))
+        paths.append(stem.with_name(f"{stem.name}.csv{'.gz' * packed}"))
         write_atomically(paths[-1], gzip.compress(content, mtime=0) if packed else content)
     return paths
 
 
 def _small(png: io.BytesIO, colours: bool) -> bytes:
-    """The same picture without transparency. colours: one with maps keeps its full colour, no channel off by
-    more than 2 of 255; one of lines and areas has a palette of 256.
+    """The same picture without transparency. colours: one with maps keeps its full colour, no
+    channel off by more than 2 of 255; one of lines and areas has a palette of 256.
     """
     picture, smaller = Image.open(png).convert("RGB"), io.BytesIO()
     if colours:
@@ -206,17 +210,3 @@ def fields_of(panel: Axes) -> list[ScalarMappable]:
     return [
         each for each in drawn if np.ndim(each.get_array()) in (1, 2) and not isinstance(each, ContourSet)
     ]
-
-
-def _suffixed(stem: Path, kind: str) -> Path:
-    return stem.with_name(f"{stem.name}.{kind}")
-
-
-def _short(data: Mapping[str, Sequence]) -> str:
-    """Five digits are more than a figure shows; the runs keep every digit."""
-    columns = [[_rounded(value) for value in column] for column in data.values()]
-    return csv_text(list(data), list(zip(*columns, strict=True)))
-
-
-def _rounded(value: object) -> object:
-    return float(f"{value:.{_DIGITS}g}") if isinstance(value, float) else value

@@ -23,8 +23,7 @@ from verification.figures.style import (
     new_figure,
     style,
 )
-from verification.runs.axis import Axis, in_si
-from verification.runs.study import Study
+from verification.runs.study import Axis, Study, in_si
 
 QUANTITIES = {
     "p_max_Pa": ("largest pressure [GPa]", 1e-9),
@@ -83,8 +82,8 @@ def summary(study: Study, rows: Sequence[Mapping]) -> Drawing:
 
 
 def _places(axis: Axis, values: Sequence) -> tuple[np.ndarray, list[str]]:
-    """Where the values stand: numbers in the unit of the study, texts and lists one by one with their
-    spellings.
+    """Where the values stand: numbers in the unit of the study, texts and lists one by one with
+    their spellings.
     """
     if all(isinstance(value, int | float) for value in values):
         scale = in_si(f"1 {axis.unit}") if axis.unit else 1.0
@@ -94,8 +93,8 @@ def _places(axis: Axis, values: Sequence) -> tuple[np.ndarray, list[str]]:
 
 
 def _lines(rows: Sequence[Mapping], others: Sequence[str]) -> dict[str, np.ndarray]:
-    """Numbers of the rows that agree in the other keys, (n,) each, by what they agree in; none if there are
-    too many lines to tell apart.
+    """Numbers of the rows that agree in the other keys, (n,) each, by what they agree in; none if
+    there are too many lines to tell apart.
     """
     groups: dict[tuple, list[int]] = {}
     for k, row in enumerate(rows):

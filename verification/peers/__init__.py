@@ -3,6 +3,6 @@
 aspher.
 
 They live in an environment of their own (`make peers`), are started as child processes by its interpreter and
-are never imported here. What both environments import is `problems`, `worker` and `programs`: standard
-library and numpy.
+are never imported here. What both environments import is `problems`, `worker`, `programs` and
+`verification.runs.models`: standard library and numpy.
 """

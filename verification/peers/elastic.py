@@ -11,8 +11,18 @@ import numpy as np
 
 from sam.scene import Progress
 from verification.peers import problems
-from verification.peers.points import PeerPoint, points_of
-from verification.peers.running import ASPHER, CONTACT_MECHANICS, SAM, TAMAAS, Job, Measurement, measure, run
+from verification.peers.running import (
+    ASPHER,
+    CONTACT_MECHANICS,
+    SAM,
+    TAMAAS,
+    Job,
+    Measurement,
+    cells_in_words,
+    measure,
+    rows_of,
+    run,
+)
 
 SIZES = (64, 96, 128, 192, 256, 512)  # the error that is asked for lies between 192 and 256
 ROUGH_SIZES = (256, 512, 1024)
@@ -73,41 +83,33 @@ def disagreements(problem: str, n: int, pythons: Mapping[str, Path]) -> dict[str
     return {program: distance(solution(problem, n, pythons[program], program), own) for program in others}
 
 
-def hertz_jobs(programs: Sequence[str], sizes: Sequence[int] = SIZES) -> dict[str, list[Job]]:
-    """The solves of the sphere by each program: every setting on every grid."""
-    return {
-        program: [
-            Job(problems.HERTZ, n, settings, label)
-            for label, settings in HERTZ_SETTINGS[program].items()
-            for n in sizes
-        ]
-        for program in programs
-    }
-
-
 def hertz_errors(
     p: np.ndarray, n: int, side: float, converged_error: float
 ) -> tuple[float, dict[str, float]]:
     """Error of the largest pressure, and the relative L2 error of the pressure against Hertz' mean over each
-    cell.
-
-    converged_error: of the largest pressure of the discrete problem, solved tightly. The larger of the two
-    errors counts: an iteration that stops where its own error cancels that of the grid has not solved the
-    problem any better.
+    cell. converged_error: of the discrete problem, solved tightly; the larger counts, as an iteration that
+    stops where its own error cancels that of the grid has solved the problem no better.
     """
     found = abs(float(p.max()) / problems.P0 - 1)
-    also = {"as_found": found, "l2": distance(p, problems.hertz_pressure(n, side))}
+    also = {"as-found": found, "l2": distance(p, problems.hertz_pressure(n, side))}
     return max(found, converged_error), also
 
 
 def hertz(
-    pythons: Mapping[str, Path],
-    rounds: int,
-    progress: Progress = lambda *_: None,
-    sizes: Sequence[int] = SIZES,
-) -> tuple[list[PeerPoint], list[float]]:
-    """Points of every program, and the seconds of the calibration kernel in between."""
-    found, kernel = measure(hertz_jobs(list(pythons), sizes), pythons, rounds, progress)
+    pythons: Mapping[str, Path], rounds: int, progress: Progress
+) -> tuple[list[dict[str, Any]], list[float]]:
+    """Rows of every program with every setting on every grid, and the seconds of the calibration kernel in
+    between.
+    """
+    jobs = {
+        program: [
+            Job(problems.HERTZ, n, settings, label)
+            for label, settings in HERTZ_SETTINGS[program].items()
+            for n in SIZES
+        ]
+        for program in pythons
+    }
+    found, kernel = measure(jobs, pythons, rounds, progress)
     least: dict[tuple[int, float], float] = {}
 
     def errors(each: Measurement) -> tuple[float, dict[str, float]]:
@@ -118,25 +120,22 @@ def hertz(
             least[n, side] = abs(float(tight.fields["pressure"].max()) / problems.P0 - 1)
         return hertz_errors(each.fields["pressure"], n, side, least[n, side])
 
-    return points_of(found, errors), kernel
+    return rows_of(problems.HERTZ, found, errors), kernel
 
 
 def rough(
-    pythons: Mapping[str, Path],
-    rounds: int,
-    progress: Progress = lambda *_: None,
-    sizes: Sequence[int] = ROUGH_SIZES,
-) -> tuple[list[PeerPoint], list[float]]:
-    """Points of every program at the loosest tolerance that reaches ROUGH_ERROR on each grid; those that miss
+    pythons: Mapping[str, Path], rounds: int, progress: Progress
+) -> tuple[list[dict[str, Any]], list[float]]:
+    """Rows of every program at the loosest tolerance that reaches ROUGH_ERROR on each grid; those that miss
     it too.
     """
-    tight = {n: solution(problems.ROUGH, n, pythons[SAM]) for n in sizes}
-    points, kernel = [], []
-    open_ = {(program, n): 0 for program in pythons for n in sizes}  # -> place in the ladder
+    tight = {n: solution(problems.ROUGH, n, pythons[SAM]) for n in ROUGH_SIZES}
+    rows, kernel = [], []
+    open_ = {(program, n): 0 for program in pythons for n in ROUGH_SIZES}  # -> place in the ladder
 
     def errors(each: Measurement) -> tuple[float, dict[str, float]]:
         p, reference = each.fields["pressure"], tight[each.job.cells]
-        return distance(p, reference), {"p_max": abs(float(p.max() / reference.max()) - 1)}
+        return distance(p, reference), {"p-max": abs(float(p.max() / reference.max()) - 1)}
 
     while open_:
         jobs: dict[str, list[Job]] = {}
@@ -149,12 +148,12 @@ def rough(
             jobs, pythons, rounds, progress, reaches=lambda each: errors(each)[0] <= ROUGH_ERROR
         )
         kernel += seconds
-        fresh = points_of(found, errors)
-        points += fresh
-        missed = {(p.program, p.cells) for p in fresh if not p.error <= ROUGH_ERROR}
+        fresh = rows_of(problems.ROUGH, found, errors)
+        rows += fresh
+        missed = {(row["model"], row["cells"]) for row in fresh if not row["error"] <= ROUGH_ERROR}
         open_ = {
-            key: place + 1
-            for key, place in open_.items()
-            if key in missed and place + 1 < len(ROUGH_LADDERS[key[0]])
+            (program, n): place + 1
+            for (program, n), place in open_.items()
+            if (program, cells_in_words(n)) in missed and place + 1 < len(ROUGH_LADDERS[program])
         }
-    return points, kernel
+    return rows, kernel

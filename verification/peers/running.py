@@ -143,11 +143,9 @@ def measure(
     calibrate: Callable[[], float] = calibration_s,
     reaches: Callable[[Measurement], bool] = lambda _: True,
 ) -> tuple[dict[str, list[Measurement]], list[float]]:
-    """Every program's jobs in each round in turn: (program -> measurements, seconds of the kernel).
-
-    pythons: program -> interpreter. Jobs that take long are measured in fewer rounds (`Measurement.wanted`),
-    and those whose first answer `reaches` nothing in one. A job has a process of its own: nothing that a
-    program keeps of one serves another.
+    """Every program's jobs in each round in turn, each in a process of its own: (program -> measurements,
+    seconds of the kernel). Jobs that take long are measured in fewer rounds (`Measurement.wanted`), and those
+    whose first answer `reaches` nothing in one. pythons: program -> interpreter.
     """
     found = {program: [Measurement(job) for job in own] for program, own in jobs.items()}
     kernel = [calibrate()]
@@ -234,3 +232,32 @@ def _take(measurement: Measurement, place: Path, ended: str) -> None:
 def pythons_of(python: Path, peers: Mapping[str, str]) -> dict[str, Path]:
     """Program -> interpreter: the peers' for what it has, this one for SAM."""
     return {SAM: Path(sys.executable)} | dict.fromkeys(peers, python)
+
+
+Errors = Callable[[Measurement], tuple[float, Mapping[str, float]]]
+"""Of a measurement: the error that times are compared at, and other measures, name -> value."""
+
+
+def rows_of(problem: str, found: Mapping[str, Sequence[Measurement]], errors: Errors) -> list[dict[str, Any]]:
+    """A row for every measurement; the error is nan for those without an answer. again: seconds of a second
+    solution in the process of the first.
+    """
+    rows = []
+    for program, own in found.items():
+        for each in own:
+            label = ", ".join(filter(None, (NAMES[program], each.job.label)))
+            row: dict[str, Any] = {"sweep": problem, "model": program, "curve": label}
+            row |= {"cells": cells_in_words(each.job.cells), "seconds": each.seconds, "again": each.again}
+            row["error"] = float("nan")
+            if each.solved:
+                row["error"], also = errors(each)
+                row |= {**also, "rounds": len(each.cpu_s), "iterations": each.record.get("iterations")}
+                row |= {"least": min(each.cpu_s), "most": max(each.cpu_s), "set-up": np.median(each.setup_s)}
+                row["memory"] = each.record["peak_memory_bytes"]
+            rows.append(row | {"status": "" if each.solved else each.failure or "not converged"})
+    return rows
+
+
+def cells_in_words(cells: Any) -> str:
+    """Cells a side, or these and layers."""
+    return f"{cells}²" if isinstance(cells, int) else f"{cells[1]} × {cells[0]} × {cells[0]}"

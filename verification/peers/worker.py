@@ -12,7 +12,6 @@ heights are outside.
 from __future__ import annotations
 
 import json
-import resource
 import sys
 import time
 from importlib import import_module
@@ -21,6 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from verification.peers import problems
+from verification.runs import models
 
 AGAIN_S = 30.0  # what takes less is solved a second time in the same process
 BEFORE = {problems.HERTZ: 36, problems.ROUGH: 132, problems.STEP: (10, 5)}  # cells; sizes that no job has
@@ -41,7 +41,7 @@ def main(source: str, target: str) -> None:
             record, fields = measured(program, job)
         except Exception as problem:
             record, fields = {"failure": f"{type(problem).__name__}: {problem}"[:300]}, {}
-        record["peak_memory_bytes"] = peak_memory()
+        record["peak_memory_bytes"] = models.peak_memory()
         np.savez(Path(target, f"{k}.npz"), **fields)
         Path(target, f"{k}.json").write_text(
             json.dumps(record | {"versions": program.versions()}), encoding="utf-8"
@@ -67,17 +67,6 @@ def measured(program, job: dict, again: bool = True) -> tuple[dict, dict[str, np
         setup()()
         times["again_s"] = time.process_time() - began
     return {**times, **counts}, fields
-
-
-def peak_memory() -> int:
-    """Largest memory of this process so far, in bytes; VmHWM does not begin with that of the parent,
-    ru_maxrss does.
-    """
-    try:
-        lines = Path("/proc/self/status").read_text(encoding="utf-8").splitlines()
-        return next(1024 * int(line.split()[1]) for line in lines if line.startswith("VmHWM:"))
-    except (OSError, StopIteration):
-        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
 
 
 if __name__ == "__main__":

@@ -37,9 +37,7 @@ def normal_strain(pressure: float, young: float, nu: float) -> float:
 
 
 def elastic_mises(pressure: float, strain: float, young: float, nu: float) -> float:
-    """Von Mises stress in Pa of the elastic film: p + sxx, sxx = (E strain - nu p)/(1 - nu). young, nu: of
-    the film.
-    """
+    """Von Mises stress in Pa of the elastic film: p + sxx, sxx = (E strain - nu p)/(1 - nu)."""
     return pressure + (positive("young", young) * strain - poisson("nu", nu) * pressure) / (1.0 - nu)
 
 

@@ -39,8 +39,6 @@ def disc_stress(layers: CoatedHalfSpace, contact_radius: float, r, z, *, pressur
 def interface_stress(
     radius_over_thickness: float, young_ratio: float, poisson: float = 0.5, poisson_body: float = 0.5
 ):
-    """Compressive stress on the axis at the interface over the pressure, -s_zz/p; Fox tabulates it for nu =
-    0.5.
-    """
+    """Compressive stress on the axis at the interface over the pressure; tabulated by Fox for nu = 0.5."""
     layers = CoatedHalfSpace(young_ratio, poisson, 1.0, 1.0, poisson_body)
     return -float(disc_stress(layers, radius_over_thickness, 0.0, 1.0)[0, 0, 2])

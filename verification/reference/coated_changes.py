@@ -102,13 +102,11 @@ def search(field: Callable, r: np.ndarray, depths: np.ndarray) -> LargestChange:
         mises = von_mises(field(r, depths))
         i, j = np.unravel_index(np.argmax(mises), mises.shape)
         best = LargestChange(float(mises[i, j]), float(r[i]), float(depths[j]))
-        r, depths = _around(r, i), _around(depths, j)
+        r, depths = (
+            np.linspace(grid[max(int(k) - 1, 0)], grid[min(int(k) + 1, len(grid) - 1)], 9)
+            for grid, k in ((r, i), (depths, j))
+        )
     return best
-
-
-def _around(grid: np.ndarray, index: int) -> np.ndarray:
-    """Nine points from the left to the right neighbour of a grid point."""
-    return np.linspace(grid[max(index - 1, 0)], grid[min(index + 1, len(grid) - 1)], 9)
 
 
 def breaking_thickness(

@@ -28,6 +28,7 @@ from scipy.special import eval_legendre, j0
 from .checks import depth, positive
 from .hertz import CircularContact, subsurface_stress
 from .layered_axisymmetric import CoatedHalfSpace, hankel_stress, wave_numbers
+from .quadrature import gauss
 
 SHORTEST = 20.0
 """Wave number times thickness from which g, of order (k h)^2 exp(-2 k h), is below rounding."""
@@ -87,7 +88,7 @@ class CoatedContact:
         psi = -(d chi/dx)/x is a polynomial in x^2, which Gauss points integrate exactly.
         """
         rho2 = (depth("r", r) / self.contact_radius) ** 2
-        u, w = _gauss(len(self.coefficients))
+        u, w = gauss(len(self.coefficients))
         inside = np.maximum(1.0 - rho2, 0.0)
         psi = self._slopes(np.minimum(rho2, 1.0)[..., None] + inside[..., None] * u**2)[0]
         return self.scale / self.contact_radius * np.sqrt(inside) * (psi @ w)
@@ -127,7 +128,7 @@ class CoatedContact:
         """
         a, h = self.contact_radius, self.layers.thickness
         r = a * np.linspace(0.0, 1.0, count)
-        x, w = _gauss(2 * len(self.coefficients) + 8)
+        x, w = gauss(2 * len(self.coefficients) + 8)
         angles = np.sin(math.pi / 2 * x)
         chi = sum(c * eval_legendre(2 * n, np.outer(r / a, angles)) for n, c in enumerate(self.coefficients))
         k, weight = wave_numbers(h, 4.0 * a, 1.25 * SHORTEST)
@@ -157,9 +158,7 @@ class CoatedContact:
         return stress
 
     def _side(self, r: np.ndarray, z: np.ndarray, film: bool) -> np.ndarray:
-        """Stresses on one side of the interface; the integrand decays as exp(-k z) in the body, exp(-k (2 h -
-        z)) above.
-        """
+        """Stresses on one side; integrands decay as exp(-k z), in the film as exp(-k (2 h - z))."""
         decay = 2.0 * self.layers.thickness - np.max(z) if film else np.min(z)
         k, weight = wave_numbers(decay, self.contact_radius + np.max(r), 2.0 * SHORTEST)
         amplitudes = self.layers.amplitudes(k)
@@ -168,9 +167,7 @@ class CoatedContact:
         return stress + self._direct(r[:, None], z[None, :]) if film else stress
 
     def _slopes(self, x2) -> tuple[np.ndarray, np.ndarray]:
-        """psi = -(d chi/dx)/x and (d psi/dx)/x over scale, of x^2; P_2n(x) is the Jacobi P_n^(0,-1/2)(2 x^2 -
-        1).
-        """
+        """psi = -(d chi/dx)/x and (d psi/dx)/x over scale, of x^2; P_2n(x) is P_n^(0,-1/2)(2 x^2 - 1)."""
         y = 2.0 * np.asarray(x2) - 1.0
         n = np.arange(1, len(self.coefficients))
         first = -2.0 * self.coefficients[1:] * (n + 0.5)
@@ -186,7 +183,7 @@ class CoatedContact:
         a, nu = self.contact_radius, self.layers.poisson
         psi = self._slopes(1.0)[0]
         stress = psi * subsurface_stress(r, 0.0, z, 1.0, contact_radius=a, nu=nu)
-        t, w = _gauss(len(self.coefficients) + 24)
+        t, w = gauss(len(self.coefficients) + 24)
         rim = np.clip(r / a, 0.0, 1.0)
         for start, sign in ((0.0, -1.0), (1.0, 1.0)):
             length = np.abs(start - rim)
@@ -250,9 +247,7 @@ def _expand(cosines: np.ndarray, weighted: np.ndarray) -> tuple[float, np.ndarra
 def solve_force(
     layers: CoatedHalfSpace, radius: float, force: float, counter_modulus: float = math.inf
 ) -> CoatedContact:
-    """The contact that carries the force (N): log(a) is sought by the secant method; F grows nearly like
-    a^3.
-    """
+    """The contact that carries the force (N): log(a) by the secant method, as F grows nearly like a^3."""
     bare = CircularContact(force, radius, _series(layers.modulus_body, counter_modulus))
     film = CircularContact(force, radius, _series(layers.modulus, counter_modulus))
 
@@ -333,8 +328,3 @@ def _jacobi_sum(coefficients: np.ndarray, alpha: float, beta: float, y: np.ndarr
 def _series(first: float, second: float) -> float:
     """Modulus of two bodies in contact, 1/(1/first + 1/second)."""
     return 1.0 / (1.0 / first + 1.0 / second)
-
-
-def _gauss(order: int) -> tuple[np.ndarray, np.ndarray]:
-    t, w = np.polynomial.legendre.leggauss(order)
-    return (t + 1) / 2, w / 2

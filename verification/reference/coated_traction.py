@@ -76,9 +76,7 @@ def coated_sliding_stress(
 def largest_von_mises(
     layers: CoatedHalfSpace, peak_pressure: float, contact_radius: float, friction: float, *, film: bool
 ) -> LargestChange:
-    """Largest von Mises stress of the film, or of the body, in y = 0, its faces included; r of the
-    LargestChange is x.
-    """
+    """Largest von Mises stress of the film, or of the body, in y = 0 with its faces; its r is x."""
     a, h = contact_radius, layers.thickness
     x, share = np.linspace(-1.2 * a, 1.2 * a, 49), np.linspace(0.0, 1.0, 25)
     depths = h * share if film else h + 1.5 * (a + h) * share**2
@@ -88,9 +86,7 @@ def largest_von_mises(
 
 
 def hertz_transform(ka: np.ndarray) -> np.ndarray:
-    """Integral of sqrt(1 - s^2) J0(ka s) s ds over 0 <= s <= 1, = (sin ka - ka cos ka)/ka^3; its series below
-    ka = 0.1.
-    """
+    """Integral of sqrt(1 - s^2) J0(ka s) s ds over 0 <= s <= 1; its series below ka = 0.1."""
     small = np.minimum(ka, 0.1) ** 2
     series = 1.0 / 3.0 - small / 30.0 + small**2 / 840.0 - small**3 / 45360.0
     large = np.maximum(ka, 0.1)

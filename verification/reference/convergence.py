@@ -12,9 +12,7 @@ from scipy.optimize import minimize_scalar
 
 @dataclass(frozen=True)
 class Order:
-    """error ~ factor h^order, fitted by least squares in log-log; scatter: largest |error/fit - 1| of the
-    points.
-    """
+    """error ~ factor h^order by least squares in log-log; scatter: largest |error/fit - 1|."""
 
     order: float
     factor: float
@@ -48,9 +46,7 @@ ORDERS = (0.5, 4.0)
 
 @dataclass(frozen=True)
 class Limit:
-    """value(h) ~ limit + factor h^order fitted to a ladder of grids; scatter: largest misfit over the finest
-    value.
-    """
+    """value(h) ~ limit + factor h^order over a ladder; scatter: largest misfit over the finest value."""
 
     limit: float
     factor: float
@@ -105,9 +101,7 @@ def extrapolate(h: Sequence[float], values: Sequence[float]) -> Limit:
 
 @dataclass(frozen=True)
 class Power:
-    """y ~ factor x^exponent, by least squares in log-log over first <= x <= last; error: standard error of
-    the exponent.
-    """
+    """y ~ factor x^exponent by least squares in log-log, first <= x <= last; error: of the exponent."""
 
     exponent: float
     error: float
@@ -123,9 +117,7 @@ class Power:
 
 
 def fit_power(x: Sequence[float], y: Sequence[float], first: float = 0.0) -> Power:
-    """Fit y ~ factor x^exponent to the points with x >= first: at least three different ones, y > 0.
-    ValueError otherwise.
-    """
+    """Fit y ~ factor x^exponent to x >= first, three or more of them, y > 0. ValueError otherwise."""
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     if x.shape != y.shape or x.ndim != 1 or np.unique(x[x >= first]).size < 3:
         raise ValueError(f"x and y: at least three different values with one y each, not {x} and {y}")

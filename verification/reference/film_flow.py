@@ -30,9 +30,7 @@ RATE_DIGITS = 1e-12  # of the yield stress and strain
 
 @dataclass(frozen=True)
 class FlowPoint:
-    """What acts on the film: strains xx, yy, xy (3,) in its plane, pressure and sxz in Pa. Points add and
-    scale.
-    """
+    """Strains xx, yy, xy (3,) in the film's plane, pressure and sxz in Pa. Points add and scale."""
 
     strain: np.ndarray
     pressure: float
@@ -47,12 +45,8 @@ class FlowPoint:
         return FlowPoint(self.strain - other.strain, self.pressure - other.pressure, self.shear - other.shear)
 
     def towards(self, other: FlowPoint, share: float) -> FlowPoint:
-        step = other - self
-        return FlowPoint(
-            self.strain + share * step.strain,
-            self.pressure + share * step.pressure,
-            self.shear + share * step.shear,
-        )
+        pairs = zip(vars(self).values(), vars(other - self).values(), strict=True)
+        return FlowPoint(*(one + share * step for one, step in pairs))
 
 
 @dataclass(frozen=True)
@@ -108,27 +102,21 @@ class Film:
         The rate equations (Prandtl-Reuss), integrated by an explicit method of order 8 between the moments at
         which flow begins and ends.
         """
-        stress, plastic = self._elastic_rate(path[0]), np.zeros(6)
+        stress, plastic = self._mixed(self.stiffness, path[0])[0], np.zeros(6)
         if mises(stress) > self.yield_stress:
             raise ValueError("path: the film must not yield at its first point")
         for start, end in pairwise(path):
-            stress, plastic = self._segment(end - start, stress, plastic)
+            step, time = end - start, 0.0
+            at_yield = mises(stress) >= self.yield_stress * (1.0 - RESIDUAL)
+            flows = at_yield and self._rate(step, stress)[2] > 0.0
+            while time < 1.0:  # elastic and plastic parts in turn
+                time, stress, plastic = self._part(step, time, stress, plastic, flows=flows)
+                flows = not flows
         return plastic
-
-    def _segment(
-        self, step: FlowPoint, stress: np.ndarray, plastic: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Stress and plastic strain after a straight line, elastic and plastic parts in turn."""
-        time = 0.0
-        flows = mises(stress) >= self.yield_stress * (1.0 - RESIDUAL) and self._rate(step, stress)[2] > 0.0
-        while time < 1.0:
-            time, stress, plastic = self._part(step, time, stress, plastic, flows=flows)
-            flows = not flows
-        return stress, plastic
 
     def _part(self, step: FlowPoint, time: float, stress: np.ndarray, plastic: np.ndarray, *, flows: bool):
         """Time, stress and plastic strain where the film begins or ceases to flow, or at time = 1."""
-        Y, elastic = self.yield_stress, self._elastic_rate(step)
+        Y, elastic = self.yield_stress, self._mixed(self.stiffness, step)[0]
 
         def rates(_: float, state: np.ndarray) -> np.ndarray:
             if not flows:
@@ -147,14 +135,8 @@ class Film:
             raise ArithmeticError(f"rate equations of the film: {found.message}")
         return found.t[-1], Y * found.y[:6, -1], found.y[6:, -1]
 
-    def _elastic_rate(self, step: FlowPoint) -> np.ndarray:
-        """Stress (6,) of a film that does not flow."""
-        return self._mixed(self.stiffness, step)[0]
-
     def _rate(self, step: FlowPoint, stress: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-        """Rates of stress (6,) and plastic strain (6,) while it flows, and the factor of the flow: d eps_p =
-        factor s.
-        """
+        """Rates of stress (6,) and plastic strain (6,) while it flows, d eps_p = factor s, and the factor."""
         C, s = self.stiffness, deviator(stress)
         into = C @ s
         tangent = C - np.outer(into, into * SHEAR) / ((s * SHEAR) @ into)
@@ -163,9 +145,7 @@ class Film:
         return stress_rate, factor * s, factor
 
     def _mixed(self, matrix: np.ndarray, step: FlowPoint) -> tuple[np.ndarray, np.ndarray]:
-        """Stress and strain, (6,) each, where stress = matrix strain, strains in the plane and stresses off
-        it given.
-        """
+        """Stress and strain, (6,) each, = matrix strain, from strains in the plane and stresses off it."""
         right = step.off_plane - matrix[np.ix_(OFF, PLANE)] @ step.strain
         strain = _joined(step.strain, np.linalg.solve(matrix[np.ix_(OFF, OFF)], right))
         return matrix @ strain, strain

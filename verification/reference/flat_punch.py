@@ -18,9 +18,7 @@ from .stress import components
 
 @dataclass(frozen=True)
 class FlatPunch:
-    """Punch of radius a (m) under a force (N), contact modulus E* (Pa). Profiles take r or z >= 0 in m, any
-    shape.
-    """
+    """Punch of radius a (m) under a force (N), modulus E* (Pa). Profiles take r, z >= 0 in m."""
 
     force: float
     contact_radius: float

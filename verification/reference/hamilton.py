@@ -14,8 +14,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from .checks import coordinate, depth, finite, not_negative, poisson, positive
-from .hertz import subsurface_stress
-from .hertz_integrals import hertz_integrals
+from .hertz import hertz_integrals, subsurface_stress
 from .stress import components, von_mises
 
 

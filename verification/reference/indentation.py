@@ -32,9 +32,7 @@ class Onset:
 
 
 def onset(factor: float, radius: float, modulus: float, yield_stress: float) -> Onset:
-    """First yield at the peak pressure factor * yield_stress; radius R in m, modulus E* and yield stress in
-    Pa.
-    """
+    """First yield at the peak pressure factor * yield_stress; radius in m, E* and yield stress in Pa."""
     ratio = positive("factor", factor) * positive("yield_stress", yield_stress) / positive("modulus", modulus)
     approach = (math.pi * ratio / 2.0) ** 2 * positive("radius", radius)
     return Onset(
@@ -74,9 +72,7 @@ class KogutEtsion:
 
 @dataclass(frozen=True)
 class JacksonGreen:
-    """Jackson & Green (2005) for the yield strain Y/E*: Hertz to w* = 1.9, then one law for each of load and
-    area.
-    """
+    """Jackson & Green (2005) for the yield strain Y/E*: Hertz to w* = 1.9, then one law."""
 
     poisson: float
     yield_strain: float

@@ -62,9 +62,7 @@ class ManyDigits:
         ]
 
     def _body_waves(self, s) -> list[list]:
-        """The two waves of the body at depth s, referred to the interface; z from the interface, where psi =
-        0.
-        """
+        """The two waves of the body at depth s, referred to the interface."""
         return [wave(f, -1, s - self.kh, 0, nu=self.nu[1]) for f in ("phi", "psi")]
 
     def _solve_in_plane(self):
@@ -86,9 +84,7 @@ class ManyDigits:
         return mp.lu_solve(matrix, mp.matrix([1, 0, 0]))
 
     def state(self, s, load: int, body: bool) -> list:
-        """STATE under p (load 0) or q_L (1) at depth s, of the film or of the body; displacement times mu_1
-        k.
-        """
+        """STATE under p (load 0) or q_L (1) at depth s, of film or body; displacement times mu_1 k."""
         with mp.workdps(self.digits):
             s, constants = mp.mpf(s), self.in_plane[load]
             waves = self._body_waves(s) if body else self._film_waves(s)

@@ -24,9 +24,7 @@ WAVES = tuple(10.0**n for n in np.arange(-8, 4.1, 0.5))
 
 @dataclass
 class Worst:
-    """Largest error of a quantity and where it occurs: kh, moduli ratio, Poisson's ratios, depth over
-    thickness.
-    """
+    """Largest error of a quantity, and where: kh, moduli ratio, Poisson's ratios, depth over thickness."""
 
     error: float = 0.0
     where: str = ""
@@ -74,9 +72,7 @@ def depths(kh: float) -> tuple[float, ...]:
 
 
 def stress_error(answer: ManyDigits, ours: Response, height: float) -> float:
-    """Largest error of the ten stresses at z = height h; each load relative to its own largest component, at
-    least 1.
-    """
+    """Largest error of ten stresses at z = height h, each load over its largest one, at least 1."""
     body = height >= 1
     in_plane, antiplane = ours.stress(height)
     s = answer.kh * height

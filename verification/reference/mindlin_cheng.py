@@ -39,9 +39,7 @@ class EigenstrainSphere:
 
     @property
     def strength(self) -> float:
-        """K of the full-space displacement u = K R/R^3 outside the sphere: e radius^3 (1 + nu)/(3 (1 - nu)),
-        m^3.
-        """
+        """K of u = K R/R^3 outside the sphere in a full space: e radius^3 (1 + nu)/(3 (1 - nu)), m^3."""
         return self.eigenstrain * self.radius**3 * (1.0 + self.nu) / (3.0 * (1.0 - self.nu))
 
     def surface_displacement(self, x, y) -> np.ndarray:
@@ -98,9 +96,7 @@ def _second_derivatives(x, y, z) -> np.ndarray:
 
 
 def _third_derivatives(x, y, z) -> np.ndarray:
-    """(1/R)_,ij3 = [-15 x_i x_j z/R^2 + 3 (delta_ij z + delta_i3 x_j + delta_j3 x_i)]/R^5, (..., 6) in
-    m^-4.
-    """
+    """(1/R)_,ij3 = [-15 x_i x_j z/R^2 + 3 (delta_ij z + delta_i3 x_j + delta_j3 x_i)]/R^5, m^-4."""
     square = x**2 + y**2 + z**2
     products = components(x * x, y * y, z * z, y * z, xz=x * z, xy=x * y)
     linear = components(z, z, 3.0 * z, y, xz=x)

@@ -101,9 +101,7 @@ def mindlin_displacement(place, c, nu: float) -> list[list]:
 
 
 def _derivatives(point, c, nu: float, *, along: int | None, source: int | None) -> np.ndarray:
-    """(3, 3, ...): the derivative of G[k][i] along an axis of the observation and/or one of the source (None:
-    none).
-    """
+    """(3, 3, ...): derivative of G[k][i] along axes of the observation and of the source, None: none."""
     seeds = [
         Jet(w, float(along == axis), -float(source == axis) * (axis < 2)) for axis, w in enumerate(point)
     ]
@@ -131,9 +129,7 @@ def eigenstress(nu: float) -> np.ndarray:
 
 
 def _response(gradient: np.ndarray, shift: np.ndarray, nu: float) -> np.ndarray:
-    """Stress (6) over displacement (3) from the displacement gradient [m, k, ...] and the displacement [k,
-    ...].
-    """
+    """Stress (6) over displacement (3) from the displacement and its gradient [m, k, ...]."""
     stress = np.tensordot(_elasticity(nu), gradient, 2)
     return np.concatenate([np.stack([stress[pair] for pair in PAIRS]), shift])
 
@@ -145,10 +141,7 @@ def point_force(place, c, nu: float) -> np.ndarray:
 
 
 def point_nucleus(place, c, nu: float) -> np.ndarray:
-    """Stress (6) and displacement (3) at `place` by unit eigenstrains (6) times volume at (0, 0, c).
-
-    place: (x, y, z); (9, 6, ...).
-    """
+    """Stress (6), displacement (3) at `place` by unit eigenstrains times volume at (0, 0, c): (9, 6, ...)."""
     strength = eigenstress(nu)
 
     def moment(along):

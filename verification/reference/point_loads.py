@@ -60,9 +60,7 @@ def cerruti_stress(x, y, z, force: float, *, nu: float) -> np.ndarray:
 
 
 def boussinesq_displacement(x, y, z, force: float, *, young: float, nu: float) -> np.ndarray:
-    """Displacement (u_x, u_y, u_z) under a normal force (N), (..., 3) in m; at z = 0 u_z = (1 - nu^2) F/(pi E
-    r).
-    """
+    """Displacement under a normal force (N), (..., 3) in m; at z = 0 u_z = (1 - nu^2) F/(pi E r)."""
     x, y, z, R, t = _coordinates(x, y, z)
     nu = poisson("nu", nu)
     radial = z / R**3 - (1.0 - 2.0 * nu) / (R * t)

@@ -30,9 +30,7 @@ class Regime(StrEnum):
 
 
 def swift(B: float, C: float, n: float, strain: float) -> float:
-    """Yield stress B (C + 1e6 strain)^n in Pa of the paper's Eq. 18, in which the strain counts in
-    microstrain.
-    """
+    """Yield stress B (C + 1e6 strain)^n in Pa of the paper's Eq. 18, which counts in microstrain."""
     return positive("B", B) * (positive("C", C) + MICROSTRAIN * not_negative("strain", strain)) ** positive(
         "n", n
     )
@@ -49,9 +47,7 @@ def tear_pressure(strength: float, friction: float) -> float:
 
 
 def largest_pressure(yield_stress: float, friction: float) -> float:
-    """Pressure in Pa above which a perfectly plastic film has no equilibrium with its traction; inf without
-    friction.
-    """
+    """Pressure in Pa above which a perfectly plastic film and its traction have no equilibrium."""
     return tear_pressure(yield_stress, friction) if friction else math.inf
 
 
@@ -102,9 +98,7 @@ def film_pressure(
 
 
 def regime(pressure: float, film: float, removal: float) -> Regime:
-    """Of a spot, from its pressure, that at which its film fails and that at which the bare metal is removed,
-    all in Pa.
-    """
+    """Of a spot, from its pressure and those at which its film fails and bare metal is removed, in Pa."""
     if pressure <= film:
         return Regime.WHOLE
     return Regime.REMOVED if pressure > removal else Regime.BARE

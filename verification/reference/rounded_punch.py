@@ -27,10 +27,7 @@ POINTS = (
 
 @dataclass(frozen=True)
 class RoundedPunch:
-    """Punch with the flat end b and the radius R of its edge (m) under a force (N), contact modulus E* (Pa).
-
-    Profiles take r or z >= 0 in m, any shape.
-    """
+    """Flat end b and radius R of its edge (m), force (N), modulus E* (Pa). Profiles take r, z >= 0 in m."""
 
     force: float
     flat: float

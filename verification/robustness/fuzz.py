@@ -16,7 +16,7 @@ import random
 import re
 import zipfile
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -57,11 +57,13 @@ class BadInput:
     """
 
     kind: str
-    files: Mapping[str, File] = field(default_factory=dict)
-    name: str = SCENE
+    files: Mapping[str, File]
+    name: str
 
 
-Generator = Callable[[random.Random, str], BadInput]
+Laid = tuple[Mapping[str, File], str]
+"""Files and name of an input."""
+Generator = Callable[[random.Random], Laid]
 AROUND: Mapping[str, File] = {
     "yield.csv": hostile.YIELD,
     "depth.csv": hostile.DEPTH,
@@ -79,7 +81,7 @@ def bad_input(seed: int, number: int) -> BadInput:
     """Input `number` of the series of `seed`; the kinds take turns, MORE_KINDS at negative numbers."""
     kinds = KINDS if number >= 0 else MORE_KINDS
     kind = tuple(kinds)[number % len(kinds)]
-    return kinds[kind](random.Random(f"{seed}/{number}"), kind)
+    return BadInput(kind, *kinds[kind](random.Random(f"{seed}/{number}")))
 
 
 def lay(bad: BadInput, folder: Path) -> Path:
@@ -182,7 +184,7 @@ def with_pickle() -> bytes:
     return npz({"x_m": trap, "y_m": np.zeros(3), "height_m": np.zeros((3, 3))}, {})
 
 
-def bad_archive(rng: random.Random, kind: str) -> BadInput:
+def bad_archive(rng: random.Random) -> Laid:
     """An npz file with flipped bits, pickles, absurd shapes, odd values, or none at all."""
     arrays = {"a": np.arange(24.0).reshape(4, 6), "b": np.array(["x", "yy"])}
     arrays[VALUES_JSON] = np.frombuffer(json.dumps({"x": [1, None, "é"]}).encode(), dtype=np.uint8)
@@ -195,13 +197,13 @@ def bad_archive(rng: random.Random, kind: str) -> BadInput:
         content = npz({"values.json": np.frombuffer(rng.choice(hostile.JSON), dtype=np.uint8)}, None)
     elif edit == 3:
         names = "sub", "pipe", "link-zero", "link-loop", "missing", "yield.csv", "x" * 5_000, "a\0b"
-        return BadInput(kind, AROUND, rng.choice(names))
+        return AROUND, rng.choice(names)
     else:
         content = mutated(rng, npz({**arrays, DIGEST: digest_of(arrays)}))
-    return BadInput(kind, {ARCHIVE: content}, ARCHIVE)
+    return {ARCHIVE: content}, ARCHIVE
 
 
-def bad_run(rng: random.Random, kind: str) -> BadInput:
+def bad_run(rng: random.Random) -> Laid:
     """The folder of a run whose summary or tables are damaged, of another version, or no files."""
     summary, table = f"{RUN}/summary.json", f"{RUN}/history.csv"
     good = {"format": "samfem run 1", "status": "converged", "model": "sam", "scene": {}}
@@ -220,15 +222,15 @@ def bad_run(rng: random.Random, kind: str) -> BadInput:
         files[f"{RUN}/{rng.choice(('summary.json', 'history.csv'))}"] = odd
     else:
         files[table] = mutated(rng, files[table])
-    return BadInput(kind, files, rng.choice((RUN,) * 8 + (table, "missing", "x" * 5_000)))
+    return files, rng.choice((RUN,) * 8 + (table, "missing", "x" * 5_000))
 
 
-def with_mapping(kind: str, text: str, files: dict[str, File]) -> BadInput:
+def with_mapping(text: str, files: dict[str, File]) -> Laid:
     """A mapping beside a scene and files."""
-    return BadInput(kind, {**AROUND, SCENE: SMALL.encode(), MAPPING: encoded(text), **files}, MAPPING)
+    return {**AROUND, SCENE: SMALL.encode(), MAPPING: encoded(text), **files}, MAPPING
 
 
-def bad_mesh(rng: random.Random, kind: str) -> BadInput:
+def bad_mesh(rng: random.Random) -> Laid:
     """A mesh that is damaged, lies about its sizes, names others elsewhere, or is none."""
     edit = rng.randrange(6)
     name = f"own{rng.choice(('.vtu', '.vtk', '.vtr'))}"
@@ -256,7 +258,7 @@ def bad_mesh(rng: random.Random, kind: str) -> BadInput:
     else:
         name = f"own{rng.choice(READABLE)}"  # the ending of another format
     text = hostile.MAPPING.replace('"own.vtu"', toml_string(name))
-    return with_mapping(kind, text, {**good_meshes(), name: content})
+    return with_mapping(text, {**good_meshes(), name: content})
 
 
 @cache
@@ -291,21 +293,21 @@ def _legacy(x: np.ndarray, z: np.ndarray, p: np.ndarray) -> bytes:
     return b"".join(part if isinstance(part, bytes) else part.encode() for part in parts)
 
 
-def bad_surface(rng: random.Random, kind: str) -> BadInput:
+def bad_surface(rng: random.Random) -> Laid:
     """A rough scene: its path, the file that it names, or the keys of its generator changed."""
     edit = rng.randrange(6)
     if edit == 0:
-        return _rough(kind, rng.choice((*PLACES, HEIGHTS, TABLE)), {TABLE: table()})
+        return _rough(rng.choice((*PLACES, HEIGHTS, TABLE)), {TABLE: table()})
     if edit in (1, 2):
-        return _rough(kind, HEIGHTS, {HEIGHTS: _bad_npz(rng) if edit == 1 else _odd_arrays(rng)})
+        return _rough(HEIGHTS, {HEIGHTS: _bad_npz(rng) if edit == 1 else _odd_arrays(rng)})
     if edit == 3:
-        return _rough(kind, TABLE, {TABLE: _bad_table(rng)})
+        return _rough(TABLE, {TABLE: _bad_table(rng)})
     if edit == 4:
-        return _bad_processing(rng, kind)
-    return BadInput(kind, {SCENE: _bad_generator(rng).encode()})
+        return _bad_processing(rng)
+    return {SCENE: _bad_generator(rng).encode()}, SCENE
 
 
-def bad_matrix(rng: random.Random, kind: str) -> BadInput:
+def bad_matrix(rng: random.Random) -> Laid:
     """Heights as laboratories export them: a matrix alone, or x, y and z in other units, good and bad."""
     rows = [[f"{value:.6g}" for value in row] for row in 1e9 * _arrays()["height_m"].T]
     for _ in range(rng.choice((0, 0, 1, 3))):
@@ -330,16 +332,16 @@ def bad_matrix(rng: random.Random, kind: str) -> BadInput:
     keys = rng.sample(hostile.MATRIX_KEYS, rng.randrange(3))
     path = toml_string(f"heights{ending}") + "\n" + "\n".join(keys)
     files = {f"heights{ending}": content, SCENE: ROUGH.replace(toml_string(HEIGHTS), path).encode()}
-    return BadInput(kind, {**AROUND, **files})
+    return {**AROUND, **files}, SCENE
 
 
-def _rough(kind: str, path: str, files: dict[str, bytes]) -> BadInput:
+def _rough(path: str, files: dict[str, bytes]) -> Laid:
     text = encoded(ROUGH.replace(toml_string(HEIGHTS), toml_string(path)))
     around = {**AROUND, "pickle.npz": with_pickle(), HEIGHTS: good_heights()}
-    return BadInput(kind, {**around, **files, SCENE: text})
+    return {**around, **files, SCENE: text}, SCENE
 
 
-def _bad_processing(rng: random.Random, kind: str) -> BadInput:
+def _bad_processing(rng: random.Random) -> Laid:
     """What is done to a file, with odd values, and heights of which some, most or all are missing."""
     arrays = _arrays()
     missing = rng.choice((0, 0, 0, 1, 30, 60, 61, 120))
@@ -354,7 +356,7 @@ def _bad_processing(rng: random.Random, kind: str) -> BadInput:
     lines.append(f"[grid]\ncells = {rng.choice(('[12, 10]', '[33, 17]', '[4097, 3]'))}")
     chosen = "\n".join(line for line in lines if rng.random() < 0.5)
     text = ROUGH.replace('"heights.npz"\n', f'"heights.npz"\n{chosen}\n').encode()
-    return BadInput(kind, {**_rough(kind, HEIGHTS, {HEIGHTS: npz(arrays)}).files, SCENE: text})
+    return {**_rough(HEIGHTS, {HEIGHTS: npz(arrays)})[0], SCENE: text}, SCENE
 
 
 def _arrays() -> dict[str, np.ndarray]:
@@ -481,10 +483,10 @@ def good_scenes() -> tuple[str, ...]:
     return (*texts, EVERY_KEY, PLASTIC, *hostile.SCENES)
 
 
-def _scene(text: str | bytes, kind: str, files: Mapping = ()) -> BadInput:
+def _scene(text: str | bytes, files: Mapping = ()) -> Laid:
     content = text if isinstance(text, bytes) else encoded(text)
     around = {"yield.csv": hostile.YIELD, "depth.csv": hostile.DEPTH, HEIGHTS: good_heights()}
-    return BadInput(kind, {**around, **dict(files), SCENE: content})
+    return {**around, **dict(files), SCENE: content}, SCENE
 
 
 def _number(rng: random.Random) -> str:
@@ -506,15 +508,15 @@ def _with_value(rng: random.Random, text: str, value: str) -> str:
     return text[: match.start(2)] + value + text[match.end(2) :]
 
 
-def _values(rng: random.Random, kind: str) -> BadInput:
+def _values(rng: random.Random) -> Laid:
     """One to three values replaced: other types, other numbers, what is no TOML."""
     text = rng.choice(good_scenes())
     for _ in range(rng.randint(1, 3)):
         text = _with_value(rng, text, _value(rng))
-    return _scene(text, kind)
+    return _scene(text)
 
 
-def _units(rng: random.Random, kind: str) -> BadInput:
+def _units(rng: random.Random) -> Laid:
     """One to three quantities with another number or unit, right dimensions included."""
     text = rng.choice(good_scenes())
     for _ in range(rng.randint(1, 3)):
@@ -526,10 +528,10 @@ def _units(rng: random.Random, kind: str) -> BadInput:
         changed = f"{_number(rng)} {unit}", f"{number} {rng.choice(UNITS)}"
         spaced = f"{number}{unit}", f" {number}  {unit} "
         text = text[: match.start(1)] + rng.choice((*changed, *spaced)) + text[match.end(1) :]
-    return _scene(text, kind)
+    return _scene(text)
 
 
-def _extremes(rng: random.Random, kind: str) -> BadInput:
+def _extremes(rng: random.Random) -> Laid:
     """Good values of every size that the format allows, together."""
     text = rng.choice([text for text in good_scenes() if text is not EVERY_KEY])
     for match in reversed(list(_STRING.finditer(text))):
@@ -540,10 +542,10 @@ def _extremes(rng: random.Random, kind: str) -> BadInput:
         text = re.sub(r"poisson = .*", f"poisson = {one_of(rng, '0|0.5|0.4999999|1e-300')}", text)
     if rng.random() < 0.2:
         text = re.sub(r"tolerance = .*", f"tolerance = {one_of(rng, '1e-14|0.1')}", text)
-    return _scene(text, kind)
+    return _scene(text)
 
 
-def _keys(rng: random.Random, kind: str) -> BadInput:
+def _keys(rng: random.Random) -> Laid:
     """Keys and tables that are unknown, misspelt, twice, missing, in another table, or nested deep."""
     lines = rng.choice(good_scenes()).splitlines()
     at, deep, edit = rng.randrange(len(lines)), rng.choice((50, 1_000, 20_000)), rng.randrange(9)
@@ -569,23 +571,23 @@ def _keys(rng: random.Random, kind: str) -> BadInput:
         lines.insert(at, rng.choice(tables))
     else:
         lines[at:at] = [f"key{k} = {k}" for k in range(rng.choice((10, 2_000)))]
-    return _scene("\n".join(lines), kind)
+    return _scene("\n".join(lines))
 
 
-def _bytes(rng: random.Random, kind: str) -> BadInput:
+def _bytes(rng: random.Random) -> Laid:
     """A scene cut short, with bits flipped or bytes put in, in another encoding, with very long lines."""
     text = rng.choice(good_scenes()).replace("steel", "stähl", 1)
     edit = rng.randrange(5)
     if edit == 0:
         codec = one_of(rng, "utf-16|utf-16-le|utf-32|latin-1|cp1252|utf-8-sig|utf-7|cp037")
-        return _scene(text.encode(codec, "replace"), kind)
+        return _scene(text.encode(codec, "replace"))
     if edit == 1:
         ends = "\r\n", "\r", "\x0b", "\x00\n", "\u2028", "#" * 100_000 + "\n"
-        return _scene(text.replace("\n", rng.choice(ends)), kind)
-    return _scene(mutated(rng, text.encode()), kind)
+        return _scene(text.replace("\n", rng.choice(ends)))
+    return _scene(mutated(rng, text.encode()))
 
 
-def _sizes(rng: random.Random, kind: str) -> BadInput:
+def _sizes(rng: random.Random) -> Laid:
     """Grids, meshes and step counts of every size, and depths in any order."""
     whole, length, rows = hostile.WHOLE, hostile.LENGTHS, []
     few, many = (1, 2, 2, 2, 2, 3), (0, 1, 2, 3, 5, 2_000)
@@ -604,19 +606,19 @@ def _sizes(rng: random.Random, kind: str) -> BadInput:
     fem = ""
     if rng.random() < 0.4:
         fem = f"[fem]\ncells_per_radius = {rng.choice(whole)}\nbox = {_number(rng)}\n"
-    return _scene("\n".join([text, "[grid]", *rows, fem]), kind)
+    return _scene("\n".join([text, "[grid]", *rows, fem]))
 
 
-def _paths(rng: random.Random, kind: str) -> BadInput:
+def _paths(rng: random.Random) -> Laid:
     """A table of the scene outside its folder, behind a link, in a pipe or device, or with an impossible
     name.
     """
     place, key = rng.choice(PLACES), rng.choice(("file", "profile"))
     text = PLASTIC.replace('file = "yield.csv"', f"{key} = {toml_string(place)}")
-    return _scene(text, kind, {**AROUND, "pickle.npz": with_pickle()})
+    return _scene(text, {**AROUND, "pickle.npz": with_pickle()})
 
 
-def _tables(rng: random.Random, kind: str) -> BadInput:
+def _tables(rng: random.Random) -> Laid:
     """Yield tables with other columns, quotes, separators, numbers, lengths and encodings."""
     number, head = rng.choice(hostile.YIELD_NUMBERS), b"peeq,yield_stress_Pa\n"
     match rng.randrange(8):
@@ -640,41 +642,41 @@ def _tables(rng: random.Random, kind: str) -> BadInput:
             content = head + b"0,1e9" + b"," * rng.choice((1, 500_000))
         case _:
             content = mutated(rng, hostile.YIELD)
-    return _scene(PLASTIC, kind, {"yield.csv": content})
+    return _scene(PLASTIC, {"yield.csv": content})
 
 
-def _titles(rng: random.Random, kind: str) -> BadInput:
+def _titles(rng: random.Random) -> Laid:
     """A good scene with markup, escapes and control characters in its title."""
     title = json.dumps("".join(rng.choice(hostile.MARKUP) for _ in range(rng.randint(1, 3))))
-    return _scene(SMALL.replace('"Small"', title.replace("\\ud83d\\ude00", "\\U0001f600")), kind)
+    return _scene(SMALL.replace('"Small"', title.replace("\\ud83d\\ude00", "\\U0001f600")))
 
 
-def _places(rng: random.Random, kind: str) -> BadInput:
+def _places(rng: random.Random) -> Laid:
     """A scene that is no file, is not there, or has an odd name."""
     places = "sub|pipe|link-out|link-loop|link-zero|/dev/zero|/dev/full|missing.toml|yield.csv/x.toml"
     name, odd = one_of(rng, places), rng.choice(hostile.NAMES)
     if rng.random() < 0.5 or len(odd) > 255:
-        return BadInput(kind, AROUND, rng.choice((name, "x" * 5_000)))
-    return BadInput(kind, {**AROUND, odd: rng.choice(good_scenes()).encode()}, odd)
+        return AROUND, rng.choice((name, "x" * 5_000))
+    return {**AROUND, odd: rng.choice(good_scenes()).encode()}, odd
 
 
-def _approach(rng: random.Random, kind: str) -> BadInput:
+def _approach(rng: random.Random) -> Laid:
     """An approach in place of the force, or beside it: of every size, and what is no length."""
     text, known = rng.choice([text for text in good_scenes() if _FORCE.search(text)]), hostile.APPROACHES
     value = rng.choice((*known, *(f'"{10 ** rng.uniform(-22, 20):.3g} m"' for _ in known)))
     if rng.random() < 0.3:
         value = _value(rng)
     kept = r"\g<0>\n" if rng.random() < 0.1 else ""
-    return _scene(_FORCE.sub(lambda match: match.expand(kept) + f"approach = {value}", text), kind)
+    return _scene(_FORCE.sub(lambda match: match.expand(kept) + f"approach = {value}", text))
 
 
-def _mapping(rng: random.Random, kind: str) -> BadInput:
+def _mapping(rng: random.Random) -> Laid:
     """The mapping of a good mesh, with other values, paths and bytes."""
     text, edit = hostile.MAPPING, rng.randrange(5)
     if edit == 0:
         text = text.replace('"own.vtu"', toml_string(rng.choice(PLACES)))
     elif edit == 1:
-        return with_mapping(kind, mutated(rng, text.encode()).decode(errors="surrogateescape"), good_meshes())
+        return with_mapping(mutated(rng, text.encode()).decode(errors="surrogateescape"), good_meshes())
     elif edit == 2:
         line = rng.choice(text.splitlines())
         others = "", f"{line}\n{line}", f"x{line}", "stress = ['p_Pa', 'x']"
@@ -682,10 +684,10 @@ def _mapping(rng: random.Random, kind: str) -> BadInput:
     for _ in range(rng.randint(0, 2)):
         odd = rng.choice(VALUES), _number(rng), toml_string(rng.choice((*hostile.MARKUP, *UNITS)))
         text = _with_value(rng, text, rng.choice(odd))
-    return with_mapping(kind, text, good_meshes())
+    return with_mapping(text, good_meshes())
 
 
-def _study(rng: random.Random, kind: str) -> BadInput:
+def _study(rng: random.Random) -> Laid:
     """A study with other values, keys, modes and bytes, of a scene that is good, bad or not there."""
     text = hostile.STUDY
     for _ in range(rng.choice((0, 1, 1, 2, 3))):
@@ -696,7 +698,7 @@ def _study(rng: random.Random, kind: str) -> BadInput:
     scene = rng.choice((SMALL, SMALL, SMALL, rng.choice(good_scenes()))).encode()
     made = mutated(rng, encoded(text)) if rng.random() < 0.1 else encoded(text)
     files = {HEIGHTS: good_heights(), SCENE: scene, "study.toml": made}
-    return BadInput(kind, {**AROUND, **files}, "study.toml")
+    return {**AROUND, **files}, "study.toml"
 
 
 KINDS: dict[str, Generator] = {

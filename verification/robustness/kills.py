@@ -30,8 +30,8 @@ OF_EVERY_RUN = (SUMMARY, FIELDS, SURFACE, STEPS, "history.csv", "axis.csv", "lin
 
 @dataclass(frozen=True)
 class Ended:
-    """A command that ended: exit code (negative: by a signal, None: stopped after LIMIT_S) and what it
-    printed.
+    """A command that ended: exit code (negative: by a signal, None: stopped after LIMIT_S) and what
+    it printed.
     """
 
     code: int | None
@@ -50,16 +50,14 @@ class KillTrial:
         self.findings.setdefault(gate, []).append(text)
 
 
-def start(
-    words: Sequence[str], store: Path, command: Sequence[str] = SAMFEM, **environment: str
-) -> subprocess.Popen:
-    """A command in a session of its own, with a checkpoint at each step. It hears SIGINT, as started from a
-    terminal: a job in the background of a script inherits that it does not.
+def start(words: Sequence[str], store: Path, command: Sequence[str] | None = None) -> subprocess.Popen:
+    """A command in a session of its own, with a checkpoint at each step. It hears SIGINT, as
+    started from a terminal: a job in the background of a script inherits that it does not.
     """
     own = {"SAMFEM_STORE": str(store), "SAMFEM_CHECKPOINT_S": "0", "OMP_NUM_THREADS": "1"}
     return subprocess.Popen(
-        [*command, *words],
-        env=os.environ | own | environment,
+        [*(SAMFEM if command is None else command), *words],
+        env=os.environ | own,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
@@ -91,14 +89,18 @@ def run(words: Sequence[str], store: Path, **how) -> Ended:
     return finish(start(words, store, **how), began)
 
 
+def parent_of(pid: int | str) -> int | None:
+    """The parent of a process that runs, from /proc; None where it ended, or there is no /proc."""
+    try:
+        state, parent = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[:2]
+    except (OSError, ValueError):
+        return None
+    return None if state in "ZX" else int(parent)
+
+
 def children(pid: int) -> list[int]:
-    """The living descendants of a process, from /proc; none where there is no /proc."""
-    parents = {}
-    for entry in Path("/proc").glob("[0-9]*"):
-        with contextlib.suppress(OSError, ValueError, IndexError):
-            state, parent = (entry / "stat").read_text(encoding="utf-8").rpartition(")")[2].split()[:2]
-            if state not in "ZX":
-                parents[int(entry.name)] = int(parent)
+    """The living descendants of a process; none where there is no /proc."""
+    parents = {int(entry.name): parent_of(entry.name) for entry in Path("/proc").glob("[0-9]*")}
     found, new = [], [pid]
     while new:
         new = [child for child, parent in parents.items() if parent in new]
@@ -126,17 +128,10 @@ def kill(pids: Sequence[int]) -> None:
 def left_behind(pids: Sequence[int]) -> list[int]:
     """Those of the processes that still run after ORPHANS_S; they are killed."""
     until = time.monotonic() + ORPHANS_S
-    while (alive := [pid for pid in pids if _runs(pid)]) and time.monotonic() < until:
+    while (alive := [pid for pid in pids if parent_of(pid) is not None]) and time.monotonic() < until:
         time.sleep(0.1)
     kill(alive)
     return alive
-
-
-def _runs(pid: int) -> bool:
-    try:
-        return Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0] not in "ZX"
-    except (OSError, IndexError):
-        return False
 
 
 def inspect(folder: Path, trial: KillTrial, unfinished: bool = True) -> None:
@@ -198,13 +193,8 @@ def killed_solve(
     process.communicate()
     inspect(folder, trial)
     done, kept = (folder / SUMMARY).exists(), (folder / "checkpoint.npz").exists()
-    trial.how = (
-        "finished before the kill"
-        if done
-        else "after a checkpoint"
-        if kept
-        else "before the first checkpoint"
-    )
+    trial.how = ("before the first checkpoint", "after a checkpoint")[kept]
+    trial.how = "finished before the kill" if done else trial.how
     again = run([*words, "--out", str(folder), "--resume"], store)
     if again.code != 0:
         trial.found("wrong-endings", f"--resume {trial.how}: exit code {again.code}: {again.text[-200:]}")
@@ -225,8 +215,8 @@ def killed_sweep(
     rng: random.Random,
     base: Path,
 ) -> KillTrial:
-    """Kill a sweep ("parent") or one of its workers ("worker") after `delay`, start it again if need be, and
-    compare.
+    """Kill a sweep ("parent") or one of its workers ("worker") after `delay`, start it again if
+    need be, and compare.
     """
     trial, store = KillTrial(), base / f"{folder.name}-store"
     process = start([*words, "--out", str(folder)], store)
@@ -247,15 +237,11 @@ def killed_sweep(
     if (folder / "sweep.json").exists():
         trial.how += ", and it finished"
     if ended.code != 0:
-        ended = run([*words, "--out", str(folder)], store)
-        counts = (
-            json.loads((folder / "sweep.json").read_text(encoding="utf-8"))["counts"]
-            if ended.code == 0
-            else {"reused": 0}
-        )
-        lost = finished - counts["reused"]
-        for _ in range(max(lost, 0)):
-            trial.found("lost-points", f"{finished} finished, {counts['reused']} taken from the store")
+        ended, reused = run([*words, "--out", str(folder)], store), 0
+        if ended.code == 0:
+            reused = json.loads((folder / "sweep.json").read_text(encoding="utf-8"))["counts"]["reused"]
+        for _ in range(finished - reused):
+            trial.found("lost-points", f"{finished} finished, {reused} taken from the store")
         trial.how += ", started again" + (" with points finished" if finished else "")
     if ended.code != 0:
         trial.found("wrong-endings", f"the sweep ended in {ended.code}: {ended.text[-200:]}")

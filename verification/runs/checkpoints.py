@@ -74,11 +74,9 @@ def identity(scene: Scene, model: str) -> dict[str, Any]:
 
 
 class Writer:
-    """Writes the checkpoints of a solve into its folder, which it makes if need be; the `checkpoint` callable
-    of models.solve.
-
-    who: see `identity`; start: the checkpoint in the folder that the solve goes on from; warn: called once
-    with a text if one cannot be written, which does not end the solve. written: the one in the folder.
+    """Writes the checkpoints of a solve into its folder; the `checkpoint` callable of models.solve. who: see
+    `identity`; start: the one that the solve goes on from; warn: called once with a text if one cannot be
+    written, which does not end the solve. written: the one in the folder.
     """
 
     def __init__(
@@ -145,9 +143,8 @@ def interruptible(writer: Writer) -> Iterator[None]:
 
 
 def read(folder: Path, who: Mapping) -> Checkpoint | None:
-    """The checkpoint in `folder`, None if there is none.
-
-    Raises FolderError for one that belongs to something else, DamagedError for one that cannot be read.
+    """The checkpoint in `folder`, None if there is none. Raises FolderError for one that belongs to something
+    else, DamagedError for one that cannot be read.
     """
     path = folder / CHECKPOINT
     if not path.exists():

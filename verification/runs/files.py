@@ -72,27 +72,6 @@ class Run:
         return self.summary["quantities"]
 
     @property
-    def last_fitting(self) -> Mapping[str, float | None]:
-        return self.summary.get("last_fitting") or {}
-
-    @property
-    def verdict(self) -> Mapping[str, Any] | None:
-        return self.summary.get("verdict")
-
-    @property
-    def uncertainty(self) -> Mapping[str, Mapping[str, Any]] | None:
-        return self.summary.get("uncertainty")
-
-    @property
-    def model_range(self) -> Mapping[str, Any] | None:
-        return self.summary.get("model_range")
-
-    @property
-    def range_lines(self) -> list[str]:
-        """What is said about it, see `verification.runs.model_range`."""
-        return [] if self.model_range is None else range_lines(self.model_range)
-
-    @property
     def model(self) -> str:
         return self.summary["model"]
 
@@ -113,6 +92,27 @@ class Run:
         return self.summary["discretisation"]
 
     @property
+    def verdict(self) -> Mapping[str, Any] | None:
+        return self.summary.get("verdict")
+
+    @property
+    def uncertainty(self) -> Mapping[str, Mapping[str, Any]] | None:
+        return self.summary.get("uncertainty")
+
+    @property
+    def model_range(self) -> Mapping[str, Any] | None:
+        return self.summary.get("model_range")
+
+    @property
+    def last_fitting(self) -> Mapping[str, float | None]:
+        return self.summary.get("last_fitting") or {}
+
+    @property
+    def range_lines(self) -> list[str]:
+        """What is said about it, see `verification.runs.model_range`."""
+        return [] if self.model_range is None else range_lines(self.model_range)
+
+    @property
     def scene(self) -> Scene:
         return Scene.model_validate(self.summary["scene"])
 
@@ -122,11 +122,9 @@ class Run:
 
 
 def write_run(result: Result, scene: Scene, folder: str | Path, provenance: Mapping | None = None) -> Path:
-    """Write a result into `folder` (made if need be) in place of an older one, and return the path of
-    summary.json.
-
-    provenance: as `verification.runs.provenance.collect` returns it, collected here when absent. Raises
-    FolderError if the folder holds anything but a run, OSError if it cannot be written.
+    """Write a result into `folder` (made if need be) in place of an older one; the path of summary.json.
+    provenance: as `collect` returns it. Raises FolderError if the folder holds anything but a run, OSError if
+    it cannot be written.
     """
     folder = Path(folder)
     check_target(folder)
@@ -212,15 +210,20 @@ def _why(error: Exception) -> str:
 
 def check_target(folder: Path, also: Sequence[str] = ()) -> None:
     """Raise FolderError unless a run may be written to `folder`: absent, empty, or of an older or broken-off
-    run.
-
-    also: names that the folder may hold besides the files of a run.
+    run; also: names that it may hold besides the files of a run.
     """
     try:
         check_place(folder)
-        _check_content(folder, also)
+        if (folder / SUMMARY).exists():
+            read_summary(folder)
+            return
+        names = [entry.name for entry in folder.iterdir()] if folder.exists() else []
     except OSError as error:  # no permission, a name that is too long
         raise FolderError(f"{folder} cannot be used: {error.strerror}") from None
+    if strange := [name for name in names if not (_of_a_run(name) or name in also)]:
+        raise FolderError(
+            f"{folder} is not the folder of a run (it holds {min(strange)}): give a new or empty one"
+        )
 
 
 def check_place(folder: Path) -> None:
@@ -232,19 +235,6 @@ def check_place(folder: Path) -> None:
     elif not folder.is_dir() or not os.access(folder, os.W_OK):
         raise FolderError(
             f"{folder} is no folder that can be written to: give one, new, empty or of an older run"
-        )
-
-
-def _check_content(folder: Path, also: Sequence[str]) -> None:
-    if not folder.exists():
-        return
-    if (folder / SUMMARY).exists():
-        read_summary(folder)
-        return
-    strange = [entry.name for entry in folder.iterdir() if not (_of_a_run(entry.name) or entry.name in also)]
-    if strange:
-        raise FolderError(
-            f"{folder} is not the folder of a run (it holds {min(strange)}): give a new or empty one"
         )
 
 

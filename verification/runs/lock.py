@@ -26,9 +26,7 @@ LOCKS = Path(
 @contextmanager
 def locked(folder: str | Path) -> Iterator[None]:
     """Hold `folder` for the block, made if need be; one that is made here and stays empty is removed again.
-
-    Raises FolderError, at once, if another process (or another block of this one) holds it or it cannot be
-    made.
+    Raises FolderError, at once, if another block of any process holds it or it cannot be made.
     """
     folder = Path(folder)
     made = [place for place in (folder, *folder.parents) if not place.exists()]

@@ -213,15 +213,12 @@ def _unstructured(fields: FieldMesh) -> Any:
 
 def _add(data: Any, fields: Mapping[str, np.ndarray]) -> None:
     """Enter fields (n,), (n, 3) or (n, 6), of which the last two are turned."""
-    for name, values in fields.items():
-        data.AddArray(_array(name, _for_vtk(np.asarray(values, dtype=float))))
-
-
-def _for_vtk(values: np.ndarray) -> np.ndarray:
-    if values.ndim == 1:
-        return values
-    ordered = values[:, _TO_VTK] if values.shape[1] == len(TENSOR_NAMES) else values
-    return 0.0 + ordered * _TURNED[values.shape[1]]  # 0.0: no zero with a sign
+    for name, found in fields.items():
+        values = np.asarray(found, dtype=float)
+        if values.ndim > 1:
+            ordered = values[:, _TO_VTK] if values.shape[1] == len(TENSOR_NAMES) else values
+            values = 0.0 + ordered * _TURNED[values.shape[1]]  # 0.0: no zero with a sign
+        data.AddArray(_array(name, values))
 
 
 def _array(name: str, values: np.ndarray) -> Any:

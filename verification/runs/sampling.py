@@ -32,9 +32,8 @@ def pressure_map(sam: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def surface_pressure(
     points: np.ndarray, quads: np.ndarray, p: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The pressure map of SAM from its mesh: x (nx,), y (ny,), p (nx, ny).
-
-    points: (n, 3); quads: (m, 4); p: (m,), finite for the cells of the surface only.
+    """The pressure map of SAM from its mesh: x (nx,), y (ny,), p (nx, ny). points: (n, 3); quads: (m, 4); p:
+    (m,), finite for the cells of the surface only.
     """
     surface = np.isfinite(p)
     x, y, (field,) = surface_cells(points, quads[surface], p[surface])
@@ -44,9 +43,8 @@ def surface_pressure(
 def surface_cells(
     points: np.ndarray, quads: np.ndarray, *values: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
-    """Values of the cells of a surface on its grid: x (nx,), y (ny,) and a field (nx, ny) for each.
-
-    points: (n, 3); quads: (m, 4), all of the surface; values: (m,) each.
+    """Values (m,) of the cells of a surface, quads (m, 4) of points (n, 3), on its grid: x (nx,), y (ny,) and
+    a field (nx, ny) for each.
     """
     x, y = points[quads].mean(axis=1).T[:2]
     pitch = np.ptp(points[quads[0]], axis=0)
@@ -59,10 +57,8 @@ def surface_cells(
 
 
 def pressure_on(x: np.ndarray, y: np.ndarray, axisymmetric: Tables, power: int = 2) -> np.ndarray:
-    """The pressure of the axisymmetric model at (x, y), (nx, ny).
-
-    Linear between the nodes is p^power: 2 for an elastic contact, which ends in a square root, 1 for a
-    plastic one.
+    """The pressure of the axisymmetric model at (x, y), (nx, ny). Linear between the nodes is p^power: 2 for
+    an elastic contact, which ends in a square root, 1 for a plastic one.
     """
     r, p = peak(axisymmetric["line"], "x_m", "p_Pa")
     return np.interp(np.hypot(x[:, None], y[None, :]), r, p**power) ** (1 / power)
@@ -78,9 +74,8 @@ def plane_field(tables: Tables, column: str) -> tuple[np.ndarray, np.ndarray, np
 
 
 def plane_field_on(x: np.ndarray, z: np.ndarray, axisymmetric: Tables, column: str) -> np.ndarray:
-    """The same of the axisymmetric model at (x, z), (nx, nz), linear between its Gauss points.
-
-    NaN in the strip between the surface and the first of them: nothing is extrapolated.
+    """The same of the axisymmetric model at (x, z), (nx, nz), linear between its Gauss points; NaN in the
+    strip between the surface and the first of them.
     """
     reach = 1.5 * max(np.abs(x).max(), z.max())
     r, depth, field = peak(axisymmetric["plane"], "x_m", "z_m", column)

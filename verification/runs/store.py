@@ -214,11 +214,8 @@ def solve_or_reuse(
     fresh: bool = False,
     **how,
 ) -> tuple[Result, Reuse]:
-    """The result of a scene from the store, or else solved and kept there. fresh: solve in any case; how: to
-    models.solve.
-
-    Cost (times, counters, memory) of a reused result is that of its own solve. Raises ModelError as
-    models.solve does.
+    """The result of a scene from the store, or else solved and kept there, with the cost of its own solve.
+    fresh: solve in any case; how: to models.solve. Raises ModelError as models.solve does.
     """
     found = Lookup() if store is None or fresh else store.lookup(scene, model)
     if found.result is not None:

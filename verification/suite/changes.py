@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What changed in the gates between two reports: their values one by one, gates that came or went, and
-whether each gate of the older one still stands, by a table that says where.
+"""What changed in the gates between two reports: their values one by one, gates that came or went,
+and whether each gate of the older one still stands, by a table that says where.
 """
 
 from __future__ import annotations
@@ -23,9 +23,7 @@ also within it.
 
 @dataclass(frozen=True)
 class Change:
-    """A gate whose value is another one. before, after: None where the gate is missing or was not
-    evaluated.
-    """
+    """A gate whose value is another one. before, after: None where it is missing or was not evaluated."""
 
     gate: str
     before: float | None
@@ -50,11 +48,10 @@ def changes(before: Mapping, after: Mapping, equal: float = EQUAL) -> list[Chang
 
 
 def lost(before: Mapping, after: Mapping, rows: Mapping[str, str]) -> list[str]:
-    """What the later report no longer claims: a line for each gate of the earlier one without an entry,
-    with another metric, a wider tolerance or fewer points.
+    """What the later report no longer claims: a line for each gate of the earlier one without an entry, with
+    another metric, a wider tolerance or fewer points.
 
-    rows: gate -> the gate that it is now, or what stands for it, a test (`tests/...::name`) or a
-    sentence.
+    rows: gate -> the gate that it is now, or what stands for it, a test (`tests/...::name`) or a sentence.
     """
     new, found = {gate["id"]: gate for gate in after["gates"]}, []
     for old in before["gates"]:
@@ -103,9 +100,9 @@ def _same(first: float | None, second: float | None, equal: float, unit: str) ->
 
 
 def show_changes(folder: Path, older: Path, table: Path | None = None) -> int:
-    """Print the changes of the report in `folder` against an older one, and which errors grew; 1 if there
-    are any, or, with a table of gates and rows, if a gate is lost. Raises FolderError without a report or
-    the table.
+    """Print the changes of the report in `folder` against an older one, and which errors grew; 1 if
+    there are any, or, with a table of gates and rows, if a gate is lost. Raises FolderError without
+    a report or the table.
     """
     before, after = finished(older), finished(folder)
     found = changes(before, after)

@@ -17,8 +17,8 @@ from pathlib import Path
 from verification.judging import RowStatus
 from verification.runs.files import FolderError, write_atomically
 from verification.suite.pages.headline import headline_of
+from verification.suite.pages.site import found
 from verification.suite.pages.stored import RED, read_stored
-from verification.suite.pages.views import found
 from verification.suite.verify import finished
 
 BEGIN, END = "<!-- Written by `make readme`. -->", "<!-- Up to here. -->"
@@ -28,8 +28,8 @@ WIDTH = 118
 
 
 def renewed(text: str, results: Mapping) -> str:
-    """The text with the numbers of the results. Raises ValueError for a gate that did not pass, and for a
-    text without the two marks.
+    """The text with the numbers of the results. Raises ValueError for a gate that did not pass, and
+    for a text without the two marks.
     """
     gates = {gate["id"]: gate for gate in results["gates"]}
     if text.count(BEGIN) != 1 or text.count(END) != 1:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 from xml.etree import ElementTree
@@ -36,35 +37,37 @@ def gates_csv(gates: Sequence[Mapping]) -> str:
 
 
 def junit_xml(cases: Sequence[Mapping], gates: Sequence[Mapping], name: str = "samfem verify") -> bytes:
-    """One testsuite a case, one testcase a gate, one for the case itself when it broke off, and one for its
-    figures when they cannot be read.
+    """One testsuite a case, one testcase a gate, one for the case itself when it broke off, and one
+    for its figures when they cannot be read.
     """
     root = ElementTree.Element("testsuites", name=name)
     for case in cases:
         own = [gate for gate in gates if gate["case"] == case["name"]]
-        bad = bool(lines := unreadable(case))
-        suite = ElementTree.SubElement(
-            root,
-            "testsuite",
-            name=case["name"],
-            tests=str(len(own) + bool(case["failure"]) + bad),
-            failures=str(
-                sum(gate["status"] in (RowStatus.FAILED, RowStatus.UNCHECKED) for gate in own) + bad
-            ),
-            errors=str(int(bool(case["failure"]))),
-            skipped=str(sum(gate["status"] == RowStatus.NOT_RUN for gate in own)),
-            time=f"{case['seconds'] or 0.0:.3f}",
-        )
-        if case["failure"]:
-            test = ElementTree.SubElement(suite, "testcase", classname=case["name"], name="run", time="0")
-            ElementTree.SubElement(test, "error", message=case["failure"])
-        if bad:
-            test = ElementTree.SubElement(suite, "testcase", classname=case["name"], name="figures", time="0")
-            ElementTree.SubElement(test, "failure", message="; ".join(lines))
-        for gate in own:
-            _testcase(suite, gate)
+        tests = [("run", "error", {"message": case["failure"]})] if case["failure"] else []
+        if lines := unreadable(case):
+            tests.append(("figures", "failure", {"message": "; ".join(lines)}))
+        tests += [(gate["id"], *_ended(gate)) for gate in own]
+        counts = Counter(f"{kind}s" if kind != "skipped" else kind for _, kind, _ in tests)
+        said = {kind: str(counts[kind]) for kind in ("failures", "errors", "skipped")}
+        said |= {"tests": str(len(tests)), "time": f"{case['seconds'] or 0.0:.3f}"}
+        suite = ElementTree.SubElement(root, "testsuite", name=case["name"], **said)
+        for title, kind, words in tests:
+            test = ElementTree.SubElement(suite, "testcase", classname=case["name"], name=title, time="0")
+            if kind:
+                ElementTree.SubElement(test, kind, words)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
+
+
+def _ended(gate: Mapping) -> tuple[str, dict[str, str]]:
+    """What stands in the testcase of a gate: its name, empty where the gate passed, and its attributes."""
+    if gate["status"] == RowStatus.PASSED:
+        return "", {}
+    if gate["status"] == RowStatus.NOT_RUN:
+        return "skipped", {"message": "the case was not run"}
+    off = f"error {gate['error']}, tolerance {gate['tolerance']} ({gate['metric']})"
+    message = f"{gate['quantity']}: {off}. {gate['note']}".strip()
+    return "failure", {"message": message, "type": gate["status"]}
 
 
 def unreadable(case: Mapping) -> list[str]:
@@ -72,34 +75,14 @@ def unreadable(case: Mapping) -> list[str]:
     return [f"{one['png']}: {what}" for one in case["figures"] for what in one.get("findings", ())]
 
 
-def _testcase(suite: ElementTree.Element, gate: Mapping) -> None:
-    test = ElementTree.SubElement(suite, "testcase", classname=gate["case"], name=gate["id"], time="0")
-    if gate["status"] == RowStatus.NOT_RUN:
-        ElementTree.SubElement(test, "skipped", message="the case was not run")
-    elif gate["status"] != RowStatus.PASSED:
-        ElementTree.SubElement(
-            test,
-            "failure",
-            message=f"{gate['quantity']}: error {gate['error']}, tolerance {gate['tolerance']} "
-            f"({gate['metric']}). {gate['note']}".strip(),
-            type=gate["status"],
-        )
-
-
 def text_rows(gates: Sequence[Mapping]) -> tuple[list[tuple[str, ...]], list[bool]]:
     """(case, gate, error, tolerance, status) of each gate of the cases that ran, and whether it is red."""
     ran = [gate for gate in gates if gate["status"] != RowStatus.NOT_RUN]
-    rows = []
-    for gate in ran:
-        rows.append(
-            (
-                gate["case"],
-                gate["id"],
-                digits(gate["error"]),
-                (f"{LIMITS[gate['metric']]} {digits(gate['tolerance'])}"),
-                gate["status"],
-            )
-        )
+    limits = (f"{LIMITS[gate['metric']]} {digits(gate['tolerance'])}" for gate in ran)
+    rows = [
+        (g["case"], g["id"], digits(g["error"]), limit, g["status"])
+        for g, limit in zip(ran, limits, strict=True)
+    ]
     return rows, [gate["status"] != RowStatus.PASSED for gate in ran]
 
 

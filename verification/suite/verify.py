@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Run verification cases, judge them by the table of gates, and write the report.
+"""Run verification cases, judge them by the table of gates, and write the report; or list them, or
+draw the figures of a report as PDF.
 
-The folder holds the pages (index.html and one for each group of cases), results.json, gates.csv, junit.xml,
-figures/ and runs/ (every solve). results.json says "complete": false while the cases run, so that a broken
-run is never read as a result.
+The folder holds the pages (index.html and one for each group of cases), results.json, gates.csv,
+junit.xml, figures/ and runs/ (every solve). results.json says "complete": false while the cases
+run, so that a broken run is never read as a result.
 """
 
 from __future__ import annotations
@@ -15,11 +16,13 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from textwrap import fill
 
 from sam.scene import Progress
 from verification.cases import LEVELS, Case, all_cases, case_of
 from verification.cases.case import Context, NotDrawnError, Outcome
-from verification.judging import RowStatus, Verdict, evaluate
+from verification.judging import Row, RowStatus, Verdict, evaluate
 from verification.rows import load_rows, read_cases
 from verification.runs import provenance
 from verification.runs.code_version import version_of_cases
@@ -27,25 +30,25 @@ from verification.runs.files import FolderError, plain, write_atomically
 from verification.runs.lock import locked
 from verification.runs.store import Lookup, Reuse, Store
 from verification.suite import outcomes
-from verification.suite.earlier import Earlier
-from verification.suite.freshness import older
-from verification.suite.listing import unknown_cases
+from verification.suite.freshness import Earlier, older
 from verification.suite.pages import INDEX, remove_pages, write_report
 from verification.suite.pages.stored import ASKED, ELSEWHERE, NAMED
 from verification.suite.records import gates_csv, junit_xml, origin, results_json, text_rows, unreadable
-from verification.text.console import print_table
+from verification.text.console import print_table, table_lines, unknown
 
 FORMAT = "samfem-verification"
 RESULTS = "results.json"
 NOTHING = Earlier()
+WIDTH = 100
+"""Characters of a line of a reason."""
 BEFORE = "before"
 """Key of results.json while a report is in the making: that of the report whose cases stay."""
 
 
 @dataclass(frozen=True)
 class RanCase:
-    """A case that was run or reused. failure: why it broke off, or empty; seconds: of its own run; source:
-    where it is from, or why it was not taken from the store.
+    """A case that was run or reused. failure: why it broke off, or empty; seconds: of its own run;
+    source: where it is from, or why it was not taken from the store.
     """
 
     context: Context
@@ -103,8 +106,8 @@ def finish(
 ) -> int:
     """Judge the cases that ran, write the report into `out` and say what is red.
 
-    known: all cases by name; unmet: name -> why a case could not run here; stays: of an earlier report. Of
-    the other cases that did not run results.json says under `unmet` where they belong.
+    known: all cases by name; unmet: name -> why a case could not run here; stays: of an earlier
+    report. Of the other cases that did not run results.json says under `unmet` where they belong.
     Returns 0 when every gate of every case that ran held, else 1.
     """
     results = _judged(ran, known, level=level, stays=stays) | {"command": command}
@@ -137,8 +140,8 @@ def runnable(cases: Sequence[Case]) -> tuple[list[Case], dict[str, str]]:
 def rebuild(folder: Path, *, single_file: bool = False) -> int:
     """Write the pages of a finished report again from results.json and figures/, without solving.
 
-    single_file: also report.html, which holds all of them and their figures. The index marks the cases that
-    are older than the code.
+    single_file: also report.html, which holds all of them and their figures. The index marks the
+    cases that are older than the code.
 
     Returns 0. Raises FolderError when the folder holds no finished report.
     """
@@ -180,8 +183,8 @@ def stored(folder: Path) -> dict | None:
 
 
 def start(out: Path, stays: Earlier = NOTHING) -> None:
-    """Mark the folder as a report in the making and clear an earlier one, but for the figures of what
-    `stays` of it, which results.json goes on to hold.
+    """Mark the folder as a report in the making and clear an earlier one, but for the figures of
+    what `stays` of it, which results.json goes on to hold.
     """
     out.mkdir(parents=True, exist_ok=True)
     _write_results({"format": FORMAT, "complete": False, BEFORE: before(out) if stays.cases else {}}, out)
@@ -197,8 +200,8 @@ def start(out: Path, stays: Earlier = NOTHING) -> None:
 
 
 def before(folder: Path) -> dict:
-    """results.json of the finished report in a folder, or of the one that another is about to replace; empty
-    without one.
+    """results.json of the finished report in a folder, or of the one that another is about to
+    replace; empty without one.
     """
     results = stored(folder) or {}
     return results if results.get("complete") else results.get(BEFORE, {})
@@ -239,8 +242,8 @@ def _judged(ran: Mapping[str, RanCase], known: Mapping[str, Case], *, level: str
 
 
 def _run_or_reuse(case: Case, context: Context) -> RanCase:
-    """A case from the store, or else run and kept there, unless it measures times. What makes an entry
-    unusable is said on stderr if it is damage.
+    """A case from the store, or else run and kept there, unless it measures times. What makes an
+    entry unusable is said on stderr if it is damage.
     """
     started, kept = time.perf_counter(), None if case.alone else context.store
     found = outcomes.find(kept, case, context) if kept else Lookup()
@@ -273,8 +276,8 @@ def _solves(ran: Sequence[RanCase]) -> dict[str, int]:
 
 
 def attempt(case: Case, context: Context) -> tuple[Outcome, str]:
-    """The outcome and, when the case broke off, why; any error of a case is its own and is reported with
-    it. What was found before a figure failed counts.
+    """The outcome and, when the case broke off, why; any error of a case is its own and is reported
+    with it. What was found before a figure failed counts.
     """
     try:
         return case.run(context), ""
@@ -332,3 +335,63 @@ def _write(results: dict, out: Path, stale: Mapping[str, str]) -> None:
 
 def _write_results(results: dict, out: Path) -> None:
     write_atomically(out / RESULTS, results_json(results).encode())
+
+
+def show(what: str, names: Sequence[str]) -> int:
+    """On stdout, of the named cases (none: of all), one line each, or where `what` is "gates"
+    question, gates, tolerances and reasons. Returns 0, or 2 for an unknown name.
+    """
+    known, gates, rows = all_cases(), load_rows(), []
+    if problem := unknown_cases(names, known):
+        print(f"samfem: error: {problem}", file=sys.stderr)
+        return 2
+    for case in [case for case in known.values() if not names or case.name in names]:
+        own = [gate for gate in gates if gate.case == case.name]
+        rows.append((case.name, ", ".join(case.levels) or "when named", str(len(own)), case.title))
+        if what == "gates":
+            print(f"{case.name}: {case.question}")
+            for gate in own:
+                print(f"  {gate.id}: {gate.quantity}: {_limit(gate)}")
+                print(fill(gate.reason, WIDTH, initial_indent=" " * 6, subsequent_indent=" " * 6))
+    if what != "gates":
+        print("\n".join(table_lines(("case", "levels", "gates", "title"), rows)))
+    return 0
+
+
+def unknown_cases(names: Sequence[str], known: Mapping[str, Case]) -> str:
+    """What is wrong with names of cases, or an empty text."""
+    wrong = [name for name in names if name not in known]
+    return unknown("case", wrong, known, "samfem verify --list shows all") if wrong else ""
+
+
+def _limit(gate: Row) -> str:
+    """What the gate allows, in words."""
+    match gate.metric:
+        case "equal":
+            return "equal"
+        case "at_most" | "at_least":
+            return f"{gate.metric.replace('_', ' ')} {gate.tolerance:g}"
+        case _:
+            words = {"relative_l2": "relative difference (L2)"}.get(gate.metric, f"{gate.metric} difference")
+            return f"{words} at most {gate.tolerance:g}"
+
+
+def draw_pdf(folder: Path, progress: Progress, store: Store | None) -> list[Path]:
+    """Write figures/<case>-<name>.pdf of every case of a report that has figures, and return the paths.
+
+    A result that is not in the store is solved again. Raises FolderError when the folder holds no finished
+    report.
+    """
+    results, known, written = finished(folder), all_cases(), []
+    (folder / "figures").mkdir(exist_ok=True)
+    for record in results["cases"]:
+        if not record["figures"] or record["name"] not in known:
+            continue
+        with TemporaryDirectory() as scratch:
+            out = Path(scratch)
+            level = record.get("level", results["level"])
+            context = Context(record["name"], out, level, progress, store=store, pdf=True)
+            known[record["name"]].run(context)
+            for path in sorted((out / "figures").glob("*.pdf")):
+                written.append(Path(shutil.copy(path, folder / "figures" / path.name)))
+    return written

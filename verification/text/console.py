@@ -10,6 +10,8 @@ import time
 from collections.abc import Iterable, Sequence
 from typing import Any, TextIO
 
+from verification.text.readable import with_time
+
 QUIET_S = 1.0
 """A command that is done by then shows no progress."""
 LINE_EVERY_S = 5.0
@@ -97,7 +99,7 @@ class Progress:
         began, before = self._began
         if not self._remaining or not before < done < total:
             return ""
-        return f", about {duration((now - began) * (total - done) / (done - before))} left"
+        return f", about {with_time((now - began) * (total - done) / (done - before))} left"
 
     def _draw(self, stage: str, done: int, total: int, now: float) -> None:
         if self._bar is None and now < self._next:
@@ -147,14 +149,6 @@ def table_lines(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> list[s
 def number(value: float | None, digits: int = 4) -> str:
     """A number for the page; a dash where there is none."""
     return "\N{EN DASH}" if value is None else f"{value:.{digits}g}".replace("-", "\N{MINUS SIGN}")
-
-
-def duration(seconds: float) -> str:
-    """A time for the reader, in the largest fitting unit."""
-    for size, unit in ((1, "s"), (60, "min"), (3600, "h")):
-        if seconds < 100 * size:
-            return f"{seconds / size:.0f} {unit}"
-    return f"{seconds / 86400:.0f} days"
 
 
 def digits(value: float | None, count: int = 6) -> str:

@@ -10,7 +10,6 @@ from verification.uncertainty.members import (
     Member,
     NoFamilyError,
     alone,
-    cells_to_edge,
     coarser,
     depths_of_maxima,
     family,
@@ -20,7 +19,7 @@ from verification.uncertainty.members import (
     members_of_steps,
 )
 from verification.uncertainty.quantities import ORDERS, STEP_ORDER, why_not
-from verification.uncertainty.rule import FACTOR, STEP_FACTOR, bound, converging, of_edge, order_seen
+from verification.uncertainty.rule import STEP_FACTOR, bound, converging, order_seen
 from verification.uncertainty.solving import (
     Solve,
     Solved,
@@ -32,7 +31,6 @@ from verification.uncertainty.solving import (
 )
 
 __all__ = [
-    "FACTOR",
     "ORDERS",
     "RATIO",
     "STEP_FACTOR",
@@ -46,7 +44,6 @@ __all__ = [
     "asked_of",
     "assessed",
     "bound",
-    "cells_to_edge",
     "coarser",
     "converging",
     "cost_of",
@@ -56,7 +53,6 @@ __all__ = [
     "in_one_step",
     "members_of_box",
     "members_of_steps",
-    "of_edge",
     "order_seen",
     "solve",
     "under_resolved",

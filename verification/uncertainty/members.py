@@ -33,9 +33,7 @@ FEWEST_STEPS = 4  # from so many on the others have fewer, else more
 
 @dataclass(frozen=True)
 class Member:
-    """A scene of the family. label: for the reader; number: of cells (in x, or in the radius) or load steps;
-    size: what its error falls with, in any unit.
-    """
+    """label: for the reader; number: of cells or load steps; size: what its error falls with."""
 
     scene: Scene
     label: str
@@ -72,10 +70,9 @@ def alone(scene: Scene) -> Scene:
 def family(
     scene: Scene, model: str, room: Room | None = None, depths: Sequence[float] | None = None
 ) -> Family:
-    """The scenes that the uncertainty of a scene is taken from; room: of a grid that was enlarged; depths: to
-    which the coarser ones of an elastic body are limited, see `depths_of_maxima`.
-
-    Raises NoFamilyError.
+    """The scenes that the uncertainty of a scene is taken from; room: of a grid that was enlarged;
+    depths: to which the coarser ones of an elastic body are limited, see `depths_of_maxima`. Raises
+    NoFamilyError.
     """
     scene = alone(scene)
     cells = tuple(_cell_members(scene, model, room or Room(), depths))
@@ -138,12 +135,9 @@ def _whole(value: float) -> int:
 def has_history(scene: Scene) -> bool:
     """Whether load steps decide anything: something yields, or a film breaks down."""
     coating, friction = scene.body.coating, scene.friction
-    film = friction is not None and friction.film
-    return (
-        scene.body.plasticity is not None
-        or film
-        or (coating is not None and coating.yield_stress is not None)
-    )
+    if scene.body.plasticity is not None or (friction is not None and friction.film):
+        return True
+    return coating is not None and coating.yield_stress is not None
 
 
 def depths_of_maxima(scene: Scene, fine: Result) -> tuple[float, ...] | None:
@@ -169,16 +163,12 @@ def _cell_members(scene: Scene, model: str, room: Room, depths: Sequence[float] 
     other = scene if has_history(scene) else in_one_step(scene)
     if scene.patch_surface is None and model != models.SAM:
         count = scene.fem.cells_per_radius
-        ratio = _ratio_of_meshes(count) if model == models.FEM else RATIO
+        ratio = min(max(sqrt(count / LEFT), RATIO), WIDEST) if model == models.FEM else RATIO
         counts = (max(_whole(count / ratio**k), 2) for k in (1, 2))
         return [_of_mesh(scene, count), *(_of_mesh(other, each) for each in counts)]
     grid = sam.plan(scene).on(room).grid
     first = Member(scene, f"{grid.nx} cells", grid.nx, sqrt(grid.hx * grid.hy))
     return [first, *(_of_grid(other, grid, RATIO**k, depths) for k in (1, 2))]
-
-
-def _ratio_of_meshes(count: int) -> float:
-    return min(max(sqrt(count / LEFT), RATIO), WIDEST)
 
 
 def in_one_step(scene: Scene) -> Scene:

@@ -54,19 +54,14 @@ class Solved:
     @property
     def reason(self) -> str:
         """Why the results are not of one family; empty if they are."""
-        pairs = [
-            *zip(self.family.cells, self.cells, strict=True),
-            *zip(self.family.steps, self.steps, strict=True),
-            *zip(self.family.box, self.box, strict=True),
-        ]
+        members = (*self.family.cells, *self.family.steps, *self.family.box)
+        pairs = list(zip(members, (*self.cells, *self.steps, *self.box), strict=True))
         for member, result in pairs:
             if not result.converged:
                 return f"{member.label}: {result.status}"
         cuts = [result.cost.get("step_cuts") or 0 for _, result in pairs]
         if len(set(cuts)) > 1:
-            words = ", ".join(
-                f"{cut} with {member.label}" for (member, _), cut in zip(pairs, cuts, strict=True)
-            )
+            words = ", ".join(f"{cut} with {each.label}" for each, cut in zip(members, cuts, strict=True))
             return f"load steps were cut differently ({words}): raise loading.steps"
         return ""
 
@@ -130,11 +125,9 @@ def _solved(found: Family, fine: Result, solver: Solve) -> Solved:
 
 def _without(fine: Result, scene: Scene, reason: str) -> Result:
     """The result, of whose quantities none has an uncertainty."""
-    entries = {
-        name: {"u_num": None, "flag": why_not(name, scene) or reason}
-        for name in _named(fine.quantities, scene)
-    }
-    return _with_entries(fine, entries)
+    names = _named(fine.quantities, scene)
+    flags = ({"u_num": None, "flag": why_not(name, scene) or reason} for name in names)
+    return _with_entries(fine, dict(zip(names, flags, strict=True)))
 
 
 def assessed(scene: Scene, solved: Solved) -> Result:

@@ -91,20 +91,16 @@ class CounterSurface(Surface):
 
 
 def leading(surface: Surface | None, counter: CounterSurface | None) -> Surface | None:
-    """That of the surfaces of body and counter-body that says which cells the patch has: the one from a file
-    before a generated one; None if both are smooth.
-    """
+    """The surface that says which cells the patch has: of a file before a generated one; or None."""
     rough = [surface for surface in (surface, counter) if surface is not None]
     return next(iter([surface for surface in rough if surface.kind == "file"] + rough), None)
 
 
 @dataclass(frozen=True)
 class Strip:
-    """The strip of a rough counter-body that passes over a patch with (nx, ny) cells and sides (Lx, Ly) in m.
-
-    start: (x, y) in m, where the path begins; way: how far it slides along x and y from start to end, in m,
-    slip times the path; slip: share of its way by which it slides; relief: whether the heights fall off at
-    the border of the patch; the fall is that of the strip, and does not move.
+    """The strip of a rough counter-body that passes over a patch of (nx, ny) cells. start, way: (x,
+    y) in m of the path and of the sliding; slip: share of sliding; relief: the strip's heights fall
+    off at the border.
     """
 
     surface: CounterSurface
@@ -136,9 +132,7 @@ class Strip:
         return self.whole[0] * self.cell[0], self.whole[1] * self.cell[1]
 
     def at(self, number: int, place: Place) -> Array:
-        """Heights (nx, ny) opposite the patch in m, positive out of the counter-body, which is at place (x,
-        y) in m; number: of the stretch, from 0.
-        """
+        """Heights (nx, ny) opposite the patch in m at (x, y); number: of the stretch."""
         opposite, stretch = self.sliding(number, place), self.surface.stretch(number)
         if not self.relief:
             return opposite
@@ -163,9 +157,7 @@ class Strip:
         return opposite
 
     def excesses(self, steps: int) -> Iterator[Conflict]:
-        """What does not suit the patch and the steps of the path, from start to end: broken cells, too few
-        cells or steps for the waves, a map with other cells or one that does not reach from start to end.
-        """
+        """What does not suit patch and path: broken cells, short waves, another map."""
         slides = "the counter-surface slides"
         cells = [way / h for way, h in zip(self.way, self.cell, strict=True)]
         if any(abs(n - round(n)) > WHOLE for n in cells):

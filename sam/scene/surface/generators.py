@@ -58,9 +58,7 @@ def heights(surface: Surface, x: Array, y: Array, extent: tuple[float, float]) -
 
 @lru_cache(maxsize=4)
 def mean_deviation(surface: Surface, extent: tuple[float, float]) -> float:
-    """Ra in m, the mean of |height - mean height|, on a sampling that does not depend on the grid: of a file
-    on its own points, else on a patch with sides (Lx, Ly) in m.
-    """
+    """Ra in m on points of its own: of a file those of it, else on a patch (Lx, Ly)."""
     if surface.kind == "file":
         h = prepared(surface)
     else:
@@ -133,9 +131,7 @@ def _self_affine(surface: Surface, x: Array, y: Array, extent: tuple[float, floa
 
 @lru_cache(maxsize=1)
 def _amplitudes(surface: Surface, extent: tuple[float, float]) -> Array:
-    """Complex amplitudes of the waves m = 0 .. M, n = -N .. N, in arbitrary units; one of each pair (m, n),
-    (-m, -n).
-    """
+    """Complex amplitudes of waves m = 0 .. M, n = -N .. N, one of each pair of signs."""
     most = [floor(L / wave * _ON_THE_LIMIT) for L, wave in zip(extent, surface.shortest, strict=True)]
     m, n = np.arange(most[0] + 1)[:, None], np.arange(-most[1], most[1] + 1)[None, :]
     inverse = np.hypot(m / extent[0], stated(surface.anisotropy) * n / extent[1])  # 1/wavelength
@@ -168,9 +164,8 @@ def border_cells(cells: tuple[int, int]) -> tuple[int, int]:
 def with_relief(
     heights: Array, points: tuple[Array, Array], extent: tuple[float, float], mean_deviation: float
 ) -> Array:
-    """Heights (nx, ny) in m at points x (nx,), y (ny,) in m, lowered in the outer BORDER of each side (Lx,
-    Ly) of the patch, at the edge by DROP mean deviations, Ra in m. The fall is s^3 (10 - 15 s + 6 s^2) of the
-    way s from the inner end of the border to the edge, twice smooth at both.
+    """Heights (nx, ny) in m lowered in the outer BORDER of each side of the patch, at the edge by
+    DROP Ra, as s^3 (10 - 15 s + 6 s^2) of the way s there.
     """
 
     def stays(c: Array, side: float) -> Array:

@@ -42,9 +42,7 @@ class HeightMap:
         return f"x_m, y_m and {cls.column} on a regular grid"
 
     def __init__(self, values: Array, extent: tuple[float, float]):
-        """Raises InputError for what is no map: too few or too many cells, values or sides that are not
-        finite.
-        """
+        """Raises InputError for too few or many cells, or what is not finite."""
         heights: Array = np.array(values, dtype="<f8", order="C")
         if heights.ndim != 2:
             raise InputError(f"heights of shape {heights.shape}: two dimensions are needed")
@@ -111,9 +109,7 @@ def _sizes(cells: tuple[Any, ...], extent: tuple[Any, ...]) -> tuple[tuple[int, 
 
 
 class FrictionMap(HeightMap):
-    """Coefficients of friction on nx x ny equal cells, (nx, ny), the origin in the middle. Otherwise as a
-    HeightMap.
-    """
+    """Coefficients of friction on (nx, ny) equal cells about the origin, as a HeightMap."""
 
     __slots__ = ()
     column: ClassVar[str] = "friction"
@@ -127,9 +123,7 @@ class FrictionMap(HeightMap):
 
 
 def from_python(value: object, kind: type[HeightMap]) -> HeightMap:
-    """The map that is given in Python: a map of that kind, or what `HeightMap.described` gives. Else an error
-    "allowed".
-    """
+    """A map given in Python, or as `HeightMap.described`; else an error "allowed"."""
     if type(value) is kind:
         return value
     if not isinstance(value, Mapping) or set(value) != set(KEYS):

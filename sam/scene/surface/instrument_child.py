@@ -21,9 +21,7 @@ def answer(content: bytes, most: str, *formats: str) -> tuple[dict[str, Any], di
 
 
 def heights_in(content: bytes, formats: list[str], most: int) -> tuple[dict[str, Any], NDArray[np.float64]]:
-    """What the first format that opens says of the file, and the heights in m, (nx, ny).
-    Raises RefusedError.
-    """
+    """Words of the first format that opens, and heights (nx, ny) in m."""
     from SurfaceTopography.IO import open_topography
 
     reasons = []

@@ -39,9 +39,7 @@ _TERMS = {
 
 @dataclass(frozen=True)
 class Roughness:
-    """About the mean height. sa: mean |h|, sq: root mean square, in m; ssk: skewness; sdq: root mean square
-    slope.
-    """
+    """About the mean height: sa, sq in m (mean, root mean square), ssk skewness, sdq slope."""
 
     sa: float
     sq: float
@@ -73,17 +71,13 @@ def roughness(heights: Array, hx: float, hy: float) -> Roughness:
 
 
 def roughness_as_read(surface: Surface) -> Roughness:
-    """Roughness of the whole map in the file, of its measured points, before anything is done to it.
-    ValueError if only the digest of the file is at hand.
-    """
+    """Roughness of the measured points of a whole file; ValueError for a digest."""
     _check_at_hand(surface)
     return roughness(stated(surface.measured.values), *surface.measured.cell)
 
 
 def processed(surface: Surface, cells: tuple[int, int]) -> Array:
-    """Heights (nx, ny) in m of a surface from a file on cells of its patch, prepared as the scene says;
-    read-only. ValueError for cells that the file does not have, and if only its digest is at hand.
-    """
+    """Heights (nx, ny) in m as prepared, read-only; ValueError for other cells or a digest."""
     heights = prepared(surface)
     if heights.shape == tuple(cells):
         return heights
@@ -124,12 +118,7 @@ def _check_at_hand(surface: Surface) -> None:
 
 
 def fitted_form(values: Array, cell: tuple[float, float], form: str) -> Array:
-    """The polynomial of least squares through the heights (nx, ny) in m on cells in m that are not nan; (nx,
-    ny) in m.
-
-    Normal equations in moments: sums over x^p y^q are products of matrices. Fitted again to what is left,
-    against rounding.
-    """
+    """The polynomial of least squares, (nx, ny) in m, through heights that are not nan."""
     x, y = (np.arange(n) * h - (n - 1) / 2 * h for n, h in zip(values.shape, cell, strict=True))
     scale = max(x[-1], y[-1])
     of_x, of_y = (np.vander(c / scale, 5, increasing=True) for c in (x, y))
@@ -151,9 +140,7 @@ def fitted_form(values: Array, cell: tuple[float, float], form: str) -> Array:
 
 
 def harmonic(values: Array, cell: tuple[float, float]) -> Array:
-    """Heights (nx, ny) in m on cells in m, those that are nan replaced: sum of (h_neighbour - h)/distance^2 =
-    0 at each, an equation for each unknown, of which the entries of a pair appear twice and add up.
-    """
+    """Heights in m with those that are nan from sum of (h_neighbour - h)/distance^2 = 0."""
     unknown = np.isnan(values)
     if not unknown.any():
         return values

@@ -84,9 +84,7 @@ class MapField:
     kind: type[HeightMap]
 
     def check(self, value: object, info: ValidationInfo) -> HeightMap:
-        """The map in the file that a scene file names; in Python see `from_python`. An error "allowed" for
-        others.
-        """
+        """The map of a named file, or `from_python`. An error "allowed" for others."""
         heights = self.kind is HeightMap
         if heights and not {"extent", "unit"} <= set(info.data):
             raise refused("read only once extent and unit are right")
@@ -127,9 +125,7 @@ FrictionField = Annotated[FrictionMap, MapField(FrictionMap)]
 
 @dataclass(frozen=True)
 class Told:
-    """What the scene says of a file that does not say it itself. extent: (Lx, Ly) in m or (L,), what a matrix
-    covers, its outer cells as a whole; unit: of every number without one.
-    """
+    """What the scene says of a file that does not: (Lx, Ly) or (L,) in m with outer cells; unit."""
 
     extent: tuple[float, ...] | None = None
     unit: str | None = None
@@ -147,9 +143,7 @@ def formats_of(name: str) -> tuple[str, ...]:
 def read_named(
     name: str, content: bytes, kind: type[HeightMap] = HeightMap, told: Told = NOTHING
 ) -> HeightMap:
-    """The map in a file of that name; heights may also stand in an instrument's, known by the ending where
-    neither its first lines nor the scene say what its numbers are. Raises InputError.
-    """
+    """The map in a file, an instrument's where only its ending says what it is. Raises InputError."""
     formats = formats_of(name) if kind is HeightMap and told == NOTHING else ()
     if not formats or content.startswith(np.lib.format.MAGIC_PREFIX) or _has_names(content):
         return read(name, content, kind, told)
@@ -178,9 +172,7 @@ def _has_names(content: bytes) -> bool:
 
 
 def read_instrument(name: str, content: bytes) -> HeightMap:
-    """The heights in an instrument's file of that name. Raises InputError, also where the library is not
-    installed.
-    """
+    """The heights in an instrument's file. Raises InputError, also without the library."""
     if find_spec(LIBRARY) is None:
         raise InputError(
             f'an instrument\'s file is read with {LIBRARY}, the extra "instruments", not installed: {EXTRA}'
@@ -197,9 +189,7 @@ def read_instrument(name: str, content: bytes) -> HeightMap:
 
 
 def read(name: str, content: bytes, kind: type[HeightMap] = HeightMap, told: Told = NOTHING) -> HeightMap:
-    """The map in the bytes of a text, npz or npy file, whatever its name. Raises InputError, which says what
-    is wrong with it.
-    """
+    """The map in the bytes of a text, npz or npy file. Raises InputError, which says why."""
     heights = kind is HeightMap
     if content[:2] == b"PK":
         map_ = _from_npz(name, content, kind)
@@ -235,9 +225,7 @@ def read(name: str, content: bytes, kind: type[HeightMap] = HeightMap, told: Tol
 
 
 def columns_of(names: Sequence[str], kind: type[HeightMap] = HeightMap) -> list[tuple[int, str]] | None:
-    """Which columns x, y and the heights are, each with the unit in its name, "" without; None if there are
-    not just these, next to columns without a name.
-    """
+    """The columns of x, y and heights with their units, "" without; None if there are others."""
     if kind is not HeightMap:
         wanted = kind.columns()
         return [(names.index(name), "m") for name in wanted] if sorted(names) == sorted(wanted) else None
@@ -372,10 +360,7 @@ def _from_npy(content: bytes) -> Array:
 
 
 def _unpacked(stream: IO[bytes], held: int, name: str, needed: tuple[int, int] | str) -> Array:
-    """An array of `held` bytes as floats, of the shape that is needed: "n" of one dimension, "nm" of two.
-
-    What its header declares is compared with its size before anything of it is unpacked.
-    """
+    """An array of `held` bytes as floats of shape "n" or "nm", checked before."""
     version = np.lib.format.read_magic(stream)
     versions = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
     if version not in versions:
@@ -460,9 +445,7 @@ def _cells(line: str, separator: str | None) -> list[str]:
 
 
 def _conversion(text: str, encoding: str, name: str) -> str:
-    """The line of Python that writes the numbers alone, of a text with other lines above them or other
-    words between them; empty without a name of the file.
-    """
+    """The line of Python that writes the numbers of a text alone; empty without a name."""
     if not name:
         return ""
     lines = text.rstrip().split("\n", _MOST_ABOVE)[:_MOST_ABOVE]

@@ -130,26 +130,20 @@ class Surface(Section):
 
     @property
     def shortest(self) -> tuple[float, float]:
-        """Shortest wavelength along x and along y in m; infinite where the heights do not vary. Not for a
-        file.
-        """
+        """Shortest wavelength along x and y in m, or infinite. Not for a file."""
         if self.kind == "sinusoid":
             return self.wavelength_x or inf, self.wavelength_y or inf
         return stated(self.cutoff_short), stated(self.cutoff_short) * stated(self.anisotropy)
 
     @property
     def window(self) -> tuple[slice, slice]:
-        """The cells of the file that are used, along x and y: of crop those that fit
-        best. Only for a file.
-        """
+        """The cells of the file that are used: those that fit crop best."""
         *middle, lx, ly = (0.0, 0.0, *(self.crop or self.measured.extent))
         (x, y), (nx, ny), (hx, hy) = middle[-2:], self.measured.cells, self.measured.cell
         return _part(x, lx, nx, hx), _part(y, ly, ny, hy)
 
     def patch(self, cells: tuple[int, int] | None = None) -> tuple[tuple[int, int], tuple[float, float]]:
-        """(nx, ny) and (Lx, Ly) in m of what is solved. cells: those that the scene asks for, if it does.
-        Only for a file.
-        """
+        """(nx, ny) and (Lx, Ly) in m of what is solved, of a file; cells: as asked for."""
         measured, extent = self.measured.cells, self.measured.extent
         if self.crop is not None:
             (x, y), (hx, hy) = self.window, self.measured.cell
@@ -215,9 +209,7 @@ class Surface(Section):
 
 
 def _part(middle: float, side: float, n: int, cell: float) -> slice:
-    """The cells, of n, that fit best a part of that side about its middle; the origin is in the middle of
-    all.
-    """
+    """The cells, of n, that fit best a part of that side about its middle."""
     count = round(side / cell)
     first = ceil(round(middle / cell + (n - count) / 2, 6) - 0.5)  # rounded twice: of two as near the first
     return slice(first, first + count)
@@ -271,9 +263,7 @@ def coarse_grid(surface: Surface, cells: tuple[int, int], extent: tuple[float, f
 
 
 def patch_of(surface: Surface, grid: Grid | None) -> tuple[tuple[int, int], tuple[float, float]]:
-    """(nx, ny) cells and sides (Lx, Ly) in m of the patch of a rough scene: what is left of its file, or what
-    its grid says.
-    """
+    """(nx, ny) and (Lx, Ly) in m of the patch of a rough scene, by its file or its grid."""
     if surface.kind == "file":
         return surface.patch(grid.cells if grid is not None else None)
     grid = stated(grid)

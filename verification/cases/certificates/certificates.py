@@ -27,7 +27,7 @@ from verification.cases.case import (
 )
 from verification.cases.recipes import Resolution, at_ratio, resolved_at
 from verification.checks.certificates import NAMES, OF_GROUP, Conditions, solved
-from verification.figures.residuals import histories
+from verification.figures.lines import histories
 
 CONTACT, FLOW = ("load", "complementarity", "histories"), ("yield", "flow", "consistency")
 MEASURED = {

@@ -28,7 +28,7 @@ from verification.cases.case import (
 from verification.cases.recipes import at_ratio
 from verification.checks.certificates import curves_of
 from verification.checks.conditions import peak_rows
-from verification.figures.residuals import histories
+from verification.figures.lines import histories
 from verification.references import contact_of
 
 SLOPES = {"perfect": 0.0, "nearly-perfect": 1e-4}  # of the yield curve over Young's modulus

@@ -33,7 +33,7 @@ from verification.cases.case import (
 )
 from verification.cases.recipes import COUNTERBODIES
 from verification.compare.verdicts import LIMIT
-from verification.figures.film import changes, pressures, strains
+from verification.figures.film import changes, pressures
 from verification.reference.bonded_film import elastic_mises, flow_gradient, in_plane_strain, plastic_strain
 from verification.reference.hertz import effective_modulus
 from verification.references import changes_by_film
@@ -307,15 +307,6 @@ class FilmYield(Case):
             "yields.",
             "Where a film that yields flows out, at the smallest radius, the pressure falls on a line, by "
             "about σ_y/(√3 h).",
-        )
-        yield Plot(
-            strains(rigid[rigid["film"] == "yields"]),
-            "film-strain",
-            "Plastic strain of the film, rigid sphere, p₀ = 6.5 GPa",
-            "Plastic strain of the film over radius for each contact radius: nearly even under the contact, "
-            "with a peak at its edge.",
-            "Mean over the thickness of the film. Circle: thin film under the pressure at the centre, "
-            "elastic body; it does not hold where the film flows out.",
         )
 
 

@@ -29,7 +29,7 @@ from verification.cases.case import (
     with_mesh,
 )
 from verification.cases.recipes import coated_scene, film_under
-from verification.figures.coated import change_maps
+from verification.figures.specials import change_maps
 from verification.reference.coated_changes import (
     THIN,
     breaking_thickness,

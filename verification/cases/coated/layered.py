@@ -13,8 +13,7 @@ from scipy.special import j1
 
 from sam.kernels import STRESS, Lags, displacement_coefficients, stress_coefficients
 from sam.layered import LayeredPatches, Layers, Response, normal_compliance
-from verification.cases.case import Case, Context, Measured, Plot, SmallTable, package_of
-from verification.figures.coated import response_errors
+from verification.cases.case import Case, Context, Measured, SmallTable, package_of
 from verification.reference.burmister import interface_stress
 from verification.reference.layered_axisymmetric import CoatedHalfSpace, wave_numbers, wave_pressure_ratio
 from verification.reference.layered_errors import POISSONS, RATIOS, WAVES, Worst, all_points, worst_errors
@@ -149,19 +148,6 @@ class LayeredResponse(Case):
             "largest component, stresses and jump to the larger of traction and largest component"
         )
         yield SmallTable(caption, ("quantity", "worst error", "where"), rows)
-
-    def figures(self, found: dict[float, dict[str, Worst]]) -> Iterator[Plot]:
-        waves, each = np.array(list(found)), found.values()
-        curves = {words: (waves, np.array([e[name].error for e in each])) for name, words in NAMES.items()}
-        yield Plot(
-            response_errors(curves, {"normal compliance": 1e-11, "all others": 1e-9}),
-            "errors",
-            "Worst error over wave number times thickness",
-            "Log-log plot of the worst errors of compliances, stresses and interface jump over kh from 1e-8 "
-            "to 1e4; all lie below their bounds.",
-            "The worst over all moduli, Poisson's ratios and depths at each kh. Dashed: what is allowed. "
-            "Points on the foot: no error at all.",
-        )
 
 
 def disc_by_response(radius: float, ratio: float) -> float:

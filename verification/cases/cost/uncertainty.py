@@ -9,33 +9,25 @@ load over yield stress differ.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sam.scene import Result, Scene, Status
-from verification.cases.case import (
-    FEM,
-    SAM,
-    Case,
-    Context,
-    Measured,
-    Plot,
-    SmallTable,
-    with_grid,
-    with_keys,
-    with_loading,
-)
+from verification.cases.case import FEM, SAM, Context, Plot, with_grid, with_keys, with_loading
 from verification.cases.recipes import at_ratio
-from verification.figures.uncertainty import coverage
+from verification.figures import lines
 from verification.quantities import QUANTITIES
 from verification.reference.coated_changes import largest_mises
 from verification.reference.hamilton import largest_von_mises
 from verification.references import REFERENCES, coated_contact, contact_of, growing_sphere
+from verification.rows import CaseFile
 from verification.runs.store import solve_or_reuse
 from verification.uncertainty import asked_of, bound, order_seen, solve
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 SEED = 20261125
 DRAWS = 5  # of a problem, until its plastic zone fits the grid
@@ -56,70 +48,30 @@ Truth = Mapping[str, tuple[float, float]]
 Draw = np.random.Generator
 
 
-@dataclass(frozen=True)
-class Subject:
-    """A problem: its kind, and its scene by the number of the draw, which is asked for its uncertainty."""
-
-    kind: str
-    drawn: Callable[[int], Scene]
-    truth: Callable[[Context, Scene], Truth]
-
-
-@dataclass(frozen=True)
-class Row:
-    """A quantity of a problem. entry: what the program says of it; truth: the reference, doubt: of that."""
-
-    subject: str
-    quantity: str
-    entry: Mapping[str, Any]
-    truth: float
-    doubt: float
-
-    @property
-    def error(self) -> float:
-        """Of the value."""
-        return abs(self.entry["values"][0] - self.truth)
-
-    @property
-    def known(self) -> bool:
-        """Whether the reference is good enough to say anything: that it is covered, or that it is not."""
-        return self.doubt <= max(of_program(self), self.error) / KNOWN
-
-
-def of_program(row: Row) -> float:
-    """The uncertainty that the program states."""
-    return row.entry["u_num"]
-
-
-def of_textbook(row: Row) -> float:
-    """By the cells with the observed order and the factor 1.25 (Roache 1998), where none is seen with the
-    second and 3; by load steps and box as the program.
+def textbook(entry: Mapping[str, Any]) -> float:
+    """The uncertainty by the cells with the observed order and the factor 1.25 (Roache 1998), where none is
+    seen with the second and 3; by load steps and box as the program.
     """
-    values, sizes = row.entry["values"], [1.0 / count for count in row.entry["cells"]]
+    values, sizes = entry["values"], [1.0 / count for count in entry["cells"]]
     seen = order_seen(values, sizes)
     order, factor = (2.0, 3.0) if seen is None else (seen, 1.25)
-    return bound(values[:2], sizes[:2], order, factor) + row.entry["u_steps"] + row.entry["u_box"]
+    return bound(values[:2], sizes[:2], order, factor) + entry["u_steps"] + entry["u_box"]
 
 
-def covered(rows: Sequence[Row], rule: Callable[[Row], float]) -> float:
-    """Share of the rows whose error is no larger than the uncertainty."""
-    return float(np.mean([row.error <= rule(row) for row in rows]))
-
-
-def over_error(rows: Sequence[Row], rule: Callable[[Row], float]) -> float:
-    """Median of the uncertainty over the error."""
-    return float(np.median([rule(row) / max(row.error, 1e-12 * abs(row.truth)) for row in rows]))
-
-
-def rows_of(context: Context, subject: Subject) -> Iterator[Row]:
+def rows_of(
+    context: Context,
+    problem: str,
+    drawn: Callable[[int], Scene],
+    truth_of: Callable[[Context, Scene], Truth],
+) -> Iterator[dict[str, Any]]:
     """Every quantity of a problem that has an uncertainty and a reference. A scene whose plastic zone leaves
     its grid has neither, and is drawn again.
     """
     for number in range(DRAWS):
-        scene = subject.drawn(number)
+        scene = drawn(number)
         try:
-            found = solve(asked_of(scene, subject.kind), SAM, lambda each, _: solved(context, each, SAM))
-            truth = subject.truth(context, scene)
+            found = solve(asked_of(scene, problem), SAM, lambda each, _: solved(context, each, SAM))
+            truth = truth_of(context, scene)
             break
         except AtEdgeError:
             if number == DRAWS - 1:
@@ -127,7 +79,21 @@ def rows_of(context: Context, subject: Subject) -> Iterator[Row]:
     for name, (value, doubt) in truth.items():
         entry = found.uncertainty.get(name, {})
         if entry.get("u_num") is not None:
-            yield Row(subject.kind, name, entry, value, doubt)
+            row = {"sweep": "", "model": "sam", "problem": problem, "quantity": name}
+            yield row | judged(entry, value, doubt=doubt)
+
+
+def judged(entry: Mapping[str, Any], truth: float, *, doubt: float) -> dict[str, float]:
+    """The error and the uncertainties over the truth, and, where the reference is good enough to say
+    anything, whether the error is covered. entry: what the program says; doubt: uncertainty of the truth.
+    """
+    own, error = entry["u_num"], abs(entry["values"][0] - truth)
+    rules = {"uncertainty": own, "textbook": textbook(entry)}
+    row = {"error": error / abs(truth)} | {name: value / abs(truth) for name, value in rules.items()}
+    if doubt > max(own, error) / KNOWN:
+        return row
+    row |= {f"covered-by-{name}": float(error <= value) for name, value in rules.items()}
+    return row | {"over-error": own / max(error, 1e-12 * abs(truth))}
 
 
 class AtEdgeError(RuntimeError):
@@ -304,16 +270,13 @@ KINDS: Sequence[tuple[str, int, Callable[[Draw, int], Scene], Callable[[Context,
 """Kind, how many of it, how one is drawn, and its answer."""
 
 
-def subjects(*, study: bool) -> list[Subject]:
-    """The forty problems, or one of some kinds."""
-    return [
-        Subject(
-            f"{kind} {rank + 1}" if count > 1 else kind, partial(_drawn, make, (SEED, place, rank)), truth
-        )
-        for place, (kind, count, make, truth) in enumerate(KINDS)
-        for rank in range(count)
-        if study or (rank == 0 and kind in OF_FEW)
-    ]
+def subjects(*, study: bool) -> Iterator[tuple[str, Callable[[int], Scene], Callable]]:
+    """The forty problems, or one of some kinds: name, scene by the number of the draw, truth."""
+    for place, (kind, count, make, truth) in enumerate(KINDS):
+        for rank in range(count):
+            if study or (rank == 0 and kind in OF_FEW):
+                name = f"{kind} {rank + 1}" if count > 1 else kind
+                yield name, partial(_drawn, make, (SEED, place, rank)), truth
 
 
 def _drawn(make: Callable[[Draw, int], Scene], seed: tuple[int, ...], number: int) -> Scene:
@@ -324,105 +287,51 @@ def _drawn(make: Callable[[Draw, int], Scene], seed: tuple[int, ...], number: in
     return with_grid(scene, cells=(cells, cells))
 
 
-RULES: Mapping[str, Callable[[Row], float]] = {
-    "formal order, 3 times the larger change": of_program,
-    "observed order, factor 1.25": of_textbook,
-}
-"""Rule for the reader -> uncertainty of a row by it: that of the program, and that of textbooks."""
 LEAST = 3  # values of a quantity with a median of its own
 
 
-@dataclass(frozen=True)
-class Found:
-    """The rows of all problems."""
-
-    rows: Sequence[Row]
-
-    @property
-    def known(self) -> list[Row]:
-        """Those whose reference is good enough to count."""
-        return [row for row in self.rows if row.known]
-
-    @property
-    def medians(self) -> dict[str, float]:
-        """Quantity -> median of uncertainty over error."""
-        own = {name: [row for row in self.known if row.quantity == name] for name in _names(self.known)}
-        return {name: over_error(rows, of_program) for name, rows in own.items() if len(rows) >= LEAST}
-
-
-def _names(rows: Sequence[Row]) -> list[str]:
-    return list(dict.fromkeys(row.quantity for row in rows))
-
-
-class Uncertainty(Case):
+def frame(context: Context) -> Iterator[dict[str, Any]]:
     """Each problem is solved as with --uncertainty, and set against a closed form or finer solves."""
-
-    def solve(self, context: Context) -> Found:
-        own = subjects(study=self.levels == ("full",))
-        return Found([row for subject in own for row in rows_of(context, subject)])
-
-    def measure(self, found: Found) -> dict[str, Measured | float]:
-        medians = found.medians
-        values: dict[str, Measured | float] = {
-            "covered": covered(found.known, of_program),
-            "over-error": min(medians.values()),
-            "not-too-wide": max(value for name, value in medians.items() if name != AREA),
-            "area-not-too-wide": medians[AREA],
-            "textbook": covered(found.known, of_textbook),
-        }
-        if self.levels == ("full",):
-            values["problems"] = float(len({row.subject for row in found.known}))
-        return values
-
-    def setup(self, found: Found) -> Iterator[tuple[str, str]]:
-        yield "Problems", "; ".join(dict.fromkeys(row.subject for row in found.rows))
-        left = len(found.rows) - len(found.known)
-        words = f"neither U nor error is {KNOWN:g} times what is unknown of the reference"
-        yield "Values that do not count", f"{left} of {len(found.rows)}: {words}"
-
-    def tables(self, found: Found) -> Iterator[SmallTable]:
-        for by in ("subject", "quantity"):
-            yield table(f"Values, by {by}", by, found.rows)
-
-    def figures(self, found: Found) -> Iterator[Plot]:
-        panels = {name: points(found.known, rule) for name, rule in RULES.items()}
-        yield Plot(
-            coverage(panels),
-            "coverage",
-            "Uncertainty over error",
-            "Uncertainty of each value over its error, by two rules; above the line it is covered.",
-            "Each point is a quantity of a problem. Below the line the uncertainty is too small.",
-        )
+    for subject in subjects(study=context.case == "uncertainty-study"):
+        yield from rows_of(context, *subject)
 
 
-def table(caption: str, by: str, rows: Sequence[Row]) -> SmallTable:
-    """How many values there are, count and are covered, by an attribute of the rows."""
-    lines = []
-    for name in dict.fromkeys(getattr(row, by) for row in rows):
-        own = [row for row in rows if getattr(row, by) == name]
-        known = [row for row in own if row.known]
-        shares = [
-            cell
-            for rule in RULES.values()
-            for cell in (
-                (f"{1e2 * covered(known, rule):.1f}", f"{over_error(known, rule):.2g}") if known else "--"
-            )
-        ]
-        lines.append((name, str(len(own)), str(len(known)), *shares))
-    heads = ("covered [%]", "U/error", "textbook: covered [%]", "U/error")
-    return SmallTable(caption, (by, "values", "that count", *heads), lines)
+def medians(rows: DataFrame, column: str) -> Sequence[float]:
+    """Of the quantities that have enough values."""
+    groups = rows[column].groupby(rows["quantity"])
+    return groups.median()[groups.count() >= LEAST]
 
 
-def points(rows: Sequence[Row], rule: Callable[[Row], float]) -> list[tuple[str, str, float, float]]:
-    """What is drawn of a rule."""
-    least = 1e-9  # of the value, so that a logarithm can show it
-    return [
-        (row.subject, row.quantity, *(max(part / abs(row.truth), least) for part in (row.error, rule(row))))
-        for row in rows
-    ]
+def smallest_median(rows: DataFrame, column: str) -> float:
+    """Of the medians of the quantities."""
+    return min(medians(rows, column))
 
 
-CASES = (
-    Uncertainty("uncertainty"),
-    Uncertainty("uncertainty-study"),
-)
+def largest_median(rows: DataFrame, column: str) -> float:
+    """Of those of the quantities other than the contact area."""
+    return max(medians(rows[rows["quantity"] != AREA], column))
+
+
+def problems(rows: DataFrame, column: str) -> float:
+    """Those that have a value that counts."""
+    return float(rows[rows[column].notna()]["problem"].nunique())
+
+
+def coverage(file: CaseFile, frame: DataFrame) -> Plot:
+    """Uncertainty over error by both rules."""
+    rules = {"formal order, 3 times the larger change": "uncertainty"}
+    rules |= {"observed order, factor 1.25": "textbook"}
+    known = frame[frame["over-error"].notna()]
+    shown = {"problem": known["problem"], "quantity": known["quantity"]}
+    logarithmic = {name: np.maximum(known[name], 1e-9) for name in ("error", *rules.values())}
+    panels = {
+        words: list(zip(*shown.values(), logarithmic["error"], logarithmic[name], strict=True))
+        for words, name in rules.items()
+    }
+    return Plot(
+        lines.coverage(panels),
+        "coverage",
+        "Uncertainty over error",
+        "Uncertainty of each value over its error, by two rules; above the line it is covered.",
+        "Each point is a quantity of a problem. Below the line the uncertainty is too small.",
+    )

@@ -1,19 +1,24 @@
 # SPDX-License-Identifier: MIT
 """Error against run time for every kind of contact: SAM in its forms and both finite-element models; what to
 take when.
+
+Each solve is made in a process of its own, the methods of a problem in turn, with the time of a fixed kernel
+beside them; errors are against references that know their own uncertainty.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import pairwise
-from statistics import median
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise, zip_longest
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from verification.cases.case import FEM, FEM_3D, SAM, Case, Context, Measured, Plot, SmallTable, number
+from sam.scene import Result, Scene
+from verification.cases.case import FEM, FEM_3D, SAM, Context, Plot, SmallTable, number
 from verification.cases.cost.work_precision_problems import (
     AXISYMMETRIC,
     COUPLED,
@@ -22,300 +27,385 @@ from verification.cases.cost.work_precision_problems import (
     PROBLEMS,
     SPATIAL,
     TWICE,
+    Method,
     Problem,
 )
-from verification.cases.cost.work_precision_study import (
-    FAST_S,
-    REPEATS,
-    ErrorCurve,
-    ProblemStudy,
-    Solve,
-    studied,
-)
 from verification.cost import measured
-from verification.cost.advice_rows import BELOW, LOAD_STEPS, NEVER, ON_TWO_GRIDS, AdviceRow, columns_of
-from verification.cost.precision import TARGETS, Reached
+from verification.cost.advice import BELOW, COLUMNS, LOAD_STEPS, NEVER, ON_TWO_GRIDS, AdviceRow, texts_of
+from verification.cost.precision import TARGETS, Ladder, Reached, Reference, agreed, at_error
 from verification.figures.style import Drawing
 from verification.figures.work_precision import Line, curves, overview
+from verification.rows import CaseFile
+from verification.runs.sampling import peak
 
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+STUDIED = {problem.name: problem for problem in (*PROBLEMS, ELLIPSOID)}
 ADVISED = {COUPLED: SAM, TWICE: ON_TWO_GRIDS, AXISYMMETRIC: FEM, SPATIAL: FEM_3D}
 """Methods that a user is advised to take, and the names of their models."""
-SPATIALLY = ("ellipsoid", "friction-0-2", "rough-elastic", "rough-plastic")
-"""What no model in two dimensions can solve: there SAM is held against the three-dimensional one."""
+ONES = (COUPLED, TWICE)
+"""SAM as it is held against finite elements: the better one counts."""
 KNOWN = 3.0
 """Times better than an error that two methods are held against each other at, its reference has to be known:
 below that their curves are those of the reference."""
 ASKED = 50.0
-"""How many times faster SAM is to be there: the goal, which is said beside what was measured."""
-MONOTONE = (("hertz", COUPLED), ("hertz", AXISYMMETRIC), ("coated", COUPLED))
-"""Smooth elastic contacts: the largest pressure converges from one side, at second order."""
+"""How many times faster SAM is to be where no model in two dimensions can solve: the goal, which is said
+beside what was measured."""
+FAST_S, REPEATS = 1.0, 3
+"""A solve of less processor time is repeated, in rounds with the others; its median counts."""
+OLD_S = 30.0
+"""After so long the calibration kernel is run again; it takes 1.5 s with its process."""
+EXACT = 1e-8
+"""Uncertainty of the closed forms: of the spectral solution of the coated sphere, and more than that of the
+others.
+"""
+FEWEST = 3  # points of an extrapolation
+COSTS = ("cpu_s", "setup_s", "solve_s", "peak_memory_bytes")
+STEPS = "load steps"
+Solve = Callable[[Scene, str], Result]
 
 
-@dataclass(frozen=True)
-class WorkPrecision(Case):
-    """Every problem, one after the other: the times to an error, and the advice.
+def frame(context: Context, names: Sequence[str] = tuple(STUDIED), solve: Solve | None = None) -> Iterator:
+    """A row for each solve: problem, what is refined, method, its cost and its error.
 
-    problems, solver: what is studied, and how a scene is solved (in a process of its own).
+    names, solve: problems, and how a scene is solved (in a process of its own).
     """
+    for name in names:
+        problem = STUDIED[name]
+        scene = problem.scene(context.scene(problem.file))
+        context.progress(f"{context.case}, {name}", 0, 1)
+        yield from with_errors(problem, scene, solved(problem, scene, solve or measured.solve_alone))
 
-    problems: Sequence[Problem] = (*PROBLEMS, ELLIPSOID)
-    solver: Solve = measured.solve_alone
 
-    def solve(self, context: Context) -> list[ProblemStudy]:
-        return [studied(context, problem, self.solver) for problem in self.problems]
+def solved(problem: Problem, scene: Scene, solve: Solve) -> list[dict[str, Any]]:
+    """A row for each method and resolution, coarse to fine, without errors. The methods take turns, a rung
+    each, so that a slow minute of the machine hits all of them. kernel: seconds of the calibration kernel
+    beside it; spread: largest over smallest processor time of the repeats.
+    """
+    jobs = [("resolution", method) for method in problem.methods] + [(STEPS, m) for m in problem.steps]
+    runs: dict[tuple, list[dict[str, Any]]] = {turn: [] for turn in in_turn([m.ladder for _, m in jobs])}
+    kernel, ran_at = math.nan, -math.inf
+    for repeat in range(REPEATS):
+        for job, rung in [turn for turn, made in runs.items() if not repeat or made[0]["cpu_s"] < FAST_S]:
+            if time.monotonic() - ran_at > OLD_S:
+                kernel, ran_at = measured.alone(measured.calibration_s), time.monotonic()
+            row = once(problem, jobs[job][1], scene, rung, solve=solve)
+            runs[job, rung].append(row | {"kernel": kernel})
+    return [
+        {"refined": jobs[job][0], **merged(runs[job, rung])}
+        for job in range(len(jobs))
+        for rung in jobs[job][1].ladder
+    ]
 
-    def measure(self, studies: Sequence[ProblemStudy]) -> dict[str, Measured]:
-        return gated(studies)
 
-    def setup(self, studies: Sequence[ProblemStudy]) -> Iterator[tuple[str, str]]:
-        yield "Problems", "; ".join(study.problem.title for study in studies)
-        points = (point for study in studies for each in study.points.values() for point in each)
-        kernels = [point.kernel_s for point in points if math.isfinite(point.kernel_s)]
-        between = f"from {min(kernels):.3f} to {max(kernels):.3f} s between the solves"
-        yield "Calibration kernel", f"{median(kernels):.3f} s, {between}"
-        repeated = f"repeated {REPEATS} times, in rounds with the others; medians count"
-        yield "Repeats", f"Solves of less than {FAST_S:g} s are {repeated}"
+def in_turn(ladders: Sequence[Sequence[int]]) -> Iterator[tuple[int, int]]:
+    """(number of the ladder, rung): the first of every ladder, then the second, and so on."""
+    for rung in zip_longest(*([(job, n) for n in ladder] for job, ladder in enumerate(ladders))):
+        yield from (turn for turn in rung if turn is not None)
 
-    def tables(self, studies: Sequence[ProblemStudy]) -> Iterator[SmallTable]:
-        for table in (times_table, faster_table, references_table, steps_table):
-            yield table(studies)
-        yield from map(points_table, studies)
 
-    def notes(self, studies: Sequence[ProblemStudy]) -> Iterator[str]:
-        yield (
-            "Processor time of the whole solve with one thread, in a new process: set-up, solution, stresses "
-            "at the output depths and tables, without the loading of modules. The time to an error is "
-            "interpolated between the two points that bracket it, log-log; errors that a finer grid does not "
-            "keep do not count. The advice of `samfem plan` is the table beside the first figure, taken over "
-            "by `python -m verification.cost.advice`. Every method takes the load steps of the reference, "
-            "which is backward Euler's: what more steps would change is studied by itself, against their "
-            "limit at one resolution."
-        )
+def once(problem: Problem, method: Method, scene: Scene, resolution: int, *, solve: Solve) -> dict[str, Any]:
+    """One solve. Values are left out where they do not count, or the peak was not reached; a solve that
+    breaks off is a row without values that says why.
+    """
+    row = {"method": method.name, "resolution": resolution, **dict.fromkeys(COSTS, math.nan)}
+    row |= {"values": {}, "profile": None, "applications": None}
+    try:
+        result = solve(method.at(scene, resolution), method.model)
+    except (ValueError, ArithmeticError, MemoryError, RuntimeError) as error:
+        return row | {"status": f"{type(error).__name__}: {error}"[:80]}
+    row |= {name: float(result.cost[name]) for name in COSTS} | {"status": result.status.value}
+    row["applications"] = result.cost.get("operator_applications")
+    if result.converged or (not method.strict and not result.last_fitting):
+        row["values"] = {name: result.quantities[name] for name in problem.measures}
+        row["profile"] = problem.profile and peak(result.tables["axis"], "z_m", problem.profile)
+    return row
 
-    def figures(self, studies: Sequence[ProblemStudy]) -> Iterator[Plot]:
-        advising = [each for each in studies if each.problem.kind]
-        times = {
-            each.problem.kind: {name: curve.time(0.01) for name, curve in each.curves.items()}
-            for each in advising
+
+def merged(repeats: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """One row of the repeats of a solve: medians of times and memory, and the spread of processor time."""
+    times = [row["cpu_s"] for row in repeats]
+    medians = {name: float(np.median([row[name] for row in repeats])) for name in (*COSTS, "kernel")}
+    return {**repeats[0], **medians, "spread": max(times) / min(times) if min(times) > 0 else 1.0}
+
+
+def with_errors(problem: Problem, scene: Scene, rows: Sequence[dict[str, Any]]) -> Iterator[dict[str, Any]]:
+    """The rows with the largest error of their quantities, against a closed form or the limits of the finest,
+    nan where there is no answer; with the uncertainty of the references as `floor`, below which no error is
+    claimed; and with what the advice calls a resolution of 1, its name and size.
+    """
+    references = {"resolution": references_of(problem, scene, rows)}
+    values = {name: reference.value for name, reference in references["resolution"].items()}
+    unit, size = problem.advised(scene, values)
+    if problem.steps:  # infinitely many load steps at one resolution, by the default loop
+        references[STEPS] = limits(problem, [row for row in rows if row["refined"] == STEPS], [COUPLED])
+    finest = [row["profile"] for row in rows if row["method"] in problem.references[-1:] and row["profile"]]
+    for row in rows:
+        against = references[row["refined"]]
+        errors = [one.error(row["values"].get(name)) for name, one in against.items()]
+        yield row | {
+            "sweep": problem.name,
+            "model": ADVISED.get(row["method"], row["method"]),
+            "error": max(errors) if row["values"] else math.nan,
+            "floor": max(one.uncertainty for one in against.values()),
+            "axis": profile_distance(row["profile"], finest[-1]) if row["profile"] and finest else math.nan,
+            "kernels": row["cpu_s"] / row["kernel"],
+            "references": against,
+            "advised": (unit, size) if row["refined"] != STEPS else (LOAD_STEPS, 1.0),
+            "load_steps": scene.loading.steps,
         }
-        yield Plot(
-            Drawing(overview(times, "1 %").figure, columns_of(advice_rows(studies))),
-            "advice",
-            "Processor time to 1 %",
-            "Marks on a logarithmic axis of processor time, one row a kind of scene and one mark a method.",
-            "Hollow: even the coarsest point is better, the time is an upper bound. What never reaches 1 % "
-            "has no mark. The data are the advice of samfem plan.",
-        )
-        for study in studies:
-            panels = {"resolution": (lines_of(study.curves), study.floor)}
-            if study.problem.steps:
-                panels["load steps"] = (lines_of(study.step_curves), study.step_curves[COUPLED].floor)
-            words = " and ".join(MEASURES[name] for name in study.problem.measures)
-            yield Plot(
-                curves(panels, f"error of the {words}"),
-                study.problem.name,
-                study.problem.title,
-                f"Log-log plot of the error of the {words} over processor time, a falling curve for each "
-                "method.",
-                "Shaded: uncertainty of the reference, below which nothing is claimed. Along a curve the "
-                "grid is refined, or the load steps.",
-            )
 
 
-def gated(studies: Sequence[ProblemStudy]) -> dict[str, Measured]:
-    """Ratios of times at equal error, steadiness of the convergence, floors."""
-    found, values = {study.problem.name: study for study in studies}, {}
-    if "hertz" in found:
-        for target in TARGETS[1:]:
-            ratio = time_ratio(found["hertz"], AXISYMMETRIC, target)
-            values[f"hertz-{percent(target)}"] = Measured(ratio)
-    for name in SPATIALLY:
-        if name in found:
-            values[f"{name}-faster"] = Measured(faster(found[name], SPATIAL)[0])
-    for name, method in MONOTONE:
-        if name in found:
-            label = "sam" if method == COUPLED else "fem"
-            study = found[name]
-            values[f"{name}-monotone-{label}"] = Measured(growth(study.curves[method].errors, study.floor))
-    for name in ("ratio-3", "ratio-6-2"):
-        if name in found:
-            values[f"{name}-floor"] = Measured(found[name].floor)
-    return values
+def references_of(problem: Problem, scene: Scene, rows: Sequence[Mapping]) -> Mapping[str, Reference]:
+    """Quantity -> what its errors are measured against."""
+    if problem.exact is None:
+        return limits(problem, [row for row in rows if row["refined"] != STEPS], problem.references)
+    return {name: Reference(value, EXACT, "closed form") for name, value in problem.exact(scene).items()}
 
 
-def percent(target: float) -> str:
-    """For the id of a gate: 0.003 -> 0-3."""
-    return f"{100.0 * target:g}".replace(".", "-")
+def limits(problem: Problem, rows: Sequence[Mapping], methods: Sequence[str]) -> Mapping[str, Reference]:
+    """Quantity -> limit of the finest points of some methods. RuntimeError where too few have an answer."""
+    tops = {name: [r for r in rows if r["method"] == name and r["values"]] for name in methods}
+    for name, own in tops.items():
+        if len(own) < FEWEST:
+            raise RuntimeError(f"{name}: {len(own)} usable resolutions, {FEWEST} are needed for a reference")
+    ladders = {
+        quantity: [
+            Ladder(name, [1.0 / r["resolution"] for r in top], [r["values"][quantity] for r in top])
+            for name, own in tops.items()
+            for top in [own[-problem.tops :]]
+        ]
+        for quantity in problem.measures
+    }
+    return {quantity: agreed(*each) for quantity, each in ladders.items()}
 
 
-def time_ratio(study: ProblemStudy, other: str, target: float) -> float:
-    """Time of SAM, on one grid or on two, over that of another method for one error; infinite where SAM never
-    reaches it.
+def profile_distance(own: tuple, best: tuple) -> float:
+    """Relative L2 over the depths of the better one, within those of both."""
+    (z, value), (depths, reference) = own, best
+    shared = (depths >= z[0]) & (depths <= z[-1])
+    at, weight = depths[shared], np.gradient(depths[shared])
+    apart = np.interp(at, z, value) - reference[shared]
+    return float(np.sqrt(np.sum(weight * apart**2) / np.sum(weight * reference[shared] ** 2)))
 
-    A method that never reaches it needs more than its finest point took: that time is taken, which is in its
+
+# what rows take
+
+
+def reached(rows: DataFrame, method: str, target: float, column: str = "cpu_s") -> Reached:
+    """A column where a method reaches an error, from the points that cost anything."""
+    own = rows[(rows["method"] == method) & np.isfinite(rows["cpu_s"])]
+    return at_error(own[column], own["error"], target, max(rows["floor"]))
+
+
+def ratio_at(rows: DataFrame, target: float) -> float:
+    """Time of SAM, on one grid or on two, over that of the axisymmetric model for one error; infinite where
+    SAM never reaches it.
+
+    A model that never reaches it needs more than its finest point took: that time is taken, which is in its
     favour.
     """
-    found = [study.curves[name].time(target).value for name in (COUPLED, TWICE) if name in study.curves]
-    own, its = (
-        min((time for time in found if time is not None), default=None),
-        study.curves[other].time(target).value,
-    )
-    if own is None:
-        return math.inf
-    return own / (its if its is not None else float(np.nanmax(study.curves[other].seconds)))
+    own, its = ([reached(rows, n, target).value for n in names] for names in (ONES, [AXISYMMETRIC]))
+    least = min((each for each in own if each is not None), default=math.inf)
+    slowest = float(rows["cpu_s"][rows["method"] == AXISYMMETRIC].max())
+    return least / (slowest if its[0] is None else its[0])
 
 
-def faster(study: ProblemStudy, other: str) -> tuple[float, float]:
+def ratio_at_one(rows: DataFrame, _: str) -> float:
+    """At an error of 1 %."""
+    return ratio_at(rows, TARGETS[1])
+
+
+def ratio_at_a_third(rows: DataFrame, _: str) -> float:
+    """At an error of 0.3 %."""
+    return ratio_at(rows, TARGETS[2])
+
+
+def faster(rows: DataFrame, other: str) -> tuple[float, float]:
     """How many times the processor time of SAM, on one grid or on two, another method takes to the smallest
     error that both reach, and that error; nan where one of them reaches none.
 
     The error is that of the finest point of the one that ends at the larger, and at least KNOWN times the
     floor.
     """
-    curves = study.curves
-
-    def ends(name: str) -> float:
-        return max(float(curves[name].errors[-1]), KNOWN * study.floor)
-
-    own = [name for name in (COUPLED, TWICE) if name in curves and math.isfinite(ends(name))]
-    if other not in curves or not own or not math.isfinite(ends(other)):
+    last = {name: float(own.iloc[-1]) for name, own in rows["error"].groupby(rows["method"])}
+    least = KNOWN * max(rows["floor"])
+    ends = {name: max(error, least) for name, error in last.items() if math.isfinite(error)}
+    own = [name for name in ONES if name in ends]
+    if other not in ends or not own:
         return math.nan, math.nan
-    target = max(ends(other), min(map(ends, own)))
-    times = (study.curves[name].time(target).value for name in own)
-    least, its = min(time for time in times if time is not None), study.curves[other].time(target).value
-    return (math.nan if its is None else its / least), target
+    target = max(ends[other], min(ends[name] for name in own))
+    seconds = [reached(rows, name, target).value for name in own]
+    ours, its = min(each for each in seconds if each is not None), reached(rows, other, target).value
+    return (math.nan if its is None else its / ours), target
 
 
-def faster_range(study: ProblemStudy, other: str) -> tuple[float, float]:
-    """The least and the largest of `faster` where the reference is off by its uncertainty, either way."""
-    found = [faster(study.with_references(share), other)[0] for share in (-1.0, 0.0, 1.0)]
-    return min(found), max(found)
+def faster_than_spatial(rows: DataFrame, _: str) -> float:
+    """SAM than the three-dimensional model: what no model in two dimensions can solve."""
+    return faster(rows, SPATIAL)[0]
 
 
-def growth(errors: np.ndarray, floor: float) -> float:
+def growth(rows: DataFrame, column: str) -> float:
     """The largest ratio of successive errors of which the later is above the floor; 0 where there is none."""
-    pairs = [(a, b) for a, b in pairwise(errors) if not b <= floor]
+    pairs = [(a, b) for a, b in pairwise(rows[column]) if not b <= max(rows["floor"])]
     return max((b / a for a, b in pairs), default=0.0)
 
 
-def advice_rows(studies: Sequence[ProblemStudy]) -> list[AdviceRow]:
+def faster_range(rows: DataFrame, other: str) -> tuple[float, float]:
+    """The least and the largest of `faster` where the reference is off by its uncertainty, either way."""
+    found = []
+    for share in (-1.0, 0.0, 1.0):
+        moved = {
+            name: replace(one, value=one.value * (1.0 + share * one.uncertainty))
+            for name, one in rows["references"].iloc[0].items()
+        }
+        errors = [
+            max(one.error(values.get(name)) for name, one in moved.items()) if values else math.nan
+            for values in rows["values"]
+        ]
+        found.append(faster(rows.assign(error=errors), other)[0])
+    return min(found), max(found)
+
+
+# what is shown
+
+
+def ladders(frame: DataFrame, refined: str = "resolution") -> Iterator[tuple[Problem, DataFrame]]:
+    """The rows of each problem."""
+    for name, rows in frame[frame["refined"] == refined].groupby("sweep", sort=False):
+        yield STUDIED[name], rows
+
+
+def methods(rows: DataFrame) -> list[str]:
+    """In their order."""
+    return list(dict.fromkeys(rows["method"]))
+
+
+def advice_rows(frame: DataFrame) -> Iterator[AdviceRow]:
     """What each error takes, for the methods that a user is advised to take, and the load steps."""
-    rows = []
-    for study in (each for each in studies if each.problem.kind):
-        values = {name: reference.value for name, reference in study.references.items()}
-        of_grid = study.problem.advised(study.scene, values)  # what the advice calls a resolution of 1
-        methods = {ADVISED[name]: curve for name, curve in study.curves.items() if name in ADVISED}
-        found = [(name, curve, *of_grid) for name, curve in methods.items()]
-        if study.problem.steps:
-            found.append((LOAD_STEPS, study.step_curves[COUPLED], "load steps", 1.0))
-        said = study.problem.kind, " and ".join(MEASURES[measure] for measure in study.problem.measures)
+    of_steps = {problem.name: rows for problem, rows in ladders(frame, STEPS)}
+    for problem, rows in ladders(frame):
+        if not problem.kind:
+            continue
+        found = [(ADVISED[name], rows, name) for name in methods(rows) if name in ADVISED]
+        if problem.name in of_steps:
+            found.append((LOAD_STEPS, of_steps[problem.name], COUPLED))
+        words = " and ".join(MEASURES[measure] for measure in problem.measures)
         for target in TARGETS:
-            every = [curve.time(target).value for curve in methods.values()]
-            least = min((time for time in every if time is not None), default=math.nan)
-            for name, curve, unit, size in found:
-                time = curve.time(target)
-                numbers = (time.value, curve.fineness(target).value, curve.kernels(target))
-                seconds, fineness, kernels = (math.nan if each is None else each for each in numbers)
-                bound = NEVER if time.value is None else BELOW * time.coarsest
-                relative = math.nan if name == LOAD_STEPS else seconds / least
-                steps = study.scene.loading.steps
-                row = (*said, name, target, bound, fineness * size, unit, steps, seconds, kernels, relative)
-                rows.append(AdviceRow(*row))
-    return rows
+            every = [reached(own, name, target).value for label, own, name in found if label != LOAD_STEPS]
+            least = min((each for each in every if each is not None), default=math.nan)
+            for label, own, name in found:
+                of = [reached(own, name, target, column) for column in ("cpu_s", "resolution", "kernels")]
+                seconds, fineness, kernels = (math.nan if r.value is None else r.value for r in of)
+                bound = NEVER if of[0].value is None else BELOW * of[0].coarsest
+                (unit, size), steps = own["advised"].iloc[0], int(own["load_steps"].iloc[0])
+                over = math.nan if label == LOAD_STEPS else seconds / least
+                row = (problem.kind, words, label, target, bound, fineness * size, unit, steps)
+                yield AdviceRow(*row, seconds, kernels, over)
 
 
-def times_table(studies: Sequence[ProblemStudy]) -> SmallTable:
+def times(frame: DataFrame) -> SmallTable:
     """Processor seconds to each error, with the resolution; and the same in kernels for 1 %."""
-    rows = []
-    for study in studies:
-        for name, found in study.curves.items():
-            reached, kernels = ((found.time(t), found.fineness(t)) for t in TARGETS), found.kernels(0.01)
+    lines = []
+    for problem, rows in ladders(frame):
+        for name in methods(rows):
+            cells = [spent(reached(rows, name, t), reached(rows, name, t, "resolution")) for t in TARGETS]
+            kernels = reached(rows, name, 0.01, "kernels").value
             last = "" if kernels is None else number(kernels, 3)
-            rows.append((study.problem.title, name, *(spent(*each) for each in reached), last))
+            lines.append((problem.title, name, *cells, last))
     columns = ("problem", "method", *(f"{100.0 * t:g} %" for t in TARGETS), "1 %, in kernels")
-    return SmallTable("Processor time in s to an error (resolution)", columns, rows)
+    return SmallTable("Processor time in s to an error (resolution)", columns, lines)
 
 
-def spent(time: Reached, fineness: Reached) -> str:
+def to_one_percent(frame: DataFrame) -> dict[str, Any]:
+    """Under `times` each problem, its quantities, and method -> processor seconds to an error of 1 %, None
+    where it is not reached, and whether they are a bound.
+    """
+    found = []
+    for problem, rows in ladders(frame):
+        words = dict.fromkeys(MEASURES[name] for name in rows["references"].iloc[0])
+        times = {name: reached(rows, name, 0.01) for name in methods(rows)}
+        seconds = {name: (time.value, time.coarsest) for name, time in times.items()}
+        found.append((problem.title, " and ".join(words), seconds))
+    return {"times": found}
+
+
+def spent(seconds: Reached, fineness: Reached) -> str:
     """A cell of the table."""
-    if time.value is None:
-        return f"{NEVER} ({100.0 * time.smallest:.2g} %)"
-    return f"{'< ' * time.coarsest}{number(time.value, 3)} ({number(fineness.value, 3)})"
+    if seconds.value is None:
+        return f"{NEVER} ({100.0 * seconds.smallest:.2g} %)"
+    return f"{'< ' * seconds.coarsest}{number(seconds.value, 3)} ({number(fineness.value, 3)})"
 
 
-def faster_table(studies: Sequence[ProblemStudy]) -> SmallTable:
+def beside_elements(frame: DataFrame) -> SmallTable:
     """SAM beside both finite-element models, at the smallest error that both reach."""
-    rows = []
-    for study in studies:
+    lines = []
+    for problem, rows in ladders(frame):
         for other in (AXISYMMETRIC, SPATIAL):
-            ratio, error = faster(study, other)
+            ratio, error = faster(rows, other)
             if math.isfinite(ratio):
-                least, most = faster_range(study, other)
-                goal = study.problem.name in SPATIALLY and other == SPATIAL
+                least, most = faster_range(rows, other)
+                goal = other == SPATIAL and AXISYMMETRIC not in methods(rows)
                 of_goal = f"{number(ratio / ASKED, 2)} of {ASKED:g}" if goal else ""
-                cells = (f"{100.0 * error:.2g} %", f"{100.0 * study.floor:.2g} %", number(ratio, 3))
+                cells = (f"{100.0 * error:.2g} %", f"{100.0 * max(rows['floor']):.2g} %", number(ratio, 3))
                 between = f"{number(least, 3)} to {number(most, 3)}"
-                rows.append((study.problem.title, other, *cells, between, of_goal))
+                lines.append((problem.title, other, *cells, between, of_goal))
     return SmallTable(
         "How many times the time of SAM finite elements take at the smallest error that both reach, and that "
         f"is {KNOWN:g} times the uncertainty of the reference. A sphere at rest is a problem in two "
         "dimensions for the axisymmetric model and in three for SAM",
         "problem|beside|error|uncertainty of the reference|times|with the reference off by its uncertainty"
         "|share of the goal".split("|"),
-        rows,
+        lines,
     )
 
 
-def references_table(studies: Sequence[ProblemStudy]) -> SmallTable:
+def references(frame: DataFrame) -> SmallTable:
     """What the errors are measured against."""
-    rows = [
-        (study.problem.title, MEASURES[q], number(one.value, 6), f"{1e2 * one.uncertainty:.2g} %", one.origin)
-        for study in studies
-        for q, one in study.references.items()
+    lines = [
+        (problem.title, MEASURES[q], number(one.value, 6), f"{1e2 * one.uncertainty:.2g} %", one.origin)
+        for problem, rows in ladders(frame)
+        for q, one in rows["references"].iloc[0].items()
     ]
-    return SmallTable("References", ("problem", "quantity (SI)", "value", "uncertainty", "from"), rows)
+    return SmallTable("References", ("problem", "quantity (SI)", "value", "uncertainty", "from"), lines)
 
 
-def steps_table(studies: Sequence[ProblemStudy]) -> SmallTable:
-    """Errors over the load steps."""
-    rows = [
-        (
-            *(study.problem.title, name, f"{point.resolution}", f"{100.0 * error:.3g} %"),
-            *(number(point.cpu_s, 3), f"{point.counters.get('operator_applications')}", point.status),
-        )
-        for study in studies
-        if study.problem.steps
-        for name, found in study.step_curves.items()
-        for point, error in zip(found.points, found.errors, strict=True)
-    ]
-    columns = "problem|method|load steps|error|processor time [s]|operator applications|status"
-    words = "Load steps at one resolution, against their extrapolation"
-    return SmallTable(words, columns.split("|"), rows)
+def line_of(rows: DataFrame, name: str) -> Line:
+    """The curve of a method."""
+    own = rows[rows["method"] == name]
+    return Line(*(own[column].to_numpy(dtype=float) for column in ("cpu_s", "error", "resolution")))
 
 
-def points_table(study: ProblemStudy) -> SmallTable:
-    """One row a solve."""
-    rows = []
-    for name, found in study.curves.items():
-        profiles = study.profile_errors(name) if study.problem.profile else [math.nan] * len(found.points)
-        for point, *both in zip(found.points, found.errors, profiles, strict=True):
-            shares = (f"{100.0 * value:.3g} %" if math.isfinite(value) else "" for value in both)
-            numbers = (point.kernels, point.setup_s, point.solve_s, point.peak_memory_bytes / 1e6)
-            cost = (number(point.cpu_s, 3), f"{point.spread:.2f}", *(number(value, 3) for value in numbers))
-            counters = (f"{key.replace('_', ' ')} {value}" for key, value in point.counters.items() if value)
-            row = (name, f"{point.resolution}", *shares, *cost, ", ".join(counters), point.status)
-            rows.append(row)
-    columns = "error|axis, L2|processor time [s]|spread|in kernels|set-up [s]|solution [s]|memory [MB]"
-    columns = ("method", study.problem.unit, *columns.split("|"), "counters", "status")
-    return SmallTable(study.problem.title, columns, rows)
-
-
-def lines_of(found: Mapping[str, ErrorCurve]) -> dict[str, Line]:
-    """The curves for the figure."""
-    return {
-        name: Line(each.seconds, each.errors, np.array([point.resolution for point in each.points]))
-        for name, each in found.items()
+def advice(file: CaseFile, frame: DataFrame) -> Plot:
+    """The time to 1 % in every kind of scene; its data are the advice of samfem plan."""
+    to_1_percent = {
+        problem.kind: {name: reached(rows, name, 0.01) for name in methods(rows)}
+        for problem, rows in ladders(frame)
+        if problem.kind
     }
+    data = dict(zip(COLUMNS, map(list, zip(*map(texts_of, advice_rows(frame)), strict=True)), strict=True))
+    return Plot(
+        Drawing(overview(to_1_percent, "1 %").figure, data),
+        "advice",
+        "Processor time to 1 %",
+        "Marks on a logarithmic axis of processor time, one row a kind of scene and one mark a method.",
+        "Hollow: even the coarsest point is better, the time is an upper bound. What never reaches 1 % "
+        "has no mark. The data are the advice of samfem plan.",
+    )
 
 
-CASES = (WorkPrecision("work-precision", alone=True),)
+def errors(file: CaseFile, frame: DataFrame, name: str) -> Plot:
+    """`errors PROBLEM`: error over processor time, the grid refined, or the load steps."""
+    problem, panels = STUDIED[name], {}
+    for refined, rows in frame[frame["sweep"] == name].groupby("refined", sort=False):
+        panels[refined] = {each: line_of(rows, each) for each in methods(rows)}, max(rows["floor"])
+    words = " and ".join(MEASURES[measure] for measure in problem.measures)
+    return Plot(
+        curves(panels, f"error of the {words}"),
+        name,
+        problem.title,
+        f"Log-log plot of the error of the {words} over processor time, a falling curve for each method.",
+        "Shaded: uncertainty of the reference, below which nothing is claimed. Along a curve the grid is "
+        "refined, or the load steps.",
+    )

@@ -25,7 +25,7 @@ from verification.cases.case import (
     with_mesh,
 )
 from verification.cases.recipes import BOX, Resolution, at_ratio, coated_scene, resolved_at, resolved_grid
-from verification.cost.advice_rows import (
+from verification.cost.advice import (
     COATED,
     DEEP,
     ELASTIC,

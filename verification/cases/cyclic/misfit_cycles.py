@@ -15,7 +15,7 @@ import numpy as np
 from sam.scene import Plasticity, Result, Scene
 from verification.cases.case import Plot, with_body, with_keys, with_loading, with_mesh
 from verification.cases.recipes import sphere_cells
-from verification.figures.friction import CYCLES, Curve, curves
+from verification.figures.lines import CYCLES, Curve, curves
 from verification.judging import Measured
 from verification.quantities import Reference
 from verification.reference.misfit_sphere import PROFILES

@@ -14,7 +14,7 @@ from scipy.interpolate import CubicSpline
 
 from sam.scene import Plasticity, Result, Scene
 from verification.cases.case import Plot, with_body, with_keys, with_loading
-from verification.figures.friction import Curve, curves
+from verification.figures.lines import Curve, curves
 from verification.judging import Measured
 from verification.quantities import Reference
 from verification.reference.hertz import subsurface_stress

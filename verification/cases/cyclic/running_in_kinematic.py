@@ -15,7 +15,7 @@ import numpy as np
 from verification.cases.case import SAM, Context, Plot, with_keys
 from verification.cases.running_in import study
 from verification.cases.running_in.study import MODULI, NAMES, RECOVERY, SHARES, Effort, Run
-from verification.figures.friction import CYCLES, Curve, curves
+from verification.figures.lines import CYCLES, Curve, curves
 
 if TYPE_CHECKING:
     from pandas import DataFrame

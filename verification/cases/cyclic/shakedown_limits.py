@@ -16,7 +16,7 @@ import numpy as np
 
 from sam.scene import Path, Plasticity, Result, Scene
 from verification.cases.case import Plot, with_body, with_loading
-from verification.figures.friction import CYCLES, Curve, curves
+from verification.figures.lines import CYCLES, Curve, curves
 from verification.quantities import Reference
 from verification.reference.shakedown import cell_limit, in_place_limit, travelling_limit
 from verification.rows import CaseFile
@@ -116,7 +116,7 @@ def strain_over_first(file: CaseFile, frame: DataFrame) -> Plot:
             *(panels, "cycle", "strain of a cycle over that of the first"),
             looks=dict(zip(names, CYCLES, strict=False)),
             count=True,
-            logarithmic=fades,
+            logarithmic="y" * fades,
         ),
         *("strain", "Strain that each cycle adds", words, words),
     )

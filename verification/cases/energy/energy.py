@@ -15,7 +15,7 @@ from verification.cases.case import FEM, FEM_3D, SAM, Context, Plot, with_body, 
 from verification.cases.recipes import Resolution, at_ratio, resolved_at
 from verification.energy import of_fem, of_sam
 from verification.energy.balance import Balance
-from verification.figures.energy import over_path
+from verification.figures.specials import over_path
 from verification.reference.convergence import fit_order
 from verification.references import contact_of
 

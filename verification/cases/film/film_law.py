@@ -15,7 +15,7 @@ import numpy as np
 from sam.scene import Friction
 from sam.tribofilm import FilmLaw, FilmState
 from verification.cases.case import Case, Context, Measured, Plot, SmallTable
-from verification.figures.film import thinning_curves
+from verification.figures.lines import thinning_curves
 from verification.reference.bonded_film import (
     in_plane_strain,
     normal_strain,

@@ -37,7 +37,7 @@ from verification.cases.limits.model_limits_curves import (
     range_rows,
     with_spread,
 )
-from verification.figures.limits import limits as drawn
+from verification.figures.lines import limits as drawn
 from verification.references import contact_of
 from verification.runs.model_range import COLUMNS, KEPT, WORDS, errors
 from verification.runs.tables import columns_text

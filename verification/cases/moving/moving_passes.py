@@ -14,7 +14,7 @@ import numpy as np
 from sam.scene import Friction, Plasticity, Scene
 from verification.cases.case import SAM, Context, Plot, with_body, with_keys
 from verification.cases.recipes import initial_yield, on_track
-from verification.figures.moving import new_strains
+from verification.figures.lines import new_strains
 
 if TYPE_CHECKING:
     from pandas import DataFrame

@@ -15,7 +15,7 @@ from verification.cases.case import SAM, Context, Plot, with_body, with_grid
 from verification.cases.recipes import TRACK, on_track, radius_at
 from verification.energy.balance import Balance
 from verification.energy.of_sam import balance_of
-from verification.figures.moving import grooves
+from verification.figures.lines import grooves
 from verification.references import hertz_sphere
 
 if TYPE_CHECKING:

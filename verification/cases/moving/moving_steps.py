@@ -14,7 +14,7 @@ from sam.scene import Result, Scene
 from verification import uncertainty
 from verification.cases.case import SAM, Context, Plot
 from verification.cases.recipes import on_track
-from verification.figures.moving import errors_over_counts
+from verification.figures.lines import errors_over_counts
 from verification.quantities import refined
 
 if TYPE_CHECKING:

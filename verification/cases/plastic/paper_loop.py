@@ -11,10 +11,10 @@ import numpy as np
 from sam.scene import Result, Scene
 from verification.cases.case import SAM, Case, Context, Measured, Plot, SmallTable, with_keys, with_loading
 from verification.cases.recipes import Resolution, at_ratio, resolved_at
-from verification.figures.plastic import curves_on_axis
+from verification.figures.lines import Curve, curves
 from verification.figures.style import BLACK, BLUE, ORANGE, VERMILION
 from verification.references import contact_of
-from verification.runs.sampling import peak
+from verification.runs.sampling import peak, rows_of
 
 SCENES = {"perfect": ("plastic-perfect", 2.5), "Swift": ("plastic-swift-rigid", 4.0)}
 STEPS = {"quick": (1, 10), "full": (1, 2, 5, 10, 20)}
@@ -98,9 +98,13 @@ class PaperLoop(Case):
         for law in SCENES:
             few, *_, many = sorted({steps for _, _, steps in found})
             chosen = (EULER, many), (EULER, few), (STRESS, few), (STRAIN, few)
-            curves = {f"{m}, {n} step{'s' * (n > 1)}": found[law, m, n][1] for m, n in chosen}
+            a, drawn = contact_of(found[law, EULER, few][0]).contact_radius, {}
+            for (m, n), look in zip(chosen, LOOKS, strict=True):
+                z, strain = rows_of(found[law, m, n][1].tables["axis"], "peak", "z_m", "peeq")
+                shown = Curve(z[z <= 1.5 * a] / a, 1e2 * strain[z <= 1.5 * a], look=look)
+                drawn[f"{m}, {n} step{'s' * (n > 1)}"] = shown
             yield Plot(
-                curves_on_axis(curves, contact_of(found[law, EULER, few][0]).contact_radius, LOOKS),
+                curves({"": drawn}, "$z/a$", "plastic strain [%]", looks={}, size=(6.0, 3.6)),
                 f"{law.lower()}-axis",
                 f"Plastic strain under the centre, {law}",
                 "Curves of the plastic strain over depth: backward Euler with many load steps and with one, "

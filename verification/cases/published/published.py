@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from sam.scene import Friction, Result, Scene
 from verification.cases.case import Plot, with_grid, with_keys, with_loading
 from verification.cases.recipes import initial_yield
-from verification.figures.refinement import correlations
+from verification.figures.profiles import correlations
 from verification.judging import Measured
 from verification.quantities import Reference
 from verification.reference.hamilton import largest_von_mises

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Bad input: what the readers and the command make of scenes, tables, archives and folders that are wrong on
-purpose.
+"""Bad input: what the readers and the command make of scenes, tables, archives and folders that are
+wrong on purpose.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -65,20 +65,20 @@ COMMAND_LIMIT_S = 120.0  # for a command; it starts in a second, and scenes that
 SMALL_S, SMALL_BYTES = 1.0, 400e6  # predicted: scenes that the command solves, larger ones are planned
 MOST_SCENES = 3  # of a study that is solved
 AT_ONCE = 2
+OUT = "cwd/out"
 TRACEBACK = re.compile(r"Traceback \(most recent|internal error")
-Snapshot = Mapping[str, tuple]
+SAMFEM = (sys.executable, "-m", "samfem.cli")
+GATES = ("tracebacks", "hangs", "writes-outside", "wrong-errors", "exit-codes")
 
 
 class Hang(BaseException):
-    """Raised in a reader that takes longer than allowed; no Exception, so that none of its handlers takes
-    it.
-    """
+    """Raised in a reader that takes too long; no Exception, so that none of its handlers takes it."""
 
 
 @dataclass
 class Tally:
-    """counts: (kind, how it ended) -> number; findings: gate -> what was wrong, one text each; slowest:
-    seconds, input.
+    """counts: (kind, how it ended) -> number; findings: gate -> what was wrong, one text each;
+    slowest: seconds, input.
     """
 
     counts: Counter = field(default_factory=Counter)
@@ -91,8 +91,8 @@ class Tally:
 
 
 def read_all(path: Path, bad: BadInput) -> str:
-    """Read an input as samfem does: "valid" or "refused". Any other error than those of the readers comes
-    out.
+    """Read an input as samfem does: "valid" or "refused". Any other error than those of the readers
+    comes out.
     """
     try:
         if bad.kind in (MESHES, MAPPINGS):
@@ -120,30 +120,25 @@ def judge_readers(
     numbers: Sequence[int], base: Path, reader: Callable[[Path, BadInput], str] = read_all
 ) -> Tally:
     """Lay out inputs of SEED, one after the other, and read each within LIMIT_S and MEMORY."""
-    tally = Tally()
-    before = set(os.listdir())
-    plan(
-        parse_scene(good_scenes()[0].encode(), "scene.toml")
-    )  # what readers load, on a busy machine for seconds
+    tally, before = Tally(), set(os.listdir())
+    plan(parse_scene(good_scenes()[0].encode(), SCENE))  # what readers load, on a busy machine for seconds
     for number in numbers:
         bad = bad_input(SEED, number)
+        what = f"input {number}, {bad.kind}"
         with tempfile.TemporaryDirectory(dir=base) as folder:
-            path = lay(bad, Path(folder))
-            began = time.process_time()
+            path, began = lay(bad, Path(folder)), time.process_time()
             try:
                 with guarded(LIMIT_S, MEMORY):
                     end = reader(path, bad)
             except Hang:
                 end = "hang"
-                tally.found("hangs", f"input {number}, {bad.kind}")
+                tally.found("hangs", what)
             except Exception as error:
                 end = "wrong error"
-                tally.found(
-                    "wrong-errors", f"input {number}, {bad.kind}: {type(error).__name__}: {error}"[:200]
-                )
+                tally.found("wrong-errors", f"{what}: {type(error).__name__}: {error}"[:200])
             taken = time.process_time() - began
         tally.counts[bad.kind, end] += 1
-        tally.slowest = max(tally.slowest, (taken, f"input {number}, {bad.kind}"))
+        tally.slowest = max(tally.slowest, (taken, what))
     for made in sorted(set(os.listdir()) - before):
         tally.found("writes-outside", f"{made} appeared in the current folder")
     return tally
@@ -151,8 +146,8 @@ def judge_readers(
 
 @contextmanager
 def guarded(seconds: float, memory: int) -> Iterator[None]:
-    """Raise Hang in the block after so many seconds of processor time, MemoryError beyond so many further
-    bytes. Main thread only.
+    """Raise Hang in the block after so many seconds of processor time, MemoryError beyond so many
+    further bytes. Main thread only.
     """
 
     def stop(*_):
@@ -176,26 +171,9 @@ def _address_space() -> int:
         return 4 << 30
 
 
-@dataclass(frozen=True)
-class EndedCommand:
-    """A command that has ended. code: None if it was stopped after COMMAND_LIMIT_S; folders before and
-    after.
-    """
-
-    words: Sequence[str]
-    code: int | None
-    text: str
-    before: Snapshot
-    after: Snapshot
-    seconds: float
-
-
-SAMFEM = (sys.executable, "-m", "samfem.cli")
-
-
 def words_for(bad: BadInput, path: Path, number: int) -> list[str]:
-    """The command for an input: solve or compare what is wrong or small, plan the rest; read what is no scene
-    as --out.
+    """The command for an input: solve or compare what is wrong or small, plan the rest; read what
+    is no scene as --out.
     """
     if bad.kind == RUN:
         return ["solve", "scene.toml", "--out", str(path)]
@@ -206,15 +184,15 @@ def words_for(bad: BadInput, path: Path, number: int) -> list[str]:
     if bad.kind == STUDIES and _is_small(path, read_study):
         return ["sweep", str(path), "--workers", "1", "--out", "out/run"]
     path = path.parent / SCENE if bad.kind == STUDIES else path
-    commands = [["solve", str(path), "--model", (SAM, FEM)[number % 2], "--out", "out/run"]]
-    commands += [
+    commands = [
+        ["solve", str(path), "--model", (SAM, FEM)[number % 2], "--out", "out/run"],
         ["compare", str(path), "--out", "out/run"],
         ["plan", str(path)],
         ["plan", str(path), "--json"],
     ]
-    return (
-        commands[number // 2 % 4 if number % 3 == 0 else 0] if _is_small(path) else commands[2 + number % 2]
-    )
+    if not _is_small(path):
+        return commands[2 + number % 2]
+    return commands[number // 2 % 4 if number % 3 == 0 else 0]
 
 
 def _is_small(path: Path, read: Callable[[Path], Any] = read_scene) -> bool:
@@ -235,8 +213,9 @@ def _is_small(path: Path, read: Callable[[Path], Any] = read_scene) -> bool:
 
 def run_command(
     words: Sequence[str], base: Path, command: Sequence[str] = SAMFEM, how: random.Random | None = None
-) -> EndedCommand:
-    """Run a command in base/cwd with homes of its own, and look at everything in `base` before and after.
+) -> tuple[int | None, str, set[str]]:
+    """Run a command in base/cwd with homes of its own: its exit code, None where it was stopped
+    after COMMAND_LIMIT_S, what it printed, and the paths below `base` that changed.
 
     how: draws its address space and what is closed; without it neither is limited.
     """
@@ -244,103 +223,74 @@ def run_command(
     homes["MPLCONFIGDIR"] = "cwd/out/matplotlib"  # it keeps a list of fonts
     for name in ("home", "tmp", "cwd"):
         (base / name).mkdir(exist_ok=True)
-    environment = (
-        os.environ | {key: str(base / name) for key, name in homes.items()} | {"OMP_NUM_THREADS": "1"}
-    )
+    own = {key: str(base / name) for key, name in homes.items()} | {"OMP_NUM_THREADS": "1"}
     words = [word.partition("\0")[0] for word in words]  # a system passes no more of it to a program
     if how is not None:
         most, closed = how.choice(ADDRESSES), how.choice(STREAMS)
         limit = f"ulimit -v {most >> 10}; " if most else ""
         command = ["sh", "-c", f'{limit}exec "$@" {closed}', "sh", *command]
-    before, began = snapshot(base), time.perf_counter()
+    told = {"stdin": subprocess.DEVNULL, "capture_output": True, "timeout": COMMAND_LIMIT_S, "check": False}
+    before = snapshot(base)
     try:
-        done = subprocess.run(
-            [*command, *words],
-            cwd=base / "cwd",
-            env=environment,
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            timeout=COMMAND_LIMIT_S,
-            check=False,
-        )
+        done = subprocess.run([*command, *words], cwd=base / "cwd", env=os.environ | own, **told)
         code, text = done.returncode, (done.stdout + done.stderr).decode(errors="replace")
     except subprocess.TimeoutExpired:
         code, text = None, ""
-    return EndedCommand(words, code, text, before, snapshot(base), time.perf_counter() - began)
+    after = snapshot(base)
+    return code, text, {path for path in before.keys() | after if before.get(path) != after.get(path)}
 
 
-def snapshot(base: Path) -> Snapshot:
-    """Everything below a folder: relative path -> (kind and rights, size, time of change of a file's
-    content).
+def snapshot(base: Path) -> dict[str, tuple]:
+    """Everything below a folder: relative path -> (kind and rights, size, time of change of a
+    file's content).
     """
     found = {}
     for above, folders, files in os.walk(base):
         for name in folders + files:
-            path = os.path.join(above, name)
-            status = os.lstat(path)
+            status = os.lstat(path := os.path.join(above, name))
             changing = () if name in folders else (status.st_size, status.st_mtime_ns)
             found[os.path.relpath(path, base)] = (status.st_mode, *changing)
     return found
 
 
-def judge_command(
-    ended: EndedCommand, name: str, tally: Tally, kind: str, *, allowed: str = "cwd/out"
-) -> None:
-    """Enter what is wrong with a command that has ended. allowed: the folder that it may change, unless it
-    ends in 2.
-    """
-    what = f"{name}: samfem {' '.join(ended.words)}"[:160]
-    tally.counts[kind, "hang" if ended.code is None else f"exit {ended.code}"] += 1
-    if ended.code is None:
-        tally.found("hangs", what)
-    elif ended.code not in (0, 1, 2):
-        tally.found("exit-codes", f"{what}: {ended.code}")
-    if TRACEBACK.search(ended.text):
-        tally.found("tracebacks", f"{what}: {ended.text.strip().splitlines()[-1]}"[:300])
-    changed = {
-        path
-        for path in ended.before.keys() | ended.after.keys()
-        if ended.before.get(path) != ended.after.get(path)
-    }
-    if ended.code != 2:
-        changed = {path for path in changed if path != allowed and not path.startswith(f"{allowed}/")}
-    if changed:
-        tally.found("writes-outside", f"{what}: {min(changed)}")
-    tally.slowest = max(tally.slowest, (ended.seconds, what))
-
-
 def judge_commands(
     numbers: Sequence[int], base: Path, command: Sequence[str] = SAMFEM, progress=lambda *_: None
 ) -> Tally:
-    """Run the command on inputs of SEED, AT_ONCE at a time, each in a folder of its own."""
+    """Run the command on inputs of SEED, AT_ONCE at a time, each in a folder of its own, of which
+    it may change cwd/out, unless it ends in 2.
+    """
     tally, prepared = Tally(), []
-
-    def drawn(number: int) -> random.Random | None:
-        return random.Random(f"{SEED}/{number}/how") if command is SAMFEM else None
-
     for number in numbers:
         folder, bad = base / str(number), bad_input(SEED, number)
         (folder / "cwd").mkdir(parents=True)
         path = lay(bad, folder / "cwd" / "out" if bad.kind == RUN else folder / "in")
         if bad.kind == RUN:
             lay(bad_input(SEED, tuple(KINDS).index("titles")), folder / "cwd")
-        prepared.append((number, bad, folder, words_for(bad, path, number)))
+        prepared.append((number, bad.kind, folder, words_for(bad, path, number)))
+
+    def ended(each: tuple) -> tuple:
+        number, _, folder, words = each
+        how, began = random.Random(f"{SEED}/{number}/how") if command is SAMFEM else None, time.perf_counter()
+        return *run_command(words, folder, command, how), time.perf_counter() - began
+
     with ThreadPoolExecutor(AT_ONCE) as pool:
-        ran = pool.map(lambda each: run_command(each[3], each[2], command, drawn(each[0])), prepared)
-        for done, ((number, bad, _, _), ended) in enumerate(zip(prepared, ran, strict=True), start=1):
-            judge_command(ended, f"input {number}", tally, bad.kind)
+        for done, (each, found) in enumerate(zip(prepared, pool.map(ended, prepared), strict=True), start=1):
+            (number, kind, _, words), (code, text, changed, seconds) = each, found
+            what = f"input {number}: samfem {' '.join(words)}"[:160]
+            tally.counts[kind, "hang" if code is None else f"exit {code}"] += 1
+            if code is None:
+                tally.found("hangs", what)
+            elif code not in (0, 1, 2):
+                tally.found("exit-codes", f"{what}: {code}")
+            if TRACEBACK.search(text):
+                tally.found("tracebacks", f"{what}: {text.strip().splitlines()[-1]}"[:300])
+            if code != 2:
+                changed = {path for path in changed if path != OUT and not path.startswith(f"{OUT}/")}
+            if changed:
+                tally.found("writes-outside", f"{what}: {min(changed)}")
+            tally.slowest = max(tally.slowest, (seconds, what))
             progress(done, len(prepared))
     return tally
-
-
-GATES = ("tracebacks", "hangs", "writes-outside", "wrong-errors", "exit-codes")
-
-
-def values_of(tallies: Sequence[Tally]) -> dict[str, Measured]:
-    """The gates: how many inputs ended wrongly, in each way; and of how many kinds there were none at all."""
-    values = {name: sum(len(tally.findings.get(name, ())) for tally in tallies) for name in GATES}
-    values["kinds-left-out"] = len(set(ALL_KINDS) - {kind for kind, _ in tallies[0].counts})
-    return {name: Measured(count, 0) for name, count in values.items()}
 
 
 def counts_table(caption: str, tally: Tally) -> SmallTable:
@@ -352,8 +302,8 @@ def counts_table(caption: str, tally: Tally) -> SmallTable:
 
 
 class BadInputs(Case):
-    """Inputs read in this process, and the command run on others: (level, tally of the readers, of the
-    command).
+    """Inputs read in this process, and the command run on others: (level, tally of the readers, of
+    the command).
     """
 
     def solve(self, context: Context) -> tuple[str, Tally, Tally]:
@@ -366,7 +316,10 @@ class BadInputs(Case):
             return context.level, read, judge_commands(stride, Path(base), progress=progress)
 
     def measure(self, found: tuple[str, Tally, Tally]) -> dict[str, Measured]:
-        return values_of(found[1:])
+        """How many inputs ended wrongly, in each way; and of how many kinds none was read."""
+        values = {name: sum(len(tally.findings.get(name, ())) for tally in found[1:]) for name in GATES}
+        values["kinds-left-out"] = len(set(ALL_KINDS) - {kind for kind, _ in found[1].counts})
+        return {name: Measured(count, 0) for name, count in values.items()}
 
     def setup(self, found: tuple[str, Tally, Tally]) -> Iterator[tuple[str, str]]:
         _, read, ran = found
@@ -398,18 +351,14 @@ CASES = (BadInputs("bad-input"),)
 
 
 def main(what: str, first: str, last: str) -> None:
-    """Part of a campaign, larger than the case: `read` or `run` the inputs from the first to before the last,
-    and print kinds, ends and findings as a line of JSON.
+    """Part of a campaign, larger than the case: `read` or `run` the inputs from the first to before
+    the last, and print kinds, ends and findings as a line of JSON.
     """
-    judge = {"read": judge_readers, "run": judge_commands}[what]
     with tempfile.TemporaryDirectory(prefix="samfem-bad-input-") as base:
+        judge = {"read": judge_readers, "run": judge_commands}[what]
         tally = judge(range(int(first), int(last)), Path(base))
-    counts = [[*key, count] for key, count in sorted(tally.counts.items())]
-    print(
-        json.dumps(
-            {what: [first, last], "counts": counts, "findings": tally.findings, "slowest": tally.slowest}
-        )
-    )
+    found = {what: [first, last], "counts": [[*key, count] for key, count in sorted(tally.counts.items())]}
+    print(json.dumps(found | {"findings": tally.findings, "slowest": tally.slowest}))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Faults: solves and sweeps that are killed at random moments, and what else can go wrong while a run writes
-its folder.
+"""Faults: solves and sweeps that are killed at random moments, and what else can go wrong while a
+run writes its folder.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from subprocess import Popen
 
 from verification.cases.case import Case, Context, Measured, SmallTable
 from verification.robustness.kills import (
@@ -69,89 +69,91 @@ SWEPT = SCENE[: SCENE.index("[body.plasticity]")] + SCENE[SCENE.index("[counterb
 )
 
 
+Made = tuple[Ended, Path]
+"""How a command ended, and the folder to look at."""
+
+
+def solve_in(base: Path, out: Path, *more: str, **how) -> Ended:
+    """Run `samfem solve` on the scene of a folder."""
+    return run(["solve", str(base / "scene.toml"), "--out", str(out), *more], base / "store", **how)
+
+
+def begun(base: Path) -> Popen:
+    """A solve into base/run that has written a checkpoint."""
+    process = start(["solve", str(base / "scene.toml"), "--out", str(base / "run")], base / "store")
+    until = time.monotonic() + 60.0
+    while (
+        not (base / "run" / "checkpoint.npz").exists() and process.poll() is None and time.monotonic() < until
+    ):
+        time.sleep(0.02)
+    return process
+
+
+def interrupted(base: Path) -> Made:
+    """SIGINT, as from Ctrl-C, once there is a checkpoint."""
+    process = begun(base)
+    process.send_signal(signal.SIGINT)
+    return finish(process), base / "run"
+
+
+def full_disk(base: Path) -> Made:
+    """No file may grow beyond 4 KiB: as on a full disk, writing fails in the middle of a file."""
+    code = "import resource, sys; from samfem.cli import main; "
+    code += "resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)); sys.exit(main())"
+    return solve_in(base, base / "run", command=(sys.executable, "-c", code)), base / "run"
+
+
+def read_only(base: Path) -> Made:
+    """A folder that cannot be written to; /proc for root, whom rights do not stop."""
+    (folder := base / "locked").mkdir(mode=0o500)
+    place = Path("/proc/samfem") if os.access(folder, os.W_OK) else folder / "run"
+    return solve_in(base, place), place
+
+
+def two_runs(base: Path) -> Made:
+    """A second solve into the folder of one that runs."""
+    first = begun(base)
+    second, ended = solve_in(base, base / "run"), finish(first)
+    if ended.code != 0:
+        second = Ended(ended.code, f"the first run: {ended.text}", ended.seconds)
+    return second, base / "run"
+
+
+def other_version(base: Path) -> Made:
+    """A folder that another version wrote."""
+    (base / "run").mkdir()
+    older = '{"format": "samfem run 0"}'
+    (summary := base / "run" / SUMMARY).write_text(older)
+    ended = solve_in(base, base / "run")
+    if summary.read_text(encoding="utf-8") != older:
+        return Ended(None, "the summary of the other version was overwritten", ended.seconds), base
+    summary.unlink()
+    return ended, base / "run"
+
+
+def other_scene(base: Path) -> Made:
+    """--resume in the folder of another scene's interrupted run."""
+    interrupted(base)
+    (base / "scene.toml").write_text(SCENE.replace("0.17 N", "0.16 N"))
+    return solve_in(base, base / "run", "--resume"), base / "run"
+
+
 @dataclass(frozen=True)
 class Fault:
-    """A fault and how it should end. says: what the message must hold; written: whether a summary may be
-    there.
+    """A fault and how it should end. says: what the message must hold; written: whether a summary
+    may be there.
     """
 
     name: str
-    make: Callable[[Path, float], tuple[Ended, Path]]
+    make: Callable[[Path], Made]
     codes: tuple[int, ...]
     says: str
     written: bool = False
 
 
-def interrupted(base: Path, seconds: float) -> tuple[Ended, Path]:
-    """SIGINT, as from Ctrl-C, once there is a checkpoint."""
-    process = start(["solve", str(base / "scene.toml"), "--out", str(base / "run")], base / "store")
-    _wait_for(base / "run" / "checkpoint.npz", process)
-    process.send_signal(signal.SIGINT)
-    return finish(process), base / "run"
-
-
-def full_disk(base: Path, seconds: float) -> tuple[Ended, Path]:
-    """No file may grow beyond 4 KiB: as on a full disk, writing fails in the middle of a file."""
-    code = "import resource, sys; from samfem.cli import main; "
-    code += "resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)); sys.exit(main())"
-    words = ["solve", str(base / "scene.toml"), "--out", str(base / "run")]
-    return run(words, base / "store", command=(sys.executable, "-c", code)), base / "run"
-
-
-def full_file_system(base: Path, seconds: float) -> tuple[Ended, Path]:
-    """A file system of 64 KiB, mounted for this command alone."""
-    small, kept = base / "small", base / "kept"
-    small.mkdir()
-    mounted = f'mount -t tmpfs -o size=64k none "{small}" && "$@"; code=$?; '
-    mounted += f'cp -a "{small}" "{kept}"; exit $code'
-    command = ("unshare", "--mount", "sh", "-c", mounted, "sh", sys.executable, "-m", "samfem.cli")
-    words = ["solve", str(base / "scene.toml"), "--out", str(small / "run")]
-    return run(words, small / "store", command=command), kept
-
-
-def read_only(base: Path, seconds: float) -> tuple[Ended, Path]:
-    """A folder that cannot be written to; /proc for root, whom rights do not stop."""
-    folder = base / "locked"
-    folder.mkdir(mode=0o500)
-    place = Path("/proc/samfem") if os.access(folder, os.W_OK) else folder / "run"
-    return run(["solve", str(base / "scene.toml"), "--out", str(place)], base / "store"), place
-
-
-def two_runs(base: Path, seconds: float) -> tuple[Ended, Path]:
-    """A second solve into the folder of one that runs."""
-    words = ["solve", str(base / "scene.toml"), "--out", str(base / "run")]
-    first = start(words, base / "store")
-    _wait_for(base / "run" / "checkpoint.npz", first)
-    second = run(words, base / "store")
-    ended = finish(first)
-    if ended.code != 0:
-        return Ended(ended.code, f"the first run: {ended.text}", ended.seconds), base / "run"
-    return second, base / "run"
-
-
-def other_version(base: Path, seconds: float) -> tuple[Ended, Path]:
-    """A folder that another version wrote."""
-    (base / "run").mkdir()
-    (base / "run" / SUMMARY).write_text('{"format": "samfem run 0"}')
-    ended = run(["solve", str(base / "scene.toml"), "--out", str(base / "run")], base / "store")
-    if (base / "run" / SUMMARY).read_text(encoding="utf-8") != '{"format": "samfem run 0"}':
-        return Ended(None, "the summary of the other version was overwritten", ended.seconds), base
-    (base / "run" / SUMMARY).unlink()
-    return ended, base / "run"
-
-
-def other_scene(base: Path, seconds: float) -> tuple[Ended, Path]:
-    """--resume in the folder of another scene's interrupted run."""
-    interrupted(base, seconds)
-    (base / "scene.toml").write_text(SCENE.replace("0.17 N", "0.16 N"))
-    words = ["solve", str(base / "scene.toml"), "--out", str(base / "run"), "--resume"]
-    return run(words, base / "store"), base / "run"
-
-
 FAULTS = (
     Fault("interrupt (SIGINT)", interrupted, (130,), "--resume"),
     Fault("full disk: files end at 4 KiB", full_disk, (1,), "free"),
-    Fault("full disk: file system of 64 KiB", full_file_system, (1,), "free"),
     Fault("folder that cannot be written to", read_only, (1, 2), "cannot"),
     Fault("two runs into one folder", two_runs, (2,), "is being written by", written=True),
     Fault("folder of another version", other_version, (2,), "another"),
@@ -159,17 +161,11 @@ FAULTS = (
 )
 
 
-def _wait_for(path: Path, process) -> None:
-    until = time.monotonic() + 60.0
-    while not path.exists() and process.poll() is None and time.monotonic() < until:
-        time.sleep(0.02)
-
-
-def judge_fault(fault: Fault, base: Path, seconds: float) -> tuple[tuple[str, str, str], KillTrial]:
+def judge_fault(fault: Fault, base: Path) -> tuple[tuple[str, str, str], KillTrial]:
     """The row of a fault for the reader, and what was wrong with its end."""
     base.mkdir()
     (base / "scene.toml").write_text(SCENE)
-    ended, folder = fault.make(base, seconds)
+    ended, folder = fault.make(base)
     trial = KillTrial(fault.name)
     lines = ended.text.strip().splitlines() or [""]
     message = next((line for line in reversed(lines) if line.startswith("samfem: error")), lines[-1])
@@ -183,54 +179,47 @@ def judge_fault(fault: Fault, base: Path, seconds: float) -> tuple[tuple[str, st
     return (fault.name, str(ended.code), message.replace(str(base), "…")), trial
 
 
-def can_mount() -> bool:
-    """Whether this process may mount a file system of its own."""
-    return os.name == "posix" and os.geteuid() == 0 and shutil.which("unshare") is not None
+def undisturbed(words: Sequence[str], out: Path, store: Path) -> Ended:
+    """A command that is not killed. RuntimeError where it does not end well."""
+    ended = run([*words, "--out", str(out)], store)
+    if ended.code != 0:
+        raise RuntimeError(f"the undisturbed {words[0]} ended in {ended.code}: {ended.text[-300:]}")
+    return ended
 
 
 def kill_solves(count: int, base: Path, progress) -> tuple[list[KillTrial], float]:
-    """Trials of solves killed at moments uniform over the time of an undisturbed one, which is returned
-    too.
+    """Trials of solves killed at moments uniform over the time of an undisturbed one, which is
+    returned too.
     """
     words = ["solve", str(base / "scene.toml")]
-    ended = run([*words, "--out", str(base / "undisturbed")], base / "store")
-    if ended.code != 0:
-        raise RuntimeError(f"the undisturbed solve ended in {ended.code}: {ended.text[-300:]}")
-    expected, rng = tables(base / "undisturbed"), random.Random(SEED)
-    moments, trials = delays(count, ended.seconds, rng), []
+    seconds = undisturbed(words, base / "undisturbed", base / "store").seconds
+    expected = tables(base / "undisturbed")
+    moments, trials = delays(count, seconds, random.Random(SEED)), []
 
     def trial(k: int) -> KillTrial:
-        with removed(folder := base / f"solve-{k}"):
+        folder = base / f"solve-{k}"
+        try:
             return killed_solve(words, folder, expected, moments[k], base=base)
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
 
     with ThreadPoolExecutor(AT_ONCE) as pool:
         for done, found in enumerate(pool.map(trial, range(count)), start=1):
             trials.append(found)
             progress("kills of a solve", done, count)
-    return trials, ended.seconds
-
-
-@contextmanager
-def removed(*folders: Path) -> Iterator[None]:
-    """Remove folders after the block: a sweep leaves a gigabyte, its runs and its store."""
-    try:
-        yield
-    finally:
-        for folder in folders:
-            shutil.rmtree(folder, ignore_errors=True)
+    return trials, seconds
 
 
 def kill_sweeps(count: int, base: Path, progress) -> list[KillTrial]:
     """Trials of sweeps killed likewise, the parent and a worker in turns."""
     words = ["sweep", str(base / "study.toml"), "--workers", "2"]
-    ended = run([*words, "--out", str(base / "sweep")], base / "sweep-store")
-    if ended.code != 0:
-        raise RuntimeError(f"the undisturbed sweep ended in {ended.code}: {ended.text[-300:]}")
+    seconds = undisturbed(words, base / "sweep", base / "sweep-store").seconds
     table, rng, trials = (base / "sweep" / "sweep.csv").read_bytes(), random.Random(SEED + 1), []
-    for k, delay in enumerate(delays(count, ended.seconds, rng)):
+    for k, delay in enumerate(delays(count, seconds, rng)):
         whom, folder = ("worker", "parent")[k % 2], base / f"sweep-{k}"
-        with removed(folder, base / f"{folder.name}-store"):
-            trials.append(killed_sweep(words, folder, table, delay, whom=whom, rng=rng, base=base))
+        trials.append(killed_sweep(words, folder, table, delay, whom=whom, rng=rng, base=base))
+        for left in (folder, base / f"{folder.name}-store"):  # a gigabyte
+            shutil.rmtree(left, ignore_errors=True)
         progress("kills of a sweep", k + 1, count)
     return trials
 
@@ -260,8 +249,8 @@ def counts_table(caption: str, trials: Sequence[KillTrial]) -> SmallTable:
 
 @dataclass(frozen=True)
 class Killed:
-    """Trials of solves (one undisturbed takes `seconds`) and of sweeps, and the other faults with their
-    rows.
+    """Trials of solves (one undisturbed takes `seconds`) and of sweeps, and the other faults with
+    their rows.
     """
 
     solves: list[KillTrial]
@@ -290,8 +279,7 @@ class Faults(Case):
                 (base / file).write_text(text)
             solved, seconds = kill_solves(solves, base, progress)
             swept = kill_sweeps(sweeps, base, progress)
-            faults = [fault for fault in FAULTS if fault.make is not full_file_system or can_mount()]
-            judged = [judge_fault(fault, base / f"fault-{k}", seconds) for k, fault in enumerate(faults)]
+            judged = [judge_fault(fault, base / f"fault-{k}") for k, fault in enumerate(FAULTS)]
         return Killed(solved, swept, seconds, judged)
 
     def measure(self, found: Killed) -> dict[str, Measured]:

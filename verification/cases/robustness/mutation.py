@@ -20,8 +20,6 @@ ROOT = Path(__file__).resolve().parents[3]
 TOOL = "verification.robustness.mutants"
 """The program that perturbs the numbers: of the source, and not imported here before it is needed."""
 DRAWN = ("number", "comparison", "branch")
-NAMED = 12
-"""Tests that kill most, on the page."""
 
 
 def needs() -> str:
@@ -90,10 +88,6 @@ def counts_table(found: Mapping) -> SmallTable:
     return SmallTable("Mutants by module", columns, [row(name) for name in names])
 
 
-def _place(one: Mapping) -> str:
-    return f"{one['mutant']['module']} {one['mutant']['function']}"
-
-
 def drawn_table(found: Mapping) -> SmallTable:
     """Comparisons, conditions and the numbers around the core, which are drawn: killed of all, by package."""
     core, counts = {(mutant.module, mutant.kind) for mutant, _ in numbers_of_core(found)}, Counter()
@@ -128,19 +122,13 @@ def survivors_table(found: Mapping) -> SmallTable:
 
 def equivalent_table(found: Mapping) -> SmallTable:
     """The equivalent mutants: constants that must not matter, and how much they do."""
-    rows = [
-        (_place(one), one["mutant"]["text"], one["reason"], f"{one['change']:.2g}", str(one["probes"]))
-        for one in found["shown"]
-    ]
+    rows = []
+    for one in found["shown"]:
+        where = f"{one['mutant']['module']} {one['mutant']['function']}"
+        change, probes = f"{one['change']:.2g}", str(one["probes"])
+        rows.append((where, one["mutant"]["text"], one["reason"], change, probes))
     columns = "where|constant|why it must not matter|largest change, in tolerances|solves that run the module"
     return SmallTable("Constants that must not change the answer", columns.split("|"), rows)
-
-
-def killers_table(found: Mapping) -> SmallTable:
-    """The tests that kill most."""
-    counts = Counter(one["by"] for one in found["judged"] if one["outcome"] == "killed")
-    rows = [(name, str(count)) for name, count in counts.most_common(NAMED)]
-    return SmallTable("Tests that kill most", ("test", "mutants"), rows)
 
 
 class Mutation(Case):
@@ -161,23 +149,18 @@ class Mutation(Case):
         others = sum(errors.values()) - failed
         fast = f"{found['tests']} that take less than a second each"
         yield "Perturbed by", f"a factor {FACTOR}; named counts grow by {MORE}; one at a time"
-        yield (
-            "Drawn beside them",
-            f"{scope.PERCENT} % of the comparisons, conditions and numbers around the core",
-        )
+        drawn = f"{scope.PERCENT} % of the comparisons, conditions and numbers around the core"
+        yield "Drawn beside them", drawn
         yield "Left out as structure", "0, indices, powers, keys, integers that never meet a float"
         yield "Tests asked", f"{fast}; those that run the function, the fastest first"
         yield "Killed by", f"{failed} by an assertion, {others} by an error or by the time that they take"
         yield "Time", f"{found['seconds']:.0f} s"
         if found["quick"]:
-            yield (
-                "Sample",
-                f"{scope.QUICK_COUNT} mutants of the film's law, seed {scope.SEED}; all of them at level "
-                "full",
-            )
+            few = f"{scope.QUICK_COUNT} mutants of the film's law, seed {scope.SEED}"
+            yield "Sample", f"{few}; all of them at level full"
 
     def tables(self, found: Mapping) -> Iterator[SmallTable]:
-        for table in (counts_table, drawn_table, survivors_table, equivalent_table, killers_table):
+        for table in (counts_table, drawn_table, survivors_table, equivalent_table):
             if (made := table(found)).rows:
                 yield made
 

@@ -7,13 +7,11 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from verification.cases.case import FEM, FEM_3D, SAM, Case, Context, Measured, Plot, SmallTable
-from verification.figures.stability import matrix
+from verification.cases.case import FEM, FEM_3D, SAM, Case, Context, Measured, SmallTable
 from verification.robustness.matrix.row import Bench, Cell, Expectation, Kind, Refused, Right, Row, judge
 from verification.robustness.matrix.rows import TOPICS, all_rows
 
 MODELS = (SAM, FEM, FEM_3D)
-SHORT = {SAM: "SAM", FEM: "FEM\naxisym.", FEM_3D: "FEM\n3D"}
 Judged = Mapping[str, Mapping[str, Cell]]  # row -> model -> cell
 
 
@@ -88,37 +86,6 @@ class Stability(Case):
     def notes(self, found: Matrix) -> list[str]:
         wrong = [each for each in found.cells if each[-1].kind is Kind.WRONG]
         return [f"Wrong: {name}, {model}: {cell.text}" for name, model, cell in wrong]
-
-    def figures(self, found: Matrix) -> Iterator[Plot]:
-        kinds = {row.name: drawn_as(row, found.judged[row.name]) for row in found.rows}
-        counts = Counter(kind for cells in kinds.values() for kind in cells.values())
-        words = ", ".join(f"{count} {kind}" for kind, count in counts.items())
-        there = {
-            model: name for model, name in SHORT.items() if any(model in cells for cells in kinds.values())
-        }
-        yield Plot(
-            matrix(kinds, there, {row.name: row.what for row in found.rows}),
-            "matrix",
-            "Extremes and what becomes of them",
-            f"A table of coloured cells, a row for each extreme and a column for each model: {words}",
-            "Right: converged and within its bound. All errors are expected and say what to change: the "
-            "solve ended with a reason (a grid or box too small, say), the input is refused, or it is not "
-            "for this model while another one solves it.",
-        )
-
-
-def drawn_as(row: Row, cells: Mapping[str, Cell]) -> dict[str, str]:
-    """Model -> what a cell is, with errors told apart."""
-    solved = any(cell.kind is Kind.RIGHT for cell in cells.values())
-    refusal = "not for this model" if solved else "input refused"
-    words = {}
-    for model, cell in cells.items():
-        expected = row.expected[model]
-        early = isinstance(expected, Refused) and expected.status is None
-        words[model] = cell.kind.value
-        if cell.kind is Kind.ERROR:
-            words[model] = refusal if early else "ended with a reason"
-    return words
 
 
 def _explained(expected: Expectation, cell: Cell | None) -> bool:

@@ -34,7 +34,7 @@ from verification.cases.case import (
     with_keys,
 )
 from verification.compare.verdicts import LIMIT, breaking_radius
-from verification.figures.rough import pressures, sections
+from verification.figures.maps import rough_pressures, sections
 from verification.runs.sampling import pressure_map
 
 SCENE = "rough-patch"
@@ -150,7 +150,7 @@ class RoughFilm(Case):
         scene, coated, uncoated = found.shown
         (x, y, p), (_, _, p_bare) = pressure_map(coated), pressure_map(uncoated)
         yield Plot(
-            pressures(x, y, {"coated": p, "bare": p_bare}),
+            rough_pressures(x, y, {"coated": p, "bare": p_bare}),
             "pressure",
             "Pressure on the rough patch",
             "Maps of the pressure with and without the film and their difference: the same spots, slightly "

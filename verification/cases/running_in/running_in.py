@@ -20,7 +20,8 @@ from verification.cases.case import Context, Measured, Plot, SmallTable, View, w
 from verification.cases.running_in import study
 from verification.cases.running_in.study import BULK, CUBIC, GIGA, LAST, NAMES, A, B, Effort, Run, Study
 from verification.compare.running_in_measures import Limits
-from verification.figures.running_in import over_cycles, regime_map, six_panels, yield_profiles
+from verification.figures.lines import over_cycles, yield_profiles
+from verification.figures.running_in import regime_map, six_panels
 from verification.reference.regime import regime
 
 if TYPE_CHECKING:

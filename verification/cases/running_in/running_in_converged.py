@@ -20,7 +20,7 @@ from sam.scene.surface import heights, mean_deviation, with_relief
 from verification.cases.case import SAM, Context, Plot, with_keys, with_loading
 from verification.cases.running_in.study import CUBIC, LITERATURE_B, NAN, with_plasticity
 from verification.compare.running_in_measures import Scar
-from verification.figures.running_in import over_cells
+from verification.figures.lines import over_cells
 
 if TYPE_CHECKING:
     from pandas import DataFrame

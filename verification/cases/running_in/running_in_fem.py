@@ -20,7 +20,7 @@ from sam.scene import Plasticity, Result, Scene, Wear
 from verification.cases.case import SAM, Context, Plot, with_body, with_loading
 from verification.cases.recipes import cells_of_asperities, rubbed
 from verification.compare.rough_measures import Depths, PatchPressure, compared_depths, relative_l2, spots
-from verification.figures.rough import residual
+from verification.figures.lines import residual
 
 if TYPE_CHECKING:
     from pandas import DataFrame

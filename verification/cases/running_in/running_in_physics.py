@@ -34,7 +34,7 @@ from verification.cases.running_in.study import (
     Run,
     Study,
 )
-from verification.figures.running_in import over_cycles
+from verification.figures.lines import over_cycles
 
 if TYPE_CHECKING:
     from pandas import DataFrame

@@ -26,7 +26,7 @@ from sam.scene import Scene
 from verification.cases.case import Context, Measured, Plot, SmallTable, with_keys, with_loading
 from verification.cases.running_in import study
 from verification.cases.running_in.study import BULK, DEEPER, LAST, NAMES, STATEMENTS, A, B, Effort, Study
-from verification.figures.running_in import probabilities
+from verification.figures.specials import probabilities
 from verification.sensitivity import UNIFORM, design
 from verification.surrogate import Surrogate, surrogate
 

@@ -13,7 +13,7 @@ import numpy as np
 from sam.scene import Path, Result, Scene
 from verification.cases.case import SAM, Context, Plot, with_grid, with_loading
 from verification.cases.running_in.study import outside
-from verification.figures.moving import of_passes
+from verification.figures.lines import of_passes
 from verification.runs import models
 
 if TYPE_CHECKING:

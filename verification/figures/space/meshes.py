@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What the pictures in space are made of: the surface, a plane y = const and the plastic zone of a run, as
-meshes in µm whose z points up.
+"""What the pictures in space are made of: the surface, a plane y = const and the plastic zone of a
+run, as meshes in µm whose z points up.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ _mesh = cache(mesh_of)
 class Sheet:
     """The surface in a state.
 
-    x (nx,), y (ny,): its nodes in µm; raised: the displacement of the nodes upwards in µm, (nx, ny), None
-    where it is not known; fields: name of a column -> values in its unit, at the nodes (nx, ny) or in the
-    cells between them (nx - 1, ny - 1).
+    x (nx,), y (ny,): its nodes in µm; raised: the displacement of the nodes upwards in µm, (nx,
+    ny), None where it is not known; fields: name of a column -> values in its unit, at the nodes
+    (nx, ny) or in the cells between them (nx - 1, ny - 1).
     """
 
     x: np.ndarray

@@ -166,8 +166,8 @@ def _load(found: Found) -> str:
 
 
 def _exaggeration(sheet: Sheet, height: np.ndarray) -> float:
-    """1, 2 or 5 times a power of ten: the largest by which the heights stay within RELIEF of the width; 1 for
-    a plane.
+    """1, 2 or 5 times a power of ten: the largest by which the heights stay within RELIEF of the
+    width; 1 for a plane.
     """
     if not np.ptp(height) > 0.0:
         return 1.0

@@ -53,8 +53,8 @@ FLAT = {"lighting": False}
 class Picture:
     """What is drawn, in µm and with heights times `exaggeration`.
 
-    parts: (mesh, options of pyvista's `add_mesh`); "scalars" among them are coloured between `limits`; label:
-    of the colour bar, with the unit; box: (3, 2), the ends of the axes.
+    parts: (mesh, options of pyvista's `add_mesh`); "scalars" among them are coloured between
+    `limits`; label: of the colour bar, with the unit; box: (3, 2), the ends of the axes.
     """
 
     title: str
@@ -74,8 +74,8 @@ class Picture:
 
 @dataclass(frozen=True)
 class _Projection:
-    """The parallel projection of a box: unit vectors on the screen, and the middle and the size of what is
-    seen.
+    """The parallel projection of a box: unit vectors on the screen, and the middle and the size of
+    what is seen.
     """
 
     right: np.ndarray
@@ -110,7 +110,6 @@ def drawn(picture: Picture) -> Figure:
         panel.imshow(pixels, extent=(-width, width, -height, height), interpolation="antialiased", zorder=2)
         figure.suptitle(picture.title, fontsize=9.5, fontweight="bold")
         _axes(panel, picture, view)
-        _directions(figure, view)
         figure.colorbar(ScalarMappable(Normalize(*picture.limits), COLOURS), cax=bar, label=picture.label)
         bar.grid(False)
         if picture.said:
@@ -160,8 +159,8 @@ def add(plotter: pv.Plotter, picture: Picture) -> None:
 
 
 def _axes(panel: Axes, picture: Picture, view: _Projection) -> None:
-    """Three edges of the box with ticks and the others behind the bodies; z says the lengths before their
-    exaggeration.
+    """Three edges of the box with ticks and the others behind the bodies; z says the lengths before
+    their exaggeration.
     """
     (x0, x1), (y0, y1), (z0, z1) = picture.box
     hidden = [((x0, y0, z0), (x0, y1, z0)), ((x0, y1, z0), (x1, y1, z0)), ((x0, y1, z0), (x0, y1, z1))]
@@ -182,8 +181,8 @@ def _edge(
     label: str,
     times: float = 1.0,
 ) -> None:
-    """An edge between two corners with ticks towards `out` and its label: beside its middle, or above its end
-    where it is upright.
+    """An edge between two corners with ticks towards `out` and its label: beside its middle, or
+    above its end where it is upright.
     """
     first, last = np.array(ends)
     along = int(np.argmax(np.abs(last - first)))
@@ -194,7 +193,8 @@ def _edge(
     low, high = first[along] / times, last[along] / times
     length = np.linalg.norm(np.diff(view.place(first, last), axis=0)) / inch
     values = MaxNLocator(min(max(int(length / APART), 1), 5)).tick_values(low, high)
-    look = {"fontsize": 8, "ha": _side(towards[0]), "va": "top" if towards[1] < -0.3 else "center"}
+    side = "center" if abs(towards[0]) < 0.3 else "left" if towards[0] > 0.0 else "right"
+    look = {"fontsize": 8, "ha": side, "va": "top" if towards[1] < -0.3 else "center"}
     rounding = 1e-9 * (high - low)
     for value in values[(values >= low - rounding) & (values <= high + rounding)]:
         point = first.copy()
@@ -208,27 +208,6 @@ def _edge(
     else:
         middle = view.place(0.5 * (first + last))[0]
         panel.text(*(middle + 0.36 * inch * towards), label, **look | {"fontsize": 9})
-
-
-def _side(towards: float) -> str:
-    if abs(towards) < 0.3:
-        return "center"
-    return "left" if towards > 0.0 else "right"
-
-
-def _directions(figure: Figure, view: _Projection) -> None:
-    """Arrows along x, y and z in the corner at the lower left."""
-    panel = figure.add_axes((0.01, 0.01, 0.11, 0.11 * figure.get_figwidth() / figure.get_figheight()))
-    panel.set_axis_off()
-    panel.set(xlim=(-0.9, 1.3), ylim=(-0.9, 1.3), aspect="equal")
-    panel.set_in_layout(False)
-    origin = view.place(view.centre)[0]
-    for name, direction in zip("xyz", np.eye(3), strict=True):
-        end = view.place(view.centre + direction)[0] - origin
-        panel.annotate(
-            "", end, (0.0, 0.0), arrowprops={"arrowstyle": "-|>", "linewidth": 1.0, "color": "black"}
-        )
-        panel.text(*(1.3 * end), f"${name}$", fontsize=8, ha="center", va="center")
 
 
 def png(figure: Figure) -> bytes:

@@ -6,16 +6,15 @@ said of uncertainties.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cache
 from typing import Any
 
 import numpy as np
 
-from sam.scene import HeightMap, Scene, Status
+from sam.scene import HeightMap, Status
 from verification.quantities import contact_of
-from verification.reference.coated_sphere import CoatedContact, solve_force, thin_layer
+from verification.reference.coated_sphere import thin_layer
 from verification.reference.hertz import CircularContact, effective_modulus
-from verification.reference.layered_axisymmetric import CoatedHalfSpace
+from verification.references import coated_contact, layers_of
 from verification.robustness.matrix import checks
 from verification.robustness.matrix.checks import against, as_other_model, balanced, hertz, relative, same_as
 from verification.robustness.matrix.row import (
@@ -184,23 +183,11 @@ def steps_and_tolerances() -> Iterator[Row]:
         yield Row(name, "tolerance", what, changes, expected, quick=tolerance == 1e-12)
 
 
-@cache
-def _exact(layers: CoatedHalfSpace, radius: float, force: float) -> CoatedContact:
-    return solve_force(layers, radius, force)
-
-
-def layers_of(scene: Scene) -> CoatedHalfSpace:
-    """The coated half-space of a scene, as the reference solutions take it."""
-    film = scene.body.coating
-    return CoatedHalfSpace(film.young, film.poisson, film.thickness, scene.body.young, scene.body.poisson)
-
-
 def coated() -> Check:
     """A sphere on a coated half-space, by dual integral equations: p0 and approach."""
 
     def expected(trial: Trial) -> dict[str, float]:
-        scene = trial.scene
-        exact = _exact(layers_of(scene), scene.counterbody.radius, scene.loading.force)
+        exact = coated_contact(trial.scene)
         return {"p_center_Pa": float(exact.pressure(0.0)), "approach_m": exact.approach}
 
     return against("coated half-space", expected, {"p_center_Pa": 0.015, "approach_m": 0.004}, FILM_CELLS)

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""The mutants of a module: numbers, comparisons and conditions of its source, which changes some of them.
+"""The mutants of a module: numbers, comparisons and conditions of its source, which changes some of
+them.
 
-Perturbed by a factor 1.001 are, each by itself: every float; every integer that is an operand of + - * / and
-meets a float there, which only the run tells (`Number`); every row of a table. Structure, and left as it is:
-0, indices and slices, powers, keys of dictionaries, operands of // and %, arguments and limits that are
-integers, integers that only ever meet integers. A named integer, NAME = 24 in a module or a class, is a
-count: it grows by 2, as some have to stay even. In functions, < becomes <= and any other comparison its
-opposite, by itself; each condition of an if, a while or the like is negated.
+Perturbed by a factor 1.001 are, each by itself: every float; every integer that is an operand of +
+- * / and meets a float there, which only the run tells (`Number`); every row of a table. Structure,
+and left as it is: 0, indices and slices, powers, keys of dictionaries, operands of // and %,
+arguments and limits that are integers, integers that only ever meet integers. A named integer, NAME
+= 24 in a module or a class, is a count: it grows by 2, as some have to stay even. In functions, <
+becomes <= and any other comparison its opposite, by itself; each condition of an if, a while or the
+like is negated.
 """
 
 from __future__ import annotations
@@ -23,8 +25,9 @@ ARITHMETIC = (np.add, np.subtract, np.multiply)
 FACTOR = 1.001
 MORE = 2
 HOOK = "_perturbed_number_"
-"""Begins the names under which a rewritten module finds its `Number`; one underscore, as a class changes
-names with two."""
+"""Begins the names under which a rewritten module finds its `Number`; one underscore, as a class
+changes names with two.
+"""
 NEIGHBOUR = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt}
 OPPOSITE = {ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Gt: ast.LtE, ast.GtE: ast.Lt} | {
     one: other
@@ -35,9 +38,10 @@ OPPOSITE = {ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Gt: ast.LtE, ast.GtE: ast.Lt} 
 
 @dataclass(frozen=True)
 class Mutant:
-    """One change. kind: "number", "count", "row", "comparison" or "branch"; function: qualified name, "" at
-    the level of the module; ordinal: among those of its kind in the function; text: what is changed, or what
-    a comparison becomes; code: file line where the code begins; line: of the source.
+    """One change. kind: "number", "count", "row", "comparison" or "branch"; function: qualified
+    name, "" at the level of the module; ordinal: among those of its kind in the function; text:
+    what is changed, or what a comparison becomes; code: file line where the code begins; line: of
+    the source.
     """
 
     module: str
@@ -64,8 +68,8 @@ class Mutant:
 
 
 class Number:
-    """An integer that is perturbed where it meets a float, and in each true division; anywhere else it is
-    itself.
+    """An integer that is perturbed where it meets a float, and in each true division; anywhere else
+    it is itself.
     """
 
     def __init__(self, value: int, factor: float):
@@ -132,130 +136,107 @@ def _conditions(node: ast.AST) -> list[ast.expr]:
     return [node.test] if hasattr(node, "test") else getattr(node, "ifs", [])
 
 
-class _Finder(ast.NodeVisitor):
-    """Collects the mutants of a module, each with its node and the operator or value that takes its place."""
+Found = tuple[Mutant, ast.AST, tuple[int, type] | None]
+"""A mutant, its node, and the place of an operator with what it becomes."""
 
-    def __init__(self, module: str, source: str):
-        self.module, self.lines = module, source.splitlines()
-        self.found: list[tuple[Mutant, ast.AST, tuple[int, type] | None]] = []
-        self.ordinals: Counter[tuple[str, str]] = Counter()
-        self.functions: list[tuple[str, int, bool]] = []  # qualified name, first line, whether a function
-        self.parents: list[ast.AST] = []
-        self.indices = 0  # of how many subscripts the node is inside
 
-    def _add(self, kind: str, text: str, node, change: tuple[int, type] | None = None) -> None:
-        """change: place of an operator among those of a comparison, and what it becomes."""
-        path = ".".join(name for name, *_ in self.functions)
-        code = next((first for _, first, function in reversed(self.functions) if function), 0)
+def _found(module: str, source: str, tree: ast.Module) -> list[Found]:
+    """The mutants of a module, in the order of the source."""
+    lines, ordinals, found = source.splitlines(), Counter(), []
+
+    def add(scopes: tuple, kind: str, text: str, node, *, change: tuple[int, type] | None = None) -> None:
+        path = ".".join(name for name, *_ in scopes)
+        code = next((first for _, first, function in reversed(scopes) if function), 0)
         if code or change is None:
-            line = self.lines[node.lineno - 1].strip()
-            mutant = Mutant(self.module, kind, path, self.ordinals[path, kind], text, code, line)
-            self.ordinals[path, kind] += 1
-            self.found.append((mutant, node, change))
+            line = lines[node.lineno - 1].strip()
+            found.append((Mutant(module, kind, path, ordinals[path, kind], text, code, line), node, change))
+            ordinals[path, kind] += 1
 
-    def generic_visit(self, node: ast.AST) -> None:
-        self.parents.append(node)
-        for test in _conditions(node):
-            if not isinstance(test, ast.Constant):
-                self._add("branch", f"not ({ast.unparse(test)})", test, (0, ast.Not))
-        super().generic_visit(node)
-        self.parents.pop()
-
-    def visit_Subscript(self, node):
-        self.parents.append(node)
-        self.visit(node.value)
-        self.indices += 1
-        self.visit(node.slice)
-        self.indices -= 1
-        self.parents.pop()
-
-    def visit_Compare(self, node):
-        negated = len(node.ops) == 1 and node in _conditions(self.parents[-1])
-        for place, old in enumerate(map(type, node.ops)):
-            others = [NEIGHBOUR.get(old), None if negated else OPPOSITE[old]]
-            left, right = [node.left, *node.comparators][place : place + 2]
-            for other in filter(None, others):
-                changed = ast.unparse(ast.Compare(left, [other()], [right]))
-                self._add("comparison", changed, node, (place, other))
-        self.generic_visit(node)
-
-    def _inside(self, node, name: str, function: bool) -> None:
-        first = min([node.lineno, *(d.lineno for d in getattr(node, "decorator_list", ()))])
-        if function:
-            for default in (
-                *node.args.defaults,
-                *node.args.kw_defaults,
-            ):  # evaluated where the function is made
-                if default is not None:
-                    self.visit(default)
-        self.functions.append((name, first, function))
-        self.parents.append(node)
-        for part in node.body if isinstance(node.body, list) else [node.body]:
-            self.visit(part)
-        self.parents.pop()
-        self.functions.pop()
-
-    def visit_FunctionDef(self, node):
-        self._inside(node, node.name, True)
-
-    def visit_Lambda(self, node):
-        self._inside(node, "<lambda>", True)
-
-    def visit_ClassDef(self, node):
-        self._inside(node, node.name, False)
-
-    def visit_Dict(self, node):
-        self.parents.append(node)
-        for value in node.values:
-            self.visit(value)
-        self.parents.pop()
-
-    def visit_UnaryOp(self, node):
-        if isinstance(node.op, ast.USub) and isinstance(node.operand, ast.Constant):
-            self._number(node, node.operand.value)
-        else:
-            self.generic_visit(node)
-
-    def visit_Constant(self, node):
-        self._number(node, node.value)
-
-    def _number(self, node, value) -> None:
-        if type(value) not in (int, float, complex) or value == 0 or self.indices:
+    def visit(node: ast.AST, above: tuple, scopes: tuple, inside_index: bool) -> None:
+        """above: the nodes around; scopes: (name, first line, whether a function) of each around."""
+        if isinstance(_unsigned(node), ast.Constant):
+            running = any(function for *_, function in scopes)
+            if not inside_index and (kind := _kind_of_number(node, above, running)):
+                name = "" if running else _assigned(node, above)
+                add(scopes, kind, f"{name} = " * bool(name) + ast.unparse(node), node)
             return
-        running = any(function for *_, function in self.functions)
-        kind = "number" if type(value) is not int else self._kind_of_integer(node, running)
-        if kind:
-            name = "" if running else self._assigned(node)
-            self._add(kind, f"{name} = {ast.unparse(node)}" if name else ast.unparse(node), node)
+        for kind, text, changed, change in _operators(node, above):
+            add(scopes, kind, text, changed, change=change)
+        for child, scope, index in _parts(node):
+            visit(child, (*above, node), (*scopes, *scope), inside_index or index)
 
-    def _kind_of_integer(self, node, running: bool) -> str:
-        parent = self.parents[-1]
-        if isinstance(parent, ast.BinOp | ast.AugAssign):
-            return "number" if isinstance(parent.op, ast.Add | ast.Sub | ast.Mult | ast.Div) else ""
-        if running:
-            return ""
-        if self._assigned(node):
-            return "count"
-        return "number" if isinstance(parent, ast.Tuple | ast.List) else ""
+    visit(tree, (), (), False)
+    return found
 
-    def _assigned(self, node) -> str:
-        """The name that a number of a module or a class is assigned to, by itself or in a row of names."""
-        above = self.parents[-2:] if isinstance(self.parents[-1], ast.Tuple) else self.parents[-1:]
-        if not isinstance(above[0], ast.Assign | ast.AnnAssign):
-            return ""
-        targets = above[0].targets if isinstance(above[0], ast.Assign) else [above[0].target]
-        if len(above) == 1:
-            return ast.unparse(targets[0])
-        if isinstance(targets[0], ast.Tuple):
-            return ast.unparse(targets[0].elts[above[1].elts.index(node)])
+
+def _parts(node: ast.AST) -> Iterator[tuple[ast.AST, tuple, bool]]:
+    """(part, the scope that it is in, as a tuple, whether it is an index) of what is looked at in a
+    node: no keys, decorators and annotations.
+    """
+    if isinstance(node, ast.FunctionDef | ast.Lambda | ast.ClassDef):
+        arguments = getattr(node, "args", None)  # a class has none
+        defaults = [*arguments.defaults, *filter(None, arguments.kw_defaults)] if arguments else []
+        yield from ((each, (), False) for each in defaults)  # evaluated where the function is made
+        first = min([node.lineno, *(each.lineno for each in getattr(node, "decorator_list", ()))])
+        scope = getattr(node, "name", "<lambda>"), first, arguments is not None
+        yield from (
+            (each, (scope,), False) for each in (node.body if isinstance(node.body, list) else [node.body])
+        )
+    else:
+        index = node.slice if isinstance(node, ast.Subscript) else None
+        for child in node.values if isinstance(node, ast.Dict) else ast.iter_child_nodes(node):
+            yield child, (), child is index
+
+
+def _operators(node: ast.AST, above: tuple) -> Iterator[tuple]:
+    """(kind, text, node, change) of each comparison in a node, and of each condition that it has."""
+    if isinstance(node, ast.Compare):
+        negated = len(node.ops) == 1 and node in _conditions(above[-1])
+        for place, old in enumerate(map(type, node.ops)):
+            left, right = [node.left, *node.comparators][place : place + 2]
+            for other in filter(None, (NEIGHBOUR.get(old), None if negated else OPPOSITE[old])):
+                yield "comparison", ast.unparse(ast.Compare(left, [other()], [right])), node, (place, other)
+    for test in _conditions(node):
+        if not isinstance(test, ast.Constant):
+            yield "branch", f"not ({ast.unparse(test)})", test, (0, ast.Not)
+
+
+def _unsigned(node: ast.AST) -> ast.AST:
+    """What a minus stands before, or the node."""
+    return node.operand if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub) else node
+
+
+def _kind_of_number(node: ast.AST, above: tuple, running: bool) -> str:
+    """What a number is: "number" or "count", empty for structure. running: whether inside of a function."""
+    value, parent = _unsigned(node).value, above[-1]
+    if type(value) not in (int, float, complex) or value == 0:
         return ""
+    if type(value) is not int:
+        return "number"
+    if isinstance(parent, ast.BinOp | ast.AugAssign):
+        return "number" if isinstance(parent.op, ast.Add | ast.Sub | ast.Mult | ast.Div) else ""
+    if running:
+        return ""
+    if _assigned(node, above):
+        return "count"
+    return "number" if isinstance(parent, ast.Tuple | ast.List) else ""
+
+
+def _assigned(node: ast.AST, above: tuple) -> str:
+    """The name that a number of a module or a class is assigned to, by itself or in a row of names."""
+    row = isinstance(above[-1], ast.Tuple)
+    statement = above[-2] if row else above[-1]
+    if not isinstance(statement, ast.Assign | ast.AnnAssign):
+        return ""
+    target = statement.targets[0] if isinstance(statement, ast.Assign) else statement.target
+    if not row:
+        return ast.unparse(target)
+    return ast.unparse(target.elts[above[-1].elts.index(node)]) if isinstance(target, ast.Tuple) else ""
 
 
 def find(module: str, source: str) -> list[Mutant]:
     """All mutants of a module's source, in the order of the source."""
-    finder = _Finder(module, source)
-    finder.visit(ast.parse(source))
-    return [mutant for mutant, *_ in finder.found]
+    return [mutant for mutant, *_ in _found(module, source, ast.parse(source))]
 
 
 class _Rewriter(ast.NodeTransformer):
@@ -290,10 +271,9 @@ def rewritten(
     source: str, mutants: Sequence[Mutant], factor: float = FACTOR
 ) -> tuple[ast.Module, dict[str, tuple[Mutant, Number]]]:
     """The tree of the source with these changed, and the integers by the names that it needs to run."""
-    finder, wanted = _Finder(mutants[0].module, source), {}
-    finder.visit(tree := ast.parse(source))
-    for mutant, node, change in finder.found:
-        if mutant in mutants:
+    tree, wanted, chosen = ast.parse(source), {}, set(mutants)
+    for mutant, node, change in _found(mutants[0].module, source, tree):
+        if mutant in chosen:
             wanted.setdefault(id(node), []).append((mutant, change))
     rewriter = _Rewriter(wanted, factor)
     return ast.fix_missing_locations(rewriter.visit(tree)), rewriter.numbers

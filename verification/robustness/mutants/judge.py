@@ -10,7 +10,6 @@ import functools
 import gc
 import os
 import pickle
-import selectors
 import signal
 import sys
 import time
@@ -18,6 +17,8 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection, wait
 from types import FunctionType, ModuleType
 from typing import Any
 
@@ -32,8 +33,9 @@ WORKERS = 2
 SECONDS = 1.0
 """Of processor time, with what it sets up: a test is fast below it."""
 ALONE, TOGETHER = 2 * SECONDS, 15.0
-"""Seconds of processor time that a test may take while observed, which takes longer, and all that one mutant
-meets."""
+"""Seconds of processor time that a test may take while observed, which takes longer, and all that
+one mutant meets.
+"""
 ASKED = 5.0
 """Seconds that the tests asked about one mutant took together while they were observed, the fastest first."""
 PARAMETERS = 100
@@ -42,8 +44,8 @@ KILLED, SURVIVED, STRUCTURE = "killed", "survived", "structure"
 
 @dataclass(frozen=True)
 class Seen:
-    """A test on its own. called: (file, first line) of each function of the changed modules that ran in it;
-    met: the integers that met a float.
+    """A test on its own. called: (file, first line) of each function of the changed modules that
+    ran in it; met: the integers that met a float.
     """
 
     passed: bool
@@ -54,8 +56,8 @@ class Seen:
 
 @dataclass(frozen=True)
 class MutantVerdict:
-    """outcome: one of those above; by: the test that failed; seconds: its processor time; error: its kind;
-    asked: tests run.
+    """outcome: one of those above; by: the test that failed; seconds: its processor time; error:
+    its kind; asked: tests run.
     """
 
     mutant: Mutant
@@ -67,41 +69,34 @@ class MutantVerdict:
 
 
 def forked(tasks: Iterable[tuple[Any, Callable[[], Any]]], seconds: float) -> Iterator[tuple[Any, Any]]:
-    """(name, what the task returned) as they end, each in a fork; None for one that died or took more than
-    `seconds` of processor time, where that is not 0.
+    """(name, what the task returned) as they end, each in a fork; None for one that died or took
+    more than `seconds` of processor time, where that is not 0.
     """
-    running: dict[int, tuple[Any, int, bytearray]] = {}
-    selector, left = selectors.DefaultSelector(), iter(tasks)
-    more = True
+    running: dict[Connection, tuple[Any, int]] = {}
+    left, more = iter(tasks), True
     while more or running:
         while more and len(running) < WORKERS:
-            task = next(left, None)
-            if task is None:
-                more = False
-                break
-            reading, child = _start(task[1], seconds)
-            running[reading] = (task[0], child, bytearray())
-            selector.register(reading, selectors.EVENT_READ)
-        for key, _ in selector.select() if running else ():
-            name, child, held = running[key.fd]
-            if part := os.read(key.fd, 1 << 16):
-                held += part
-                continue
-            selector.unregister(key.fd)
-            os.close(key.fd)
+            if more := (task := next(left, None)) is not None:
+                connection, child = _start(task[1], seconds)
+                running[connection] = task[0], child
+        for connection in wait(list(running)) if running else ():
+            name, child = running.pop(connection)
+            try:
+                answer = connection.recv()
+            except (EOFError, OSError):  # it died, perhaps while it wrote
+                answer = None
+            connection.close()
             os.waitpid(child, 0)
-            del running[key.fd]
-            yield name, pickle.loads(bytes(held)) if held else None
+            yield name, answer
 
 
-def _start(task: Callable[[], Any], seconds: float) -> tuple[int, int]:
-    reading, writing = os.pipe()
-    child = os.fork()
-    if child:
-        os.close(writing)
+def _start(task: Callable[[], Any], seconds: float) -> tuple[Connection, int]:
+    reading, writing = Pipe(duplex=False)
+    if child := os.fork():
+        writing.close()
         return reading, child
     try:
-        os.close(reading)
+        reading.close()
         signal.signal(signal.SIGPROF, signal.SIG_DFL)
         signal.setitimer(signal.ITIMER_PROF, seconds)
         quiet = os.open(os.devnull, os.O_WRONLY)
@@ -109,16 +104,15 @@ def _start(task: Callable[[], Any], seconds: float) -> tuple[int, int]:
         os.dup2(quiet, 2)
         answer = pickle.dumps(task())
         signal.setitimer(signal.ITIMER_PROF, 0)
-        with os.fdopen(writing, "wb") as pipe:
-            pipe.write(answer)
+        writing.send_bytes(answer)
     finally:
         os._exit(0)
     raise AssertionError("not reached")
 
 
 class Session:
-    """Calls `work(items)` in place of running the tests that pytest has collected; items: node id -> test;
-    failed: files that cannot be collected.
+    """Calls `work(items)` in place of running the tests that pytest has collected; items: node id
+    -> test; failed: files that cannot be collected.
     """
 
     def __init__(self, work: Callable[[dict[str, pytest.Item]], None]):
@@ -133,8 +127,8 @@ class Session:
 
 
 def with_tests(files: Sequence[str], work: Callable[[dict[str, pytest.Item]], None]) -> list[str]:
-    """Collect the tests of these files of tests/, those of the system apart, and call work(items); the files
-    that cannot be collected. RuntimeError where pytest ends otherwise.
+    """Collect the tests of these files of tests/, those of the system apart, and call work(items);
+    the files that cannot be collected. RuntimeError where pytest ends otherwise.
     """
     from hypothesis import Phase, settings
 
@@ -154,8 +148,8 @@ def with_tests(files: Sequence[str], work: Callable[[dict[str, pytest.Item]], No
 
 
 def run(item: pytest.Item, following: pytest.Item | None = None) -> tuple[bool, float, str]:
-    """Run one test with what it sets up and, unless the following one shares it, takes down: whether it
-    passed, processor seconds, kind of the error.
+    """Run one test with what it sets up and, unless the following one shares it, takes down:
+    whether it passed, processor seconds, kind of the error.
 
     Without pytest's reports: to show why a test failed takes it longer than most of the tests do.
     """
@@ -206,11 +200,11 @@ def prepare() -> None:
 def observe(
     modules: Sequence[str], items: Mapping[str, pytest.Item], progress: Callable[[int, int], None]
 ) -> tuple[dict[str, Seen], frozenset[Mutant], list[str]]:
-    """What each test runs and takes, without those that are slow or fail; the integers that meet a float when
-    their module is loaded; the tests that fail by the fault of the rewriting.
+    """What each test runs and takes, without those that are slow or fail; the integers that meet a
+    float when their module is loaded; the tests that fail by the fault of the rewriting.
 
-    All modules are rewritten with every number as it is, and each test is run on its own, in a fork that
-    remembers nothing.
+    All modules are rewritten with every number as it is, and each test is run on its own, in a fork
+    that remembers nothing.
     """
     prepare()
     files = frozenset(import_module(name).__file__ for name in modules)
@@ -251,8 +245,8 @@ def observe(
 
 
 def askable(mutant: Mutant, seen: Mapping[str, Seen], loaded: Collection[Mutant]) -> list[str]:
-    """Tests in which the integer meets a float; those that run the function of any other mutant, or any of
-    the module if it is outside of one. The fastest first.
+    """Tests in which the integer meets a float; those that run the function of any other mutant, or
+    any of the module if it is outside of one. The fastest first.
     """
     file = import_module(mutant.module).__file__
     if mutant.integer and mutant not in loaded:

@@ -1,53 +1,331 @@
 # SPDX-License-Identifier: MIT
-"""The answers of the first page, computed of the results."""
+"""The questions of the first page and their answers, computed of the results: `pages.toml` says
+which rows, pairs and cells belong to which.
+"""
 
 from __future__ import annotations
 
+import math
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatch
+from statistics import median
+from typing import Any
 
-from verification.judging import RowStatus
+from verification.judging import LIMITS, RowStatus
 from verification.runs.store import short
-from verification.suite.pages.agreement import BEYOND
-from verification.suite.pages.findings import Evidence, Finding
-from verification.suite.pages.pairs import Pair, number_in
-from verification.suite.pages.question import Question
-from verification.suite.pages.questions import QUESTIONS
-from verification.suite.pages.stored import ShownCase, Stored
+from verification.suite.pages.judged import INPUTS, OLDER, PHYSICS, READINGS, Judged, counted
+from verification.suite.pages.older import pairs_in, times_in
+from verification.suite.pages.stored import LIMIT_SIGNS, PAGES, RED, ShownCase, Stored
+from verification.text.console import number
 from verification.text.readable import with_time
 
-OPEN, REPORTED = "open", "reported"
+FEM, EXACT = "finite elements", "closed form or published value"
 BANDS = (0.01, 0.05)
 """Of the picture of all pairs, and of the sentence above it."""
-
-
-RESULT = "a result"
-KINDS = {
-    "a cost": (
-        *(
-            "work-precision.*-1",
-            "work-precision.*-0-3",
-            "work-precision.*-faster",
-            "growth.*",
-            "accuracy.over-fixed",
-        ),
-        *("operator-budget.applications", "peers.*-tamaas", "peers.*-contact-mechanics", "peers.step-*"),
-    ),
-    "the tests": ("mutation.*",),
+OPEN, REPORTED, RESULT, UNGATED = "open", "reported", "a result", "no gate"
+NORMALISED = " over the larger of "
+"""Such an error is no share of the quantity, but of what the refinement leaves."""
+SAID = {
+    "printed inputs": "with the printed inputs",
+    "renewed": "in the second reading (a weakly hardening layer, a counter-surface renewed in each cycle)",
 }
-"""What the gates of some names are about; all others are about a result."""
+"""Readings of the paper -> for the reader."""
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A value of SAM and its reference, with the unit of both unsaid: what counts is their ratio;
+    gate: that holds it, None where only the case says both.
+    """
+
+    case: ShownCase
+    quantity: str
+    against: str
+    predicted: float
+    reference: float
+    gate: Mapping | None = None
+
+    @property
+    def error(self) -> float:
+        """Of the ratio from one, with its sign."""
+        return self.predicted / self.reference - 1.0
+
+    @property
+    def bare(self) -> str:
+        """The quantity without its unit."""
+        return re.sub(r" \[[^]]*\]", "", self.quantity)
+
+    @property
+    def why(self) -> str:
+        """Why it is as far off as it is, as far as that is known."""
+        if self.gate:
+            return f"its gate allows {100 * self.gate['tolerance']:g} %: {self.gate['reason']}"
+        for case, quantity, why in PAGES["pairs"]["beyond"]:
+            if fnmatch(self.case.name, case) and self.quantity.startswith(quantity):
+                return f"no gate; {why}"
+        return UNGATED
+
+
+def pairs_of(stored: Stored) -> list[Pair]:
+    """The pairs of all gates in the metric `relative`, and those that cases hand to the pages, each once."""
+    found = []
+    for each in stored.ran.values():
+        gated = []
+        for gate in each.gates:
+            words, name = gate["quantity"], gate["id"]
+            of_sam = not any(fnmatch(name, pattern) for pattern in PAGES["pairs"]["not_of_sam"])
+            alone = "FEM" in words and "SAM" not in words
+            if gate["metric"] == "relative" and of_sam and not alone and gate["value"] and gate["expected"]:
+                against = FEM if "FEM" in words else EXACT
+                gated.append(Pair(each, words, against, gate["value"], gate["expected"], gate))
+        known = {round(pair.error, 4) for pair in gated}
+        said = pairs_in(each.case) if "data" not in each.case else each.case["data"].get("pairs", ())
+        beside = (Pair(each, words, FEM, sam, fem) for words, sam, fem in said)
+        found += gated + [pair for pair in beside if round(pair.error, 4) not in known]
+    return found
+
+
+def far(pairs: Iterable[Pair]) -> list[list[Pair]]:
+    """The pairs beyond the wider band, of each quantity and reason together, the farthest first."""
+    found: dict[tuple[str, str], list[Pair]] = {}
+    for pair in sorted(pairs, key=lambda pair: -abs(pair.error)):
+        if abs(pair.error) > BANDS[-1]:
+            found.setdefault((pair.bare, pair.why), []).append(pair)
+    return list(found.values())
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Processor times to an error of 1 % in one contact. quantity: that has the error; sam, fem:
+    seconds (None: not reached), and whether they are a bound; model: the fastest finite elements.
+    """
+
+    problem: str
+    quantity: str
+    sam: tuple[float | None, bool] | None
+    fem: tuple[float | None, bool] | None
+    model: str
+
+    @property
+    def ratio(self) -> float:
+        """Of finite elements to SAM; NaN where one of them does not reach the error."""
+        seconds = [time[0] if time else None for time in (self.fem, self.sam)]
+        return seconds[0] / seconds[1] if all(seconds) else math.nan
+
+    @property
+    def known(self) -> bool:
+        """Whether the ratio is one, and not that of two bounds."""
+        return self.ratio > 0.0 and not (self.sam[1] and self.fem[1])
+
+    @property
+    def shown(self) -> str:
+        """The ratio for the reader, as a bound where a time is one."""
+        if not self.known:
+            return "" if math.isnan(self.ratio) else "not known"
+        return f"{'> ' * self.sam[1]}{'< ' * self.fem[1]}{number(self.ratio, 2)}"
+
+    @property
+    def row(self) -> tuple[str, ...]:
+        """Of the table."""
+        return self.problem, self.quantity, _time(self.sam), _time(self.fem), self.shown, self.model
+
+
+def _time(time: tuple[float | None, bool] | None) -> str:
+    if time is None:
+        return ""
+    return "not reached" if time[0] is None else f"{'< ' * time[1]}{number(time[0], 3)}"
+
+
+def costs_of(stored: Stored) -> list[Cost]:
+    """Every contact of the case that measured times, none where it did not run."""
+    costs, ran = [], stored.ran.get("work-precision")
+    data = ran.case.get("data", {}) if ran else {"times": ()}
+    said = data["times"] if "times" in data else times_in(ran.case)
+    for problem, words, times in said:
+        fem = {name: time for name, time in times.items() if name.startswith("FEM")}
+        reached = {name: time[0] for name, time in fem.items() if time[0]}
+        best = min(reached, key=lambda name: reached[name], default=next(iter(fem), ""))
+        costs.append(Cost(problem, words, times.get("SAM"), fem.get(best), best.removeprefix("FEM, ")))
+    return costs
+
+
+def cost_table(costs: Sequence[Cost]) -> dict:
+    """For the templates."""
+    return {
+        "caption": "Processor seconds on one thread to an error of 1 %",
+        "columns": "contact|error of the|SAM [s]|FEM [s]|FEM over SAM|FEM: the fastest model".split("|"),
+        "rows": [each.row for each in costs],
+        "note": "Of SAM and of the finite elements that are fastest there, in a new process each. <: even "
+        "the coarsest grid or mesh has so small an error; not reached: none that was tried has.",
+    }
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """All that answers may look at."""
+
+    stored: Stored
+    pairs: Sequence[Pair]
+
+    def gates(self, *patterns: str) -> Iterator[tuple[ShownCase, Mapping]]:
+        """The gates of these names, of cases that ran."""
+        for each in self.stored.ran.values():
+            for gate in each.gates:
+                if any(fnmatch(gate["id"], pattern) for pattern in patterns):
+                    yield each, gate
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One number of an answer. value: with its unit; cases: all behind it; worst: the one that the number is
+    from, if it is one; gates: behind it; allowed: what the gate of the number allows, or that it has none.
+    """
+
+    words: str
+    value: str
+    cases: tuple[ShownCase, ...]
+    worst: ShownCase | None = None
+    gates: Sequence[Mapping] = ()
+    allowed: str = ""
+
+    @property
+    def red(self) -> list[str]:
+        """The gates that failed."""
+        return [gate["id"] for gate in self.gates if gate["status"] in RED]
+
+
+def largest(evidence: Evidence, words: str, *of: str) -> Iterator[Finding]:
+    """The largest relative difference, how many there are, and within what half of them lie."""
+    begins = [each.split(": ", 1) for each in of if ": " in each]
+    found = [
+        (gate["error"], each, gate)
+        for each, gate in evidence.gates(*of)
+        if gate["error"] is not None and NORMALISED not in gate["quantity"]
+    ]
+    found += [
+        (abs(pair.error), pair.case, pair.gate)
+        for pair in evidence.pairs
+        if any(fnmatch(pair.case.name, case) and pair.quantity.startswith(q) for case, q in begins)
+    ]
+    if found:
+        error, worst, by = max(found, key=lambda each: each[0])
+        within = f", {len(found)} comparisons, half of them within {percent(median(e for e, *_ in found))}"
+        cases, gates = _once(each for _, each, _ in found), [gate for *_, gate in found if gate]
+        allowed = _allowed(by, percent) if by else UNGATED
+        yield Finding(f"{words}{within * (len(found) > 1)}", percent(error), cases, worst, gates, allowed)
+
+
+def value(
+    evidence: Evidence, words: str, gate: str, shown: str = "{}", *, in_percent: bool = False
+) -> Iterator[Finding]:
+    """The value of a gate, or its error where it has none. shown: how, with {} for the number."""
+    show = percent if in_percent else lambda of: number(of, 3)
+    for each, row in evidence.gates(gate):
+        found = row["error"] if row["value"] is None else row["value"]
+        if found is not None:
+            allowed = _allowed(row, show) if row["metric"] in ("at_most", "at_least") else ""
+            yield Finding(words, shown.format(show(found)), (each,), each, [row], allowed)
+
+
+def share(evidence: Evidence, words: str, gate: str, shown: str = "{}") -> Iterator[Finding]:
+    """The same in per cent."""
+    return value(evidence, words, gate, shown, in_percent=True)
+
+
+def held(evidence: Evidence, words: str, *patterns: str) -> Iterator[Finding]:
+    """How many of the gates of some cases hold."""
+    if found := list(evidence.gates(*patterns)):
+        gates = [gate for _, gate in found]
+        red = sum(gate["status"] in RED for gate in gates)
+        text = f"{len(gates) - red} of {len(gates)} gates"
+        yield Finding(words, text, _once(each for each, _ in found), gates=gates)
+
+
+def cell(evidence: Evidence, words: str, case: str, caption: str, *how: Any) -> Iterator[Finding]:
+    """Numbers of a row of a table as they stand. caption: its begin; how: cells that tell the row, columns of
+    the numbers, how they are shown, with {} for each, and the gate that holds the first of them, if one does.
+    """
+    row, columns, shown, gate = (*how, "")[:4]
+    ran, gates = evidence.stored.ran.get(case), [each for _, each in evidence.gates(gate)]
+    allowed = _allowed(gates[0], lambda of: number(of, 3)) if gates else UNGATED
+    for table in ran.case["tables"] if ran else ():
+        if table["caption"].startswith(caption) and set(columns) <= set(table["columns"]):
+            at = [table["columns"].index(column) for column in columns]
+            for cells in (cells for cells in table["rows"] if set(row) <= set(cells)):
+                signed = (cells[k].replace("-", "\N{MINUS SIGN}") for k in at)
+                spaced = (re.sub(r"(?<=\d) ?%", "\N{NO-BREAK SPACE}%", each) for each in signed)
+                yield Finding(words, shown.format(*spaced), (ran,), ran, gates, allowed)
+
+
+def times(evidence: Evidence, _: str) -> Iterator[Finding]:
+    """How many times the processor time of SAM finite elements take to the same error: the range
+    over the contacts where both reach it, and where only one does.
+    """
+    costs = costs_of(evidence.stored)
+    if both := sorted((each for each in costs if each.known), key=lambda each: each.ratio):
+        bounds = sum(each.sam[1] or each.fem[1] for each in both)
+        words = (
+            f"the processor time of SAM: finite elements to an error of 1 %, in {len(both)} of {len(costs)} "
+            f"contacts{f' ({bounds} of them as bounds)' * bool(bounds)}; of the others the ratio is not known"
+        )
+        ran = (evidence.stored.ran["work-precision"],)
+        yield Finding(words, f"{both[0].shown} to {both[-1].shown} times", ran)
+
+
+def statements(evidence: Evidence, _: str) -> Iterator[Finding]:
+    """What holds of the statements of the paper: for each reading of it by the median of the
+    surfaces, and for each study that ran.
+    """
+    judged, found = Judged(evidence.stored), []
+    if cases := judged.older:
+        yield Finding(f"from studies that were {OLDER.format('have')}", "No number", cases)
+    for reading, said in judged.said(READINGS, "statements").items():
+        found.append(
+            (READINGS, f"{SAID.get(reading, reading)}, by the median of the surfaces", counted(said))
+        )
+    every = f"of {len(judged.statements)}"
+    if judged.likely:
+        words = (
+            "hold at more than half of the points of the study over the inputs that the paper leaves "
+            f"open, {judged.sure} of them also by the lower bound"
+        )
+        found.append((INPUTS, words, f"{len(judged.likely)} {every}"))
+    if best := judged.most_at_a_point:
+        found.append(
+            (INPUTS, "hold together at the best of its points, which is no bound", f"{best} {every}")
+        )
+    if best := max((count for count, _ in judged.physics.values()), default=0):
+        words = (
+            f"hold on one surface under the best of {len(judged.physics)} ways to harden and to load it "
+            f"({judged.physics[()][0]} on the same surface under the way of the paper)"
+        )
+        found.append((PHYSICS, words, f"{best} {every}"))
+    for name, words, text in found:
+        yield Finding(words, text, (evidence.stored.ran[name],))
+
+
+PARTS: Mapping[str, Callable[..., Iterator[Finding]]] = {
+    "largest": largest,
+    "held": held,
+    "value": value,
+    "percent": share,
+    "cell": cell,
+    "times": times,
+    "statements": statements,
+}
+"""Kind of a part of an answer -> what looks for its number; nothing where no case ran that has it."""
 
 
 @dataclass(frozen=True)
 class Answer:
-    """A row of the index. cost: of the cases behind it and, where they tell, of both models in the worst;
-    origin: (date, commit) of each code that they ran with; cases: their names.
+    """A row of the index. question: of `pages.toml`; cost: of the cases behind it; origin: (date,
+    commit) of each code that they ran with; cases: their names.
     """
 
-    question: Question
+    question: Mapping
     findings: Sequence[Finding]
     status: str
     cost: str
@@ -62,48 +340,25 @@ class Answer:
     @property
     def about(self) -> str:
         """What the failed gates are about, empty without any."""
-        return " and ".join(dict.fromkeys(kind_of(name) for name in self.red))
+        return " and ".join(dict.fromkeys(map(kind_of, self.red)))
 
 
 def answers_of(evidence: Evidence) -> list[Answer]:
     """An answer to each question, whether its cases ran or not."""
-    return [_answer(question, evidence) for question in QUESTIONS]
+    return [_answer({"note": "", "parts": []} | question, evidence) for question in PAGES["question"]]
 
 
-def _answer(question: Question, evidence: Evidence) -> Answer:
-    findings = [finding for part in question.parts for finding in part.find(evidence)]
+def _answer(question: Mapping, evidence: Evidence) -> Answer:
+    findings = [each for kind, *part in question["parts"] for each in PARTS[kind](evidence, *part)]
     behind = {each.name: each for finding in findings for each in finding.cases}
-    cases = behind.values()
-    if not question.parts:
-        status = OPEN
-    elif not findings:
-        status = str(RowStatus.NOT_RUN)
-    elif not any(each.gated for each in findings):
-        status = REPORTED
+    gated = [finding.red for finding in findings if finding.gates]
+    if not findings:
+        status = str(RowStatus.NOT_RUN) if question["parts"] else OPEN
     else:
-        status = str(RowStatus.FAILED if any(each.red for each in findings) else RowStatus.PASSED)
-    return Answer(question, findings, status, _cost(findings, cases), origins(cases), list(behind))
-
-
-def _cost(findings: Sequence[Finding], cases: Iterable[ShownCase]) -> str:
-    seconds = [each.case["seconds"] or 0.0 for each in cases]
-    said = f"{len(seconds)} case{'s' * (len(seconds) > 1)}, {with_time(sum(seconds))}" if seconds else ""
-    for finding in findings:
-        if finding.worst and (times := _solutions(finding.worst.case)):
-            return f"{times} in {finding.worst.case['title']}; {said}"
-    return said
-
-
-def _solutions(case: Mapping) -> str:
-    """The times that both models took, if the case has them in a table."""
-    for table in case["tables"]:
-        columns = list(table["columns"])
-        if {"SAM", "FEM"} <= set(columns):
-            for row in table["rows"]:
-                times = [number_in(row[columns.index(name)]) for name in ("SAM", "FEM")]
-                if "solution [s]" in row and all(time > 0.0 for time in times):
-                    return f"SAM {with_time(times[0])}, FEM {with_time(times[1])}"
-    return ""
+        status = str(RowStatus.FAILED if any(gated) else RowStatus.PASSED) if gated else REPORTED
+    seconds = [each.case["seconds"] or 0.0 for each in behind.values()]
+    cost = f"{len(seconds)} case{'s' * (len(seconds) > 1)}, {with_time(sum(seconds))}" if seconds else ""
+    return Answer(question, findings, status, cost, origins(behind.values()), list(behind))
 
 
 def origins(cases: Iterable[ShownCase]) -> list[tuple[str, str]]:
@@ -115,61 +370,18 @@ def origins(cases: Iterable[ShownCase]) -> list[tuple[str, str]]:
     return sorted(((day, commit) for commit, day in days.items()), reverse=True)
 
 
-@dataclass(frozen=True)
-class Far:
-    """Pairs of one quantity whose difference is beyond the wider band, and why, as far as it is known."""
-
-    pairs: Sequence[Pair]
-    why: str
-
-    @property
-    def quantity(self) -> str:
-        """Without its unit."""
-        return _bare(self.pairs[0])
-
-
-def far(pairs: Iterable[Pair]) -> list[Far]:
-    """The pairs beyond the wider band, of each quantity and reason together, the farthest first."""
-    found: dict[tuple[str, str], list[Pair]] = {}
-    for pair in sorted(pairs, key=lambda pair: -abs(pair.error)):
-        if abs(pair.error) > BANDS[-1]:
-            found.setdefault((_bare(pair), _why(pair)), []).append(pair)
-    return [Far(several, why) for (_, why), several in found.items()]
-
-
-def _bare(pair: Pair) -> str:
-    """The quantity without its unit."""
-    return re.sub(r" \[[^]]*\]", "", pair.quantity)
-
-
-def _why(pair: Pair) -> str:
-    if pair.gate:
-        return f"its gate allows {100 * pair.gate['tolerance']:g} %: {pair.gate['reason']}"
-    reasons = (
-        why
-        for case, quantity, why in BEYOND
-        if fnmatch(pair.case.name, case) and pair.quantity.startswith(quantity)
-    )
-    return f"no gate{next((f'; {why}' for why in reasons), '')}"
-
-
 def kind_of(gate: str) -> str:
     """What a gate is about: a result, a cost, or the tests."""
-    return next((kind for kind, names in KINDS.items() if any(fnmatch(gate, name) for name in names)), RESULT)
-
-
-def _kinds(stored: Stored) -> str:
-    """How many of the failed gates are about what."""
-    counts = Counter(kind_of(gate["id"]) for _, gate in stored.red)
-    rest = "" if counts[RESULT] else f"none about {RESULT}; "
-    said = ", ".join(f"{count} about {kind}" for kind, count in counts.items())
-    return f" ({rest}{said})" if counts else ""
+    kinds = PAGES["kinds"].items()
+    return next((kind for kind, names in kinds if any(fnmatch(gate, name) for name in names)), RESULT)
 
 
 def sentence(stored: Stored, pairs: Sequence[Pair]) -> str:
     """What stands above the picture."""
-    ran, red = len(stored.gates), len(stored.red)
-    text = f"{ran - red} of {ran} gates hold, {red or 'none'} failed{_kinds(stored)}"
+    ran, counts = len(stored.gates), Counter(kind_of(gate["id"]) for _, gate in stored.red)
+    red, rest = counts.total(), "" if counts[RESULT] else f"none about {RESULT}; "
+    about = ", ".join(f"{count} about {kind}" for kind, count in counts.items() if count)
+    text = f"{ran - red} of {ran} gates hold, {red or 'none'} failed{f' ({rest}{about})' * bool(red)}"
     end = f" {stored.further}." if stored.further else ""
     if not pairs:
         return f"{text}.{end}"
@@ -181,3 +393,20 @@ def sentence(stored: Stored, pairs: Sequence[Pair]) -> str:
         f"{100 * abs(worst.error):.0f} % off ({worst.quantity.split(' [')[0]}, {worst.case.case['title']}"
         f"{'' if worst.gate else '; it has no gate'}).{end}"
     )
+
+
+def percent(share_of_one: float) -> str:
+    """A share to two digits; what is rounding, as such."""
+    if abs(share_of_one) < 1e-8:
+        return "rounding" if share_of_one else "0\N{NO-BREAK SPACE}%"
+    return f"{float(f'{100 * share_of_one:.2g}'):g}\N{NO-BREAK SPACE}%".replace("-", "\N{MINUS SIGN}")
+
+
+def _allowed(gate: Mapping, show: Callable[[float], str]) -> str:
+    """What a gate allows, as its number is shown; empty where that is nothing."""
+    sign = LIMIT_SIGNS[LIMITS.get(gate["metric"], "<=")]
+    return f"{sign} {show(gate['tolerance'])}" if gate["tolerance"] else ""
+
+
+def _once(cases: Iterable[ShownCase]) -> tuple[ShownCase, ...]:
+    return tuple({each.name: each for each in cases}.values())

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: MIT
 """The headline of the pages: whether this model of running-in predicts what the paper says.
 
-It also tells on what that depends. Nothing is said here that the data or the notes of a case do not hold;
-where a study did not run, that is said.
+It also tells on what that depends. Nothing is said here that the data or the notes of a case do not
+hold; where a study did not run, that is said.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from verification.cases.running_in.study import LAST, STILL
 from verification.suite.pages.judged import (
@@ -62,17 +62,15 @@ COLUMNS += ["decided by", "holds under", "what makes it hold"]
 
 @dataclass(frozen=True)
 class Headline:
-    """What the page of running-in begins with. answer: by the readings of the paper; depends: on what that
-    depends, and what each of it does; rows: of the table of statements; pictures: figures as in results.json;
-    fitted: a table, empty without, and fitted_note what it would mean. Of an older version only the answer.
+    """What the page of running-in begins with. answer: by the readings of the paper; depends: on
+    what that depends, and what each of it does; rows: of the table of statements; pictures: figures
+    as in results.json. Of an older version only the answer.
     """
 
     answer: str
     depends: Sequence[tuple[str, str]] = ()
     rows: Sequence[Sequence[str]] = ()
     pictures: Sequence[Mapping] = ()
-    fitted: Mapping = field(default_factory=dict)
-    fitted_note: str = ""
     question: str = QUESTION
     page: str = f"{PAGE}.html"
 
@@ -99,7 +97,6 @@ def headline_of(stored: Stored) -> Headline | None:
         "Wear in the last cycles": _of_last_cycles(judged),
     }
     ran = {name: each.case for name in (INPUTS, PHYSICS) if (each := judged.case(name))}
-    tables = ran[INPUTS]["tables"] if judged.chances else ()
     return Headline(
         " ".join(_of_readings(judged)),
         [(on, text) for on, said in depends.items() if (text := " ".join(filter(None, said)))],
@@ -110,8 +107,6 @@ def headline_of(stored: Stored) -> Headline | None:
             for figure in ran.get(case, {}).get("figures", ())
             if figure["png"].endswith(f"{case}-{name}.png")
         ],
-        next((each for each in tables if each["caption"].startswith("Fitted")), {}),
-        judged.note(INPUTS, "Fitted"),
     )
 
 
@@ -201,8 +196,8 @@ def _of_physics(judged: Judged) -> Iterator[str]:
 
 
 def _of_failed(judged: Judged) -> Iterator[str]:
-    """From which pressures on the model removes metal, and whether what fails with the printed inputs
-    holds under anything.
+    """From which pressures on the model removes metal, and whether what fails with the printed
+    inputs holds under anything.
     """
     regimes: Mapping = next(iter(judged.said(READINGS, "regimes").values()), {})
     if reached := [own["reached"] for own in regimes.values() if own["reached"] is not None]:

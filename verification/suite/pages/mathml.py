@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Formulas as the cases write them, in one line of text, as MathML; scripts in sentences and titles as HTML.
 
-A line such as `σ_vM ≤ σ_y(ε_p),  a³ = 3FR/(4E*)` is read so: letters are single symbols but for names of
+A line such as `σ_vM ≤ σ_y(ε_p), a³ = 3FR/(4E*)` is read so: letters are single symbols but for names of
 functions; `_` and small digits are subscripts, `^` and raised ones superscripts, `*` right after a letter a
 star; a slash makes a fraction of what stands around it without a space; words stay words between formulas,
 where the line may break.

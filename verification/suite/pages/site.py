@@ -3,38 +3,50 @@
 
 from __future__ import annotations
 
+import base64
+import csv
 import os
 import re
+import struct
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
 from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from verification.judging import RowStatus
-from verification.runs.files import write_atomically
-from verification.suite.pages.answers import Answer, answers_of, far, kind_of, origins, sentence
-from verification.suite.pages.costs import costs_of, table_of
-from verification.suite.pages.findings import Evidence
-from verification.suite.pages.groups import GROUPS, OTHER, Group, group_of, page_of
-from verification.suite.pages.headline import PAGE, Headline, headline_of
-from verification.suite.pages.mathml import formula, with_scripts
-from verification.suite.pages.pairs import pairs_of
-from verification.suite.pages.stored import ShownCase, Stored, read_stored
-from verification.suite.pages.views import (
-    Look,
-    amount,
-    brief,
-    case_view,
-    figure_view,
-    found,
-    limit,
-    markdown,
-    metric,
-    numeric,
-    sources,
+from verification.judging import LIMITS, RowStatus
+from verification.runs.files import SUMMARY, write_atomically
+from verification.runs.store import short
+from verification.suite.pages.answers import (
+    Answer,
+    Evidence,
+    answers_of,
+    cost_table,
+    costs_of,
+    far,
+    kind_of,
+    origins,
+    pairs_of,
+    sentence,
 )
+from verification.suite.pages.headline import PAGE, headline_of
+from verification.suite.pages.mathml import formula, with_scripts
+from verification.suite.pages.stored import (
+    GROUPS,
+    LIMIT_SIGNS,
+    RED,
+    ShownCase,
+    Stored,
+    group_of,
+    page_of,
+    read_stored,
+    share_used,
+)
+from verification.suite.records import origin
 from verification.text.console import number
 from verification.text.readable import with_time
 
@@ -72,17 +84,163 @@ WORDS = {
     },
 }
 """What a page is about, by its kind."""
+WIDE = 1600  # pixels: letters of a picture drawn wider than 8 inches are too small in half a page
+BRIEF = 60  # letters
+_METRICS = {"relative_l2": "relative L2", "at_most": "at most", "at_least": "at least"}
+NOT_CONFIRMED = "not confirmed"
+_NUMBER = re.compile(r"[<>≤≥]? ?[+−-]?[0-9][^ ]*( [^ ]{1,4})?$")
+
+
+@dataclass(frozen=True)
+class Look:
+    """How pages are written. folder: where; embed: figures inside the page; scenes: the folder of
+    the scenes as the pages link it, empty where it is not near them.
+    """
+
+    folder: Path
+    embed: bool = False
+    scenes: str = ""
+
+
+def case_view(each: ShownCase, look: Look, told: set[str], above: Collection[str] = ()) -> dict:
+    """A case for the template. told: the equations that stand further up on the page; filled here;
+    above: files of the figures that stand further up.
+    """
+    tight = [(share, gate["quantity"]) for gate in each.gates if (share := share_used(gate)) is not None]
+    case, digest = each.case, each.case.get("code", "")[:12]
+    equations = [tuple(row) for row in case["equations"]]
+    new = [row for row in equations if row[1] not in told]
+    told.update(row[1] for row in equations)
+    figures = [figure_view(figure, look) for figure in case["figures"] if figure["png"] not in above]
+    return {
+        **case,
+        "status": str(RowStatus.FAILED if each.failed else RowStatus.PASSED),
+        "gates": sorted(each.gates, key=lambda gate: (gate["status"] not in RED, -(share_used(gate) or 0.0))),
+        "red": len(each.red),
+        "tightest": f"{max(tight)[1]}: {100 * max(tight)[0]:.0f} %" if tight else "",
+        "equations": new,
+        "equations_above": len(equations) - len(new),
+        "figures": [figure for figure in figures if figure["embedded"]],
+        "linked": [figure for figure in figures if not figure["embedded"]],
+        "scenes": [(name, f"{look.scenes}/{name}" if look.scenes else "") for name in each.inputs],
+        "runs": [run for run in case["runs"] if (look.folder / run / SUMMARY).is_file()],
+        "works": works_of(case),
+        "origin": f"{each.date[:10]}, {short(each.commit)}" + f", code {digest}" * bool(digest),
+    }
+
+
+@cache
+def works() -> list[dict[str, str]]:
+    """The literature: what finds it in the words of a case, a regular expression; its text; its DOI as public
+    lists of references or its first page have it, NOT_CONFIRMED where none was found, empty without.
+    """
+    place = resources.files("verification.suite").joinpath("pages", "literature.csv")
+    return list(csv.DictReader(place.read_text(encoding="utf-8").splitlines()))
+
+
+def works_of(case: Mapping) -> list[tuple[str, str]]:
+    """(citation, link) of what the question, the equations and the notes of a case refer to; no
+    link without a confirmed DOI.
+    """
+    words = [text for row in case["equations"] for text in row]
+    text, found = "\n".join([*words, case["question"], *case["notes"]]), []
+    for work in works():
+        doubt = work["doi"] == NOT_CONFIRMED
+        if re.search(work["mark"], text):
+            cited = work["text"] + f" (DOI {NOT_CONFIRMED})" * doubt
+            found.append((cited, f"https://doi.org/{work['doi']}" if work["doi"] and not doubt else ""))
+    return found
+
+
+def amount(gate: Mapping, value: float | None) -> str:
+    """A computed or expected value with its unit; fields have no single value."""
+    return f"{number(value, 6)} {gate['unit']}".rstrip()
+
+
+def limit(gate: Mapping) -> str:
+    """The tolerance with its sign."""
+    return f"{LIMIT_SIGNS[LIMITS.get(gate['metric'], '<=')]} {number(gate['tolerance'])}"
+
+
+def found(gate: Mapping) -> str:
+    """What was found and what was asked, in short."""
+    return f"{number(gate['error'], 3)} against {limit(gate)}"
+
+
+def figure_view(figure: Mapping, look: Look) -> dict:
+    """A figure for the template, with its size and the files that are there."""
+    png = look.folder / figure["png"]
+    data = figure.get("csv", "")
+    files = [("PNG", figure["png"]), ("data, gzip" if data.endswith(".gz") else "data", data)]
+    there = [(kind, path) for kind, path in files if path and (look.folder / path).is_file()]
+    width, height = _size(png)
+    source = figure["png"]
+    if look.embed and figure["embedded"]:
+        content = base64.b64encode(png.read_bytes()).decode("ascii") if png.is_file() else ""
+        source = content and f"data:image/png;base64,{content}"
+    return {
+        **figure,
+        "files": there,
+        "findings": figure.get("findings", ()),
+        "missing": not png.is_file(),
+        "source": source,
+        "width": width,
+        "height": height,
+        "wide": width > min(2.2 * height, WIDE),
+    }
+
+
+def _size(png: Path) -> tuple[int, int]:
+    """Width and height in pixels, as the head of the file has them; (0, 0) without the file."""
+    try:
+        with png.open("rb") as file:
+            width, height = struct.unpack(">II", file.read(24)[16:])
+    except (OSError, struct.error):
+        return 0, 0
+    return width, height
+
+
+def numeric(table: Any) -> set[int]:
+    """The columns that hold short numbers, which stand right: more than half of their cells."""
+    rows = table["rows"] if isinstance(table, Mapping) else table.rows
+    count = len(rows[0]) if rows else 0
+    return {k for k in range(count) if 2 * sum(bool(_NUMBER.match(row[k])) for row in rows) > len(rows)}
+
+
+def brief(caption: str) -> str:
+    """A caption up to its first stop, in few words: for a line that names several."""
+    head = re.split(r"(?<=.{15})[.:;] ", caption, maxsplit=1)[0]
+    return head if len(head) <= BRIEF else f"{head[:BRIEF].rsplit(' ', 1)[0].rstrip(',')} …"
+
+
+def sources(results: Mapping) -> list[tuple[str, str]]:
+    """Command, machine, versions and hashes as rows for the reader."""
+    asked = {name: results[name] for name in ("command", "level") if name in results}
+    if text := origin(results.get("solves")):
+        asked["runs"] = text
+    return list(_flat({**asked, **results["provenance"]}))
+
+
+def _flat(tree: Mapping, prefix: str = "") -> Iterator[tuple[str, str]]:
+    for key, value in tree.items():
+        name = f"{prefix}{str(key).replace('_', ' ')}"
+        if isinstance(value, Mapping):
+            yield from _flat(value, f"{name}: ")
+        elif isinstance(value, list | tuple):
+            yield name, ", ".join(map(str, value)) or "none"
+        else:
+            yield name, "unknown" if value is None else str(value)
+
+
 FILTERS = {
     "number": number,
     "amount": amount,
     "found": found,
     "limit": limit,
-    "metric": metric,
     "formula": formula,
     "scripts": with_scripts,
     "time": with_time,
     "brief": brief,
-    "rows": markdown,
     "kind_of": kind_of,
     "page_of": page_of,
     "numeric": numeric,
@@ -96,8 +254,8 @@ def write_report(
 ) -> Path:
     """Write the pages of results into the folder of their figures; returns the one to open.
 
-    single_file: also report.html with everything inside, which is all there is of a comparison; stale: name
-    -> why a case is older than the code, which is marked.
+    single_file: also report.html with everything inside, which is all there is of a comparison;
+    stale: name -> why a case is older than the code, which is marked.
     """
     alone = results.get("kind") == "comparison"
     if not alone:
@@ -116,7 +274,7 @@ def _write_pages(stored: Stored, folder: Path) -> None:
     evidence = Evidence(stored, pairs_of(stored))
     answers = answers_of(evidence)
     pages = {
-        f"{group.name}.html": _group_page(group, cases, answers, stored=stored, look=look)
+        f"{group['name']}.html": _group_page(group, cases, answers, stored=stored, look=look)
         for group, cases in _groups(stored)
     }
     for name, template in (
@@ -133,7 +291,7 @@ def _write_pages(stored: Stored, folder: Path) -> None:
 
 def remove_pages(folder: Path) -> None:
     """Remove what `write_report` wrote, but for the picture."""
-    names = (INDEX, README, ONE_FILE, *(f"{group.name}.html" for group in (*GROUPS, OTHER)))
+    names = (INDEX, README, ONE_FILE, *(f"{group['name']}.html" for group in GROUPS))
     for name in names:
         (folder / name).unlink(missing_ok=True)
 
@@ -146,9 +304,9 @@ def _one_file(results: Mapping, folder: Path) -> str:
     return _page("single.html.j2", stored, cases=cases, origins=origins(stored.ran.values()))
 
 
-def _groups(stored: Stored) -> Iterator[tuple[Group, list[ShownCase]]]:
+def _groups(stored: Stored) -> Iterator[tuple[dict, list[ShownCase]]]:
     """The groups of which a case ran, with these: failed first, then by the share of the tolerance used."""
-    for group in (*GROUPS, OTHER):
+    for group in GROUPS:
         cases = [each for each in stored.ran.values() if group_of(each.name) == group]
         if cases:
             yield group, _ordered(cases)
@@ -159,10 +317,10 @@ def _ordered(cases: Iterable[ShownCase]) -> list[ShownCase]:
 
 
 def _group_page(
-    group: Group, cases: list[ShownCase], answers: list[Answer], *, stored: Stored, look: Look
+    group: dict, cases: list[ShownCase], answers: list[Answer], *, stored: Stored, look: Look
 ) -> str:
     told: set[str] = set()
-    headline = headline_of(stored) if group.name == PAGE else None
+    headline = headline_of(stored) if group["name"] == PAGE else None
     pictures = headline.pictures if headline else ()
     shown = {each["png"] for each in pictures}
     long = len(cases) > MANY_CASES or sum(len(each.case["figures"]) for each in cases) > MANY_FIGURES
@@ -171,18 +329,18 @@ def _group_page(
         stored,
         headline=headline,
         pictures=[figure_view(each, look) for each in pictures],
-        answers=[each for each in answers if each.question.page == group.name and not _told(each, headline)],
+        answers=[
+            each
+            for each in answers
+            if each.question["page"] == group["name"]
+            and not (headline and each.question["words"] == headline.question)
+        ],
         group=group,
         long=long,
         cases=[case_view(each, look, told, shown) for each in cases],
         waiting=[row for row in stored.waiting if group_of(row[0]) == group],
         origins=origins(cases),
     )
-
-
-def _told(answer: Answer, headline: Headline | None) -> bool:
-    """Whether the headline of a page answers that already."""
-    return headline is not None and answer.question.words == headline.question
 
 
 def _index(template: str, evidence: Evidence, answers: list[Answer]) -> str:
@@ -194,7 +352,7 @@ def _index(template: str, evidence: Evidence, answers: list[Answer]) -> str:
         sentence=sentence(stored, evidence.pairs),
         picture=f"{PICTURE}.png" if evidence.pairs else "",
         far=far(evidence.pairs),
-        costs=table_of(costs_of(stored)),
+        costs=cost_table(costs_of(stored)),
         answers=answers,
         red=stored.red,
         broken=stored.broken,
@@ -231,21 +389,30 @@ def _page(template: str, stored: Stored, **shown: Any) -> str:
 
 def _draw(evidence: Evidence, folder: Path) -> None:
     if evidence.pairs:
-        from verification.figures.agreement import agreement  # noqa: PLC0415 - loads matplotlib
+        from verification.figures.specials import agreement  # noqa: PLC0415 - loads matplotlib
         from verification.figures.style import save  # noqa: PLC0415 - loads matplotlib
 
         (folder / PICTURE).parent.mkdir(parents=True, exist_ok=True)
-        titles = [group.title for group in (*GROUPS, OTHER)]
+        titles = [group["title"] for group in GROUPS]
         rows = [
-            (pair.page, pair.against, pair.predicted, pair.reference, pair.case.name, pair.quantity)
-            for pair in sorted(evidence.pairs, key=lambda pair: titles.index(pair.page))
+            (
+                group_of(pair.case.name)["title"],
+                pair.against,
+                pair.predicted,
+                pair.reference,
+                pair.case.name,
+                pair.quantity,
+            )
+            for pair in sorted(
+                evidence.pairs, key=lambda pair: titles.index(group_of(pair.case.name)["title"])
+            )
         ]
         save(agreement(rows), folder / PICTURE, long=sys.maxsize)
 
 
 def _scenes_from(folder: Path) -> str:
-    """The scenes as seen from a folder of the repository; empty from elsewhere, where a link would name a
-    place of the machine.
+    """The scenes as seen from a folder of the repository; empty from elsewhere, where a link would
+    name a place of the machine.
     """
     scenes = ROOT / "verification" / "scenes"
     if not folder.resolve().is_relative_to(ROOT):

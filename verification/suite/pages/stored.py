@@ -1,14 +1,33 @@
 # SPDX-License-Identifier: MIT
-"""The results that pages are made of: the cases of a results.json that ran, each with gates and origin."""
+"""The results that pages are made of: the cases of a results.json that ran, each with gates and
+origin, and the page of each.
+"""
 
 from __future__ import annotations
 
+import tomllib
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from importlib import resources
 from pathlib import PurePosixPath
+from typing import Any
 
 from verification.judging import LIMITS, RowStatus
+from verification.rows import case_files
+
+PAGES: dict[str, Any] = tomllib.loads(
+    resources.files("verification.suite").joinpath("pages", "pages.toml").read_text(encoding="utf-8")
+)
+OTHER = {
+    "name": "other",
+    "title": "Further cases",
+    "families": [],
+    "about": "Cases that stand in no family of the table of gates.",
+}
+GROUPS: list[dict] = [*PAGES["page"], OTHER]
+"""The pages: name of the file, title, families of cases, and what it is about."""
+LIMIT_SIGNS = {"<=": "\N{LESS-THAN OR EQUAL TO}", ">=": "\N{GREATER-THAN OR EQUAL TO}", "=": "="}
 
 ASKED, NAMED = "asked", "named"
 ELSEWHERE = {
@@ -23,8 +42,8 @@ RED = (RowStatus.FAILED, RowStatus.UNCHECKED)
 
 @dataclass(frozen=True)
 class ShownCase:
-    """A case that ran. case, gates: as in results.json; commit, date: of the code and of the day that solved
-    it; inputs: names of its scene files.
+    """A case that ran. case, gates: as in results.json; commit, date: of the code and of the day
+    that solved it; inputs: names of its scene files.
     """
 
     case: Mapping
@@ -87,6 +106,17 @@ class Stored:
     def broken(self) -> list[ShownCase]:
         """Cases that failed without a red gate."""
         return [each for each in self.ran.values() if each.failed and not each.red]
+
+
+def group_of(case: str) -> dict:
+    """The page of a case."""
+    family = case_files()[case].family if case in case_files() else ""
+    return next((group for group in GROUPS if family in group["families"]), OTHER)
+
+
+def page_of(case: str) -> str:
+    """The file where a case stands, and the place in it."""
+    return f"{group_of(case)['name']}.html#{case}"
 
 
 def share_used(gate: Mapping) -> float | None:

@@ -1,0 +1,345 @@
+# SPDX-License-Identifier: MIT
+"""What the axisymmetric model returns: record, steps, cycles, units, statuses, estimates, what it refuses."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from builders import (
+    MODULUS,
+    PERFECT,
+    RADIUS,
+    SHAPES,
+    SPHERE,
+    SWIFT,
+    SWIFT_YIELD,
+    hertz_force,
+    scene as small_scene,
+)
+from rounding import close
+
+import fem_reference
+from fem_reference.axisymmetric import planner
+from fem_reference.common import contact, loading
+from fem_reference.common.bodies import expected_radius
+from fem_reference.common.contact import ActiveSet
+from fem_reference.common.hertz import force_of_approach
+from sam.scene.result import COLUMNS, COST, QUANTITIES, Status
+
+ALUMINIUM = {"young": 70e9, "poisson": 0.2}
+PUNCH = {"shape": "punch", "radius": RADIUS}
+
+
+def scene(cells=8, counter=SPHERE, *, poisson=0.3, plasticity=None, units=(1.0, 1.0), **loading):
+    return small_scene(
+        *units,
+        body={"poisson": poisson, "plasticity": plasticity},
+        counterbody=counter,
+        loading=loading,
+        fem={"cells_per_radius": cells},
+    )
+
+
+def stages_left_out(made):
+    assert all(entry.reason for entry in fem_reference.left_out(made))
+    return {entry.stage for entry in fem_reference.left_out(made)}
+
+
+def test_record_is_complete():
+    """Names, columns and lengths are those of the result record; stresses of the mesh match the tables."""
+    result = fem_reference.solve(scene(unload=True, cycles=2))
+    assert result.model == "fem-axisymmetric" and tuple(result.quantities) == QUANTITIES
+    assert tuple(result.cost) == (*COST, "factorizations", "linear_iterations")
+    assert set(result.tables) == {"history", "axis", "line", "plane", "cycles", "residuals"}
+    for name, table in result.tables.items():
+        assert tuple(table) == COLUMNS[name] and len({len(column) for column in table.values()}) == 1
+    for name in ("axis", "line", "plane"):
+        assert list(dict.fromkeys(result.tables[name]["state"])) == ["peak", "unloaded"]
+    assert result.message == "" and result.cost["contact_iterations"] >= 1
+    assert {"dofs", "elements", "h_m", "box_m", "cells_per_radius"} <= set(result.discretisation)
+    assert max(result.certificate.values()) < 1e-8
+    mesh = result.fields
+    assert mesh.points[:, 1].max() == 0.0
+    assert mesh.point_data["p_Pa"].max() == pytest.approx(result.quantities["p_max_Pa"], rel=1e-12)
+    assert mesh.cell_data["stress_Pa"].shape == (len(mesh.cells["quad"]), 6)
+    assert mesh.cell_data["mises_Pa"].max() < result.quantities["mises_max_Pa"]
+    corners = mesh.points[mesh.cells["quad"]]
+    x, z = corners[..., 0], corners[..., 2]
+    area = 0.5 * np.abs(np.sum(x * np.roll(z, -1, axis=1) - np.roll(x, -1, axis=1) * z, axis=1))
+    assert area.sum() == pytest.approx(result.discretisation["box_m"] ** 2, rel=1e-12)
+
+
+def test_record_of_a_body_that_yields():
+    """Strains in every table and field, those of the history at the peak and after it."""
+    result = fem_reference.solve(
+        scene(plasticity=SWIFT, force=hertz_force(4 * SWIFT_YIELD), steps=10, unload=True)
+    )
+    h, q = result.tables["history"], result.quantities
+    assert h["step"] == list(range(1, 12)) and h["peeq_max"][9] == q["peeq_max"] == h["peeq_max"][10]
+    assert list(np.diff(h["peeq_max"]) >= 0) == [True] * 10
+    assert h["note"] == [""] * 10 + ["elastic: unloading in one step"]
+    assert result.tables["plane"]["peeq"].max() <= q["peeq_max"]
+    cells = result.fields.cell_data
+    # monotone loading: accumulated strain is about the size of the plastic strain, whose trace is zero
+    strain = cells["plastic_strain"]
+    size = np.sqrt(2 / 3 * ((strain[:, :3] ** 2).sum(axis=1) + 2 * (strain[:, 3:] ** 2).sum(axis=1)))
+    assert np.abs(strain[:, :3].sum(axis=1)).max() < 1e-15
+    assert size.max() == pytest.approx(cells["peeq"].max(), rel=2e-2)
+    assert max(result.certificate.values()) < 1e-8 and result.certificate["yield_excess"] < 1e-10
+    assert 0 < q["residual_uz_center_m"] < q["approach_m"]
+    assert 0 < q["residual_mises_max_Pa"] < q["mises_max_Pa"]
+    line = result.tables["line"]
+    after = line["state"] == "unloaded"
+    assert not line["p_Pa"][after].any()
+    assert line["gap_m"][after].min() == pytest.approx(0.0, abs=1e-15)  # the counter-body just touches
+
+
+def test_a_punch_is_singular_and_has_no_gap_beside_it():
+    result = fem_reference.solve(scene(counter=PUNCH))
+    line = {name: np.asarray(values) for name, values in result.tables["line"].items()}
+    beside = line["x_m"] > RADIUS * (1 + 1e-12)
+    assert result.quantities["contact_radius_m"] == RADIUS
+    assert not line["p_Pa"][beside].any() and np.isnan(line["gap_m"][beside]).all()
+    assert any("singular" in warning for warning in result.warnings)
+    assert max(result.certificate.values()) < 1e-8
+
+
+def test_path_does_not_matter():
+    """Elastic and frictionless: ten steps end where one step does, up to the rounding of the solver."""
+    one, ten = (fem_reference.solve(scene(steps=n)) for n in (1, 10))
+    for name, value in one.quantities.items():
+        assert ten.quantities[name] == (None if value is None else close(value, 1e-9)), name
+    history = ten.tables["history"]
+    assert history["force_N"] == pytest.approx(0.65 * np.arange(1, 11) / 10, rel=1e-15)
+    # the scaled set is right, or off by one node
+    assert max(history["iterations"]) <= 3 and ten.cost["newton_iterations"] == sum(history["iterations"])
+
+
+def test_unloading_and_cycles():
+    """One step back to exactly nothing, with a note; later cycles repeat the first, with a note."""
+    result = fem_reference.solve(scene(steps=3, unload=True, unload_steps=5, cycles=3))
+    h = result.tables["history"]
+    assert h["cycle"] == [1] * 4 + [2] * 4 + [3] * 4 and h["step"] == [1, 2, 3, 4] * 3
+    assert h["note"][3] == "elastic: unloading in one step"
+    assert all("equal to cycle 1" in note for note in h["note"][4:])
+    for name in ("force_N", "approach_m", "contact_area_m2", "p_max_Pa"):
+        assert h[name][3] == 0.0 and h[name][4:8] == h[name][:4]
+    for table in ("axis", "line", "plane"):
+        t = result.tables[table]
+        after = t["state"] == "unloaded"
+        for name in set(t) & {"p_Pa", "uz_m", "mises_Pa", "sxx_Pa", "szz_Pa"}:
+            assert not t[name][after].any() and t[name][~after].any()
+    assert result.quantities["residual_uz_center_m"] == result.quantities["residual_mises_max_Pa"] == 0.0
+    assert result.tables["cycles"]["p_max_Pa"] == [result.quantities["p_max_Pa"]] * 3
+    line = result.tables["line"]
+    after = line["state"] == "unloaded"
+    assert line["gap_m"][after] == close(line["x_m"][after] ** 2 / (2 * RADIUS), 1e-12)
+    assert fem_reference.solve(scene()).quantities["residual_uz_center_m"] is None
+
+
+@pytest.mark.parametrize("made", [scene(force=0.0), scene(counter=PUNCH, force=0.0, steps=2, unload=True)])
+def test_no_force(made):
+    """Zero force: a converged result of zeros, with the initial gap."""
+    result = fem_reference.solve(made)
+    assert result.status is Status.CONVERGED
+    q, zero = result.quantities, ("force_N", "approach_m", "contact_area_m2", "p_max_Pa", "mises_max_Pa")
+    assert [q[name] for name in zero] == [0.0] * len(zero) and q["mises_max_depth_m"] is None
+    assert not any(result.tables["history"]["force_N"]) and not result.tables["line"]["p_Pa"].any()
+    assert not result.tables["plane"]["mises_Pa"].any() and np.isfinite(result.tables["axis"]["z_m"]).all()
+
+
+# --- units ---
+
+
+def unit(name, length, stress):
+    for ending, factor in (("_N", stress * length**2), ("_Pa", stress), ("_m2", length**2), ("_m", length)):
+        if name.endswith(ending):
+            return factor
+    return 1.0
+
+
+@pytest.mark.parametrize(
+    ("keys", "length", "stress", "within"),
+    [
+        ({}, 1e-6, 1.0, 1e-12),  # a contact of nanometres
+        ({"counter": SPHERE | ALUMINIUM}, 1.0, 1e-6, 1e-12),
+        ({"counter": PUNCH}, 3.7e3, 7.3e-9, 1e-12),
+        ({"plasticity": SWIFT, "force": hertz_force(4 * SWIFT_YIELD), "unload": True}, 3.7e3, 7.3e-9, 1e-9),
+    ],
+    ids=["sphere", "two bodies", "punch", "plastic"],
+)
+def test_unit_system_changes_nothing(keys, length, stress, within):
+    """Same iterations, every number equal to 1e-12 of the largest of its column; plastic to the residual."""
+    base, other = (
+        fem_reference.solve(scene(steps=3, units=units, **keys)) for units in ((1, 1), (length, stress))
+    )
+    assert other.cost["newton_iterations"] == base.cost["newton_iterations"]
+    for name, value in base.quantities.items():
+        scaled = other.quantities[name]
+        assert scaled == value or scaled / unit(name, length, stress) == close(value, within), name
+    for table, columns in base.tables.items():
+        for name in (n for n in columns if n not in ("state", "note", "residual")):
+            expected = np.asarray(columns[name], dtype=float)
+            scaled = np.asarray(other.tables[table][name], dtype=float) / unit(name, length, stress)
+            finite = np.isfinite(expected)
+            assert (np.isfinite(scaled) == finite).all()
+            largest = np.abs(expected[finite]).max(initial=0.0)
+            off = np.abs(scaled[finite] - expected[finite]).max(initial=0.0)
+            assert off <= 100 * within * largest if keys.get("plasticity") else off <= within * largest, (
+                table,
+                name,
+            )
+
+
+# --- statuses and refusals ---
+
+
+@pytest.mark.parametrize("counter", [SPHERE, PUNCH])
+def test_status_under_resolved(counter):
+    coarse, fine = (fem_reference.solve(scene(n, counter)) for n in (3, 4))
+    assert coarse.status is Status.UNDER_RESOLVED and "fem.cells_per_radius" in coarse.message
+    assert fine.status is Status.CONVERGED
+
+
+@pytest.mark.parametrize(
+    ("core", "keys"),
+    [("ELASTIC", {}), ("plastic_core", {"plasticity": PERFECT, "force": hertz_force(4e9), "steps": 4})],
+)
+def test_status_contact_at_the_edge_of_the_fine_mesh(monkeypatch, core, keys):
+    small = planner.Core(0.9, 0.8)
+    monkeypatch.setattr(planner, core, small if core == "ELASTIC" else lambda radius: small)
+    result = fem_reference.solve(scene(**keys))
+    assert result.status is Status.CONTACT_AT_GRID_EDGE and "loading.force" in result.message
+
+
+def test_status_plastic_zone_at_the_edge():
+    """A box of two radii: the plastic zone of perfect plasticity at 6 Y reaches its outermost elements."""
+    made = scene(4, plasticity=PERFECT, force=hertz_force(6e9), steps=10)
+    made = made.model_copy(update={"fem": made.fem.model_copy(update={"box": 2.6})})
+    result = fem_reference.solve(made)
+    assert result.status is Status.PLASTIC_ZONE_AT_GRID_EDGE and "fem.box" in result.message
+
+
+def test_status_not_converged(monkeypatch):
+    """A set that cannot come to rest ends in a result that says so."""
+
+    def restless(self, _multipliers, _gaps):
+        self.stuck = True
+        return True
+
+    monkeypatch.setattr(ActiveSet, "update", restless)
+    result = fem_reference.solve(scene())
+    assert result.status is Status.NOT_CONVERGED and "did not settle" in result.message
+
+
+def test_cut_limit_is_a_status(monkeypatch):
+    """A step that fails at every size: the result keeps the steps up to there, and has no unloaded state."""
+    monkeypatch.setattr(contact, "MAX_ITERATIONS", 2)
+    monkeypatch.setattr(loading, "MOST_CUTS", 1)
+    result = fem_reference.solve(scene(plasticity=PERFECT, force=hertz_force(4e9), steps=2, unload=True))
+    assert result.status is Status.STEP_CUT_LIMIT and "loading.steps" in result.message
+    history, residuals = result.tables["history"], result.tables["residuals"]
+    assert len(history["step"]) < 3 and max(residuals["step"]) not in history["step"]
+    assert result.quantities["residual_uz_center_m"] is None
+
+
+def test_refusals_name_the_key():
+    """What the model cannot represent is a ValueError with key, value and what is allowed; all at once."""
+    ellipsoid, soft = SHAPES["ellipsoid"], {"young": 1e9, "poisson": 0.5}
+    for made, words in (
+        (scene(counter=ellipsoid), r'counterbody\.shape = "ellipsoid".*"sphere" or "punch"'),
+        (scene(poisson=0.5), r"body\.poisson = 0\.5.*poisson < 0\.5"),
+        (
+            scene(counter=ellipsoid | soft, poisson=0.5),
+            r"counterbody\.shape.*; body\.poisson.*; counterbody\.po",
+        ),
+    ):
+        for asked in (fem_reference.check, fem_reference.solve):
+            with pytest.raises(fem_reference.UnsupportedScene, match=words):
+                asked(made)
+    assert issubclass(fem_reference.UnsupportedScene, ValueError)
+    fem_reference.check(scene(poisson=0.4999))
+
+
+def test_left_out_names_stage_and_reason():
+    mesh, plastic = "mesh of the counter-body", "return mapping and plastic history"
+    assert {mesh, plastic} <= stages_left_out(scene())
+    again = {"unloading steps", "cycles after the first"}
+    left = stages_left_out(scene(counter=SPHERE | ALUMINIUM, unload=True, cycles=2))
+    assert mesh not in left and again <= left
+    left = stages_left_out(scene(plasticity=SWIFT, unload=True, cycles=2))
+    assert mesh in left and not (again | {plastic}) & left
+
+
+@pytest.mark.parametrize(("keys", "cycles"), [({"steps": 3}, 1), ({"steps": 2, "plasticity": SWIFT}, 2)])
+def test_progress_counts_load_steps(keys, cycles):
+    seen = []
+    made = scene(4, force=0.05, unload=True, cycles=cycles, **keys)
+    fem_reference.solve(made, progress=lambda *args: seen.append(args))
+    total = keys["steps"] * cycles
+    assert seen == [("contact", k, total) for k in range(1, total + 1)]
+
+
+def test_left_out_loads_no_solver():
+    """Asking what is left out imports neither scikit-fem nor scipy, and nothing of sam but sam.scene."""
+    code = (
+        "import sys, fem_reference; fem_reference.plan; fem_reference.UnsupportedScene\nprint(*sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    loaded = done.stdout.split()
+    assert not [m for m in loaded if m.split(".")[0] in ("skfem", "scipy", "verification")]
+    of_sam = {m for m in loaded if m.split(".")[0] == "sam" and not m.startswith("sam.scene.")}
+    assert of_sam <= {"sam", "sam.arrays", "sam.scene"}
+
+
+def test_unknown_name_is_an_attribute_error():
+    with pytest.raises(AttributeError, match="nothing"):
+        fem_reference.nothing  # noqa: B018
+
+
+# --- estimates, which set meshes ---
+
+APPROACH = 2e-7
+FLAT = SHAPES["rounded-punch"] | {"radius": RADIUS}
+
+
+def law(slope):
+    return (
+        {"law": "linear", "yield_stress": 1e8, "modulus": slope} if slope else PERFECT | {"yield_stress": 1e8}
+    )
+
+
+@pytest.mark.parametrize("slope", [0.0, 1e10])
+def test_the_estimated_force_ends_at_three_yield_stresses_below_the_surface(slope):
+    """Of hardening steel at the representative strain 0.2 sqrt(2 R d)/R (Tabor); of an edge too."""
+    beyond = np.sqrt(2 * RADIUS * APPROACH)
+    for counter, area in ((SPHERE, np.pi * beyond**2), (FLAT, np.pi * (FLAT["flat_radius"] + beyond) ** 2)):
+        wanted = 3 * area * (1e8 + slope * 0.2 * beyond / RADIUS)
+        made = small_scene(body={"plasticity": law(slope)}, counterbody=counter)
+        assert force_of_approach(made, APPROACH) == pytest.approx(wanted, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("thickness", "modulus", "punch"),
+    [
+        (1e-12, MODULUS, False),
+        (1e-3, 80e9 / (1 - 0.2**2), False),
+        (None, MODULUS, False),
+        (None, MODULUS, True),
+    ],
+)
+def test_the_estimated_force_of_an_elastic_body_is_that_of_hertz_or_of_a_punch(thickness, modulus, punch):
+    """With a coating that of its material or of the body's, where the other does not count."""
+    coating = thickness and {"thickness": thickness, "young": 80e9, "poisson": 0.2}
+    made = small_scene(body={"coating": coating}, counterbody=PUNCH if punch else SPHERE)
+    wanted = 2 * modulus * RADIUS * APPROACH if punch else 4 / 3 * modulus * np.sqrt(RADIUS) * APPROACH**1.5
+    assert force_of_approach(made, APPROACH) == pytest.approx(wanted, rel=1e-6)
+
+
+def test_the_expected_radius_of_a_coated_contact_is_between_those_of_the_materials():
+    """a^3 is as the compliance."""
+    for thickness, ratio in ((1e-12, 1.0), (1e-3, 80e9 / (1 - 0.2**2) / MODULUS)):
+        coating = {"thickness": thickness, "young": 80e9, "poisson": 0.2}
+        made = small_scene(body={"coating": coating})
+        assert expected_radius(made) == pytest.approx(ratio ** (-1 / 3), rel=1e-5)

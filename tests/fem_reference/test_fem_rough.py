@@ -1,0 +1,393 @@
+# SPDX-License-Identifier: MIT
+"""Rough contact by finite elements in three dimensions: conditions on the returned field, maps of friction, a
+counter-body that moves, removal between the cycles, what is refused.
+"""
+
+from dataclasses import replace
+from functools import cache
+from importlib import resources
+
+import numpy as np
+import pytest
+from builders import CHEMICAL_FILM, STEEL, SWIFT
+from made_results import column
+from rounding import EPS, close
+
+import fem_reference
+from fem_reference import UnsupportedScene, spatial
+from fem_reference.common.plasticity import History
+from fem_reference.common.schedule import Load
+from fem_reference.spatial import worn_cycles
+from fem_reference.spatial.rough import build, on_mesh
+from fem_reference.spatial.worn import Limits, columns_of_points, depth_above, moved_up, own_depth
+from sam.scene import COUNTER_HEIGHT, CounterSurface, FrictionMap, HeightMap, Scene
+from verification.compare.comparison import compare_scene
+from verification.scenes.asperities import CELLS, csv_text, height_map
+
+SIDE = 12e-6
+
+
+def centres(n, side=SIDE):
+    return ((np.arange(n) + 0.5) / n - 0.5) * side
+
+
+def two_tops(x, y):
+    """Two spots of unequal load, none in the middle, nothing symmetric."""
+    first = 130e-9 * np.exp(-((x + 2.9e-6) ** 2 / (2 * 1.6e-6**2)) - (y - 1.1e-6) ** 2 / (2 * 2.2e-6**2))
+    return first + 118e-9 * np.exp(-((x - 2.9e-6) ** 2 + (y + 0.9e-6) ** 2) / (2 * 1.7e-6**2))
+
+
+def rough(n=16, height=two_tops, *, side=SIDE, cells=None, **tables):
+    """A plane on heights height(x, y) on n x n cells, or cells; a short box."""
+    cells = cells or (n, n)
+    sides = tuple(side * k / max(cells) for k in cells)
+    x, y = (centres(k, length) for k, length in zip(cells, sides, strict=True))
+    surface = {"kind": "file", "path": HeightMap(height(x[:, None], y[None, :]), sides)}
+    content = {
+        "counterbody": {"shape": "flat"},
+        "surface": surface,
+        "loading": {"force": 0.04},
+        "fem": {"box": 4},
+    }
+    return Scene(**content | tables | {"body": STEEL | tables.pop("body", {})})
+
+
+def friction_map(values):
+    return {"law": "map", "path": FrictionMap(values, (SIDE, SIDE))}
+
+
+def halves(n):
+    """A map: 0.1 for x < 0, 0.4 beyond."""
+    return friction_map(np.where(np.arange(n)[:, None] < n // 2, 0.1, 0.4) * np.ones((1, n)))
+
+
+@cache
+def solved():
+    """Two spots on 14 x 14 cells."""
+    scene = rough(14)
+    return scene, spatial.solve(scene)
+
+
+@cache
+def at_peak():
+    """Model and last state of the two spots with a map of friction, on coarse cells."""
+    model, steps = spatial.load_steps(rough(12, friction=halves(12)))
+    return model, steps[-1].state
+
+
+def test_the_cut_goes_through_the_largest_pressure():
+    """It is the mean of the elements on both sides of that row, as they are in the fields."""
+    _, result = solved()
+    surface, cut, plane = (result.tables[name] for name in ("surface", "cut", "plane"))
+    top, pitch = int(np.argmax(surface["p_Pa"])), SIDE / 14
+    assert cut["y_m"] == pytest.approx(np.full(len(cut["y_m"]), surface["y_m"][top]), abs=1e-12)
+    assert max(plane["mises_Pa"]) < max(cut["mises_Pa"]) <= result.quantities["mises_max_Pa"]
+    fields = result.fields
+    middles = fields.points[fields.cells["hexahedron"]].mean(axis=1)
+    beside = np.abs(middles[:, 1] - surface["y_m"][top]) < 0.6 * pitch
+    for x, z, szz in list(zip(cut["x_m"], cut["z_m"], cut["szz_Pa"], strict=True))[::37]:
+        at = beside & (np.hypot(middles[:, 0] - x, middles[:, 2] - z) < 1e-3 * pitch)
+        assert at.sum() == 2
+        assert fields.cell_data["stress_Pa"][at, 2].mean() == pytest.approx(szz, rel=1e-9, abs=1.0)
+    assert result.quantities["p_center_Pa"] is None  # a patch has no centre
+    assert not result.quantities["friction_coefficient"] and np.nanmax(surface["friction"]) == 0.0
+
+
+def test_conditions_on_the_returned_field():
+    """Balance, slip with the local coefficient, signs, reactions far away: from displacements and stiffness
+    alone (1e-9). The whole coefficient is that of the loads, also far away.
+    """
+    model, state = at_peak()
+    problem, total = model.problem, model.scales.peak_force
+    force = problem.solid.stiffness @ state.u
+    normal = np.where(state.active, force[problem.normal], 0.0)
+    assert state.converged and normal.sum() == pytest.approx(total, rel=1e-8) and normal.min() >= 0.0
+    local = 0.4 * problem.weights[state.active]
+    assert local == pytest.approx(np.where(model.places[0][state.active] < 0, 0.1, 0.4))
+    assert force[problem.along][state.active] == pytest.approx(local * normal[state.active], abs=1e-8 * total)
+    gap = problem.gap0 + state.u[problem.normal] - state.approach
+    assert np.abs(gap[state.active]).max() < 1e-13 and gap.min() > -1e-9
+    far, dragging = problem.solid.basis.nodal_dofs[:, problem.far], float(local @ normal[state.active])
+    assert force[far[2]].sum() == pytest.approx(-total, rel=1e-7)
+    assert force[far[0]].sum() == pytest.approx(-dragging, rel=1e-6)
+    assert model.friction(state) == pytest.approx(dragging / total, rel=1e-7)
+    held, load = (
+        np.flatnonzero(problem.fixed),
+        replace(state.load, ratio=state.load.ratio * dragging / total / 0.4),
+    )
+    # the share is that of the iteration before the last, which the last changes by its residual
+    exact = problem.far_field(load)[held]
+    assert state.u[held] == pytest.approx(exact, abs=1e-7 * np.abs(exact).max())
+
+
+def test_a_map_on_a_smooth_body_is_the_constant():
+    """The whole body with a map of one value against half of it: equal to the accuracy of the loop."""
+    content = {
+        "body": STEEL,
+        "counterbody": {"shape": "sphere", "radius": 105e-6},
+        "loading": {"force": 0.65},
+        "fem": {"cells_per_radius": 3, "box": 4},
+    }
+    values = FrictionMap(np.full((4, 4), 0.2), (20e-6, 20e-6))
+    half = spatial.solve(Scene(**content, friction={"coefficient": 0.2}))
+    grid = {"cells": [4, 4], "extent": [20e-6, 20e-6]}
+    whole = spatial.solve(Scene(**content, friction={"law": "map", "path": values}, grid=grid))
+    assert (half.discretisation["symmetry"], whole.discretisation["symmetry"]) == ("half, y >= 0", "none")
+    for name in (
+        "approach_m",
+        "p_max_Pa",
+        "pressure_centroid_x_m",
+        "friction_coefficient",
+        "contact_area_m2",
+    ):
+        assert whole.quantities[name] == close(half.quantities[name], 1e-6)
+
+
+def test_a_coarse_contact_is_not_called_converged():
+    """Fewer nodes than one resolved spot has."""
+    result = spatial.solve(rough(8, loading={"force": 1e-3}))
+    assert result.status == "under-resolved" and "give a finer surface.path" in result.message
+
+
+def test_surface_nodes_are_the_centres_of_the_cells():
+    made = spatial.plan(rough(cells=(18, 12)))
+    model, unit = build(made), made.scales.length
+    x, y = model.places
+    assert made.patch.cells == (18, 12) and not model.lines.half
+    assert np.unique(np.round(x * unit, 12)) == pytest.approx(centres(18), abs=1e-12)
+    assert np.unique(np.round(y * unit, 12)) == pytest.approx(centres(12, 8e-6), abs=1e-12)
+    expected = two_tops(x * unit, y * unit)
+    gap = model.problem.gap0 * model.scales.displacement
+    assert gap == pytest.approx(expected.max() - expected, abs=10 * EPS * np.abs(expected).max())
+
+
+def test_an_ellipsoid_over_a_rough_body_has_its_gap_and_slope_at_each_place():
+    """Its own slope, as the heights of the body do not drive it; in a relief these fall off at the border."""
+    ball = {"shape": "ellipsoid", "radius_x": 400e-6, "radius_y": 300e-6}
+    path = {"start": (-1e-6, 0.0), "end": (1e-6, 0.0), "steps": 1}
+    made = spatial.plan(rough(12, counterbody=ball, loading={"force": 0.01, "path": path}))
+    model, load, unit = build(made), Load(4 / 3, 0.0, 0.1, 0.05), made.scales
+    x, y = (np.meshgrid(*made.patch.centres, indexing="ij")[k] for k in (0, 1))
+    inside, moved = np.isfinite(model.initial_gap), model.at(load)
+    x, y = x - 0.1 * unit.length, y - 0.05 * unit.length
+    assert moved.place == (0.1, 0.05)
+    for direction, slope in (((1.0, 0.0), x / 400e-6), ((0.0, 1.0), y / 300e-6)):
+        assert model.slope(load, direction)[inside] == pytest.approx(slope.ravel(), abs=1e-15)
+    height = x**2 / 800e-6 + y**2 / 600e-6 - model.heights
+    gap = moved.initial_gap[inside] * unit.displacement
+    assert gap == pytest.approx((height - model.first).ravel(), abs=1e-12 * np.ptp(height))
+    grid = {"cells": (12, 12), "extent": (SIDE, SIDE), "border": "relief"}
+    wave = {"kind": "sinusoid", "amplitude": 20e-9, "wavelength_x": SIDE}
+    lowered, plain = (
+        build(spatial.plan(rough(12, surface=wave, grid=grid | {"border": border}))).heights
+        for border in ("relief", "free")
+    )
+    assert np.array_equal(lowered[5:7, 5:7], plain[5:7, 5:7]) and lowered[0, 0] < plain[0, 0]
+
+
+def test_the_map_is_read_where_the_nodes_are():
+    """A map that varies along y alone stays one along y."""
+    values = np.repeat(np.linspace(0.1, 0.4, 12)[None, :], 12, axis=0)
+    made = spatial.plan(rough(12, friction=friction_map(values)))
+    patch = tuple(
+        slice((line.size - 12) // 2, (line.size + 12) // 2) for line in (made.lines.x, made.lines.y)
+    )
+    assert made.weights[patch] == pytest.approx(values / 0.4)
+
+
+def test_heights_on_the_counter_body_are_those_on_the_body():
+    """Bit by bit but for the column of the heights, as the gap knows only their sum."""
+    on_body = rough(12)
+    table = CounterSurface(kind="file", path=on_body.surface.path)
+    counterbody = on_body.counterbody.model_copy(update={"surface": table})
+    opposite = on_body.model_copy(update={"surface": None, "counterbody": counterbody})
+    one, two = spatial.solve(on_body), spatial.solve(opposite)
+    assert two.quantities == one.quantities
+    np.testing.assert_array_equal(two.tables["surface"]["p_Pa"], one.tables["surface"]["p_Pa"])
+    np.testing.assert_array_equal(two.tables["surface"][COUNTER_HEIGHT], one.tables["surface"]["height_m"])
+    assert not two.tables["surface"]["height_m"].any()
+
+
+# --- what is refused, plan, recipe, comparison ---
+
+FILM = CHEMICAL_FILM | {"strain_limit": 0.02}
+WEAR = {"wear": {"strain_limit": 0.05}, "loading": {"force": 0.05, "unload": True}}
+
+
+@pytest.mark.parametrize(
+    ("tables", "key"),
+    [
+        ({"friction": FILM, "body": {"plasticity": SWIFT}}, "friction.law"),
+        (WEAR | {"body": {"plasticity": SWIFT}}, "wear.strain_limit"),
+        ({"counterbody": {"shape": "flat", **STEEL}}, "counterbody.young"),
+        ({"counterbody": {"shape": "punch", "radius": 5e-6}}, "counterbody.shape"),
+        ({"body": {"coating": {"thickness": 1e-7, "young": 8e10, "poisson": 0.3}}}, "body.coating"),
+    ],
+)
+def test_refused_by_name(tables, key):
+    with pytest.raises(UnsupportedScene, match=key.replace(".", r"\.")):
+        spatial.check(rough(**tables))
+
+
+def test_the_axisymmetric_model_refuses_them_too():
+    with pytest.raises(UnsupportedScene, match=r"surface\.kind.*wear\.strain_limit"):
+        fem_reference.check(rough(body={"plasticity": SWIFT}, **WEAR))
+
+
+def test_the_file_is_that_of_the_recipe():
+    path = resources.files("verification").joinpath("scenes", "rough-asperities.csv")
+    assert path.read_text(encoding="utf-8") == csv_text() and height_map(CELLS).cells == (48, 48)
+
+
+def test_compare_sees_a_wrong_load_and_a_missing_table():
+    """Equal results pass every row; a spot that bears 3 % more fails its own row, a result without surface
+    those that need it.
+    """
+    scene, fem = solved()
+    rows = compare_scene(scene, fem, fem)
+    assert all(row.passed for row in rows) and sum("load of the spot" in row.quantity for row in rows) == 2
+    x, p = (np.asarray(fem.tables["surface"][name]) for name in ("x_m", "p_Pa"))
+    heavier = {**fem.tables, "surface": {**fem.tables["surface"], "p_Pa": np.where(x < 0, 1.03 * p, p)}}
+    rows = compare_scene(scene, replace(fem, tables=heavier), fem)
+    assert [row.passed for row in rows if "load of the spot" in row.quantity] == [False, True]
+    rows = compare_scene(scene, replace(fem, tables={}), fem)
+    assert not {row.quantity: row.passed for row in rows}["p_Pa over the patch"]
+
+
+# --- a rough counter-body that moves ---
+
+CELL, SLIDING = 0.8e-6, 0.2
+PATH = {"start": (-1.5 * CELL, 0.0), "end": (1.5 * CELL, 0.0), "steps": 3}
+WAVE = {"kind": "sinusoid", "amplitude": 20e-9, "wavelength_x": 20 * CELL, "wavelength_y": 20 * CELL}
+
+
+def sliding(counter=WAVE, *, path=PATH, plasticity=None) -> Scene:
+    """A plane with a wave that slides three cells over 10 x 10."""
+    loading = {"force": 0.012, "steps": 1, "unload": True, "path": path}
+    return Scene(
+        body={**STEEL, "plasticity": plasticity},
+        counterbody={"shape": "flat", "surface": counter},
+        loading={name: value for name, value in loading.items() if value is not None},
+        friction={"coefficient": SLIDING},
+        grid={"cells": (10, 10), "extent": (10 * CELL, 10 * CELL)},
+        fem={"box": 4},
+        solver={"tolerance": 1e-4},
+    )
+
+
+def test_the_contact_is_that_of_a_counter_body_at_rest_with_those_heights():
+    """The same discrete problem: each within EQUILIBRIUM of the force. Its heights are in the table, and a
+    crest in equilibrium is driven by friction alone.
+    """
+    moved, end = spatial.solve(sliding()), sliding().counter_strip.at(0, PATH["end"])
+    at_rest = {"kind": "file", "path": HeightMap(end, (10 * CELL, 10 * CELL))}
+    still = spatial.solve(sliding(at_rest, path=None))
+    assert moved.converged and still.converged
+    of_moved, of_still = (column(result, "surface", "p_Pa", "peak") for result in (moved, still))
+    np.testing.assert_allclose(of_moved, of_still, atol=1e-6 * of_still.max())
+    heights = np.array(moved.tables["surface"][COUNTER_HEIGHT])[:100]
+    np.testing.assert_allclose(heights, end.ravel(), atol=1e-12 * np.ptp(end))
+    history = {name: np.array(values)[:-1] for name, values in moved.tables["history"].items()}
+    assert np.abs(history["fx_N"] / history["force_N"] / SLIDING - 1.0).max() < 2e-3
+    assert np.diff(history["s_m"]) == pytest.approx(CELL, rel=1e-9)
+
+
+def test_a_body_that_yields_has_a_row_for_the_pass():
+    """Every place counts as steady below a plane, which leaves no groove."""
+    law = {"law": "linear", "yield_stress": 0.5e9, "modulus": 10e9}
+    result = spatial.solve(sliding(path=PATH | {"steps": 1}, plasticity=law))
+    passes = result.tables["passes"]
+    assert result.converged and passes["pass"] == [1] and np.isnan(passes["groove_m"]).all()
+    assert "track" not in result.tables
+    assert 0.0 < passes["new_strain_max"][0] <= result.tables["history"]["peeq_max"][-1]
+
+
+# --- removal between the cycles ---
+
+FEW, THICK = 6, 20e-9  # cells; m of the layer that may be removed in a cycle
+
+
+@cache
+def wearing(wear: bool = True) -> Scene:
+    """A ball on few cells that yields below a rigid plane and slides."""
+    kinematic = {"modulus": (50e9,), "recovery": (50.0,)}
+    law = {
+        "law": "linear",
+        "yield_stress": 2e9,
+        "modulus": 5e9,
+        "kinematic": kinematic,
+        "layer_thickness": THICK,
+    }
+    limits = {"strain_limit": np.inf, "strain_limit_layer": 0.004, "smoothing_window": 0}
+    return rough(
+        FEW,
+        lambda x, y: -(x**2 + y**2) / (2 * 20e-6),
+        side=4e-6,
+        body={"plasticity": law},
+        loading={"force": 0.02, "steps": 1, "unload": True, "cycles": 2},
+        friction={"coefficient": 0.3},
+        **({"wear": limits} if wear else {}),
+    )
+
+
+@cache
+def ball():
+    return build(spatial.plan(wearing(False)))
+
+
+def test_a_profile_is_removed_down_to_its_first_crossing():
+    z = np.array([1.0, 2.0, 4.0])
+    strain = np.array([[3.0, 2.0, 0.0], [0.5, 3.0, 0.0], [3.0, 1.0, 3.0], [0.0, 0.0, 0.0], [0.8, 0.2, 0.0]])
+    # the surface by the first two: 4, -2, 5, 0, 1.4
+    assert depth_above(1.0, z, strain) == pytest.approx([3.0, 0.0, 2.0, 0.0, 2.0 / 3.0])
+    with pytest.raises(ValueError, match="all of a column"):
+        depth_above(1.0, z, np.array([[3.0, 2.0, 1.5]]))
+
+
+def test_the_state_moves_up_by_the_depth():
+    """Exact for fields that are linear over depth, and nothing moves where nothing is removed."""
+    model, depth = ball(), np.zeros((FEW, FEW))
+    depth[2:4, 3:5] = 0.1
+    (x, y, z), virgin = model.body.points, History.virgin(model.problem.material.shape, 6, 1)
+    field = 2.0 + 0.5 * z
+    before = History(virgin.plastic_strain + 3.0 * field, virgin.peeq + field, back=virgin.back - field)
+    after = moved_up(model, before, on_mesh(model.plan, depth, 0.0))
+    up = (after.peeq - before.peeq) / 0.5
+    shallow = z < 0.5 * z.max()  # the deepest points have nothing below them
+    assert up[shallow].max() == pytest.approx(0.1, rel=1e-12) and up[shallow].min() > -1e-14
+    far = (np.abs(x) > 1.0) | (np.abs(y) > 1.0)
+    assert np.array_equal(after.peeq[far], before.peeq[far])
+    assert after.plastic_strain[0] == pytest.approx(3.0 * after.peeq, abs=1e-12)
+    assert after.back[0, 5] == pytest.approx(-after.peeq, abs=1e-12)
+    points = model.body.points.reshape(3, -1)[:, columns_of_points(model)]
+    assert (np.diff(points[2], axis=2) > 0).all() and np.ptp(points[:2], axis=3).max() < 1e-12
+
+
+def test_depths_of_a_layer_end_where_it_does():
+    """Strains 2.4 % at the surface, less by 1 % in 0.5 half sides."""
+    model, unit = ball(), ball().scales
+    peeq = np.maximum(0.024 - 0.02 * model.body.points[2], 0.0) / unit.strain
+    state = replace(model.virgin(), history=History(np.zeros((6, *peeq.shape)), peeq))
+    for limits, depth in (
+        (Limits(0.004, 0.004, 0.0), 1.0),
+        (Limits(np.inf, 0.02, 0.05 * unit.length), 0.05),
+        (Limits(np.inf, 0.023, 0.1 * unit.length), 0.05),
+        (Limits(0.014, 0.02, 0.1 * unit.length), 0.5),
+    ):
+        depths = own_depth(model, state, limits) / unit.length
+        assert depths == pytest.approx(np.full((FEW, FEW), depth), rel=1e-9)
+
+
+def test_without_removal_the_cycles_are_those_of_a_solve():
+    none = np.zeros((FEW, FEW))
+    cycles, plain = worn_cycles(wearing(), [none, none]), spatial.solve(wearing(False))
+    assert np.array_equal(cycles[-1].tables["surface"]["p_Pa"], column(plain, "surface", "p_Pa"))
+    assert cycles[-1].peeq_max == plain.quantities["peeq_max"] and not cycles[-1].worn.any()
+
+
+def test_what_is_removed_no_longer_bears():
+    first, last = worn_cycles(wearing())
+    assert first.worn.max() == THICK and (last.worn >= first.worn).all()
+    p, q = (np.reshape(cycle.tables["surface"]["p_Pa"], (FEW, FEW)) for cycle in (first, last))
+    deepest = np.unravel_index(first.worn.argmax(), first.worn.shape)
+    assert q[deepest] < p[deepest]

@@ -1,0 +1,387 @@
+# SPDX-License-Identifier: MIT
+"""Smooth contact in three dimensions: conditions on the returned field, symmetries, units, coatings,
+plasticity, a counter-body that moves, the linear solver, what is refused.
+"""
+
+from dataclasses import replace
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from builders import RADIUS, SPHERE, SWIFT, SWIFT_YIELD, hertz_force, scene as small_scene
+from rounding import close
+
+import fem_reference
+from fem_reference import spatial
+from fem_reference.common import contact, loading
+from fem_reference.common.bodies import Elastic
+from fem_reference.common.elasticity import mises
+from fem_reference.common.loading import run
+from fem_reference.common.schedule import Load
+from fem_reference.spatial import planner, problem, recovery
+from fem_reference.spatial.hexahedra import HexSolid, block
+from fem_reference.spatial.lines import Lines, two_sided
+from fem_reference.spatial.model import build
+from fem_reference.spatial.multigrid import Preconditioner
+from fem_reference.spatial.planner import plan
+from fem_reference.spatial.solution import METHOD
+from sam.planner.make import schedule_of
+from sam.scene.result import COLUMNS
+from sam.scene.schema import Scene
+
+A, YOUNG, NU = 3e-6, 210e9, 0.3  # A: radius of the given pressures, in m
+PLASTIC = {"body": {"plasticity": SWIFT}, "force": hertz_force(4 * SWIFT_YIELD)}
+HERTZ = (0.75 * PLASTIC["force"] * RADIUS * (1 - NU**2) / YOUNG) ** (1 / 3)
+
+
+def scene(cells=3, friction=0.0, *, body=None, counter=SPHERE, box=4.0, direction="constant", **keys):
+    """A rigid sphere on steel; friction: its coefficient; keys: of loading, and units."""
+    return small_scene(
+        *keys.pop("units", (1.0, 1.0)),
+        body=body or {},
+        counterbody=counter,
+        loading=keys,
+        friction=friction and {"coefficient": friction, "direction": direction},
+        fem={"cells_per_radius": cells, "box": box},
+    )
+
+
+def given(cells=3, friction=0.0, p0=2e9, **keys):
+    return scene(cells, friction, prescribed="hertz", p0=p0, radius=A, **keys)
+
+
+def film(h, ratio=80 / 210, strength=None, poisson=NU):
+    coating = {"thickness": h * A, "young": ratio * YOUNG, "poisson": poisson, "yield_stress": strength}
+    return {"coating": coating}
+
+
+def equal_tables(first, second, names):
+    for name in names:
+        for column, values in first.tables[name].items():
+            np.testing.assert_array_equal(second.tables[name][column], values, f"{name} {column}")
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.4])
+def test_conditions_on_the_returned_field(friction):
+    """Balance of forces, full slip and signs from displacements and stiffness alone (tolerance 1e-9)."""
+    model = build(plan(scene(4, friction)))
+    state = run(model, model.plan.schedule)[-1].state
+    problem, total = model.problem, 0.5 * model.scales.peak_force
+    force = problem.solid.stiffness @ state.u
+    normal = np.where(state.active, force[problem.normal], 0.0)
+    assert state.converged and normal.sum() == pytest.approx(total, rel=1e-8) and normal.min() >= 0.0
+    slip = friction * normal[state.active]
+    assert force[problem.along][state.active] == pytest.approx(slip, abs=1e-8 * total)
+    gap = problem.gap0 + state.u[problem.normal] - state.approach
+    assert np.abs(gap[state.active]).max() < 1e-13 and gap.min() > -1e-9
+    loaded = np.concatenate([problem.normal[state.active], problem.along[state.active]])
+    assert np.abs(np.delete(force, np.union1d(loaded, np.flatnonzero(problem.fixed)))).max() < 2e-9
+    far = problem.solid.basis.nodal_dofs[:, problem.far]
+    assert force[far[2]].sum() == pytest.approx(-total, rel=1e-7)
+    assert force[far[0]].sum() == pytest.approx(-friction * total, abs=1e-7)
+    assert state.iterations <= 5
+
+
+def test_alternating_cycles_are_mirror_images():
+    """The second cycle of alternating friction is the first with x reversed (tolerance of the loop)."""
+    model = build(plan(scene(3, 0.4, direction="alternating", cycles=2)))
+    steps = run(model, model.plan.schedule)
+    first, second = (model.nodal_pressure(steps[k].state) for k in (0, 2))
+    loads = [(step.state.force, step.state.load.ratio) for step in steps]
+    assert loads == [(4 / 3, 0.4), (0.0, 0.4), (4 / 3, -0.4)]
+    assert second == pytest.approx(first[::-1], abs=1e-7)
+    assert np.abs(first - first[::-1]).max() > 0.05
+
+
+def test_half_is_whole(monkeypatch):
+    """The mesh without symmetry has the same answer to the tolerance of the loop."""
+    half, choose = spatial.solve(scene(3, 0.4)), planner.choose_lines
+
+    def whole(s):
+        lines, core = choose(s)
+        return Lines(lines.x, np.concatenate([-lines.y[:0:-1], lines.y]), lines.z, False), core
+
+    monkeypatch.setattr(planner, "choose_lines", whole)
+    full = spatial.solve(scene(3, 0.4))
+    assert full.discretisation["elements"] == 2 * half.discretisation["elements"]
+    for name, value in half.quantities.items():
+        assert value is None or full.quantities[name] == close(value, 1e-6), name
+    for name in ("p_Pa", "uz_m", "ux_m"):
+        a, b = (np.asarray(result.tables["line"][name]) for result in (half, full))
+        assert np.abs(a - b).max() < 1e-6 * np.abs(a).max()
+
+
+def test_unit_system_changes_nothing():
+    """Lengths in um, stresses in MPa: same iterations, numbers equal to the tolerance of the loop."""
+    base, other = (spatial.solve(scene(3, 0.3, units=units)) for units in ((1.0, 1.0), (1e6, 1e-6)))
+    assert other.cost["newton_iterations"] == base.cost["newton_iterations"]
+    units = {"m": 1e6, "m2": 1e12, "Pa": 1e-6, "N": 1e6}
+    for name, value in base.quantities.items():
+        if value:
+            scaled = other.quantities[name] / units.get(name.rsplit("_", 1)[-1], 1.0)
+            assert scaled == close(value, 1e-7), name
+
+
+def test_a_load_that_travels():
+    """An elastic body forgets the way: at the end of a path the state is that of the load put on there."""
+    path = {"start": (-A, 0.0), "end": (A, 0.0), "steps": 2}
+    model = build(plan(given(3, 0.2, path=path)))
+    steps = run(model, model.plan.schedule)
+    assert [step.state.load.x for step in steps] == [-1.0, 0.0, 1.0]
+    direct = model.load(Load(model.scales.peak_force, 0.2, 1.0), model.virgin())
+    assert np.abs(steps[-1].state.u - direct.u).max() < 1e-6
+    moved = model.nodal_pressure(steps[-1].state)
+    assert model.lines.x[np.argmax(moved[:, 0])] == pytest.approx(1.0)
+    assert moved[::-1] == pytest.approx(model.nodal_pressure(steps[0].state), abs=1e-12)
+    across = {"start": (0.0, -0.5 * A), "end": (0.0, 0.5 * A), "steps": 1}
+    assert not plan(given(3, 0.2, path=across)).lines.half
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    [
+        (scene(counter={"shape": "punch", "radius": 1e-5}), r'shape = "punch".*"sphere" or "ellipsoid"'),
+        (scene(counter=SPHERE | {"young": 70e9, "poisson": 0.3}), r"young = 70000000000\.0: .*rigid"),
+        (scene(box=3.0, body={"plasticity": {"law": "perfect", "yield_stress": 2e8}}), r"fem\.box = 3"),
+        (scene(body=film(0.1, poisson=0.5)), r"body\.coating\.poisson = 0\.5: .*poisson < 0\.5"),
+    ],
+)
+def test_what_is_refused(made, words):
+    """The reasons name key, value and what is allowed."""
+    for asked in (spatial.check, spatial.solve):
+        with pytest.raises(spatial.UnsupportedScene, match=words):
+            asked(made)
+
+
+def test_what_is_left_out():
+    """coupling = false is said to have no meaning here."""
+    decoupled = Scene(**scene().model_dump() | {"friction": {"coefficient": 0.2, "coupling": False}})
+    assert any("coupling" in entry.reason for entry in spatial.left_out(decoupled))
+    stages = [entry.stage for entry in spatial.left_out(scene(friction=0.2))]
+    assert "tangential traction" not in stages and {"mesh of the counter-body", "film elements"} <= set(
+        stages
+    )
+    assert "film elements" not in [entry.stage for entry in spatial.left_out(scene(body=film(0.1)))]
+
+
+def test_statuses():
+    """Too few elements in the contact; no force at all."""
+    assert spatial.solve(scene(2)).status == "under-resolved"
+    empty = spatial.solve(scene(force=0.0))
+    assert empty.converged and empty.quantities["p_max_Pa"] == 0.0
+
+
+# --- coatings ---
+
+
+@cache
+def coated():
+    """Stresses under the pressure of Hertz and its traction, two elements in the coating."""
+    model = build(plan(given(4, 0.4, p0=4e9, body=film(0.5), box=6.0)))
+    return recovery.stresses(model, model.load(Load(model.scales.peak_force, 0.4), model.virgin()))
+
+
+def test_a_face_never_takes_from_the_other_layer():
+    """The coating's stresses multiplied leave those of the body's face as they are, and vice versa."""
+    s = coated()
+    for coating, other in ((True, slice(s.coating_layers, None)), (False, slice(None, s.coating_layers))):
+        changed = {name: getattr(s, name).copy() for name in ("stress", "plane", "axis")}
+        for field in changed.values():
+            field[..., other] *= 7.0
+        both = [recovery.with_face(of.layer(coating), s.interface) for of in (s, replace(s, **changed))]
+        assert all(np.array_equal(*(getattr(face, name) for face in both)) for name in changed)
+
+
+def test_a_layer_that_yielded_is_read_at_its_elements():
+    """Beyond them a polynomial would pass the yield stress."""
+    s = coated()
+    part = s.layer(False)
+    yielded = replace(part, peeq=np.where(part.peeq == 0.0, 1e-4, part.peeq))
+    face = recovery.with_face(yielded, s.interface)
+    assert np.array_equal(face.stress[..., 0], part.stress[..., 0]) and face.z[0] == s.interface
+    assert not np.array_equal(recovery.with_face(part, s.interface).stress[..., 0], part.stress[..., 0])
+    both = replace(s, peeq=np.full_like(s.peeq, 1e-4))
+    assert recovery.largest_in_layer(both, coating=False)[0] == mises(part.stress).max()
+
+
+def test_a_field_that_is_quadratic_over_depth_is_exact_at_a_face():
+    s = coated()
+    made = replace(s.layer(False), plane=np.ones_like(s.layer(False).plane) * s.layer(False).z ** 2)
+    assert recovery.with_face(made, s.interface).plane[..., 0] == pytest.approx(s.interface**2, rel=1e-9)
+
+
+def test_far_field_of_a_coating_under_friction():
+    """It is more than that of the body, and kept."""
+    made, load = plan(scene(2, 0.2, body=film(0.5))), Load(4 / 3, 0.2)
+    model, bare = build(made), build(made.bare)
+    far, body = (m.problem.far_field(load) for m in (model, bare))
+    assert np.abs(far - body).max() > 1e-3 * np.abs(body).max()
+    assert np.array_equal(model.problem.far_field(load), far)
+
+
+def test_a_coating_of_the_body_changes_nothing():
+    """To the tolerance of the loop, under traction as well."""
+    q = spatial.solve(scene(3, 0.2, body=film(0.1, 1.0), box=3.0)).quantities
+    assert abs(q["p_max_change"]) < 1e-7 and abs(q["mises_max_change"]) < 1e-7
+
+
+def test_a_coating_that_yields(monkeypatch):
+    """Below its shear strength it yields and not beyond; above, mu p0 = 0.5 GPa > 0.67/sqrt(3) GPa, it has no
+    equilibrium, and the result names the largest pressure.
+    """
+    soft = film(0.05, strength=0.67e9)
+    result = spatial.solve(given(2, 0.1, p0=2.5e9, body=soft, box=3.0))
+    q = result.quantities
+    assert result.status == "under-resolved"
+    assert q["mises_max_film_Pa"] < 0.67e9 * (1 + 1e-9) and q["peeq_max"] > 0.0 == q["p_max_change"]
+    assert result.certificate["yield_excess"] < 1e-9 and result.certificate["equilibrium"] < 1e-9
+    monkeypatch.setattr(loading, "MOST_CUTS", 0)
+    result = spatial.solve(given(2, 0.1, p0=5e9, body=soft, box=3.0))
+    assert result.status == "step-cut-limit" and result.quantities["p_max_change"] is None
+    assert "no pressure beyond 3.868e+09 Pa" in result.message and "friction.coefficient" in result.message
+
+
+# --- plasticity ---
+
+
+def test_given_pressure_in_both_models():
+    """The force and the pressures are those given; nothing to search."""
+    made = given(2, p0=4 * SWIFT_YIELD, body={"plasticity": SWIFT}, box=3.0)
+    space, rings = spatial.solve(made), fem_reference.solve(made)
+    for name in ("force_N", "contact_area_m2", "p_max_Pa", "p_center_Pa"):
+        assert space.quantities[name] == close(rings.quantities[name], 1e-12)
+    assert space.quantities["force_N"] == pytest.approx(2 / 3 * np.pi * A**2 * 4 * SWIFT_YIELD, rel=1e-12)
+    assert rings.quantities["approach_m"] is None and rings.tables["history"]["approach_m"] == [None]
+
+
+def test_newton_is_quadratic(monkeypatch):
+    """With friction and an accurate linear solve, residuals fall with order 2 at the end of a step."""
+    monkeypatch.setattr(problem, "ACCURACY", 1e-11)
+    monkeypatch.setattr(contact, "NEGLIGIBLE", 1e-4)
+    model = build(plan(scene(3, 0.4, **PLASTIC)))
+    state = run(model, model.plan.schedule)[-1].state
+    assert state.converged and state.iterations <= 8
+    falls = [(a, b) for a, b in pairwise(state.residuals[-4:]) if a < 1e-2]
+    assert falls and all(b < max(30 * a**2, 1e-11) for a, b in falls)
+
+
+def test_resumed_solve_is_the_same_solve():
+    """The tables are equal to the last digit, unloading included; each cycle has its sign."""
+    s = scene(3, 0.3, box=3.0, steps=2, unload=True, cycles=2, direction="alternating", **PLASTIC)
+    kept = []
+    whole = spatial.solve(s, checkpoint=kept.append)
+    assert len(kept) >= 5 and kept[1].done == 2
+    equal_tables(whole, spatial.solve(s, start=kept[-3]), whole.tables)
+    assert whole.tables["history"]["friction_coefficient"] == [0.3] * len(whole.tables["history"]["step"])
+    assert whole.tables["cycles"]["friction_sign"] == [1, -1]
+    with pytest.raises(ValueError, match="fem-3d"):
+        fem_reference.solve(s.model_copy(update={"friction": None}), start=kept[0])
+
+
+def test_result_is_complete():
+    """Tables, fields in the order of meshio (positive volumes), traction, plastic shear, yield condition."""
+    result = spatial.solve(scene(3, 0.4, box=3.0, unload=True, **PLASTIC))
+    q = result.quantities
+    assert result.certificate["yield_excess"] < 1e-9
+    line = {name: np.asarray(values) for name, values in result.tables["line"].items()}
+    peak = line["state"] == "peak"
+    assert line["qx_Pa"] == pytest.approx(0.4 * line["p_Pa"], rel=1e-14)
+    assert line["x_m"][peak][0] == -line["x_m"][peak][-1]
+    assert 0 < q["plastic_shear_center_m"] < 2 * q["residual_ux_center_m"]
+    mesh = result.fields
+    corners = mesh.points[mesh.cells["hexahedron"]]
+    edges = (corners[:, k] - corners[:, 0] for k in (1, 3, 4))
+    volume = np.abs(np.einsum("ei,ei->e", np.cross(*(next(edges) for _ in (0, 1))), next(edges)))
+    assert volume.sum() == close(np.prod(np.ptp(mesh.points, axis=0)), 1e-12)
+    assert mesh.cell_data["plastic_strain"].shape == (len(corners), 6)
+    assert np.abs(mesh.cell_data["plastic_strain"][:, :3].sum(axis=1)).max() < 1e-12
+    worst = np.argmax(mesh.cell_data["peeq"])
+    assert corners.mean(axis=1)[worst, 2] < 6e-6
+    assert mesh.cell_data["peeq"][worst] <= q["peeq_max"] * (1 + 1e-12)
+
+
+# --- a counter-body that moves ---
+
+
+def moving(length, count, friction=0.0, *, back=False, turns="lifted", **keys):
+    """Over `length` contact radii of Hertz about the origin, along x or against it."""
+    ends = (-length / 2 * HERTZ, 0.0), (length / 2 * HERTZ, 0.0)
+    start, end = ends[::-1] if back else ends
+    return scene(
+        3, friction, path={"start": start, "end": end, "steps": count, "return": turns}, **PLASTIC | keys
+    )
+
+
+@pytest.mark.parametrize("turns", ["lifted", "to-and-fro"])
+@pytest.mark.parametrize("back", [True, False])
+def test_the_steps_are_those_of_sam(turns, back):
+    made = moving(3, 4, 0.2, turns=turns, back=back, unload=back, cycles=3, steps=2)
+    targets, unit, others = (
+        spatial.plan(made).schedule.targets,
+        spatial.plan(made).scales,
+        schedule_of(made).targets,
+    )
+    ours = [
+        (t.cycle, t.number, t.load.x * unit.length, t.load.force * unit.force / unit.peak_force, t.load.ratio)
+        for t in targets
+    ]
+    expected = [(t.cycle, t.step, t.load.x, t.load.force, 0.2 * t.load.sign) for t in others]
+    assert np.array(ours) == pytest.approx(np.array(expected), rel=1e-12, abs=1e-18)
+    assert [t.unloads for t in targets] == [not t.rises for t in others]
+
+
+def test_backwards_is_the_mirror_image():
+    """With friction along the motion: displacements to the accuracy of the contact search."""
+    places = []
+    for back in (False, True):
+        line = spatial.solve(moving(0.5, 1, 0.2, unload=True, back=back)).tables["line"]
+        here = np.asarray(line["state"]) == "unloaded"
+        places.append([np.asarray(line[name])[here] for name in ("x_m", "uz_m")])
+    (x, forth), (y, back) = places
+    assert x == pytest.approx(-y[::-1], abs=1e-12 * HERTZ)
+    assert forth == pytest.approx(back[::-1], abs=1e-7 * forth.max())
+    assert abs(forth - forth[::-1]).max() > 0.05 * forth.max()
+
+
+def test_resumed_passes_are_equal_and_hold_what_results_read():
+    """Two passes, resumed inside the second one: equal to the last digit. Of the states inside a pass only
+    those that a step begins from have displacements; the history is that of all states.
+    """
+    made, records = moving(0.4, 1, unload=True, cycles=2, steps=1, box=3.0), []
+    whole = spatial.solve(made, checkpoint=records.append)
+    equal_tables(
+        whole, spatial.solve(made, start=records[-3]), ("history", "passes", "track", "cross", "line")
+    )
+    assert all(list(whole.tables[name]) == list(COLUMNS[name]) for name in ("track", "cross", "passes"))
+    model, steps = spatial.load_steps(made, records[-1])
+    held = [bool(step.state.u.size) for step in steps]
+    assert held == [a.cycle != b.cycle or b.unloads for a, b in pairwise(steps)] + [True]
+    assert held.count(False) == 2
+    largest = [METHOD.peeq_max(model, step.state) for step in run(model, model.plan.schedule)]
+    assert np.array_equal(largest, whole.tables["history"]["peeq_max"])
+
+
+# --- linear solver ---
+
+
+def test_multigrid_is_deterministic_and_symmetric():
+    """The approximate inverse is symmetric, and twice the same."""
+    line = two_sided(-1.0, 1.0, 0.25, 5.0)
+    solid = HexSolid(block(Lines(line, line[line >= 0], line[line >= 0], True)), Elastic(1.0, 0.3))
+    mesh = solid.basis.mesh
+    far = np.zeros(mesh.p.shape[1], dtype=bool)
+    far[np.unique(mesh.facets[:, mesh.boundaries["far"]])] = True
+    free = ~np.repeat(far, 3)
+    free[solid.boundary_dofs("symmetry", 1)] = False
+    inverses = []
+    for seed in (1, 2):
+        np.random.seed(seed)
+        inverses.append(Preconditioner(solid.stiffness, mesh.p, far)(solid.stiffness, free))
+    a, b = np.random.default_rng(3).standard_normal((2, solid.size))
+    assert np.array_equal(*(inverse(a) for inverse in inverses))
+
+    def first(r: np.ndarray) -> np.ndarray:
+        return np.where(free, inverses[0](np.where(free, r, 0.0)), 0.0)
+
+    assert b @ first(a) == pytest.approx(a @ first(b), rel=1e-10)

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: MIT
+"""A misfit sphere in SAM: its stress and profiles, the plastic zone, means over cells, and the grid that is
+chosen.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from builders import PERFECT, scene
+from scipy.integrate import quad
+
+import sam
+from sam.elastic.misfit import PROFILES, MisfitSphere
+from sam.grid.cells import CellGrid, Room
+from sam.grid.smooth import MisfitDemand
+from sam.half_space import ElasticConstants
+from sam.scene import Grid, Scene, resolved
+from verification.reference.mindlin_cheng import EigenstrainSphere
+from verification.reference.misfit_sphere import GrowingSphere
+
+YOUNG, NU, A, DEPTH = 210e9, 0.3, 1e-5, 1.7e-5
+
+
+def sphere(profile: str, free=True) -> MisfitSphere:
+    return MisfitSphere(ElasticConstants(YOUNG, NU), DEPTH, A, 0.02, PROFILES[profile], free)
+
+
+def growing(plasticity=None, depth=DEPTH, **keys) -> Scene:
+    loading = {"prescribed": "misfit-sphere", "depth": depth, "radius": A, "misfit": 0.02, **keys}
+    return scene(body={"plasticity": plasticity}, loading=loading)
+
+
+def test_stress_below_a_free_surface_is_that_of_mindlin_and_cheng():
+    """A uniform sphere, outside of it and inside."""
+    exact, found = EigenstrainSphere(0.02, A, DEPTH, YOUNG, NU), sphere("ball")
+    x, y, z = (A * np.array(each) for each in ([0.3, 2.0, 0.0], [0.1, -1.0, 0.0], [1.9, 0.0, 0.2]))
+    off = np.abs(np.moveaxis(found.stress(x, y, z), 0, -1) - exact.stress(x, y, z))
+    assert off.max() < 1e-12 * YOUNG * 0.02
+    grid = CellGrid(3, 3, A, A, np.zeros(1))
+    moved = exact.surface_displacement(grid.x[:, None], grid.y)
+    assert found.moved_surface(grid) == pytest.approx(moved, rel=1e-12)
+
+
+@pytest.mark.parametrize("profile", list(PROFILES))
+def test_stress_of_an_infinite_body_is_that_of_the_closed_form(profile):
+    exact = GrowingSphere(YOUNG, NU, lambda peeq: 1e30 + 0 * peeq, 0.02, A, profile)
+    places = [0.3, 1.2, 0.0, 1e-3], [0.1, -1.0, 0.0, 0.0], [0.2, 0.3, 0.9, 0.0]
+    x, y, z = (A * np.array(each) for each in places)
+    found = np.moveaxis(sphere(profile, free=False).stress(x, y, z + DEPTH), 0, -1)
+    assert np.abs(found - exact.stress(x, y, z)).max() < 2e-7 * YOUNG * 0.02
+
+
+@pytest.mark.parametrize("name", list(PROFILES))
+def test_means_and_strength_are_integrals_of_the_local_strain(name):
+    profile = PROFILES[name]
+
+    def within(x: float) -> float:
+        points = [1.0] if x > 1.0 else None
+        return quad(lambda s: 3 * s**2 * float(profile.local(np.array(s))), 0, x, points=points)[0]
+
+    assert profile.strength == pytest.approx(within(8.0), rel=1e-9)
+    for x in (0.3, 0.9995, 1.0005, 2.0):
+        assert float(profile.mean(np.array(x))) == pytest.approx(within(x) / x**3, rel=1e-9)
+
+
+def test_mean_of_gauss_near_the_centre():
+    """Its series: 3 sum (-1)^n x^2n/(n! (2n + 3))."""
+    x = 0.0099
+    exact = 1 - 3 * x**2 / 5 + 3 * x**4 / 14 - x**6 / 18
+    assert float(PROFILES["gauss"].mean(np.array(x))) == pytest.approx(exact, rel=3e-13)
+
+
+@pytest.mark.parametrize("name, strength", [("smooth", 8 / 35), ("ball", 1.0)])
+def test_zone_ends_where_the_stress_of_a_point_is_the_yield_stress(name, strength):
+    """E e strength/((1 - nu) x^3) outside of the sphere; at most 4.5 radii."""
+    exact = A * (YOUNG * 0.02 * strength / ((1 - NU) * 1e9)) ** (1 / 3)
+    assert sphere(name).zone(1e9) == pytest.approx(exact, rel=1e-12)
+    assert sphere(name).zone(1e6) == pytest.approx(4.5 * A, rel=1e-12)
+    assert sphere(name).zone(1e12) == 0.0
+
+
+def test_mean_stress_is_that_of_the_cells():
+    """A smooth profile everywhere, against many more points in each cell."""
+    found, grid = sphere("gauss"), CellGrid(3, 2, A / 2, A / 3, np.zeros(1))
+    faces = DEPTH + A * np.array([-0.4, -0.1, 0.3])
+    t, w = np.polynomial.legendre.leggauss(9)
+    x, y = grid.x[:, None] + grid.hx / 2 * t, grid.y[:, None] + grid.hy / 2 * t
+    z = (faces[1:] + faces[:-1])[:, None] / 2 + np.diff(faces)[:, None] / 2 * t
+    points = found.stress(*(each.ravel() for each in np.meshgrid(x, y, z, indexing="ij")))
+    exact = np.einsum("siajbkc,a,b,c->skij", points.reshape(6, 3, 9, 2, 9, 2, 9), w, w, w) / 8
+    mean = found.mean_stress(grid, grid.whole, faces)
+    assert np.abs(mean - exact).max() < 3e-6 * np.abs(exact).max()
+
+
+# the grid
+
+
+def grid_of(zone: float | None, given: Grid | None = None, depth: float = DEPTH) -> CellGrid:
+    return MisfitDemand(given, depth, A, zone).grid(Room())
+
+
+def test_cells_and_side_follow_the_sphere_and_its_zone():
+    """Eight cells in the radius, at most twelve in its zone; 1.5 zones, or two radii, to each side."""
+    assert grid_of(1.2 * A).hx == pytest.approx(A / 8, rel=1e-12)
+    assert grid_of(1.8 * A).hx == pytest.approx(0.15 * A, rel=1e-12)
+    for reach, cells in ((17.4999, 35), (17.5002, 37)):
+        assert grid_of(reach / 12 * A).nx == cells
+    some = Grid(cells=(21, 21))
+    assert grid_of(0.0, some).hx == pytest.approx(4 * A / 21, rel=1e-12)
+    assert grid_of(2 * A, some).hy == pytest.approx(6 * A / 21, rel=1e-12)
+
+
+def test_output_depths_of_an_elastic_body_reach_two_radii_below_the_centre():
+    depths = grid_of(None).depths
+    assert depths[-1] == pytest.approx(DEPTH + 2 * A, rel=1e-12)
+    assert np.allclose(np.diff(depths), 0.02 * A) and 0 <= depths[0] < 0.02 * A
+
+
+@pytest.mark.parametrize("top, first", [(0.5003, 0.5003), (0.4997, 1.4997)])
+def test_a_first_layer_thinner_than_half_a_cell_is_none(top, first):
+    """Cells of A/8, the centre in the middle of one of them, faces up to `top` cells below the surface."""
+    cell = A / 8
+    faces = grid_of(1.2 * A, depth=(10.5 + top) * cell).faces
+    assert faces[:2] == pytest.approx([0.0, first * cell], abs=1e-9 * cell)
+
+
+@pytest.mark.parametrize("reach, count", [(17.4999, 17), (17.5002, 18)])
+def test_layers_reach_as_far_as_the_cells(reach, count):
+    faces = grid_of(reach / 12 * A, depth=10 * A).faces
+    assert faces[-1] == pytest.approx(10 * A + (count + 0.5) * A / 8, rel=1e-12)
+
+
+@pytest.mark.parametrize("depth", [1.6, 4.0])
+def test_the_chosen_grid_holds_the_plastic_zone_with_a_cell_at_the_centre(depth):
+    given = growing({"law": "linear", "yield_stress": 1e9, "modulus": 10e9}, depth * A)
+    assert (given.loading.profile, given.loading.surface) == ("smooth", "free")
+    assert Scene(**resolved(given)) == given
+    grid, zone = sam.choose_grid(given), sam.misfit_zone(given)
+    assert zone == pytest.approx(1.11103 * A, rel=1e-3)
+    assert grid.hx == pytest.approx(A / 8) and grid.nx % 2 == 1
+    assert grid.nx * grid.hx / 2 > 1.4 * zone and grid.faces[0] == 0.0
+    assert np.abs(grid.depths - depth * A).min() < 1e-6 * A
+    assert np.all(np.diff(grid.faces) > 0.45 * grid.hx) and len(grid.depths) < 45
+
+
+def test_an_elastic_body_needs_no_cells():
+    found = sam.solve(growing())
+    left = {each.stage for each in found.left_out}
+    assert {"contact search", "surface coefficients", "plastic loop"} <= left
+    exact = 0.28 * YOUNG * 0.02 / (1 - NU)
+    assert found.quantities["mises_max_Pa"] == pytest.approx(exact, rel=0.05)  # the image adds to it
+
+
+def test_a_zone_that_reaches_a_held_surface_is_refused():
+    soft = growing(PERFECT | {"yield_stress": 0.2e9}, surface="held")
+    with pytest.raises(sam.UnsupportedScene, match=r"loading\.depth = 1\.7.*held"):
+        sam.solve(soft)

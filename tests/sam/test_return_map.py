@@ -1,0 +1,371 @@
+# SPDX-License-Identifier: MIT
+"""A material point in the return maps of both models: closed forms, energies of a step, and layers with
+a law of their own.
+
+Closed forms with constant yield stress Y, S = C/g: a loop of strain with the plastic amplitude e has the
+stress amplitude Y + sum S tanh(g e) (+ C e for g = 0). Between stresses smax and smin one Armstrong-Frederick
+back-stress ratchets by ln((S^2 - (smin + Y)^2)/(S^2 - (smax - Y)^2))/g in each cycle.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from builders import HARDENING, LINEAR as LINEAR_LAW, SWIFT as SWIFT_LAW, YIELD_CURVE, scene, scene_text
+from scipy.optimize import brentq
+
+import fem_reference
+import sam
+from fem_reference.common.bodies import Elastic
+from fem_reference.common.plasticity import J2, History
+from fem_reference.spatial.planner import plan as spatial_plan
+from sam.plasticity.flow import (
+    BackStresses,
+    BackStressFields,
+    contraction,
+    deviator,
+    equivalent_strain,
+    kinematic_multiplier,
+    mises,
+    plastic_multiplier,
+)
+from sam.scene import (
+    Plasticity,
+    load_scene,
+    plastic_work,
+    step_energies,
+    stored_energy,
+)
+from sam.scene.body import LAWS
+from sam.scene.yield_curve import DepthProfile, Kinks, Linear, Strength, Swift, Tabulated
+from tests.material_point import MU, POINTS, YOUNG, FemPoint, SamPoint, Specimen
+from verification.checks.material import yield_stress
+from verification.cost.advice import advice_of
+
+PERFECT, SWIFT = Linear(1e9), Swift(945e6, 20.0, 0.121)
+CURVES = {
+    "swift": SWIFT,
+    "linear": Linear(1e9, 10.5e9),
+    "perfect": PERFECT,
+    "table": Tabulated((0.0, 1e-3, 5e-3), (1e9, 1.4e9, 1.5e9)),
+    "convex table": Tabulated((0.0, 1e-3, 2e-3), (1e9, 1.01e9, 2e9)),
+}
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_plastic_multiplier_solves_the_return_map(name):
+    """q - 3 m g = factor sigma_y(alpha + g), against a bracketing root finder, from just above yield to ten
+    times it.
+    """
+    curve, m3, factor = CURVES[name], 3 * 80.8e9, np.full(5, 0.8)
+    for alpha in (0.0, 7e-4, 3e-3):
+        q = (0.8 * float(curve.stress(alpha))) * np.array([0.5, 1.0 + 1e-9, 1.01, 2.0, 10.0])
+        solve = partial(plastic_multiplier, q, np.full(5, alpha), curve, factor, m3=m3)
+        found = solve()
+        assert found[0] == 0.0
+        for near in (0.5, 2.0):
+            assert solve(near=near * found) == pytest.approx(found, rel=1e-12, abs=1e-17)
+        for value, gamma in zip(q[1:], found[1:], strict=True):
+
+            def excess(g, value=value, alpha=alpha):
+                return value - m3 * g - 0.8 * float(curve.stress(alpha + g))
+
+            exact = brentq(excess, 0.0, value / m3, xtol=1e-18, rtol=1e-14)
+            assert gamma == pytest.approx(exact, rel=1e-9, abs=1e-17)
+
+
+def test_tensor_helpers():
+    stress = np.array([3.0, 1.0, -1.0, 0.5, -2.0, 1.5])
+    assert deviator(stress)[:3].sum() == pytest.approx(0.0)
+    full = np.array([[3.0, 1.5, -2.0], [1.5, 1.0, 0.5], [-2.0, 0.5, -1.0]])
+    assert contraction(stress, stress) == pytest.approx((full * full).sum())
+    assert equivalent_strain(np.array([-0.5, -0.5, 1.0, 0, 0, 0])) == pytest.approx(1.0)
+
+
+# back-stresses
+
+PRAGER = ([YOUNG / 19], [0.0])
+ONE = ([150e9], [300.0])
+THREE = ([400e9, 60e9, 6e9], [2000.0, 300.0, 0.0])
+BOTH = pytest.mark.parametrize("model", POINTS)
+
+
+@BOTH
+def test_prager_between_given_strains(model):
+    """E/(1 + E/C) = E/20 beyond yield: +-1055 MPa at +-1 %."""
+    specimen, plastic = Specimen(POINTS[model](PERFECT, *PRAGER)), 0.01 - 1055e6 / YOUNG
+    found = specimen.by_strain(0, (0.01, -0.01, 0.01), 2)
+    wanted = [(sign * 1055e6, sign * plastic) for sign in (1, -1, 1)]
+    assert np.ravel(found) == pytest.approx(np.ravel(wanted), rel=1e-9)
+    assert specimen.point.plastic[1] == pytest.approx(5 * plastic, rel=1e-9)
+
+
+@BOTH
+@pytest.mark.parametrize(("law", "component", "end"), [(THREE, 0, 0.02), (ONE, 5, 0.015)])
+def test_stable_loop_between_given_strains(model, law, component, end):
+    """The amplitudes of stress and plastic strain satisfy the closed form, in any number of steps."""
+    specimen = Specimen(POINTS[model](PERFECT, *law))
+    stress, plastic = specimen.by_strain(component, (end, -end) * 5)[-1]
+    root3 = np.sqrt(3) if component else 1.0  # shear: tau sqrt(3), and 2 eps_p/sqrt(3)
+    stress, plastic = -stress * root3, -plastic * (2 / root3 if component else 1.0)
+    saturating = [C / g * np.tanh(g * plastic) if g else C * plastic for C, g in zip(*law, strict=True)]
+    assert stress == pytest.approx(1e9 + sum(saturating), rel=1e-7)
+
+
+@BOTH
+@pytest.mark.parametrize(("smax", "smin"), [(1.4e9, -1.2e9), (1.3e9, -1.3e9), (1.2e9, -1.3e9)])
+def test_ratchetting_between_given_stresses(model, smax, smin):
+    """The same step in each cycle, backward for a negative mean, none without a mean."""
+    specimen, saturation = Specimen(POINTS[model](PERFECT, *ONE)), 150e9 / 300
+    ends = []
+    for _ in range(3):
+        for stress in (smax, smin):
+            specimen.to(stress={0: stress})
+        ends.append(specimen.point.plastic[0][0])
+    wanted = np.log((saturation**2 - (smin + 1e9) ** 2) / (saturation**2 - (smax - 1e9) ** 2)) / 300
+    assert [b - a for a, b in pairwise(ends)] == pytest.approx([wanted] * 2, rel=1e-6, abs=1e-12)
+
+
+def test_both_models_turn_alike():
+    """A circle of strain (axial and shear, a quarter out of phase): the direction of flow turns in each step,
+    which the closed forms never do; both models make the same error.
+    """
+    found = []
+    for point in (SamPoint(PERFECT, *THREE, factor=0.7), FemPoint(PERFECT, *THREE, factor=0.7)):
+        specimen = Specimen(point)
+        for angle in np.linspace(0, 2 * np.pi, 9):
+            specimen.to(strain={0: 0.01 * np.cos(angle), 5: 0.0075 * np.sin(angle)})
+        found.append((*specimen.stress[[0, 5]], *point.plastic[0][[0, 5]], point.plastic[1]))
+    assert found[0] == pytest.approx(found[1], rel=1e-9)
+
+
+@pytest.mark.parametrize("law", [ONE, THREE], ids=["one", "three"])
+@pytest.mark.parametrize("curve", [PERFECT, SWIFT], ids=["perfect", "swift"])
+def test_return_map_is_the_same_for_every_stiffness(law, curve):
+    """A fixed point of the return map of SAM is one for any m > 0."""
+    rng, point = np.random.default_rng(7), SamPoint(curve, *law)
+    for _ in range(4):
+        point.state = point.at(0.01 * rng.standard_normal(6))[1]
+    trial = 4e9 * rng.standard_normal((6, 1, 1, 1))
+    trial[:3] -= trial[:3].mean()
+    flow = point.material.flow(point.state)
+    x = flow.returned(trial, MU, near=np.zeros(1))
+    s = trial - 2 * MU * x
+    assert flow.excess(x, s) < 1e-12
+    for share in (0.3, 3.0):
+        again = flow.returned(s + 2 * share * MU * x, share * MU, near=np.zeros(1))
+        assert again == pytest.approx(x, rel=1e-10)
+
+
+@pytest.mark.parametrize("closeness", [0.0, 1.0])
+@pytest.mark.parametrize("law", [PRAGER, THREE, ([1e12], [100.0])])
+def test_multiplier_takes_few_iterations(law, closeness):
+    """From anywhere on or close to the root: rounding ends Newton's method, and the yield condition holds to
+    rounding of the stresses.
+    """
+    rng, n = np.random.default_rng(5), 1000
+    modulus, recovery = (np.tile(np.reshape(values, (-1, 1)), n) for values in law)
+    back, calls = BackStressFields(modulus, recovery), []
+
+    def unit_deviators(shape):
+        """Deviators of random directions and von Mises stress 1, (..., 6, n)."""
+        found = deviator(rng.normal(size=(6, *shape)))
+        return np.moveaxis(found / mises(found), 0, -2)
+
+    ball = np.where(recovery > 0, modulus / np.maximum(recovery, 1.0), 1e9) * rng.uniform(0, 1, modulus.shape)
+    start = ball[:, None] * unit_deviators((len(modulus), n))
+    trial = start.sum(axis=0) + 1e9 * (1 + 10.0 ** rng.uniform(-9, 1, n)) * unit_deviators((n,))
+
+    def curve(gamma):
+        calls.append(gamma)
+        return 1e9 + 1e9 * gamma, np.full(n, 1e9)
+
+    solve = partial(kinematic_multiplier, trial, BackStresses.of(start), back, m3=1.5 * MU)
+    root = solve(curve, near=np.zeros(n))[0]
+    calls.clear()
+    gamma, eta = solve(curve, near=root * (1 + closeness * rng.uniform(-1, 1, n)))
+    assert len(calls) <= 12
+    left = mises(eta) - 1.5 * MU * gamma - (modulus * back.recovered(gamma)[1]).sum(axis=0) - curve(gamma)[0]
+    assert np.abs(left).max() < 1e-14 * (mises(trial) + ball.sum(axis=0)).max()
+    assert np.abs(gamma / root - 1).max() < 1e-6
+
+
+# what plastic strain dissipates and what back-stresses store: exact over a step
+
+EXTREME = ([1e12, 6e9], [1e7, 1e-3])
+TWICE = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
+
+
+def constants(law, like):
+    """C_k and g_k of a shape that broadcasts with fields of the dimension of one of the a_k."""
+    return [np.reshape(np.array(values, dtype=float), (-1, *[1] * (like.ndim - 2))) for values in law]
+
+
+@BOTH
+@pytest.mark.parametrize("law", [PRAGER, THREE, EXTREME])
+def test_work_of_the_stress_is_what_is_stored_and_dissipated(model, law):
+    """To rounding in random states, strains from 0.1 to 10 %; dissipation and error are never negative."""
+    rng = np.random.default_rng(3)
+    for size in (1e-3, 1e-2, 1e-1):
+        point = POINTS[model](SWIFT, *law)
+        for _ in range(5):
+            before, total = point.state, point.plastic
+            stress, point.state = point.at(size * rng.standard_normal(6))
+            s, now = stress - [*[stress[:3].mean()] * 3, 0, 0, 0], point.plastic
+            x, length = now[0] - total[0], point.state.peeq - before.peeq
+            if not length.item():
+                continue
+            C, g = constants(law, before.back)
+            found = step_energies(C, g, before.back, x.reshape(before.back.shape[1:]), length=length)
+            work = float(TWICE @ (s * x))
+            parts = SWIFT.stress(now[1]) * length + found.stored + found.dissipated + found.error
+            assert parts.item() == pytest.approx(work, rel=1e-11)
+            change = stored_energy(C, point.state.back) - stored_energy(C, before.back)
+            assert found.stored.item() == pytest.approx(change.item(), abs=1e-11 * work)
+            assert found.dissipated.item() >= 0 and found.error.item() >= 0
+
+
+@pytest.mark.parametrize("size", [1e-7, 1e-4, 0.1])
+@pytest.mark.parametrize("law", [PRAGER, THREE, EXTREME])
+def test_a_straight_step_dissipates_what_its_parts_do(law, size):
+    """Energies are exact in any number of steps along a direction; their error falls with the steps."""
+    point = SamPoint(PERFECT, *law)
+    for strain in ((0.01, -0.003, -0.007, 0, 0.004, 0), (-0.02, 0.01, 0.01, 0.003, 0, 0)):
+        point.state = point.at(np.array(strain))[1]
+    N, start = np.array([1, -0.5, -0.5, 0, 0, 0]).reshape(6, 1, 1, 1), point.state.back
+    C, g = constants(law, start)
+    dp = np.full((1, 1, 1), size)
+    whole, parts, back = step_energies(C, g, start, size * N, length=dp), [], start
+    for _ in range(5):
+        parts.append(step_energies(C, g, back, size / 5 * N, length=dp / 5))
+        back = back + point.material.back.change(back, size / 5 * N, dp / 5)
+    assert whole.stored == pytest.approx(sum(each.stored for each in parts), rel=1e-9, abs=1e-6)
+    assert whole.dissipated == pytest.approx(sum(each.dissipated for each in parts), rel=1e-12)
+    assert 0 < sum(each.error for each in parts) < (1 + 1e-9) * whole.error
+
+
+@pytest.mark.parametrize("ends", [(0.0, 1e-7), (1e-3, 0.3)])
+def test_work_of_swifts_law_is_its_closed_form(ends):
+    law = Swift(1780e6, 4.0, 0.095, 1e6)
+    before, after = (law.stress(np.array(end)) * (law.C + law.alpha * end) for end in ends)
+    exact = (after - before) / law.alpha / (law.n + 1)
+    assert plastic_work(law, np.array(ends[1]), ends[0]) == pytest.approx(exact, rel=1e-7)
+
+
+# a layer with a hardening law of its own
+
+THICK = 1.2e-6
+DEPTHS = np.array([0.0, 0.4e-6, 1.1999e-6, 1.2e-6, 3e-6])
+
+
+@pytest.mark.parametrize("law", LAWS)
+class TestEveryLaw:
+    """The body hardens linearly, its factor goes from 2 at the surface to 1 at 3 um."""
+
+    @pytest.fixture
+    def read(self, law, tmp_path):
+        (tmp_path / "curve.csv").write_text(YIELD_CURVE)
+        (tmp_path / "p.csv").write_text("depth_m,factor\n0,2\n3e-6,1\n")
+        body = "[body.plasticity]\n" + HARDENING["linear"] + 'profile = "p.csv"\nlayer_thickness = "1.2 um"\n'
+        text = scene_text(add=body + "[body.plasticity.layer]\n" + HARDENING[law])
+        (tmp_path / "scene.toml").write_text(text)
+        return load_scene(tmp_path / "scene.toml")
+
+    def test_holds_above_the_thickness_and_the_law_of_the_body_below(self, read, law):
+        plasticity, peeq = read.body.plasticity, np.array([[0.0], [2e-4], [0.013]])
+        own = Plasticity(**plasticity.layer.model_dump()).curve().stress(peeq)
+        expected = (2.0 - DEPTHS / 3e-6) * np.where(DEPTHS < THICK, own, 1e9 + 10.5e9 * peeq)
+        np.testing.assert_allclose(plasticity.strength().stress(DEPTHS, peeq), expected, rtol=1e-15)
+        checked = yield_stress(read, *np.broadcast_arrays(peeq, DEPTHS))
+        np.testing.assert_allclose(checked, expected, rtol=1e-14)
+
+    def test_both_return_maps_end_on_the_curve_of_the_point(self, read, law):
+        """At one point of each region the stress after a step is the yield stress that the checks write once
+        more.
+        """
+        strength, shear = read.body.plasticity.strength(), 80e9
+        z, strained = np.array([0.4e-6, 2e-6]), np.array([1e-3, 2e-3])
+        factor, curve = strength.profile(z), strength.curve_at(z)
+        q = 1.5 * factor * curve.stress(strained)
+        gamma = plastic_multiplier(q, strained, curve, factor, m3=3 * shear)
+        limit = yield_stress(read, strained + gamma, z)
+        assert (gamma > 1e-4).all()
+        np.testing.assert_allclose(q - 3 * shear * gamma, limit, rtol=1e-13)
+        body = J2(Elastic(2.6 * shear, 0.3), strength.curve_at(z[:, None]), factor[:, None])
+        strain = np.zeros((4, 2, 1))
+        strain[3, :, 0] = q / shear / np.sqrt(3.0)  # engineering shear
+        update = body.update(strain, History(np.zeros((4, 2, 1)), strained[:, None]))
+        np.testing.assert_allclose(update.history.peeq[:, 0] - strained, gamma, rtol=1e-11)
+        np.testing.assert_allclose(np.sqrt(3.0) * update.stress[3, :, 0], limit, rtol=1e-12)
+
+
+def test_kinks_are_the_rows_and_the_lower_side_of_another_law():
+    graded = DepthProfile((0.0, 1e-6), (2.0, 1.0))
+    assert Strength(SWIFT, graded, PERFECT, 2e-6).kinks == Kinks((0.0, 1e-6, 2e-6))
+    assert Strength(SWIFT, graded, PERFECT, 1e-6).kinks == Strength(SWIFT, graded, SWIFT, 9e-6).kinks
+
+
+@pytest.mark.parametrize("ends, own", [((2.0, 1.0), 0.5e9), ((0.5, 1.0), 9e9)])
+def test_the_least_yield_stress_is_found_on_both_sides_of_the_lower_side(ends, own):
+    least = Strength(PERFECT, DepthProfile((0.0, 4e-6), ends), Linear(own), 2e-6).least(0.0)
+    assert least == pytest.approx(0.75e9, rel=1e-12)
+
+
+SOFT = {"layer_thickness": THICK, "layer": SWIFT_LAW | {"alpha": 1e3}}
+ROUGH = {
+    "surface": {"kind": "sinusoid", "amplitude": 0.1e-6, "wavelength_x": 16e-6, "wavelength_y": 16e-6},
+    "counterbody": {"shape": "flat"},
+    "grid": {"cells": (16, 16), "extent": (16e-6, 16e-6)},
+}
+
+
+@pytest.mark.parametrize("tables", [{}, ROUGH], ids=["smooth", "rough"])
+def test_every_model_has_faces_at_the_kinks_below_smooth_and_rough_bodies(tables):
+    body = {"plasticity": SWIFT_LAW | SOFT | {"profile": ((0.7e-6, 2.0), (THICK, 1.0))}}
+    found = scene(body=body, fem={"cells_per_radius": 8, "box": 4.0}, **tables)
+    faces, space = sam.plan(found).grid.faces, spatial_plan(found)
+    assert {0.7e-6, THICK} <= set(faces) and (np.diff(faces) > 0).all()
+    planes = [space.lines.z * space.scales.length]
+    if not tables:
+        flat = fem_reference.plan(found)
+        planes.append(flat.z * flat.scales.length)
+    for each in planes:
+        assert max(np.abs(each - kink).min() for kink in (0.7e-6, THICK)) < 1e-12 * THICK
+
+
+def test_a_plan_names_the_law_and_the_advice_counts_the_weaker_one():
+    body = SWIFT_LAW | {"layer_thickness": THICK}
+    plain, own = (scene(body={"plasticity": each}) for each in (body, body | {"layer": LINEAR_LAW}))
+    for plan, stage in (
+        (sam.plan, "plastic loop"),
+        (fem_reference.plan, "return mapping and plastic history"),
+    ):
+        before, after = ({one.stage: one.reason for one in plan(each).stages} for each in (plain, own))
+        assert after[stage] == before[stage] + ", law linear of its own at z < 1.2e-06 m"
+    idle = [one.reason for one in sam.plan(own).left_out if one.stage == "strain limit of the layer"]
+    assert idle == ["no [wear]"]
+    weak = body | {"layer": {"law": "perfect", "yield_stress": 0.4e9}}
+    for plasticity, kind in ((body, "yielding"), (weak, "deeply yielding")):
+        light = scene(body={"plasticity": plasticity}, loading={"force": 0.17})
+        assert advice_of(light, ["sam"])["kind"] == kind
+
+
+@pytest.mark.parametrize("solve", [sam.solve, fem_reference.solve], ids=["sam", "fem-axisymmetric"])
+def test_a_layer_of_the_same_law_changes_no_bit(solve):
+    base = SWIFT_LAW | {"profile": ((0.0, 0.5), (1.2e-6, 1.0)), "layer_thickness": 1e-6}
+    small = {
+        "loading": {"force": 0.3},
+        "fem": {"cells_per_radius": 4, "box": 4.0},
+        "grid": {"cells": (17, 17)},
+    }
+    plain, own = (
+        solve(scene(body={"plasticity": each}, solver={"tolerance": 1e-3}, **small))
+        for each in (base, base | {"layer": SWIFT_LAW})
+    )
+    assert plain.quantities == own.quantities and plain.quantities["peeq_max"] > 0.0
+    for name, table in plain.tables.items():
+        for key, values in table.items():
+            np.testing.assert_array_equal(values, own.tables[name][key], f"{name}.{key}")

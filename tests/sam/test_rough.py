@@ -1,0 +1,275 @@
+# SPDX-License-Identifier: MIT
+"""Rough bodies and rough counter-bodies in the semi-analytical model: against smooth bodies of the same shape
+and each other; borders, spots, and what is recorded.
+"""
+
+import numpy as np
+import pytest
+from builders import LINEAR, MODULUS, STEEL, running_in, scene
+from pydantic import ValidationError
+
+from sam import UnsupportedScene, choose_grid, left_out, plan, solve
+from sam.contact.convolution import Counters
+from sam.results.rough import too_few_cells
+from sam.scene import COUNTER_HEIGHT, CounterSurface, HeightMap, Scene, Status, resolved
+from sam.scene.surface import heights
+from verification.cost.plan import plan as cost_plan, plan_lines
+from verification.runs import models
+from verification.runs.files import read_run, write_run
+from verification.runs.models import FEM, FEM_3D, ModelError
+
+FLAT, BALL = {"shape": "flat"}, {"shape": "sphere", "radius": 0.4e-3}
+R, F = 100e-6, 0.05
+A0 = (3 * F * R / (4 * MODULUS)) ** (1 / 3)
+SIDE = 20e-6
+WAVE = {"kind": "sinusoid", "amplitude": 0.1e-6, "wavelength_x": 10e-6, "wavelength_y": 8e-6}
+OTHER = {"kind": "self-affine", "sq": 20e-9, "cutoff_long": 16e-6, "cutoff_short": 8e-6, "hurst": 0.8}
+OTHER |= {"seed": 5}
+DISC = {**OTHER, "renew": True}
+FACES = (0.0, 0.2e-6, 0.4e-6, 0.7e-6, 1.2e-6, 2e-6, 3.5e-6)
+
+
+def centres(n: int, side: float) -> np.ndarray:
+    return ((np.arange(n) + 0.5) / n - 0.5) * side
+
+
+def of_heights(height, n: int, side: float, counterbody=FLAT, force=F, **tables) -> Scene:
+    """A scene whose surface is given by height(x, y) at n x n cells."""
+    x = centres(n, side)
+    surface = {"kind": "file", "path": HeightMap(height(x[:, None], x) + np.zeros((n, n)), (side, side))}
+    loading = {"force": force} | tables.pop("loading", {})
+    return scene(counterbody=counterbody, surface=surface, loading=loading, **tables)
+
+
+def paraboloid(x, y):
+    return -(x**2 + y**2) / (2 * R)
+
+
+def patch(n: int, force=0.6, **tables) -> Scene:
+    """A self-affine patch of 64 um below a rigid plane."""
+    surface = {"kind": "self-affine", "ra": 0.27e-6, "cutoff_long": 32e-6, "cutoff_short": 12e-6}
+    surface |= {"hurst": 0.8, "anisotropy": 1.5, "seed": 1}
+    grid = {"cells": (n, n), "extent": (64e-6, 64e-6), "border": "relief"}
+    return scene(counterbody=FLAT, surface=surface, loading={"force": force}, grid=grid, **tables)
+
+
+def pressed(counterbody, surface=None, **tables) -> Scene:
+    """A patch of 32 x 32 cells."""
+    grid = {"cells": (32, 32), "extent": (SIDE, SIDE), **tables.pop("grid", {})}
+    loading = {"force": 0.02, "steps": 2, "unload": True, **tables.pop("loading", {})}
+    return scene(counterbody=counterbody, surface=surface, grid=grid, loading=loading, **tables)
+
+
+def column(result, table: str, name: str) -> np.ndarray:
+    return np.asarray(result.tables[table][name])
+
+
+def test_a_paraboloid_of_heights_is_the_sphere():
+    """The same cells, gaps equal but for rounding: pressures to 1e-9 (the contact's own tolerance is 1e-10),
+    from wherever heights are counted.
+
+    The friction of the rigid counter-body couples; the largest stress leaves the axis, not the plane y = 0.
+    """
+    n, side = 49, 4 * A0
+    depths = tuple(np.linspace(0, 1.5 * A0, 16))
+    grid = {"cells": (n, n), "extent": (side, side), "depths": depths}
+    smooth = scene(counterbody={"radius": R}, loading={"force": F}, friction=0.3, grid=grid)
+    rough = of_heights(lambda x, y: 1e-6 + paraboloid(x, y), n, side, friction=0.3, grid={"depths": depths})
+    one, other = solve(smooth), solve(rough)
+    assert one.converged and other.converged
+    for name, value in one.quantities.items():
+        if value is not None and name not in ("pressure_centroid_x_m", "p_center_Pa"):
+            assert other.quantities[name] == pytest.approx(value, rel=1e-7, abs=1e-20), name
+    assert one.quantities["p_center_Pa"] > 0 and other.quantities["p_center_Pa"] is None  # of a patch
+    for table, name in (("line", "p_Pa"), ("line", "uz_m"), ("plane", "mises_Pa"), ("axis", "sxx_Pa")):
+        a, b = column(one, table, name), column(other, table, name)
+        assert np.abs(a - b).max() < 1e-8 * np.abs(a).max()
+
+
+def test_a_pit_below_a_punch_carries_nothing():
+    """The profile of a punch stays: cells beside it cannot touch, whatever the heights."""
+    pit, punch = lambda x, y: -1e-6 * ((x**2 + y**2) < (2e-6) ** 2), {"shape": "punch", "radius": 6e-6}
+    result = solve(of_heights(pit, 41, 16e-6, punch))
+    p = column(result, "surface", "p_Pa").reshape(41, 41)
+    assert result.converged and p[20, 20] == 0 and p[20, 31] > 0 and not p[0].any()
+
+
+def test_blocks_of_depths_change_nothing(monkeypatch):
+    whole = solve(patch(32))
+    monkeypatch.setattr("sam.elastic.problem.BYTES_AT_ONCE", 1)
+    again = solve(patch(32))
+    assert again.quantities == whole.quantities
+    assert np.array_equal(column(again, "plane", "mises_Pa"), column(whole, "plane", "mises_Pa"))
+
+
+def test_a_contact_at_the_edge_is_a_warning_and_its_border_does_not_count():
+    """The ends of a ridge that is cut carry more than its middle. For smooth bodies the same is an error."""
+    force, side, n = 2.0, 40e-6, 64
+    result = solve(of_heights(lambda x, y: -(x**2) / (2 * R) + 0 * y, n, side, force=force))
+    p = column(result, "surface", "p_Pa").reshape(n, n)
+    assert result.status is Status.CONVERGED and "the outer 6 x 6 cells do not count" in result.warnings[-1]
+    assert result.quantities["p_max_Pa"] == p[6:-6, 6:-6].max() < 0.8 * p.max()
+    assert column(result, "history", "p_max_Pa")[-1] == result.quantities["p_max_Pa"]
+
+
+def test_small_spots_and_short_waves_are_warned_of():
+    """At 24 cells the shortest wave of 12 um has 4.5, at 16 it has 3."""
+    small, short = "too few cells in 2 of 2 spots", "3 cells in the shortest wavelength"
+    assert small in solve(patch(24)).warnings[0] and short in solve(patch(16)).warnings[0]
+    assert solve(patch(64, force=1e-4)).status is Status.UNDER_RESOLVED
+
+
+def spots_of(*counts: int, load: float = 1.0) -> np.ndarray:
+    """Pressures of spots in rows of their own, the first with the load per cell given, the others with 1."""
+    pressure = np.zeros((2 * len(counts) + 1, 40))
+    for k, count in enumerate(counts):
+        pressure[2 * k + 1, 1 : count + 1] = 1.0 if k else load
+    return pressure
+
+
+@pytest.mark.parametrize(
+    "pressure, words",
+    [
+        (spots_of(32, 23, 18, 15, 8, 2, 1, load=1.01), "4 of 5 spots|23, 18, 15, 8 cells; together 64.4 %"),
+        (spots_of(32, 28, 1, load=1.01), ""),
+        (spots_of(1, 30, 30, load=1.1), "1 of 3 spots|(1 cells; together 1.8 %"),  # the largest pressure
+        (np.kron(np.eye(2), np.ones((4, 6))), "2 of 2 spots|24, 24 cells; together 100 %"),  # at a corner
+        (np.zeros((4, 4)), ""),
+    ],
+)
+def test_every_spot_that_carries_a_twentieth_of_the_load_is_judged(pressure, words):
+    """28 cells are needed: pi 3^2."""
+    found = too_few_cells(pressure)
+    assert bool(found) == bool(words) and all(each in found for each in words.split("|") if words)
+
+
+def test_surface_table_and_fields_hold_the_heights(tmp_path):
+    given = of_heights(lambda x, y: paraboloid(x, 1.4 * y), 12, 4 * A0, loading={"unload": True})
+    result = solve(given)
+    write_run(result, given, tmp_path / "run")
+    run = read_run(tmp_path / "run")
+    table = run.tables["surface"]
+    assert list(table) == ["state", "x_m", "y_m", "height_m", "p_Pa", "worn_m", "friction"]
+    assert len(table["x_m"]) == 2 * 144
+    expected = paraboloid(table["x_m"], 1.4 * table["y_m"])
+    assert np.allclose(table["height_m"], expected, rtol=0, atol=1e-20)
+    peak, h = table["state"] == "peak", 4 * A0 / 12
+    assert table["p_Pa"][peak].sum() * h**2 == pytest.approx(F, rel=1e-9) and not table["p_Pa"][~peak].any()
+    assert np.array_equal(np.isfinite(table["friction"]), table["p_Pa"] > 0) and not table["worn_m"].any()
+    assert run.summary["scene"] == resolved(given) and run.scene == given
+    assert result.fields.cell_data["height_m"][:144] == pytest.approx(table["height_m"][:144])
+    assert not (tmp_path / "run" / "cycles.csv").exists()
+
+
+def test_depths_are_fine_near_the_surface_and_reach_an_eighth_of_the_side():
+    depths = choose_grid(patch(64)).depths
+    steps = np.diff(depths)
+    assert depths[0] == 0 and np.allclose(steps[:8], 0.25e-6) and (np.diff(steps) > -1e-12).all()
+    assert 8e-6 <= depths[-1] < 1.2 * 8e-6
+    text = "\n".join(plan_lines(cost_plan(patch(64))))
+    assert "stress lies anywhere below the patch" in text and "left out  stress outside the plane" not in text
+
+
+def test_a_tolerance_that_cannot_be_met_is_not_called_converged(monkeypatch):
+    """1e-14 is met here; a share of it is below rounding."""
+    given = patch(32, solver={"tolerance": 1e-14})
+    assert solve(given).converged
+    monkeypatch.setattr("sam.elastic.problem.REACHED", 1e-18)
+    result = solve(given)
+    assert result.status is Status.NOT_CONVERGED and "stagnated" in result.message
+
+
+# a rough counter-body
+
+
+@pytest.mark.parametrize("mu, counterbody", [(0.3, BALL), (0.0, FLAT | STEEL)], ids=["rigid", "elastic"])
+@pytest.mark.parametrize("plasticity", [None, LINEAR], ids=["elastic", "plastic"])
+def test_waves_on_the_counter_body_are_those_on_the_body_upside_down(counterbody, mu, plasticity):
+    """A crest out of the counter-body points into the body: the gap knows only the sum of both heights."""
+    tables = {"friction": mu, "body": {"plasticity": plasticity}}
+    if plasticity:
+        tables["grid"] = {"border": "relief", "depths": FACES}
+    on_body = solve(pressed(counterbody, WAVE, **tables))
+    opposite = solve(pressed({**counterbody, "surface": WAVE}, **tables))
+    assert opposite.quantities == on_body.quantities
+    for name, table in on_body.tables.items():
+        for key, values in table.items():
+            if (name, key) != ("surface", "height_m"):
+                np.testing.assert_array_equal(values, opposite.tables[name][key], f"{name}.{key}")
+    table = opposite.tables["surface"]
+    assert not table["height_m"].any() and COUNTER_HEIGHT not in on_body.tables["surface"]
+    np.testing.assert_array_equal(table[COUNTER_HEIGHT], on_body.tables["surface"]["height_m"])
+
+
+def test_each_stretch_is_the_surface_of_the_next_seed_and_touches_first_at_zero():
+    def gaps(given) -> list[np.ndarray]:
+        found = plan(given)
+        problem = found.problem(Counters())
+        return [problem.gap(load) for load in found.schedule.peaks]
+
+    renewed = pressed({**FLAT, "surface": DISC}, loading={"cycles": 3})
+    for k, gap in enumerate(gaps(renewed)):
+        alone = gaps(pressed({**FLAT, "surface": {**OTHER, "seed": 5 + k}}))[0]
+        np.testing.assert_array_equal(gap, alone)
+        assert gap.min() == 0.0
+    stages = {each.stage: each for each in plan(renewed).stages}
+    assert stages["counter-surface heights"].size["stretches"] == 3
+    assert not stages["surface heights"].runs and renewed.seeds == (5, 6, 7)
+    reasons = {each.stage: each.reason for each in left_out(pressed(FLAT, WAVE))}
+    assert reasons["counter-surface heights"] == "no [counterbody.surface]"
+
+
+def test_a_map_is_used_part_by_part_from_its_crop_on():
+    values = np.arange(48.0 * 32.0).reshape(48, 32) * 1e-12
+    surface = {"kind": "file", "path": HeightMap(values, (48e-6, 32e-6))}
+    found = CounterSurface(**surface, crop=(-16e-6, 8e-6, 16e-6, 16e-6), renew=True)
+    starts = [tuple(part.start for part in found.stretch(k).window) for k in range(7)]
+    assert starts == [(0, 16), (16, 16), (32, 16), (0, 0), (16, 0), (32, 0), (0, 16)]
+    x = centres(16, 16e-6)
+    np.testing.assert_array_equal(heights(found.stretch(1), x, x, (16e-6, 16e-6)), values[16:32, 16:])
+
+
+def test_parts_of_a_long_map_begin_at_its_first_cell():
+    """A thousand cells from the middle of the map, where a part of a per mille is a cell."""
+    path = HeightMap(np.arange(2048.0)[:, None] * np.ones(16) * 1e-12, (2048e-6, 16e-6))
+    found = CounterSurface(kind="file", path=path, crop=(0.0, 0.0, 16e-6, 16e-6), renew=True)
+    assert [found.stretch(k).window[0].start for k in (0, 1, 63, 64)] == [1016, 1032, 2024, 8]
+
+
+def test_only_a_renewed_counter_surface_strains_in_every_cycle():
+    """Isotropic hardening ends elastic where the same cells meet the same counter-body."""
+    same, renewed = (
+        solve(running_in(cycles=3, film=0.2, wear=None, counterbody={"surface": {**OTHER, "renew": renew}}))
+        for renew in (False, True)
+    )
+    same, renewed = same.tables["cycles"], renewed.tables["cycles"]
+    assert same["new_strain_max"][0] == renewed["new_strain_max"][0] > 0
+    assert same["new_strain_max"][1:] == [0.0, 0.0] and same["yielding_cells"][1:] == [0, 0]
+    assert min(renewed["new_strain_max"]) > 1e-4 and min(renewed["yielding_cells"]) > 0
+
+
+def test_maps_of_both_bodies_have_one_grid():
+    small, own = (
+        {"kind": "file", "path": HeightMap(np.eye(n) * 1e-7, (s, s))} for n, s in ((8, 8e-6), (32, SIDE))
+    )
+    with pytest.raises(ValidationError, match=r"\[32, 32\] heights on 2e-05 m x 2e-05 m"):
+        scene(counterbody={**FLAT, "surface": small}, surface=own)
+
+
+def test_a_scene_without_its_maps_is_refused_by_name():
+    known = HeightMap.known_by("0" * 64, (32, 32), (SIDE, SIDE))
+    with pytest.raises(UnsupportedScene, match=r"counterbody\.surface\.path"):
+        solve(scene(counterbody={**FLAT, "surface": {"kind": "file", "path": known}}))
+
+
+@pytest.mark.parametrize(
+    "model, counterbody, key",
+    [
+        (FEM, {**BALL, "surface": WAVE}, "counterbody.surface.kind"),
+        (FEM_3D, {**BALL, **STEEL, "surface": WAVE}, "counterbody.young"),
+        (FEM_3D, {**FLAT, "surface": DISC}, "counterbody.surface.renew"),
+    ],
+)
+def test_finite_elements_refuse_by_name_what_they_cannot_represent(model, counterbody, key):
+    with pytest.raises(ModelError, match=key):
+        models.check(pressed(counterbody, loading={"cycles": 2}), model)

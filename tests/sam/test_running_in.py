@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: MIT
+"""Running-in of a small rough patch in SAM: chemical film, wear and cycles, each against another count."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from builders import CHEMICAL_FILM as FILM, RUN_IN_STEEL as SWIFT, STEEL, running_in
+from made_results import column
+
+import sam
+from sam.contact.box import BoxContact
+from sam.contact.convolution import Counters
+from sam.contact.operators import SurfaceOperators
+from sam.grid.cells import Sides
+from sam.plasticity import history
+from sam.scene import FrictionMap, Status
+from sam.scene.surface import border_cells, heights, mean_deviation, with_relief
+from verification.cost.plan import plan
+from verification.reference.bonded_film import overall_coefficient
+
+CELL = (16e-6 / 24) ** 2
+
+
+@cache
+def solved(**keys):
+    return sam.solve(running_in(counterbody=STEEL, **keys))
+
+
+def surface(result, state: str, name: str) -> np.ndarray:
+    return column(result, "surface", name, state).reshape(24, 24)
+
+
+def stages(scene) -> dict[str, bool]:
+    """Stage -> whether it runs."""
+    return {entry["stage"]: entry["runs"] for entry in plan(scene)["models"][0]["stages"]}
+
+
+def test_a_small_patch_runs_in():
+    """Friction between the two coefficients, wear that only grows, books that close."""
+    result = solved(cycles=2)
+    cycles = result.tables["cycles"]
+    assert result.status is Status.CONVERGED and cycles["cycle"] == [1, 2]
+    assert all(0 < share < 1 for share in cycles["protected_fraction"])
+    assert 0 < cycles["wear_volume_m3"][0] <= cycles["wear_volume_m3"][1]
+    np.testing.assert_allclose(np.cumsum(cycles["wear_of_cycle_m3"]), cycles["wear_volume_m3"], rtol=1e-12)
+    assert max(cycles["margin_to_limit"]) < 1.0
+    before, worn = (surface(result, state, "worn_m") for state in ("peak", "unloaded"))
+    # sums of a few hundred numbers in another order
+    assert cycles["wear_volume_m3"] == pytest.approx([CELL * before.sum(), CELL * worn.sum()], rel=1e-13)
+    assert result.quantities["wear_volume_m3"] == cycles["wear_volume_m3"][-1]
+    assert sum(cycles["operator_applications"]) == result.cost["operator_applications"]
+    last = result.tables["history"]["note"][-1]
+    assert last.startswith("elastic: unloading in one step") and "m3 removed" in last
+    run = stages(running_in(counterbody=STEEL))
+    assert run["worn geometry"] and run["chemical film"]
+
+
+def test_the_overall_coefficient_is_that_of_the_loads_on_both_kinds_of_spots():
+    """Summed independently: 0.1 + 0.3 of the load on cells where the film has failed."""
+    result = solved(cycles=2)
+    p, friction = (surface(result, "peak", name) for name in ("p_Pa", "friction"))
+    mu = overall_coefficient(p, friction > 0.25, 0.1, 0.4, cell_area=CELL)
+    # q/p of the table is 0.4 up to rounding
+    assert result.quantities["friction_coefficient"] == pytest.approx(mu, rel=1e-12)
+    assert result.tables["cycles"]["friction_coefficient"][-1] == pytest.approx(mu, rel=1e-12)
+    assert np.isnan(friction[p == 0]).all()
+    protected = np.mean(friction[p > 0] < 0.25)
+    assert result.tables["cycles"]["protected_fraction"][-1] == pytest.approx(protected, rel=1e-12)
+
+
+def test_a_limit_out_of_reach_is_no_wear():
+    """Plain cyclic contact: an infinite limit and one that is never reached leave what none does, bit by bit;
+    a later cycle adds little of the first, as Swift steel hardens.
+    """
+    none, inf, high = (solved(cycles=2, wear=wear) for wear in (None, float("inf"), 999.0))
+    assert inf.tables["cycles"] == none.tables["cycles"]
+    assert inf.tables["cycles"]["wear_volume_m3"] == [0.0] * 2
+    cycles = high.tables["cycles"]
+    margins = cycles.pop("margin_to_limit")
+    assert margins == [pytest.approx(1 - peeq / 999) for peeq in cycles["peeq_max"]]
+    assert none.tables["cycles"].pop("margin_to_limit") == [None] * 2
+    assert cycles.pop("roofed_volume_m3") == [0.0] * 2 and cycles == none.tables["cycles"]
+    left_out = [any(entry.stage == "worn geometry" for entry in each.left_out) for each in (inf, high)]
+    assert left_out == [True, False] and not stages(running_in(wear=float("inf")))["worn geometry"]
+    scene = running_in(counterbody=STEEL, wear=None)
+    side, x = (16e-6, 16e-6), ((np.arange(24) + 0.5) / 24 - 0.5) * 16e-6
+    h = heights(scene.surface, x, x, side)
+    h = with_relief(h, (x, x), side, mean_deviation(scene.surface, side))
+    assert np.array_equal(surface(none, "peak", "height_m"), h)
+    (bx, by), cycles = border_cells((24, 24)), none.tables["cycles"]
+    inner = h[bx:-bx, by:-by]
+    sa = np.abs(inner - inner.mean()).mean()
+    assert 0 < sa - cycles["sa_m"][-1] < 0.2 * sa  # flattened, and not by much
+
+
+def test_what_a_sound_layer_keeps_is_counted():
+    """A layer that is never removed: all cells beyond the limit below it stay; those of the last cycle are in
+    the unloaded body.
+    """
+    wear = {"strain_limit": 0.002, "strain_limit_layer": float("inf"), "interpolate": False}
+    steel = SWIFT | {"layer_thickness": 0.2e-6, "layer": SWIFT}
+    wear |= {"smoothing_window": 0}
+    found = sam.solve(running_in(counterbody=STEEL, plasticity=steel, wear=wear))
+    body = found.grids["unloaded"]["body"]
+    beyond = np.asarray(body.cell_data["peeq"])[..., 2:] > 0.002
+    kept = (np.diff(body.x)[0] * np.diff(body.y)[0] * np.diff(body.z)[2:] * beyond).sum()
+    cycles = found.tables["cycles"]
+    assert found.converged and cycles["wear_volume_m3"] == [0.0, 0.0]
+    first, last = cycles["roofed_volume_m3"]
+    assert 0 < first <= last == pytest.approx(kept, rel=1e-12)
+
+
+def test_every_failed_cell_fails_in_the_converged_contact(monkeypatch):
+    """At the end of a step the film is tested once more: nothing further fails, and all that failed did so
+    for a pressure near its limit at least.
+    """
+    seen, committed = [], history.committed
+
+    def watched(model, now, trial, film):
+        if film is not None and trial.load.force:
+            failed = film.film.failed
+            pressure = np.zeros((24, 24))
+            pressure[now.extent.window.slices] = trial.pressure * model.unit
+            plastic = now.state.material.strain + trial.increment.strain
+            strain = model.surface_strain(now.extent, trial.stress, plastic)
+            again = model.plan.tribofilm.tested(
+                now.tribofilm, now.tribofilm, strain, pressure=pressure, sign=trial.load.sign
+            ).film.failed
+            seen.append((int(failed.sum()), int((failed & ~again).sum()), int((again & ~failed).sum())))
+        return committed(model, now, trial, film)
+
+    monkeypatch.setattr(history, "committed", watched)
+    sam.solve(running_in(counterbody=STEEL, cycles=1))
+    failures = np.array(seen)
+    assert failures[-1, 0] > 5 and (failures[:, 2] == 0).all()
+    # raised friction may lower the pressure of its own cell, so that a failed film would just have held
+    assert failures[:, 1].sum() <= 0.1 * failures[:, 0].sum()
+
+
+def test_local_friction_of_a_map_acts_where_it_is():
+    """High friction on every other row of cells: the overall coefficient is the mean, weighted by what these
+    carry.
+    """
+    local = np.where(np.arange(24)[:, None] % 2, 0.4, 0.1) * np.ones((24, 24))
+    path = FrictionMap(local, (16e-6, 16e-6))
+    found = sam.solve(running_in(film={"law": "map", "path": path}, wear=None, cycles=1, steps=1))
+    p, friction = surface(found, "peak", "p_Pa"), surface(found, "peak", "friction")
+    assert friction[p > 0] == pytest.approx(local[p > 0], rel=1e-12)
+    share = p[1::2].sum() / p.sum()
+    assert 0 < share < 1
+    assert found.quantities["friction_coefficient"] == pytest.approx(0.1 + 0.3 * share, rel=1e-12)
+
+
+def test_a_new_film_without_friction_forgets_the_traction_of_the_cycle_before(monkeypatch):
+    """With low = 0 a film that is whole again leaves no traction: the contact is that of the same surface
+    without friction, though unlike bodies were coupled by the traction where it had failed.
+    """
+    seen, committed = [], history.committed
+
+    def watched(model, now, trial, film):
+        seen.append((model, now.extent, trial, film))
+        return committed(model, now, trial, film)
+
+    monkeypatch.setattr(history, "committed", watched)
+    sam.solve(running_in(film=FILM | {"low": 0.0}, wear=None, cycles=1))
+    model, extent, trial, film = next(each for each in reversed(seen) if each[2].load.force)
+    assert film.film.failed.any()
+
+    def pressure(source) -> np.ndarray:
+        return source(trial.residual.displacement, trial.load, trial.pressure, 1e-8)
+
+    with_failures = pressure(model.problem(extent, film, None).pressure)
+    new = pressure(model.problem(extent, model.plan.tribofilm.fresh(model.nothing_strained()), None).pressure)
+    grid = model.grid
+    bare = SurfaceOperators((grid.nx, grid.ny), grid.hy / grid.hx, Counters())
+    alone = pressure(replace(model.built.problem.pressure, contact=BoxContact(bare, extent.window)))
+    assert np.abs(new - alone).max() <= 1e-7 * alone.max()
+    assert np.abs(with_failures - alone).max() > 0.01 * alone.max()
+
+
+def test_the_box_grows_after_wear_and_removal_strains_nothing_at_its_bottom(monkeypatch):
+    """A first box that is too shallow, and is not let grow before the first removal, grows in the next load
+    step. The step that finds equilibrium after removal does not enlarge it, and has not to.
+    """
+    worn, seen = [], []
+    first, grown, edge, removed, committed = (
+        history.first_extent, history.grown, history.edge_reached, history._worn, history.committed
+    )  # fmt: skip
+
+    def after_removal(model, now, trial):
+        worn.append(len(seen))
+        return removed(model, now, trial)
+
+    def watched(model, now, trial, film):
+        seen.append((now.extent.layers, bool(trial.increment.strain[:, -1].any())))
+        return committed(model, now, trial, film)
+
+    monkeypatch.setattr(history, "first_extent", lambda *a, **k: replace(first(*a, **k), layers=3))
+    monkeypatch.setattr(history, "grown", lambda extent, *a: grown(extent, *a) if worn else extent)
+    monkeypatch.setattr(history, "edge_reached", lambda *a, **k: edge(*a, **k) if worn else Sides())
+    monkeypatch.setattr(history, "_worn", after_removal)
+    monkeypatch.setattr(history, "committed", watched)
+    result = sam.solve(running_in(counterbody=STEEL, cycles=2))
+    assert result.status is Status.CONVERGED and result.quantities["wear_volume_m3"] > 0
+    assert seen[worn[0] - 2] == (3, True) and seen[-1][0] > 3
+    assert not any(seen[k][1] for k in worn) and len(worn) == 2
+    assert result.certificate["yield_excess_outside_box"] <= 1e-4

@@ -1,0 +1,611 @@
+# SPDX-License-Identifier: MIT
+"""Lines over x by series and panel, with points, fits and bounds where they are asked for: one
+function, `curves`, and the figures that it draws.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import cycle
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
+
+from sam.scene import Attempt
+from verification.compare.sliding_measures import Plane
+from verification.figures.style import (
+    BLACK,
+    BLUE,
+    EXACT,
+    FEM,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    SAM,
+    VERMILION,
+    Columns,
+    Drawing,
+    log_ticks,
+    sheet,
+    zero_line,
+)
+from verification.reference.convergence import Limit, Order, Power
+
+MICRO, GIGA, PERCENT = 1e6, 1e-9, 1e2
+POINTS = {"SAM": SAM | {"marker": "o", "fillstyle": "none"}, "FEM": FEM | {"marker": "x"}}
+LOOKS = {
+    "FEM": {"color": BLACK, "linewidth": 2.0},
+    "SAM": {"color": BLUE, "marker": "o", "markersize": 3.5, "fillstyle": "none", "linestyle": "none"},
+    "SAM, decoupled": {"color": VERMILION, "linewidth": 1.3, "linestyle": "--"},
+    "SAM, paper": {"color": ORANGE, "linewidth": 1.5, "linestyle": ":"},
+}
+"""The look of FEM and of each form of SAM, where FEM is the reference."""
+CYCLES = tuple(
+    {"color": color, "marker": marker, "markersize": 4, "linewidth": 1.2, "linestyle": line}
+    for color, marker, line in zip(
+        (BLUE, VERMILION, GREEN, ORANGE, PURPLE, BLACK), "os^Dvx", cycle(("-", "--")), strict=False
+    )
+)
+"""Looks of series that have none of their own, in order."""
+BAND = {"color": GREEN, "alpha": 0.15, "linewidth": 0.0}
+UNKNOWN = {"color": "#bbbbbb", "alpha": 0.45, "linewidth": 0.0}
+
+
+@dataclass(frozen=True)
+class Curve:
+    """x and y of a line (n,), any units.
+
+    fit: function of x through these points, drawn between the ends of `span` (None: of x); note: what the
+    legend says behind the name; ends: least and largest y, of bars; look: of this line alone.
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    fit: Callable[[np.ndarray], np.ndarray] | None = None
+    note: str = ""
+    span: tuple[float, float] | None = None
+    ends: tuple[np.ndarray, np.ndarray] | None = None
+    look: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class How:
+    """How panels are drawn.
+
+    looks: of the series that have one of their own; across: panels in a row, 0: all; size: of one, in inches;
+    logarithmic: axes, "x", "y" or "xy"; count: x are whole numbers, and y begins at zero, so that a small
+    change looks small; ticks: words of the x of the points, which alone have a number; shade: range of x that
+    is not compared, floor: y below which nothing is claimed, each of all panels or of each; band: of
+    tolerance on both sides of zero; marks: words -> ("x" or "y", places of guide lines); legend: in the
+    "fullest" panel or in "each", "below" or "right" of all, its entries, below all, or none.
+    """
+
+    looks: Mapping[str, Mapping] = field(default_factory=lambda: LOOKS)
+    across: int = 0
+    size: tuple[float, float] = (3.4, 3.3)
+    logarithmic: str = ""
+    count: bool = False
+    ticks: Callable[[float], str] | None = None
+    shade: tuple[float, float] | Mapping[str, tuple[float, float]] | None = None
+    floor: float | Mapping[str, float] = 0.0
+    band: float = 0.0
+    marks: Mapping[str, Sequence] = field(default_factory=dict)
+    legend: str | Sequence[Artist] | None = "fullest"
+
+
+def curves(
+    panels: Mapping[Any, Mapping[str, Curve]],
+    xlabel: str | Mapping[Any, str],
+    ylabel: str | Mapping[Any, str] = "",
+    shade: tuple[float, float] | None = None,
+    **how: Any,
+) -> Drawing:
+    """Panels of series: title -> name -> curve, side by side; or (label of y, title) -> name -> curve, a row
+    of panels for each label. One label of y for all: one scale for all in a row. how: see `How`.
+    """
+    way = How(**{"shade": shade} | how)
+    rows = list(dict.fromkeys(key[0] for key in panels)) if isinstance(next(iter(panels)), tuple) else []
+    across = len(panels) // len(rows) if rows else way.across or len(panels)
+    shape = -(-len(panels) // across), across
+    every = [each for series in panels.values() for each in series.items()]
+    others, shared = cycle(CYCLES), bool(rows) or isinstance(ylabel, str)
+    names = dict.fromkeys(name for name, _ in every)
+    looks = {name: way.looks[name] if name in way.looks else next(others) for name in names}
+    fitted = any(curve.fit for _, curve in every)
+    data = Columns("panel", "series", "x", "y", *(["fit"] if fitted else []))
+    inches, share = (max(way.size[0] * across, 5.0), way.size[1] * shape[0]), "row" if shared else False
+    with sheet(*inches, shape, sharey=share, sharex="col" if rows else False) as (figure, grid):
+        for axis in grid.ravel()[len(panels) :]:
+            axis.set_visible(False)
+        for k, (axis, (key, series)) in enumerate(zip(grid.ravel(), panels.items(), strict=False)):
+            label, title = key if rows else (ylabel if isinstance(ylabel, str) else ylabel[key], key)
+            for name, curve in series.items():
+                fit = curve.fit(curve.x) if curve.fit else np.full(np.size(curve.x), np.nan)
+                panel = f"{title}, {label}" if rows else title
+                data.add(panel, name, curve.x, curve.y, *([fit] if fitted else []))
+                _draw(axis, curve, name, {**looks[name], **curve.look})
+            _finish(axis, title, series.values(), way)
+            axis.set(title=title if not rows or k < across else "")
+            if not rows or label == rows[-1]:
+                axis.set_xlabel(xlabel if isinstance(xlabel, str) else xlabel[key])
+            if not shared or k % across == 0:
+                axis.set_ylabel(label)
+        if way.count and "y" not in way.logarithmic:
+            top = max(np.max(curve.y) for _, curve in every)
+            for axis in grid.ravel():
+                axis.set_ylim(0.0, 1.08 * top if shared and not rows else None)
+        _name(figure, list(grid.ravel()), way)
+        figure.align_ylabels()
+    return Drawing(figure, data)
+
+
+def _draw(axis: Axes, curve: Curve, name: str, look: Mapping) -> None:
+    """A line with its bars, or points with their fit, and one entry of the legend."""
+    label = f"{name}: {curve.note}" if curve.note else name
+    if curve.fit is None:
+        axis.plot(curve.x, curve.y, **{"label": label} | dict(look))
+    else:
+        points = {"fillstyle": "none"} | dict(look) | {"linestyle": "none"}
+        line = {"color": look["color"], "linestyle": look.get("linestyle", "-"), "linewidth": 1.0}
+        low, high = curve.span or (curve.x.min(), curve.x.max())
+        dense = np.geomspace(low, high, 200) if low > 0.0 else np.linspace(low, high, 200)
+        axis.plot(curve.x, curve.y, **points)
+        axis.plot(dense, curve.fit(dense), **line)
+        axis.plot([], [], **points | line, label=label)
+    if curve.ends is not None:
+        ends = np.maximum([curve.y - curve.ends[0], curve.ends[1] - curve.y], 0.0)
+        axis.errorbar(curve.x, curve.y, ends, fmt="none", ecolor=look["color"], elinewidth=2.2)
+
+
+def _finish(axis: Axes, title: str, series: Collection[Curve], way: How) -> None:
+    """Scales and numbers of a panel, and what is marked or shaded in it."""
+    for words, (along, *places) in way.marks.items():
+        for k, place in enumerate(places):
+            line = axis.axvline if along == "x" else axis.axhline
+            line(place, **EXACT | {"linewidth": 1.0}, label="" if k else words)
+    if way.count:
+        axis.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=2))
+    for scale in way.logarithmic:
+        axis.set(**{f"{scale}scale": "log"})
+    if grey := way.shade[title] if isinstance(way.shade, Mapping) else way.shade:
+        axis.axvspan(*grey, color="#eeeeee", zorder=0)
+    if way.band:
+        axis.axhspan(-way.band, way.band, **BAND)
+    (low, high), unknown = axis.get_ylim(), way.floor[title] if isinstance(way.floor, Mapping) else way.floor
+    if 0.0 < low < unknown:
+        axis.axhspan(low, unknown, **UNKNOWN, label="below the uncertainty of the reference")
+        axis.set_ylim(low, high)
+    for scale in way.logarithmic:
+        log_ticks(getattr(axis, f"{scale}axis"))
+    if way.ticks is not None:
+        used = np.unique(np.round(np.concatenate([curve.x for curve in series]), 9))
+        axis.set_xticks(used, map(way.ticks, used))
+        axis.set_xticks([], minor=True)
+
+
+def _name(figure: Figure, axes: Sequence[Axes], way: How) -> None:
+    """The legends."""
+    if way.legend is None:
+        return
+    drawn = [axis.get_legend_handles_labels() for axis in axes]
+    if way.legend in ("each", "fullest"):
+        fullest = np.argmax([len(labels) for _, labels in drawn])
+        for axis in axes if way.legend == "each" else [axes[fullest]]:
+            axis.legend()
+        return
+    named = {label: handle for pair in drawn for handle, label in zip(*pair, strict=True)}
+    handles = list(named.values()) if isinstance(way.legend, str) else list(way.legend)
+    if way.legend == "right":
+        figure.legend(handles=handles, loc="outside right center")
+    else:
+        letters = max(len(handle.get_label()) for handle in handles)
+        wide = min(len(handles), max(1, int(14 * figure.get_figwidth() / (letters + 6))))
+        figure.legend(handles=handles, loc="outside lower center", ncols=wide)
+
+
+PLAIN = {"marker": "", "linestyle": "-", "linewidth": 1.4}
+"""Of a curve of many points."""
+
+
+def grooves(found: Mapping[str, tuple[np.ndarray, np.ndarray]], length: float) -> Drawing:
+    """Depths (n,) over distances from the start (n,), both in radii of the contact; length of the path."""
+    drawn = {name: Curve(way, 1e3 * depth, look=PLAIN) for name, (way, depth) in found.items()}
+    ends = {"ends of the path": ("x", 0.0, length)}
+    drawing = curves(
+        {"": drawn}, "distance from the start, $s/a$", r"$10^3\, u_z/a$", marks=ends, size=(6.2, 3.2)
+    )
+    drawing.figure.axes[0].invert_yaxis()
+    return drawing
+
+
+def new_strains(found: Mapping[str, Sequence[float]], floors: Sequence[float] = ()) -> Drawing:
+    """The largest plastic strain that each pass adds to a cell of the steady part; no mark where it
+    is 0. floors: strains below which a verdict counts none.
+    """
+    drawn = {
+        name: Curve(np.arange(1, len(own) + 1), np.where(np.array(own) > 0.0, own, np.nan))
+        for name, own in found.items()
+    }
+    marks = {"floor of the verdict": ("y", *floors)} if len(floors) else {}
+    how = {"logarithmic": "y", "count": True, "marks": marks, "legend": "right", "size": (6.6, 3.2)}
+    return curves({"": drawn}, "pass", "largest new plastic strain", **how)
+
+
+def errors_over_counts(panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray]]]) -> Drawing:
+    """Relative errors (n,) over the number (n,) of steps or cells in a radius of the contact,
+    logarithmic. panels: what is counted -> quantity -> line.
+    """
+    drawn = {of: {name: Curve(n, 1e2 * e) for name, (n, e) in own.items()} for of, own in panels.items()}
+    xlabels = {counted: f"{counted} in $a$" for counted in panels}
+    how = {"logarithmic": "xy", "ticks": "{:g}".format, "legend": "each"}
+    return curves(drawn, xlabels, "error against the limit [%]", **how)
+
+
+def of_passes(passes: Mapping[str, Sequence]) -> Drawing:
+    """Coefficient of friction and wear of each pass, from passes.csv."""
+    wanted = {"coefficient of friction": ("friction_mean", 1.0), "wear [µm³]": ("wear_of_pass_m3", 1e18)}
+    drawn = {
+        words.partition(" [")[0].capitalize(): {
+            "SAM": Curve(
+                np.asarray(passes["pass"]), scale * np.asarray(passes[column], dtype=float), look=PLAIN
+            )
+        }
+        for words, (column, scale) in wanted.items()
+    }
+    return curves(drawn, "pass", dict(zip(drawn, wanted, strict=True)), count=True)
+
+
+PROGRAMS = {
+    "SAM": {"color": BLUE, "marker": "o"},
+    "Tamaas": {"color": VERMILION, "marker": "s"},
+    "ContactMechanics": {"color": GREEN, "marker": "^"},
+    "aspher": {"color": ORANGE, "marker": "D"},
+}
+DASHES = ("-", "--", ":")
+"""First, second and third curve of a program."""
+
+
+def of_programs(
+    series: Mapping[str, tuple[str, np.ndarray, np.ndarray]],
+    xlabel: str,
+    ylabel: str,
+    *,
+    target: float | None = None,
+    floor: float = 0.0,
+) -> Drawing:
+    """Label of the curve -> (program, x, y), in the order of the resolution; target: a value of y
+    that times are stated at; floor: shaded, no claims below.
+    """
+    seen, looks = dict.fromkeys(PROGRAMS, 0), {}
+    for label, (program, _, _) in series.items():
+        looks[label] = PROGRAMS[program] | {"linestyle": DASHES[seen[program] % 3], "fillstyle": "none"}
+        seen[program] += 1
+    marks = {} if target is None else {"error whose times are compared": ("y", target)}
+    how = {"logarithmic": "xy", "marks": marks, "floor": floor, "legend": "right", "size": (8.4, 4.2)}
+    drawn = {label: Curve(x, y) for label, (_, x, y) in series.items()}
+    return curves({"": drawn}, xlabel, ylabel, looks=looks, **how)
+
+
+def convergence(panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Order | None]]]) -> Drawing:
+    """log-log error against cell size; panels: title -> quantity -> (h/a, relative error, fitted
+    order or None).
+    """
+    drawn = {
+        title: {
+            name: Curve(h, error, order, f"order {order.order:.2f}")
+            if order
+            else Curve(h, error, look={"linestyle": "none"})
+            for name, (h, error, order) in own.items()
+        }
+        for title, own in panels.items()
+    }
+    how = {"logarithmic": "xy", "ticks": lambda h: f"a/{1.0 / h:.3g}", "legend": "each", "size": (4.4, 3.9)}
+    return curves(drawn, "cell size", "relative error", **how)
+
+
+def refinement(
+    panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Limit]]],
+    xlabels: Mapping[str, str],
+    ylabel: str,
+) -> Drawing:
+    """Strains in % over h, down to their limits at h = 0; panels: title -> "SAM" or "FEM" -> (h,
+    strain, limit).
+    """
+    drawn: dict[str, dict[str, Curve]] = {}
+    for title, own in panels.items():
+        panel = drawn[title.capitalize()] = {}
+        for name, (h, strain, limit) in own.items():
+            order = f"order {limit.order:.2f}" if limit.observed else "no order observed"
+            fit = lambda at, limit=limit: PERCENT * limit(at)  # noqa: E731
+            panel[name] = Curve(h, PERCENT * strain, fit, order, (0.0, h.max()))
+            look = POINTS[name] | {"marker": "D", "markersize": 5, "linestyle": "none", "clip_on": False}
+            panel[f"{name}, limit"] = Curve(np.zeros(1), np.array([PERCENT * limit.limit]), look=look)
+    words = {title.capitalize(): label for title, label in xlabels.items()}
+    drawing = curves(drawn, words, ylabel, looks=POINTS, legend="each", size=(4.2, 3.4))
+    for axis in drawing.figure.axes:
+        axis.set_xlim(0.0, None)
+    return drawing
+
+
+def limits(
+    panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Callable]]], band: float
+) -> Drawing:
+    """Differences from a model without small strains; panels: quantity -> material -> (a/R,
+    relative difference, its fit); band: shaded on both sides of zero.
+    """
+    drawn = {
+        title.capitalize(): {
+            f"{name} and its fit": Curve(
+                x, PERCENT * off, lambda at, fit=fit: PERCENT * fit(at), span=(0.0, x.max())
+            )
+            for name, (x, off, fit) in own.items()
+        }
+        for title, own in panels.items()
+    }
+    labels = dict.fromkeys(drawn, "difference [%]")
+    how = {"across": 2 if len(panels) > 3 else 0, "size": (3.6, 3.0), "legend": "below"}
+    drawing = curves(drawn, "$a/R$", labels, band=PERCENT * band, **how)
+    for axis in drawing.figure.axes:
+        axis.set_xlim(0.0, None)
+    return drawing
+
+
+def profile_of(plane: Plane, x: float, deep: float) -> Curve:
+    """Plastic strain in % over depth at x, at the own depths of a result."""
+    z = plane.z[plane.z <= deep]
+    return Curve(z, PERCENT * plane.at(np.array([x]), z)[0])
+
+
+def below_spots(spots: Mapping[str, tuple]) -> Drawing:
+    """Plastic strain over depth. spots: title of a panel -> (z in m, strain) of SAM and of FEM, and
+    the depth from which they are compared; above it is grey.
+    """
+    panels, shade = {}, {}
+    for title, (*models, compared) in spots.items():
+        named = zip(("SAM", "FEM"), models, strict=True)
+        panels[title] = {name: Curve(MICRO * z, PERCENT * strain) for name, (z, strain) in named}
+        shade[title] = (0.0, MICRO * compared)
+    return curves(panels, "$z$ [µm]", "plastic strain [%]", shade, looks=LINE_ON_POINTS)
+
+
+def residual(sam: tuple[np.ndarray, np.ndarray], fem: tuple[np.ndarray, np.ndarray]) -> Drawing:
+    """What the heights along y = 0 have lost after unloading: (x, displacement into the body) of
+    each model, in m.
+    """
+    drawn = {name: Curve(MICRO * x, -1e9 * uz) for name, (x, uz) in (("SAM", sam), ("FEM", fem))}
+    how = {"looks": LINE_ON_POINTS, "size": (6.0, 3.0)}
+    return curves({"": drawn}, "$x$ [µm]", "change of the height [nm]", **how)
+
+
+LINE_ON_POINTS = {
+    "SAM": SAM,
+    "FEM": FEM | {"linestyle": "none", "marker": "o", "markersize": 4.0, "fillstyle": "none"},
+}
+
+
+MODEL_MARKS = {"SAM": {"marker": "o", "fillstyle": "none"}, "FEM": {"marker": "x"}}
+
+
+def film_pressures(panels: Mapping[str, Mapping[str, Mapping[str, tuple]]]) -> Drawing:
+    """Pressure over p0 over r/a0 under films of one modulus a panel; panels: title -> film ->
+    "reference" or model -> (r, p); the bare contact of Hertz dotted.
+    """
+    bare = np.linspace(0.0, 1.0, 401)
+    hertz = {"color": "#888888", "linestyle": ":", "linewidth": 1.6}
+    points, line = {"linestyle": "none", "markersize": 4.5}, {"linewidth": 1.3}
+    films = dict.fromkeys(film for own in panels.values() for film in own)
+    colours = dict(zip(films, (BLUE, VERMILION, GREEN, ORANGE, BLACK), strict=False))
+    looks = {
+        f"{film}, {name}": {"color": color} | (points | MODEL_MARKS[name] if name in MODEL_MARKS else line)
+        for film, color in colours.items()
+        for name in ("reference", *MODEL_MARKS)
+    }
+    drawn = {
+        title: {"without film": Curve(bare, np.sqrt(1.0 - bare**2))}
+        | {f"{film}, {name}": Curve(*each) for film, own in by_film.items() for name, each in own.items()}
+        for title, by_film in panels.items()
+    }
+    entries = [Line2D([], [], **line, color=color, label=film) for film, color in colours.items()]
+    entries += [Line2D([], [], **points, color=BLACK, **look, label=n) for n, look in MODEL_MARKS.items()]
+    entries += [
+        Line2D([], [], **line, color=BLACK, label="reference"),
+        Line2D([], [], **hertz, label="without film"),
+    ]
+    how = {"across": 2, "size": (4.3, 3.4), "legend": entries, "looks": looks | {"without film": hertz}}
+    return curves(drawn, "$r/a_0$", "$p/p_0$", **how)
+
+
+def thinning_curves(pressure: np.ndarray, lines: Mapping[str, np.ndarray], limit: float) -> Drawing:
+    """pressure in GPa, (n,); lines: name -> thinning in %, (n,), NaN where there is none; limit in %."""
+    own = {name: Curve(pressure[k := np.isfinite(y)], y[k], look=PLAIN) for name, y in lines.items()}
+    marks = {f"growth of a cycle, {limit:.2f} %": ("y", limit)}
+    drawing = curves({"": own}, "pressure [GPa]", "thinning [%]", marks=marks)
+    zero_line(drawing.figure.axes[0])
+    return drawing
+
+
+def yield_profiles(cases: Mapping[str, Callable[[np.ndarray, float], np.ndarray]], deep: float) -> Drawing:
+    """Yield stress in GPa over depth to `deep` (m), without plastic strain and with 1 %; cases:
+    name -> function of depths in m and a plastic strain, in Pa.
+    """
+    z = np.linspace(0.0, deep, 401)
+    titles = {0.0: "Before any plastic strain", 0.01: "After a plastic strain of 1 %"}
+    drawn = {
+        title: {
+            name: Curve(MICRO * z, GIGA * stress(z, strain), look={"marker": ""})
+            for name, stress in cases.items()
+        }
+        for strain, title in titles.items()
+    }
+    drawing = curves(drawn, "depth $z$ [µm]", "yield stress [GPa]", legend="below", size=(4.5, 3.6))
+    drawing.figure.axes[0].set_ylim(0.0, None)
+    return drawing
+
+
+def over_cells(volumes: Mapping[str, Mapping[float, Sequence[float]]], default: float) -> Drawing:
+    """A line for each surface through the means, with bars from the smallest to the largest.
+
+    volumes: name of a surface -> cells in the shortest wave -> volumes in um3 of the surface shifted against
+    the cells; default: the cells in the shortest wave that are recommended, marked by a line.
+    """
+    drawn = {}
+    for name, of_cells in volumes.items():
+        mean, *ends = (np.array([of(each) for each in of_cells.values()]) for of in (np.mean, min, max))
+        drawn[name] = Curve(np.array(list(of_cells)), mean, ends=tuple(ends))
+    marks, xlabel = {"recommended": ("x", default)}, "cells in the shortest wave of the surface"
+    how = {"logarithmic": "x", "marks": marks, "legend": "right", "size": (6.2, 3.6)}
+    drawing = curves({"": drawn}, xlabel, "worn volume [µm³]", **how)
+    drawing.figure.axes[0].set_ylim(bottom=0.0)
+    return drawing
+
+
+def coverage(panels: Mapping[str, Sequence[tuple[str, str, float, float]]]) -> Drawing:
+    """The uncertainty of numbers over their true error. panels: rule -> (scene, quantity, relative
+    error, relative uncertainty) of each value; what lies below the line is not covered.
+    """
+    data, drawn = Columns("rule", "scene", "quantity", "error_percent", "uncertainty_percent"), {}
+    for title, points in panels.items():
+        scenes, quantities, errors, bounds = map(np.array, zip(*points, strict=True))
+        errors, bounds = PERCENT * errors, PERCENT * bounds
+        data.add(title, scenes.tolist(), quantities.tolist(), errors, bounds)
+        ends = np.array([errors.min(), bounds.max()])
+        even = {"color": BLACK, "linewidth": 1.0}
+        drawn[title] = {
+            "a value": Curve(errors, bounds, look={"linestyle": "none", "markersize": 3.0}),
+            "uncertainty = error": Curve(ends, ends, look=PLAIN | even),
+        }
+    how = {"logarithmic": "xy", "legend": "each", "size": (4.0, 3.8)}
+    return Drawing(curves(drawn, "error [%]", "uncertainty [%]", **how).figure, data)
+
+
+def growth(columns: Mapping[str, tuple[str, Mapping[str, Curve], Mapping[str, Curve]]]) -> Drawing:
+    """Title -> (label of x, name -> seconds over x, name -> bytes over x): seconds above, megabytes
+    underneath, with the powers that are their fits.
+    """
+    panels, xlabels, rows = {}, {}, {"processor time [s]": 1.0, "memory [MB]": 1e-6}
+    for k, (label, unit) in enumerate(rows.items(), start=1):
+        for title, column in columns.items():
+            xlabels[label, title] = column[0]
+            panels[label, title] = {name: _with_power(each, unit) for name, each in column[k].items()}
+    drawing = curves(panels, xlabels, logarithmic="xy", legend="each", size=(3.6, 3.0))
+    for axis in drawing.figure.axes:  # at least one decade upwards, and numbers enough
+        low, high = axis.get_ylim()
+        axis.set_ylim(min(low, np.sqrt(low * high / 10)), max(high, np.sqrt(low * high * 10)))
+        log_ticks(axis.yaxis)
+    return drawing
+
+
+def _with_power(curve: Curve, unit: float) -> Curve:
+    """Points in another unit, with the exponent of their power."""
+    if not isinstance(power := curve.fit, Power):
+        return Curve(curve.x, unit * curve.y, look={"linestyle": "none", "fillstyle": "none"})
+    return Curve(curve.x, unit * curve.y, lambda x: unit * power(x), str(power), (power.first, power.last))
+
+
+def predicted(panels: Mapping[str, tuple[float, float, Mapping[str, tuple[Sequence, Sequence]]]]) -> Drawing:
+    """Title with unit -> (factor that is allowed, measured value from which it counts, family ->
+    (measured, predicted)).
+    """
+    drawn, shades = {}, []
+    names = dict.fromkeys(family for _, _, families in panels.values() for family in families)
+    colours = matplotlib.colormaps["turbo"](np.linspace(0.0, 0.95, len(names)))
+    for title, (allowed, least, families) in panels.items():
+        every = np.concatenate([np.ravel(pair) for pair in families.values()])
+        ends = np.array([0.7 * every.min(), 1.4 * every.max()])
+        even, counted = Curve(ends, ends), Curve(np.array([least, least]), ends)
+        drawn[title] = {"predicted = measured": even, "counted to its right": counted}
+        drawn[title] |= {name: Curve(*map(np.array, pair)) for name, pair in families.items()}
+        shades.append((ends, ends / allowed, ends * allowed))
+    looks: dict[str, dict] = {
+        name: {"color": color, "marker": mark, "fillstyle": "none", "linestyle": "none"}
+        for name, color, mark in zip(names, colours, cycle("os^Dv<>phXP*"), strict=False)
+    }
+    guide = {"color": BLACK, "linewidth": 0.8}
+    looks |= {"predicted = measured": guide, "counted to its right": guide | {"linestyle": ":"}}
+    labels = dict.fromkeys(drawn, "predicted")
+    how = {"logarithmic": "xy", "legend": "right", "size": (4.9, 4.4)}
+    drawing = curves(drawn, "measured", labels, looks=looks, **how)
+    for axis, shade in zip(drawing.figure.axes, shades, strict=True):
+        axis.fill_between(*shade, **BAND)
+    return drawing
+
+
+def over_cycles(
+    panels: Mapping[tuple[str, str], Mapping[tuple[str, str], np.ndarray]],
+    names: Sequence[str],
+    *,
+    first: int = 0,
+    thick: str = "",
+) -> Drawing:
+    """A row of panels for each quantity, a column for each title, lines over the cycles from the `first` on;
+    colours by the first of the two `names` of a line, dashes by the second, unless one of these is drawn
+    `thick`, the others thin. panels: (quantity, title) -> two names of a line -> (n,) its values.
+    """
+    firsts, seconds = ({key[k]: None for own in panels.values() for key in own} for k in (0, 1))
+    colors = dict(zip(firsts, (BLUE, VERMILION, GREEN), strict=False))
+    dashes = dict(zip(firsts if thick else seconds, ("-", "--"), strict=False))
+    looks = {}
+    for one in firsts:
+        for two in seconds:
+            width = (2.0 if two == thick else 0.5) if thick else 1.3
+            look = {"color": colors[one], "linestyle": dashes[one if thick else two], "linewidth": width}
+            looks[f"{one}, {two}"] = look | ({"alpha": 0.4} if width < 1.0 else {})
+    drawn: dict[tuple[str, str], dict[str, Curve]] = {}
+    data = Columns("quantity", "panel", *names, "cycle", "value")
+    for (quantity, title), own in panels.items():
+        panel = drawn[quantity, _broken(title)] = {}
+        for key, values in own.items():
+            cycles = np.arange(first, first + len(values))
+            panel[", ".join(key)] = Curve(cycles, values)
+            data.add(quantity, title, *key, cycles, values)
+    entries = [
+        Line2D([], [], color=color, linestyle=dashes.get(name, "-"), label=name)
+        for name, color in colors.items()
+    ]
+    if not thick:
+        entries += [Line2D([], [], color=BLACK, linestyle=line, label=name) for name, line in dashes.items()]
+    how = {"count": True, "legend": entries, "size": (2.2, 1.9)}
+    return Drawing(curves(drawn, "cycle", looks=looks, **how).figure, data)
+
+
+def _broken(title: str) -> str:
+    """A long title, broken at its last comma."""
+    begin, comma, rest = title.rpartition(", ") if len(title) > 20 else ("", "", title)
+    return f"{begin}{comma.strip()}\n{rest}" if comma else title
+
+
+def histories(panels: Mapping[str, Sequence[tuple[str, Attempt]]]) -> Drawing:
+    """Residuals over the iterations, title -> (name, attempt) of all steps; the last ones are darker,
+    attempts that were given up are red. A residual of zero has no place on a logarithmic axis.
+    """
+    pale, goal = 0.25, {"color": BLACK, "linestyle": ":", "linewidth": 0.9}
+    drawn: dict[str, dict[str, Curve]] = {}
+    for title, attempts in panels.items():
+        panel = drawn[title] = {}
+        for k, (name, each) in enumerate(attempts):
+            shade = pale + (1.0 - pale) * k / max(1, len(attempts) - 1)
+            look = {"color": BLUE if each.accepted else VERMILION, "alpha": shade, "linewidth": 1.1}
+            at, residuals = np.arange(1, len(each.residuals) + 1), np.array(each.residuals, dtype=float)
+            shown = np.where(residuals > 0.0, residuals, np.nan)
+            words = f"{name}{'' if each.accepted else ', given up'}"
+            panel[f"{k}: {words}"] = Curve(at, shown, look=look)
+            panel[f"goal {each.goal:g}"] = Curve(at[[0, -1]], np.full(2, each.goal), look=goal)
+    entries = [
+        Line2D([], [], color=BLUE, alpha=pale, label="first load step"),
+        Line2D([], [], color=BLUE, label="last load step"),
+        Line2D([], [], color=VERMILION, label="attempt given up: its step is cut"),
+        Line2D([], [], **goal, label="goal"),
+    ]
+    looks = {name: {} for panel in drawn.values() for name in panel}
+    how = {"across": min(4, len(panels)), "size": (2.6, 2.4), "logarithmic": "y", "count": True}
+    drawing = curves(drawn, "iteration", "residual", looks=looks, legend=entries, **how)
+    for axis in drawing.figure.axes:
+        axis.title.set_fontsize(8.5)
+    return drawing
