@@ -158,7 +158,7 @@ class Case:
 
     def setup(self, found: Any) -> Iterable[tuple[str, str]]:
         """The numbers of the case for the reader."""
-        return ()
+        return self.file.setting if self.file else ()
 
     def tables(self, found: Any) -> Iterable[SmallTable]:
         """What the reader may want to look up."""
@@ -166,7 +166,7 @@ class Case:
 
     def notes(self, found: Any) -> Iterable[str]:
         """Sentences below the tables."""
-        return ()
+        return self.file.notes if self.file else ()
 
     def data(self, found: Any) -> dict[str, Any]:
         """What pages read, as JSON holds it: no number is read back from a table or a note."""
