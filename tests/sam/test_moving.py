@@ -102,6 +102,14 @@ class TestTrack:
         pressure[0] = 1.0
         assert self.TRACK.carried(self.GRID, pressure, Load(1.0), Load(1.0, x=-1.0)) is None
 
+    def test_a_contact_is_at_the_edge_where_its_cells_are_the_outermost(self):
+        pressure = np.zeros((8, 6))
+        assert not Track.at_edge(self.GRID, pressure, self.GRID.whole)
+        pressure[3:5, 2:4] = 1.0
+        assert not Track.at_edge(self.GRID, pressure, self.GRID.whole)
+        pressure[7, 3] = 1.0
+        assert Track.at_edge(self.GRID, pressure, self.GRID.whole)
+
     def test_two_rows_of_cells_touch_a_path_between_them(self):
         track = Track((-2.0, 0.0), (2.0, 0.0), 0.5, None)
         assert track.touched(self.GRID.y, 1.0).tolist() == [False, False, True, True, False, False]

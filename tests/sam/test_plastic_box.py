@@ -249,6 +249,7 @@ def test_a_step_is_accepted_only_if_flow_rule_and_yield_condition_both_hold():
     """
     material, load = MATERIALS["perfect"], deviator(smooth())
     flow = CellFlow(material, material.virgin((POINTS, 2, *CELLS)), WHOLE, STEEL_MU / 2)
+    assert flow.stays_elastic(0.1 * load, 1e-6) and not flow.stays_elastic(load, 1e-6)
     found = flow.returned(np.zeros_like(load), load)
     assert found.image.any() and not flow.increment(found).strain.any()
     size = np.sqrt((found.image[:3] ** 2).sum(axis=0) + 2 * (found.image[3:] ** 2).sum(axis=0)).max()

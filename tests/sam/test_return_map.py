@@ -336,6 +336,16 @@ def test_every_model_has_faces_at_the_kinks_below_smooth_and_rough_bodies(tables
         assert max(np.abs(each - kink).min() for kink in (0.7e-6, THICK)) < 1e-12 * THICK
 
 
+def test_a_soft_layer_makes_a_body_yield_that_would_not():
+    """The largest von Mises stress of the elastic contact is half the yield stress of the body."""
+    hard = {"law": "perfect", "yield_stress": 6e9, "layer_thickness": 3e-6}
+    small = {"loading": {"force": 0.15, "steps": 1}, "grid": {"cells": (17, 17)}}
+    alone = sam.solve(scene(body={"plasticity": hard}, **small))
+    weak = {"layer": {"law": "perfect", "yield_stress": 2e9}}
+    layered = sam.solve(scene(body={"plasticity": hard | weak}, **small))
+    assert alone.quantities["peeq_max"] == 0.0 < layered.quantities["peeq_max_depth_m"] < 3e-6
+
+
 def test_a_plan_names_the_law_and_the_advice_counts_the_weaker_one():
     body = SWIFT_LAW | {"layer_thickness": THICK}
     plain, own = (scene(body={"plasticity": each}) for each in (body, body | {"layer": LINEAR_LAW}))

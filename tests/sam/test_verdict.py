@@ -18,6 +18,7 @@ from sam.scene.verdict import (
     Judging,
     Period,
     Verdict,
+    _open_strain,
     classes,
     judging_of,
     last_period,
@@ -295,3 +296,39 @@ def test_floor_follows_the_tolerance(tolerance, floor):
 def test_why_there_is_no_verdict(keys, reason):
     assert judging_of(judged(**keys)) is None and reason_without(judged(**keys)).startswith(reason)
     assert judging_of(judged(recovery=(), verdict=True)).period == 2  # it may be asked for
+
+
+def further(share, noise=1e-12, dp=1e-3):
+    """Periods after which it is known whether the strain of the only cell closes, not rounded."""
+    found = periods((dp,) * len(share), share)
+    return _open_strain(found, found[-1].accumulated, STRAIN, judging(noise=noise / STRAIN[0]))[2][0]
+
+
+def test_how_long_an_undecided_strain_is_followed():
+    """De of 12 periods, of which the first does not count, as a share of dp; small is .02 of it. What falls
+    by a ratio is small after so many periods; followed are half as many again as there were, unless noise
+    hides its end for longer, and as many if it ends at a limit that is not small. What falls as 1/k is small
+    at k = A/.02, and what stays is followed once more.
+    """
+    k, rate = np.arange(1, 13), -np.log(0.9)
+    near, far, slow = 0.025 * 0.9 ** (k - 12), 0.5 * 0.9 ** (k - 12), 5 * 0.99 ** (k - 12)
+    assert further(near) == pytest.approx(np.log(0.025 / 0.02) / rate, rel=1e-9)
+    assert further(far) == pytest.approx(5.0, rel=1e-12)
+    assert further(slow, noise=5e-6) == pytest.approx(2 * np.log(3) / -np.log(0.99) - 10, rel=1e-9)
+    assert further(0.1 + 0.7 * 0.9**k) == pytest.approx(10.0, rel=1e-12)
+    assert further(3 / k, noise=1e-40) == pytest.approx(3 / 0.02 - 12, rel=1e-9)
+    assert further(np.full(12, 0.5)) == pytest.approx(10.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("limit", [1 - NEAR, 1 + NEAR])
+def test_a_fall_to_less_than_half_of_what_there_is_counts_as_one_by_a_ratio(limit):
+    """De = L + D r^k, L either side of half of the last: followed as long again, or until it is steady."""
+    share = 0.3 * (limit + (2 - limit) * 0.9 ** np.arange(-11, 1))
+    assert bool(further(share) < 11) is (limit < 1)
+
+
+def test_periods_until_a_changing_flow_is_judged():
+    """Where dp still changes by 2.50025 times what counts as steady, 4 (2.50025 - 1) more; one at least."""
+    total = np.ones(1)
+    assert classes(steady(0.5, ratio=1.050005), total, STRAIN, judging())[1] == 7
+    assert classes(steady((1.0, 0.1, 0.03, 0.01)), total, STRAIN, judging())[1] == 1

@@ -259,7 +259,7 @@ class TestRounds:
         assert values["peers.hertz-tamaas"] == pytest.approx(10.0, rel=0.05)
         assert values["peers.hertz-contact-mechanics"] == pytest.approx(10.0, rel=0.05)
         assert values["peers.step-16"] == values["peers.step-32"] > 1.0  # here the cells of both are the same
-        built = next(table for table in outcome.tables if table.caption == "Programs").rows
+        built = next(table for table in outcome.tables if table.caption == "programs").rows
         assert any("not built" in cell for row in built for cell in row if "aspher" in row)
         assert len(outcome.figures) == 3 and len(outcome.tables) == 9
         red = {v.row.id for v in evaluate(load_rows(), {"peers": outcome.values}) if v.status.red}

@@ -92,6 +92,10 @@ class Compared(Case):
         return replace(found, coarser=tuple(zip(before, ratios, strict=True)))
 
     def ahead(self, context: Context) -> Iterator[Scene]:
+        """Of the sweeps; of a frame what a function `scenes` beside the file says, if there is one."""
+        if self.file.frame:
+            yield from beside(self.file, "scenes", {"scenes": lambda _: ()})(context)
+            return
         sweeps = [sweep for sweep in self.file.sweeps.values() if "sam" in sweep.models]
         base = scene_of(context, self.file) if sweeps else None
         for sweep in sweeps:

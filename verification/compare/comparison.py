@@ -15,6 +15,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from pydantic import ValidationError
@@ -41,7 +42,7 @@ EDGE_ZONE = 0.25  # of a punch's radius: around its edge no stress is compared
 ROUNDING = 1e-9  # of a depth: the interface is where a model says it is to within this
 
 
-def _read_tables() -> Mapping[str, Mapping[str, list | str]]:
+def _read_tables() -> Mapping[str, Mapping[str, Any]]:
     """Kind of scene -> name -> what `rows.toml` says, with reasons written out."""
     text = Path(__file__).with_name("rows.toml").read_text(encoding="utf-8")
     reasons = tomllib.loads(text)["reasons"]
@@ -146,9 +147,9 @@ def compare_data(
         if scene.loading.force is not None:
             rows.append(_single(pair, "force_N"))
         if not _rough(scene):  # by the centre of pressure a result that is shifted is seen
-            values = tuple(_centre(solved) for solved in (sam, other))
+            measured = Measured(_centre(sam), _centre(other), scale=pair.radius)
             metric, *limit = TABLES["single"][CENTRE]
-            rows.append(judged(CENTRE, metric, Measured(*values, scale=pair.radius), limit))
+            rows.append(judged(CENTRE, metric, measured, limit))
     own = [row for row in found if math.isfinite(row.expected)]
     return [row for row in between if row.quantity in {each.quantity for each in own}], own
 

@@ -15,7 +15,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from verification.compare.running_in_measures import History, Limits, Scar
-from verification.figures.maps import coloured, draw_field, outline, remark
+from verification.figures.maps import coloured, draw_field, outline
 from verification.figures.places import edges_of
 from verification.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, VERMILION, Columns, Drawing, sheet
 
@@ -103,20 +103,6 @@ def _local_friction(panel: Axes, scar: Scar, friction: tuple[float, float]) -> N
     panel.set(title="(e) local friction", **MAP_AXES)
     patches = [Patch(facecolor=colour, label=words) for words, colour in looks.items()]
     panel.legend(handles=patches, **BELOW_PANEL, ncols=3, handlelength=1.2)
-
-
-def surface(scar: Scar) -> Drawing:
-    """The heights before any wear over the patch, and along the row through the highest place, in um."""
-    j = int(np.argmax(scar.height.max(axis=0)))
-    x, y, height = MICRO * scar.x, MICRO * scar.y, MICRO * scar.height
-    with sheet(9.0, 3.6, 2, width_ratios=(1.0, 1.5)) as (figure, (left, right)):
-        coloured(left, (x, y), height, "height [µm]", cmap="cividis")
-        left.set(title="Heights", **MAP_AXES)
-        left.axhline(y[j], color=VERMILION, linewidth=0.9)
-        right.plot(x, height[:, j], color=VERMILION, linewidth=1.2)
-        right.set(xlabel=f"$x$ [µm] at $y$ = {y[j]:.3g} µm", ylabel="height [µm]")
-        remark(right, f"through the highest place; all heights: {height.min():.2f} to {height.max():.2f} µm")
-    return Drawing(figure, _columns(scar))
 
 
 LOOKS = (

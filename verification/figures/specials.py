@@ -26,7 +26,6 @@ from verification.figures.style import (
     VERMILION,
     Columns,
     Drawing,
-    log_ticks,
     sheet,
 )
 from verification.figures.sweep import QUANTITIES
@@ -133,33 +132,6 @@ def _bars(
     axis.barh(names, value, color=color, height=0.6)
     axis.errorbar(value, range(len(names)), xerr=ends, fmt="none", ecolor=BLACK, elinewidth=0.9, capsize=2.5)
     axis.set_axisbelow(True)
-
-
-def best_pair(
-    places: Sequence[Sequence[float]],
-    labels: Sequence[str],
-    counts: np.ndarray,
-    logarithmic: Sequence[bool],
-    *,
-    printed: Sequence[float],
-) -> Drawing:
-    """A mark for each point over two inputs, coloured by the number of statements that hold there.
-    printed: the two printed inputs.
-    """
-    table = Columns(*labels, "statements that hold")
-    with sheet(5.6, 4.2) as (figure, axis):
-        marks = axis.scatter(*places, c=counts, cmap="viridis", s=36, edgecolors=BLACK, linewidths=0.4)
-        figure.colorbar(marks, ax=axis, label="statements that hold", ticks=MaxNLocator(integer=True))
-        look = {"color": VERMILION, "markersize": 9, "markeredgewidth": 2, "clip_on": False}
-        axis.plot(*printed, "x", **look, label="printed inputs")
-        axis.set(xlabel=labels[0], ylabel=labels[1], axisbelow=True)
-        for name, yes in zip("xy", logarithmic, strict=True):
-            if yes:
-                axis.set(**{f"{name}scale": "log"})
-                log_ticks(getattr(axis, f"{name}axis"))
-        figure.legend(loc="outside upper left")
-    table.add(*places, counts)
-    return Drawing(figure, table)
 
 
 def over_path(panels: Mapping[str, tuple[Balance, Balance | None]]) -> Drawing:

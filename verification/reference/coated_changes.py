@@ -103,7 +103,7 @@ def search(field: Callable, r: np.ndarray, depths: np.ndarray) -> LargestChange:
         i, j = np.unravel_index(np.argmax(mises), mises.shape)
         best = LargestChange(float(mises[i, j]), float(r[i]), float(depths[j]))
         r, depths = (
-            np.linspace(grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)], 9)
+            np.linspace(grid[max(int(k) - 1, 0)], grid[min(int(k) + 1, len(grid) - 1)], 9)
             for grid, k in ((r, i), (depths, j))
         )
     return best

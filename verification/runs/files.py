@@ -57,11 +57,6 @@ class FolderError(ValueError):
     """A folder that is no result, or that must not be written to; the message says which and what to do."""
 
 
-def _said(name: str, need: bool = True) -> property:
-    """What summary.json says under a name; None where it need not say it and does not."""
-    return property(lambda run: run.summary[name] if need else run.summary.get(name))
-
-
 @dataclass(frozen=True)
 class Run:
     """A result read back. summary: as in summary.json; tables: name -> table of floats (NaN: empty) and
@@ -72,15 +67,41 @@ class Run:
     summary: Mapping
     tables: Mapping[str, DataFrame]
 
-    quantities = _said("quantities")
-    model = _said("model")
-    status = _said("status")
-    message = _said("message")
-    cost = _said("cost")
-    discretisation = _said("discretisation")
-    verdict = _said("verdict", need=False)
-    uncertainty = _said("uncertainty", need=False)
-    model_range = _said("model_range", need=False)
+    @property
+    def quantities(self) -> Mapping[str, float | None]:
+        return self.summary["quantities"]
+
+    @property
+    def model(self) -> str:
+        return self.summary["model"]
+
+    @property
+    def status(self) -> str:
+        return self.summary["status"]
+
+    @property
+    def message(self) -> str:
+        return self.summary["message"]
+
+    @property
+    def cost(self) -> Mapping[str, float | int | None]:
+        return self.summary["cost"]
+
+    @property
+    def discretisation(self) -> Mapping[str, Any]:
+        return self.summary["discretisation"]
+
+    @property
+    def verdict(self) -> Mapping[str, Any] | None:
+        return self.summary.get("verdict")
+
+    @property
+    def uncertainty(self) -> Mapping[str, Mapping[str, Any]] | None:
+        return self.summary.get("uncertainty")
+
+    @property
+    def model_range(self) -> Mapping[str, Any] | None:
+        return self.summary.get("model_range")
 
     @property
     def last_fitting(self) -> Mapping[str, float | None]:

@@ -12,6 +12,7 @@ import importlib
 import sys
 from collections.abc import Iterator, Sequence
 from enum import Enum
+from importlib.util import resolve_name
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 
@@ -103,8 +104,8 @@ def _transplant(module: ModuleType, compiled: CodeType, numbers: dict[str, Numbe
         elif isinstance(value, FunctionType):
             _with_defaults(old, value)
         elif not callable(value) or not hasattr(value, "cache_clear"):
-            for other in importers(module, name):
-                setattr(other, name, value)
+            for other, called in importers(module, name):
+                setattr(other, called, value)
 
 
 def _same(value: object, old: object) -> bool:
@@ -125,24 +126,26 @@ def _with_defaults(old: FunctionType, new: FunctionType) -> None:
         old.__kwdefaults__ = old.__kwdefaults__ | own
 
 
-def importers(module: ModuleType, name: str) -> list[ModuleType]:
-    """The module, and those of the project and its tests that import the name from it, under that name."""
-    found = [module]
+def importers(module: ModuleType, name: str) -> Iterator[tuple[ModuleType, str]]:
+    """The module, and those of the project and its tests that import the name from it; how they call it."""
+    yield module, name
     for other in list(sys.modules.values()):
         file = getattr(other, "__file__", None) or ""
-        own = file.endswith(".py") and any(
-            file.startswith(f"{ROOT}/{part}/") for part in OWN
-        )  # an environment may lie there too
-        if own and (module.__name__, name) in _imported(file):
-            found.append(other)
-    return found
+        # an environment may lie below the root, too
+        if file.endswith(".py") and any(file.startswith(f"{ROOT}/{part}/") for part in OWN):
+            if called := _imported(file, other.__package__ or "").get((module.__name__, name)):
+                yield other, called
 
 
 @functools.cache
-def _imported(file: str) -> set[tuple[str, str]]:
+def _imported(file: str, package: str) -> dict[tuple[str, str], str]:
     tree = ast.parse(Path(file).read_text(encoding="utf-8"))
     nodes = [node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.module]
-    return {(node.module, alias.name) for node in nodes for alias in node.names}
+    return {
+        (resolve_name("." * node.level + node.module, package), alias.name): alias.asname or alias.name
+        for node in nodes
+        for alias in node.names
+    }
 
 
 def _transplant_class(old: type, new: type) -> None:

@@ -20,7 +20,7 @@ CORE = {
     "sam": "moving schedule wear",
     "sam.contact": "box convolution normal operators stress",
     "sam.elastic": "misfit problem stress",
-    "sam.grid": "gap smooth",
+    "sam.grid": "gap",
     "sam.kernels": "eigenstrain layer_stress patches primitives",
     "sam.layered": "patches response",
     "sam.plasticity": "flow load_step measure paper points spectra state",
@@ -36,12 +36,13 @@ CORE = {
 AROUND = (
     *("verification.reference", "verification.compare", "verification.uncertainty"),
     *("verification.rows", "verification.judging", "verification.quantities", "verification.references"),
+    "sam.grid.smooth",
 )
 """Packages and modules of which, as of the comparisons and conditions of the core, PERCENT are drawn."""
 PERCENT, SEED = 33, 417
 TABLES = {"sam.kernels.patches": "load_table", "sam.kernels.eigenstrain": "eigenstrain_table"}
-QUICK_FILES = ("test_film_law.py", "test_core_film.py")
-QUICK_MODULES = ("sam.tribofilm.return_map", "sam.tribofilm.printed", "sam.tribofilm.law")
+QUICK_FILES = ("test_film_law.py",)
+QUICK_MODULES = ("sam.tribofilm.law",)
 QUICK_COUNT = 20
 NUMBERS = ("number", "count", "row")
 

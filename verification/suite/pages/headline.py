@@ -11,8 +11,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from verification.cases.running_in.scenes import LAST
-from verification.cases.running_in.study import STILL
+from verification.cases.running_in.study import LAST, STILL
 from verification.suite.pages.judged import (
     FINER,
     FOLLOWS,
@@ -49,7 +48,7 @@ MEANING = (
     "% (5 % where it is said)."
 )
 """Of the columns and the words of the table."""
-PICTURES = ((INPUTS, "probabilities"), (INPUTS, "two-inputs"), (PHYSICS, "volume"))
+PICTURES = ((INPUTS, "probabilities"), (PHYSICS, "volume"))
 """Case and name of the figures of the headline."""
 UNTESTED = (
     "That curve C is very close to curve B, so that the paper's Fig. 15 stands for both: curve C runs on one "
