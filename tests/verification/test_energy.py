@@ -148,7 +148,8 @@ def test_rows_take_the_finest_balance_the_order_and_what_both_models_have_in_com
         rows.append(at("sam" if model == SAM else "fem", 14, 6) | {"contact": name})
     rows += [each | {"contact": "sliding"} for each in rows if each["contact"] == "perfect"]
     frame = pd.DataFrame([{"sweep": "", **each} for each in rows])
-    found = taken(all_cases()["energy"].file, frame)
+    file = all_cases()["energy"].file
+    found = {claim.name: taken(file, frame, claim) for claim in file.taken}
     assert (
         found["perfect-sam-cells"].value == 14**-2.0 and found["perfect-sam-steps"].value == 1e-3 * 24**-1.5
     )
