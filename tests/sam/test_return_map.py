@@ -368,7 +368,7 @@ def test_a_plan_names_the_law_and_the_advice_counts_the_weaker_one():
 def test_a_layer_of_the_same_law_changes_no_bit(solve, law):
     base = law | {"profile": ((0.0, 0.5), (1.2e-6, 1.0)), "layer_thickness": 1e-6}
     small = {
-        "loading": {"force": 0.3},
+        "loading": {"force": 0.3, "steps": 2},
         "fem": {"cells_per_radius": 4, "box": 4.0},
         "grid": {"cells": (17, 17)},
     }
