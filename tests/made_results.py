@@ -28,6 +28,7 @@ class Made:
     message: str = ""
     warnings: tuple = ()
     verdict: dict | None = None
+    grids: dict = field(default_factory=dict)
 
 
 def square_mesh(x: np.ndarray, p: np.ndarray) -> FieldMesh:

@@ -1,57 +1,63 @@
 # SPDX-License-Identifier: MIT
-"""Made results of the studies of running-in over inputs and over physics: no run of them is solved."""
+"""Made frames of the studies of running-in over surfaces, inputs and physics: no run of them is solved."""
 
-from dataclasses import replace
-from types import SimpleNamespace
+from collections.abc import Mapping, Sequence
 
 import numpy as np
-from made_histories import as_the_paper_says
+from made_histories import CYCLES, as_the_paper_says, at_rest, history, result_of
 
-from verification.cases.running_in import (
-    running_in_physics as physics_study,
-    running_in_sensitivity as inputs_study,
-)
-from verification.cases.running_in.running_in_physics import ALL, Counter, Physics
-from verification.cases.running_in.running_in_sensitivity import INPUTS, Studied, scene_at
-from verification.cases.running_in.scenes import NAMES
+from sam.scene import load_scene
+from verification.cases.running_in.running_in_physics import ALL, FIRST, NUMBERS, PARTS
+from verification.cases.running_in.running_in_sensitivity import INPUTS, Studied, hardness, scene_at
+from verification.cases.running_in.study import NAMES, Run, framed, judged, measured
+from verification.compare.running_in_measures import History
 from verification.sensitivity import UNIFORM, design
 
 POINTS = 40
-GOOD = Physics(Counter.MOVES_RENEWED, "alternating", "kinematic")
+GOOD = "moves, rough, new in each pass", "alternating", "kinematic"
+SCENES = {case: load_scene(f"verification/scenes/running-in-{case}.toml") for case in NAMES}
 
 
-def over_inputs(printed) -> Studied:
-    """As the paper says where the deviation of the layer is in the upper half; else nothing wears. printed:
-    the scene of each material.
-    """
-    shares = design(UNIFORM, len(INPUTS), POINTS, 1)
-    deciding = [one.name for one in INPUTS].index("deviation")
+def verdicts(surfaces: Sequence[Mapping[str, History]]) -> list[dict]:
+    """What is told of each statement on surfaces, of each of which there are the materials that converged."""
     runs = {}
+    for k, case in ((k, case) for k in range(len(surfaces)) for case in NAMES):
+        there = case in surfaces[k]
+        own = surfaces[k][case] if there else history(CYCLES)
+        runs[case, k] = Run(SCENES[case], result_of(own, converged=there))
+    return judged(measured(framed(runs, ("material", "surface")), ["surface"]))
+
+
+def over_inputs(**changed: History) -> Studied:
+    """As the paper says where the deviation of the layer is in the upper half; else nothing wears. changed:
+    other histories of materials.
+    """
+    shares, said, runs = design(UNIFORM, len(INPUTS), POINTS, 1), as_the_paper_says() | changed, {}
+    deciding = [one.name for one in INPUTS].index("deviation")
     for point, case in np.ndindex(POINTS, len(NAMES)):
         name = list(NAMES)[case]
-        history = as_the_paper_says()[name]
+        own = said[name]
         if shares[point, deciding] < 0.5:
-            history = replace(history, volume=0.0 * history.volume, friction=0.0 * history.friction + 0.3)
-        result = SimpleNamespace(converged=True, cost={"cpu_s": 2.0})
-        scene = scene_at(printed[name], shares[point], 7)
-        runs[point, name] = SimpleNamespace(history=history, result=result, scene=scene)
-    return Studied(inputs_study.EFFORTS["full"][1], shares, runs, 400.0, printed)
+            own = history(0.0 * own.volume, 0.3, own.sa)
+        runs[point, name] = Run(scene_at(SCENES[name], shares[point], 7), result_of(own))
+    return studied(shares, runs)
 
 
-def ran(history) -> SimpleNamespace:
-    """A run of the study over physics."""
-    result = SimpleNamespace(converged=True, cost={"cpu_s": 2.0})
-    return SimpleNamespace(history=history, result=result, of_cycles=lambda _name: np.zeros(25))
+def studied(shares: np.ndarray, runs: Mapping[tuple[int, str], Run]) -> Studied:
+    printed = {case: hardness(scene) for case, scene in SCENES.items()}
+    return Studied(framed(runs, ("point", "material")), np.asarray(shares), printed)
 
 
-def over_physics() -> physics_study.Found:
+def over_physics(**changed: History):
     """As the paper says under one physics; under the others nothing wears after the first cycle."""
-    said, runs = as_the_paper_says(), {}
-    for physics in ALL:
-        for name in NAMES:
-            own = said[name]
-            if physics != GOOD:
-                own = replace(own, volume=0.0 * own.volume + own.volume[0], friction=0.0 * own.friction + 0.3)
-                own.friction[0] = said[name].friction[0]
-            runs[physics, name] = ran(own)
-    return physics_study.Found(runs, 400.0)
+    said = as_the_paper_says() | changed
+    runs = {
+        (*physics, name): Run(SCENES[name], result_of(own if physics == GOOD else at_rest(own)))
+        for physics in ALL
+        for name, own in said.items()
+    }
+    return framed_physics(runs)
+
+
+def framed_physics(runs):
+    return framed(runs, [*PARTS, "material"], NUMBERS | FIRST)

@@ -336,6 +336,16 @@ def test_every_model_has_faces_at_the_kinks_below_smooth_and_rough_bodies(tables
         assert max(np.abs(each - kink).min() for kink in (0.7e-6, THICK)) < 1e-12 * THICK
 
 
+def test_a_soft_layer_makes_a_body_yield_that_would_not():
+    """The largest von Mises stress of the elastic contact is half the yield stress of the body."""
+    hard = {"law": "perfect", "yield_stress": 6e9, "layer_thickness": 3e-6}
+    small = {"loading": {"force": 0.15, "steps": 1}, "grid": {"cells": (17, 17)}}
+    alone = sam.solve(scene(body={"plasticity": hard}, **small))
+    weak = {"layer": {"law": "perfect", "yield_stress": 2e9}}
+    layered = sam.solve(scene(body={"plasticity": hard | weak}, **small))
+    assert alone.quantities["peeq_max"] == 0.0 < layered.quantities["peeq_max_depth_m"] < 3e-6
+
+
 def test_a_plan_names_the_law_and_the_advice_counts_the_weaker_one():
     body = SWIFT_LAW | {"layer_thickness": THICK}
     plain, own = (scene(body={"plasticity": each}) for each in (body, body | {"layer": LINEAR_LAW}))
@@ -353,17 +363,18 @@ def test_a_plan_names_the_law_and_the_advice_counts_the_weaker_one():
         assert advice_of(light, ["sam"])["kind"] == kind
 
 
+@pytest.mark.parametrize("law", [SWIFT_LAW, LINEAR_LAW], ids=["swift", "linear"])
 @pytest.mark.parametrize("solve", [sam.solve, fem_reference.solve], ids=["sam", "fem-axisymmetric"])
-def test_a_layer_of_the_same_law_changes_no_bit(solve):
-    base = SWIFT_LAW | {"profile": ((0.0, 0.5), (1.2e-6, 1.0)), "layer_thickness": 1e-6}
+def test_a_layer_of_the_same_law_changes_no_bit(solve, law):
+    base = law | {"profile": ((0.0, 0.5), (1.2e-6, 1.0)), "layer_thickness": 1e-6}
     small = {
-        "loading": {"force": 0.3},
+        "loading": {"force": 0.3, "steps": 2},
         "fem": {"cells_per_radius": 4, "box": 4.0},
         "grid": {"cells": (17, 17)},
     }
     plain, own = (
         solve(scene(body={"plasticity": each}, solver={"tolerance": 1e-3}, **small))
-        for each in (base, base | {"layer": SWIFT_LAW})
+        for each in (base, base | {"layer": law})
     )
     assert plain.quantities == own.quantities and plain.quantities["peeq_max"] > 0.0
     for name, table in plain.tables.items():

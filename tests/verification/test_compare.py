@@ -14,6 +14,7 @@ from fem_reference.common import recovery
 from sam.results import quantities as peaks
 from sam.results.snapshots import Box
 from verification.compare.comparison import compare_scene, names_of_rows, pair_of, wanted
+from verification.compare.own_data import read_data
 
 QUANTITIES = {
     "force_N": 1.0,
@@ -291,3 +292,23 @@ def test_a_rough_scene_is_compared_spot_by_spot():
     assert red(bare, rough_contact(), rough) == {"p_Pa over the patch", "residual uz_m on the line"}
     none = replace(rough_contact(), quantities=rough_contact().quantities | {"force_N": 0.0})
     assert list(rows_of(none, none, rough)) == quantities
+
+
+def test_finite_elements_in_space_count_on_both_sides_and_no_stress_at_the_edge_of_a_punch():
+    skew = with_column(SAM, "line", "uz_m", lambda uz: uz * (1 + 0.06 * np.sign(SAM.tables["line"]["x_m"])))
+    assert red(skew, FEM, ELASTIC) == set() and red(skew, like_sam(16), ELASTIC) == {"uz_m on the line"}
+    plane = FEM.tables["plane"]
+    edge = np.hypot(plane["x_m"] - 1.0, plane["z_m"]) < 0.25
+    wrong = with_column(FEM, "plane", "mises_Pa", lambda mises: np.where(edge, 2 * mises, mises))
+    name = "mises_Pa in the plane y = 0"
+    assert red(SAM, wrong, ELASTIC) == {name} and name not in red(
+        SAM, wrong, scene(counterbody=SHAPES["punch"])
+    )
+
+
+def test_six_stresses_of_own_data_have_a_von_mises_stress(tmp_path):
+    rows = [f"{z}e-6,0,0,{-1 - z}e9,0,0,0\n" for z in range(6)]
+    (tmp_path / "own.csv").write_text("z_m,sxx_Pa,syy_Pa,szz_Pa,syz_Pa,sxz_Pa,sxy_Pa\n" + "".join(rows))
+    assert read_data(tmp_path / "own.csv", ELASTIC).tables["axis"]["mises_Pa"].tolist() == [
+        1e9 * (1 + z) for z in range(6)
+    ]

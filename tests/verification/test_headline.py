@@ -6,13 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from made_histories import as_the_paper_says
-from made_results import context
-from made_studies import GOOD, over_inputs, over_physics
+from made_studies import GOOD, over_inputs, over_physics, verdicts
 from page_checks import PageReader, faults_of
 
+from verification.cases import all_cases
 from verification.cases.running_in import running_in_physics, running_in_sensitivity
-from verification.cases.running_in.scenes import BULK, HARDENING, NAMES
-from verification.cases.running_in.study import STATEMENTS, judged as judged_on
+from verification.cases.running_in.study import BULK, HARDENING, STATEMENTS
 from verification.runs.files import plain
 from verification.suite.pages import write_report
 from verification.suite.pages.answers import Evidence, statements as of_paper
@@ -51,7 +50,7 @@ def older(case):
 
 
 def statements(**judged):
-    return {"statements": {name: [one.data for one in each] for name, each in judged.items()}}
+    return {"statements": judged}
 
 
 def stored(*cases):
@@ -65,24 +64,20 @@ def readings():
     said = as_the_paper_says()
     still = {**said, HARDENING: replace(said[HARDENING], volume=0.0 * said[HARDENING].volume)}
     early = {**said, HARDENING: replace(said[HARDENING], volume=said[BULK].volume)}
-    found = statements(**{"printed inputs": judged_on([still] * 3), "renewed": judged_on([early] * 3)})
+    found = statements(**{"printed inputs": verdicts([still] * 3), "renewed": verdicts([early] * 3)})
     return record(READINGS, found | {"second_reading": "a soft layer"})
 
 
 @pytest.fixture(scope="module")
-def studies(tmp_path_factory):
+def studies():
     """Of inputs and of physics, with one statement that holds nowhere."""
-    here = context(INPUTS, tmp_path_factory.mktemp("scenes"))
-    inputs = over_inputs({case: here.scene(f"running-in-{case}") for case in NAMES})
-    physics, records = over_physics(), []
-    for (case,), found in ((running_in_sensitivity.CASES, inputs), (running_in_physics.CASES, physics)):
-        for (_, name), one in found.runs.items():
-            if name == HARDENING:
-                one.history = replace(one.history, volume=0.0 * one.history.volume)
-        records.append(
-            record(case.name, *(part(found) for part in (case.data, case.tables, case.notes, case.setup)))
-        )
-    return records
+    hardening = as_the_paper_says()[HARDENING]
+    never = {HARDENING: replace(hardening, volume=0.0 * hardening.volume)}
+    made = (running_in_sensitivity, over_inputs(**never)), (running_in_physics, over_physics(**never))
+    return [
+        record(case.name, *(part(found) for part in (case.data, case.tables, case.notes, case.setup)))
+        for case, found in ((all_cases()[study.CASES[0].name], found) for study, found in made)
+    ]
 
 
 def test_each_statement_has_a_row_with_what_decides_it_and_what_makes_it_hold(readings, studies):
@@ -103,7 +98,7 @@ def test_each_statement_has_a_row_with_what_decides_it_and_what_makes_it_hold(re
     plain, *others = running_in_physics.ALL
     assert set(WORDS) == {key for each in others for key in each} - set(plain)
     (good,) = Judged(read_stored(stored(*studies))).under("curve B: still wears linearly")
-    assert good == tuple(WORDS[each] for each in (GOOD.hardening, GOOD.sign, GOOD.counter))
+    assert good == tuple(WORDS[each] for each in reversed(GOOD))
 
 
 def said(headline):
@@ -139,7 +134,7 @@ def test_the_answer_counts_what_the_tables_hold_and_the_index_and_the_page_begin
 def test_what_finer_cells_refute_is_not_counted_and_named(readings, studies):
     said_so = as_the_paper_says()
     busy = {**said_so, BULK: replace(said_so[BULK], volume=1e-18 * np.arange(1.0, 26.0))}
-    finer = record(FINER, statements(coarse=judged_on([said_so]), fine=judged_on([busy])))
+    finer = record(FINER, statements(coarse=verdicts([said_so]), fine=verdicts([busy])))
     text = headline_of(read_stored(stored(readings, *studies, finer))).answer
     assert "1 of these 13 (bulk: worn in the first six cycles) failed on finer cells" in text
     assert text.endswith("not counting such, 12 of 15 hold.")

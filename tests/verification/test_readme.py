@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 from made_histories import as_the_paper_says
+from made_studies import verdicts
 
-from verification.cases.running_in.study import judged
 from verification.suite.readme import BEGIN, END, main, renewed
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -55,8 +55,7 @@ def test_failed_gates_are_named_and_counted(published):
         case["status"] = "passed" if case["status"] == "failed" else case["status"]
     assert "Every gate of the published pages holds." in renewed(README, none)
     running_in = next(case for case in none["cases"] if case["name"] == "running-in")
-    said = [each.data for each in judged([as_the_paper_says()])]
-    running_in["data"] = {"statements": {"printed inputs": said}}
+    running_in["data"] = {"statements": {"printed inputs": verdicts([as_the_paper_says()])}}
     one = renewed(README, changed(none, pavement_fox={"status": "failed", "error": 2.0, "tolerance": 1.0}))
     assert "One gate fails on the published pages: `pavement.fox` (2 against \u2264 1)." in one
     assert "Yes. With the printed inputs, 17 of its 17 statements" in " ".join(one.split())

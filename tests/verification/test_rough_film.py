@@ -34,12 +34,10 @@ def test_radius_of_a_summit_is_that_of_its_sphere():
         assert rough_film.summit_radius(hertz_spot(a, a / cells)) == pytest.approx(a, rel=1 / (6 * cells**2))
 
 
-@pytest.mark.parametrize("thickness", [60e-9, 160e-9, 1e-6])
-def test_films_keep_the_depths_of_the_body(thickness):
+def test_films_keep_the_depths_of_the_body():
     base = load_scene("verification/scenes/rough-patch.toml")
-    depths = np.array(rough_film.with_film(base, thickness).grid.depths)
-    assert (np.diff(depths) > 0).all() and depths[-1] == 6e-6
-    assert np.isclose(depths, thickness, rtol=1e-9).any()
+    depths = np.array(rough_film.with_film(base, 160e-9).grid.depths)
+    assert (np.diff(depths) > 0).all() and depths[-1] == 6e-6 and np.isclose(depths, 160e-9, rtol=1e-9).any()
 
 
 class TestVerdict:

@@ -9,13 +9,7 @@ from scipy.integrate import solve_ivp
 
 from sam.scene import load_scene
 from verification.cases.running_in import running_in
-from verification.cases.running_in.scenes import (
-    BULK,
-    HARDENING,
-    NAMES,
-    A,
-    B,
-)
+from verification.cases.running_in.study import BULK, HARDENING, NAMES, A, B
 from verification.reference.bonded_film import in_plane_strain, plastic_strain
 from verification.reference.regime import (
     Regime,
@@ -119,9 +113,12 @@ class TestRegime:
             pytest.approx(removal, abs=5e-3),
             pytest.approx(softer, abs=5e-3),
         )
-        assert (
-            limits.removal_whole == pytest.approx(4 * limits.removal, rel=1e-14) and limits.film == other.film
-        )
+        assert limits.removal_whole == pytest.approx(4 * limits.removal, rel=1e-14)
+        assert limits.film == other.film
+        if case == BULK:
+            assert limits.strength == pytest.approx(swift(1780e6, 4, 0.095, 0.002), rel=1e-12)
+        profile, middle = SCENES[case].body.plasticity.depth_profile(), 0.05e-6  # of the first layer
+        assert limits.first / limits.removal == pytest.approx(profile(middle) / profile(0.0), rel=1e-12)
 
     def test_bad_numbers_are_refused_by_name(self):
         for wrong, name in (((-1.0, 0.4), "strength"), ((1e9, 0.0), "friction"), ((np.nan, 0.4), "strength")):

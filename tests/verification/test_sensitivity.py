@@ -49,12 +49,6 @@ def test_effects_of_a_linear_function_are_its_slopes():
         assert of[name].bounds == pytest.approx(np.array([expected, expected]), abs=1e-13)
 
 
-def test_shares_of_the_variance_of_a_linear_function():
-    of, expected = found(SOBOL, linear, 4, 1024), SLOPES**2 / (SLOPES**2).sum()
-    for name in ("first", "total"):
-        assert of[name].values == pytest.approx(expected, abs=0.01)
-
-
 def test_shares_of_the_variance_of_the_ishigami_function():
     """Errors are about 2/sqrt(n) of n = 4096 pairs; wrong factors are 0.1 off and more."""
     of = found(SOBOL, ishigami, 3, 4096)

@@ -106,13 +106,19 @@ class Film:
         if mises(stress) > self.yield_stress:
             raise ValueError("path: the film must not yield at its first point")
         for start, end in pairwise(path):
-            step, time = end - start, 0.0
-            at_yield = mises(stress) >= self.yield_stress * (1.0 - RESIDUAL)
-            flows = at_yield and self._rate(step, stress)[2] > 0.0
-            while time < 1.0:  # elastic and plastic parts in turn
-                time, stress, plastic = self._part(step, time, stress, plastic, flows=flows)
-                flows = not flows
+            stress, plastic = self._segment(end - start, stress, plastic)
         return plastic
+
+    def _segment(
+        self, step: FlowPoint, stress: np.ndarray, plastic: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Stress and plastic strain after a straight line, elastic and plastic parts in turn."""
+        time = 0.0
+        flows = mises(stress) >= self.yield_stress * (1.0 - RESIDUAL) and self._rate(step, stress)[2] > 0.0
+        while time < 1.0:
+            time, stress, plastic = self._part(step, time, stress, plastic, flows=flows)
+            flows = not flows
+        return stress, plastic
 
     def _part(self, step: FlowPoint, time: float, stress: np.ndarray, plastic: np.ndarray, *, flows: bool):
         """Time, stress and plastic strain where the film begins or ceases to flow, or at time = 1."""

@@ -5,15 +5,21 @@ perfect plasticity that settle, or flow in every pass.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from itertools import pairwise
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sam.scene import Friction, Plasticity, Result, Scene
-from verification.cases.case import SAM, Case, Context, Measured, Plot, SmallTable, with_body, with_keys
+from sam.scene import Friction, Plasticity, Scene
+from verification.cases.case import SAM, Context, Plot, with_body, with_keys
 from verification.cases.recipes import initial_yield, on_track
 from verification.figures.lines import new_strains
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+    from verification.rows import CaseFile
 
 CELLS = {"quick": 4, "full": 8}  # in the radius
 STEEL = {
@@ -44,59 +50,34 @@ def scenes(base: Scene, level: str) -> Iterator[tuple[str, Scene]]:
         yield name, on_track(perfect, {"cells": cells, "cycles": 8, "ratio": ratio})
 
 
-def column(result: Result, name: str = "new_strain_max") -> np.ndarray:
-    """A column of the table of passes."""
-    return np.asarray(result.tables["passes"][name], dtype=float)
-
-
-class MovingPasses(Case):
-    """Repeated passes: what each adds."""
-
-    def solve(self, context: Context) -> dict[str, Result]:
-        base = context.scene("moving-sphere")
-        return {
-            name: context.solve(SAM, scene, f"perfect-{name}" if name in PERFECT else name)
-            for name, scene in scenes(base, context.level)
-        }
-
-    def measure(self, found: Mapping[str, Result]) -> dict[str, Measured | float]:
-        first, *_, forth, back = column(found["to-and-fro"], "rolling")
-        settles, flows = (column(found[name]) for name in PERFECT)
-        one_way, to_and_fro = (column(found[name], "groove_m")[-1] for name in ("one-way", "to-and-fro"))
-        verdicts = {name: float(found[name].verdict["class"] == of) for name, (_, of) in PERFECT.items()}
-        return {
-            "conservative": float((back - forth) / 2 / first),
-            "both-ways": Measured(to_and_fro, one_way, unit="m"),
-            "steady": found["one-way"].quantities["passes_to_steady"],
-            "perfect-settles": float(min(one / two for one, two in pairwise(settles[:LARGE]))),
-            "perfect-flows": Measured(flows[-1], flows[-2]),
-            **{f"verdict-{name}": Measured(value, 1.0) for name, value in verdicts.items()},
-        }
-
-    def tables(self, found: Mapping[str, Result]) -> Iterator[SmallTable]:
-        heads = ("run", *(str(k + 1) for k in range(8)))
-        for caption, name in (("Largest plastic strain", "new_strain_max"), ("Groove in m", "groove_m")):
-            rows = [(run, *(f"{v:.3e}" for v in column(each, name))) for run, each in found.items()]
-            rows = [(*row, *[""] * (len(heads) - len(row))) for row in rows]
-            yield SmallTable(f"{caption} that a pass {'leaves' if 'G' in caption else 'adds'}", heads, rows)
-
-    def notes(self, found: Mapping[str, Result]) -> Iterator[str]:
-        for name, (ratio, _) in PERFECT.items():
-            verdict, history = found[name].verdict, found[name].tables["history"]
-            loaded = np.flatnonzero(np.array(history["force_N"]) > 0)[-1]
-            yield (
-                f"Perfect plasticity at p0 = {ratio:g} yield stresses: the largest pressure ends at "
-                f"{history['p_max_Pa'][loaded] / 1e9:.3f} GPa; verdict after eight passes: "
-                f"{verdict['class']}, since pass {verdict['decided_at_cycle']}."
-            )
-
-    def figures(self, found: Mapping[str, Result]) -> Iterator[Plot]:
-        words = (
-            "Largest plastic strain that a pass adds to a cell of the steady part of the track, over the "
-            "number of the pass; no mark where it adds none."
+def runs(context: Context) -> Iterator[dict[str, Any]]:
+    """What each pass adds, and the groove that each leaves in m. conservative: half the difference of the
+    forces of the last passes, forth and back, over that of the first pass; falls: the least factor from one
+    pass to the next, of the first; right: whether the verdict is the expected one.
+    """
+    for name, scene in scenes(context.scene("moving-sphere"), context.level):
+        result = context.solve(SAM, scene, f"perfect-{name}" if name in PERFECT else name)
+        strain, groove, rolling = (
+            np.asarray(result.tables["passes"][each], dtype=float)
+            for each in ("new_strain_max", "groove_m", "rolling")
         )
-        drawing = new_strains({name: column(each) for name, each in found.items()})
-        yield Plot(drawing, "new-strain", "What each pass adds", words, words)
+        row = {"run": name, "groove": groove[-1], "last": strain[-1], "before": strain[-2], "strains": strain}
+        row["conservative"] = float((rolling[-1] - rolling[-2]) / 2 / rolling[0])
+        row["steady"] = result.quantities["passes_to_steady"]
+        if name in PERFECT:
+            history, verdict = result.tables["history"], result.verdict
+            loaded = np.flatnonzero(np.array(history["force_N"]) > 0)[-1]
+            row["falls"] = float(min(one / two for one, two in pairwise(strain[:LARGE])))
+            row |= {"pressure": history["p_max_Pa"][loaded], "verdict": str(verdict["class"])}
+            row["right"] = float(verdict["class"] == PERFECT[name][1])
+        yield row
 
 
-CASES = (MovingPasses("moving-passes"),)
+def new_strain(file: CaseFile, frame: DataFrame) -> Plot:
+    """What each pass adds."""
+    words = (
+        "Largest plastic strain that a pass adds to a cell of the steady part of the track, over the "
+        "number of the pass; no mark where it adds none."
+    )
+    drawing = new_strains(dict(zip(frame["run"], frame["strains"], strict=True)))
+    return Plot(drawing, "new-strain", "What each pass adds", words, words)

@@ -5,18 +5,23 @@ energy, and what it shows at the start.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sam.scene import Friction, Result, Scene
-from verification.cases.case import SAM, Case, Context, Plot, SmallTable, with_body, with_grid
+from verification.cases.case import SAM, Context, Plot, with_body, with_grid
 from verification.cases.recipes import TRACK, on_track, radius_at
 from verification.energy.balance import Balance
 from verification.energy.of_sam import balance_of
 from verification.figures.lines import grooves
 from verification.references import hertz_sphere
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+    from verification.rows import CaseFile
 
 ELASTIC = {"cells": 8, "length": 9 * 2.25 / 8, "per_radius": 8 / 2.25}  # 9 steps of 2 1/4 cells
 FINE = {"cells": 6, "per_radius": 8.0}
@@ -82,57 +87,46 @@ def shear_ahead(scene: Scene, result: Result) -> float:
     return float(-before / steady)
 
 
-class MovingSphere(Case):
+def runs(context: Context) -> Iterator[dict[str, Any]]:
     """SAM over a track of six radii against Hertz, itself and the first law."""
-
-    def solve(self, context: Context) -> dict[str, Any]:
-        base = context.scene("moving-sphere")
-        steel, coarse = on_track(base, FINE), on_track(base, COARSE)
-        elastic = with_grid(with_body(on_track(base, ELASTIC), plasticity=None), depths=None)
-        scenes = {"elastic": elastic, "steel": steel, "coarse": coarse}
-        scenes |= {f"coarse-{name}": on_track(base, COARSE | keys) for name, keys in OTHERS.items()}
-        results = {name: context.solve(SAM, scene, name) for name, scene in scenes.items()}
-        sliding = coarse.model_copy(update={"friction": Friction(coefficient=0.2)})
-        return {"scenes": scenes, "energy": balance_of(steel), "friction": balance_of(sliding)} | results
-
-    def measure(self, found: Mapping[str, Any]) -> dict[str, float]:
-        scene, steel, coarse = found["scenes"]["steel"], found["steel"], found["coarse"]
-        depth, track = coarse.quantities["groove_depth_m"], steel.quantities
-        steady = groove_of(scene, steel)[1][np.asarray(steel.tables["track"]["steady"]) == 1]
-        a, start = radius_at(scene), scene.loading.path.start[0]
-        shoulder = min(track["shoulder_start_m"], track["shoulder_end_m"])
-        values = against_hertz(found["scenes"]["elastic"], found["elastic"])
-        values |= changed_by_turn(coarse, found["coarse-back"])
-        for name in ("whole", "half"):
-            values[f"shifted-{name}"] = abs(found[f"coarse-{name}"].quantities["groove_depth_m"] / depth - 1)
-        return values | {
-            "steady": np.abs(steady / steady.mean() - 1).max(),
-            "energy": np.abs(found["energy"].error_of_cells).max(),
-            "rolling-energy": rolling_energy(found["energy"], steel),
-            "friction-energy": np.abs(found["friction"].error_of_cells).max(),
-            "deepest-at-start": (track["groove_deepest_x_m"] - start) / a,
-            "shoulders": shoulder / track["groove_depth_m"],
-            "transient": track["transient_length_m"] / a,
-            "shear-changes-sign": shear_ahead(scene, steel),
-        }
-
-    def setup(self, found: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-        scene = found["scenes"]["steel"]
-        yield "p₀/σ_y0", f"4, a = {1e6 * radius_at(scene):.3f} µm"
-        yield "Track", f"{TRACK:g} a in {scene.strokes.count} steps, cells of a/{FINE['cells']}"
-
-    def tables(self, found: Mapping[str, Any]) -> Iterator[SmallTable]:
-        a, values = radius_at(found["scenes"]["steel"]), found["steel"].quantities
-        rows = [(name, f"{1e3 * values[name] / a:.3f}") for name in (*LENGTHS, "transient_length_m")]
-        yield SmallTable("Track, in thousandths of the contact radius", ("quantity", "1e-3 a"), rows)
-
-    def figures(self, found: Mapping[str, Any]) -> Iterator[Plot]:
-        lines = {"Swift steel": groove_of(found["scenes"]["steel"], found["steel"])}
-        words = (
-            "Displacement of the surface by plastic strain over the distance from the start, after the pass; "
-            "the sphere was pressed on at 0."
-        )
-        yield Plot(grooves(lines, TRACK), "groove", "Groove along the path", words, words)
+    base = context.scene("moving-sphere")
+    steel, coarse = on_track(base, FINE), on_track(base, COARSE)
+    elastic = with_grid(with_body(on_track(base, ELASTIC), plasticity=None), depths=None)
+    scenes = {"elastic": elastic, "steel": steel, "coarse": coarse}
+    scenes |= {f"coarse-{name}": on_track(base, COARSE | keys) for name, keys in OTHERS.items()}
+    results = {name: context.solve(SAM, scene, name) for name, scene in scenes.items()}
+    sliding = balance_of(coarse.model_copy(update={"friction": Friction(coefficient=0.2)}))
+    yield {"run": "elastic"} | against_hertz(elastic, results["elastic"])
+    depth = results["coarse"].quantities["groove_depth_m"]
+    for name in ("whole", "half"):
+        shifted = results[f"coarse-{name}"].quantities["groove_depth_m"]
+        yield {"run": f"coarse-{name}", "shifted": abs(shifted / depth - 1)}
+    turned = changed_by_turn(results["coarse"], results["coarse-back"])
+    yield {"run": "coarse", "friction-energy": np.abs(sliding.error_of_cells).max()} | turned
+    track, found, a = results["steel"].quantities, balance_of(steel), radius_at(steel)
+    way, groove = groove_of(steel, results["steel"])
+    steady = groove[np.asarray(results["steel"].tables["track"]["steady"]) == 1]
+    yield {
+        "run": "steel",
+        "steady": np.abs(steady / steady.mean() - 1).max(),
+        "energy": np.abs(found.error_of_cells).max(),
+        "rolling-energy": rolling_energy(found, results["steel"]),
+        "deepest-at-start": (track["groove_deepest_x_m"] - steel.loading.path.start[0]) / a,
+        "shoulders": min(track["shoulder_start_m"], track["shoulder_end_m"]) / track["groove_depth_m"],
+        "transient": track["transient_length_m"] / a,
+        "shear-changes-sign": shear_ahead(steel, results["steel"]),
+        **{f"{name}, 1e-3 a": 1e3 * track[name] / a for name in LENGTHS},
+        "way": way,
+        "groove": groove,
+    }
 
 
-CASES = (MovingSphere("moving-sphere"),)
+def groove(file: CaseFile, frame: DataFrame) -> Plot:
+    """Along the path."""
+    last = frame.iloc[-1]
+    words = (
+        "Displacement of the surface by plastic strain over the distance from the start, after the pass; "
+        "the sphere was pressed on at 0."
+    )
+    drawing = grooves({"Swift steel": (last["way"], last["groove"])}, TRACK)
+    return Plot(drawing, "groove", "Groove along the path", words, words)

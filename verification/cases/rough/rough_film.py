@@ -28,7 +28,6 @@ from verification.cases.case import (
     Measured,
     Plot,
     SmallTable,
-    elastic_text,
     number,
     with_body,
     with_grid,
@@ -132,19 +131,6 @@ class RoughFilm(Case):
             values |= {f"{name}-refined": float(np.ptp(changes)), f"{name}-white": abs(last[key])}
         return values
 
-    def setup(self, found: Patches) -> Iterator[tuple[str, str]]:
-        scene, first = found.shown[0], found.results[SMOOTH][0].discretisation
-        film, surface = scene.body.coating, scene.surface
-        yield "Half-space", elastic_text(scene.body)
-        yield "Film", f"{film.thickness * 1e9:g} nm, {elastic_text(film)}"
-        roughness = f"Ra = {surface.ra * 1e6:g} µm, feed {surface.feed * 1e6:g} µm, seed {surface.seed}"
-        yield "Surface", f"hard-turned, {roughness}"
-        yield "Shortest wave", f"{surface.cutoff_short * 1e6:g} µm (smooth), {WHITE * 1e6:g} µm (rough)"
-        yield "Patch", "64 × 64 µm, the same surface on every grid; heights fall off at the border"
-        load = f"{scene.loading.force:g} N, μ = {scene.coefficient:g}"
-        yield "Load", f"{load}, against steel or a rigid plane"
-        yield "Cells in contact", f"{first['contact_cells']} of {64 * 64} on the coarsest grid"
-
     def tables(self, found: Patches) -> Iterator[SmallTable]:
         rows = [row(name, result) for name, results in found.results.items() for result in results]
         yield SmallTable("What the film changes, at equal force", COLUMNS, rows)
@@ -158,11 +144,7 @@ class RoughFilm(Case):
                 f"{LIMIT:.0%} at one of {breaking_radius(scene) * 1e6:.2g} µm. The change here is "
                 f"{largest_change(result):.1%}: the claim {verdict(result)}."
             )
-        yield (
-            "The film is negligible where the summits are wide against it, which the sampling of a measured "
-            "surface decides: with waves as short as a few micrometres it is not. Its own stress is beyond "
-            "its yield stress in all of them."
-        )
+        yield from self.file.notes
 
     def figures(self, found: Patches) -> Iterator[Plot]:
         scene, coated, uncoated = found.shown

@@ -1,61 +1,47 @@
 # SPDX-License-Identifier: MIT
 """Which of the inputs that the paper leaves open decide its statements on running-in.
 
-Every input is drawn evenly over its range, each point on another surface, and all materials are run at each
-point: shares of the points at which a statement holds are probabilities over these ranges. Ranges are those
-that the paper, the literature on this steel and the readings of its figures allow; within them every value
-counts as equally likely, and inputs as independent.
+Every input is drawn evenly over its range, each point on another surface, and all materials are
+run at each point: shares of the points at which a statement holds are probabilities over these
+ranges. Ranges are those that the paper, the literature on this steel and the readings of its
+figures allow; within them every value counts as equally likely, and inputs as independent.
 
-The points at which most statements hold together are chosen by their result, so that they are fitted: how far
-they are from the printed inputs, what they would mean for the body, and whether that is plausible is said.
+The points at which most statements hold together are chosen by their result, so that they are
+fitted: how far they are from the printed inputs, what they would mean for the body, and whether
+that is plausible is said.
 """
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from itertools import product
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from scipy.stats import binomtest, norm
 
 from sam.scene import Scene
-from verification.cases.case import SAM, Context, Measured, Plot, SmallTable, with_keys, with_loading
-from verification.cases.running_in.scenes import (
-    BULK,
-    DEEPER,
-    LAST,
-    NAMES,
-    A,
-    B,
-    Effort,
-    deeper,
-    printed_scenes,
-    with_constant,
-    with_counter,
-    with_deviation,
-    with_layer_alpha,
-    with_plasticity,
-    with_seed,
-)
-from verification.cases.running_in.study import STATEMENTS, Histories, Run, Study
-from verification.cost.estimates import estimate
+from verification.cases.case import Context, Measured, Plot, SmallTable, with_keys, with_loading
+from verification.cases.running_in import study
+from verification.cases.running_in.study import BULK, DEEPER, LAST, NAMES, STATEMENTS, A, B, Effort, Study
 from verification.figures.specials import probabilities
-from verification.sensitivity import UNIFORM, design, indices
+from verification.sensitivity import UNIFORM, design
 from verification.surrogate import Surrogate, surrogate
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 SURFACES = 100  # seeds of surfaces count from here, and are no others'
 EFFORTS = {"quick": (4, Effort(2, 2, 24, (BULK, A))), "full": (64, Effort(LAST, 3, 64))}
 """Points, and what is run at each: the whole patch, since on a quarter of it most surfaces do not wear at
 all."""
-SEED = 26  # of the design and of what is resampled
+SEED = 26  # of the design
 CHANCE = 1e-3  # of each of 17 × 16 changes of probability: less than one of them is named by chance
 PREDICTS = 0.5  # Q² of a fit that is believed: of 200 results without any cause at most two have it
 PART = 0.1  # of the variance: an input with less of it is not named
 DECIDING, EXPLAINING = 2, 3  # inputs named for each statement, and for its measure
-ACTS = 3.3  # standard errors 1/sqrt(n - 1) of a correlation of ranks that chance passes once in a thousand
 LAYER_LIMIT = 0.02  # of the layers of the printed scenes; curve B with 5 % keeps its 2.5 times as much
 SMOOTH = 0.5e-9  # m: below it the counter-surface is a plane
 NOMINAL = 1e-6  # m: printed thickness of the layer
@@ -66,27 +52,28 @@ BEST = 3  # points that are shown
 MATERIALS = (BULK, A, B)
 
 
-@dataclass(frozen=True)
-class Input:
-    """An input between two ends, which are SI, or one of its levels; printed: in the scenes, where the paper
-    does not print it what they assume; words, factor: for the reader.
+class Input(NamedTuple):
+    """An input between two ends, which are SI, drawn evenly in its value, its logarithm or its
+    LEVELS; printed: in the scenes, where the paper does not print it what they assume; words,
+    factor: for the reader; key: of the scene, else `put` by one of CHANGES.
     """
 
     name: str
     words: str
-    ends: tuple[float, float]
+    low: float
+    high: float
     printed: float
-    put: Callable[[Scene, float], Scene]
-    factor: float = 1.0
-    logarithmic: bool = False
-    levels: tuple[int, ...] = ()
+    factor: float
+    even: str
+    key: str
 
     def value(self, share: float) -> float:
         """At a share (0 to 1) of the way from one end to the other."""
-        if self.levels:
-            return self.levels[min(int(share * len(self.levels)), len(self.levels) - 1)]
-        low, high = self.ends
-        return low * (high / low) ** share if self.logarithmic else low + (high - low) * share
+        if self.even == "level":
+            return LEVELS[min(int(share * len(LEVELS)), len(LEVELS) - 1)]
+        if self.even == "logarithm":
+            return self.low * (self.high / self.low) ** share
+        return self.low + (self.high - self.low) * share
 
     def shown(self, share: float) -> str:
         """For the reader."""
@@ -95,18 +82,19 @@ class Input:
     @property
     def share(self) -> float:
         """Of the printed value; of a level the middle of its part."""
-        if self.levels:
-            return (self.levels.index(int(self.printed)) + 0.5) / len(self.levels)
-        ends = (*self.ends, self.printed)
-        low, high, at = np.log(ends) if self.logarithmic else ends
+        if self.even == "level":
+            return (LEVELS.index(int(self.printed)) + 0.5) / len(LEVELS)
+        ends = self.low, self.high, self.printed
+        low, high, at = np.log(ends) if self.even == "logarithm" else ends
         return float((at - low) / (high - low))
 
+    def put(self, scene: Scene, value: float) -> Scene:
+        """The scene with a value of it."""
+        section, _, key = self.key.partition(".")
+        return with_keys(scene, section, **{key: value}) if key else CHANGES[section](scene, value)
 
-def _key(section: str, key: str) -> Callable[[Scene, float], Scene]:
-    return lambda scene, value: with_keys(scene, section, **{key: value})
 
-
-def _layer_depth(scene: Scene, thickness: float) -> Scene:
+def layer_depth(scene: Scene, thickness: float) -> Scene:
     """The profile over depth, and the layer if there is one, so much thinner."""
     plasticity, share = scene.body.plasticity, thickness / NOMINAL
     if plasticity.profile is None:
@@ -114,63 +102,67 @@ def _layer_depth(scene: Scene, thickness: float) -> Scene:
     keys = {"profile": tuple((share * z, factor) for z, factor in plasticity.profile)}
     if plasticity.layer_thickness is not None:
         keys["layer_thickness"] = share * plasticity.layer_thickness
-    return with_plasticity(scene, **keys)
+    return study.with_plasticity(scene, **keys)
 
 
-def _layer_limit(scene: Scene, limit: float) -> Scene:
+def layer_limit(scene: Scene, limit: float) -> Scene:
+    """The limit of a layer, if there is one, its multiple of the printed 2 %."""
     if (printed := scene.wear.strain_limit_layer) is None:
         return scene
     return with_keys(scene, "wear", strain_limit_layer=limit * printed / LAYER_LIMIT)
 
 
-def _load(scene: Scene, force: float) -> Scene:
-    return with_loading(scene, force=force * scene.loading.force / 0.6)
-
-
-def _counter(scene: Scene, sq: float) -> Scene:
-    return scene if sq < SMOOTH else with_counter(scene, sq)
-
-
-LAYER, LIMIT, FILM = "hardening α of the layer", "strain limit of the", "yield stress of the film [GPa]"
-COUNTER, GROWTH = "roughness of the counter-surface [nm rms]", "growth of the film [nm/√s]"
-_friction, _limit = (lambda key: _key("friction", key)), _key("wear", "strain_limit")
-INPUTS = (
-    Input("feed", "share of the feed in Ra", (0.2, 0.6), 0.4, _key("surface", "feed_share")),
-    Input("shortest", "shortest wave [µm]", (8e-6, 20e-6), 12e-6, _key("surface", "cutoff_short"), 1e6),
-    Input("hurst", "Hurst exponent", (0.6, 0.95), 0.8, _key("surface", "hurst")),
-    Input("anisotropy", "anisotropy", (1.0, 3.0), 1.5, _key("surface", "anisotropy")),
-    Input("B", "B of Swift's law [MPa]", (1280e6, 1780e6), 1780e6, with_constant, 1e-6),
-    Input("depth", "depth of the layer [µm]", (0.3e-6, 1e-6), 1e-6, _layer_depth, 1e6),
-    Input("deviation", "deviation of the layer, factor", (0.8, 1.4), 1.0, with_deviation),
-    Input("hardening", LAYER, (1e1, 1e6), 1e6, with_layer_alpha, logarithmic=True),
-    Input("limit", f"{LIMIT} bulk [%]", (0.001, 0.004), 0.002, _limit, 1e2, logarithmic=True),
-    Input("layer-limit", f"{LIMIT} layer [%]", (0.01, 0.05), 0.02, _layer_limit, 1e2, logarithmic=True),
-    Input("growth", GROWTH, (1.8e-9, 7.3e-9), 3.644e-9, _friction("growth_coefficient"), 1e9),
-    Input("film-yield", FILM, (0.55e9, 0.8e9), 0.6667e9, _friction("film_yield"), 1e-9),
-    Input("high", "friction of the failed film", (0.2, 0.4), 0.4, _friction("high")),
-    Input("load", "load [N]", (0.3, 1.2), 0.6, _load, logarithmic=True),
-    Input("counter", COUNTER, (0.0, 30e-9), 0.0, _counter, 1e9),
-    Input(
-        *("window", "window of smoothing [cells]", (0.0, 9.0), 5),
-        _key("wear", "smoothing_window"),
-        levels=(0, 3, 5, 7, 9),
-    ),
+CHANGES: Mapping[str, Callable[[Scene, float], Scene]] = {
+    "constant": study.with_constant,
+    "depth": layer_depth,
+    "deviation": study.with_deviation,
+    "alpha": study.with_layer_alpha,
+    "limit": layer_limit,
+    "load": lambda scene, force: with_loading(scene, force=force * scene.loading.force / 0.6),
+    "counter": lambda scene, sq: scene if sq < SMOOTH else study.with_counter(scene, sq),
+}
+LEVELS = (0, 3, 5, 7, 9)  # cells
+TABLE = """\
+feed | share of the feed in Ra | 0.2 | 0.6 | 0.4 | 1 | value | surface.feed_share
+shortest | shortest wave [µm] | 8e-6 | 20e-6 | 12e-6 | 1e6 | value | surface.cutoff_short
+hurst | Hurst exponent | 0.6 | 0.95 | 0.8 | 1 | value | surface.hurst
+anisotropy | anisotropy | 1 | 3 | 1.5 | 1 | value | surface.anisotropy
+B | B of Swift's law [MPa] | 1280e6 | 1780e6 | 1780e6 | 1e-6 | value | constant
+depth | depth of the layer [µm] | 0.3e-6 | 1e-6 | 1e-6 | 1e6 | value | depth
+deviation | deviation of the layer, factor | 0.8 | 1.4 | 1 | 1 | value | deviation
+hardening | hardening α of the layer | 1e1 | 1e6 | 1e6 | 1 | logarithm | alpha
+limit | strain limit of the bulk [%] | 0.001 | 0.004 | 0.002 | 1e2 | logarithm | wear.strain_limit
+layer-limit | strain limit of the layer [%] | 0.01 | 0.05 | 0.02 | 1e2 | logarithm | limit
+growth | growth of the film [nm/√s] | 1.8e-9 | 7.3e-9 | 3.644e-9 | 1e9 | value | friction.growth_coefficient
+film-yield | yield stress of the film [GPa] | 0.55e9 | 0.8e9 | 0.6667e9 | 1e-9 | value | friction.film_yield
+high | friction of the failed film | 0.2 | 0.4 | 0.4 | 1 | value | friction.high
+load | load [N] | 0.3 | 1.2 | 0.6 | 1 | logarithm | load
+counter | roughness of the counter-surface [nm rms] | 0 | 30e-9 | 0 | 1e9 | value | counter
+window | window of smoothing [cells] | 0 | 9 | 5 | 1 | level | wear.smoothing_window
+"""
+"""The fields of each input, in the order in which they are put into a scene: a law of the layer takes the
+constants of the body.
+"""
+INPUTS = tuple(
+    Input(name, words, *map(float, numbers), even, key)
+    for name, words, *numbers, even, key in (
+        [part.strip() for part in line.split("|")] for line in TABLE.splitlines()
+    )
 )
-"""In the order in which they are put into a scene: a law of the layer takes the constants of the body."""
 PRINTED = np.array([each.share for each in INPUTS])
 """(inputs,) shares of the printed inputs."""
 
 
 def scene_at(scene: Scene, shares: Sequence[float], seed: int) -> Scene:
     """The scene of a material with every input at its share, on a surface of its own."""
-    scene = with_seed(scene, seed)
+    scene = study.with_seed(scene, seed)
     for each, share in zip(INPUTS, shares, strict=True):
         scene = each.put(scene, each.value(float(share)))
     while (
         scene.loading.force * (64e-6 / scene.grid.extent[0]) ** 2 > 0.7
         and scene.grid.depths[-1] < DEEPER[0][1]
     ):
-        scene = deeper(scene)
+        scene = study.deeper(scene)
     return scene
 
 
@@ -182,28 +174,13 @@ def wilson(held: int, of: int, level: float = 0.9) -> tuple[float, float]:
     return float(found.low), float(found.high)
 
 
-@dataclass(frozen=True)
-class Decider:
-    """How much more often a statement holds in the upper half of an input's range than in the lower one, with
-    bounds of 90 %. acts: whether that is beyond chance: by itself, or beyond its bounds where a fit of the
-    measure tells that the input moves it.
-    """
+def deciders(shares: np.ndarray, held: np.ndarray, fit: Surrogate | None = None) -> list[dict[str, Any]]:
+    """The inputs that decide a statement, the first most. held: (points,), NaN: says nothing; fit:
+    of its measure.
 
-    input: Input
-    change: float
-    bounds: tuple[float, float]
-    acts: bool
-
-    @property
-    def text(self) -> str:
-        """For the reader."""
-        low, high = (f"{100 * end:+.0f}" for end in self.bounds)
-        return f"{self.input.words}: {100 * self.change:+.0f} % ({low} to {high})"
-
-
-def deciders(shares: np.ndarray, held: np.ndarray, fit: Surrogate | None = None) -> list[Decider]:
-    """The inputs that decide a statement, the first most. held: (points,), NaN: says nothing; fit: of its
-    measure.
+    change: how much more often it holds in the upper half of an input's range than in the lower
+    one, with bounds of 90 %; acts: whether that is beyond chance: by itself, or beyond its bounds
+    where a fit of the measure tells that the input moves it.
     """
     says = np.isfinite(held)
     moves = fit.shares >= PART if believed(fit) else np.zeros(len(INPUTS), dtype=bool)
@@ -213,9 +190,10 @@ def deciders(shares: np.ndarray, held: np.ndarray, fit: Surrogate | None = None)
         if high.size and low.size:
             bounds = change_between(high, low, 0.9)
             wide = bounds if moved else change_between(high, low, 1.0 - CHANCE)
+            acts = wide[0] > 0.0 or wide[1] < 0.0
             change = float(high.mean() - low.mean())
-            found.append(Decider(one, change, bounds, wide[0] > 0.0 or wide[1] < 0.0))
-    return sorted(found, key=lambda each: (not each.acts, -abs(each.change)))
+            found.append({"input": one.words, "change": change, "bounds": bounds, "acts": acts})
+    return sorted(found, key=lambda each: (not each["acts"], -abs(each["change"])))
 
 
 def believed(fit: Surrogate | None) -> bool:
@@ -224,7 +202,9 @@ def believed(fit: Surrogate | None) -> bool:
 
 
 def change_between(high: np.ndarray, low: np.ndarray, level: float) -> tuple[float, float]:
-    """Bounds of the difference of two probabilities: Newcombe, Stat. Med. 17 (1998) 873, method 10."""
+    """Bounds of the difference of two probabilities: Newcombe, Stat. Med. 17 (1998) 873, method
+    10.
+    """
     ends = [(part.mean(), *wilson(int(part.sum()), part.size, level)) for part in (high, low)]
     (p, p_low, p_high), (q, q_low, q_high) = ends
     bounds = p - q - np.hypot(p - p_low, q_high - q), p - q + np.hypot(p_high - p, q - q_low)
@@ -232,42 +212,34 @@ def change_between(high: np.ndarray, low: np.ndarray, level: float) -> tuple[flo
 
 
 def least_change(points: int) -> float:
-    """Smallest change of a probability near a half that is beyond CHANCE, between the halves of a range."""
+    """Smallest change of a probability near a half that is beyond CHANCE, between the halves of a
+    range.
+    """
     return float(norm.isf(CHANCE / 2.0) * np.sqrt(2.0 * 0.25 / (points / 2.0)))
 
 
 @dataclass(frozen=True)
 class Studied:
-    """shares: of the inputs, (points, inputs); runs: point and material -> what ran; predicted_s: by the
-    plan; printed: the scene of each material before any input is put.
+    """frame: of all runs, by point and material; shares: of the inputs, (points, inputs); printed:
+    material -> bounds of the hardness of its surface with the printed inputs in Pa.
     """
 
-    effort: Effort
+    frame: DataFrame
     shares: np.ndarray
-    runs: Mapping[tuple[int, str], Run]
-    predicted_s: float
-    printed: Mapping[str, Scene]
-
-    @cached_property
-    def histories(self) -> list[Histories]:
-        """For each point the materials that converged."""
-        runs = {key: one for key, one in self.runs.items() if one.result.converged}
-        return [
-            {case: runs[point, case].history for case in self.effort.cases if (point, case) in runs}
-            for point in range(len(self.shares))
-        ]
+    printed: Mapping[str, tuple[float, float]]
 
     @cached_property
     def measures(self) -> np.ndarray:
         """Of each statement at each point, (statements, points); NaN where it says nothing there."""
-        return np.array([[each.on(own) for own in self.histories] for each in STATEMENTS])
+        return study.measured(self.frame, ["point"]).reindex(range(len(self.shares))).to_numpy().T
 
     @cached_property
     def held(self) -> np.ndarray:
-        """Whether a statement holds at a point, (statements, points); NaN where it says nothing there."""
-        holds = [
-            [float(said.holds(v)) for v in row] for said, row in zip(STATEMENTS, self.measures, strict=True)
-        ]
+        """Whether a statement holds at a point, (statements, points); NaN where it says nothing
+        there.
+        """
+        limits = np.array([(each.low, each.high) for each in STATEMENTS])
+        holds = (limits[:, :1] <= self.measures) & (self.measures <= limits[:, 1:])
         return np.where(np.isnan(self.measures), np.nan, holds)
 
     @cached_property
@@ -276,34 +248,26 @@ class Studied:
         return [surrogate(self.shares, row) for row in self.measures]
 
     @cached_property
-    def deciders(self) -> list[list[Decider]]:
-        """Of each statement."""
-        return [deciders(self.shares, *each) for each in zip(self.held, self.fits, strict=True)]
-
-    @property
     def chances(self) -> list[dict[str, Any]]:
-        """Of each statement: at how many points it holds, of those at which it says anything, bounds of that
-        share, and the inputs that decide it.
+        """Of each statement: at how many points it holds, of those at which it says anything,
+        bounds of that share, and the inputs that decide it.
         """
         found = []
-        for said, row, own in zip(STATEMENTS, self.held, self.deciders, strict=True):
+        for said, row, fit in zip(STATEMENTS, self.held, self.fits, strict=True):
             holds, of = int(np.nansum(row)), int(np.isfinite(row).sum())
-            bounds, acting = wilson(holds, of), [each for each in own[:DECIDING] if each.acts]
-            deciding = [{"input": e.input.words, "change": e.change, "bounds": e.bounds} for e in acting]
+            acting = [each for each in deciders(self.shares, row, fit)[:DECIDING] if each["acts"]]
+            words = []
+            for each in acting:
+                low, high = (f"{100 * end:+.0f}" for end in each["bounds"])
+                words.append(f"{each['input']}: {100 * each['change']:+.0f} % ({low} to {high})")
             chance = {"figure": said.figure, "statement": said.words, "holds": holds, "of": of}
-            named = {"deciders": deciding, "words": [each.text for each in acting]}
-            found.append(chance | {"bounds": bounds} | named)
+            found.append(chance | {"bounds": wilson(holds, of), "deciders": acting, "words": words})
         return found
 
     @property
     def judged(self) -> bool:
         """Whether there are as many cycles as the statements ask for."""
-        return self.effort.cycles >= LAST
-
-    @property
-    def lost(self) -> int:
-        """Runs without a converged result."""
-        return len(self.runs) - sum(map(len, self.histories))
+        return self.frame["run"].iloc[0].scene.loading.cycles >= LAST
 
     @property
     def counts(self) -> np.ndarray:
@@ -321,15 +285,10 @@ class Studied:
         most = np.flatnonzero(self.counts == self.counts.max())
         return [int(point) for point in most[np.argsort(self.away[most], kind="stable")]][:BEST]
 
-    @property
-    def decided_by(self) -> dict[str, int]:
-        """Name of an input -> number of statements whose probability it changes beyond chance; the two that
-        change most first, of equal ones those that change by most.
-        """
-        every = list(itertools.chain(*self.deciders))
-        counts = {one.name: sum(each.acts for each in every if each.input is one) for one in INPUTS}
-        total = {one.name: sum(abs(each.change) for each in every if each.input is one) for one in INPUTS}
-        return dict(sorted(counts.items(), key=lambda pair: (-pair[1], -total[pair[0]])))
+    def scene(self, point: int, case: str) -> Scene:
+        """What ran at a point."""
+        own = self.frame[(self.frame["point"] == point) & (self.frame["material"] == case)]
+        return own["run"].iloc[0].scene
 
 
 class RunningInSensitivity(Study):
@@ -337,8 +296,8 @@ class RunningInSensitivity(Study):
 
     def scenes(self, context: Context) -> dict[Any, Scene]:
         points, effort = EFFORTS[context.level]
-        shares, bases = design(UNIFORM, len(INPUTS), points, SEED), printed_scenes(context, effort)
-        runs = itertools.product(range(points), effort.cases)
+        shares, bases = design(UNIFORM, len(INPUTS), points, SEED), study.printed_scenes(context, effort)
+        runs = product(range(points), effort.cases)
         return {(point, case): scene_at(bases[case], shares[point], SURFACES + point) for point, case in runs}
 
     def label(self, key: tuple[int, str]) -> str:
@@ -346,31 +305,22 @@ class RunningInSensitivity(Study):
 
     def solve(self, context: Context) -> Studied:
         points, effort = EFFORTS[context.level]
-        predicted = sum(estimate(scene, SAM).time_s for scene in self.scenes(context).values())
-        # without the fields, of which all runs have gigabytes: their files have them
-        runs = {
-            key: Run(one.scene, replace(one.result, fields=None, grids={}))
-            for key, one in self.runs(context).items()
-        }
-        shares = design(UNIFORM, len(INPUTS), points, SEED)
-        return Studied(effort, shares, runs, predicted, printed_scenes(context, effort))
+        printed = {case: hardness(scene) for case, scene in study.printed_scenes(context, effort).items()}
+        frame = study.framed(self.runs(context), ("point", "material"))
+        return Studied(frame, design(UNIFORM, len(INPUTS), points, SEED), printed)
 
     def measure(self, found: Studied) -> dict[str, Measured]:
-        points, cases = len(found.shares), found.effort.cases
+        points, cases = len(found.shares), len(found.printed)
         return {
-            "missing": Measured(points * len(cases) - len(found.runs), 0),
-            "lost": Measured(found.lost / len(found.runs)),
+            "missing": Measured(points * cases - len(found.frame), 0),
+            "lost": Measured(1.0 - float(found.frame["converged"].mean())),
         }
 
     def setup(self, found: Studied) -> Iterator[tuple[str, str]]:
-        effort, points = found.effort, len(found.shares)
-        size = f"{points} points, {len(effort.cases)} materials: {len(found.runs)} runs"
-        each = f"{effort.cells} × {effort.cells} cells, {effort.cycles} cycles, {effort.steps} load steps"
-        yield "Runs", f"{size} of {each}"
+        points, (_, effort) = len(found.shares), EFFORTS["full" if found.judged else "quick"]
+        size = f"{points} points, {len(found.printed)} materials: {len(found.frame)} runs"
+        yield "Runs", f"{size} of {effort.words}"
         yield "Inputs", "uniform and independent over their ranges, each point on another surface"
-        took = sum(one.result.cost["cpu_s"] for one in found.runs.values())
-        yield "Processor time", f"{took / 60:.0f} min, predicted {found.predicted_s / 60:.0f} min"
-        yield "Without a converged result", f"{found.lost} runs"
         half = 50 * np.diff(wilson(points // 2, points))[0]
         yield "Sampling error of a share of points", f"±{half:.0f} % at a half (90 %)"
         least = 100 * least_change(points)
@@ -382,17 +332,13 @@ class RunningInSensitivity(Study):
         return {"statements": found.chances, "resolved": resolved, "best": best} if found.judged else {}
 
     def tables(self, found: Studied) -> Iterator[SmallTable]:
-        even = ("logarithm" if one.logarithmic else "value" for one in INPUTS)
-        rows = [
-            (one.words, one.shown(0.0), one.shown(1.0), in_) for one, in_ in zip(INPUTS, even, strict=True)
-        ]
-        words = "Inputs, drawn evenly in their value or its logarithm"
-        yield SmallTable(words, ("input", "from", "to", "even in"), rows)
+        rows = [(one.words, one.shown(0.0), one.shown(1.0), one.even) for one in INPUTS]
+        yield SmallTable("Inputs, each drawn evenly", ("input", "from", "to", "even in"), rows)
         if found.judged:
             yield statements_table(found)
-            yield fits_table(found)
             yield fitted_table(found)
-        yield responses_table(found)
+        groups = found.frame.groupby("material", sort=False)["run"]
+        yield study.runs_table("Over all points", {NAMES[case]: runs for case, runs in groups})
 
     def notes(self, found: Studied) -> Iterator[str]:
         if found.judged:
@@ -401,11 +347,13 @@ class RunningInSensitivity(Study):
     def figures(self, found: Studied) -> Iterator[Plot]:
         if not found.judged:
             return
-        chances = found.chances
-        names = [f"{each['figure']}: {each['statement']}" for each in chances]
-        numbers = ([each[key] for key in ("holds", "of", "bounds")] for each in chances)
         yield Plot(
-            probabilities([(name, *each) for name, each in zip(names, numbers, strict=True)]),
+            probabilities(
+                [
+                    (f"{each['figure']}: {each['statement']}", each["holds"], each["of"], each["bounds"])
+                    for each in found.chances
+                ]
+            ),
             "probabilities",
             "Probability that a statement of the paper holds",
             "A bar with its bounds for each of the 17 statements, and at how many points it holds.",
@@ -413,86 +361,32 @@ class RunningInSensitivity(Study):
         )
 
 
-def _filled(cells: Sequence[str], count: int) -> tuple[str, ...]:
-    return (*cells, *[""] * (count - len(cells)))
-
-
 def statements_table(found: Studied) -> SmallTable:
-    """How probable each statement is, and what decides it."""
+    """How probable each statement is, what decides it, and what a fit of its measure says."""
     rows = []
-    for each in found.chances:
+    for each, fit in zip(found.chances, found.fits, strict=True):
         held, of, (low, high) = each["holds"], each["of"], each["bounds"]
         share = f"{100 * held / of:.0f} % ({100 * low:.0f} to {100 * high:.0f})" if of else "says nothing"
-        cells = each["figure"], each["statement"], f"{held} of {of}", share
-        rows.append((*cells, *_filled(each["words"], DECIDING)))
-    return SmallTable(
-        "Probability that a statement holds, and what changes it by most between the halves of its range, "
-        f"with bounds of 90 %: beyond what chance does once in {1 / CHANCE:.0f}, or, where the fit below "
-        "names the input, beyond those bounds",
-        "Fig.|statement of the paper|holds|share of points (90 %)|decided first by|then by".split("|"),
-        rows,
-    )
-
-
-def fits_table(found: Studied) -> SmallTable:
-    """What a fit of the measure of each statement says."""
-    rows = []
-    for statement, fit, row in zip(STATEMENTS, found.fits, found.measures, strict=True):
-        named = ["no fit predicts it"]
+        explained = ["no fit predicts it"]
         if believed(fit):
             order = [int(k) for k in np.argsort(-fit.shares, kind="stable")[:EXPLAINING]]
-            ways = ({1: "rises", -1: "falls"}.get(int(fit.slopes[k]), "bends") for k in order)
-            named = [
-                f"{INPUTS[k].words}: {100 * fit.shares[k]:.0f} %, {way}"
-                for k, way in zip(order, ways, strict=True)
+            explained = [
+                f"{INPUTS[k].words}: {100 * fit.shares[k]:.0f} %, "
+                + {1: "rises", -1: "falls"}.get(int(fit.slopes[k]), "bends")
+                for k in order
                 if fit.shares[k] >= PART
             ]
-        of, predicted = int((~np.isnan(row)).sum()), "–" if fit is None else f"{fit.predicted:.2f}"
-        cells = statement.figure, statement.words, statement.measure, f"{of}", predicted
-        rows.append((*cells, *_filled(named, EXPLAINING)))
+        predicted = "–" if fit is None else f"{fit.predicted:.2f}"
+        cells = each["figure"], each["statement"], f"{held} of {of}", share
+        rows.append((*cells, "; ".join(each["words"]), predicted, "; ".join(explained)))
     return SmallTable(
-        "Shares of the variance of each measure (its ranks) by a sparse polynomial of single inputs, and "
-        "whether the measure rises or falls with the input. Q²: of the variance, what the fit predicts at "
-        f"points left out; no share where it is below {PREDICTS:g}. The rest is the surface, and what inputs "
-        "do together",
-        "Fig.|statement of the paper|measure|points|Q²|first|second|third".split("|"),
-        rows,
-    )
-
-
-RESPONSES: Mapping[str, tuple[Callable, Callable]] = {
-    "worn volume [µm³]": (lambda h: np.log10(1.0 + 1e18 * h.volume[-1]), lambda v: 10.0**v - 1.0),
-    "coefficient of friction": (lambda h: h.friction[-1], lambda v: v),
-    "Sa [nm]": (lambda h: h.sa[-1], lambda v: 1e9 * v),
-}
-"""What a run ends with -> of its history, and as it is shown."""
-
-
-def response(found: Studied, case: str, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """One of RESPONSES at each point, NaN where the run did not converge, and the correlations of its ranks
-    with those of each input, NaN where it never changes.
-    """
-    of, _ = RESPONSES[name]
-    values = np.array([of(own[case]) if case in own else np.nan for own in found.histories])
-    ranks = indices(UNIFORM, found.shares, values, SEED)
-    return values, ranks[0].values if ranks else np.full(len(INPUTS), np.nan)
-
-
-def responses_table(found: Studied) -> SmallTable:
-    """What moves volume, friction and roughness of each material."""
-    rows, limit = [], ACTS / np.sqrt(len(found.shares) - 1)
-    for case, name in itertools.product(found.effort.cases, RESPONSES):
-        values, of_inputs = response(found, case, name)
-        order = np.argsort(-np.abs(np.nan_to_num(of_inputs)))[:3]
-        above = [k for k in order if abs(np.nan_to_num(of_inputs[k])) > limit]
-        named = [f"{INPUTS[k].words}: {of_inputs[k]:+.2f}" for k in above]
-        says = np.isfinite(values).any()
-        quantiles = np.nanquantile(values, (0.05, 0.5, 0.95)) if says else (np.nan,) * 3
-        shown = (f"{RESPONSES[name][1](v):.3g}" for v in quantiles)
-        rows.append((NAMES[case], name, *shown, *_filled(named, 3)))
-    return SmallTable(
-        f"What moves the last cycle: correlations of ranks above chance ({limit:.2f})",
-        ("material", "what", "5 %", "median", "95 %", "first", "second", "third"),
+        "Probability that a statement holds, and what changes it by most between the halves of its range, "
+        f"with bounds of 90 %: beyond what chance does once in {1 / CHANCE:.0f}, or, where the fit names the "
+        "input, beyond those bounds. Explained: shares of the variance of the measure (its ranks) by a "
+        "sparse polynomial of single inputs, and whether the measure rises or falls with the input; Q²: of "
+        f"the variance, what the fit predicts at points left out; no share where it is below {PREDICTS:g}. "
+        "The rest is the surface, and what inputs do together",
+        "Fig.|statement of the paper|holds|share of points (90 %)|decided by|Q²|explained by".split("|"),
         rows,
     )
 
@@ -516,14 +410,9 @@ def fitted_table(found: Studied) -> SmallTable:
     ]
     words = "distance from the printed inputs, in shares of the ranges (rms)"
     rows.append((words, "0", *(f"{found.away[k]:.2f}" for k in best)))
-    for case in MATERIALS:
-        scenes = (found.printed[case], *(found.runs[k, case].scene for k in best))
-        rows.append(
-            (f"hardness of the surface, {NAMES[case]} [GPa]", *(_range(hardness(each)) for each in scenes))
-        )
     return SmallTable(
         "Fitted: inputs of the points at which most statements hold together, the nearest to the "
-        f"printed ones first. Hardness: {TABOR[0]:g} to {TABOR[1]:g} σ_y at a strain of {STRAIN:.0%} (Tabor)",
+        "printed ones first",
         ("input", "printed inputs", *(f"point {k}: {found.counts[k]} hold" for k in best)),
         rows,
     )
@@ -533,27 +422,23 @@ def fitted_note(found: Studied) -> str:
     """What the nearest of them would mean."""
     point, said = found.best[0], []
     for case in MATERIALS:
-        own, before = hardness(found.runs[point, case].scene), hardness(found.printed[case])
-        judged = "plausible"
+        own, plausible = hardness(found.scene(point, case)), "plausible"
         if own[0] > STEEL[1]:
-            judged = f"{own[0] / STEEL[1]:.2f} times the hardest steel, not plausible"
+            plausible = f"{own[0] / STEEL[1]:.2f} times the hardest steel, not plausible"
         elif own[1] < STEEL[0]:
-            judged = f"{own[1] / STEEL[0]:.2f} times the softest"
-        said.append(f"{NAMES[case]} {_range(own)} GPa, {judged} (printed inputs {_range(before)})")
-    rough = found.runs[point, BULK].scene.counterbody.surface
+            plausible = f"{own[1] / STEEL[0]:.2f} times the softest"
+        said.append(f"{NAMES[case]} {_range(own)} GPa, {plausible} (printed {_range(found.printed[case])})")
+    rough = found.scene(point, BULK).counterbody.surface
     sq = rough.sq if rough else 0.0
-    as_discs = (
-        "as polished to ground discs have"
-        if DISCS[0] <= sq <= DISCS[1]
-        else "smoother than polished to ground discs"
-    )
+    discs = "as polished to ground" if DISCS[0] <= sq <= DISCS[1] else "smoother than polished to ground"
+    tabor = f"by Tabor ({TABOR[0]:g} to {TABOR[1]:g} σ_y at a strain of {STRAIN:.0%})"
     return (
         f"Fitted: at point {point}, {found.counts[point]} of {len(STATEMENTS)} statements hold together, "
         f"chosen of {len(found.shares)} points by this result, on one surface of its own; it is "
         f"{found.away[point]:.2f} of the ranges away from the printed inputs (two random points are "
-        f"{1 / np.sqrt(6):.2f} apart). It would mean a surface hardness, by Tabor, of {'; '.join(said)}; "
+        f"{1 / np.sqrt(6):.2f} apart). It would mean a surface hardness, {tabor}, of {'; '.join(said)}; "
         f"AISI 52100 hardened to 60 to 65 HRC has {_range(STEEL)} GPa. The counter-surface has "
-        f"{1e9 * sq:.0f} nm rms, {as_discs} ({1e9 * DISCS[0]:.0f} to {1e9 * DISCS[1]:.0f} nm)."
+        f"{1e9 * sq:.0f} nm rms, {discs} discs ({1e9 * DISCS[0]:.0f} to {1e9 * DISCS[1]:.0f} nm)."
     )
 
 

@@ -1,41 +1,162 @@
 # SPDX-License-Identifier: MIT
-"""What the studies of running-in share: a run, the statements of the paper (Bosman & Schipper 2011, Figs.
-13-17) as measures with limits, and whether runs on several surfaces agree.
+"""The study of running-in (Bosman & Schipper 2011, Figs. 13-17): five materials as scenes and what
+readings of the paper change in them; their runs as one frame; the statements of the paper as
+measures with limits.
 
-The paper's surface is not public and its numbers belong to it: only directions and ratios are asked for. A
-statement that the model contradicts is a finding; nothing here is a row.
+A frame has a row a run: the parts of its key, `run`, `converged`, and its measures and other
+numbers, NaN where it did not converge. The paper's surface is not public and its numbers belong to
+it: only directions and ratios are asked for. A statement that the model contradicts is a finding;
+nothing here is a row.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from enum import StrEnum
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from sam.scene import Result, Scene
-from verification.cases.case import SAM, Case, Context, SmallTable
-from verification.cases.running_in.scenes import LAST, deeper_after
+from sam.scene import CounterSurface, Hardening, Plasticity, Result, Scene, Status
+from verification.cases.case import SAM, Case, Context, SmallTable, with_grid, with_keys, with_loading
 from verification.compare.running_in_measures import History, Scar, Spread
 
-CUBIC, GIGA = 1e18, 1e-9
-EARLY, STEADY = 6, 10  # cycles of the paper's figures: the end of the first wear, the steady part
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+BULK, A, B, DUCTILE, HARDENING = "bulk", "curve-a", "curve-b", "curve-b-ductile", "hardening"
+NAMES = {BULK: "bulk", A: "curve A", B: "curve B", DUCTILE: "curve B, 5 %", HARDENING: "hardening only"}
+"""The five materials, as scenes are named -> as the reader knows them."""
+EARLY, STEADY, LAST = 6, 10, 25  # cycles of the paper's figures: end of the first wear, steady part, last
 AGREED = 0.8  # of the surfaces that must agree
 STILL = 1e-3  # of the worn volume: what cycles 21 to 25 add at least where wear goes on
-INF, NAN = float("inf"), float("nan")
-Histories = Mapping[str, History]
-"""Material -> its run over the cycles, on one surface."""
+LITERATURE_B = 1280e6  # Pa: of the steel with the paper's C and n in the literature; the paper takes 1780 MPa
+DEEPER = ((14.2e-6, 19.4e-6), (26.5e-6, 36.2e-6))  # m: further faces of layers, each 1.366 times as deep
+LAYER_ALPHA = 1e3  # of Swift's law in the layer: 2.4 GPa at a strain of 2 %, where 1e6 gives 4.6 GPa
+ROUGHNESS = {"sq": 10e-9, "cutoff_long": 32e-6, "cutoff_short": 12e-6, "hurst": 0.8}
+MODULI = (35648.8e9, 13721.5e9, 1895.4e9, 227.18e9, 37.371e9)
+RECOVERY = (3e5, 3e4, 3e3, 300.0, 30.0)
+"""Back-stresses that fit Swift's law with B = 1780 MPa, C = 4, n = 0.095 less its start, within 0.5 % from
+1e-6 to 0.03."""
+SHARES = {"isotropic": 0.0, "half and half": 0.5, "kinematic": 1.0}
+"""Ways to harden -> share of the hardening that back-stresses have. Assumed: no cyclic curve is known."""
+LARGEST, POINTS = 0.2, 60  # of the plastic strain in the table of a yield stress, and its rows
+CUBIC, GIGA, NAN = 1e18, 1e-9, float("nan")
+
+
+class Effort(NamedTuple):
+    """How much is run: cycles, load steps each way, cells of 1 um a side, names of scenes, seeds."""
+
+    cycles: int
+    steps: int
+    cells: int
+    cases: tuple[str, ...] = tuple(NAMES)
+    seeds: tuple[int, ...] = ()
+
+    @property
+    def words(self) -> str:
+        """For the reader."""
+        return f"{self.cells} × {self.cells} cells of 1 µm, {self.cycles} cycles, {self.steps} load steps"
+
+
+def printed_scenes(context: Context, effort: Effort) -> dict[str, Scene]:
+    """Material -> its scene with the printed inputs at an effort."""
+    return {case: reduced(context.scene(f"running-in-{case}"), effort) for case in effort.cases}
+
+
+def reduced(scene: Scene, effort: Effort) -> Scene:
+    """The scene on a patch of so many cells, at its nominal pressure, for so many cycles and
+    steps.
+    """
+    if effort.cells != scene.grid.cells[0]:
+        share = effort.cells / scene.grid.cells[0]
+        extent = tuple(share * side for side in scene.grid.extent)
+        scene = with_grid(scene, cells=(effort.cells,) * 2, extent=extent)
+        scene = with_loading(scene, force=share**2 * scene.loading.force)
+    return with_loading(scene, cycles=effort.cycles, steps=effort.steps, unload_steps=effort.steps)
+
+
+def with_seed(scene: Scene, seed: int) -> Scene:
+    """Another surface of the same statistics."""
+    return with_keys(scene, "surface", seed=seed)
+
+
+def with_plasticity(scene: Scene, **keys) -> Scene:
+    """With other keys in [body.plasticity]."""
+    return with_keys(scene, "body.plasticity", **keys)
+
+
+def with_constant(scene: Scene, B: float) -> Scene:
+    """With another constant B, in Pa, in the body and in a layer with a law of its own."""
+    layer = scene.body.plasticity.layer
+    return with_plasticity(scene, B=B, layer=layer and layer.model_copy(update={"B": B}))
+
+
+def with_layer_alpha(scene: Scene, alpha: float) -> Scene:
+    """The layer, if there is one, with Swift's law of its own: hardening by alpha times the
+    strain.
+    """
+    plasticity = scene.body.plasticity
+    if plasticity.layer_thickness is None:
+        return scene
+    own = plasticity.model_dump(include={"law", "B", "C", "n"})
+    return with_plasticity(scene, layer=Hardening(**own, alpha=alpha))
+
+
+def with_deviation(scene: Scene, scale: float) -> Scene:
+    """With so much of the layer's deviation from the bulk; scaling the factors would change the
+    bulk below it too.
+    """
+    if (profile := scene.body.plasticity.profile) is None:
+        return scene
+    return with_plasticity(scene, profile=tuple((z, 1.0 + scale * (f - 1.0)) for z, f in profile))
+
+
+def with_counter(scene: Scene, sq: float, *, renew: bool = True) -> Scene:
+    """A rough counter-surface of so many m rms, another one in each cycle if it is renewed. Its
+    seeds, one for each cycle, are neither those of the surfaces nor those of another surface's
+    counter-surface.
+    """
+    keys = {**ROUGHNESS, "sq": sq, "seed": 1000 * scene.surface.seed + 1, "renew": renew}
+    return with_keys(scene, "counterbody", surface=CounterSurface(kind="self-affine", **keys))
+
+
+def deeper(scene: Scene) -> Scene:
+    """With the next faces of DEEPER: softer steel, and the summits of some surfaces, let the body
+    yield below the layers of the printed scenes.
+    """
+    depths = scene.grid.depths
+    return with_grid(scene, depths=(*depths, *next(faces for faces in DEEPER if faces[0] > depths[-1])))
+
+
+def swift(law: Plasticity, peeq: np.ndarray) -> np.ndarray:
+    """Yield stress of the isotropic law in Pa."""
+    return law.B * (law.C + law.alpha * peeq) ** law.n
+
+
+def hardened(scene: Scene, share: float) -> Scene:
+    """The body with so much of its hardening by back-stresses, and the rest as a table that ends
+    flat.
+    """
+    law, peeq = scene.body.plasticity, np.append(0.0, np.geomspace(1e-7, LARGEST, POINTS))
+    first = float(swift(law, np.zeros(1))[0])
+    stress = first + (1 - share) * (swift(law, peeq) - first)
+    table = {"law": "table", "file": tuple(zip(peeq.tolist(), stress.tolist(), strict=True))}
+    isotropic = {"law": "perfect", "yield_stress": first} if share == 1 else table
+    back = {"modulus": tuple(share * modulus for modulus in MODULI), "recovery": RECOVERY}
+    place = law.model_dump(include={"profile", "layer_thickness"}, exclude_none=True)
+    plasticity = Plasticity(**isotropic, **({"kinematic": back} if share else {}), **place)
+    return with_keys(scene, "body", plasticity=plasticity)
 
 
 @dataclass(frozen=True)
 class Run:
-    """A scene and its result."""
+    """A scene and its result; again: whether it has deeper layers than were asked for."""
 
     scene: Scene
     result: Result
+    again: bool = False
 
     @cached_property
     def history(self) -> History:
@@ -52,19 +173,15 @@ class Run:
         """The low and the high coefficient."""
         return self.scene.friction.low, self.scene.friction.high
 
-    @property
-    def renewed(self) -> bool:
-        """Whether each cycle meets another counter-surface."""
-        surface = self.scene.counterbody.surface
-        return surface is not None and surface.renewed
-
     def of_cycles(self, column: str) -> np.ndarray:
         """A column of cycles.csv."""
         return np.asarray(self.result.tables["cycles"][column], dtype=float)
 
     @property
     def off(self) -> float:
-        """Volume summed over surface.csv against the last of cycles.csv, relative; 0 where both are 0."""
+        """Volume summed over surface.csv against the last of cycles.csv, relative; 0 where both
+        are 0.
+        """
         return apart(self.scar.volume, self.history.volume[-1])
 
 
@@ -78,184 +195,17 @@ def outside(values: np.ndarray, low: float, high: float) -> float:
     return float(np.max(np.maximum(np.maximum(low - values, values - high), 0.0)))
 
 
-def spread(values: Iterable[float], scale: float = 1.0) -> str:
-    """Median and range for the reader."""
-    return Spread.of([scale * value for value in values]).text()
-
-
-class Study(Case):
-    """Runs that may stay unconverged: a row counts those, and a set of hours does not break off for one of
-    them. Where the plastic zone reaches the last layer a run begins again with deeper ones.
-    """
-
-    def scenes(self, context: Context) -> dict[Hashable, Scene]:
-        """Of all runs, by a key."""
-        raise NotImplementedError(self.name)
-
-    def label(self, key: Any) -> str:
-        """What the run of a key is written as."""
-        raise NotImplementedError(self.name)
-
-    def ahead(self, context: Context) -> Iterable[Scene]:
-        return self.scenes(context).values()
-
-    def then(self, scene: Scene, result: Result) -> Scene | None:
-        return deeper_after(scene, result)
-
-    def runs(self, context: Context) -> dict[Any, Run]:
-        """What ran, by key."""
-        return {key: solved(context, each, self.label(key)) for key, each in self.scenes(context).items()}
-
-
-def solved(context: Context, scene: Scene, label: str) -> Run:
-    """A run, see `Study`."""
-    result = context.solve(SAM, scene, label, demand=False)
-    below = deeper_after(scene, result)
-    return Run(scene, result) if below is None else solved(context, below, f"{label}-deeper")
-
-
-def good(runs: Mapping[Any, Run]) -> dict[Any, Run]:
-    """Those that converged."""
-    return {key: one for key, one in runs.items() if one.result.converged}
-
-
-class Judgement(StrEnum):
-    """Of a statement, over all surfaces."""
-
-    HELD = "held"
-    FAILED = "failed"
-    OPEN = "not decided"
-
-
-@dataclass(frozen=True)
-class Statement:
-    """One sentence of the paper. value: its measure on one surface, NaN: says nothing there; low, high: of
-    the measure, as asked; figure: of the paper.
-    """
-
-    figure: str
-    words: str
-    measure: str
-    low: float
-    high: float
-    value: Callable[[Histories], float]
-
-    def holds(self, value: float) -> bool:
-        """Whether a value is what is asked for."""
-        return self.low <= value <= self.high
-
-    def on(self, surface: Histories) -> float:
-        """Its measure on a surface, NaN where a run is missing too."""
-        try:
-            return float(self.value(surface))
-        except KeyError:
-            return NAN
-
-    @property
-    def asked(self) -> str:
-        """What is asked for, for the reader."""
-        if np.isinf(self.low) or np.isinf(self.high):
-            return f"≤ {self.high:g}" if np.isinf(self.low) else f"≥ {self.low:g}"
-        return f"{self.low:g} to {self.high:g}"
-
-
-@dataclass(frozen=True)
-class Judged:
-    """A statement and its measure on each surface."""
-
-    statement: Statement
-    values: tuple[float, ...]
-
-    @property
-    def agreeing(self) -> int:
-        """Surfaces on which it holds."""
-        return sum(map(self.statement.holds, self.values))
-
-    @property
-    def spread(self) -> Spread:
-        """Median and range over the surfaces."""
-        return Spread.of(self.values)
-
-    @property
-    def agreed(self) -> Judgement:
-        """Held or failed where eight surfaces of ten agree; one on which the measure says nothing agrees with
-        neither.
-        """
-        needed, failing = AGREED * len(self.values), self.spread.n - self.agreeing
-        if not self.values or max(self.agreeing, failing) < needed:
-            return Judgement.OPEN
-        return Judgement.HELD if self.agreeing >= needed else Judgement.FAILED
-
-    @property
-    def by_median(self) -> Judgement:
-        """What the median of the surfaces says; nothing where no more than half of them say anything."""
-        if 2 * self.spread.n <= len(self.values):
-            return Judgement.OPEN
-        return Judgement.HELD if self.statement.holds(self.spread.median) else Judgement.FAILED
-
-    @property
-    def margin(self) -> float:
-        """Distance of the median from the nearest limit, over the interquartile range of the surfaces: below
-        1 the statement is decided by less than they scatter. NaN without median.
-        """
-        median, between = self.spread.median, self.spread.interquartile
-        limits = filter(np.isfinite, (self.statement.low, self.statement.high))
-        away = min(abs(median - limit) for limit in limits)
-        if np.isinf(away) or not between > 0.0:
-            return away * INF if away else away
-        return away / between
-
-    @property
-    def is_close(self) -> bool:
-        """Whether the surfaces scatter by more than the median is away from the limit."""
-        return self.by_median is not Judgement.OPEN and self.margin < 1.0
-
-    @property
-    def data(self) -> dict[str, Any]:
-        """For the pages: of none: surfaces without a value."""
-        found = {"figure": self.statement.figure, "statement": self.statement.words, "values": self.values}
-        found |= {"measure": self.statement.measure, "asked": self.statement.asked, "holds_on": self.agreeing}
-        found |= {"of": len(self.values), "none_on": len(self.values) - self.spread.n}
-        margin = {"margin": self.margin, "close": self.is_close}
-        return found | {"by_median": self.by_median, "by_agreement": self.agreed, **margin}
-
-
-def judged(surfaces: Sequence[Histories]) -> list[Judged]:
-    """Every statement on the surfaces, of each of which there are the materials that converged."""
-    return [Judged(each, tuple(each.on(surface) for surface in surfaces)) for each in STATEMENTS]
-
-
-def statements_table(readings: Mapping[str, Sequence[Judged]]) -> SmallTable:
-    """Each statement with its verdicts. readings: name of a reading -> the statements."""
-    columns, rows = ["Fig.", "statement of the paper", "measure", "asked"], []
-    for name in readings:
-        columns += [f"{name}: median (range)", "holds on", "by the median", "by agreement"]
-    for of_readings in zip(*readings.values(), strict=True):
-        statement = of_readings[0].statement
-        row = [statement.figure, statement.words, statement.measure, statement.asked]
-        for one in of_readings:
-            silent, margin = len(one.values) - one.spread.n, one.margin
-            far = one.by_median is Judgement.OPEN or np.isinf(margin)
-            row += [
-                one.spread.text(),
-                f"{one.agreeing} of {len(one.values)}" + (f", none on {silent}" if silent else ""),
-                str(one.by_median) if far else f"{one.by_median} by {margin:.2g} IQR",
-                str(one.agreed),
-            ]
-        rows.append(row)
-    return SmallTable(
-        "What the paper says of its Figures 13 to 17, on surfaces of our own. By the median: the distance of "
-        "the median from the limit in interquartile ranges (IQR) of the surfaces; below 1, the surfaces "
-        f"scatter by more. By agreement: of {AGREED:.0%} of the surfaces. None: surfaces without a value",
-        columns,
-        rows,
-    )
+def at_rest_from(new_strain: np.ndarray) -> float:
+    """The first cycle from which on no cell strains; NaN if the last one still does."""
+    busy = np.flatnonzero(new_strain > 0.0)
+    after = int(busy[-1]) + 1 if busy.size else 0
+    return after + 1.0 if after < new_strain.size else NAN
 
 
 def ratio(a: float, b: float) -> float:
     """a/b of volumes, rates or heights; for b = 0 infinite, NaN where a is 0 too."""
     if b == 0.0:
-        return NAN if a == 0.0 else INF
+        return NAN if a == 0.0 else float("inf")
     return a / b
 
 
@@ -271,6 +221,124 @@ MEASURES: Mapping[str, Callable[[History], float]] = {
     "sa": lambda h: h.at("sa", LAST),
 }
 """Of a run of 25 cycles; grown: share of the volume that the last five wear, 0 where nothing has worn."""
+COLUMNS: Mapping[str, Callable[[Run], float]] = {
+    "V, first [µm³]": lambda one: CUBIC * one.history.volume[0],
+    "V, sixth or last": lambda one: CUBIC * one.history.volume[:EARLY][-1],
+    "V, last": lambda one: CUBIC * one.history.volume[-1],
+    "μ, first": lambda one: one.history.friction[0],
+    "μ, last": lambda one: one.history.friction[-1],
+    "Sa, first [nm]": lambda one: 1e9 * one.history.sa[0],
+    "Sa, last": lambda one: 1e9 * one.history.sa[-1],
+    "protected, last [%]": lambda one: 100.0 * one.history.protected[-1],
+    "p_max, first [GPa]": lambda one: GIGA * one.history.p_max[0],
+    "p_max, last": lambda one: GIGA * one.history.p_max[-1],
+    "at rest from cycle": lambda one: at_rest_from(one.of_cycles("new_strain_max")),
+    "new strain, last [%]": lambda one: 100.0 * one.of_cycles("new_strain_max")[-1],
+    "processor time [s]": lambda one: one.result.cost["cpu_s"],
+}
+"""What tables show of runs -> of a run that converged."""
+
+
+def framed(
+    runs: Mapping[tuple, Run],
+    parts: Sequence[str],
+    numbers: Mapping[str, Callable[[Run], float]] | None = None,
+) -> DataFrame:
+    """A row a run. parts: names of those of a key; numbers: name -> what a run that converged has
+    of it, beside MEASURES.
+    """
+    import pandas as pd
+
+    own = {name: lambda one, of=of: of(one.history) for name, of in MEASURES.items()} | (numbers or {})
+    rows = [
+        (*key, one, one.result.converged, *(of(one) if one.result.converged else NAN for of in own.values()))
+        for key, one in runs.items()
+    ]
+    return pd.DataFrame(rows, columns=[*parts, "run", "converged", *own])
+
+
+class Study(Case):
+    """Runs that may stay unconverged: a row counts those, and a set of hours does not break off
+    for one of them. Where the plastic zone reaches the last layer a run begins again with deeper
+    ones.
+    """
+
+    def scenes(self, context: Context) -> dict[Hashable, Scene]:
+        """Of all runs, by a key."""
+        raise NotImplementedError(self.name)
+
+    def label(self, key: Any) -> str:
+        """What the run of a key is written as."""
+        raise NotImplementedError(self.name)
+
+    def ahead(self, context: Context) -> Iterable[Scene]:
+        return self.scenes(context).values()
+
+    def then(self, scene: Scene, result: Result) -> Scene | None:
+        at_edge = result.status is Status.PLASTIC_ZONE_AT_GRID_EDGE
+        return deeper(scene) if at_edge and scene.grid.depths[-1] < DEEPER[-1][0] else None
+
+    def runs(self, context: Context) -> dict[Any, Run]:
+        """What ran, by key."""
+        found = {}
+        for key, scene in self.scenes(context).items():
+            label, below = self.label(key), scene
+            while below is not None:
+                own, result = below, context.solve(SAM, below, label, demand=False)
+                below, label = self.then(own, result), f"{label}-deeper"
+            # without the fields, of which all runs have gigabytes: their files have them
+            found[key] = Run(own, replace(result, fields=None, grids={}), own is not scene)
+        return found
+
+
+def runs_table(caption: str, groups: Mapping[str, Iterable[Run]]) -> SmallTable:
+    """Median and range of COLUMNS over the runs of each group that converged."""
+    rows = []
+    for name, runs in groups.items():
+        every = list(runs)
+        good = [one for one in every if one.result.converged]
+        cells = (Spread.of([of(one) for one in good]).text() for of in COLUMNS.values())
+        rows.append((name, f"{len(good)} of {len(every)}", *cells))
+    return SmallTable(f"{caption}: median and range", ("runs", "converged", *COLUMNS), rows)
+
+
+class Statement(NamedTuple):
+    """One sentence of the paper. low, high: of its measure, as asked; figure: of the paper; how:
+    one of MEASURES and the materials; the largest of those before a sign, less or over the
+    smallest of those behind it.
+    """
+
+    figure: str
+    words: str
+    measure: str
+    low: float
+    high: float
+    how: str
+
+    def of(self, measures: DataFrame) -> Any:
+        """Its measure on each surface, NaN: says nothing there. measures: (measure, material) ->
+        of each.
+        """
+        name, *materials = self.how.split()
+        at = next((k for k, each in enumerate(materials) if each in "-/"), len(materials))
+        own = measures[name][materials[:at]].max(axis=1, skipna=False)
+        if at == len(materials):
+            return own
+        other = measures[name][materials[at + 1 :]].min(axis=1, skipna=False)
+        return own - other if materials[at] == "-" else own / other
+
+    def holds(self, value: float) -> bool:
+        """Whether a value is what is asked for."""
+        return self.low <= value <= self.high
+
+    @property
+    def asked(self) -> str:
+        """What is asked for, for the reader."""
+        if np.isinf(self.low) or np.isinf(self.high):
+            return f"≤ {self.high:g}" if np.isinf(self.low) else f"≥ {self.low:g}"
+        return f"{self.low:g} to {self.high:g}"
+
+
 # 0.001 of a coefficient: a hundredth of the low one, more than the steps of a load that a few cells carry
 TABLE = """\
 13 | bulk: worn in the first six cycles | V(6)/V(25) | 0.9 | inf | early bulk
@@ -295,27 +363,77 @@ TABLE = """\
 13–17 | friction: A and hardening below bulk | largest over smallest | -inf | 0.999 \
 | friction curve-a hardening / bulk
 """
-"""Figure | words | measure | low | high | how it is measured: one of MEASURES and the materials; the largest
-of those before a sign, less or over the smallest of those behind it.
-"""
+STATEMENTS = tuple(
+    Statement(figure, words, measure, float(low), float(high), how)
+    for figure, words, measure, low, high, how in (
+        [part.strip() for part in line.split("|")] for line in TABLE.splitlines()
+    )
+)
 
 
-def _statement(line: str) -> Statement:
-    figure, words, measure, low, high, how = (part.strip() for part in line.split("|"))
-    name, *materials = how.split()
-    sign = next((k for k, each in enumerate(materials) if each in "-/"), len(materials))
+def measured(frame: DataFrame, by: Sequence[str]) -> DataFrame:
+    """The measure of each statement (columns, by their words) on each surface, of which `by` are
+    the parts of a key; NaN where it says nothing, or a run is missing or did not converge.
+    """
+    import pandas as pd
 
-    def value(surface: Histories) -> float:
-        own, *others = (
-            [MEASURES[name](surface[m]) for m in part]
-            for part in (materials[:sign], materials[sign + 1 :])
-            if part
+    every = pd.MultiIndex.from_product([MEASURES, NAMES])
+    wide = frame.pivot(index=list(by), columns="material", values=[*MEASURES]).reindex(columns=every)
+    return pd.DataFrame({each.words: each.of(wide.astype(float)) for each in STATEMENTS})
+
+
+HELD, FAILED, OPEN = "held", "failed", "not decided"
+
+
+def judged(measures: DataFrame) -> list[dict[str, Any]]:
+    """What pages are told of each statement, of its measures on surfaces, see `measured`.
+
+    by_agreement: held or failed where eight surfaces of ten agree; one on which it says nothing
+    agrees with neither. by_median: nothing where no more than half of them say anything. margin:
+    distance of the median from the nearest limit over the interquartile range of the surfaces, NaN
+    without median; below 1 the statement is close: decided by less than they scatter. none_on:
+    surfaces without a value.
+    """
+    found = []
+    for said in STATEMENTS:
+        values = tuple(measures[said.words].tolist())
+        spread, of, holds = Spread.of(values), len(values), sum(map(said.holds, values))
+        needed, median, agreed = max(AGREED * of, 1), OPEN, OPEN
+        if max(holds, spread.n - holds) >= needed:
+            agreed = HELD if holds >= needed else FAILED
+        if 2 * spread.n > of:
+            median = HELD if said.holds(spread.median) else FAILED
+        away = min(abs(spread.median - limit) for limit in (said.low, said.high) if np.isfinite(limit))
+        scatters = spread.interquartile > 0.0 and np.isfinite(away)
+        margin = away / spread.interquartile if scatters else away and away * np.inf
+        found.append(
+            {"figure": said.figure, "statement": said.words, "measure": said.measure, "asked": said.asked}
+            | {"values": values, "holds_on": holds, "of": of, "none_on": of - spread.n}
+            | {"by_median": median, "by_agreement": agreed}
+            | {"margin": margin, "close": median != OPEN and margin < 1.0}
         )
-        if not others:
-            return own[0]
-        return max(own) - min(others[0]) if materials[sign] == "-" else ratio(max(own), min(others[0]))
-
-    return Statement(figure, words, measure, float(low), float(high), value)
+    return found
 
 
-STATEMENTS = tuple(map(_statement, TABLE.splitlines()))
+def statements_table(readings: Mapping[str, Sequence[Mapping[str, Any]]]) -> SmallTable:
+    """Each statement with its verdicts. readings: name of a reading -> what is told of the
+    statements.
+    """
+    columns, rows = ["Fig.", "statement of the paper", "measure", "asked"], []
+    for name in readings:
+        columns += [f"{name}: median (range)", "holds on", "by the median", "by agreement"]
+    for said in zip(*readings.values(), strict=True):
+        row = [said[0][key] for key in ("figure", "statement", "measure", "asked")]
+        for one in said:
+            silent = f", none on {one['none_on']}" * (one["none_on"] > 0)
+            far = one["by_median"] == OPEN or np.isinf(one["margin"])
+            row += [Spread.of(one["values"]).text(), f"{one['holds_on']} of {one['of']}{silent}"]
+            row += [one["by_median"] + ("" if far else f" by {one['margin']:.2g} IQR"), one["by_agreement"]]
+        rows.append(row)
+    return SmallTable(
+        "What the paper says of its Figures 13 to 17, on surfaces of our own. By the median: the distance of "
+        "the median from the limit in interquartile ranges (IQR) of the surfaces; below 1, the surfaces "
+        f"scatter by more. By agreement: of {AGREED:.0%} of the surfaces. None: surfaces without a value",
+        columns,
+        rows,
+    )

@@ -11,8 +11,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from verification.cases.running_in.scenes import LAST
-from verification.cases.running_in.study import STILL
+from verification.cases.running_in.study import LAST, STILL
 from verification.suite.pages.judged import (
     FINER,
     FOLLOWS,
