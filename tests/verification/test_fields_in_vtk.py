@@ -162,61 +162,6 @@ def test_every_file_is_listed_in_order_reads_without_gaps_and_says_where_z_point
 
 
 @pytest.mark.parametrize("state", STATES)
-@pytest.mark.parametrize(
-    "written, file",
-    [(models.SAM, "fields"), (models.SAM, "body"), (models.FEM_3D, "fields")],
-    indirect=["written"],
-)
-def test_principal_stresses_of_vtk_are_those_of_the_axis_table(written, file, state):
-    """Under the origin: nodes of SAM's plane, cells of its box, elements of the three-dimensional model;
-    exact in all.
-    """
-    ending = "vtr" if file == "body" else "vtu"
-    grid = pyvista.read(written[1].folder / f"{file}{STATES[state]}.{ending}")
-    places = grid.points if STRESS in grid.point_data else grid.cell_centers().points
-    under = np.flatnonzero(np.hypot(places[:, 0], places[:, 1]) < 1e-9 * SIDE)
-    under = under[np.argsort(-places[under, 2])]
-    table = of_state(written[1].tables["axis"], state)[: len(under)]
-    assert len(table) == len(under) >= 6 and -places[under, 2] == pytest.approx(table["z_m"], rel=1e-9)
-    columns = {each: TURNED.get(each, 1.0) * table[f"s{each}_Pa"].to_numpy() for each in OURS}
-    expected = principal(*columns.values())
-    largest = np.abs(expected).max()
-    assert np.abs(principal_of_vtk(grid, STRESS)[:, under] - expected).max() < SINGLE * largest
-    for each, component in by_name(grid, STRESS).items():
-        assert np.abs(component[under] - columns[each]).max() < SINGLE * largest
-        assert np.abs(columns[each]).max() > 1e-3 * largest
-    peeq = (grid.point_data if "peeq" in grid.point_data else grid.cell_data)["peeq"]
-    assert peeq[under] == pytest.approx(table["peeq"].to_numpy(), abs=1e-15) and peeq.max() > 0.0
-
-
-@pytest.mark.parametrize("state", STATES)
-def test_the_surface_moves_as_the_table_of_the_line_says(written, state):
-    """Nodes on y = 0 of the finite elements; of SAM cells, and nodes with the mean of the cells around."""
-    result, run = written
-    mesh, line = (
-        pyvista.read(run.folder / f"surface{STATES[state]}.vtr"),
-        of_state(run.tables["line"], state),
-    )
-    x, uz = line["x_m"].to_numpy(), line["uz_m"].to_numpy()
-    if result.model == models.SAM:
-        ny, nx = mesh.dimensions[1] - 1, mesh.dimensions[0] - 1
-        cells = np.array(mesh.cell_data["uz_m"]).reshape(ny, nx)
-        assert cells[ny // 2] == pytest.approx(uz, rel=1e-12)
-        moved = np.array(mesh.point_data["normal_displacement_m"]).reshape(ny + 1, nx + 1, 3)
-        inner = (cells[1:, 1:] + cells[:-1, 1:] + cells[1:, :-1] + cells[:-1, :-1]) / 4
-        assert moved[1:-1, 1:-1, 2] == pytest.approx(-inner, rel=1e-12) and not moved[..., :2].any()
-        assert moved[0, 0, 2] == -cells[0, 0] and moved[-1, -1, 2] == -cells[-1, -1]
-        return
-    moved, points = mesh.point_data["displacement_m"], mesh.points
-    on_line = np.isclose(points[:, 1], 0.0, atol=1e-12)
-    if not on_line.any():  # the origin is in the middle of an element
-        ends = np.unique(np.abs(points[:, 1]))[0]
-        on_line = np.isclose(np.abs(points[:, 1]), ends)
-    mean = [moved[on_line & np.isclose(points[:, 0], place, atol=1e-12), 2].mean() for place in x]
-    assert -np.array(mean) == pytest.approx(uz, rel=1e-9, abs=1e-9 * np.abs(uz).max())
-
-
-@pytest.mark.parametrize("state", STATES)
 @pytest.mark.parametrize("written", [models.SAM], indirect=True)
 def test_the_cells_of_the_surface_are_those_of_the_table(written, state):
     run = written[1]

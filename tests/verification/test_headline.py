@@ -44,11 +44,6 @@ def record(name, data, tables=(), notes=(), setup=()):
     return made | words | lists
 
 
-def older(case):
-    """The same case of a version that gave pages no data."""
-    return {key: value for key, value in case.items() if key != "data"}
-
-
 def statements(**judged):
     return {"statements": judged}
 
@@ -172,20 +167,3 @@ def test_a_study_that_did_not_run_is_said_not_to_have_run(readings, studies):
     (_, of_physics) = studies
     found = headline_of(read_stored(stored(of_physics)))
     assert {row[2] for row in found.rows} == {NOT_RUN} and len(found.rows) == len(STATEMENTS)
-
-
-def test_studies_of_an_older_version_have_to_run_again(readings, studies, tmp_path):
-    inputs, physics = studies
-    text = said(headline_of(read_stored(stored(older(readings), inputs, older(physics)))))
-    for name in (READINGS, PHYSICS):
-        assert f"(case {name}) was made by an older version and has to run again." in text
-    results = stored(*map(older, (readings, inputs, physics)))
-    found = headline_of(read_stored(results))
-    assert found.answer.endswith("made by an older version and have to run again.")
-    assert not [*found.depends, *found.rows]
-    (none,) = of_paper(Evidence(read_stored(results), []), "")
-    assert none.value == "No number" and [each.name for each in none.cases] == [READINGS, INPUTS, PHYSICS]
-    write_report(results, tmp_path)
-    for name in ("running-in.html", "index.html"):
-        page = PageReader((tmp_path / name).read_text(encoding="utf-8"))
-        assert faults_of(page) == [] and found.answer in page.text and MEANING[:40] not in page.text

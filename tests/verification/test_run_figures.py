@@ -13,14 +13,12 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pytest
 from builders import running_in
-from matplotlib.collections import LineCollection, QuadMesh
+from matplotlib.collections import QuadMesh
 
-from sam.planner.bodies import hertz_semi_axes
 from sam.scene import FrictionMap, Scene
 from verification.figures.run import drawings_of
 from verification.runs import models
 from verification.runs.files import Run, read_run, write_run
-from verification.runs.sampling import peak
 
 BODY = {"young": 210e9, "poisson": 0.3}
 SOFT = BODY | {"plasticity": {"law": "linear", "yield_stress": 1e9, "modulus": 1e10}}
@@ -155,19 +153,6 @@ class TestPressure:
         else:
             assert np.nanmax(field) == pytest.approx(quoted, rel=1e-12) and not panel.patches
 
-    @pytest.mark.parametrize("name", ["rough", "ellipse"])
-    def test_the_outline_goes_around_every_cell_in_contact(self, name):
-        panel = panel_of(name, "pressure")
-        x, y, field = mesh_of(panel)
-        inside = np.pad(np.isfinite(field), 1)
-        sides = sum(np.count_nonzero(np.diff(inside.astype(int), axis=axis)) for axis in (0, 1))
-        (outline,) = (each for each in panel.collections if isinstance(each, LineCollection))
-        assert len(outline.get_segments()) == sides
-        if name == "ellipse":  # Hertz: the axes of the contact, to a cell on each side
-            ends = np.ptp(np.concatenate(outline.get_segments()), axis=0)
-            for end, axis, edges in zip(ends, hertz_semi_axes(run_of(name).scene), (x, y), strict=True):
-                assert end == pytest.approx(2e6 * axis, abs=2.0 * np.diff(edges)[0])
-
 
 MISES, PEEQ = ("mises", "mises_max_Pa", 1e-9), ("peeq", "peeq_max", 1e2)
 MAPS = [(name, *MISES) for name in ("sphere", "punch", "coated", "travelling")] + [("sphere", *PEEQ)]
@@ -175,23 +160,6 @@ MAPS += [("worn", *PEEQ)]
 
 
 class TestPlane:
-    @pytest.mark.parametrize("name", ["worn", "travelling"])
-    def test_goes_through_the_largest_pressure(self, name):
-        """That is in the words of the axes, in the bar over the contact, and not in y = 0."""
-        panel, pressure = panel_of(name, "mises"), panel_of(name, "pressure")
-        u, v = cross_of(pressure)
-        assert v != 0.0 and numbers(panel.get_xlabel(), "y\\$ = ") == pytest.approx(v, rel=1e-3)
-        assert "mu" in panel.get_xlabel() and "mu" in panel.get_ylabel() and "/a" not in panel.get_xlabel()
-        x, _, _ = mesh_of(panel)
-        assert x[0] < u < x[-1]
-        bars = [each.get_xdata() for each in panel.lines if each.get_linewidth() == 4.0]
-        assert any(first < u < last for first, last in bars)
-        px, py, p = mesh_of(pressure)
-        row = np.isfinite(p[:, np.searchsorted(py, v) - 1])
-        for at, touches in zip(centres(px), row, strict=True):
-            if x[0] < at < x[-1]:
-                assert touches == any(first < at < last for first, last in bars)
-
     @pytest.mark.parametrize("name, figure, quantity, unit", MAPS)
     def test_writes_the_largest_value_that_it_draws(self, name, figure, quantity, unit):
         """And that of summary.json beside it where it is another number: refined, or of another place."""
@@ -225,28 +193,6 @@ class TestPlane:
         assert np.isin(field[np.isfinite(field)], 1e-9 * table["mises_Pa"]).all()
 
 
-class TestCurves:
-    @pytest.mark.parametrize("name", ["rough", "travelling", "ellipse"])
-    def test_the_row_holds_the_largest_pressure_and_both_ends_of_the_contact(self, name):
-        line = panel_of(name, "line").lines[0]
-        x, p = line.get_xdata(), line.get_ydata()
-        assert p.max() == pytest.approx(1e-9 * run_of(name).quantities["p_max_Pa"], rel=1e-9)
-        assert p[0] == 0.0 and p[-1] == 0.0
-        assert np.abs(x[p.argmax()] - cross_of(panel_of(name, "pressure"))[0]) < 1e-6
-
-    @pytest.mark.parametrize("name", ["travelling", "punch"])
-    def test_no_panel_without_numbers(self, name):
-        """No gap where nothing is opposite, none that is rounding, no approach of a pressure that is
-        given.
-        """
-        labels = [panel.get_ylabel() for panel in drawn(name)["line"].figure.axes]
-        assert len(labels) == {"travelling": 1, "punch": 2}[name] and not any(
-            "gap" in label for label in labels
-        )
-        assert np.isfinite(panel_of(name, "history").lines[0].get_xdata()).all()
-        assert any("gap" in panel.get_ylabel() for panel in drawn("sphere")["line"].figure.axes)
-
-
 @pytest.mark.parametrize("model", [models.SAM, models.FEM])
 class TestCoated:
     def test_the_interface_is_drawn_and_no_curve_crosses_it(self, model):
@@ -259,52 +205,6 @@ class TestCoated:
             both = known[1:] & known[:-1]
             assert not ((z[:-1] < film * (1 - 1e-9)) & (z[1:] >= film * (1 - 1e-9)) & both).any()
             assert (z[known] < film * (1 - 1e-9)).any() and (z[known] > film).any()
-
-    def test_no_value_of_the_map_is_a_mean_of_film_and_body(self, model):
-        """Next to the interface the values are between those of the two rows of points in their own layer, of
-        plane.csv.
-        """
-        panel, run = panel_of("coated", "mises", model), run_of("coated", model)
-        a, film = run.quantities["contact_radius_m"], FILM["thickness"]
-        x, z, field = mesh_of(panel)
-        middle, depth = np.abs(centres(x)) < 0.15, a * centres(z)
-        x, z, mises = peak(run.tables["plane"], "x_m", "z_m", "mises_Pa")
-        rows = np.unique(np.round(z[np.abs(x) < 0.2 * a], 13))
-        first = int(np.searchsorted(rows, film * (1 - 1e-9)))
-        for low, high in ((rows[first - 2], film), (film, rows[first + 1])):
-            known = (np.abs(x) < 0.2 * a) & (z > low - 1e-12) & (z < high + 1e-12)
-            known &= (z < film * (1 - 1e-9)) == (high == film)
-            shown = field[np.ix_(middle, (depth > low) & (depth < high))]
-            shown = 1e9 * shown[np.isfinite(shown)]
-            assert shown.size
-            assert mises[known].min() * (1 - 1e-9) <= shown.min(initial=np.inf)
-            assert shown.max(initial=0.0) <= mises[known].max() * (1 + 1e-9)
-
-
-class TestWorn:
-    def test_the_depth_worn_and_the_profile_through_the_deepest_place(self):
-        left, right = drawn("worn")["worn"].figure.axes[:2]
-        table = run_of("worn").tables["surface"]
-        after = table[table["state"] == "unloaded"]
-        x, y, worn, height = (after[name].to_numpy() for name in ("x_m", "y_m", "worn_m", "height_m"))
-        deepest = worn.argmax()
-        _, _, field = mesh_of(left)
-        assert np.isfinite(field).sum() == np.count_nonzero(worn > 0.0) < worn.size
-        assert np.nanmax(field) == pytest.approx(1e9 * worn[deepest], rel=1e-9)
-        assert numbers(words_of(left), "max") == pytest.approx(1e9 * worn[deepest], rel=6e-4)
-        assert cross_of(left) == pytest.approx((1e6 * x[deepest], 1e6 * y[deepest]))
-        row = np.isclose(y, y[deepest], rtol=0.0, atol=1e-9)
-        before, now = (line.get_ydata() for line in right.lines)
-        order = np.argsort(x[row])
-        assert before == pytest.approx(1e6 * height[row][order], abs=1e-9)
-        assert now == pytest.approx(1e6 * (height - worn)[row][order], abs=1e-9)
-        assert numbers(right.get_xlabel(), "y\\$ = ") == pytest.approx(1e6 * y[deepest], rel=1e-3)
-        # panel (e) has a colour of its own for no contact; in (f) such cells are blank
-        axes = {panel.get_title()[:3]: panel for panel in drawn("worn")["running-in"].figure.axes}
-        (_, _, friction), (_, _, pressure) = (mesh_of(axes[name]) for name in ("(e)", "(f)"))
-        assert np.array_equal(friction > 0, np.isfinite(pressure))
-        at_peak = table[table["state"] == "peak"]
-        assert np.isfinite(pressure).sum() == np.count_nonzero(at_peak["p_Pa"] > 0.0)
 
 
 def test_friction_that_varies_is_drawn_in_contact_only(tmp_path):

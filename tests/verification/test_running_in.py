@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Running-in: its scenes, measures and statements on made tables, rows on wrong ones, both readings and finer
-cells as a whole. No run is solved but one for its figure.
+cells as a whole. No run is solved.
 """
 
 from dataclasses import replace
@@ -9,14 +9,11 @@ from itertools import pairwise
 import numpy as np
 import pandas as pd
 import pytest
-from builders import STEEL, running_in as small_patch
 from made_histories import CYCLES, FORCE, as_the_paper_says, history, result_of
 from made_results import Made, context, red as red_rows
 from made_studies import verdicts
 
-import sam
 from sam.scene import Status, load_scene
-from verification.cases.case import with_keys
 from verification.cases.running_in import running_in
 from verification.cases.running_in.running_in import PRINTED, RENEWED, renewed
 from verification.cases.running_in.study import (
@@ -37,13 +34,10 @@ from verification.cases.running_in.study import (
     judged,
     reduced,
     statements_table,
-    with_plasticity,
     with_seed,
 )
 from verification.compare.running_in_measures import History, Limits, Scar, Spread
-from verification.figures import run
-from verification.figures.running_in import regime_map, six_panels
-from verification.runs.files import write_run
+from verification.figures.running_in import regime_map
 
 SCENES = {case: load_scene(f"verification/scenes/running-in-{case}.toml") for case in (*NAMES, "curve-c")}
 SMALL = reduced(SCENES[B], Effort(3, 2, 8))
@@ -54,17 +48,6 @@ WET = "curve B: the whole surface protected"  # asks for a friction of 0.105 or 
 
 
 class TestScenes:
-    def test_five_cases_differ_in_the_layer_and_its_limit_only(self):
-        def rest(scene):
-            scene = with_plasticity(scene, profile=None, layer_thickness=None)
-            return with_keys(scene, "wear", strain_limit_layer=None).model_copy(update={"title": ""})
-
-        assert all(rest(scene) == rest(SCENES[BULK]) for scene in SCENES.values())
-        limits = {case: scene.wear.strain_limit_layer for case, scene in SCENES.items()}
-        assert limits == dict.fromkeys(SCENES, 0.02) | {BULK: None, DUCTILE: 0.05}
-        film = SCENES[BULK].friction
-        assert (film.growth, film.thinning_limit) == pytest.approx((2.0415e-9, 0.020415), rel=1e-4)
-
     def test_reduced_keeps_the_nominal_pressure_and_the_cells(self):
         scene = reduced(SCENES[B], Effort(3, 4, 16))
         assert scene.grid.extent == pytest.approx((16e-6,) * 2) and scene.grid.cells == (16, 16)
@@ -202,25 +185,6 @@ class TestStatements:
         failed = [each["statement"] for each in verdicts([changed]) if each["by_agreement"] == FAILED]
         assert all(any(words in statement for statement in failed) for words in failing)
 
-    def test_nothing_worn_and_a_run_that_is_missing_say_nothing(self):
-        none = as_the_paper_says()
-        none[BULK] = replace(none[BULK], volume=0 * none[BULK].volume)
-        first = verdicts([none])[0]
-        assert first["by_agreement"] == OPEN and np.isnan(first["values"]).all()
-        said = as_the_paper_says()
-        without = {case: own for case, own in said.items() if case != B}
-        silent = [each["none_on"] for each in verdicts([said] * 4 + [without])]
-        assert silent.count(1) == 7 and silent.count(0) == 10
-
-    def test_surfaces_that_disagree_decide_nothing(self):
-        agreed = [told([0.3] * k + [0.1] * (5 - k))["by_agreement"] for k in range(6)]
-        assert agreed == [HELD] * 2 + [OPEN] * 2 + [FAILED] * 2
-        silent = ([np.nan] * 5, [0.1, 0.1, 0.1, np.nan, np.nan], [])
-        assert [told(each)["by_agreement"] for each in silent] == [OPEN] * 3
-        most = told([0.1] * 8 + [np.nan] * 2)
-        assert most["by_agreement"] == most["by_median"] == HELD
-        assert (most["holds_on"], most["of"], most["none_on"]) == (8, 10, 2)
-
     @pytest.mark.parametrize(
         ("values", "median", "margin", "close"),
         [
@@ -341,27 +305,8 @@ class TestReadings:
             assert windows == pytest.approx([5 / 32] * 2, rel=0.01)
 
 
-class TestFigures:
-    def test_panels_and_regimes_hold_the_numbers_that_they_show(self):
-        one = made()
-        drawing = six_panels(one.scar, one.history, (0.1, 0.4))
-        volume = np.nansum(drawing.data["worn_m"]) * 1e-12
-        assert len(drawing.figure.axes) >= 6
-        assert volume == pytest.approx(one.history.volume[-1], rel=1e-12, abs=0.0)
-        limits = {NAMES[case]: running_in.limits_of(SCENES[case]) for case in NAMES}
-        regimes = regime_map(limits, {"bulk": (6e9, 13e9)}, (0.1, 0.4), ("B = 1780 MPa", "B = 1280 MPa"))
-        assert regimes.data["tears_GPa"][0] == pytest.approx(5.29, abs=5e-3)
-        assert regimes.figure.axes[1].get_ylim()[1] > 13.0
-
-    def test_a_run_with_a_film_has_its_six_panels_among_its_figures(self, tmp_path, monkeypatch):
-        """And one without has not. Its other figures are drawn, and not written: that is tested with smooth
-        bodies.
-        """
-        save = run.save
-        own = lambda drawing, stem, pdf: save(drawing, stem) if stem.name == "running-in" else []  # noqa: E731
-        monkeypatch.setattr(run, "save", own)
-        for name, keys in (("film", {"counterbody": STEEL}), ("none", {"film": None, "wear": None})):
-            scene = small_patch(**keys)
-            write_run(sam.solve(scene), scene, tmp_path / name)
-            drawn = [path.name for path in run.draw_run(tmp_path / name)]
-            assert drawn == ([f"running-in.{kind}" for kind in ("png", "csv")] if name == "film" else [])
+def test_regimes_are_drawn_with_their_numbers():
+    limits = {NAMES[case]: running_in.limits_of(SCENES[case]) for case in NAMES}
+    regimes = regime_map(limits, {"bulk": (6e9, 13e9)}, (0.1, 0.4), ("B = 1780 MPa", "B = 1280 MPa"))
+    assert regimes.data["tears_GPa"][0] == pytest.approx(5.29, abs=5e-3)
+    assert regimes.figure.axes[1].get_ylim()[1] > 13.0
