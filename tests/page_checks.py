@@ -21,11 +21,6 @@ BLOCKS = {
     "h3",
     "h4",
 }
-LEAST_CONTRAST = 4.5
-"""Of text to what is behind it: WCAG 2.1, level AA."""
-ON = {"ink": ["paper", "card"], "soft": ["paper"], "link": ["paper"], "good": ["good-back"],
-      "bad": ["bad-back", "paper"], "open": ["paper"]}  # fmt: skip
-"""Names of the colours of text -> those behind it."""
 
 
 class PageReader(HTMLParser):
@@ -102,35 +97,3 @@ def broken_links(pages: dict[str, PageReader], folder: Path) -> list[str]:
             if not there or (place and place not in pages[target or name].ids):
                 broken.append(f"{name}: {link}")
     return broken
-
-
-def colours_of(css: str) -> dict[str, dict[str, str]]:
-    """Light and dark -> name of a colour -> #rrggbb."""
-    light, dark = (
-        dict(re.findall(r"--([\w-]+): (#[0-9a-f]{6})", block))
-        for block in re.findall(r":root \{([^}]*)\}", css)[:2]
-    )
-    return {"light": light, "dark": dark}
-
-
-def contrast(one: str, other: str) -> float:
-    """Ratio of the luminances of two colours, 1 to 21 (WCAG 2.1)."""
-
-    def luminance(colour):
-        parts = [int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)]
-        linear = [x / 12.92 if x <= 0.04045 else ((x + 0.055) / 1.055) ** 2.4 for x in parts]
-        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
-
-    low, high = sorted(map(luminance, (one, other)))
-    return (high + 0.05) / (low + 0.05)
-
-
-def faint(css: str) -> list[str]:
-    """Texts that stand out too little, in either scheme."""
-    return [
-        f"{scheme}: {text} on {behind}"
-        for scheme, colours in colours_of(css).items()
-        for text, grounds in ON.items()
-        for behind in grounds
-        if contrast(colours[text], colours[behind]) < LEAST_CONTRAST
-    ]

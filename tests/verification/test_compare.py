@@ -173,12 +173,6 @@ def test_data_without_a_radius_have_no_means_of_the_pressure():
     assert MEANS in rows_of() and MEANS not in rows_of(SAM, data)
 
 
-def test_plastic_strain_at_the_wrong_depth_turns_red():
-    """By a fifth of a layer of 1/14: less than the interpolation would hide if it were not centred."""
-    for place, name in (("axis", "peeq on the axis"), ("plane", "peeq in the plane y = 0")):
-        assert name in red(with_column(SAM, place, "z_m", lambda z: z + 0.2 / 14, states=("peak",)), FEM)
-
-
 def unyielded(residual: float = 0.0) -> Made:
     """Nothing has yielded; a rounding error may be left of unloading."""
     out = with_quantities(SAM, peeq_max=0.0, residual_mises_max_Pa=0.0)

@@ -6,28 +6,21 @@ one lies.
 from dataclasses import replace
 
 import numpy as np
-import pandas as pd
 import pytest
-from builders import PERFECT, RADIUS, hertz_force, scene
-from rounding import close
+from builders import RADIUS, hertz_force, scene
 
 from sam.scene import CounterBody, Scene, plastic_work
 from sam.scene.yield_curve import Linear, Swift, Tabulated
 from tests.system.test_repeated_loading import MELAN, pressed
-from verification.cases import all_cases
 from verification.cases.energy.energy import (
-    ELASTIC,
-    STEPS,
     cycle,
     flow,
     of_cells,
     of_steps,
     pressing,
-    row,
     within,
 )
 from verification.cases.recipes import Resolution, resolved_at
-from verification.cases.sweep import taken
 from verification.energy import of_fem, of_sam
 from verification.energy.balance import Balance, along_path
 from verification.runs.models import FEM, FEM_3D, SAM, solve
@@ -86,14 +79,6 @@ def test_an_elastic_body_gives_all_back(mu):
     assert not found.dissipated.any() and not found.flowed.any()
 
 
-def test_sliding_to_and_fro_dissipates_in_each_cycle_and_still_balances():
-    """Two cycles of alternating sign, on few cells in few steps."""
-    found = of_sam.balance_of(sphere(mu=0.4, law=PERFECT, loading={"steps": 3, "cycles": 2}))
-    assert of_cells(found) < 4e-3 and 0 < within(found) < 0.01
-    assert (np.diff(found.dissipated) >= 0).all()
-    assert found.elastic[-1] == close(found.stored[-1], 1e-12) and found.stored[-1] > 0
-
-
 # --- FEM ----------------------------------------------------------------------------------------------------
 
 
@@ -132,31 +117,6 @@ def test_errors_of_a_balance_by_hand():
     assert of_steps(one) == pytest.approx(0.75 / 8.0) and within(one) == pytest.approx(0.4 / 8.0)
     assert pressing(one) == pytest.approx(0.5)
     assert cycle(one) == pytest.approx(4.0 / 2.0 - 1.0) and flow(one) == pytest.approx(2.5 / 2.0 - 1.0)
-
-
-def test_rows_take_the_finest_balance_the_order_and_what_both_models_have_in_common():
-    """Errors of order 2 in the cells and 1.5 in the steps; FEM does the same work but for 1 %."""
-
-    def at(model, size, steps):
-        values = row(by_hand(), "perfect") | {"hertz": 4.0, "work": 4.04 if model == "fem" else 4.0}
-        values |= {"error-of-cells": size**-2.0, "within": 0.1 * size**-2.0}
-        values |= {"error-of-steps": 1e-3 * steps**-1.5, "pressing": 1e-3 * steps**-1.5}
-        return {"contact": "perfect", "model": model, "size": size, "steps": steps} | values
-
-    rows = [at("sam", 6, n) for n in STEPS] + [at("sam", n, 6) for n in (10, 14)] + [at("fem", 16, 6)]
-    for name, (_, model) in ELASTIC.items():
-        rows.append(at("sam" if model == SAM else "fem", 14, 6) | {"contact": name})
-    rows += [each | {"contact": "sliding"} for each in rows if each["contact"] == "perfect"]
-    frame = pd.DataFrame([{"sweep": "", **each} for each in rows])
-    file = all_cases()["energy"].file
-    found = {claim.name: taken(file, frame, claim) for claim in file.taken}
-    assert (
-        found["perfect-sam-cells"].value == 14**-2.0 and found["perfect-sam-steps"].value == 1e-3 * 24**-1.5
-    )
-    assert found["perfect-sam-cells-order"].value == pytest.approx(2.0)
-    assert found["perfect-sam-steps-order"].value == pytest.approx(1.5)
-    assert (found["perfect-work"].value, found["perfect-work"].expected) == (4.0, 4.04)
-    assert found["elastic-sam-work"].expected == 4.0 and found["perfect-fem-cells"].value == 16**-2.0
 
 
 # --- back-stresses ------------------------------------------------------------------------------------------

@@ -205,9 +205,3 @@ def test_of_lines_whose_numbers_touch_the_one_to_keep_stays(keep):
     assert any("collide" in finding for finding in findings(draw(LEVELS).figure))
     drawing = readable(draw, LEVELS, keep=(keep,))
     assert findings(drawing.figure) == [] and lines_of(drawing) == [pytest.approx([keep])] * 2
-
-
-def test_numbers_that_stand_apart_stay_and_a_level_that_a_field_does_not_reach_needs_none():
-    assert lines_of(readable(bell(1.0), LEVELS)) == [pytest.approx(LEVELS)] * 2
-    half = readable(bell(1.0, second=0.5), LEVELS)
-    assert lines_of(half) == [pytest.approx(LEVELS), pytest.approx(LEVELS[:1])]

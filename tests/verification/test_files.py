@@ -13,7 +13,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import pyvista
 
 from sam.scene import Body, CounterBody, FieldMesh, LeftOut, Loading, Plasticity, Result, Scene, Status
 from sam.scene.result import AXIS, COST, HISTORY, LINE, PLANE, QUANTITIES
@@ -24,8 +23,6 @@ from verification.runs.provenance import collect
 from verification.runs.tables import csv_text
 
 THIRD = 1.0 / 3.0
-IN_THE_FILE = [0, 1, 2, 5, 3, 4]
-"""XX, YY, ZZ, XY, YZ, XZ in xx, yy, zz, yz, xz, xy."""
 SCENE = Scene(
     title="Sphere",
     body=Body(young=2e11, poisson=THIRD),
@@ -107,29 +104,6 @@ def test_a_plastic_scene_reads_back_with_its_curve(tmp_path, law):
     assert read == scene
     ours, theirs = scene.body.plasticity, read.body.plasticity
     assert theirs.curve() == ours.curve() and theirs.depth_profile() == ours.depth_profile()
-
-
-def test_fields_read_back_in_order(tmp_path):
-    """Numbers keep every digit; z, and what has one z among its directions, change the sign."""
-    strain = {"peeq": np.arange(3) * THIRD, "plastic_strain": np.arange(18.0).reshape(3, 6) * THIRD}
-    mesh = a_result().bodies["peak"]
-    moved = np.arange(18.0).reshape(6, 3) * THIRD
-    whole = replace(
-        mesh,
-        cell_data={**mesh.cell_data, **strain},
-        point_data={**mesh.point_data, "displacement_m": moved},
-    )
-    write_run(a_result(bodies={"peak": whole}), SCENE, tmp_path)
-    read = pyvista.read(tmp_path / "fields.vtu")
-    np.testing.assert_array_equal(read.points, mesh.points * [1, 1, -1])
-    assert {kind: len(cells) for kind, cells in read.cells_dict.items()} == {9: 1, 5: 2}
-    turned = np.array([1, 1, 1, 1, -1, -1])
-    np.testing.assert_array_equal(read.cell_data["peeq"], strain["peeq"])
-    for name in ("stress_Pa", "plastic_strain"):
-        values = whole.cell_data[name][:, IN_THE_FILE] * turned
-        np.testing.assert_array_equal(read.cell_data[name], values)
-    np.testing.assert_array_equal(read.point_data["p_Pa"], np.arange(6) * THIRD)
-    np.testing.assert_array_equal(read.point_data["displacement_m"], moved * [1, 1, -1])
 
 
 def test_what_is_no_number_is_null_in_json_and_empty_in_csv(tmp_path):

@@ -38,21 +38,6 @@ def test_every_figure_can_be_read_and_has_its_numbers(run):
     assert drawings["strain-per-period"].data["class"][-1] == "alternating"
 
 
-def test_loops_close_where_the_body_alternates(run):
-    """Three points over the last cycle, from the end of the one before: stress and strain come back."""
-    table = run.tables["loops"]
-    assert sorted(set(table["point"])) == [1, 2, 3] and set(table["cycle"]) == {3, 4}
-    added = run.tables["cycles"]["peeq_step_max"].iloc[-1]
-    first = table[table["point"] == 1]
-    assert first["peeq"].iloc[-1] - first["peeq"].iloc[0] == pytest.approx(added, rel=0.02)
-    for _, loop in table.groupby("point"):
-        zz, strained = loop["epzz"].to_numpy(), np.ptp(loop["epzz"].to_numpy())
-        assert abs(zz[-1] - zz[0]) < 0.2 * strained or strained < 0.05 * added
-        volume = loop[["epxx", "epyy", "epzz"]].to_numpy().sum(axis=1)
-        assert np.abs(volume).max() < 1e-9
-    assert first["szz_Pa"].iloc[-1] == pytest.approx(first["szz_Pa"].iloc[0], rel=0.05)
-
-
 def test_points_of_loops_are_different():
     """The largest, and those nearest to a half and a tenth of it; by the strain so far if nothing flowed."""
     flowed = np.array([0.0, 0.12, 1.0, 0.45, 0.9])

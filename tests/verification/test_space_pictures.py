@@ -111,23 +111,6 @@ def test_pictures_show_what_the_tables_hold(model):
     assert mesh.points[:, 2].min() / imprint.exaggeration == pytest.approx(1e-3 * imprint.limits[0])
 
 
-def test_heights_and_depths_are_those_of_the_tables():
-    table = found("worn").run.tables["surface"]
-    after = table[table["state"] == "unloaded"]
-    before, worn = picture("surface", "worn"), picture("worn", "worn")
-    assert values(worn).max() == pytest.approx(1e9 * after["worn_m"].max())
-    assert np.count_nonzero(after["worn_m"] > 0.0) == values(worn).size
-    assert (
-        before.limits[0] >= 1e6 * after["height_m"].min()
-        and before.limits[1] <= 1e6 * after["height_m"].max()
-    )
-    (mesh, _), *_ = before.parts
-    assert mesh.points[:, 2] / before.exaggeration == pytest.approx(mesh["value"])
-    assert f"heights \N{MULTIPLICATION SIGN} {before.exaggeration:g}" in before.said
-    (low, _), (original, _), *_ = worn.parts
-    assert low.points[:, 2].min() < original.points[:, 2].min() <= original.points[:, 2].max()
-
-
 DIES = "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
 
 

@@ -16,7 +16,6 @@ from verification.judging import Measured
 from verification.runs import models, store
 from verification.runs.store import FOLDER, Store
 from verification.suite import outcomes, verify
-from verification.suite.pages import write_report
 
 # the commands
 
@@ -187,11 +186,3 @@ def test_a_case_that_broke_off_or_measures_times_is_not_kept(tmp_path, small, co
     assert small.runs == 3 and counted == [models.SAM]
     assert verify.main([], "quick", tmp_path / "out") == 0  # without a store every case runs
     assert small.runs == 4 and counted == [models.SAM] * 2
-
-
-def test_a_page_of_results_that_say_nothing_of_a_store(tmp_path, small):
-    results = report_of(tmp_path)
-    del results["solves"]
-    for case in results["cases"]:
-        del case["reused"], case["sources"]
-    assert "from the store" not in write_report(results, tmp_path / "out").read_text(encoding="utf-8")

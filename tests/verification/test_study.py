@@ -2,7 +2,6 @@
 """Study files: what they may say, the values that they mean, and every error of them at once."""
 
 import os
-import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +9,7 @@ import pytest
 from builders import scene_text
 
 from sam.scene import SceneError
-from verification.runs.study import Axis, in_si, read_study
+from verification.runs.study import in_si, read_study
 
 MORRIS = 'mode = "morris"\nsamples = 4\nseed = 1'
 
@@ -78,21 +77,6 @@ def test_a_design_varies_its_keys_within_their_ends_and_draws_its_blocks_for_eac
         assert sorted(set(force.flat)) == pytest.approx(0.1 * 100 ** (np.arange(4) / 3))
     fewer = study(folder, vary, of.replace("8", "4"))
     assert [point.shown for point in fewer.points] == [point.shown for point in content.points[: 4 * size]]
-
-
-@pytest.mark.parametrize(
-    "entry, values",
-    [
-        ("range = [10, 50], count = 5", [10, 20, 30, 40, 50]),
-        ("log = [1, 8], count = 4", [1, 2, 4, 8]),
-        ("range = [1, 2], count = 3", [1, 1.5, 2]),
-        ("range = [0.1, 0.4], count = 4", [0.1, 0.2, 0.3, 0.4]),
-    ],
-)
-def test_whole_numbers_stay_whole_where_they_can(entry, values):
-    axis = Axis.model_validate(tomllib.loads(entry.replace(", count", "\ncount")))
-    found = axis.values("loading.steps", None)
-    assert found == values and [type(value) for value in found] == [type(value) for value in values]
 
 
 def test_draws_depend_on_the_seed_and_on_their_own_key_only(folder):
@@ -278,8 +262,3 @@ def test_a_file_that_is_no_study_is_refused(folder, content, fragment):
     assert fragment in str(caught.value) and "study.toml" in str(caught.value)
     with pytest.raises(SceneError, match="No such file"):
         read_study(folder / "none.toml")
-
-
-def test_the_shipped_study_is_one():
-    content = read_study(Path(__file__).parents[2] / "verification" / "study-ellipse.toml")
-    assert len(content.points) == 15 and all(point.scene for point in content.points)

@@ -201,7 +201,7 @@ class Compared(Case):
         pairs: list[tuple[str, float, float]] = []
         handed = beside(self.file, self.file.data, {})(found[""].frame) if self.file.data else {}
         for name, solved in found.items():
-            if {"sam", "fem"} <= set(solved.results) and name not in self.file.also:
+            if {"sam", "fem"} <= set(solved.results):
                 said = f" ({self.file.variants[name]['words'].replace('mu = ', 'μ = ')})" if name else ""
                 for words, sam, fem in beside_each_other(*(solved.results[run] for run in ("sam", "fem"))):
                     where = words.startswith("depth of")  # a place, which the mesh decides
