@@ -226,7 +226,7 @@ def test_a_command_that_does_not_end_is_ended(tmp_path, monkeypatch):
     ],
 )
 def test_a_fault_that_ends_wrongly_is_found(tmp_path, code, text, gates):
-    fault = case.Fault("x", lambda base: (Ended(code, text, 0.0), base), (2,), "another")
+    fault = case.Fault("x", lambda base: (Ended(code, text), base), (2,), "another")
     assert set(case.judge_fault(fault, tmp_path / "f")[1].findings) == gates
 
 

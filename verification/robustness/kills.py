@@ -36,7 +36,6 @@ class Ended:
 
     code: int | None
     text: str
-    seconds: float
 
 
 @dataclass
@@ -62,31 +61,19 @@ def start(words: Sequence[str], store: Path, command: Sequence[str] | None = Non
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         start_new_session=True,
-        preexec_fn=hears_interrupts,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
 
 
-def hears_interrupts() -> None:
-    """Let a child end on an interrupt, although its parent ignores it."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-
-
-def finish(process: subprocess.Popen, began: float | None = None) -> Ended:
+def finish(process: subprocess.Popen) -> Ended:
     """Wait for a command; one that does not end is killed, with its children."""
-    began = time.monotonic() if began is None else began
     try:
         text = process.communicate(timeout=LIMIT_S)[0]
     except subprocess.TimeoutExpired:
         os.killpg(process.pid, signal.SIGKILL)  # the session that `start` made
         process.communicate()
-        return Ended(None, "", time.monotonic() - began)
-    return Ended(process.returncode, text.decode(errors="replace"), time.monotonic() - began)
-
-
-def run(words: Sequence[str], store: Path, **how) -> Ended:
-    """Run a command to its end."""
-    began = time.monotonic()
-    return finish(start(words, store, **how), began)
+        return Ended(None, "")
+    return Ended(process.returncode, text.decode(errors="replace"))
 
 
 def parent_of(pid: int | str) -> int | None:
@@ -195,7 +182,7 @@ def killed_solve(
     done, kept = (folder / SUMMARY).exists(), (folder / "checkpoint.npz").exists()
     trial.how = ("before the first checkpoint", "after a checkpoint")[kept]
     trial.how = "finished before the kill" if done else trial.how
-    again = run([*words, "--out", str(folder), "--resume"], store)
+    again = finish(start([*words, "--out", str(folder), "--resume"], store))
     if again.code != 0:
         trial.found("wrong-endings", f"--resume {trial.how}: exit code {again.code}: {again.text[-200:]}")
     if kept and not done and "continued" not in again.text:
@@ -237,7 +224,7 @@ def killed_sweep(
     if (folder / "sweep.json").exists():
         trial.how += ", and it finished"
     if ended.code != 0:
-        ended, reused = run([*words, "--out", str(folder)], store), 0
+        ended, reused = finish(start([*words, "--out", str(folder)], store)), 0
         if ended.code == 0:
             reused = json.loads((folder / "sweep.json").read_text(encoding="utf-8"))["counts"]["reused"]
         for _ in range(finished - reused):

@@ -27,7 +27,6 @@ from verification.robustness.kills import (
     inspect,
     killed_solve,
     killed_sweep,
-    run,
     start,
     tables,
 )
@@ -69,13 +68,9 @@ SWEPT = SCENE[: SCENE.index("[body.plasticity]")] + SCENE[SCENE.index("[counterb
 )
 
 
-Made = tuple[Ended, Path]
-"""How a command ended, and the folder to look at."""
-
-
 def solve_in(base: Path, out: Path, *more: str, **how) -> Ended:
     """Run `samfem solve` on the scene of a folder."""
-    return run(["solve", str(base / "scene.toml"), "--out", str(out), *more], base / "store", **how)
+    return finish(start(["solve", str(base / "scene.toml"), "--out", str(out), *more], base / "store", **how))
 
 
 def begun(base: Path) -> Popen:
@@ -89,49 +84,49 @@ def begun(base: Path) -> Popen:
     return process
 
 
-def interrupted(base: Path) -> Made:
+def interrupted(base: Path) -> tuple[Ended, Path]:
     """SIGINT, as from Ctrl-C, once there is a checkpoint."""
     process = begun(base)
     process.send_signal(signal.SIGINT)
     return finish(process), base / "run"
 
 
-def full_disk(base: Path) -> Made:
+def full_disk(base: Path) -> tuple[Ended, Path]:
     """No file may grow beyond 4 KiB: as on a full disk, writing fails in the middle of a file."""
     code = "import resource, sys; from samfem.cli import main; "
     code += "resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)); sys.exit(main())"
     return solve_in(base, base / "run", command=(sys.executable, "-c", code)), base / "run"
 
 
-def read_only(base: Path) -> Made:
+def read_only(base: Path) -> tuple[Ended, Path]:
     """A folder that cannot be written to; /proc for root, whom rights do not stop."""
     (folder := base / "locked").mkdir(mode=0o500)
     place = Path("/proc/samfem") if os.access(folder, os.W_OK) else folder / "run"
     return solve_in(base, place), place
 
 
-def two_runs(base: Path) -> Made:
+def two_runs(base: Path) -> tuple[Ended, Path]:
     """A second solve into the folder of one that runs."""
     first = begun(base)
     second, ended = solve_in(base, base / "run"), finish(first)
     if ended.code != 0:
-        second = Ended(ended.code, f"the first run: {ended.text}", ended.seconds)
+        second = Ended(ended.code, f"the first run: {ended.text}")
     return second, base / "run"
 
 
-def other_version(base: Path) -> Made:
+def other_version(base: Path) -> tuple[Ended, Path]:
     """A folder that another version wrote."""
     (base / "run").mkdir()
     older = '{"format": "samfem run 0"}'
     (summary := base / "run" / SUMMARY).write_text(older)
     ended = solve_in(base, base / "run")
     if summary.read_text(encoding="utf-8") != older:
-        return Ended(None, "the summary of the other version was overwritten", ended.seconds), base
+        return Ended(None, "the summary of the other version was overwritten"), base
     summary.unlink()
     return ended, base / "run"
 
 
-def other_scene(base: Path) -> Made:
+def other_scene(base: Path) -> tuple[Ended, Path]:
     """--resume in the folder of another scene's interrupted run."""
     interrupted(base)
     (base / "scene.toml").write_text(SCENE.replace("0.17 N", "0.16 N"))
@@ -140,12 +135,12 @@ def other_scene(base: Path) -> Made:
 
 @dataclass(frozen=True)
 class Fault:
-    """A fault and how it should end. says: what the message must hold; written: whether a summary
-    may be there.
+    """A fault and how it should end. make: how it ended, and the folder to look at; says: what the message
+    must hold; written: whether a summary may be there.
     """
 
     name: str
-    make: Callable[[Path], Made]
+    make: Callable[[Path], tuple[Ended, Path]]
     codes: tuple[int, ...]
     says: str
     written: bool = False
@@ -179,12 +174,13 @@ def judge_fault(fault: Fault, base: Path) -> tuple[tuple[str, str, str], KillTri
     return (fault.name, str(ended.code), message.replace(str(base), "…")), trial
 
 
-def undisturbed(words: Sequence[str], out: Path, store: Path) -> Ended:
-    """A command that is not killed. RuntimeError where it does not end well."""
-    ended = run([*words, "--out", str(out)], store)
+def undisturbed(words: Sequence[str], out: Path, store: Path) -> float:
+    """Seconds that a command takes which is not killed. RuntimeError where it does not end well."""
+    began = time.monotonic()
+    ended = finish(start([*words, "--out", str(out)], store))
     if ended.code != 0:
         raise RuntimeError(f"the undisturbed {words[0]} ended in {ended.code}: {ended.text[-300:]}")
-    return ended
+    return time.monotonic() - began
 
 
 def kill_solves(count: int, base: Path, progress) -> tuple[list[KillTrial], float]:
@@ -192,7 +188,7 @@ def kill_solves(count: int, base: Path, progress) -> tuple[list[KillTrial], floa
     returned too.
     """
     words = ["solve", str(base / "scene.toml")]
-    seconds = undisturbed(words, base / "undisturbed", base / "store").seconds
+    seconds = undisturbed(words, base / "undisturbed", base / "store")
     expected = tables(base / "undisturbed")
     moments, trials = delays(count, seconds, random.Random(SEED)), []
 
@@ -213,7 +209,7 @@ def kill_solves(count: int, base: Path, progress) -> tuple[list[KillTrial], floa
 def kill_sweeps(count: int, base: Path, progress) -> list[KillTrial]:
     """Trials of sweeps killed likewise, the parent and a worker in turns."""
     words = ["sweep", str(base / "study.toml"), "--workers", "2"]
-    seconds = undisturbed(words, base / "sweep", base / "sweep-store").seconds
+    seconds = undisturbed(words, base / "sweep", base / "sweep-store")
     table, rng, trials = (base / "sweep" / "sweep.csv").read_bytes(), random.Random(SEED + 1), []
     for k, delay in enumerate(delays(count, seconds, rng)):
         whom, folder = ("worker", "parent")[k % 2], base / f"sweep-{k}"
