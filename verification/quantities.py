@@ -79,7 +79,7 @@ def contact_of(scene: Scene) -> CircularContact:
 class Solved:
     """A scene with its reference and the result of each model, by the name of its run; frame: of the
     sweeps of the case, see `verification.cases.sweep`; coarser: the same with larger cells and elements,
-    and the ratio of the sizes; others: of another scene, likewise by run; without a scene the frame is all.
+    and the ratio of the sizes; without a scene the frame is all.
     """
 
     scene: Scene | None
@@ -87,7 +87,6 @@ class Solved:
     results: dict[str, Result]
     frame: pd.DataFrame | None = None
     coarser: Sequence[tuple[Result, float]] = ()
-    others: Mapping[str, Result] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -193,14 +192,6 @@ def _largest_strain(below: bool) -> Callable[[Scene, Result, Result], Measured]:
         return Measured(*(float(peeq[(z >= thickness) == below].max()) for z, peeq in pairs))
 
     return between
-
-
-def _surface_change(scene: Scene, result: Result, other: Result) -> Measured:
-    """Of quantities and of fields along the surface, relative to the largest value of each."""
-    names = ("approach_m", "contact_area_m2", "p_max_Pa"), ("p_Pa", "uz_m", "gap_m")
-    pairs: list[tuple] = [(result.quantities[name], other.quantities[name]) for name in names[0]]
-    pairs += [(peak(result.tables["line"], n)[0], peak(other.tables["line"], n)[0]) for n in names[1]]
-    return Measured(max(float(np.max(np.abs(np.subtract(a, b))) / np.max(np.abs(b))) for a, b in pairs))
 
 
 def _of_second_cycle(of: Callable[..., float | Measured]) -> Callable[[Result, Reference], float | Measured]:
@@ -515,12 +506,16 @@ def _verdicts(solved: Solved) -> Measured:
 
 
 def _becomes(name: str) -> Quantity:
-    """Whether all runs end with a verdict."""
+    """Whether a run, or all runs, end with a verdict."""
 
     def whole(solved: Solved) -> Measured:
         return Measured(float({each.verdict["class"] for each in solved.results.values()} == {name}), 1.0)
 
-    return Quantity(f"1 if the verdict is {name}", whole=whole)
+    return Quantity(
+        f"1 if the verdict is {name}",
+        of=lambda result, _: float(result.verdict["class"] == name),
+        whole=whole,
+    )
 
 
 MOVING: Mapping[str, Quantity] = {
@@ -537,6 +532,7 @@ MOVING: Mapping[str, Quantity] = {
         "passes that strain some cell by more than the floor of the verdict, on all grids",
         whole=lambda solved: float(_counted(solved).sum()),
     ),
+    "class": Quantity("verdict", of=lambda result, _: result.verdict["class"]),
     "shakes-down": _becomes("shakedown"),
     "alternates": _becomes("alternating"),
 }
@@ -570,7 +566,6 @@ QUANTITIES: Mapping[str, Quantity] = {
         "change of the approach at the peak by the second cycle",
         of=_of_second_cycle(lambda *values: abs(values[3] / values[2] - 1.0)),
     ),
-    "surface-change": Quantity("largest change of the surface and the contact", between=_surface_change),
     "applications": Quantity(
         "applications of the residual-stress operator by SAM",
         between=lambda scene, sam, fem: Measured(sam.cost["operator_applications"]),

@@ -48,7 +48,6 @@ def hertz_sphere(scene: Scene) -> Reference:
     a, p0, delta = exact.contact_radius, exact.peak_pressure, exact.approach
     largest, depth = largest_von_mises(p0, a, nu)
     share = exact.modulus * (1.0 - nu**2) / scene.body.young  # of the body in the displacement of both
-    rise = np.cbrt(9.0 / (16.0 * exact.radius * exact.modulus**2))  # delta = rise F^(2/3)
 
     def stress(z: np.ndarray) -> np.ndarray:
         return axis_stress(np.abs(z), p0, a, nu)
@@ -74,7 +73,6 @@ def hertz_sphere(scene: Scene) -> Reference:
             ("axis", "szz_Pa"): lambda z: stress(z)[..., 2],
             ("axis", "sxx_Pa"): lambda z: stress(z)[..., 0],
             ("axis", "mises_Pa"): lambda z: von_mises(stress(z)),
-            ("history", "approach_m"): lambda force: rise * force ** (2.0 / 3.0),
         },
         deepest=2.0 * a,
         facts=(("Contact radius a, peak pressure p₀", f"{a * 1e6:.4f} µm, {p0 / 1e9:.4f} GPa"),),
@@ -102,7 +100,7 @@ def hertz_ellipse(scene: Scene) -> Reference:
             "mises-axis": mises,
         },
         {"a": a, "b": b, "p0": p0, "approach": exact.approach},
-        {("axis", "mises_Pa"): mises},
+        {("line", "p_Pa"): lambda x: exact.pressure(x, 0.0), ("axis", "mises_Pa"): mises},
         deepest=2.0 * min(a, b),
         facts=(("Semi-axes a (along x), b (along y)", size), ("Peak pressure p₀", f"{p0 / 1e9:.4f} GPa")),
     )

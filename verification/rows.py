@@ -4,18 +4,20 @@
 A file `verification/cases/<family>/<name>.toml` is a case, or several where it has tables `[cases.NAME]`,
 each of which overrides the keys above it. A row is `name = [metric, tolerance, reason, words]` in a table
 `[rows.KIND]`; its id is `<case>.<name>`; words may be the name of its quantity where the row has another.
-Braces stand for several rows: `"{sam,fem}-radius"` with "radius, {SAM,FEM}" are two. A reason "@name"
-stands in `[reasons]`, an equation "name" in equations.toml.
+Braces stand for several rows: `"{sam,fem}-radius"` with "radius, {SAM,FEM}" are two. A reason, or words,
+"@name" stand in `[reasons]`, an equation "name" in equations.toml.
 
-Where a case has tables `[sweeps.NAME]`, a fifth entry says what a row takes of the points of the sweeps, see
-`Take`: `"order p-max of sam"`, `"share of fem at depth = 3"`, `"limit peeq-max of sam | of fem"` with what it
-is held against. Points that need more than axes are what a function returns, `frame = "NAME"`.
+Where a case has tables `[sweeps.NAME]`, the last entry of a row of a kind alone says what it takes of their
+points, see `Take`: `"order p-max of sam"`, `"share of fem at depth = 3"`, `"limit peeq-max of sam | of fem"`
+with what it is held against; without words that says what it is. Points that need more than axes are what a
+function returns, `frame = "NAME"`.
 """
 
 from __future__ import annotations
 
 import re
 import tomllib
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
@@ -56,6 +58,15 @@ class Take(NamedTuple):
     at: tuple[tuple[str, str, str], ...] = ()
     number: float | None = None
 
+    @property
+    def words(self) -> str:
+        """For the reader, of a row that says no more."""
+        quantity = QUANTITIES.get(self.column)
+        of = [name.upper() if name.startswith(("sam", "fem")) else name for name in self.of]
+        at = [f"{axis.replace('-', ' ')} {sign} {value}".replace("= ", "") for axis, sign, value in self.at]
+        how = [] if self.statistic == "value" else [self.statistic.replace("-", " ")]
+        return ", ".join([quantity.words if quantity else self.column.replace("-", " "), *of, *at, *how])
+
     @classmethod
     def of_row(cls, text: str) -> tuple[Take, ...]:
         """What a row takes, and what that is held against where it says so. Raises ValueError."""
@@ -83,6 +94,29 @@ class Take(NamedTuple):
         if len(read) < len(conditions):
             raise ValueError(f"no condition: {at}")
         return cls(statistic or "value", column, tuple((of or "").split()), read)
+
+
+class Claim(NamedTuple):
+    """A row of a file, with the variant of the scene, the model and what that is held against ("" for what
+    it lacks), its quantity, and what it takes of the sweeps, with what that is held against.
+    """
+
+    row: Row
+    variant: str
+    model: str
+    against: str
+    quantity: str
+    take: tuple[Take, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """Of the row, without that of its case."""
+        return self.row.id.partition(".")[2]
+
+    @property
+    def table(self) -> str:
+        """Where it stands in its file."""
+        return "rows." + "/".join(filter(None, (self.variant, self.model, self.against)))
 
 
 class SweepFile(BaseModel):
@@ -123,12 +157,12 @@ class CaseFile(BaseModel):
     scene: of `verification/scenes`; set: key of the scene, as `loading.force` -> its value here, in SI;
     vary: recipe of `verification.cases.recipes` -> its value; quick: `set` and `vary` that differ at that
     level; models: that solve it; runs: name -> {model, set, vary}, beside these, which need not converge;
-    variants: name -> {words, set, vary} of the scene, each solved and measured by itself if rows or `also`
-    name it; values: quantity -> the number that it is held against; reference: an
-    independent answer, a name in `verification.references`; figures: kinds of `verification.cases.kinds`;
-    claims: table of rows -> name -> its quantity, of those without a take; sweeps: its points beside the
-    scene itself; setting: (name, number with unit) for the reader; takes: id of a row -> what it takes of
-    them, see `Take`; notes: sentences below the tables; views: pictures in space.
+    variants: name -> {words, set, vary} of the scene, each solved and measured by itself if rows name it;
+    values: quantity -> the number that it is held against; reference: an independent answer, a name in
+    `verification.references`; figures: kinds of `verification.cases.kinds`; claims: its rows; sweeps: its
+    points beside the scene itself; setting: (name, number with unit) for the reader; notes: sentences below
+    the tables; views: pictures in space; needs: package of the extra `reference` without which it does not
+    run.
 
     frame: function beside the file that returns the points instead of sweeps; of such functions, tables:
     that return one of the frame; data: that hands numbers of it to the pages; cannot: that says why the
@@ -136,8 +170,7 @@ class CaseFile(BaseModel):
     measures again.
 
     allowance: rows of SAM against FEM that hold the difference over what refinement allows, known from
-    both models at the `coarser` resolution; against: recipe -> value of another scene, solved by the same
-    models, against which rows hold what changes.
+    both models at the `coarser` resolution.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
@@ -157,24 +190,31 @@ class CaseFile(BaseModel):
     models: tuple[Literal["sam", "fem", "fem-3d"], ...] = ()
     runs: dict[str, dict[str, Any]] = {}
     variants: dict[str, dict[str, Any]] = {}
-    also: tuple[str, ...] = ()
     reference: str = ""
     coarser: tuple[int, ...] = ()
     allowance: tuple[str, ...] = ()
-    against: dict[str, Any] = {}
     figures: tuple[str, ...] = ()
     views: tuple[str, ...] = ()
-    rows: tuple[Row, ...]
-    claims: dict[str, dict[str, str]]
+    claims: tuple[Claim, ...]
     sweeps: dict[str, SweepFile] = {}
     frame: str = ""
     tables: tuple[str, ...] = ()
     data: str = ""
     alone: bool = False
     cannot: str = ""
-    takes: dict[str, tuple[Take, ...]] = {}
     notes: tuple[str, ...] = ()
     setting: tuple[tuple[str, str], ...] = ()
+    needs: str = ""
+
+    @property
+    def rows(self) -> tuple[Row, ...]:
+        """What is claimed, for the judge."""
+        return tuple(claim.row for claim in self.claims)
+
+    @property
+    def taken(self) -> tuple[Claim, ...]:
+        """The claims about points of sweeps."""
+        return tuple(claim for claim in self.claims if claim.take)
 
     @property
     def own(self) -> bool:
@@ -216,32 +256,29 @@ def merged(first: Mapping, second: Mapping) -> dict:
 def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     """One case of a file. Raises SceneError with every fault of it."""
     faults: list[Problem] = []
-    takes: dict[str, tuple[Take, ...]] = {}
-    variants, tables = content.get("variants", {}), dict[str, dict[str, Any]]()
+    tables: dict[str, dict[str, Any]] = {}
     for heads, named in content.pop("rows", {}).items():
         for head in _braces(heads):
             tables[head] = tables.get(head, {}) | named
-    more = {"reasons": reasons, "variants": variants, "takes": takes, "faults": faults}
-    rows = [row for table, named in tables.items() for row in _rows(content["name"], table, named, **more)]
-    named = [each for each in content.get("equations", ()) if isinstance(each, str)]
-    content["equations"] = [_equations().get(e, e) if e in named else e for e in content.get("equations", ())]
+    claims: list[Claim] = []
+    for table, named in tables.items():
+        for key, cells in named.items():
+            try:
+                claims += _claims(content, table, key, [_full(cell, reasons) for cell in cells])
+            except ValidationError as error:
+                faults += _faults(error, f"rows.{table}.{key}")
+            except (KeyError, TypeError, ValueError, AttributeError):
+                faults.append(Problem(f"rows.{table}.{key}", spelling(cells), ROW))
+    ids = Counter(claim.row.id for claim in claims)
+    faults += [Problem("rows", name, "occurs twice") for name, times in sorted(ids.items()) if times > 1]
+    content["equations"] = [_equations().get(str(each), each) for each in content.get("equations", ())]
     lists = {key: tuple(value) for key, value in content.items() if isinstance(value, list)}
     lists |= {key: tuple(map(tuple, lists[key])) for key in ("equations", "setting") if key in lists}
-    twice = sorted({row.id for row in rows if sum(other.id == row.id for other in rows) > 1})
-    faults += [Problem("rows", name, "occurs twice") for name in twice]
-    if not content.get("sweeps") and not content.get("frame"):
-        faults += [Problem("rows", name, "its fifth entry takes of sweeps: there are none") for name in takes]
-    claims = {
-        table: {
-            name: quantity
-            for key, cells in own.items()
-            if len(cells) < 5
-            for name, quantity in zip(_braces(key), _braces(_named(key, cells)), strict=True)
-        }
-        for table, own in tables.items()
-    }
     try:
-        case = CaseFile(**{**content, **lists}, rows=tuple(rows), claims=claims, takes=takes)
+        case = CaseFile(**{**content, **lists}, claims=tuple(claims))
+        if not case.sweeps and not case.frame:
+            said = "its fifth entry takes of sweeps: there are none"
+            faults += [Problem("rows", claim.row.id, said) for claim in case.taken]
     except ValidationError as error:
         faults += _faults(error)
     if faults:
@@ -249,50 +286,34 @@ def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     return case
 
 
-def head_of(table: str, variants: Mapping) -> tuple[str, str, str]:
-    """Variant, model and what it is held against, of the name of a table of rows; "" for what it lacks."""
-    first, _, rest = table.partition("/")
-    variant, rest = (first, rest) if first in variants else ("", table)
-    model, _, against = rest.rpartition("/")
-    return variant, model, against
-
-
-def _rows(
-    case: str, table: str, named: Mapping, *, reasons: Mapping, variants: Mapping, takes: dict, faults: list
-) -> Iterator[Row]:
-    """The rows of a table, of kind `exact`, or, where two models are held against each other or one
-    against something, `sam/fem`, `sam/exact`, after the name of a variant of the scene if there are; what
-    they take is added to `takes`, what is wrong with one to `faults`.
+def _claims(content: Mapping[str, Any], table: str, key: str, cells: list) -> Iterator[Claim]:
+    """What an entry of a table stands for. The table is of a kind, `exact`, or, where two models are held
+    against each other or one against something, `sam/fem`, `sam/exact`, after the name of a variant of the
+    scene if there are.
     """
-    variant, model, against = head_of(table, variants)
-    kind = "model" if against == "fem" else against
-    lead = f"{variant}-" * bool(variant) + (f"{model}-" if model and kind != "model" else "")
-    of = f", {variants[variant]['words']}" if variant else ""
-    of += f", {model.upper()}" + " against FEM" * (kind == "model") if model else ""
-    for key, cells in named.items():
-        try:
-            metric, tolerance, reason, *words = cells
-            reason = reasons[reason[1:]] if reason.startswith("@") else reason
-            names, of_names, take = _braces(key), _braces(_named(key, cells)), words[1:]
-            alone = not words or words[0] in QUANTITIES
-            said = [f"{QUANTITIES[name].words}{of}" for name in of_names] if alone else _braces(words[0])
-            if take:
-                sides = map(Take.of_row, _braces(*take))
-                takes |= {f"{case}.{name}": side for name, side in zip(names, sides, strict=True)}
-            for name, quantity in zip(names, said, strict=True):
-                yield Row(
-                    id=f"{case}.{lead}{name}",
-                    case=case,
-                    quantity=quantity,
-                    metric=metric,
-                    tolerance=tolerance,
-                    reason=reason,
-                    kind=kind,
-                )
-        except ValidationError as error:
-            faults += _faults(error, f"rows.{table}.{key}")
-        except (KeyError, TypeError, ValueError, AttributeError):
-            faults.append(Problem(f"rows.{table}.{key}", spelling(cells), ROW))
+    metric, tolerance, reason, *more = cells
+    first, _, rest = table.partition("/")
+    variant, rest = (first, rest) if first in content.get("variants", {}) else ("", table)
+    model, _, against = rest.rpartition("/")
+    lead = f"{variant}-" * bool(variant) + f"{model}-" * bool(model and against != "fem")
+    of = f", {content['variants'][variant]['words']}" if variant else ""
+    of += f", {model.upper()}" + " against FEM" * (against == "fem") if model else ""
+    names, points = _braces(key), bool(content.get("sweeps") or content.get("frame"))
+    takes = _braces(more.pop()) if len(more) == 2 or (points and not model and more) else []
+    words = _braces(more[0]) if more else []
+    if len(more) > 2 or any(len(each) not in (0, len(names)) for each in (takes, words)):
+        raise ValueError(ROW)
+    quantities = words if words and all(each in QUANTITIES for each in words) else names
+    said = {"case": content["name"], "metric": metric, "tolerance": tolerance, "reason": reason}
+    said["kind"] = "model" if against == "fem" else against
+    for k, name in enumerate(names):
+        take = Take.of_row(takes[k]) if takes else ()
+        if quantities is words or not (words or take):
+            quantity = f"{QUANTITIES[quantities[k]].words}{of}"
+        else:
+            quantity = words[k] if words else take[0].words
+        row = Row(id=f"{content['name']}.{lead}{name}", quantity=quantity, **said)
+        yield Claim(row, variant, model, against, quantities[k], take)
 
 
 def _faults(error: ValidationError, *above: str) -> list[Problem]:
@@ -303,9 +324,9 @@ def _faults(error: ValidationError, *above: str) -> list[Problem]:
     ]
 
 
-def _named(name: str, cells: Sequence) -> str:
-    """The quantity of a row, or the names of several."""
-    return cells[3] if len(cells) > 3 and cells[3] in QUANTITIES else name
+def _full(cell: Any, reasons: Mapping[str, str]) -> Any:
+    """What stands in `[reasons]` for "@name"."""
+    return reasons[cell[1:]] if isinstance(cell, str) and cell.startswith("@") else cell
 
 
 def _braces(text: str) -> list[str]:

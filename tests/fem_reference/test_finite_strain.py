@@ -27,7 +27,7 @@ from fem_reference.finite_strain.kinematics import (
 )
 from fem_reference.finite_strain.material import Hencky
 from sam.scene.yield_curve import Linear, Swift
-from verification.cases.limits import model_limits, model_limits_curves
+from verification.cases.limits import model_limits
 
 YOUNG, POISSON = 200.0, 0.3
 CURVES = {
@@ -276,6 +276,6 @@ def test_a_load_step_that_is_lost_is_no_point_of_a_curve(monkeypatch):
     def lost(model, _shares):
         return [Step(replace(model.virgin(), converged=False), NO_WORK)]
 
-    monkeypatch.setattr(model_limits_curves, "load_to", lost)
+    monkeypatch.setattr(model_limits, "load_to", lost)
     with pytest.raises(RuntimeError, match=r"finite strain, true sphere: step 1 of 20 did not converge"):
         model_limits.loaded(model_limits.ELASTIC[0], 4, "finite")

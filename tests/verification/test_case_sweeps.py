@@ -126,7 +126,7 @@ def test_limit_of_both_and_growth_of_norms():
     assert growth_of_norms(apart, "") == pytest.approx(0.5, rel=1e-12)
 
 
-@pytest.mark.parametrize("file", [f for f in case_files().values() if f.takes], ids=lambda file: file.name)
+@pytest.mark.parametrize("file", [f for f in case_files().values() if f.taken], ids=lambda file: file.name)
 def test_every_name_of_a_file_with_points_is_known(file):
     """Recipes, columns, statistics and figures, of a registry or beside the file; a column that is taken."""
     for sweep in file.sweeps.values():
@@ -135,7 +135,7 @@ def test_every_name_of_a_file_with_points_is_known(file):
                 keys = values.values() if isinstance(values, dict) else [{axis: None}]
                 assert all(beside(file, key, RECIPES) for each in keys for key in each if "." not in key)
         assert all(words_of(file, column) for column in sweep.columns)
-    for take in (take for takes in file.takes.values() for take in takes if take.number is None):
+    for take in (take for claim in file.taken for take in claim.take if take.number is None):
         assert beside(file, take.statistic, STATISTICS)
         assert file.frame or take.column in {c for sweep in file.sweeps.values() for c in sweep.columns}
     known = KINDS | SWEPT | OVER_VARIANTS

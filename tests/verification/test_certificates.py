@@ -8,6 +8,7 @@ import pytest
 from made_results import with_column, with_field
 
 from sam import choose_grid
+from verification.cases import all_cases
 from verification.cases.case import Context
 from verification.cases.certificates import certificates as case
 from verification.cases.recipes import Resolution
@@ -52,13 +53,15 @@ def test_all_conditions_hold(solves, name):
 
 def test_what_no_scene_was_measured_for_is_no_success():
     """And the largest value of a group counts."""
-    found = {group: {"a": Conditions(dict.fromkeys(names, 0.0))} for group, names in case.MEASURED.items()}
+    own, found = all_cases()["certificates"], {group: {"a": Conditions({})} for group in case.TITLES}
+    for group, what in own.asked():
+        found[group]["a"].values[what] = 0.0
     found["rough"]["b"] = Conditions({"load": 1.0})
-    measured = case.CASES[0].measure(found)
+    measured = own.measure(found)
     assert measured["rough-load"].value == 1.0 and set(measured) == set(LIMITS)
     del found["coated"]["a"].values["interface"]
     with pytest.raises(ValueError, match="coated: no scene has interface"):
-        case.CASES[0].measure(found)
+        own.measure(found)
 
 
 # --- perturbed answers: (scene, result, records) -> the same, of which something is wrong ---

@@ -127,11 +127,6 @@ def test_shakedown_limits(case, wrong):
     assert judged(case, made) == (set(seen[case].split()) if wrong else set())
 
 
-def test_where_nothing_flows_any_more_no_cycle_is_like_the_one_before():
-    assert shakedown_limits.steady(None, strained(1e-3, 0.97e-3), None) == pytest.approx(0.97, rel=1e-12)
-    assert shakedown_limits.steady(None, strained(0.0, 0.0), None) == 0.0
-
-
 @pytest.mark.parametrize("wrong", [False, True])
 def test_misfit_sphere_in_cycles(wrong, monkeypatch):
     """The exact strains and verdicts in both models; each run, known by its periods, wrong in its way."""

@@ -130,7 +130,7 @@ class TestHardening:
 
 def test_first_yield_is_that_of_the_closed_form():
     file = case_files()["first-yield"]
-    for take, expected in file.takes.values():
+    for take, expected in (claim.take for claim in file.taken):
         mu = float(take.at[0][2]) if take.at else 0.0
         exact = math.sqrt(3.0) / hamilton.largest_von_mises(1.0, 1.0, 0.3, mu)[0][0]
         assert expected.number == pytest.approx(exact, abs=6e-4)

@@ -57,7 +57,8 @@ def readable(case, found) -> list:
 def wrong(case: str, rows) -> set[str]:
     """The rows of a case that are red on a frame."""
     frame = pd.DataFrame([{"sweep": "", "model": "", **row} for row in rows])
-    return red(case, taken(all_cases()[case].file, frame), whole=True)
+    file = all_cases()[case].file
+    return red(case, {claim.name: taken(file, frame, claim) for claim in file.taken}, whole=True)
 
 
 @pytest.fixture(scope="module")

@@ -11,10 +11,9 @@ from made_results import red
 
 from sam.scene import Status
 from verification.cases.robustness.stability import CASES, Matrix
-from verification.robustness.matrix import plastic
 from verification.robustness.matrix.checks import within_refinement
-from verification.robustness.matrix.row import Absent, Bench, Cell, Kind, Refused, Right, Row, both, judge
-from verification.robustness.matrix.rows import TOPICS, all_rows
+from verification.robustness.matrix.row import Absent, Bench, Cell, Kind, Refused, Right, Row, judge
+from verification.robustness.matrix.rows import all_rows, topics
 from verification.runs import models
 from verification.runs.models import FEM, FEM_3D, SAM
 
@@ -42,7 +41,7 @@ def some():
 
 
 def test_rows_are_complete():
-    assert len(ROWS) == len(EVERY) and {row.topic for row in EVERY} == set(TOPICS)
+    assert len(ROWS) == len(EVERY) and {row.topic for row in EVERY} == set(topics())
     assert all({SAM, FEM} <= set(row.expected) and row.what for row in EVERY)
     expectations = [expected for row in EVERY for expected in row.expected.values()]
     assert all(expected.reason for expected in expectations)
@@ -110,7 +109,6 @@ def test_what_is_not_as_expected_is_wrong_and_turns_the_matrix_red(monkeypatch, 
 @pytest.mark.parametrize("apart, kind", [(0.0, Kind.RIGHT), (0.05, Kind.RIGHT), (0.2, Kind.WRONG)])
 def test_a_value_is_compared_within_the_refinement_uncertainty_of_both(monkeypatch, apart, kind):
     """SAM converges to 1, FEM to 1 + apart, at first order; each errs by 4 % on the cells of the row."""
-    coarser = {SAM: plastic.larger_cells, FEM: plastic.larger_elements}
 
     def first_order(scene, model):
         cells = scene.grid.cells[0] if model == SAM else scene.fem.cells_per_radius
@@ -121,8 +119,8 @@ def test_a_value_is_compared_within_the_refinement_uncertainty_of_both(monkeypat
     monkeypatch.setattr(models, "solve", first_order)
     row = replace(
         ROWS["perfect-7.5-chosen-grid"],
-        make={"grid.cells": (33, 33), "fem.cells_per_radius": 24},
-        expected={SAM: Right("", [within_refinement(FEM, "peeq_max", coarser)])},
+        changes={"grid.cells": (33, 33), "fem.cells_per_radius": 24},
+        expected={SAM: Right("", [within_refinement("peeq_max")])},
     )
     cell = judge(row, SAM, Bench())
     assert cell.kind is kind, cell.text
@@ -147,6 +145,6 @@ def test_a_cell_without_verdict_a_kind_without_row_and_an_error_without_reason_t
 
 def test_an_absent_cell_is_not_solved(monkeypatch):
     monkeypatch.setattr(models, "solve", None)
-    row = Row("x", "edge", "x", {}, both(Absent("of the other model")))
+    row = Row("x", "edge", "x", {}, dict.fromkeys((SAM, FEM), Absent("of the other model")))
     for model in (SAM, FEM):
         assert judge(row, model, Bench()) == Cell(Kind.ABSENT, "of the other model")

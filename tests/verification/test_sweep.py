@@ -391,7 +391,7 @@ def test_plain_progress_says_how_long_it_will_take(capsys, monkeypatch):
         for clock.now, done in ((2.0, 1), (12.0, 3), (132.0, 4)):  # the pace counts from the first call
             progress("sweep", done, 11)
     said = capsys.readouterr().err.splitlines()
-    assert said == ["sweep: 1 of 11", "sweep: 3 of 11, about 40 s left", "sweep: 4 of 11, about 5 min left"]
+    assert said == ["sweep: 1 of 11", "sweep: 3 of 11, about 40 s left", "sweep: 4 of 11, about 5.1 min left"]
 
 
 # Dask

@@ -3,9 +3,9 @@
 family.
 
 `<family>/<name>.toml` says the title, the question, the equations and what is claimed
-(`verification.rows`). Where it names a scene and models, or sweeps, it needs nothing else but functions of
-the module of the same name beside it that it names; else that module measures: a subclass of `Case` and a
-tuple `CASES` of its instances.
+(`verification.rows`). Where it names a scene and models, sweeps or a frame, it needs nothing else but
+functions of the module of the same name beside it that it names; else that module measures: a subclass of
+`Case` and a tuple `CASES` of its instances.
 
 Used by the harness of the suite, by the lists of the command line and by tests.
 """
@@ -15,6 +15,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 from importlib import import_module
+from importlib.util import find_spec
 from typing import Any
 
 from sam.scene import Problem, SceneError, spelling
@@ -37,9 +38,13 @@ def case_of(file: CaseFile) -> Case:
     said: dict[str, Any] = {key: getattr(file, key) for key in ("title", "question", "equations", "levels")}
     if file.own:
         _check(file)
+    missing = f'install {file.needs}: pip install "samfem[reference]"'
+    if file.needs:
+        said["needs"] = lambda: "" if find_spec(file.needs) else missing
+    elif file.cannot:
+        said["needs"] = lambda: beside(file, file.cannot, {})()
     if file.scene or file.frame:
-        needs = (lambda: beside(file, file.cannot, {})()) if file.cannot else str
-        return Compared(file.name, **said, alone=file.own or file.alone, needs=needs, file=file)
+        return Compared(file.name, **said, alone=file.own or file.alone, file=file)
     module = import_module(f"{__name__}.{file.path.parent.name}.{file.path.stem}")
     (case,) = (case for case in module.CASES if case.name == file.name)
     return replace(case, **said, file=file)
@@ -55,8 +60,8 @@ def _check(file: CaseFile) -> None:
     named = [] if there else [("scene", file.scene, scenes)]
     named += [("reference", file.reference, [*REFERENCES])] if file.reference else []
     named += [("figures", kind.partition(" ")[0], [*KINDS, *SWEPT]) for kind in file.figures]
-    claims = [(table, of) for table, names in file.claims.items() for of in names.values()]
-    named += [(f"rows.{table}", of, [*QUANTITIES]) for table, of in claims]
+    claims = [claim for claim in file.claims if not claim.take]
+    named += [(claim.table, claim.quantity, [*QUANTITIES]) for claim in claims]
     faults = [
         Problem(key, spelling(name), f"one of {', '.join(known)}")
         for key, name, known in named
@@ -64,9 +69,9 @@ def _check(file: CaseFile) -> None:
     ]
     missing = {"sam", "fem"} - {model.partition("-")[0] for model in file.models}
     faults += [
-        Problem(f"rows.{table}", ", ".join(gone), "models names it")
-        for table in file.claims
-        if (gone := missing & set(table.split("/")))
+        Problem(claim.table, ", ".join(gone), "models names it")
+        for claim in claims
+        if (gone := missing & {claim.model, claim.against})
     ]
     if faults:
         raise SceneError(faults, str(file.path))

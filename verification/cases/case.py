@@ -7,7 +7,6 @@ import traceback
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import resources
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -302,17 +301,6 @@ class Context:
         return seen, []
 
 
-def package_of(extra: str, package: str) -> Callable[[], str]:
-    """For `needs` of a case: how to install a package that only an extra of samfem brings, empty if it is
-    there.
-    """
-
-    def needs() -> str:
-        return "" if find_spec(package) else f'install {package}: pip install "samfem[{extra}]"'
-
-    return needs
-
-
 def with_keys(scene: BaseModel, section: str, **keys) -> Any:
     """The scene with other keys in one of its sections, which may be one in another: body.coating."""
     name, _, inner = section.partition(".")
@@ -346,24 +334,6 @@ def elastic_text(body: Body | CounterBody) -> str:
     return f"E = {body.young / 1e9:g} GPa, ν = {body.poisson:g}"
 
 
-def off_text(value: float, reference: float) -> str:
-    """The relative difference of a value from a reference for the reader."""
-    return f"{1e2 * (value / reference - 1.0):+.2f} %"
-
-
-def quantity_rows(
-    shown: Mapping[str, tuple[str, float]], one: Result, other: Result
-) -> list[tuple[str, str, str, str]]:
-    """Quantities of two results side by side, with their difference. shown: name -> (words, factor of the
-    unit).
-    """
-    rows = []
-    for name, (words, unit) in shown.items():
-        a, b = one.quantities[name], other.quantities[name]
-        rows.append((words, number(a * unit, 5), number(b * unit, 5), off_text(a, b) if b else ""))
-    return rows
-
-
 def grid_text(sam: Result, a: float) -> str:
     """The cells of a SAM result for the reader; a: the contact radius in m, along x."""
     cells, cell = sam.discretisation["cells"], sam.discretisation["cell_m"][0]
@@ -391,9 +361,6 @@ __all__ = [
     "grid_text",
     "mesh_text",
     "number",
-    "off_text",
-    "package_of",
-    "quantity_rows",
     "with_body",
     "with_grid",
     "with_keys",

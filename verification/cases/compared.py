@@ -28,10 +28,10 @@ from verification.cases.case import (
 from verification.cases.recipes import RECIPES, beside, changed
 from verification.cases.sweep import MODELS, framed, points, ran, tables_of, taken
 from verification.compare.comparison import compare_scene
-from verification.judging import Measured, error_of
+from verification.judging import Measured
 from verification.quantities import QUANTITIES, Quantity, Reference, Solved, of_passes
 from verification.references import REFERENCES
-from verification.rows import CaseFile, head_of, merged
+from verification.rows import CaseFile, merged
 from verification.runs.models import SAM
 from verification.text.console import number
 
@@ -62,7 +62,7 @@ class Compared(Case):
     """The case of a file with a scene. What was solved: variant -> results, "" where there are none."""
 
     def solve(self, context: Context) -> dict[str, Solved]:
-        asked = {head_of(table, self.file.variants)[0] for table in self.file.claims} | {*self.file.also}
+        asked = {claim.variant for claim in self.file.claims}
         return {
             name: self._solved(context, name, self.file.variants.get(name, {}))
             for name in self.file.variants or [""]
@@ -78,15 +78,11 @@ class Compared(Case):
         models = {model.partition("-")[0]: MODELS[model] for model in file.models}
         for run, model in models.items():
             results[run] = context.solve(model, scene, "-".join(filter(None, (name, run))))
-        for run, said in ({} if "alone" in variant else file.runs | variant.get("runs", {})).items():
+        for run, said in (file.runs | variant.get("runs", {})).items():
             other, label = scene_of(context, file, variant, said), "-".join(filter(None, (name, run)))
             results[run] = context.solve(MODELS[said["model"]], other, label, demand=False)
-        frame = framed(context, file, scene) if file.takes else None
+        frame = framed(context, file, scene) if file.taken else None
         found = Solved(scene, answer(scene) if answer else given, results, frame)
-        if file.against:
-            other = scene_of(context, file, {"vary": file.against})
-            others = {run: context.solve(model, other, f"{run}-other") for run, model in models.items()}
-            return replace(found, others=others)
         if not file.allowance:
             return found
         coarse = scene_of(context, file, {"vary": {"resolution": file.coarser}})
@@ -111,27 +107,20 @@ class Compared(Case):
         what they take of the sweeps.
         """
         values: dict[str, Measured] = {}
-        for solved in found.values():
-            values |= taken(self.file, solved.frame) if self.file.takes else {}
-        metrics = {row.id.partition(".")[2]: row.metric for row in self.file.rows}
-        for table, names in self.file.claims.items():
-            variant, model, against = head_of(table, self.file.variants)
-            solved, lead = found[variant], f"{variant}-" * bool(variant)
-            for name, of in names.items():
-                quantity = QUANTITIES[of]
-                if model and against != "fem":
-                    result = solved.results[model]
-                    if quantity.of:
-                        measured = quantity.against(of, result, solved.reference)
-                    else:
-                        measured = quantity.between(solved.scene, result, solved.others[model])
-                    alone = against == "bound"
-                    values[f"{lead}{model}-{name}"] = Measured(measured.value) if alone else measured
-                elif name in self.file.allowance:
-                    *_, apart, allowed = refinement(solved, quantity)
-                    values[lead + name] = Measured(apart / allowed)
-                else:
-                    values[lead + name] = between(quantity, solved, metrics[lead + name])
+        for claim in self.file.claims:
+            solved, quantity = found[claim.variant], QUANTITIES.get(claim.quantity)
+            if claim.take:
+                measured = taken(self.file, solved.frame, claim)
+            elif claim.model and claim.against != "fem":
+                result = solved.results[claim.model]
+                measured = quantity.against(claim.quantity, result, solved.reference)
+                measured = Measured(measured.value) if claim.against == "bound" else measured
+            elif claim.quantity in self.file.allowance:
+                *_, apart, allowed = refinement(solved, quantity)
+                measured = Measured(apart / allowed)
+            else:
+                measured = between(quantity, solved, claim.row.metric)
+            values[claim.name] = measured
         return values
 
     def setup(self, found: Mapping[str, Solved]) -> Iterator[tuple[str, str]]:
@@ -184,17 +173,13 @@ class Compared(Case):
 
     def tables(self, found: Mapping[str, Solved]) -> Iterator[SmallTable]:
         if self.file.variants or self.file.runs:
-            also = {name: found[name] for name in self.file.also}
-            yield _results("Results", self.file, {name: found[name] for name in found if name not in also})
+            yield _results(self.file, found)
             for name, solved in found.items():
                 yield from _passes(self.file.variants[name]["words"] if name else "", solved.results)
-            if also:
-                yield _results("Refinement", self.file, also)
-                yield _differences(self.file, found)
             return
         solved = found[""]
         yield from (beside(self.file, name, {})(solved.frame) for name in self.file.tables)
-        yield from tables_of(self.file, solved.frame) if self.file.takes else ()
+        yield from tables_of(self.file, solved.frame) if self.file.taken else ()
         if set(solved.results) != {"sam", "fem"}:
             return
         both = beside_each_other(*solved.results.values())
@@ -216,7 +201,7 @@ class Compared(Case):
         pairs: list[tuple[str, float, float]] = []
         handed = beside(self.file, self.file.data, {})(found[""].frame) if self.file.data else {}
         for name, solved in found.items():
-            if {"sam", "fem"} <= set(solved.results) and name not in self.file.also:
+            if {"sam", "fem"} <= set(solved.results):
                 said = f" ({self.file.variants[name]['words'].replace('mu = ', 'μ = ')})" if name else ""
                 for words, sam, fem in beside_each_other(*(solved.results[run] for run in ("sam", "fem"))):
                     where = words.startswith("depth of")  # a place, which the mesh decides
@@ -228,15 +213,16 @@ class Compared(Case):
         from verification.cases.kinds import KINDS, OVER_VARIANTS, SWEPT  # noqa: PLC0415 - loads matplotlib
 
         words = {name: each["words"] for name, each in self.file.variants.items()}
-        shown = {name: each for name, each in found.items() if name not in self.file.also}
         for kind in self.file.figures:
             if kind in OVER_VARIANTS:
-                yield from OVER_VARIANTS[kind](shown, words)
+                yield from OVER_VARIANTS[kind](found, words)
                 continue
             first, *more = kind.split()
             draw = beside(self.file, first, KINDS | SWEPT)
-            for name, solved in shown.items():
+            for name, solved in found.items():
                 plot = draw(solved) if first in KINDS else draw(self.file, solved.frame, *more)
+                if plot is None:  # too few points at this level
+                    continue
                 if name:
                     plot = replace(plot, name=f"{plot.name}-{name}", title=f"{plot.title}, {words[name]}")
                 yield plot
@@ -281,7 +267,7 @@ def between(quantity: Quantity, solved: Solved, metric: str) -> Measured:
     return Measured(rows[quantity.row])
 
 
-def _results(caption: str, file: CaseFile, found: Mapping[str, Solved]) -> SmallTable:
+def _results(file: CaseFile, found: Mapping[str, Solved]) -> SmallTable:
     """The quantities of every run."""
     runs = [(name, run, each) for name, solved in found.items() for run, each in solved.results.items()]
     shown = [
@@ -300,7 +286,7 @@ def _results(caption: str, file: CaseFile, found: Mapping[str, Solved]) -> Small
     ]
     columns = (f"{q.words} [{q.unit}]" if q.unit else q.words for q in shown)
     head = heads.pop() if len(heads) == 1 else ""
-    return SmallTable(caption, (head or "variant", "model", *columns), rows)
+    return SmallTable("Results", (head or "variant", "model", *columns), rows)
 
 
 def _passes(words: str, results: Mapping[str, Result]) -> Iterator[SmallTable]:
@@ -322,26 +308,6 @@ def _passes(words: str, results: Mapping[str, Result]) -> Iterator[SmallTable]:
         if rows:
             passes = (f"pass {k + 1}" for k in range(len(rows[0]) - 3))
             yield SmallTable(f"{head}, {words}", ("model", "in a", *passes, "verdict"), rows)
-
-
-def _differences(file: CaseFile, found: Mapping[str, Solved]) -> SmallTable:
-    """What rows hold of one variant, in their metric, of every one."""
-    metrics, of = {}, {row.id.partition(".")[2]: row.metric for row in file.rows}
-    for table, names in file.claims.items():
-        variant, model, against = head_of(table, file.variants)
-        if against == "fem" or not model:
-            metrics |= {name: of[f"{variant}-{name}"] for name in names}
-
-    def error(name: str, solved: Solved) -> str:
-        try:
-            return number(error_of(metrics[name], between(QUANTITIES[name], solved, metrics[name])), 3)
-        except (KeyError, ValueError):  # nothing of it in this variant
-            return number(None)
-
-    rows = [
-        (file.variants[name]["words"], *(error(q, solved) for q in metrics)) for name, solved in found.items()
-    ]
-    return SmallTable("What rows hold, of every variant", ("", *(QUANTITIES[q].words for q in metrics)), rows)
 
 
 def beside_each_other(sam: Result, fem: Result) -> Iterator[tuple[str, float, float]]:

@@ -5,7 +5,7 @@ both models (`verification.quantities.Solved`). Titles and captions follow from 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from itertools import cycle
 from textwrap import fill
@@ -76,8 +76,8 @@ def _maps(what: str, name: str, draw: Callable[[Solved], Drawing]) -> Callable[[
 def _along(
     *columns: tuple[str, str], name: str, title: str, until: float, pressed: float = np.inf
 ) -> Callable[[Solved], Plot]:
-    """Columns of tables on the curves of the reference to `until` times a, the pressure to `pressed` or to
-    where it is compared, with the errors underneath.
+    """Columns of tables on the curves that the reference has, to `until` times a, the pressure to `pressed`
+    or to where it is compared, with the errors underneath.
     """
 
     def plot(found: Solved) -> Plot:
@@ -99,27 +99,14 @@ def _along(
 
             return Profile(words, axis, label, exact, series, 1.0, UNITS[unit], (0.0, end))
 
-        names = ", ".join(COLUMNS[each][0].lower() for each in columns)
+        shown = [each for each in columns if each in curves]
+        names = ", ".join(COLUMNS[each][0].lower() for each in shown)
         words = f"Curves of {names} of the models on those of the reference, with the errors underneath."
         film = found.scene.body.coating if columns[0][0] == "axis" else None
-        drawn = profiles([panel(*each) for each in columns], interface=film.thickness / a if film else None)
+        drawn = profiles([panel(*each) for each in shown], interface=film.thickness / a if film else None)
         return Plot(drawn, name, title, words, words)
 
     return plot
-
-
-def _loading(found: Solved) -> Plot:
-    """The approach at each load step on the curve of the reference."""
-    steps = {run.upper(): each.tables["history"] for run, each in found.results.items()}
-    series = {run: (np.array(h["force_N"]), 1e6 * np.array(h["approach_m"])) for run, h in steps.items()}
-    exact, end = found.reference.curves["history", "approach_m"], found.scene.loading.force
-    scale = 1e6 * found.reference.units["approach"]
-    labels = "Approach", "force [N]", r"approach [$\mu$m]"
-    panel = Profile(
-        *labels, lambda f: 1e6 * exact(f), series, scale, r"$\delta$ at the peak", (0.0, end), points=True
-    )
-    words = "Approach against force at each load step, with the errors underneath."
-    return Plot(profiles([panel]), "loading", "Load and approach", words, words)
 
 
 def _exact_maps(found: Solved) -> Plot:
@@ -134,52 +121,6 @@ def _exact_maps(found: Solved) -> Plot:
     pair = FieldPair(x / a, y / a, *fields, ("SAM", "closed form"), SURFACE_AXES, "$p/p_0$", (1.0, b / a))
     words = "Three maps of the pressure: SAM, closed form and difference; dashed: the exact contact."
     return Plot(pressure_maps(pair), "pressure-maps", "Contact pressure", words, words)
-
-
-def _across(found: Solved) -> Plot:
-    """The pressure along both axes of an elliptic contact and the stress below its centre."""
-    (a, b, p0), sam = (found.reference.units[name] for name in ("a", "b", "p0")), found.results["sam"]
-    exact, mises = found.reference.values["pressure"], found.reference.values["mises-axis"]
-    x, y, p = pressure_map(sam)
-    z, stress = peak(sam.tables["axis"], "z_m", "mises_Pa")
-    wanted: Sequence[tuple] = (
-        (
-            "Pressure along x",
-            "$x/a$",
-            "$p/p_0$",
-            lambda s: exact(s * a, 0.0),
-            (x / a, p[:, y.size // 2]),
-            (-1.5, 1.5),
-        ),
-        (
-            "Pressure along y",
-            "$y/b$",
-            "$p/p_0$",
-            lambda s: exact(0.0, s * b),
-            (y / b, p[x.size // 2]),
-            (-1.5, 1.5),
-        ),
-        (
-            "Von Mises under the centre",
-            "$z/b$",
-            VON_MISES,
-            lambda s: mises(s * b),
-            (z / b, stress),
-            (0.0, 2.0),
-        ),
-    )
-    panels = [
-        Profile(
-            *labels, lambda s, curve=curve: curve(s) / p0, {"SAM": (at, v / p0)}, 1.0, UNITS["p0"], limits
-        )
-        for *labels, curve, (at, v), limits in wanted
-    ]
-    words = (
-        "Pressure along both axes and von Mises stress under the centre on the closed form, with the errors."
-    )
-    return Plot(
-        profiles(panels), "profiles", "Pressure along the axes, stress under the centre", words, words
-    )
 
 
 def _peeq_maps(found: Solved) -> Drawing:
@@ -407,9 +348,7 @@ KINDS: Mapping[str, Callable[[Solved], Plot]] = {
         until=1.5,
         pressed=1.2,
     ),
-    "loading": _loading,
     "exact-maps": _exact_maps,
-    "across": _across,
     "plastic-axis": _plastic_axis,
     "residual-surface": _residual_surface,
     "strain-planes": _strain_planes,

@@ -26,7 +26,7 @@ from verification.judging import Measured, error_of
 from verification.quantities import QUANTITIES, Quantity, Reference
 from verification.reference.convergence import Order, extrapolate, fit_order
 from verification.references import REFERENCES, hertz_sphere
-from verification.rows import CaseFile, SweepFile, Take
+from verification.rows import CaseFile, Claim, SweepFile, Take
 from verification.runs.models import FEM, FEM_3D, SAM
 from verification.text.console import number
 
@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 
 MODELS = {"sam": SAM, "fem": FEM, "fem-3d": FEM_3D}
 BOTH = "sam/fem"
+MOST = 60
+"""Lines of a table for the page."""
 SIGNS = {"<": operator.lt, ">": operator.gt}
 
 ERRORS = {
@@ -189,18 +191,11 @@ def evaluated(file: CaseFile, frame: DataFrame, take: Take) -> Measured:
     return found if isinstance(found, Measured) else Measured(found)
 
 
-def taken(file: CaseFile, frame: DataFrame) -> dict[str, Measured]:
-    """Name of a row -> its value, for those of the case that take of its sweeps."""
-    values = {}
-    for row in file.rows:
-        for take in file.takes.get(row.id, ())[:1]:
-            found = evaluated(file, frame, take)
-            against = [evaluated(file, frame, other).value for other in file.takes[row.id][1:]]
-            expected = against[0] if against else found.expected
-            alone = row.metric in ("at_most", "at_least")
-            found = replace(found, expected=None if alone else expected)
-            values[row.id.removeprefix(f"{file.name}.")] = found
-    return values
+def taken(file: CaseFile, frame: DataFrame, claim: Claim) -> Measured:
+    """The value of a row that takes of the sweeps."""
+    found, *against = (evaluated(file, frame, take) for take in claim.take)
+    alone = claim.row.metric in ("at_most", "at_least")
+    return replace(found, expected=None if alone else against[0].value if against else found.expected)
 
 
 def words_of(file: CaseFile, column: str) -> str:
@@ -223,8 +218,12 @@ def ran(file: CaseFile, frame: DataFrame) -> Iterator[tuple[str, str]]:
 
 
 def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
-    """A table for each sweep: a line a run, and the observed orders in the last."""
+    """A table for each sweep: a line a run, and the observed orders in the last; none of a map, which is
+    drawn.
+    """
     for name, rows in frame.groupby("sweep", sort=False):
+        if len(rows) > MOST:
+            continue
         axes, shown = [], {c: c.replace("-", " ") for c in rows if c not in ("sweep", "model")}
         if sweep := file.sweeps.get(name):
             axes = [axis for axis in sweep.axes if len(set(map(spelt, rows[axis]))) > 1]
@@ -233,8 +232,13 @@ def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
             shown |= {f"{column} expected": f"{shown[column]}, expected" for column in values}
         known = {c: rows[c].dropna() for c in shown if c in rows}
         shown = {c: shown[c] for c, own in known.items() if len(own) and isinstance(own.iloc[0], str | Real)}
+        head = (*map(_plain, axes), *["model"] * any(rows["model"]))
         lines = [
-            (*(spelt(row[axis]) for axis in axes), row["model"].upper(), *(_cell(row[c]) for c in shown))
+            (
+                *(spelt(row[each]) for each in axes),
+                *[row["model"].upper()] * any(rows["model"]),
+                *(_cell(row[c]) for c in shown),
+            )
             for _, row in rows.iterrows()
         ]
         for model, own in rows.groupby("model", sort=False):
@@ -243,7 +247,7 @@ def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
                 cells = (f"order {order.order:.2f}" if order else "" for order in orders)
                 lines.append((*[""] * len(axes), model.upper(), *cells))
         caption = f"Points {name}".strip() if file.sweeps else name
-        yield SmallTable(caption or "Points", (*map(_plain, axes), "model", *shown.values()), lines)
+        yield SmallTable(caption or "Points", (*head, *shown.values()), lines)
 
 
 def _cell(value: Any) -> str:
@@ -252,6 +256,6 @@ def _cell(value: Any) -> str:
 
 def fitted(file: CaseFile, rows: DataFrame, column: str) -> Order | None:
     """The order that a row of the case takes of a column, in the rows of one model in a sweep."""
-    takes = [take for take, *_ in file.takes.values() if (take.statistic, take.column) == ("order", column)]
+    takes = [claim.take[0] for claim in file.taken if claim.take[0][:2] == ("order", column)]
     fits = [own for take in takes if len(own := selected(file, rows, take))]
     return fit_order(fits[0]["h"], fits[0][column]) if fits else None

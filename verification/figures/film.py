@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The figures of films that yield, of the frame of `verification.cases.coated.film_yield`: what
-they change over the contact radius, pressures, strains.
+they change over the contact radius, and pressures.
 """
 
 from __future__ import annotations

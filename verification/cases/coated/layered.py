@@ -7,28 +7,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 from scipy.special import j1
 
 from sam.kernels import STRESS, Lags, displacement_coefficients, stress_coefficients
 from sam.layered import LayeredPatches, Layers, Response, normal_compliance
-from verification.cases.case import Case, Context, Measured, SmallTable, package_of
+from verification.cases.case import Context
 from verification.reference.burmister import interface_stress
 from verification.reference.layered_axisymmetric import CoatedHalfSpace, wave_numbers, wave_pressure_ratio
-from verification.reference.layered_errors import POISSONS, RATIOS, WAVES, Worst, all_points, worst_errors
+from verification.reference.layered_errors import POISSONS, RATIOS, WAVES, all_points, worst_errors
+
+__all__ = ["pavement", "response"]
 
 FEW = 16
 """Of the points of the whole range, every such is looked at at the quick level; it shares no factor with
 their 25 kh.
 """
-NAMES = {
-    "c_zz": "normal compliance",
-    "matrix": "normal and tangential compliances",
-    "film": "stresses in the film",
-    "body": "stresses in the body",
-    "jump": "jump of the tractions at the interface",
-}
 FILM, STEEL, THICKNESS = (80e9, 0.3), (210e9, 0.3), 100e-9
 """(E in Pa, nu) of film and body and the thickness in m: Bosman & Schipper (2011), Table 1."""
 WAVELENGTHS = (1e-6, 2e-6, 5e-6, 10e-6, 20e-6, 50e-6)
@@ -44,18 +40,7 @@ FOX = {
 """Radius over thickness -> pressure on the interface below the centre over that on the disc, for DISC_RATIOS;
 nu = 0.5.
 """
-LAST_DIGIT = 1e-4
-DISC_CELLS = 100
-"""In the radius of the disc."""
-
-
-def worst_of(by_wave: dict[float, dict[str, Worst]]) -> dict[str, Worst]:
-    """The worst errors over all kh; NaN is worse than any number."""
-    worst = {name: Worst() for name in NAMES}
-    for found in by_wave.values():
-        for name, each in found.items():
-            worst[name].update(each.error, each.where)
-    return worst
+LAST_DIGIT, DISC_CELLS = 1e-4, 100  # of the table; in the radius of the disc
 
 
 def error_of_equal_materials() -> tuple[float, float]:
@@ -71,14 +56,11 @@ def error_of_equal_materials() -> tuple[float, float]:
         for cell in CELLS_OVER_THICKNESS:
             for load in (1, 3):
                 size = LAGS, LAGS, cell, cell
+                largest = displacement_coefficients(Lags(*size), nu, component=load, load=load).max()
                 for i in (1, 2, 3):
                     right = displacement_coefficients(Lags(*size), nu, component=i, load=load)
-                    error = np.abs(
-                        film.layers.shear * film.displacement(Lags(*size), component=i, load=load) - right
-                    ).max()
-                    shifts.append(
-                        error / displacement_coefficients(Lags(*size), nu, component=load, load=load).max()
-                    )
+                    found = film.layers.shear * film.displacement(Lags(*size), component=i, load=load)
+                    shifts.append(np.abs(found - right).max() / largest)
                 right = stress_coefficients(Lags(*size), np.array(EQUAL_DEPTHS), nu, load=load)
                 error = np.abs(film.stress(Lags(*size), EQUAL_DEPTHS, load=load, names=STRESS) - right)
                 stresses.append((error.max(axis=(0, 2, 3)) / np.abs(right).max(axis=(0, 2, 3))).max())
@@ -92,10 +74,10 @@ def short_waves() -> tuple[int, float]:
     unfinished, off = 0, 0.0
     for ratio in RATIOS:
         for nu1, nu2 in POISSONS:
-            response = Response(Layers(ratio, nu1, 1.0, 1.0, nu2), np.array(SHORT_WAVE))
-            values = [response.surface, *(part for z in DEPTHS_OF_A_WAVE for part in response.stress(z))]
+            wave = Response(Layers(ratio, nu1, 1.0, 1.0, nu2), np.array(SHORT_WAVE))
+            values = [wave.surface, *(part for z in DEPTHS_OF_A_WAVE for part in wave.stress(z))]
             unfinished += sum(int(np.size(v) - np.isfinite(v).sum()) for v in values)
-            off = max(off, abs(response.surface[0] / (1.0 - nu1) - 1.0))
+            off = max(off, abs(wave.surface[0] / (1.0 - nu1) - 1.0))
     return unfinished, float(off)
 
 
@@ -112,42 +94,22 @@ def wave_ratios(counter: float) -> tuple[np.ndarray, np.ndarray]:
     return ours, wave_pressure_ratio(CoatedHalfSpace(*FILM, THICKNESS, *STEEL), WAVELENGTHS, counter)
 
 
-class LayeredResponse(Case):
-    """Errors over the whole range, the limits of equal materials and short waves, and waves pressed flat."""
-
-    def solve(self, context: Context) -> dict[float, dict[str, Worst]]:
-        points = all_points()[:: 1 if context.level == "full" else FEW]
-        by_wave = {}
-        for kh in sorted({point[0] for point in points}):
-            by_wave[kh] = worst_errors([point for point in points if point[0] == kh])
-            context.progress(f"{self.name}: wave numbers", len(by_wave), len(WAVES))
-        return by_wave
-
-    def measure(self, found: dict[float, dict[str, Worst]]) -> dict[str, Measured | float]:
-        (shift, stress), (unfinished, off) = error_of_equal_materials(), short_waves()
-        counters = math.inf, STEEL[0] / (1.0 - STEEL[1] ** 2)
-        values = {name.replace("_", "-"): each.error for name, each in worst_of(found).items()}
-        return values | {
-            "equal-displacement": shift,
-            "equal-stress": stress,
-            "short-wave": off,
-            "short-wave-unfinished": Measured(unfinished, 0),
-            "flattened": max(np.abs(np.divide(*wave_ratios(each)) - 1.0).max() for each in counters),
-        }
-
-    def setup(self, found: dict[float, dict[str, Worst]]) -> Iterator[tuple[str, str]]:
-        yield "Wave number times thickness kh", f"{WAVES[0]:g} to {WAVES[-1]:g}"
-        yield "Ratio of the moduli E₁/E₂", f"{RATIOS[0]:g} to {RATIOS[-1]:g}"
-        yield "Poisson's ratios", ", ".join(f"{a:g}/{b:g}" for a, b in POISSONS) + " (film/body)"
-        yield "Points", f"every {FEW}th of {len(all_points())} at the quick level, each at eight depths"
-
-    def tables(self, found: dict[float, dict[str, Worst]]) -> Iterator[SmallTable]:
-        rows = [(NAMES[name], f"{each.error:.1e}", each.where) for name, each in worst_of(found).items()]
-        caption = (
-            "Worst errors against the solution in many digits: compliances relative, the matrix to its "
-            "largest component, stresses and jump to the larger of traction and largest component"
-        )
-        yield SmallTable(caption, ("quantity", "worst error", "where"), rows)
+def response(context: Context) -> Iterator[dict[str, Any]]:
+    """The worst errors at each kh over moduli, Poisson's ratios and depths: compliances relative, the matrix
+    to its largest component, stresses and jump to the larger of traction and largest component; and the
+    limits of equal materials and short waves, and waves pressed flat.
+    """
+    points = all_points()[:: 1 if context.level == "full" else FEW]
+    for number, kh in enumerate(sorted({point[0] for point in points}), start=1):
+        worst = worst_errors([point for point in points if point[0] == kh])
+        errors = {name.replace("_", "-"): each.error for name, each in worst.items()}
+        yield {"sweep": "waves", "kh": kh} | errors
+        context.progress(f"{context.case}: wave numbers", number, len(WAVES))
+    (shift, stress), (unfinished, off) = error_of_equal_materials(), short_waves()
+    counters = math.inf, STEEL[0] / (1.0 - STEEL[1] ** 2)
+    flattened = max(np.abs(np.divide(*wave_ratios(each)) - 1.0).max() for each in counters)
+    row = {"equal-displacement": shift, "equal-stress": stress, "short-wave": off, "flattened": flattened}
+    yield {"sweep": "limits"} | row | {"unfinished": unfinished, "unfinished expected": 0}
 
 
 def disc_by_response(radius: float, ratio: float) -> float:
@@ -192,44 +154,21 @@ def covered(n: int) -> np.ndarray:
     return np.diff(np.diff(quadrant(edges[:, None], edges[None, :]), axis=0), axis=1)
 
 
-class Pavement(Case):
-    """The disc of Burmister and Fox: their table, and by an own quadrature and in two ways by SAM."""
-
-    def solve(self, context: Context) -> dict[tuple[float, float], tuple[float, ...]]:
-        ways = interface_stress, disc_by_response, disc_by_cells
-        places = ((radius, ratio) for radius in FOX for ratio in DISC_RATIOS)
-        return {at: tuple(way(*at) for way in ways) for at in places}
-
-    def measure(self, found: dict[tuple[float, float], tuple[float, ...]]) -> dict[str, float]:
-        own, response, cells = np.array(list(found.values())).T
-        bare = [interface_stress(r, 1.0) / (1.0 - (1.0 + r**2) ** -1.5) for r in FOX]
-        return {
-            "fox": np.abs(own - np.concatenate(list(FOX.values()))).max() / LAST_DIGIT,
-            "response": np.abs(response - own).max(),
-            "cells": np.abs(cells - own).max(),
-            "bare": np.abs(np.array(bare) - 1.0).max(),
-        }
-
-    def setup(self, found: dict[tuple[float, float], tuple[float, ...]]) -> Iterator[tuple[str, str]]:
-        yield "Load", "uniform pressure on a disc of radius a; ν = 0.5 in layer and body"
-        yield "Quantity", "−σzz/p at the interface z = h on the axis"
-        yield (
-            "Cells",
-            f"{DISC_CELLS} in the radius, those on the edge loaded by the share of them in the disc",
-        )
-
-    def tables(self, found: dict[tuple[float, float], tuple[float, ...]]) -> Iterator[SmallTable]:
-        published = (value for row in FOX.values() for value in row)
-        rows = [
-            (f"{radius:g}", f"{ratio:g}", f"{table:.4f}", *(f"{v:.9f}" for v in values))
-            for ((radius, ratio), values), table in zip(found.items(), published, strict=True)
-        ]
-        ways = "own Hankel quadrature", "response of SAM", "cells of SAM"
-        caption = "Pressure on the interface over that on the disc"
-        yield SmallTable(caption, ("a/h", "E₁/E₂", "table", *ways), rows)
-
-
-CASES = (
-    LayeredResponse("layered-response", needs=package_of("reference", "mpmath")),
-    Pavement("pavement"),
-)
+def pavement(context: Context) -> Iterator[dict[str, Any]]:
+    """Pressure on the interface over that on the disc: of the table, by a quadrature of its own and in two
+    ways by SAM.
+    """
+    for radius, published in FOX.items():
+        for ratio, table in zip(DISC_RATIOS, published, strict=True):
+            own, wave, cells = (
+                way(radius, ratio) for way in (interface_stress, disc_by_response, disc_by_cells)
+            )
+            row = {"a_over_h": radius, "E1_over_E2": ratio, "table": table, "quadrature": own}
+            row |= {
+                "fox": abs(own - table) / LAST_DIGIT,
+                "response": abs(wave - own),
+                "cells": abs(cells - own),
+            }
+            if ratio == 1.0:
+                row["bare"] = abs(own / (1.0 - (1.0 + radius**2) ** -1.5) - 1.0)
+            yield row

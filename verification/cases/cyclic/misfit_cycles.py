@@ -94,11 +94,6 @@ def ratchets(scene: Scene, result: Result, _: Reference | None) -> float:
     return float(_column(result, "verdict").count("ratchetting"))
 
 
-def total(rows: DataFrame, column: str) -> float:
-    """The sum over all runs."""
-    return float(rows[column].sum())
-
-
 def strain_of_periods(file: CaseFile, frame: DataFrame) -> Plot:
     """The strain that a period leaves, with Armstrong and Frederick's law."""
     panels = {}

@@ -85,19 +85,9 @@ def closes(scene: Scene, result: Result, _: Reference | None) -> float:
     return float(left[-1] / left[1])
 
 
-def verdict(scene: Scene, result: Result, _: Reference | None) -> str:
-    """Verdict."""
-    return result.verdict["class"]
-
-
 def decided(scene: Scene, result: Result, _: Reference | None) -> float:
     """Cycle since which the verdict is the same."""
     return result.verdict["decided_at_cycle"]
-
-
-def alternates(scene: Scene, result: Result, _: Reference | None) -> float:
-    """1 if the verdict is alternating."""
-    return float(result.verdict["class"] == "alternating")
 
 
 def classes(scene: Scene, result: Result, _: Reference | None) -> list[str]:

@@ -23,7 +23,6 @@ from verification.rows import CaseFile
 
 __all__ = [
     "limit_of_cells",
-    "shakes_down",
     "share_of_limit",
     "strain_over_first",
 ]
@@ -82,21 +81,6 @@ def steady(scene: Scene, result: Result, _: Reference | None) -> float:
     """Strain of the last cycle over that of the one before."""
     *_, before, last = strains(result)
     return float(last / before) if before else 0.0
-
-
-def verdict(scene: Scene, result: Result, _: Reference | None) -> str:
-    """Verdict."""
-    return result.verdict["class"]
-
-
-def alternates(scene: Scene, result: Result, _: Reference | None) -> float:
-    """1 if the verdict is alternating."""
-    return float(result.verdict["class"] == "alternating")
-
-
-def shakes_down(scene: Scene, result: Result, _: Reference | None) -> float:
-    """1 if the verdict is shakedown."""
-    return float(result.verdict["class"] == "shakedown")
 
 
 def strain_over_first(file: CaseFile, frame: DataFrame) -> Plot:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What turns, moves and scales with a contact, other units among it: each transformation solved both ways,
-and the largest difference; and what an element patch must not be able to do.
+and the largest difference.
 """
 
 from __future__ import annotations
@@ -8,45 +8,24 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 import numpy as np
-from skfem import ElementQuad2, MeshQuad
 
 import sam
-from fem_reference import AxisymmetricSolid, Elastic
 from sam.contact import Contact, Counters, Search, solve_contact
-from sam.scene import Friction, Result, Scene, Solver
-from verification.cases.case import (
-    FEM,
-    SAM,
-    Context,
-    with_body,
-    with_grid,
-    with_keys,
-    with_loading,
-    with_mesh,
-)
+from sam.scene import Friction, Result, Scene
+from verification.cases.case import FEM, SAM, Context, with_body, with_grid, with_keys, with_loading
 from verification.cases.recipes import Resolution, at_ratio, resolved_at
 
 YOUNG_FACTOR, LENGTH_FACTOR = 7.3e-5, 3.1e4  # no powers of two or ten: rounding differs everywhere
-FAR = 1e-3
-"""solver.tolerance of the solves whose iterations are compared in SAM: residuals of the contact end at 1e-7,
-which rounding moves by 1e-5 of themselves. At 1e-10 it moves them by up to 1e-2, and an iteration more or
-less would be chance.
-"""
 MODULUS, TOLERANCE, COUPLING = 230e9, 1e-11, 0.1  # of the rough contacts; coupling: 2 beta mu
 SHIFT = (7, -12)  # cells
 BLUNTER, RATIO, FRICTION = 2.7, 4.0, 0.2
-POWERS = {
-    "p_max_Pa": (1, 0),
-    "mises_max_Pa": (1, 0),
-    "approach_m": (0, 1),
-    "contact_area_m2": (0, 2),
-    "peeq_max": (0, 0),
+POWERS = {"p_max_Pa": (1, 0), "mises_max_Pa": (1, 0), "approach_m": (0, 1), "contact_area_m2": (0, 2)} | {
+    "peeq_max": (0, 0)
 }
-SCALED = {"p_max_Pa": (1, 0), "approach_m": (0, 1), "contact_area_m2": (0, 2), "mises_max_Pa": (1, 0)}
+"""Quantity -> its powers of stress and length."""
 STRESSES = ("young", "B", "yield_stress", "modulus")
 COUNTER = {SAM: "contact_iterations", FEM: "newton_iterations"}
 SHORT = {SAM: "sam", FEM: "fem"}
-ZERO_MODE = 1e-10  # eigenvalue over the largest: rounding is 1e-16 times a few hundred
 
 
 def scaled(scene: Scene, stress: float, length: float) -> Scene:
@@ -67,24 +46,10 @@ def with_stresses(section, factor: float):
     return section.model_copy(update={name: value * factor for name, value in known.items() if value})
 
 
-def in_units(powers: Mapping[str, tuple[int, int]]) -> dict[str, float]:
-    """The factor of each quantity, from its powers of stress and length."""
-    return {name: YOUNG_FACTOR**p * LENGTH_FACTOR**q for name, (p, q) in powers.items()}
-
-
 def differences(base: Result, other: Result, factors: Mapping[str, float]) -> float:
     """Largest relative difference of the quantities, after division by their factors."""
     pairs = ((base.quantities[name], other.quantities[name] / factor) for name, factor in factors.items())
     return max(abs(found / expected - 1.0) for expected, found in pairs)
-
-
-def zero_modes(element=None) -> int:
-    """Zero eigenvalues of the stiffness of a free patch of 3 x 3 elements that touches the axis."""
-    mesh = MeshQuad.init_tensor(np.linspace(0.0, 1.0, 4), np.linspace(0.0, 1.2, 4))
-    values = np.linalg.eigvalsh(
-        AxisymmetricSolid(mesh, Elastic(1.0, 0.3), element=element).stiffness.toarray()
-    )
-    return int(np.count_nonzero(np.abs(values) < ZERO_MODE * values.max()))
 
 
 def compared(context: Context, model: str, pair: tuple[str, Scene, Scene, Mapping[str, float]]) -> dict:
@@ -100,19 +65,6 @@ def compared(context: Context, model: str, pair: tuple[str, Scene, Scene, Mappin
         "iterations": second,
         "iterations expected": first,
     }
-
-
-def units(context: Context) -> Iterator[dict[str, object]]:
-    """One scene in two unit systems by both models, far from convergence again for the iterations of SAM; and
-    the zero modes of an element patch.
-    """
-    scene = with_mesh(with_grid(context.scene("hertz-sphere"), cells=(65, 65)), 16)
-    far = scene.model_copy(update={"solver": Solver(tolerance=FAR)})
-    for model, kind, base in ((SAM, "units", scene), (SAM, "far", far), (FEM, "units", scene)):
-        pair = kind, base, scaled(base, YOUNG_FACTOR, LENGTH_FACTOR), in_units(SCALED)
-        yield {"sweep": "units"} | compared(context, model, pair)
-    for element, name in ((None, "8-node"), (ElementQuad2(), "9-node")):
-        yield {"sweep": "patch", "element": name, "zero-modes": zero_modes(element)}
 
 
 def contact_of(gap: np.ndarray, h: tuple[float, float], force: float, coupling: float = 0.0) -> Contact:
@@ -190,9 +142,10 @@ def scenes(context: Context, model: str) -> list[tuple[str, Scene, Scene, dict[s
         scene = scene.model_copy(update={"friction": Friction(coefficient=FRICTION)})
     elastic = with_body(scene, plasticity=None)
     similar = dict.fromkeys(POWERS, 1.0) | {"approach_m": 1 / BLUNTER, "peeq_max": 1 / BLUNTER}
+    in_units = {name: YOUNG_FACTOR**p * LENGTH_FACTOR**q for name, (p, q) in POWERS.items()}
     same = {name: 1.0 for name in POWERS if name != "peeq_max"}
     return [
-        ("units", scene, scaled(scene, YOUNG_FACTOR, LENGTH_FACTOR), in_units(POWERS)),
+        ("units", scene, scaled(scene, YOUNG_FACTOR, LENGTH_FACTOR), in_units),
         ("similarity", scene, blunter(scene, BLUNTER), similar),
         ("steps", with_loading(elastic, steps=1), with_loading(elastic, steps=7), same),
     ]

@@ -1,52 +1,219 @@
 # SPDX-License-Identifier: MIT
-"""Where small strain and the flat surface stop being good: against finite strain with the sphere's true
-geometry.
+"""A sphere pressed into a body by small strain on a flat surface and by finite strain with the sphere's true
+geometry, and where the two come apart.
 
 `python -m verification.cases.limits.model_limits` writes data/model_range.csv, what samfem says of a scene.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fem_reference import plastic_radius
 from fem_reference.finite_strain import Curve, build, curve_of, load_to
 from sam.scene import Scene
-from verification.cases.case import Case, Context, Measured, Plot, SmallTable
-from verification.cases.limits.model_limits_curves import (
-    COLUMN_OF,
-    ELASTIC,
-    FRESH,
-    LIMIT,
-    MODELS,
-    OTHERS,
-    PLASTIC,
-    QUANTITIES,
-    RADIUS,
-    RESOLVED,
-    YOUNG,
-    Body,
-    Difference,
-    differences,
-    errors_of_flat,
-    law_of,
-    loaded,
-    range_rows,
-    with_spread,
-)
+from verification.cases.case import Context, Measured, Plot
 from verification.figures.lines import limits as drawn
 from verification.references import contact_of
-from verification.runs.model_range import COLUMNS, KEPT, WORDS, errors
+from verification.runs.model_range import (
+    COLUMNS,
+    ELASTIC as ELASTIC_LAW,
+    KEPT,
+    PERFECT as PERFECT_LAW,
+    SWIFT as SWIFT_LAW,
+    WORDS,
+    errors,
+)
 from verification.runs.tables import columns_text
 
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+    from verification.rows import CaseFile
+
+__all__ = ["differences_of_models", "elastic", "plastic", "stated"]
+
+LIMIT = 0.05
+"""Relative difference from which on the models of the scenes are called no good."""
+QUANTITIES = {
+    "pressure": "mean pressure",
+    "radius": "contact radius",
+    "approach": "approach",
+    "strain": "largest plastic strain",
+}
+COLUMN_OF = dict(zip(QUANTITIES, WORDS, strict=True))
+"""Names of the quantities in the table of `verification.runs.model_range`."""
+STEP = 0.025  # of a/R in that table: linear in between, fits are off by less than 0.002 by their curvature
+POWERS = np.arange(1, 4)
+Table = dict[str, np.ndarray]
+RESOLVED = 6  # elements in the contact radius from which a load step counts
+YOUNG, RADIUS = 210e9, 105e-6
+SWIFT = {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121}
+MODELS = {"flat": "small strain, flat surface", "finite": "finite strain, true sphere"}
+OFF = f"a/R at which the flat model is off by {LIMIT:.0%}; in brackets by two standard errors of the fit"
 COARSER = 10  # elements in the largest contact radius, for the influence of the mesh
 PLATEAU = 3.0
 """Mean pressure over yield stress of a fully plastic contact: Tabor (1951); Mesarovic and Fleck, Proc. R.
 Soc. A 455 (1999).
 """
+
+
+@dataclass(frozen=True)
+class Body:
+    """A material and how far it is pressed. elements: in the largest contact radius; hardness: mean pressure
+    there, about, None for Hertz; steps: load steps, the contact radius about equal parts of the largest,
+    `reach` times that of the sphere.
+    """
+
+    name: str
+    poisson: float
+    reach: float
+    elements: int
+    steps: int
+    plasticity: Mapping[str, object] | None = None
+    hardness: float | None = None
+
+    def scene(self, elements: int) -> Scene:
+        """The scene with so many elements in the largest contact radius."""
+        modulus = YOUNG / (1.0 - self.poisson**2)
+        mean = self.hardness or 4.0 / (3.0 * np.pi) * modulus * self.reach
+        body = {"young": YOUNG, "poisson": self.poisson} | (
+            {"plasticity": self.plasticity} if self.plasticity else {}
+        )
+        scene = Scene(
+            body=body,
+            counterbody={"shape": "sphere", "radius": RADIUS},
+            loading={"force": mean * np.pi * (self.reach * RADIUS) ** 2},
+            fem={"cells_per_radius": 4, "box": 25.0},
+        )
+        cells = max(4, round(elements / (plastic_radius(scene) or 1.0)))
+        return scene.model_copy(update={"fem": scene.fem.model_copy(update={"cells_per_radius": cells})})
+
+
+ELASTIC = tuple(Body(f"elastic, ν = {nu:g}", nu, 0.4, 16, 20) for nu in (0.3, 0.49, 0.0))
+PERFECT = {"law": "perfect", "yield_stress": YOUNG / 300}
+PLASTIC = (
+    Body("Swift steel", 0.3, 0.4, 16, 60, SWIFT, 11.2e9),
+    Body("perfectly plastic, yield strain 1/300", 0.3, 0.3, 16, 80, PERFECT, 2.8 * PERFECT["yield_stress"]),
+    Body("Swift steel, ν = 0.49", 0.49, 0.4, 16, 60, SWIFT, 11.2e9),
+)
+WEAKER = PERFECT | {"yield_stress": YOUNG / 600}
+OTHERS = (
+    Body("0.6 of the Swift steel", 0.3, 0.35, 10, 40, SWIFT | {"B": 0.6 * SWIFT["B"]}, 6.5e9),
+    Body("Swift, n = 0.06", 0.3, 0.35, 10, 40, SWIFT | {"B": 1.3e9, "n": 0.06}, 7.5e9),
+    Body("perfectly plastic, yield strain 1/600", 0.3, 0.25, 10, 50, WEAKER, 2.85 * WEAKER["yield_stress"]),
+)
+"""Materials by which an error differs that is taken from those above: a part of its uncertainty."""
+FRESH = (
+    Body("elastic, ν = 0.4", 0.4, 0.32, 20, 16),
+    Body("1.3 of the Swift steel", 0.3, 0.35, 10, 40, SWIFT | {"B": 1.3 * SWIFT["B"]}, 14e9),
+)
+"""Materials and a mesh that the table of `verification.runs.model_range` was not made of."""
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Relative difference of a quantity at equal force over a/R of the finite model, and its fit x (c1 + c2 x
+    + c3 x^2).
+
+    covariance: (3, 3) of the coefficients, by the scatter of the points about the fit.
+    """
+
+    x: np.ndarray
+    values: np.ndarray
+    coefficients: np.ndarray
+    covariance: np.ndarray
+
+    @classmethod
+    def of(cls, x: np.ndarray, values: np.ndarray) -> Difference:
+        """Least squares; at least four points."""
+        powers = x[:, None] ** POWERS
+        coefficients = np.linalg.lstsq(powers, values, rcond=None)[0]
+        variance = np.sum((powers @ coefficients - values) ** 2) / (x.size - POWERS.size)
+        return cls(x, values, coefficients, variance * np.linalg.inv(powers.T @ powers))
+
+    def __call__(self, x: np.ndarray) -> np.ndarray:
+        """The fit."""
+        return np.asarray(x)[..., None] ** POWERS @ self.coefficients
+
+    def error(self, x: np.ndarray) -> np.ndarray:
+        """Two standard deviations of the fit."""
+        powers = np.asarray(x)[..., None] ** POWERS
+        return 2.0 * np.sqrt(np.einsum("...i,ij,...j->...", powers, self.covariance, powers))
+
+    def limit(self, errors: float = 0.0) -> float:
+        """a/R at which the fit, with so many of its errors taken outwards, first reaches LIMIT; infinite if
+        it does not.
+        """
+        dense = np.linspace(0.0, self.x.max(), 4001)
+        beyond = np.flatnonzero(np.abs(self(dense)) + errors * self.error(dense) >= LIMIT)
+        return float(dense[beyond[0]]) if beyond.size else np.inf
+
+    def good_to(self) -> float:
+        """The limit, or the largest contact that was looked at."""
+        return min(self.limit(), float(self.x.max()))
+
+
+def loaded(body: Body, elements: int, kind: str) -> Curve:
+    """All load steps of one model."""
+    model = build(body.scene(elements), kind)
+    steps = load_to(model, (np.arange(1, body.steps + 1) / body.steps) ** 2)
+    if not steps[-1].state.converged:
+        raise RuntimeError(f"{body.name}, {MODELS[kind]}: step {len(steps)} of {body.steps} did not converge")
+    return curve_of(model, steps)
+
+
+def differences(found: Mapping[str, Curve], elements: int) -> dict[str, Difference]:
+    """Quantity -> difference of the two models at equal force, at the steps whose contact is resolved."""
+    flat, true = found["flat"], found["finite"]
+    x = true.radius
+    use = x >= RESOLVED / elements * x.max()
+    both = {name: (getattr(flat, name)[use], getattr(true, name)[use]) for name in QUANTITIES}
+    return {name: Difference.of(x[use], t / f - 1.0) for name, (f, t) in both.items() if (f > 0.0).all()}
+
+
+def range_rows(body: Body, found: Mapping[str, Curve]) -> Table:
+    """Rows of the table of `verification.runs.model_range`, by column: errors of the flat model over its own
+    a/R, by the fits, with two of their standard errors.
+    """
+    fits = errors_of_flat(body, found)
+    x = STEP * np.arange(1, int(fits["radius"].x.max() / STEP + 0.01) + 1)
+    columns: Table = dict.fromkeys(COLUMNS, np.full(x.size, np.nan))
+    columns |= {"law": np.full(x.size, law_of(body)), "poisson": np.full(x.size, body.poisson), "a_over_R": x}
+    for name, fit in fits.items():
+        columns |= {COLUMN_OF[name]: fit(x), f"u_{COLUMN_OF[name]}": fit.error(x)}
+    return columns
+
+
+def errors_of_flat(body: Body, found: Mapping[str, Curve]) -> dict[str, Difference]:
+    """Quantity -> error of the flat model at equal force, over its own a/R."""
+    return differences({"flat": found["finite"], "finite": found["flat"]}, body.elements)
+
+
+def law_of(body: Body) -> str:
+    """Of a body in the table."""
+    law = (body.plasticity or {}).get("law")
+    return {None: ELASTIC_LAW, "swift": SWIFT_LAW, "perfect": PERFECT_LAW}[law]
+
+
+def with_spread(rows: Table, same: Table, others: Sequence[Table]) -> Table:
+    """The rows, whose uncertainty has in it by how much `others` differ from `same`, all of one law."""
+    widened = dict(rows)
+    for name in WORDS if others else ():
+        apart = [
+            abs(
+                np.interp(rows["a_over_R"], each["a_over_R"], each[name])
+                - np.interp(rows["a_over_R"], same["a_over_R"], same[name])
+            )
+            for each in others
+        ]
+        widened[f"u_{name}"] = rows[f"u_{name}"] + np.max(apart, axis=0)
+    return widened
 
 
 def curves(context: Context, body: Body, elements: int) -> dict[str, Curve]:
@@ -89,127 +256,60 @@ def small_load() -> dict[str, Measured]:
     }
 
 
-@dataclass(frozen=True)
-class ComparedCurves:
-    """found: name of a body -> model -> its curve; fits: name -> quantity -> difference; other: of the first
-    body on a coarser mesh.
+def compared(context: Context, bodies: Sequence[Body]) -> Iterator[dict[str, Any]]:
+    """The differences of each body; the limits of the first, and what a coarser mesh changes there; and what
+    the table of samfem is off.
     """
-
-    bodies: Sequence[Body]
-    found: Mapping[str, Mapping[str, Curve]]
-    fits: Mapping[str, Mapping[str, Difference]]
-    other: Mapping[str, Difference]
-
-    @property
-    def quantities(self) -> dict[str, str]:
-        """Those that any body has -> words."""
-        return {n: words for n, words in QUANTITIES.items() if any(n in each for each in self.fits.values())}
-
-
-class ModelLimits(Case):
-    """Both Poisson's ratios; the limits of the first on two meshes."""
-
-    def bodies(self, level: str) -> Sequence[Body]:
-        """What is pressed at a level."""
-        return ELASTIC if level == "full" else ELASTIC[:1]
-
-    def solve(self, context: Context) -> ComparedCurves:
-        bodies = self.bodies(context.level)
-        found = {body.name: curves(context, body, body.elements) for body in bodies}
-        fits = {body.name: differences(found[body.name], body.elements) for body in bodies}
-        return ComparedCurves(bodies, found, fits, differences(curves(context, bodies[0], COARSER), COARSER))
-
-    def measure(self, compared: ComparedCurves) -> dict[str, Measured | float]:
-        return small_load() | limits_of(compared) | {"table": off_table(compared)}
-
-    def setup(self, compared: ComparedCurves) -> Iterator[tuple[str, str]]:
-        yield "Sphere", f"R = {RADIUS * 1e6:g} µm, rigid"
-        yield "Models", "; ".join(MODELS.values()) + ": same elements, same mesh, same load steps"
-        yield "Compared", "at equal force, over the contact radius a of the model with finite strain"
-        fitted = "in the contact radius on; below them the fit runs to no difference"
-        yield "Load steps", f"counted from {RESOLVED} elements {fitted}"
-        rms = "its rms over the area of contact is 0.7 of it"
-        yield "Slope", f"of the sphere at the edge of contact, tan(arcsin a/R); {rms}"
-        yield "Limit", f"a/R at which the fit x (c₁ + c₂ x + c₃ x²) to the differences passes {LIMIT:.0%}"
-
-    def tables(self, compared: ComparedCurves) -> Iterator[SmallTable]:
-        yield limit_table(compared)
-        yield curve_table(compared)
-
-    def figures(self, compared: ComparedCurves) -> Iterator[Plot]:
-        panels = {
-            title: {
-                body: (fit.x, fit.values, fit)
-                for body, found in compared.fits.items()
-                if (fit := found.get(name))
-            }
-            for name, title in compared.quantities.items()
-        }
-        yield Plot(
-            drawn(panels, LIMIT),
-            "differences",
-            "What finite strain and true geometry change",
-            "Relative differences at equal force over the contact radius divided by that of the sphere, a "
-            "panel for each quantity, points of the load steps and fitted curves.",
-            f"Points: load steps; lines: fits from which the limits are taken; shaded: ±{LIMIT:.0%}.",
-        )
-
-
-class ModelLimitsPlastic(ModelLimits):
-    """Two materials; the limits of the first on two meshes, and the plateau of the mean pressure of the
-    other.
-    """
-
-    def bodies(self, level: str) -> Sequence[Body]:
-        return PLASTIC
-
-    def measure(self, compared: ComparedCurves) -> dict[str, Measured | float]:
+    found = {body.name: curves(context, body, body.elements) for body in bodies}
+    fits = {body.name: differences(found[body.name], body.elements) for body in bodies}
+    other = differences(curves(context, bodies[0], COARSER), COARSER)
+    named = fits | {f"{bodies[0].name}, {COARSER} elements in a": other}
+    for name, each in named.items():
+        row = {"sweep": OFF, "material": name} | {QUANTITIES[of]: words(fit) for of, fit in each.items()}
+        yield row | ({"fits": each} if name in fits else {})
+    values = {"table": off_table(bodies, found)}
+    for name, fit in fits[bodies[0].name].items():
+        values[f"{name}-limit"] = limit = fit.good_to()
+        values[f"{name}-mesh"] = float(other[name](limit) - fit(limit))
+    if bodies == PLASTIC:
         perfect = PLASTIC[1]
-        return limits_of(compared) | {
-            "table": off_table(compared),
-            "hardness": hardness(compared.found[perfect.name]["finite"], perfect),
-            "perfect-limit": compared.fits[perfect.name]["pressure"].good_to(),
-        }
+        values["perfect-limit"] = fits[perfect.name]["pressure"].good_to()
+        mean = hardness(found[perfect.name]["finite"], perfect)
+        values |= {"hardness": mean.value, "hardness expected": mean.expected}
+    yield {"sweep": "values"} | values
 
 
-class ModelLimitsStated(Case):
-    """What is said of a scene, against materials and meshes that the table behind it was not made of."""
-
-    def solve(self, context: Context) -> dict[str, dict[str, Difference]]:
-        return {body.name: errors_of_flat(body, curves(context, body, body.elements)) for body in FRESH}
-
-    def measure(self, found: dict[str, dict[str, Difference]]) -> dict[str, Measured | float]:
-        ids = ("elastic", "yields")
-        return {
-            name: max(row[-1] for row in stated_rows(body, found[body.name]))
-            for name, body in zip(ids, FRESH, strict=True)
-        }
-
-    def setup(self, found: dict[str, dict[str, Difference]]) -> Iterator[tuple[str, str]]:
-        yield "Sphere", f"R = {RADIUS * 1e6:g} µm, rigid"
-        yield "Materials", "; ".join(body.name for body in FRESH)
-        yield "Stated", "by samfem plan and solve, from the table of the cases model-limits"
-        yield "Factor", "between stated and measured, once the stated uncertainty is taken off their distance"
-
-    def tables(self, found: dict[str, dict[str, Difference]]) -> list[SmallTable]:
-        rows = [
-            [body.name, f"{x:g}", WORDS[name], *(f"{100 * value:+.1f} %" for value in values), f"{times:.2f}"]
-            for body in FRESH
-            for x, name, *values, times in stated_rows(body, found[body.name])
-        ]
-        columns = ["material", "a/R", "quantity", "stated", "uncertainty", "measured", "factor"]
-        return [SmallTable("Error of small strains of a flat half-space at equal force", columns, rows)]
+def elastic(context: Context) -> Iterator[dict[str, Any]]:
+    """All Poisson's ratios, at the quick level the first; and small loads."""
+    yield from compared(context, ELASTIC if context.level == "full" else ELASTIC[:1])
+    small = {name: (each.value, each.expected) for name, each in small_load().items()}
+    values = {name: value for name, (value, _) in small.items()}
+    yield {"sweep": "small load"} | values | {f"{name} expected": each for name, (_, each) in small.items()}
 
 
-def stated_rows(body: Body, fits: Mapping[str, Difference]) -> list[tuple]:
-    """a/R, quantity, stated error with its uncertainty, measured error, and the factor between them."""
-    rows = []
-    for x in (0.1, 0.2, 0.3):
-        stated = errors(law_of(body), body.poisson, x)
-        for name, fit in fits.items():
-            (error, around), measured = stated[COLUMN_OF[name]], float(fit(x))
-            rows.append((x, COLUMN_OF[name], error, around, measured, factor(error, around, measured)))
-    return rows
+def plastic(context: Context) -> Iterator[dict[str, Any]]:
+    """Three materials, and the plateau of the mean pressure of the perfectly plastic one."""
+    return compared(context, PLASTIC)
+
+
+def stated(context: Context) -> Iterator[dict[str, Any]]:
+    """What is said of a scene, against materials and meshes that the table behind it was not made of: stated
+    error with its uncertainty, measured error, and the factor between them.
+    """
+    for body in FRESH:
+        fits = errors_of_flat(body, curves(context, body, body.elements))
+        for x in (0.1, 0.2, 0.3):
+            said = errors(law_of(body), body.poisson, x)
+            for name, fit in fits.items():
+                (error, around), measured = said[COLUMN_OF[name]], float(fit(x))
+                row = {
+                    "sweep": "stated",
+                    "material": body.name,
+                    "law": (body.plasticity or {"law": "elastic"})["law"],
+                    "a over R": x,
+                }
+                row |= {"quantity": WORDS[COLUMN_OF[name]], "said": error, "uncertainty": around}
+                yield row | {"measured": measured, "factor": factor(error, around, measured)}
 
 
 def factor(stated: float, uncertainty: float, measured: float) -> float:
@@ -221,24 +321,15 @@ def factor(stated: float, uncertainty: float, measured: float) -> float:
     return float(max(ratio, 1.0 / ratio)) if ratio > 0.0 else np.inf
 
 
-def off_table(compared: ComparedCurves) -> float:
+def off_table(bodies: Sequence[Body], found: Mapping[str, Mapping[str, Curve]]) -> float:
     """Largest difference of the errors in data/model_range.csv from those that are found here."""
     apart = []
-    for body in compared.bodies:
-        rows = range_rows(body, compared.found[body.name])
+    for body in bodies:
+        rows = range_rows(body, found[body.name])
         for k, x in enumerate(rows["a_over_R"]):
             kept = errors(law_of(body), body.poisson, float(x))
             apart += [abs(kept[name][0] - rows[name][k]) for name in kept]
     return float(max(apart))
-
-
-def limits_of(compared: ComparedCurves) -> dict[str, float]:
-    """The limits of the first body, and what the coarser mesh changes there."""
-    values = {}
-    for name, fit in compared.fits[compared.bodies[0].name].items():
-        values[f"{name}-limit"] = limit = fit.good_to()
-        values[f"{name}-mesh"] = float(compared.other[name](limit) - fit(limit))
-    return values
 
 
 def hardness(curve: Curve, body: Body) -> Measured:
@@ -258,52 +349,20 @@ def words(fit: Difference) -> str:
     return f"{limit:.3f} ({low:.3f} to {high:.3f})" if np.isfinite(high) else f"{limit:.3f} (from {low:.3f})"
 
 
-def slope(x: float) -> float:
-    """Of the sphere at the edge of a contact of a/R = x."""
-    return x / np.sqrt(1.0 - x**2)
-
-
-def slope_words(fit: Difference) -> str:
-    """The slope at the limit, or beyond which it lies."""
-    return f"{'> ' if np.isinf(fit.limit()) else ''}{slope(fit.good_to()):.3f}"
-
-
-def limit_table(compared: ComparedCurves) -> SmallTable:
-    """a/R of LIMIT of each material and quantity, and the slope of the sphere there."""
-    rows, names = [], compared.quantities
-
-    def row(name: str, found: Mapping[str, Difference], said: Callable[[Difference], str]) -> None:
-        rows.append([name, *(said(found[each]) if each in found else "" for each in names)])
-
-    for body, found in compared.fits.items():
-        row(body, found, words)
-        row(f"{body}: slope there", found, slope_words)
-    row(f"{compared.bodies[0].name}, {COARSER} elements in a", compared.other, words)
-    text = f"a/R at which the small-strain, flat model is off by {LIMIT:.0%}; in brackets by two standard "
-    return SmallTable(f"{text}errors of the fit", ["material", *names.values()], rows)
-
-
-def curve_table(compared: ComparedCurves) -> SmallTable:
-    """Differences by the fit at some a/R, and the mean pressure of the finite model over E*."""
-    rows = []
-    for body, each in compared.fits.items():
-        curve, largest = compared.found[body]["finite"], 1.02 * each["radius"].x.max()
-        for x in (x for x in (0.05, 0.1, 0.15, 0.2, 0.3, 0.4) if x <= largest):
-            mean = np.interp(x, curve.radius, curve.pressure)
-            cells = (f"{1e2 * float(each[n](x)):+.1f} %" if n in each else "" for n in QUANTITIES)
-            rows.append([body, f"{x:g}", f"{slope(x):.3f}", f"{mean:.4f}", *cells])
-    return SmallTable(
-        "Finite strain over small strain at equal force, less one, by the fits",
-        ["material", "a/R", "slope", "p_m/E*, finite strain", *QUANTITIES.values()],
-        rows,
+def differences_of_models(file: CaseFile, frame: DataFrame) -> Plot:
+    """What finite strain and true geometry change, with the fits."""
+    fits = frame.dropna(subset=["fits"])
+    panels: dict[str, dict[str, tuple]] = {}
+    for material, each in zip(fits["material"], fits["fits"], strict=True):
+        for name, fit in each.items():
+            panels.setdefault(QUANTITIES[name], {})[material] = fit.x, fit.values, fit
+    said = (
+        "Relative differences at equal force over the contact radius divided by that of the sphere; points: "
+        f"load steps; lines: fits from which the limits are taken; shaded: ±{LIMIT:.0%}."
     )
-
-
-CASES = (
-    ModelLimits("model-limits"),
-    ModelLimitsPlastic("model-limits-plastic"),
-    ModelLimitsStated("model-limits-stated"),
-)
+    return Plot(
+        drawn(panels, LIMIT), "differences", "What finite strain and true geometry change", said, said
+    )
 
 
 def main() -> None:

@@ -29,6 +29,7 @@ __all__ = [
     "image_xz",
     "image_zz",
     "infinite_body",
+    "l2",
     "l2_at_points",
     "rays",
     "removed_mises",

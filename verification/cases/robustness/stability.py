@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from verification.cases.case import FEM, FEM_3D, SAM, Case, Context, Measured, SmallTable
 from verification.robustness.matrix.row import Bench, Cell, Expectation, Kind, Refused, Right, Row, judge
-from verification.robustness.matrix.rows import TOPICS, all_rows
+from verification.robustness.matrix.rows import all_rows, topics
 
 MODELS = (SAM, FEM, FEM_3D)
 Judged = Mapping[str, Mapping[str, Cell]]  # row -> model -> cell
@@ -42,11 +42,11 @@ class Stability(Case):
     def measure(self, found: Matrix) -> dict[str, Measured]:
         rows, judged = found.rows, found.judged
         cells = [(row.expected[model], judged[row.name].get(model)) for row in rows for model in row.expected]
-        topics = set(TOPICS) - {row.topic for row in rows} if found.level == "full" else set()
+        missing = set(topics()) - {row.topic for row in rows} if found.level == "full" else set()
         return {
             "wrong": Measured(sum(cell is not None and cell.kind is Kind.WRONG for _, cell in cells), 0),
             "rows": Measured(sum(set(row.expected) == set(judged[row.name]) for row in rows), len(rows)),
-            "topics-missing": Measured(len(topics), 0),
+            "topics-missing": Measured(len(missing), 0),
             "errors-explained": Measured(sum(not _explained(expected, cell) for expected, cell in cells), 0),
         }
 

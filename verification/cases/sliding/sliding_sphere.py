@@ -13,8 +13,7 @@ from scipy.optimize import brentq
 
 from sam.contact import stresses, von_mises
 from sam.grid import Window
-from verification.cases.case import Context, Plot
-from verification.figures.profiles import Profile, profiles
+from verification.cases.case import Context
 from verification.judging import Measured
 from verification.reference.hamilton import largest_von_mises, sliding_stress
 
@@ -23,15 +22,10 @@ __all__ = ["limit_of_crossings"]
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-    from verification.rows import CaseFile
-
 NU = 0.3
 FRICTION = (0.0, 0.1, 0.2, 0.25, 0.3, 0.4, 0.5)
 ACROSS = {"quick": (18, 36, 72), "full": (18, 36, 72, 144)}  # cells across the contact
-CROSSING = {
-    "quick": (36, 72, 144),
-    "full": (36, 72, 144, 288),
-}  # the same, to find where the edge overtakes the interior
+CROSSING = {"quick": (36, 72, 144), "full": (36, 72, 144, 288)}  # to find where the edge overtakes
 INTERIOR = np.linspace(0.1, 0.8, 57)  # depths at which the largest stress of the interior is looked for
 DEPTHS = np.array([0.1, 0.2, 0.3, 0.48, 0.7, 1.0, 1.5])  # contact radii; interior points
 COMPONENTS = ("sxx", "syy", "szz", "syz", "sxz", "sxy")
@@ -60,15 +54,8 @@ def interior_errors(across: int, friction: float) -> np.ndarray:
     x, h = grid_of(across)
     p = mean_traction(x, h)
     found = stresses({1: friction * p, 3: p}, (h, h), DEPTHS, Window(0, 0, x.size, x.size), nu=NU)
-    exact = sliding_stress(
-        x[None, :, None],
-        x[None, None, :],
-        DEPTHS[:, None, None],
-        1.0,
-        contact_radius=1.0,
-        nu=NU,
-        friction=friction,
-    )
+    places = x[None, :, None], x[None, None, :], DEPTHS[:, None, None]
+    exact = sliding_stress(*places, 1.0, contact_radius=1.0, nu=NU, friction=friction)
     return np.abs(found - np.moveaxis(exact, -1, 0)).max(axis=(1, 2, 3))
 
 
@@ -83,12 +70,10 @@ def plane_maximum(across: int, friction: float) -> tuple[float, float]:
     return float(mises.max()), float(depths[k])
 
 
-def row_stresses(across: int, depths: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """x of the cells in |x| < reach on y = 0, and their stresses under p and under q = p, (6, nz, nx)
-    each.
-    """
+def row_stresses(across: int, depths: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """x of the cells in |x| < 1.1 on y = 0, and their stresses under p and under q = p, (6, nz, nx) each."""
     x, h = grid_of(across)
-    x = x[np.abs(x) < reach]
+    x = x[np.abs(x) < 1.1]
     p = mean_traction(x, h)
     row = Window(0, x.size // 2, x.size, 1)
     under_p, under_q = (stresses({load: p}, (h, h), depths, row, nu=NU)[..., 0] for load in (3, 1))
@@ -99,7 +84,7 @@ def crossing(across: int) -> float:
     """The friction coefficient at which the von Mises stress of the cell on the trailing edge becomes the
     largest of all.
     """
-    (x, *edge), (_, *interior) = row_stresses(across, np.zeros(1), 1.1), row_stresses(72, INTERIOR, 1.1)
+    (x, *edge), (_, *interior) = row_stresses(across, np.zeros(1)), row_stresses(72, INTERIOR)
     cell = np.abs(x + 1.0).argmin()
 
     def lead(friction: float) -> float:
@@ -147,32 +132,3 @@ def limit_of_crossings(rows: DataFrame, column: str) -> Measured:
     """Of the crossings on ever finer cells."""
     found = limit_of_root(1.0 / rows["cells"].to_numpy(), rows[column].to_numpy())
     return Measured(found, rows[f"{column} expected"].iloc[0])
-
-
-def depth(file: CaseFile, found: DataFrame) -> Plot:
-    """Von Mises stress over depth at three places in the plane of sliding."""
-    return Plot(
-        profiles(list(depth_panels()), "Hamilton (1983)"),
-        "depth",
-        "Von Mises stress under a sliding sphere, μ = 0.4",
-        "Von Mises stress over depth at three places in the plane of sliding for SAM and Hamilton's "
-        "closed form, which coincide, with the error underneath.",
-        "72 cells across the contact; underneath, SAM minus closed form in % of p₀. At the surface the "
-        "patches err to first order in the cell.",
-    )
-
-
-def depth_panels() -> Iterator[Profile]:
-    """Von Mises stress over depth below the centre and on both sides of it, mu = 0.4."""
-    depths = np.linspace(0.0, 1.5, 76)
-    x, under_p, under_q = row_stresses(72, depths, np.inf)
-    for title, offset in (("x = 0", 0.0), ("x = -0.5 a", -0.5), ("x = 0.5 a", 0.5)):
-        k = int(np.abs(x - offset).argmin())
-        series = {"SAM": (depths, von_mises((under_p + 0.4 * under_q)[:, :, k]))}
-
-        def exact(z: np.ndarray, at: float = x[k]) -> np.ndarray:
-            return von_mises(
-                np.moveaxis(sliding_stress(at, 0.0, z, 1.0, contact_radius=1.0, nu=NU, friction=0.4), -1, 0)
-            )
-
-        yield Profile(title, "$z/a$", r"$\sigma_\mathrm{vM}/p_0$", exact, series, 1.0, "$p_0$", (0.0, 1.5))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rows of the robustness matrix, their expectations, and the verdict on a cell.
+"""Rows of the robustness matrix as `rows.toml` has them, their scenes, and the verdict on a cell.
 
 A row is one extreme. Beforehand it says for each model whether it must be right (and by which checks), end in
 an error (and which words tell the user what to change), or does not apply; each with the reason. A cell that
@@ -9,41 +9,101 @@ are not finite.
 
 from __future__ import annotations
 
+import re
 import time
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from math import isfinite
+from math import isfinite, pi
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from pydantic import ValidationError
 
-from sam.scene import InputError, Result, Scene, SceneError, Status, problems
+from sam.scene import HeightMap, InputError, Result, Scene, SceneError, problems
 from verification.cost.accuracy import solve
 from verification.runs import models
-from verification.runs.models import FEM, FEM_3D, SAM, ModelError
+from verification.runs.models import ModelError
 
 RADIUS, FORCE, YOUNG, POISSON = 1e-4, 0.17, 210e9, 0.3
 HERTZ = (0.75 * FORCE * RADIUS * (1 - POISSON**2) / YOUNG) ** (1 / 3)  # contact radius in m
-CELLS, MESH = 33, 8  # over four contact radii; in the contact radius
+UNITS = {"a": HERTZ, "E": YOUNG, "p0": 1.5 * FORCE / (pi * HERTZ**2)}
+"""Of the numbers in `rows.toml`: contact radius in m, modulus and largest pressure in Pa of the base."""
 BASE = {
     "title": "Stability",
     "body": {"young": YOUNG, "poisson": POISSON},
     "counterbody": {"shape": "sphere", "radius": RADIUS},
     "loading": {"force": FORCE},
-    "grid": {"cells": (CELLS, CELLS)},
-    "fem": {"cells_per_radius": MESH},
+    "grid": {"cells": (33, 33)},  # over four contact radii
+    "fem": {"cells_per_radius": 8},
 }
 """The scene that every row changes: a rigid sphere on steel, small enough for a second in either model."""
-BEYOND = {"solver.beyond_model": True}
-"""Of a contact wider than half the radius of the sphere: small strains of a flat half-space, for the numbers
-alone."""
 TOLERANCE = "the tolerance of the scene"
 """Why a certificate has its bound. A solver stops as near to it as it can: such a comparison tells least of a
 cell."""
+
+
+SIDE, PATCH, HIGH = 32e-6, 32, 1e-6  # of a rough patch: side in m, cells, what stands out of it in m
+
+
+def heights(name: str) -> HeightMap:
+    """A surface by its name: (nx, ny) heights in m on cells of SIDE/PATCH."""
+    plain, x = np.zeros((PATCH, PATCH)), 2 * pi * (np.arange(PATCH) + 0.5) / PATCH
+    wave = np.cos(x)[:, None] * np.ones(PATCH)
+    raised: dict[str, tuple[Any, float]] = {
+        "step": (np.s_[: PATCH // 2], HIGH),
+        "ridge": (np.s_[:4], HIGH),
+        "spike": (np.s_[PATCH // 2, PATCH // 2], HIGH),
+        "hole": (np.s_[3, 3], np.nan),
+        "endless": (np.s_[3, 3], np.inf),
+        "raised": (np.s_[:], 1e-3),
+    }
+    if name in raised:
+        where, height = raised[name]
+        plain[where] = height
+    values = {
+        "half": plain[: PATCH // 2],
+        "strip": plain[:4],
+        "short": plain[:16, :16],
+        "wave": 1e-8 * wave,
+        "wave-twice": 2e-8 * wave,
+        "wave-down": -2e-8 * wave,
+        "two-parts": np.concatenate([plain, 2e-8 * wave]),
+    }.get(name, plain)
+    return HeightMap(values, tuple(SIDE * n / PATCH for n in values.shape))
+
+
+def wide(radii: float, cells: int, depth: float, *, thickness: float = 0.0, even: int = 9) -> dict:
+    """A grid over so many Hertz radii, its layers growing below the first `even`; their thickness in m, of a
+    cell if 0.
+    """
+    thickness, faces = thickness or radii * HERTZ / cells, [0.0]
+    while faces[-1] < depth * HERTZ:
+        faces.append(faces[-1] + thickness * max(1.0, 1.2 ** (len(faces) - even)))
+    sides = radii * HERTZ, radii * HERTZ
+    return {"cells": (cells, cells), "extent": sides, "depths": tuple(faces)}
+
+
+def meant(value: Any, key: str = "") -> Any:
+    """A value of `rows.toml` as a scene has it: "none" takes a key away, "2 a" and "p0/3" are numbers in
+    UNITS; names of heights, and arguments of `wide`.
+    """
+    if isinstance(value, Mapping):
+        own = {name: meant(each, name) for name, each in value.items()}
+        return wide(*own.pop("wide"), **own) if "wide" in own else own
+    if isinstance(value, list):
+        return tuple(meant(each, key) for each in value)
+    if value == "none":
+        return None
+    if not isinstance(value, str):
+        return value
+    if key.endswith("path"):
+        return heights(value)
+    if product := re.fullmatch(r"(\S+) (a|E|p0)", value):
+        return float(product[1]) * UNITS[product[2]]
+    return UNITS["p0"] / float(value[3:]) if value.startswith("p0/") else value
 
 
 def changed(table: Mapping, changes: Mapping[str, Any]) -> dict:
@@ -61,8 +121,8 @@ def changed(table: Mapping, changes: Mapping[str, Any]) -> dict:
 
 
 def scene_with(changes: Mapping[str, Any]) -> Scene:
-    """The base with other values. Raises pydantic.ValidationError for what is no scene."""
-    return Scene.model_validate(changed(BASE, changes))
+    """The base with other values, as in `rows.toml`. Raises pydantic.ValidationError for what is no scene."""
+    return Scene.model_validate(changed(BASE, meant(changes)))
 
 
 def other(scene: Scene, changes: Mapping[str, Any]) -> Scene:
@@ -70,7 +130,7 @@ def other(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     table = scene.model_dump(exclude_none=True)
     if scene.surface is not None:
         table["surface"] = {key: value for key, value in scene.surface if value is not None}
-    return Scene.model_validate(changed(table, changes))
+    return Scene.model_validate(changed(table, meant(changes)))
 
 
 class Kind(StrEnum):
@@ -170,7 +230,7 @@ class Refused:
 
     reason: str
     says: Sequence[str]
-    status: Status | None = None
+    status: str | None = None
 
 
 @dataclass(frozen=True)
@@ -183,30 +243,16 @@ class Absent:
 Expectation = Right | Refused | Absent
 
 
-def both(
-    sam: Expectation, fem: Expectation | None = None, spatial: Expectation | None = None
-) -> dict[str, Expectation]:
-    """Model -> expectation; one for both if there is no other; spatial: where the three-dimensional one is
-    asked.
-    """
-    return {SAM: sam, FEM: fem or sam} | ({FEM_3D: spatial} if spatial else {})
-
-
-def every(expected: Expectation) -> dict[str, Expectation]:
-    """The same of all models."""
-    return dict.fromkeys((SAM, FEM, FEM_3D), expected)
-
-
 @dataclass(frozen=True)
 class Row:
-    """An extreme. topic: of TOPICS; make: what differs from the base, or what makes the scene; expected:
-    model -> what must become of it; quick: at this level too.
+    """An extreme. changes: what differs from the base; expected: model -> what must become of it; quick: at
+    this level too.
     """
 
     name: str
     topic: str
     what: str
-    make: Mapping[str, Any] | Callable[[], Scene]
+    changes: Mapping[str, Any]
     expected: Mapping[str, Expectation]
     quick: bool = False
 
@@ -236,7 +282,7 @@ def judge(row: Row, model: str, bench: Bench) -> Cell:
     began, scene, result, text, wrong = time.process_time(), None, None, "", ""
     found: list[Deviation] = []
     try:
-        scene = row.make() if callable(row.make) else scene_with(row.make)
+        scene = scene_with(row.changes)
         result = bench.solve(scene, model)
     except ValidationError as error:
         text = "; ".join(map(str, problems(error)))
@@ -262,7 +308,7 @@ def _wrong_error(expected: Refused, result: Result | None, text: str) -> str:
     """What is wrong with an error; empty where it is the expected one."""
     if result is not None and result.converged:
         return "converged, but an error was expected"
-    if expected.status is not (None if result is None else result.status):
+    if expected.status != (None if result is None else result.status):
         return f"expected {expected.status or 'a refusal'}: {text}"
     missing = [word for word in expected.says if word not in text]
     return f"the message does not say {missing}: {text}" if missing else ""
