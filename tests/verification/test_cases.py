@@ -9,7 +9,7 @@ from made_results import context
 
 from sam.scene import load_scene
 from verification.cases import LEVELS, all_cases
-from verification.cases.case import with_grid, with_mesh
+from verification.cases.case import with_grid
 from verification.reference.convergence import fit_order
 from verification.rows import load_rows
 from verification.runs import models
@@ -53,12 +53,6 @@ def test_unconverged_solve_breaks_the_case_off(tmp_path, scene):
     with pytest.raises(RuntimeError, match="grid-edge"):
         case.solve(models.SAM, coarse, "sam")
     assert case.runs == ["runs/test/sam"]
-
-
-def test_scene_of_a_case_is_recorded(tmp_path, scene):
-    case = context("test", tmp_path)
-    assert case.scene("hertz-sphere") == scene and b"Rigid sphere" in case.inputs["hertz-sphere.toml"]
-    assert with_mesh(scene, 8).fem.cells_per_radius == 8
 
 
 class TestOrder:

@@ -7,12 +7,13 @@ from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import numpy as np
+import pandas as pd
 import pytest
 from builders import COARSE, scene_text
 
 from samfem.compared import NOT_COMPARED
 from verification.compare.rows import COLUMNS
-from verification.figures.compared import LOOKS, PANELS, curves, history
+from verification.figures.compared import curves
 from verification.runs.files import read_run
 
 WIDE = '[compare.tolerances]\n"p_Pa over the contact" = "20 %"\n"mises_Pa in the plane y = 0" = 0.2\n'
@@ -65,25 +66,13 @@ def test_compare_on_coarse_meshes_fails_and_says_what_to_change(sphere_folder, s
     assert "FAILED" not in (sphere_folder / "out" / "compare.csv").read_text(encoding="utf-8")
 
 
-def test_compare_draws_both_models_over_each_other(sphere_folder, samfem):
-    """What is drawn is what the tables of both runs hold; figures of an older comparison do not stay."""
+def test_compare_draws_both_models_and_figures_of_an_older_comparison_do_not_stay(sphere_folder, samfem):
     (sphere_folder / "none.toml").write_text(scene_text(("0.65 N", "0 N"), add=COARSE))
     files = {f"{name}.{kind}" for name in ("line", "axis", "history") for kind in ("png", "csv")}
     for scene, code in (("coarse", 1), ("none", 0)):
         shown = samfem("compare", f"{scene}.toml", "--out", "out", "--figures", code=code)
         assert {entry.name for entry in (sphere_folder / "out" / "figures").iterdir()} == files
         assert "out/figures/line.png" in shown.out
-        runs = {
-            model: read_run(sphere_folder / "out" / part) for model, part in (("SAM", "sam"), ("FEM", "fem"))
-        }
-        for table in PANELS:
-            panels = curves(runs, table).figure.axes
-            for panel, (column, factor) in zip(panels, PANELS[table].values(), strict=True):
-                assert [line.get_label() for line in panel.lines] == list(LOOKS)
-                for line, run in zip(panel.lines, runs.values(), strict=True):
-                    rows = run.tables[table]["state"] == "peak"
-                    known = set((run.tables[table][column][rows] * factor).tolist())
-                    assert len(line.get_ydata()) > 5 and set(np.asarray(line.get_ydata()).tolist()) <= known
     samfem("compare", "none.toml", "--out", "out")
     assert not list((sphere_folder / "out" / "figures").iterdir())
 
@@ -144,19 +133,14 @@ def test_data_have_columns_of_their_own_and_decide_the_exit_code(scenes, own, sa
 
 def test_a_third_curve_shows_the_data_and_what_they_lack_is_not_drawn(scenes, own, samfem):
     samfem("compare", "good.toml", "--with", own, "--figures", code=1)
-    assert (scenes / "good-compare" / "figures" / "line.png").is_file()
-    both = {
-        "SAM": read_run(scenes / "good-compare" / "sam"),
-        "FEM": read_run(scenes / "good-compare" / "fem"),
+    runs = {model: read_run(scenes / "good-compare" / model.lower()) for model in ("SAM", "FEM")}
+    tables = {"line": {"state": ["peak"] * 3, "x_m": 1e-6 * np.arange(-1.0, 2.0), "p_Pa": np.full(3, 5e9)}}
+    data = runs | {
+        "own": SimpleNamespace(quantities={}, tables={k: pd.DataFrame(v) for k, v in tables.items()})
     }
-    x = np.array([-1e-6, 0.0, 1e-6])
-    tables = {"line": {"state": np.full(3, "peak"), "x_m": x, "p_Pa": np.full(3, 5e9)}}
-    data = both | {"own": SimpleNamespace(quantities={}, tables=tables)}
     pressure, displacement, _ = curves(data, "line").figure.axes
     assert [line.get_label() for line in pressure.lines] == ["SAM", "FEM", "own"]
-    assert pressure.lines[2].get_ydata().tolist() == [5.0] * 3
-    assert [line.get_label() for line in displacement.lines] == ["SAM", "FEM"]
-    assert len(history(data).figure.axes[0].lines) == 2
+    assert pressure.lines[2].get_ydata().tolist() == [5.0] * 3 and len(displacement.lines) == 2
 
 
 def test_a_junit_file_has_a_test_for_each_row_of_each_scene(scenes, own, samfem):

@@ -80,10 +80,6 @@ def test_every_wrong_tolerance_is_named(counted):
     assert "tolerances.peek_max" in said and 'tolerances.approach_m = "2 mm"' in said
 
 
-def test_the_names_of_the_rows_are_those_that_a_comparison_has(counted):
-    assert {row.quantity for row in judged().rows} <= set(names_of_rows(COARSE))
-
-
 def test_a_scene_file_gives_tolerances_in_percent_or_as_numbers():
     table = '[compare.tolerances]\np_max_Pa = "2 %"\n"p_Pa over the contact" = 0.03\n'
     assert parsed(add=table).compare.tolerances == {"p_max_Pa": 0.02, "p_Pa over the contact": 0.03}

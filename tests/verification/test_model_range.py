@@ -15,7 +15,7 @@ from samfem.comparison_page import Scenes, write_report
 from verification.runs import models
 from verification.runs.files import read_run, read_summary
 from verification.runs.meshes import mesh_names
-from verification.runs.model_range import OUTSIDE, errors, model_range, range_lines, with_range
+from verification.runs.model_range import OUTSIDE, model_range, range_lines, with_range
 from verification.runs.models import ModelError
 
 ELASTIC, YIELDING = {}, {"plasticity": SWIFT}
@@ -136,15 +136,6 @@ def test_a_rough_body_counts_by_its_slope_in_contact_and_its_strain(worn, lost):
     assert "rms slope 0.3" in by_slope.warnings[-1] and "plastic strain 20 %" in by_strain.warnings[-1]
     assert "rule of thumb" in by_slope.warnings[-1] and by_strain.status is Status.CONVERGED
     assert all((words in by_slope.warnings[-1]) == bool(lost) for words in lost or ["lost height"])
-
-
-def test_an_error_is_interpolated_and_beyond_what_was_measured_the_nearest():
-    low, middle, high = (errors("elastic", nu, 0.2)["approach"][0] for nu in (0.3, 0.395, 0.49))
-    assert middle == pytest.approx((low + high) / 2) and errors("elastic", 0.5, 0.2)["approach"][0] == high
-    assert errors("elastic", 0.3, 2.0) == errors("elastic", 0.3, 0.4)
-    assert errors("elastic", 0.3, 0.0125)["approach"][0] == pytest.approx(
-        errors("elastic", 0.3, 0.025)["approach"][0] / 2
-    )
 
 
 SOFT = '[body.coating]\nthickness = "20 um"\nyoung = "2 GPa"\npoisson = 0.3\n[grid]\ncells = [33, 33]\n'

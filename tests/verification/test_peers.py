@@ -17,7 +17,7 @@ from verification.cases.case import Context
 from verification.cases.peers import peers
 from verification.judging import evaluate
 from verification.peers import elastic, plastic, problems, running
-from verification.peers.plastic import between, largest, periodic, profile_error
+from verification.peers.plastic import largest
 from verification.peers.programs import aspher, sam as ours
 from verification.peers.running import SAM, TAMAAS, VARIABLE, Job, Measurement, PeersError
 from verification.rows import load_rows
@@ -67,18 +67,6 @@ class TestErrors:
         z = np.array([0.1, 0.3, 0.6, 0.8])
         assert largest(z, 2.0 - (z - 0.47) ** 2) == pytest.approx(2.0, rel=1e-12)
         assert largest(z, z) == 0.8  # at the end there is none
-
-    def test_stored_reference_is_periodic_tamaas(self):
-        reference = periodic()
-        assert 1.36 < reference.peeq_max < 1.38 and 0.0 < reference.uncertainty < 0.01
-        assert "48 × 96 × 96" in reference.text and 0.5 < reference.z[np.argmax(reference.peeq)] < 0.6
-
-    def test_uncertainty_is_the_distance_of_the_coarser(self):
-        z = np.linspace(0.0, 1.0, 21)
-        assert profile_error(z, 1.1 * z, z, z) == pytest.approx(0.1, rel=1e-12)
-        bump = np.exp(-(((z - 0.5) / 0.2) ** 2))
-        made = between((z, bump), (z, 0.98 * bump), "made")
-        assert made.uncertainty == pytest.approx(0.02) and made.profile_uncertainty == pytest.approx(0.02)
 
 
 def timed(cells, seconds, label="", converged=True):
@@ -208,31 +196,6 @@ def in_process(program, due, python, allowance=0.0):
 
 
 class TestRounds:
-    def test_programs_take_turns_and_slow_jobs_fewer_rounds(self, monkeypatch):
-        ran = []
-
-        def run(program, due, python):
-            for each in due:
-                ran.append((program, each.job.cells))
-                each.setup_s.append(0.0)
-                each.solve_s.append(each.job.cells)
-                each.record = {"converged": True}
-
-        monkeypatch.setattr(running, "run", run)
-        jobs = {
-            name: [Job(problems.HERTZ, seconds, {}) for seconds in (1.0, 5.0, 50.0)] for name in (SAM, TAMAAS)
-        }
-        found, kernel = running.measure(jobs, {SAM: None, TAMAAS: None}, 3, calibrate=lambda: 0.1)
-        assert [program for program, _ in ran] == [
-            *[SAM] * 3,
-            *[TAMAAS] * 3,
-            *[SAM] * 2,
-            *[TAMAAS] * 2,
-            SAM,
-            TAMAAS,
-        ]
-        assert [len(each.cpu_s) for each in found[SAM]] == [3, 2, 1] and len(kernel) == 7
-
     def test_the_page_with_sam_in_the_place_of_all(self, tmp_path, monkeypatch):
         """Ratios of times made ten to one, tables and figures whole, and a program that is not built is
         told.

@@ -116,22 +116,6 @@ def test_every_problem_has_its_methods_its_five_resolutions_and_a_scene_each_mod
         assert f"errors {problem.name}" in FILE.figures
 
 
-def test_what_each_method_changes_in_the_scene():
-    scene = scene_of(SLIDING)
-    assert method(SLIDING, COUPLED).at(scene, 4).friction.coupling
-    assert not method(SLIDING, "SAM, decoupled").at(scene, 4).friction.coupling
-    paper = method(SLIDING, "SAM, the paper's loop").at(scene, 4)
-    assert (paper.friction.coupling, paper.solver.method, paper.solver.stop) == (False, "paper", "stress")
-    assert method(SLIDING, SPATIAL).at(scene, 6).fem.cells_per_radius == 6
-    assert SLIDING.steps[0].at(scene, 40).loading.steps == 40
-    worn = problems.worn_cells(load_scene(SCENES / "running-in-curve-b.toml"), 64)
-    assert len(worn.grid.depths) - 1 == 26 and worn.grid.cells == (64, 64)
-
-
-def test_methods_take_turns_rung_by_rung():
-    assert list(case.in_turn([(1, 2, 3), (4,), (5, 6)])) == [(0, 1), (1, 4), (2, 5), (0, 2), (2, 6), (0, 3)]
-
-
 VALUES = {"peeq_max": 0.005, "p_max_Pa": 1e9, "contact_area_m2": 1e-11, "wear_volume_m3": 1e-18}
 OF = {COUPLED: (0.3, 1.0, 1e-3), TWICE: (3.0, 1.0, 1e-3), AXISYMMETRIC: (-0.2, 2.0, 2e-3)}
 OF |= {
@@ -261,11 +245,6 @@ def test_a_solve_that_breaks_off_or_does_not_converge_is_shown_and_counts_as_no_
     assert case.reached(frame, COUPLED, 1.1).value == 1.0
     with pytest.raises(RuntimeError, match="2 usable resolutions, 3 are needed"):
         case.limits(HERTZ, made(COUPLED, OF[COUPLED], VALUES)[:2], [COUPLED])
-
-
-def test_repeats_become_their_median():
-    found = case.merged(made(COUPLED, (0.2, 2.0, 1.0), VALUES)[:3])
-    assert (found["cpu_s"], found["spread"]) == (64.0, 16.0)
 
 
 def test_distance_of_profiles():

@@ -275,16 +275,13 @@ class TestReadings:
         assert CASE.measure(found)["unconverged"].value == 11
         text = next(note for note in CASE.notes(found) if note.startswith("Not converged"))
         assert text.count("step-cut-limit") == 11 and "curve B, 5 %, surface 2, renewed" in text
-        statements, printed, second, *_ = CASE.tables(found)
-        rows = {row[1]: row for row in statements.rows}
+        rows = {row[1]: row for row in next(iter(CASE.tables(found))).rows}
         assert rows["bulk: worn in the first six cycles"][9:] == ["0 of 10, none on 10", OPEN, OPEN]
-        assert [row[1] for row in printed.rows] == ["10 of 10"] * 5
-        assert [row[1] for row in second.rows] == ["0 of 10", *["10 of 10"] * 2, "9 of 10", "10 of 10"]
         names = ["yield", "regimes", *NAMES]
         renewed_names = [f"{RENEWED}-{name}" for name in names if name != BULK]
         assert [plot.name for plot in CASE.figures(found)] == ["readings", *names, *renewed_names]
         views = {view.name: view.run for view in CASE.views(found)}
-        assert views[f"{A}-worn"] == f"{A}-seed-2" and views[f"renewed-{B}-worn"] == f"renewed-{B}-seed-2"
+        assert views[f"{A}-worn"] == f"{A}-seed-2"
         assert views[f"renewed-{DUCTILE}-worn"] == f"renewed-{DUCTILE}-seed-1"
 
     def test_verdicts_that_finer_cells_change_are_named(self, solved):

@@ -51,15 +51,3 @@ def test_medians_are_of_quantities_with_three_values():
     }
     rows = pd.DataFrame([{"quantity": name, "x": each} for name, own in of.items() for each in own])
     assert study.smallest_median(rows, "x") == 3.0 and study.largest_median(rows, "x") == 5.0
-
-
-def test_the_study_has_problems_that_differ():
-    """Forty; one elastic sphere at rest, every law, and grids of at least five sizes."""
-    own = list(study.subjects(study=True))
-    scenes = [drawn(0) for _, drawn, _ in own]
-    assert len(scenes) == 40 == len({name for name, *_ in own})
-    elastic = [each for each in scenes if each.body.plasticity is None and each.counterbody.shape == "sphere"]
-    assert sum(each.body.coating is None and not each.coefficient for each in elastic) == 1
-    laws = {each.body.plasticity.law for each in scenes if each.body.plasticity}
-    assert laws == {"swift", "linear", "perfect", "table"}
-    assert len({each.grid.cells for each in scenes}) >= 5 and any(each.coefficient for each in scenes)
