@@ -344,7 +344,7 @@ def regimes_table(found: DataFrame, reading: str) -> SmallTable:
         *pressures, above, failed = own.values()
         numbers = ("–" if np.isnan(number) else f"{GIGA * number:.2f}" for number in pressures)
         ends = own["reached"], own["film_fails_from"], own["removed_from"]
-        so = "no run converged" if np.isnan(own["reached"]) else regime(*ends)
+        so = "no run converged" if np.isnan(own["reached"]) else str(regime(*ends))
         rows.append((NAMES[case], *numbers, f"{above} of {failed}", so))
     columns = (
         "case|σ_y(limit) at the surface|removed from, μ high|with the other B|in the first layer of cells"
