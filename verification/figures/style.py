@@ -21,7 +21,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 from PIL import Image
 
 from verification.runs.files import write_atomically
@@ -114,17 +114,15 @@ def zero_line(axis: Axes) -> None:
 
 
 def log_ticks(axis: Axis, words: Callable[[float], str] = "{:g}".format) -> None:
-    """Numbers on a logarithmic axis: powers of ten, and steps between them where there are few of those."""
+    """Numbers on a logarithmic axis: powers of ten, steps between them where there are few of those, and even
+    ones where its ends are less than a factor of two apart.
+    """
     low, high = axis.get_view_interval()
     decades = np.log10(high / low)
-    steps = (
-        (1.0,)
-        if decades > MANY_DECADES
-        else (1.0, 2.0, 5.0)
-        if decades > 1.0
-        else (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
-    )
-    axis.set_major_locator(LogLocator(subs=steps, numticks=20 if decades < 8.0 else 7))
+    between = (1.0, 2.0, 5.0) if decades > 1.0 else (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
+    steps = (1.0,) if decades > MANY_DECADES else between
+    several = LogLocator(subs=steps, numticks=20 if decades < 8.0 else 7)
+    axis.set_major_locator(several if high > 2.0 * low else MaxNLocator(4))
     axis.set_major_formatter(lambda value, _: words(value))
     axis.set_minor_formatter(NullFormatter())
 
