@@ -86,6 +86,7 @@ def test_examples_are_listed_and_copied_with_their_files(here, capsys):
 
 def test_the_schema_takes_every_scene_of_the_cases(schema):
     names = sorted(entry.name for entry in SCENES.iterdir() if entry.name.endswith(".toml"))
+    assert "hertz-sphere.toml" in names
     for name in names:
         schema.validate(parse_toml(SCENES.joinpath(name).read_bytes(), name))
 
