@@ -4,6 +4,7 @@ cells against quadrature over wave vectors, and coated scenes.
 """
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -26,12 +27,13 @@ from sam.layered.patches import (
     spline_matrix,
     wave_numbers,
 )
-from sam.layered.response import Layers, Response
+from sam.layered.response import Layers, Response, normal_compliance
 from sam.planner.bodies import Bodies
 from sam.scene import Scene, Status
 from sam.schedule import Load
 from verification.reference.layered import ManyDigits
-from verification.reference.layered_errors import Worst, worst_errors
+from verification.reference.layered_axisymmetric import CoatedHalfSpace, wave_pressure_ratio
+from verification.reference.layered_errors import POISSONS, RATIOS, Worst, worst_errors
 
 THICKNESS = 1e-7
 COATED = Layers(80e9, 0.3, THICKNESS, 210e9, 0.25)
@@ -49,6 +51,24 @@ def test_response_against_many_digits(kh, ratio, nus):
     worst = worst_errors([(kh, ratio, *nus)])
     for name, bound in {"c_zz": 1e-11, "matrix": 1e-9, "film": 1e-9, "body": 1e-9, "jump": 1e-9}.items():
         assert worst[name].error < (1e-13 if kh == 0.7 else bound), f"{name}: {worst[name]}"
+
+
+def test_response_against_many_digits_over_the_whole_range():
+    """Moduli over twelve decades lose digits in differences; c_zz is a sum of terms of one sign."""
+    worst = worst_errors()
+    assert {name for name, each in worst.items() if not each.error <= 1e-9} == set()
+    assert worst["c_zz"].error <= 1e-11
+
+
+def test_waves_pressed_flat():
+    """The pressure over that without film, film and body of Bosman & Schipper (2011), by another system."""
+    film, body, waves = (80e9, 0.3), (210e9, 0.3), np.array([1, 2, 5, 10, 20, 50]) * 1e-6
+    k = 2 * np.pi / waves
+    coated, bare = (normal_compliance(Layers(*of, 1e-7, *body), k) for of in (film, body))
+    for counter in (np.inf, 210e9 / 0.91):
+        ratio = (bare + 2 / (counter * k)) / (coated + 2 / (counter * k))
+        exact = wave_pressure_ratio(CoatedHalfSpace(*film, 1e-7, *body), waves, counter)
+        assert ratio == pytest.approx(exact, rel=1e-10)
 
 
 def test_the_many_digits_do_not_depend_on_their_number_and_not_a_number_is_the_worst():
@@ -92,6 +112,14 @@ def test_no_overflow_far_beyond_the_range():
         response = Response(Layers(ratio, 0.5, 1.0, 1.0, 0.0), kh)
         with np.errstate(over="raise", invalid="raise", divide="raise"):
             fields = [response.surface, response.surface_excess, *response.stress(0.5), *response.stress(3.0)]
+        assert all(np.all(np.isfinite(field)) for field in fields)
+
+
+def test_short_waves_feel_the_film_alone():
+    for ratio, (nu, nu_body) in product(RATIOS, POISSONS):
+        wave = Response(Layers(ratio, nu, 1.0, 1.0, nu_body), np.array(1e4))
+        assert wave.surface[0] == pytest.approx(1 - nu, rel=1e-14)
+        fields = [wave.surface, *(part for z in (0.0, 0.5, 1.0, 2.0) for part in wave.stress(z))]
         assert all(np.all(np.isfinite(field)) for field in fields)
 
 
@@ -211,6 +239,22 @@ def test_displacement_equals_quadrature(layers, load):
         ours = at(np.array([patches.displacement(lags, component=i, load=load) for i in (1, 2, 3)]), LAGS)
         ours = ours * layers.shear / THICKNESS
         assert np.abs(ours - answer).max() < QUADRATURE * np.abs(answer).max()
+
+
+@pytest.mark.parametrize("load, nu", [*product((1, 3), (0.0, 0.3, 0.5))])
+@pytest.mark.parametrize("cell", [0.1, 1.0, 10.0])
+def test_cells_of_equal_materials_are_as_without_film(cell, load, nu):
+    """Smaller and larger than the thickness; radial tables of a spline of fifth degree hold 1e-11."""
+    same, lags = LayeredPatches(Layers(2.0, nu, 1.0, 2.0, nu)), Lags(9, 9, cell, cell)
+    depths = np.array([0.0, 0.3, 0.9, 1.0, 1.7, 6.0])
+    bare = stress_coefficients(lags, depths, nu, load=load)
+    error = same.stress(lags, depths, load=load, names=STRESS) - bare
+    assert np.all(np.abs(error).max(axis=(0, 2, 3)) < 1e-10 * np.abs(bare).max(axis=(0, 2, 3)))
+    largest = displacement_coefficients(lags, nu, component=load, load=load).max()
+    for i in (1, 2, 3):
+        bare = displacement_coefficients(lags, nu, component=i, load=load)
+        ours = same.displacement(lags, component=i, load=load) * same.layers.shear
+        assert np.abs(ours - bare).max() < 1e-10 * largest
 
 
 @pytest.mark.parametrize("load, nu", [(1, 0.3), (2, 0.0), (3, 0.5)])

@@ -4,11 +4,11 @@
 from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
 from made_results import with_column, with_field
 
 from sam import choose_grid
-from verification.cases import all_cases
 from verification.cases.case import Context
 from verification.cases.certificates import certificates as case
 from verification.cases.recipes import Resolution
@@ -18,7 +18,7 @@ from verification.checks import (
     conditions as contact_checks,
     film as film_checks,
 )
-from verification.checks.certificates import OF_GROUP, Conditions, by_rule, common, solved
+from verification.checks.certificates import OF_GROUP, by_rule, common, solved
 from verification.checks.material import yield_stress
 from verification.reference.hertz import CircularContact
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
@@ -46,22 +46,17 @@ def solves(tmp_path_factory):
 @pytest.mark.parametrize("name", GROUP)
 def test_all_conditions_hold(solves, name):
     """On coarse grids tractions and planes of a sphere are less exact."""
-    for what, value in OF_GROUP[GROUP[name]](*solves[name]).values.items():
+    for what, value in OF_GROUP[GROUP[name]](*solves[name]).items():
         coarse = name in SPHERES and what in ("surface", "planes")
         assert value <= LIMITS[f"{GROUP[name]}-{what}"] * (2.5 if coarse else 1.0), what
 
 
-def test_what_no_scene_was_measured_for_is_no_success():
-    """And the largest value of a group counts."""
-    own, found = all_cases()["certificates"], {group: {"a": Conditions({})} for group in case.TITLES}
-    for group, what in own.asked():
-        found[group]["a"].values[what] = 0.0
-    found["rough"]["b"] = Conditions({"load": 1.0})
-    measured = own.measure(found)
-    assert measured["rough-load"].value == 1.0 and set(measured) == set(LIMITS)
-    del found["coated"]["a"].values["interface"]
-    with pytest.raises(ValueError, match="coated: no scene has interface"):
-        own.measure(found)
+def test_the_worst_scene_counts_and_a_condition_without_one_is_no_success():
+    frame = pd.DataFrame({"values": [{"load": 1.0}, {"load": 3.0}, {}]})
+    assert case.worst(frame, "load") == 3.0
+    assert np.isnan(case.worst(pd.DataFrame({"values": [{"load": 1.0}, {"load": np.nan}]}), "load"))
+    with pytest.raises(ValueError, match="zero-size"):
+        case.worst(frame, "interface")
 
 
 # --- perturbed answers: (scene, result, records) -> the same, of which something is wrong ---

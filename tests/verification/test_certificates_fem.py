@@ -64,7 +64,7 @@ def steps_of(solve, changes):
 
 @pytest.mark.parametrize("name", ["slid", "patch"])
 def test_all_conditions_hold(name, request):
-    found = of_spatial(*request.getfixturevalue(name)).values
+    found = of_spatial(*request.getfixturevalue(name))
     assert set(found) == {
         key.removeprefix("certificates.fem-3d-") for key in LIMITS if "certificates.fem-3d-" in key
     }
@@ -140,7 +140,7 @@ def test_fields_of_elements_that_are_returned_wrong_are_seen(slid):
 def test_a_film_in_three_dimensions(context):
     """Elastic: its steps are taken again. With the moduli of the body in the film there is no equilibrium."""
     scene = sliding(context)["film, sliding"]
-    found = of_spatial(scene, models.solve(scene, FEM_3D), []).values
+    found = of_spatial(scene, models.solve(scene, FEM_3D), [])
     assert all(value <= limit(what) for what, value in found.items())
     step = spatial_checks.steps_of(scene, [])[-1]
     other = scene.body.coating.model_copy(update={"young": 1.0001 * scene.body.coating.young})
@@ -152,7 +152,7 @@ def test_a_film_that_yields(context):
     """Film and body flow by laws of their own, the film at its own yield stress."""
     scene = yielding_film(context)["film that yields"]
     result, records = solved(scene, FEM)
-    for what, value in of_fem(scene, result, records).values.items():
+    for what, value in of_fem(scene, result, records).items():
         assert value <= LIMITS[f"certificates.fem-{what}"], what
     model, steps = fem_checks.steps_of(scene, records)
     inside = fem_checks.Finite(scene, model, steps[-2]).depths < scene.body.coating.thickness
@@ -178,7 +178,7 @@ def solves(context):
 @pytest.mark.parametrize("name", ["elastic", "Swift"])
 def test_all_conditions_of_the_axisymmetric_model_hold(solves, name):
     """On coarse meshes its tractions and planes are less exact."""
-    for what, value in of_fem(*solves[name, FEM]).values.items():
+    for what, value in of_fem(*solves[name, FEM]).items():
         assert value <= LIMITS[f"certificates.fem-{what}"] * (2.5 if what in ("surface", "planes") else 1.0)
 
 

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""What is checked of a solution in each model, as conditions with a value: see `verification.checks`."""
+"""What is checked of a solution in each model: condition -> value, see `verification.checks`."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
@@ -21,39 +20,6 @@ from verification.checks import (
 )
 from verification.runs import models
 
-NAMES = {
-    "load": "load: |sum of p - F|/F",
-    "complementarity": "contact: |gap| where p > 0, penetration elsewhere, over the approach",
-    "displacement": "the same on all cells, displacements summed directly over pressure, traction and "
-    "plastic strain",
-    "friction": "friction: |q - μp| over p_max; at nodes of FEM over F",
-    "equilibrium": "equilibrium: nodal forces on free degrees of freedom over F",
-    "yield": "yield: (σ_vM - σ_y)/σ_y",
-    "flow": "flow rule: 2G |Δεᵖ - 3/2 Δγ s/σ_vM| over σ_y0, Δεᵖ without volume, Δγ its length and never "
-    "negative",
-    "consistency": "consistency: |σ_vM - σ_y|/σ_y where Δγ > 0",
-    "surface": "surface: tractions at z = 0 or extrapolated to it less those returned, away from the edge of "
-    "contact, over p_max",
-    "stress": "stress below the surface of elastic SAM, summed directly over pressure and traction, over "
-    "p_max",
-    "fields": "stress and plastic strain of the returned elements less the means of their points, over the "
-    "largest",
-    "interface": "film: jumps of σ_zz, σ_xz, σ_yz over p_max, and of ε_xx, ε_yy, ε_xy over p_max/E",
-    "film": "chemical film where it is whole: its plastic strain, thinning and traction beyond their limits, "
-    "over the limits; cells that have healed",
-    "planes": "planes: force through z = const over the load, less 1",
-    "histories": "histories: steps that were accepted above the residual where they may stop",
-}
-"""Condition -> what it says, in words."""
-
-
-@dataclass
-class Conditions:
-    """Of a scene with one model: condition (of NAMES) -> value; curves: (load step, attempt)."""
-
-    values: dict[str, float] = field(default_factory=dict)
-    curves: list[tuple[str, Attempt]] = field(default_factory=list)
-
 
 def solved(scene: Scene, model: str) -> tuple[Result, list]:
     """The result of a model, and all that it handed out after its load steps."""
@@ -64,7 +30,7 @@ def solved(scene: Scene, model: str) -> tuple[Result, list]:
     return result, records
 
 
-def of_sam(scene: Scene, result: Result, records: list) -> Conditions:
+def of_sam(scene: Scene, result: Result, records: list) -> dict[str, float]:
     """All conditions of a result of SAM, smooth or rough, without film."""
     plastic, rough = scene.body.plasticity is not None, scene.surface is not None
     values = common(scene, result) | {
@@ -80,7 +46,7 @@ def of_sam(scene: Scene, result: Result, records: list) -> Conditions:
         values["surface"] = max(contact_checks.sam_surface(scene, result).values())
     if not plastic:
         values["stress"] = cell_checks.stress(scene, result)
-        return Conditions(values, curves_of(result))
+        return values
     values = larger(values, by_rule(contact_checks.flow(scene, records, choose_grid(scene).depths)))
     values["yield"] = max(
         values["yield"], *(contact_checks.yields(scene, result, state) for state in ("peak", "unloaded"))
@@ -90,10 +56,10 @@ def of_sam(scene: Scene, result: Result, records: list) -> Conditions:
         values["film"] = max(film_checks.states(scene, records).values())
     if not rough:  # the line y = 0 need not be where a rough body touches first
         values = larger(values, contact_checks.unloaded(scene, result))
-    return Conditions(values, curves_of(result))
+    return values
 
 
-def of_coated(scene: Scene, result: Result, _records: list) -> Conditions:
+def of_coated(scene: Scene, result: Result, _records: list) -> dict[str, float]:
     """All conditions of a result of SAM with an elastic film."""
     values = common(scene, result) | {
         "surface": max(contact_checks.sam_surface(scene, result).values()),
@@ -102,10 +68,10 @@ def of_coated(scene: Scene, result: Result, _records: list) -> Conditions:
     }
     if scene.friction is not None:
         values["friction"] = contact_checks.slips(scene, result)
-    return Conditions(values, curves_of(result))
+    return values
 
 
-def of_fem(scene: Scene, result: Result, records: list) -> Conditions:
+def of_fem(scene: Scene, result: Result, records: list) -> dict[str, float]:
     """All conditions of the axisymmetric FEM; an elastic body hands out no steps: they are taken again."""
     values = common(scene, result)
     model, steps = fem_checks.steps_of(scene, records)
@@ -123,10 +89,10 @@ def of_fem(scene: Scene, result: Result, records: list) -> Conditions:
         for before, now, step in zip(finite, finite[1:], steps[1:], strict=False):
             if not step.cuts:
                 values = larger(values, by_rule(now.flow(before)))
-    return Conditions(values, curves_of(result))
+    return values
 
 
-def of_spatial(scene: Scene, result: Result, records: list) -> Conditions:
+def of_spatial(scene: Scene, result: Result, records: list) -> dict[str, float]:
     """All conditions of a result of the three-dimensional FEM, in every step."""
     values, steps = (
         spatial_checks.surface(scene, result) | late(result),
@@ -139,7 +105,7 @@ def of_spatial(scene: Scene, result: Result, records: list) -> Conditions:
         values["yield"] = max(each.yields() for each in steps)
         for before, now in pairwise(steps):
             values = larger(values, by_rule(now.flow(before)))
-    return Conditions(values, curves_of(result))
+    return values
 
 
 OF_GROUP = {"sam": of_sam, "fem": of_fem, "coated": of_coated, "rough": of_sam, "fem-3d": of_spatial}

@@ -9,7 +9,6 @@ turned in the plane, so that nothing is symmetric. Their spectrum is below 1 % o
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -25,29 +24,12 @@ BORDERS = (-1.9e-6, 2.0e-6)
 """x in m between the asperities."""
 
 
-@dataclass(frozen=True)
-class Bump:
-    """height exp(-u^2/(2 wide_u^2) - v^2/(2 wide_v^2)), all in m; u, v: about (x, 0), turned by `angle`
-    degrees.
-    """
-
-    x: float
-    height: float
-    wide_u: float
-    wide_v: float
-    angle: float
-
-    def __call__(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        c, s = np.cos(np.radians(self.angle)), np.sin(np.radians(self.angle))
-        u, v = (x - self.x) * c + y * s, y * c - (x - self.x) * s
-        return self.height * np.exp(-(u**2) / (2.0 * self.wide_u**2) - v**2 / (2.0 * self.wide_v**2))
-
-
 BUMPS = (
-    Bump(-3.8e-6, 130e-9, 1.35e-6, 2.0e-6, 20.0),
-    Bump(0.2e-6, 118e-9, 1.2e-6, 1.7e-6, 0.0),
-    Bump(3.9e-6, 113e-9, 1.3e-6, 1.8e-6, -15.0),
+    (-3.8e-6, 130e-9, 1.35e-6, 2.0e-6, 20.0),
+    (0.2e-6, 118e-9, 1.2e-6, 1.7e-6, 0.0),
+    (3.9e-6, 113e-9, 1.3e-6, 1.8e-6, -15.0),
 )
+"""Of each: x of its top, height and both widths in m, and by how many degrees it is turned."""
 
 
 def centres(cells: int) -> np.ndarray:
@@ -56,9 +38,14 @@ def centres(cells: int) -> np.ndarray:
 
 
 def height_map(cells: int) -> HeightMap:
-    """The asperities on cells x cells cells."""
+    """The asperities, height exp(-u^2/(2 wide_u^2) - v^2/(2 wide_v^2)), on cells x cells cells."""
     x, y = np.meshgrid(centres(cells), centres(cells), indexing="ij")
-    return HeightMap(sum(bump(x, y) for bump in BUMPS), (SIDE, SIDE))
+    heights = np.zeros_like(x)
+    for top, height, wide_u, wide_v, angle in BUMPS:
+        c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+        u, v = (x - top) * c + y * s, y * c - (x - top) * s
+        heights += height * np.exp(-(u**2) / (2.0 * wide_u**2) - v**2 / (2.0 * wide_v**2))
+    return HeightMap(heights, (SIDE, SIDE))
 
 
 def friction_map(cells: int) -> FrictionMap:

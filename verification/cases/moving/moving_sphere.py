@@ -96,18 +96,18 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
     scenes |= {f"coarse-{name}": on_track(base, COARSE | keys) for name, keys in OTHERS.items()}
     results = {name: context.solve(SAM, scene, name) for name, scene in scenes.items()}
     sliding = balance_of(coarse.model_copy(update={"friction": Friction(coefficient=0.2)}))
-    yield {"run": "elastic"} | against_hertz(elastic, results["elastic"])
+    yield {"sweep": "elastic"} | against_hertz(elastic, results["elastic"])
     depth = results["coarse"].quantities["groove_depth_m"]
     for name in ("whole", "half"):
         shifted = results[f"coarse-{name}"].quantities["groove_depth_m"]
-        yield {"run": f"coarse-{name}", "shifted": abs(shifted / depth - 1)}
+        yield {"sweep": f"coarse-{name}", "shifted": abs(shifted / depth - 1)}
     turned = changed_by_turn(results["coarse"], results["coarse-back"])
-    yield {"run": "coarse", "friction-energy": np.abs(sliding.error_of_cells).max()} | turned
+    yield {"sweep": "coarse", "friction-energy": np.abs(sliding.error_of_cells).max()} | turned
     track, found, a = results["steel"].quantities, balance_of(steel), radius_at(steel)
     way, groove = groove_of(steel, results["steel"])
     steady = groove[np.asarray(results["steel"].tables["track"]["steady"]) == 1]
     yield {
-        "run": "steel",
+        "sweep": "steel",
         "steady": np.abs(steady / steady.mean() - 1).max(),
         "energy": np.abs(found.error_of_cells).max(),
         "rolling-energy": rolling_energy(found, results["steel"]),
