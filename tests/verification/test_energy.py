@@ -107,7 +107,7 @@ def test_errors_of_a_balance_by_hand():
     one = by_hand()
     assert one.peak == 1 and one.pressing[1] == 2.0
     expected = {"work": 4.0, "dissipated": 4.0, "locked": 0.5, "error-of-cells": 2.4 / 8.0}
-    expected |= {"error-of-steps": 0.75 / 8.0, "within": 0.4 / 8.0}
+    expected |= {"error-of-steps": 0.75 / 8.0, "within-cells": 0.4 / 8.0}
     for contact, more in (
         ("perfect", {"pressing": 0.5}),
         ("alternating", {"cycle": 4.0 / 2.0 - 1.0, "flow": 2.5 / 2.0 - 1.0}),

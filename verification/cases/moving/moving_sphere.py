@@ -6,22 +6,16 @@ energy, and what it shows at the start.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Friction, Result, Scene
-from verification.cases.case import SAM, Context, Plot, with_body, with_grid
+from verification.cases.case import SAM, Context, with_body, with_grid
 from verification.cases.recipes import TRACK, on_track, radius_at
 from verification.energy.balance import Balance
 from verification.energy.of_sam import balance_of
-from verification.figures.lines import grooves
 from verification.references import hertz_sphere
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
-    from verification.rows import CaseFile
 
 ELASTIC = {"cells": 8, "length": 9 * 2.25 / 8, "per_radius": 8 / 2.25}  # 9 steps of 2 1/4 cells
 FINE = {"cells": 6, "per_radius": 8.0}
@@ -119,14 +113,3 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
         "way": way,
         "groove": groove,
     }
-
-
-def groove(file: CaseFile, frame: DataFrame) -> Plot:
-    """Along the path."""
-    last = frame.iloc[-1]
-    words = (
-        "Displacement of the surface by plastic strain over the distance from the start, after the pass; "
-        "the sphere was pressed on at 0."
-    )
-    drawing = grooves({"Swift steel": (last["way"], last["groove"])}, TRACK)
-    return Plot(drawing, "groove", "Groove along the path", words, words)
