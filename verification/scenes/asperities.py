@@ -4,12 +4,10 @@ grid.
 
 Gaussian bumps with their tops on y = 0, so that the plane y = 0 passes through the middle of each spot;
 turned in the plane, so that nothing is symmetric. Their spectrum is below 1 % of its top at wavelengths of
-2.5 um, ten of the file's cells. `python -m verification.scenes.asperities` writes the file.
+2.5 um, ten of the file's cells.
 """
 
 from __future__ import annotations
-
-from pathlib import Path
 
 import numpy as np
 
@@ -53,18 +51,3 @@ def friction_map(cells: int) -> FrictionMap:
     x, low, high = centres(cells), *BORDERS
     local = np.where((x > low) & (x < high), HIGH, LOW)
     return FrictionMap(np.repeat(local[:, None], cells, axis=1), (SIDE, SIDE))
-
-
-def csv_text() -> str:
-    """The content of the file: heights to 1e-5 of the largest."""
-    found, at = height_map(CELLS), centres(CELLS)
-    rows = [
-        f"{x * 1e6:.3f}e-6,{y * 1e6:.3f}e-6,{h * 1e9:.3f}e-9"
-        for x, line in zip(at, found.values, strict=True)
-        for y, h in zip(at, line, strict=True)
-    ]
-    return "\n".join(["x_m,y_m,height_m", *rows]) + "\n"
-
-
-if __name__ == "__main__":
-    Path(__file__).with_name("rough-asperities.csv").write_text(csv_text(), encoding="utf-8")
