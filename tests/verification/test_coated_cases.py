@@ -57,14 +57,6 @@ def test_a_result_without_changes_is_no_answer():
             films.changes_of(bad)
 
 
-def test_a_limit_that_the_thinnest_film_passes_is_no_number(monkeypatch):
-    def passed(*_, **_by_name):
-        raise ValueError("limit = 0.01 is passed at thickness/a0 = 0.002 already")
-
-    monkeypatch.setattr(films, "breaking_thickness", passed)
-    assert math.isnan(films.broken_at.__wrapped__(1e-3, "rigid", 0.01, "p"))
-
-
 def patch(n: int, peak: float = 16.0) -> Made:
     """Pressure of a bump on n x n cells, `peak` in the middle."""
     x = 1e-6 * (np.arange(n) - (n - 1) / 2)
