@@ -16,22 +16,18 @@ from verification.cases.case import (
     FEM_3D,
     SAM,
     Context,
-    Plot,
     with_body,
     with_grid,
     with_loading,
     with_mesh,
 )
 from verification.cases.recipes import Resolution, at_ratio, resolved_at
-from verification.checks.certificates import OF_GROUP, curves_of, solved
-from verification.figures.lines import histories
+from verification.checks.certificates import OF_GROUP, solved
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-    from verification.rows import CaseFile
-
-__all__ = ["frame", "residuals", "worst"]
+__all__ = ["frame", "worst"]
 
 LEVEL = {"quick": Resolution(8, 10), "full": Resolution(12, 20)}
 STEPS, RATIO, PERFECT_RATIO, COEFFICIENT = 5, 4.0, 3.0, 0.2
@@ -132,23 +128,10 @@ def groups(context: Context) -> Iterator[tuple[str, str, str, Scene]]:
 def frame(context: Context) -> Iterator[dict[str, Any]]:
     """Each scene solved with the models that apply, and all conditions measured; a row is GROUP-CONDITION."""
     for group, name, model, scene in groups(context):
-        result, records = solved(scene, model)
-        values = OF_GROUP[group](scene, result, records)
-        row = {"sweep": group, "scene": name, "by": model, **values}
-        yield row | {"values": values, "curves": curves_of(result)}
+        values = OF_GROUP[group](scene, *solved(scene, model))
+        yield {"sweep": group, "scene": name, **values, "values": values}
 
 
 def worst(rows: DataFrame, column: str) -> float:
     """The largest value of a condition over the scenes for which it is measured. ValueError for none."""
     return float(np.max([one[column] for one in rows["values"] if column in one]))
-
-
-def residuals(file: CaseFile, frame: DataFrame) -> Plot:
-    """Of all solves."""
-    curves = {f"{row['scene']}, {row['by']}": row["curves"] for _, row in frame.iterrows()}
-    words = (
-        "Each curve is one attempt at a load step; the dotted line is where it may stop. Elastic SAM: "
-        "contact; plastic SAM: yield and flow rule, the contact inside; FEM: forces of Newton's method. "
-        "A residual of exactly zero, as after elastic unloading, has no place on this axis."
-    )
-    return Plot(histories(curves), "residuals", "Residuals over the iterations", words, words)
