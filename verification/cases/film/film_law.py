@@ -92,7 +92,7 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
     rate equations.
     """
     friction, (errors, extrapolated) = friction_of(100.0), path_errors()
-    pressure, laws = np.linspace(0.0, 6.5e9, 261), {mu: law_of(mu) for mu in FRICTIONS}
+    pressure, laws = np.linspace(0.0, 6.5e9, 27), {mu: law_of(mu) for mu in FRICTIONS}
     for name, law in (laws | {"0.1, as printed": law_of(FRICTIONS[1], printed=True)}).items():
         state = at_centre(law, pressure)
         thinning = np.where(state.failed, np.nan, state.thinning)[:, 0]
