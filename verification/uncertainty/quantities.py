@@ -7,31 +7,24 @@ from __future__ import annotations
 
 from sam.scene import Scene
 
-ORDERS = {
-    "force_N": 2.0,
-    "approach_m": 2.0,
-    "contact_area_m2": 2.0,
-    "contact_radius_m": 2.0,
-    "p_max_Pa": 2.0,
-    "p_center_Pa": 2.0,
-    "mises_max_Pa": 2.0,
-    "peeq_max": 2.0,
-    "residual_uz_center_m": 2.0,
-    "p_max_bare_Pa": 2.0,
-    "mises_max_substrate_Pa": 2.0,
-    "mises_max_bare_Pa": 2.0,
-    "mises_max_film_Pa": 2.0,
-    "p_max_change": 2.0,
-    "mises_max_change": 2.0,
-    "friction_coefficient": 2.0,
-    "tangential_displacement_center_m": 2.0,
-    "residual_ux_center_m": 2.0,
-    "plastic_shear_center_m": 2.0,
-    "wear_volume_m3": 1.0,
-    "groove_depth_m": 2.0,
-    "groove_deepest_m": 2.0,
-    "peeq_p95": 2.0,
-}
+OF_EDGE = (
+    "p_max_Pa",
+    "mises_max_Pa",
+    "p_max_bare_Pa",
+    "mises_max_bare_Pa",
+    "p_max_change",
+    "mises_max_change",
+    "mises_max_substrate_Pa",
+    "mises_max_film_Pa",
+    "peeq_max",
+)
+"""Of the edge of a punch, where it is singular."""
+BALANCED = ("force_N", "approach_m", "contact_area_m2", "contact_radius_m", "friction_coefficient")
+"""What the balance of forces over many spots decides; a maximum below a rough body is that of one spot."""
+RESIDUAL = ("residual_uz_center_m", "residual_ux_center_m", "plastic_shear_center_m")
+GROOVE = ("groove_depth_m", "groove_deepest_m")
+OTHERS = ("p_center_Pa", "peeq_p95", "tangential_displacement_center_m")
+ORDERS = dict.fromkeys((*OF_EDGE, *BALANCED, *RESIDUAL, *GROOVE, *OTHERS), 2.0) | {"wear_volume_m3": 1.0}
 """Quantity -> order in the cells; that in the load steps is 1, of backward Euler, for all."""
 EDGES = {"contact_area_m2": 0.3, "contact_radius_m": 0.15}
 OUTLINE_FACTOR = 2.0
@@ -41,23 +34,12 @@ error of the finest. Of 293 triplets of Hertz's contact, 4 to 33 cells in the ra
 of a cell or between four, 99.7 % are covered, U/error 4.6 in the median; with a factor of 3 as many, 6.2.
 """
 STEP_ORDER = 1.0
-BOX_ORDERS = dict.fromkeys(("residual_uz_center_m", "residual_ux_center_m", "plastic_shear_center_m"), 1.0)
+BOX_ORDERS = dict.fromkeys(RESIDUAL, 1.0)
 """The same in the size of the finite-element box; 2 of all others. From 5 to 34 radii the approach and the
 largest pressure and strain of Hertz's and of a yielding contact were seen to settle with 2.2 to 3.2, a
 residual displacement with 1.2.
 """
 
-BALANCED = ("force_N", "approach_m", "contact_area_m2", "contact_radius_m", "friction_coefficient")
-"""What the balance of forces over many spots decides; a maximum below a rough body is that of one spot."""
-OF_EDGE = (
-    "p_max_Pa",
-    "mises_max_Pa",
-    "p_max_bare_Pa",
-    "mises_max_bare_Pa",
-    "p_max_change",
-    "mises_max_change",
-)
-OF_EDGE += ("mises_max_substrate_Pa", "mises_max_film_Pa", "peeq_max")
 OF_ELEMENTS = ("approach_m", "force_N")
 """What alone the edge of a contact in an element changes by more than the rest of the rule knows: coarser
 meshes have a node at Hertz's radius too, and agree by chance. Of 35 values of five spheres beyond yield (9 to
