@@ -36,7 +36,7 @@ from verification.figures.style import (
     sheet,
     zero_line,
 )
-from verification.reference.convergence import Limit, Order, Power
+from verification.reference.convergence import Limit, Power
 
 MICRO, GIGA, PERCENT = 1e6, 1e-9, 1e2
 POINTS = {"SAM": SAM | {"marker": "o", "fillstyle": "none"}, "FEM": FEM | {"marker": "x"}}
@@ -293,13 +293,13 @@ def of_programs(
     return curves({"": drawn}, xlabel, ylabel, looks=looks, **how)
 
 
-def convergence(panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Order | None]]]) -> Drawing:
+def convergence(panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Power | None]]]) -> Drawing:
     """log-log error against cell size; panels: title -> quantity -> (h/a, relative error, fitted
     order or None).
     """
     drawn = {
         title: {
-            name: Curve(h, error, order, f"order {order.order:.2f}")
+            name: Curve(h, error, order, f"order {order.exponent:.2f}")
             if order
             else Curve(h, error, look={"linestyle": "none"})
             for name, (h, error, order) in own.items()

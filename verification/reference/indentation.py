@@ -20,24 +20,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from .checks import depth, poisson, positive
+from .hertz import CircularContact
 
 
-@dataclass(frozen=True)
-class Onset:
-    """First yield under a sphere: approach (m), load (N) and area (m^2), the units of w*, P* and A*."""
-
-    approach: float
-    load: float
-    area: float
-
-
-def onset(factor: float, radius: float, modulus: float, yield_stress: float) -> Onset:
-    """First yield at the peak pressure factor * yield_stress; radius in m, E* and yield stress in Pa."""
-    ratio = positive("factor", factor) * positive("yield_stress", yield_stress) / positive("modulus", modulus)
-    approach = (math.pi * ratio / 2.0) ** 2 * positive("radius", radius)
-    return Onset(
-        approach, 4.0 / 3.0 * modulus * math.sqrt(radius) * approach**1.5, math.pi * radius * approach
-    )
+def onset(factor: float, radius: float, modulus: float, yield_stress: float) -> CircularContact:
+    """First yield at the peak pressure factor * yield_stress, whose approach, force and area are the units of
+    w*, P* and A*; radius in m, E* and yield stress in Pa.
+    """
+    peak = positive("factor", factor) * positive("yield_stress", yield_stress)
+    return CircularContact.from_peak_pressure(peak, radius, modulus)
 
 
 @dataclass(frozen=True)
@@ -145,7 +136,7 @@ class Ghaednia:
         return JacksonGreen(self.poisson, self.yield_stress / self.modulus)
 
     @property
-    def first(self) -> Onset:
+    def first(self) -> CircularContact:
         """First yield under a sphere of radius 1 m."""
         return onset(self.perfect.factor, 1.0, self.modulus, self.yield_stress)
 
@@ -153,7 +144,7 @@ class Ghaednia:
         """a/R at an approach over R beyond 1.9 of that at first yield."""
         d = depth("approach", approach)
         elastic = np.sqrt(d)
-        plastic = np.sqrt(self.first.area * self.perfect.area(d / self.first.approach) / math.pi)
+        plastic = self.first.contact_radius * np.sqrt(self.perfect.area(d / self.first.approach))
         stiff, share = math.sqrt(self.young / self.yield_stress), self.hardening
         power = share ** (1.0 - (d - self.first.approach))
         bottom = (4.0 - 3.0 * math.exp(-2.0 * stiff * share)) * (1.0 - share)
@@ -166,7 +157,7 @@ class Ghaednia:
         hardness = 2.84 - 0.92 * (1.0 - np.cos(math.pi * a))
         plastic = np.exp(-(w ** (5.0 / 12.0)) / 4.0) * w**1.5
         plastic = plastic - 4.0 * hardness / factor * np.expm1(-(w ** (5.0 / 9.0)) / 25.0) * w
-        flat = first.load / self.modulus * plastic
+        flat = first.force / self.modulus * plastic
         return (flat - (4.0 / 3.0 * d**1.5 - flat) * np.expm1(-3.3 * self.hardening))[()]
 
 

@@ -102,7 +102,7 @@ def response(context: Context) -> Iterator[dict[str, Any]]:
     points = all_points()[:: 1 if context.level == "full" else FEW]
     for number, kh in enumerate(sorted({point[0] for point in points}), start=1):
         worst = worst_errors([point for point in points if point[0] == kh])
-        errors = {name.replace("_", "-"): each.error for name, each in worst.items()}
+        errors = {name.replace("_", "-"): error for name, error in worst.items()}
         yield {"sweep": "waves", "kh": kh} | errors
         context.progress(f"{context.case}: wave numbers", number, len(WAVES))
     (shift, stress), (unfinished, off) = error_of_equal_materials(), short_waves()

@@ -16,7 +16,7 @@ from verification.cases.recipes import Resolution, at_ratio, resolved_at
 from verification.energy import of_fem, of_sam
 from verification.energy.balance import Balance
 from verification.figures.specials import over_path
-from verification.reference.convergence import fit_order
+from verification.reference.convergence import fit_power
 from verification.references import contact_of
 
 if TYPE_CHECKING:
@@ -54,16 +54,6 @@ ELASTIC = {
 # in Pa: with a tenth of it the mean strain settles for longer.
 ALTERNATING, MODULUS, YIELD = 4.84, 150e9, 1e9
 IN_RADIUS = {SAM: 5, FEM: 3}  # cells or elements in the radius of that pressure
-
-
-def of_cells(one: Balance) -> float:
-    """The largest error of the cells over the states."""
-    return float(np.abs(one.error_of_cells).max())
-
-
-def of_steps(one: Balance) -> float:
-    """The largest error of the steps over the states."""
-    return float(np.abs(one.error_of_steps).max())
 
 
 def within(one: Balance) -> float:
@@ -161,8 +151,8 @@ def row(one: Balance, contact: str) -> dict[str, Any]:
         "work": one.work[one.peak],
         "dissipated": one.dissipated[-1],
         "locked": one.elastic[-1],
-        "error-of-cells": of_cells(one),
-        "error-of-steps": of_steps(one),
+        "error-of-cells": one.error_of_cells,
+        "error-of-steps": one.error_of_steps,
         "within": within(one),
         "balance": [one],
     }
@@ -173,12 +163,12 @@ def row(one: Balance, contact: str) -> dict[str, Any]:
 
 def order_in_cells(rows: DataFrame, column: str) -> float:
     """Of an error in the size of the cells."""
-    return fit_order(1 / rows["size"], rows[column]).order
+    return fit_power(1 / rows["size"], rows[column]).exponent
 
 
 def order_in_steps(rows: DataFrame, column: str) -> float:
     """Of an error in the load step."""
-    return fit_order(1 / rows["steps"], rows[column]).order
+    return fit_power(1 / rows["steps"], rows[column]).exponent
 
 
 def path(file: CaseFile, frame: DataFrame) -> Plot:

@@ -17,15 +17,17 @@ from sam.tribofilm import FilmLaw, FilmState
 from verification.cases.case import Context, Plot
 from verification.figures.lines import thinning_curves
 from verification.reference.bonded_film import (
+    film_pressure,
     in_plane_strain,
+    largest_pressure,
     normal_strain,
     overall_coefficient,
     printed_thinning,
+    thinning,
 )
-from verification.reference.convergence import fit_order
+from verification.reference.convergence import fit_power
 from verification.reference.film_flow import Film, FlowPoint
 from verification.reference.film_tables import growth_coefficients
-from verification.reference.regime import film_pressure, largest_pressure, thinning
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -170,7 +172,7 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
         "sweep": "law",
         "general": general_error(STATES[context.level]),
         "wrong": wrong_equilibria(),
-        "order": fit_order([1.0 / n for n in SUBSTEPS], errors).order,
+        "order": fit_power([1.0 / n for n in SUBSTEPS], errors).exponent,
         "path": extrapolated,
         "as-printed": float(np.abs(ours / printed - 1.0).max()),
         "overall": overall_error(),
