@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from sam.scene import Friction, FrictionMap, Grid, Scene, Surface
+from sam.scene import Attempt, Friction, FrictionMap, Grid, Scene, Surface
 from verification.cases.case import (
     FEM,
     FEM_3D,
@@ -26,7 +26,7 @@ from verification.cases.case import (
     with_mesh,
 )
 from verification.cases.recipes import Resolution, at_ratio, resolved_at
-from verification.checks.certificates import NAMES, OF_GROUP, Conditions, solved
+from verification.checks.certificates import NAMES, OF_GROUP, Values, curves_of, solved
 from verification.figures.lines import histories
 
 TITLES = {
@@ -136,17 +136,18 @@ def groups(context: Context) -> list[tuple[str, str, str, Scene]]:
     return found
 
 
-Found = Mapping[str, Mapping[str, Conditions]]
-"""Group -> name of a scene -> what was measured of it."""
+Found = Mapping[str, Mapping[str, tuple[Values, list[tuple[str, Attempt]]]]]
+"""Group -> name of a scene -> what was measured of it, and its attempts by load step."""
 
 
 class Certificates(Case):
     """Each scene solved with the models that apply, and all conditions measured; a row is GROUP-CONDITION."""
 
     def solve(self, context: Context) -> Found:
-        found: dict[str, dict[str, Conditions]] = {group: {} for group in TITLES}
+        found: Found = {group: {} for group in TITLES}
         for group, name, model, scene in groups(context):
-            found[group][name] = OF_GROUP[group](scene, *solved(scene, model))
+            result, records = solved(scene, model)
+            found[group][name] = OF_GROUP[group](scene, result, records), curves_of(result)
         return found
 
     def asked(self) -> Iterator[tuple[str, str]]:
@@ -162,7 +163,7 @@ class Certificates(Case):
         """
         values = {}
         for group, what in self.asked():
-            measured = [one.values[what] for one in found[group].values() if what in one.values]
+            measured = [values[what] for values, _ in found[group].values() if what in values]
             if not measured:
                 raise ValueError(f"{group}: no scene has {what}")
             values[f"{group}-{what}"] = Measured(max(measured), 0 if what == "histories" else None)
@@ -171,7 +172,7 @@ class Certificates(Case):
     def tables(self, found: Found) -> Iterator[SmallTable]:
         for group, scenes in found.items():
             rows = [
-                (NAMES[what], *(number(one.values.get(what), 2) for one in scenes.values()))
+                (NAMES[what], *(number(values.get(what), 2) for values, _ in scenes.values()))
                 for of, what in self.asked()
                 if of == group
             ]
@@ -180,9 +181,9 @@ class Certificates(Case):
 
     def figures(self, found: Found) -> Iterator[Plot]:
         curves = {
-            f"{name}, {TITLES[group].split(',')[0]}": one.curves
+            f"{name}, {TITLES[group].split(',')[0]}": curves
             for group, scenes in found.items()
-            for name, one in scenes.items()
+            for name, (_, curves) in scenes.items()
         }
         words = (
             "Each curve is one attempt at a load step; the dotted line is where it may stop. Elastic SAM: "
