@@ -19,7 +19,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import root
 
-from .checks import poisson, positive
+from .checks import Checked
 from .stress import deviator, von_mises
 
 PLANE, OFF = [0, 1, 5], [2, 3, 4]
@@ -51,17 +51,12 @@ class FlowPoint:
 
 
 @dataclass(frozen=True)
-class Film:
+class Film(Checked):
     """young and yield_stress in Pa."""
 
     young: float
     poisson: float
     yield_stress: float
-
-    def __post_init__(self):
-        positive("young", self.young)
-        poisson("poisson", self.poisson)
-        positive("yield_stress", self.yield_stress)
 
     @property
     def stiffness(self) -> np.ndarray:

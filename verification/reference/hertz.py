@@ -26,7 +26,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 from scipy.special import elliprd
 
-from .checks import coordinate, depth, poisson, positive
+from .checks import Checked, coordinate, depth, poisson, positive
 from .stress import components, von_mises
 
 
@@ -102,7 +102,7 @@ def effective_modulus(E1: float, nu1: float, E2: float | None = None, nu2: float
 
 
 @dataclass(frozen=True)
-class CircularContact:
+class CircularContact(Checked):
     """Hertz contact from force F (N), relative radius of curvature R (m) and contact modulus E* (Pa).
 
     a^3 = 3 F R/(4 E*), p0 = 3 F/(2 pi a^2), approach = a^2/R (Johnson 4.22-4.24). Profiles take r >= 0 in m,
@@ -112,10 +112,6 @@ class CircularContact:
     force: float
     radius: float
     modulus: float
-
-    def __post_init__(self):
-        for name in ("force", "radius", "modulus"):
-            positive(name, getattr(self, name))
 
     @classmethod
     def from_peak_pressure(cls, peak_pressure: float, radius: float, modulus: float) -> CircularContact:

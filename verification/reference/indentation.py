@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .checks import depth, poisson, positive
+from .checks import Checked, depth, positive
 from .hertz import CircularContact
 
 
@@ -32,7 +32,7 @@ def onset(factor: float, radius: float, modulus: float, yield_stress: float) -> 
 
 
 @dataclass(frozen=True)
-class KogutEtsion:
+class KogutEtsion(Checked):
     """Kogut & Etsion (2002), w* from 0 to 110: Hertz to 1, then two power laws that do not quite meet at 6.
 
     At 6 the second starts 1.7 % (load) and 2.9 % (area) above the end of the first.
@@ -41,9 +41,6 @@ class KogutEtsion:
     poisson: float
 
     largest = 110.0
-
-    def __post_init__(self):
-        poisson("poisson", self.poisson)
 
     @property
     def factor(self) -> float:
@@ -62,17 +59,13 @@ class KogutEtsion:
 
 
 @dataclass(frozen=True)
-class JacksonGreen:
+class JacksonGreen(Checked):
     """Jackson & Green (2005) for the yield strain Y/E*: Hertz to w* = 1.9, then one law."""
 
     poisson: float
     yield_strain: float
 
     elastic = 1.9
-
-    def __post_init__(self):
-        poisson("poisson", self.poisson)
-        positive("yield_strain", self.yield_strain)
 
     @property
     def factor(self) -> float:
@@ -111,7 +104,7 @@ def residual_share(w) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class Ghaednia:
+class Ghaednia(Checked):
     """Ghaednia et al. (2019), linear hardening, as its authors corrected it (their Eq. 26 has an exponent
     without its sign and without the approach at first yield). Lengths over the radius of the sphere.
 
@@ -124,11 +117,6 @@ class Ghaednia:
     poisson: float
     yield_stress: float
     hardening: float
-
-    def __post_init__(self):
-        poisson("poisson", self.poisson)
-        for name in ("modulus", "young", "yield_stress", "hardening"):
-            positive(name, getattr(self, name))
 
     @property
     def perfect(self) -> JacksonGreen:
