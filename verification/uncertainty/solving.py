@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import inf
 from typing import Any
@@ -67,12 +67,31 @@ class Solved:
 
 
 def solve(scene: Scene, model: str, solver: Solve | None = None) -> Result:
-    """The result of a scene, with its uncertainty if the scene asks for one.
+    """The result of a scene, and if it asks for its uncertainty, of its coarser companions what they say.
 
-    solver: of every scene, `models.solve` by default. Raises what that raises.
+    solver: of every scene, `models.solve` by default. Raises what that raises. The finest is solved first.
+    Where it does not converge, or nothing can be said, the others are not solved.
     """
     how = solver or (lambda each, _: models.solve(each, model))
-    return with_uncertainty(scene, model, how) if scene.solver.uncertainty else how(scene, "")
+    if not scene.solver.uncertainty:
+        return how(scene, "")
+    fine = how(alone(scene), "the scene itself")
+    if not fine.converged:
+        return replace(fine, uncertainty={})
+    room = fine.discretisation.get("grid_enlarged")
+    try:
+        found = family(scene, model, None if room is None else Room(**room), depths_of_maxima(scene, fine))
+    except NoFamilyError as error:
+        return _reported(fine, scene, str(error))
+    if words := under_resolved(scene, fine, found):
+        return _reported(fine, scene, words)
+
+    def rest(members: Sequence[Member], first: Result) -> list[Result]:
+        return [first, *(how(member.scene, member.label) for member in members[1:])] if members else []
+
+    cells = rest(found.cells, fine)
+    steps = rest(found.steps, cells[-1])
+    return assessed(scene, Solved(found, cells, steps, rest(found.box, (steps or cells)[-1])))
 
 
 def asked_of(scene: Scene, source: str) -> Scene:
@@ -85,24 +104,6 @@ def asked_of(scene: Scene, source: str) -> Scene:
     return asked
 
 
-def with_uncertainty(scene: Scene, model: str, solver: Solve) -> Result:
-    """The result of a scene, and of its coarser companions what they say about it.
-
-    The finest is solved first. Where it does not converge, or nothing can be said, the others are not solved.
-    """
-    fine = solver(alone(scene), "the scene itself")
-    if not fine.converged:
-        return replace(fine, uncertainty={})
-    room = fine.discretisation.get("grid_enlarged")
-    try:
-        found = family(scene, model, None if room is None else Room(**room), depths_of_maxima(scene, fine))
-    except NoFamilyError as error:
-        return _without(fine, scene, str(error))
-    if words := under_resolved(scene, fine, found):
-        return _without(fine, scene, words)
-    return assessed(scene, _solved(found, fine, solver))
-
-
 def under_resolved(scene: Scene, fine: Result, found: Family) -> str:
     """Why the coarsest grid of a family is too coarse for an uncertainty; empty if it is not."""
     resolved = cells_in_radius(scene, fine, found)
@@ -112,38 +113,29 @@ def under_resolved(scene: Scene, fine: Result, found: Family) -> str:
     return f"the coarsest grid is under-resolved: {words}"
 
 
-def _solved(found: Family, fine: Result, solver: Solve) -> Solved:
-    """All members, each solved once."""
-
-    def rest(members: Sequence[Member], first: Result) -> list[Result]:
-        return [first, *(solver(member.scene, member.label) for member in members[1:])] if members else []
-
-    cells = rest(found.cells, fine)
-    steps = rest(found.steps, cells[-1])
-    return Solved(found, cells, steps, rest(found.box, (steps or cells)[-1]))
-
-
-def _without(fine: Result, scene: Scene, reason: str) -> Result:
-    """The result, of whose quantities none has an uncertainty."""
-    names = _named(fine.quantities, scene)
-    flags = ({"u_num": None, "flag": why_not(name, scene) or reason} for name in names)
-    return _with_entries(fine, dict(zip(names, flags, strict=True)))
-
-
 def assessed(scene: Scene, solved: Solved) -> Result:
     """The finest result of a family, with the uncertainty of its quantities and the cost of all solves."""
-    fine, entries = solved.cells[0], {}
+    fine = solved.cells[0]
     reason = solved.reason or under_resolved(scene, fine, solved.family)
     solved = replace(solved, edge=cells_to_edge(scene, fine, solved.family))
-    for name in _named(fine.quantities, scene):
-        own = why_not(name, scene) or reason
-        entries[name] = {"u_num": None, "flag": own} if own else entry(name, solved, scene.solver.tolerance)
     members = (*solved.cells[1:], *solved.steps[1:], *solved.box[1:])
-    return replace(_with_entries(fine, entries), cost=cost_of(fine, members))
+    return replace(_reported(fine, scene, reason, solved), cost=cost_of(fine, members))
 
 
-def _named(quantities: Mapping[str, float | None], scene: Scene) -> list[str]:
-    return [name for name, value in quantities.items() if value is not None and not is_given(name, scene)]
+def _reported(fine: Result, scene: Scene, reason: str, solved: Solved | None = None) -> Result:
+    """The result with the uncertainty of each quantity that the scene does not give, or why there is none;
+    reason: of all that have none of their own.
+    """
+    entries: dict[str, dict[str, Any]] = {}
+    for name, value in fine.quantities.items():
+        if value is None or is_given(name, scene):
+            continue
+        words = why_not(name, scene) or reason
+        known = None if words or solved is None else entry(name, solved, scene.solver.tolerance)
+        entries[name] = known or {"u_num": None, "flag": words}
+    rows = [{"quantity": name, "value": fine.quantities[name]} | each for name, each in entries.items()]
+    table = {column: [row.get(column) for row in rows] for column in COLUMNS["quantities"]}
+    return replace(fine, uncertainty=entries, tables={**fine.tables, "quantities": table})
 
 
 def entry(name: str, solved: Solved, tolerance: float) -> dict[str, Any]:
@@ -195,13 +187,6 @@ def _bound(
     if len(values) < 2 or None in values:
         return None, []
     return bound(values, [member.size for member in members], order, factor), values
-
-
-def _with_entries(fine: Result, entries: Mapping[str, Mapping[str, Any]]) -> Result:
-    columns = COLUMNS["quantities"]
-    rows = [{"quantity": name, "value": fine.quantities[name]} | dict(each) for name, each in entries.items()]
-    table = {column: [row.get(column) for row in rows] for column in columns}
-    return replace(fine, uncertainty=entries, tables={**fine.tables, "quantities": table})
 
 
 def cost_of(fine: Result, members: Sequence[Result]) -> dict[str, float | int | None]:
