@@ -17,9 +17,8 @@ from verification.cost.plan import plan
 from verification.runs import models
 from verification.runs.files import read_run
 from verification.runs.models import FEM, FEM_3D, SAM
-from verification.uncertainty.members import family, step_counts
 from verification.uncertainty.rule import bound, converging, order_seen
-from verification.uncertainty.solving import solve
+from verification.uncertainty.solving import family, solve, step_counts
 
 ASKED = {"uncertainty": True}
 GRID = {"cells": (33, 33)}

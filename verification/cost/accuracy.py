@@ -33,27 +33,27 @@ from verification.cost.advice import (
 from verification.runs import models
 from verification.runs.provenance import memory_bytes
 from verification.text.readable import with_prefix, with_time
-from verification.uncertainty.members import (
+from verification.uncertainty.rule import STEP_FACTOR, bound
+from verification.uncertainty.solving import (
+    ORDERS,
     RATIO,
+    STEP_ORDER,
     Family,
     Member,
+    Solve,
+    Solved,
     alone,
+    assessed,
     coarser,
+    cost_of,
     depths_of_maxima,
     has_history,
     in_one_step,
     members_of_box,
     members_of_steps,
-)
-from verification.uncertainty.quantities import ORDERS, STEP_ORDER, why_not
-from verification.uncertainty.rule import STEP_FACTOR, bound
-from verification.uncertainty.solving import (
-    Solve,
-    Solved,
-    assessed,
-    cost_of,
     solve as solve_uncertain,
     under_resolved,
+    why_not,
 )
 
 ADVISED = {ELASTIC: "p_max_Pa", COATED: "p_max_Pa"} | dict.fromkeys((YIELDING, DEEP, SLIDING), "peeq_max")
