@@ -13,10 +13,15 @@ from sam.scene.friction import GROWTH_ROWS, Friction, growth_coefficient
 from sam.tribofilm import FilmLaw, FilmState
 from sam.tribofilm.law import Loads, Material, multiplier, printed_stress, radial_flow
 from verification.cases.film import film_law
-from verification.reference.bonded_film import in_plane_strain, overall_coefficient, printed_thinning
-from verification.reference.film_flow import Film, FlowPoint, deviator, mises
+from verification.reference.bonded_film import (
+    in_plane_strain,
+    overall_coefficient,
+    printed_thinning,
+    thinning,
+)
+from verification.reference.film_flow import Film, FlowPoint
 from verification.reference.film_tables import growth_coefficients, mean_of, table
-from verification.reference.regime import thinning
+from verification.reference.stress import deviator, von_mises
 
 LAW = FilmLaw(80e9, 0.3, 2e9 / 3.0, 0.1, 0.4, np.inf)
 STEEL = 210e9, 0.3
@@ -114,7 +119,7 @@ class TestReturnMap:
         sxx = (E * (xx + nu * yy) / (1.0 + nu) - nu * pressure) / (1.0 - nu)
         syy = (E * (yy + nu * xx) / (1.0 + nu) - nu * pressure) / (1.0 - nu)
         stress = np.stack([sxx, syy, -pressure, zero, -0.1 * pressure, E / (1.0 + nu) * xy])
-        q, flowed = np.array([mises(s) for s in stress.T]), np.abs(plastic).max(axis=0) > 0.0
+        q, flowed = von_mises(stress.T), np.abs(plastic).max(axis=0) > 0.0
         # sigma_y^2 - 3 tau^2 loses three digits at 99.8 % of the bearable shear, the elastic strain two
         assert q[flowed] == pytest.approx(LAW.yield_stress, rel=1e-10) and flowed.sum() > n / 2
         assert np.all(q[~flowed] <= LAW.yield_stress)

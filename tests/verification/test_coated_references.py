@@ -191,20 +191,13 @@ def test_stresses_of_the_coated_contact(young, nu, h):
         assert abs(missing[1] - (missing[0] - missing[1]) / 7) < 0.3 * abs(missing[1]) + 1e-9
 
 
-def test_largest_von_mises_of_the_bare_contact():
-    """The search in the plane against Hertz on the axis, and at the interface of a thick film."""
-    contact = film_contact(0.1, PAPER)
-    found = largest_bare_mises(contact)
-    value, z = largest_von_mises(contact.bare.peak_pressure, contact.bare.contact_radius, 0.3)
-    assert (
-        found.value == pytest.approx(value, rel=1e-6)
-        and found.z == pytest.approx(z, abs=2e-3)
-        and found.r == 0
-    )
+def test_largest_von_mises_is_that_of_hertz_and_not_below_a_finer_scan():
+    """Bare on the axis, and at the interface of a thick film; of film and body."""
+    bare = film_contact(0.1, PAPER)
+    found = largest_bare_mises(bare)
+    value, z = largest_von_mises(bare.bare.peak_pressure, bare.bare.contact_radius, 0.3)
+    assert (found.value, found.r) == (pytest.approx(value, rel=1e-6), 0) and abs(found.z - z) < 2e-3
     assert largest_bare_mises(film_contact(1.0, PAPER)).z == 1.0
-
-
-def test_largest_von_mises_is_not_below_a_finer_scan():
     contact = film_contact(0.2, 10.0)
     found = largest_mises(contact)
     film = largest_mises(contact, film=True)
@@ -327,8 +320,7 @@ def test_waves_of_traction_have_many_digits(layers, k):
 
 
 def test_transform_of_the_hertz_pressure():
-    """Where the series ends and the closed form begins as well."""
-    for ka in (1e-3, 0.0999, 0.1001, 1.0, 7.0):
+    for ka in (1e-3, 0.1, 1.0, 7.0):
         exact = quad(lambda s, ka=ka: np.sqrt(1.0 - s * s) * j0(ka * s) * s, 0.0, 1.0, epsabs=1e-13)[0]
         assert hertz_transform(np.array([ka]))[0] == pytest.approx(exact, abs=1e-10)  # of the quadrature
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import pairwise
+from itertools import groupby, pairwise
 
 import numpy as np
 
@@ -20,6 +20,9 @@ from verification.checks import (
 )
 from verification.runs import models
 
+Values = dict[str, float]
+"""Condition -> value, of a scene with one model."""
+
 
 def solved(scene: Scene, model: str) -> tuple[Result, list]:
     """The result of a model, and all that it handed out after its load steps."""
@@ -30,48 +33,43 @@ def solved(scene: Scene, model: str) -> tuple[Result, list]:
     return result, records
 
 
-def of_sam(scene: Scene, result: Result, records: list) -> dict[str, float]:
+def of_sam(scene: Scene, result: Result, records: list) -> Values:
     """All conditions of a result of SAM, smooth or rough, without film."""
     plastic, rough = scene.body.plasticity is not None, scene.surface is not None
-    values = common(scene, result) | {
-        "displacement": max(cell_checks.displaced(scene, result, records).values())
-    }
+    values = common(scene, result) | {"displacement": cell_checks.displaced(scene, result, records)}
     if scene.friction is not None:
         values["friction"] = contact_checks.slips(scene, result)
     elif not rough:
         values["planes"] = float(np.abs(contact_checks.sam_planes(scene, result)).max())
-    if not (
-        rough and plastic
-    ):  # layers of half a cell are too thick to extrapolate below spots of a few cells
-        values["surface"] = max(contact_checks.sam_surface(scene, result).values())
+    if not (rough and plastic):  # half a cell is too thick to extrapolate below spots of a few cells
+        values["surface"] = contact_checks.sam_surface(scene, result)
     if not plastic:
-        values["stress"] = cell_checks.stress(scene, result)
-        return values
-    values = larger(values, by_rule(contact_checks.flow(scene, records, choose_grid(scene).depths)))
+        return values | {"stress": cell_checks.stress(scene, result)}
+    values = larger(values, contact_checks.flow(scene, records, choose_grid(scene).depths))
     values["yield"] = max(
         values["yield"], *(contact_checks.yields(scene, result, state) for state in ("peak", "unloaded"))
     )
     values["displacement"] = max(values["displacement"], cell_checks.left(scene, result, records))
     if scene.friction is not None and scene.friction.film:
-        values["film"] = max(film_checks.states(scene, records).values())
+        values["film"] = film_checks.states(scene, records)
     if not rough:  # the line y = 0 need not be where a rough body touches first
         values = larger(values, contact_checks.unloaded(scene, result))
     return values
 
 
-def of_coated(scene: Scene, result: Result, _records: list) -> dict[str, float]:
+def of_coated(scene: Scene, result: Result, _records: list) -> Values:
     """All conditions of a result of SAM with an elastic film."""
     values = common(scene, result) | {
-        "surface": max(contact_checks.sam_surface(scene, result).values()),
-        "displacement": max(coated_checks.displaced(scene, result).values()),
-        "interface": max(coated_checks.interface(scene, result).values()),
+        "surface": contact_checks.sam_surface(scene, result),
+        "displacement": coated_checks.displaced(scene, result),
+        "interface": coated_checks.interface(scene, result),
     }
     if scene.friction is not None:
         values["friction"] = contact_checks.slips(scene, result)
     return values
 
 
-def of_fem(scene: Scene, result: Result, records: list) -> dict[str, float]:
+def of_fem(scene: Scene, result: Result, records: list) -> Values:
     """All conditions of the axisymmetric FEM; an elastic body hands out no steps: they are taken again."""
     values = common(scene, result)
     model, steps = fem_checks.steps_of(scene, records)
@@ -81,30 +79,27 @@ def of_fem(scene: Scene, result: Result, records: list) -> dict[str, float]:
     if scene.body.coating is None:
         depths, errors = last.planes()
         values["planes"] = float(np.abs(errors[depths < fem_checks.DEEPEST]).max())
-        values["surface"] = max(last.surface().values())
+        values["surface"] = last.surface()
     if scene.body.plasticity is not None:
         values = larger(
             values | {"yield": max(each.yields() for each in finite)}, contact_checks.unloaded(scene, result)
         )
         for before, now, step in zip(finite, finite[1:], steps[1:], strict=False):
             if not step.cuts:
-                values = larger(values, by_rule(now.flow(before)))
+                values = larger(values, now.flow(before))
     return values
 
 
-def of_spatial(scene: Scene, result: Result, records: list) -> dict[str, float]:
+def of_spatial(scene: Scene, result: Result, records: list) -> Values:
     """All conditions of a result of the three-dimensional FEM, in every step."""
-    values, steps = (
-        spatial_checks.surface(scene, result) | late(result),
-        spatial_checks.steps_of(scene, records),
-    )
+    values, steps = spatial_checks.surface(scene, result), spatial_checks.steps_of(scene, records)
     for each in steps:
         values = larger(values, each.equilibrium())
-    values["fields"] = max(spatial_checks.fields(steps, result).values())
+    values |= late(result) | {"fields": spatial_checks.fields(steps, result)}
     if scene.body.plasticity is not None:
         values["yield"] = max(each.yields() for each in steps)
         for before, now in pairwise(steps):
-            values = larger(values, by_rule(now.flow(before)))
+            values = larger(values, now.flow(before))
     return values
 
 
@@ -119,8 +114,8 @@ def larger(one: Mapping[str, float], other: Mapping[str, float]) -> dict[str, fl
 
 def common(scene: Scene, result: Result) -> dict[str, float]:
     """Conditions that are measured alike in SAM and the axisymmetric FEM."""
-    load, contact = contact_checks.load(scene, result), contact_checks.complementarity(scene, result)
-    return {"load": max(load.values()), "complementarity": max(contact.values())} | late(result)
+    contact = contact_checks.complementarity(scene, result)
+    return {"load": contact_checks.load(scene, result), "complementarity": contact} | late(result)
 
 
 def late(result: Result) -> dict[str, float]:
@@ -129,25 +124,11 @@ def late(result: Result) -> dict[str, float]:
     return {"histories": float(sum(each.accepted and each.residuals[-1] > each.goal for each in curves))}
 
 
-def by_rule(found: Mapping[str, float]) -> dict[str, float]:
-    """The values of `verification.checks.material.flow_of` in three."""
-    parts = ("direction", "length", "volume", "backwards")
-    return {
-        "flow": max(found[name] for name in parts),
-        "consistency": found["consistency"],
-        "yield": found["yield"],
-    }
-
-
 def curves_of(result: Result) -> list[tuple[str, Attempt]]:
     """The attempts in the residual histories of a result: (load step, attempt)."""
-    table = result.tables["residuals"]
-    keys = list(zip(table["cycle"], table["step"], table["attempt"], strict=True))
-    out: list[tuple[str, Attempt]] = []
-    for key in dict.fromkeys(keys):
-        rows = [k for k, each in enumerate(keys) if each == key]
-        residuals = tuple(table["residual"][k] for k in rows)
-        out.append(
-            (f"step {key[1]}", Attempt(bool(table["accepted"][rows[0]]), residuals, table["goal"][rows[0]]))
-        )
-    return out
+    columns = ("cycle", "step", "attempt", "accepted", "goal", "residual")
+    rows = zip(*(result.tables["residuals"][name] for name in columns), strict=True)
+    return [
+        (f"step {step}", Attempt(bool(accepted), tuple(row[-1] for row in same), goal))
+        for (_, step, _, accepted, goal), same in groupby(rows, key=lambda row: row[:5])
+    ]

@@ -30,7 +30,7 @@ RADII, POINTS = 3000, 6
 """Of the splines of the Hankel integrals; Gauss points of a cell each way, none in its middle."""
 
 
-def displaced(scene: Scene, result: Result) -> dict[str, float]:
+def displaced(scene: Scene, result: Result) -> float:
     """`conditions` of all cells, their displacement summed directly."""
     x, y, p = surface_of(result)
     film, cell = scene.body.coating, result.discretisation["cell_m"]
@@ -93,7 +93,7 @@ def summed(influence: np.ndarray, load: np.ndarray, odd: bool) -> np.ndarray:
     return (values * sign[:, None, :]) @ load[i, j]
 
 
-def interface(scene: Scene, result: Result) -> dict[str, float]:
+def interface(scene: Scene, result: Result) -> float:
     """Jumps at the interface in y = 0: of szz, syz, sxz over the largest pressure, of exx, eyy, exy
     over that of E of the softer. The film's side is the last depth above the interface.
     """
@@ -103,7 +103,5 @@ def interface(scene: Scene, result: Result) -> dict[str, float]:
     top = surface_of(result)[2].max()
     above, below = stress[:, :, k - 1], stress[:, :, k]
     strains = in_plane(above, film.young, film.poisson) - in_plane(below, body.young, body.poisson)
-    return {
-        "traction": float(np.abs(above - below)[2:5].max() / top),
-        "strain": float(np.abs(strains).max() / top) * min(film.young, body.young),
-    }
+    jump = np.abs(strains).max() * min(film.young, body.young)
+    return float(max(np.abs(above - below)[2:5].max(), jump) / top)

@@ -22,12 +22,12 @@ from pydantic import ValidationError
 from scipy.interpolate import RectBivariateSpline, RegularGridInterpolator
 
 from sam.scene import PEAK, UNLOADED, Compare, Problem, Scene, SceneError, problems, spelling
+from verification.compare.measures import Spot, patch_pressure, spots
 from verification.compare.own_data import OwnData
-from verification.compare.rough_measures import PatchPressure, Spot, residual_line, spots
 from verification.compare.rows import Pair, Solution, field_row, judged, number, scalar_row
 from verification.compare.verdicts import CHANGES, CLAIM
 from verification.judging import Measured, RowStatus, Verdict
-from verification.runs.sampling import rows_of
+from verification.runs.sampling import gridded, rows_of
 from verification.text.console import unknown
 
 RISE = 1.5  # of an elastic contact of Hertz, the steepest of those that are compared
@@ -273,9 +273,7 @@ def _plane(pair: Pair, column: str):
     """
     z, x, on_sam = _below(pair.film, *_rows(pair.sam.tables["plane"], PEAK, "z_m", "x_m", column))
     depth, r, on_fem = _below(pair.film, *_rows(pair.fem.tables["plane"], PEAK, "z_m", "x_m", column))
-    xs, zs = np.unique(x), np.unique(z)
-    grid = np.full((xs.size, zs.size), math.nan)
-    grid[np.searchsorted(xs, x), np.searchsorted(zs, z)] = on_sam
+    xs, zs, grid = gridded(x, z, on_sam)
     reach = WITHIN * pair.radius
     use = (np.abs(r) <= min(reach, xs.max())) & (depth <= min(reach, zs.max()))
     use &= depth >= max(zs.min(), pair.top)
@@ -308,7 +306,7 @@ FIELDS: Mapping[str, Callable] = {
 def _spots(pair: Pair) -> list[Spot]:
     """None where a table is missing: its rows fail by themselves."""
     try:
-        return spots(*(PatchPressure.of(solved.tables) for solved in pair.both))
+        return spots(*(solved.tables for solved in pair.both))
     except (KeyError, ValueError):
         return []
 
@@ -323,13 +321,13 @@ def _load_of(spot: Spot) -> Callable:
 
 
 def _patch(pair: Pair):
-    own, fem = (PatchPressure.of(solved.tables).p for solved in pair.both)
+    own, fem = (patch_pressure(solved.tables)[-1] for solved in pair.both)
     return own, fem, np.ones_like(fem)
 
 
 def _residual(pair: Pair):
     """At the cells of SAM."""
-    (x, own), (nodes, fem) = (residual_line(solved.tables) for solved in pair.both)
+    (x, own), (nodes, fem) = (_rows(each.tables["line"], UNLOADED, "x_m", "uz_m") for each in pair.both)
     return own, np.interp(x, nodes, fem), np.ones_like(x)
 
 

@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from verification.compare.sliding_measures import Plane
+from verification.compare.measures import Plane
 from verification.figures.style import (
     BLACK,
     BLUE,
@@ -34,7 +34,7 @@ from verification.figures.style import (
     log_ticks,
     sheet,
 )
-from verification.reference.convergence import Limit, Order, Power
+from verification.reference.convergence import Limit, Power
 
 MICRO, GIGA, PERCENT = 1e6, 1e-9, 1e2
 POINTS = {"SAM": SAM | {"marker": "o", "fillstyle": "none"}, "FEM": FEM | {"marker": "x"}}
@@ -281,13 +281,13 @@ def of_programs(
     return curves({"": drawn}, xlabel, ylabel, looks=looks, **how)
 
 
-def convergence(panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Order | None]]]) -> Drawing:
+def convergence(panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Power | None]]]) -> Drawing:
     """log-log error against cell size; panels: title -> quantity -> (h/a, relative error, fitted
     order or None).
     """
     drawn = {
         title: {
-            name: Curve(h, error, order, f"order {order.order:.2f}")
+            name: Curve(h, error, order, f"order {order.exponent:.2f}")
             if order
             else Curve(h, error, look={"linestyle": "none"})
             for name, (h, error, order) in own.items()
@@ -348,7 +348,7 @@ def limits(
 def profile_of(plane: Plane, x: float, deep: float) -> Curve:
     """Plastic strain in % over depth at x, at the own depths of a result."""
     z = plane.z[plane.z <= deep]
-    return Curve(z, PERCENT * plane.at(np.array([x]), z)[0])
+    return Curve(z, PERCENT * plane.below(x, z))
 
 
 def below_spots(spots: Mapping[str, tuple]) -> Drawing:

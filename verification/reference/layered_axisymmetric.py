@@ -24,7 +24,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.special import j0, j1
 
-from .checks import depth, poisson, positive
+from .checks import Checked, depth
 from .stress import components
 
 PROFILES = 5
@@ -33,7 +33,7 @@ these)."""
 
 
 @dataclass(frozen=True)
-class CoatedHalfSpace:
+class CoatedHalfSpace(Checked):
     """Film (young, poisson, thickness) bonded on a half-space (young_body, poisson_body); Pa and m."""
 
     young: float
@@ -41,12 +41,6 @@ class CoatedHalfSpace:
     thickness: float
     young_body: float
     poisson_body: float
-
-    def __post_init__(self):
-        for name in ("young", "thickness", "young_body"):
-            positive(name, getattr(self, name))
-        for name in ("poisson", "poisson_body"):
-            poisson(name, getattr(self, name))
 
     @property
     def modulus(self) -> float:

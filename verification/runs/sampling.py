@@ -64,13 +64,17 @@ def pressure_on(x: np.ndarray, y: np.ndarray, axisymmetric: Tables, power: int =
     return np.interp(np.hypot(x[:, None], y[None, :]), r, p**power) ** (1 / power)
 
 
-def plane_field(tables: Tables, column: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def plane_field(tables: Tables, column: str) -> tuple[np.ndarray, ...]:
     """A column of SAM in the plane y = 0 at peak load: x (nx,), z (nz,), field (nx, nz)."""
-    x, z, values = peak(tables["plane"], "x_m", "z_m", column)
-    xs, zs = np.unique(x), np.unique(z)
-    field = np.full((xs.size, zs.size), np.nan)
-    field[np.searchsorted(xs, x), np.searchsorted(zs, z)] = values
-    return xs, zs, field
+    return gridded(*peak(tables["plane"], "x_m", "z_m", column))
+
+
+def gridded(x: np.ndarray, y: np.ndarray, *values: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Values (n,) at places (n,) on their grid: x (nx,), y (ny,), and each (nx, ny), NaN where none is."""
+    (xs, i), (ys, j) = (np.unique(each, return_inverse=True) for each in (x, y))
+    fields = np.full((len(values), xs.size, ys.size), np.nan)
+    fields[:, i, j] = values
+    return xs, ys, *fields
 
 
 def plane_field_on(x: np.ndarray, z: np.ndarray, axisymmetric: Tables, column: str) -> np.ndarray:

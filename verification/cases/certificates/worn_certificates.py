@@ -20,7 +20,7 @@ from sam.scene import Checkpoint, CounterBody, Result, Scene
 from verification.cases.case import SAM, Context, with_grid, with_keys, with_loading
 from verification.cases.running_in.running_in_converged import COARSEST, Member
 from verification.checks import cells as cell_checks, conditions as contact_checks, film as film_checks
-from verification.checks.certificates import by_rule, late, solved
+from verification.checks.certificates import late, solved
 from verification.checks.conditions import surface_of
 
 __all__ = ["frame"]
@@ -55,16 +55,16 @@ def conditions_of(scene: Scene, result: Result, records: Sequence[Checkpoint]) -
     before, loaded, end = last_cycle(records)
     result = lowered(result)
     values = late(result) | {
-        "load": max(contact_checks.load(scene, result).values()),
+        "load": contact_checks.load(scene, result),
         "displacement": max(
-            *cell_checks.displaced(scene, result, loaded).values(), cell_checks.left(scene, result, [end])
+            cell_checks.displaced(scene, result, loaded), cell_checks.left(scene, result, [end])
         ),
         "friction": contact_checks.slips(scene, result),
     }
-    values |= by_rule(contact_checks.flow(scene, [before, *loaded], choose_grid(scene).depths))
+    values |= contact_checks.flow(scene, [before, *loaded], choose_grid(scene).depths)
     states = (contact_checks.yields(scene, result, state) for state in ("peak", "unloaded"))
     values["yield"] = max(values["yield"], *states)
-    values["film"] = max(film_checks.states(scene, [since(before, each) for each in loaded]).values())
+    values["film"] = film_checks.states(scene, [since(before, each) for each in loaded])
     return values
 
 

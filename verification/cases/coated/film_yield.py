@@ -21,7 +21,7 @@ from sam.scene import Body, Coating, CounterBody, Plasticity, Result, Scene
 from verification.cases.case import FEM, Context, with_body, with_loading, with_mesh
 from verification.cases.recipes import COUNTERBODIES
 from verification.compare.verdicts import LIMIT
-from verification.reference.bonded_film import elastic_mises, flow_gradient, in_plane_strain, plastic_strain
+from verification.reference.bonded_film import elastic_mises, flow_gradient, in_plane_strain, thinning
 from verification.reference.hertz import effective_modulus
 from verification.references import changes_by_film
 from verification.runs.sampling import peak
@@ -105,7 +105,7 @@ def row_of(contact: FilmContact, scene: Scene, result: Result, bare: Result) -> 
     centre, changes = q["p_center_Pa"], (q["p_max_change"], q["mises_max_change"])
     strain, bare_strain = in_plane_strain(centre, body.young, body.poisson), bare.quantities["peeq_max"]
     if yields:
-        thin = plastic_strain(centre, strain, (film.young, film.poisson, film.yield_stress))
+        thin = thinning(centre, 0.0, strain, (film.young, film.poisson, film.yield_stress))
     else:
         thin = elastic_mises(centre, strain, film.young, film.poisson)
     found = {

@@ -16,7 +16,7 @@ from verification.cases.recipes import Resolution, at_ratio, resolved_at
 from verification.energy import of_fem, of_sam
 from verification.energy.balance import Balance
 from verification.figures.specials import over_path
-from verification.reference.convergence import fit_order
+from verification.reference.convergence import fit_power
 from verification.references import contact_of
 
 if TYPE_CHECKING:
@@ -121,8 +121,8 @@ def row(one: Balance, contact: str) -> dict[str, Any]:
         "work": one.work[one.peak],
         "dissipated": one.dissipated[-1],
         "locked": one.elastic[-1],
-        "error-of-cells": np.abs(one.error_of_cells).max(),
-        "error-of-steps": np.abs(one.error_of_steps).max(),
+        "error-of-cells": one.error_of_cells,
+        "error-of-steps": one.error_of_steps,
         "within-cells": np.abs(one.within).max() / np.abs(one.work).max(),
         "balance": [one],
     }
@@ -138,12 +138,12 @@ def row(one: Balance, contact: str) -> dict[str, Any]:
 
 def order_in_cells(rows: DataFrame, column: str) -> float:
     """Of an error in the size of the cells."""
-    return fit_order(1 / rows["size"], rows[column]).order
+    return fit_power(1 / rows["size"], rows[column]).exponent
 
 
 def order_in_steps(rows: DataFrame, column: str) -> float:
     """Of an error in the load step."""
-    return fit_order(1 / rows["steps"], rows[column]).order
+    return fit_power(1 / rows["steps"], rows[column]).exponent
 
 
 def path(file: CaseFile, frame: DataFrame) -> Plot:

@@ -13,10 +13,9 @@ import numpy as np
 from sam.scene import Friction
 from sam.tribofilm import FilmLaw, FilmState
 from verification.cases.case import Context
-from verification.reference.bonded_film import in_plane_strain, normal_strain
-from verification.reference.convergence import fit_order
+from verification.reference.bonded_film import film_pressure, in_plane_strain, normal_strain
+from verification.reference.convergence import fit_power
 from verification.reference.film_flow import Film, FlowPoint
-from verification.reference.regime import film_pressure
 
 __all__ = ["frame"]
 
@@ -102,5 +101,5 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
             row["fails expected"] = film_pressure(friction.thinning_limit, name, FILM, BODY)
         yield row
     yield {"sweep": "growth", "growth": friction.growth, "over the thickness": friction.thinning_limit}
-    order = fit_order([1.0 / n for n in SUBSTEPS], errors).order
+    order = fit_power([1.0 / n for n in SUBSTEPS], errors).exponent
     yield {"sweep": "path", "order": order, "path": extrapolated}

@@ -96,14 +96,14 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
         shifted = results[f"coarse-{name}"].quantities["groove_depth_m"]
         yield {"sweep": f"coarse-{name}", "shifted": abs(shifted / depth - 1)}
     turned = changed_by_turn(results["coarse"], results["coarse-back"])
-    yield {"sweep": "coarse", "friction-energy": np.abs(sliding.error_of_cells).max()} | turned
+    yield {"sweep": "coarse", "friction-energy": sliding.error_of_cells} | turned
     track, found, a = results["steel"].quantities, balance_of(steel), radius_at(steel)
     way, groove = groove_of(steel, results["steel"])
     steady = groove[np.asarray(results["steel"].tables["track"]["steady"]) == 1]
     yield {
         "sweep": "steel",
         "steady": np.abs(steady / steady.mean() - 1).max(),
-        "energy": np.abs(found.error_of_cells).max(),
+        "energy": found.error_of_cells,
         "rolling-energy": rolling_energy(found, results["steel"]),
         "deepest-at-start": (track["groove_deepest_x_m"] - steel.loading.path.start[0]) / a,
         "shoulders": min(track["shoulder_start_m"], track["shoulder_end_m"]) / track["groove_depth_m"],

@@ -9,10 +9,10 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from sam.scene import Result, Scene
-from verification import uncertainty
 from verification.cases.case import SAM, Context
 from verification.cases.recipes import on_track
 from verification.quantities import refined
+from verification.uncertainty import solving as uncertainty
 
 STEPS = (1, 2, 4, 8, 16, 32)  # in the radius; the strain has no order before the last three
 CELLS, AT = (6, 8, 12), 8  # in the radius; where the other is varied

@@ -17,11 +17,11 @@ from verification.figures.profiles import correlations
 from verification.judging import Measured
 from verification.quantities import Reference
 from verification.reference.hamilton import largest_von_mises
+from verification.reference.hertz import CircularContact
 from verification.reference.indentation import (
     Ghaednia,
     JacksonGreen,
     KogutEtsion,
-    Onset,
     onset,
     residual_share,
 )
@@ -49,7 +49,7 @@ RESOLVED = 0.35  # contact radius over that at the largest load from which a poi
 BAND = 0.05
 
 
-def jackson_green(scene: Scene) -> tuple[JacksonGreen, Onset]:
+def jackson_green(scene: Scene) -> tuple[JacksonGreen, CircularContact]:
     """The fit for a scene, and the contact at first yield in it."""
     modulus, stress = modulus_of(scene), initial_yield(scene)
     fit = JacksonGreen(scene.body.poisson, stress / modulus)
@@ -59,7 +59,7 @@ def jackson_green(scene: Scene) -> tuple[JacksonGreen, Onset]:
 def w_star(scene: Scene, w: float) -> Scene:
     """Under the force of Jackson & Green at w*, the approach over that at first yield."""
     fit, first = jackson_green(scene)
-    return with_loading(scene, force=first.load * float(fit.load(w)))
+    return with_loading(scene, force=first.force * float(fit.load(w)))
 
 
 def share(scene: Scene, result: Result, reference: Reference | None) -> Measured:
@@ -121,7 +121,7 @@ def points(scene: Scene, result: Result) -> dict[str, np.ndarray]:
         np.asarray(history[name], dtype=float) / unit
         for name, unit in zip(
             ("approach_m", "force_N", "contact_area_m2"),
-            (first.approach, first.load, first.area),
+            (first.approach, first.force, first.area),
             strict=True,
         )
     )
