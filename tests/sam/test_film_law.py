@@ -52,7 +52,7 @@ class TestClosedForms:
         state = at_centre(replace(LAW, low=low), pressures)
         assert 100.0 * state.thinning[:, 0] == pytest.approx(percent, abs=5.1e-4) and not state.failed.any()
 
-    @pytest.mark.parametrize(("nu", "body_nu"), [(0.0, 0.3), (0.25, 0.49), (0.3, 0.0)])
+    @pytest.mark.parametrize(("nu", "body_nu"), [(0.0, 0.3), (0.25, 0.49), (0.3, 0.0), (0.3, 0.3)])
     def test_any_poisson_ratio(self, nu, body_nu):
         """Equal strains: exact in one step, at rounding; the excess over the yield stress loses two digits at
         most.
@@ -197,6 +197,10 @@ class TestScene:
         """nm, to the digits given; between its rows the coefficient is linear."""
         growth = [1e9 * film_law.friction_of(bath).growth for bath in (50.0, 100.0, 150.0, 200.0)]
         assert growth == pytest.approx([1.3731, 2.04145, 2.5882, 2.7541], abs=5.1e-5)
+        for bath, coefficient in growth_coefficients().items():
+            exact, of_bath = coefficient * np.sqrt((314.15e-3 - 300e-6) / 1.0), film_law.friction_of(bath)
+            assert 1e9 * of_bath.growth == pytest.approx(exact, rel=1e-12)
+            assert 100.0 * of_bath.thinning_limit == pytest.approx(exact, rel=1e-12)
         assert growth_coefficient(398.15) == pytest.approx((3.644e-9 + 4.620e-9) / 2.0, rel=1e-14)
 
     def test_tables_of_the_paper(self):
@@ -212,6 +216,11 @@ def test_shares_of_the_load():
     failed = np.array([[True, False], [True, True]])
     found = overall_coefficient(load, failed, 0.1, 0.4, cell_area=1e-12)
     assert found == pytest.approx(0.1 + 0.3 * 0.2333, rel=1e-12)
+    pressure, law = np.random.default_rng(3).uniform(0.0, 6e9, 1000), replace(LAW, limit=0.0204)
+    state = at_centre(law, pressure)
+    whole = (law.coefficient(state)[:, 0] * pressure).sum() / pressure.sum()
+    shares = overall_coefficient(pressure, state.failed[:, 0], 0.1, 0.4, cell_area=1e-12)
+    assert whole == pytest.approx(shares, rel=1e-12) and 0 < state.failed.sum() < 1000
     with pytest.raises(ValueError, match="load"):
         overall_coefficient(np.zeros(3), np.zeros(3, dtype=bool), 0.1, 0.4, cell_area=1.0)
 

@@ -87,12 +87,13 @@ def test_nothing_installed_imports_what_is_not():
     assert hits == {("verification/reference/layered.py", "mpmath")}
 
 
-@pytest.mark.parametrize("case", ["layered-response", "certificates"])
-def test_a_case_without_its_extra_is_not_run_and_says_what_to_install(case, tmp_path, monkeypatch, capsys):
-    assert all_cases()[case].needs() == ""
+def test_a_case_without_its_extra_is_not_run_and_says_what_to_install(tmp_path, monkeypatch, capsys):
+    assert all_cases()["certificates"].needs() == ""
     monkeypatch.setitem(sys.modules, "mpmath", None)
-    assert verify.main([case], "quick", tmp_path / "out") == 0
-    assert capsys.readouterr().out == f'{case}: not run: install mpmath: pip install "samfem[reference]"\n'
+    assert verify.main(["certificates"], "quick", tmp_path / "out") == 0
+    assert (
+        capsys.readouterr().out == 'certificates: not run: install mpmath: pip install "samfem[reference]"\n'
+    )
     assert list(tmp_path.iterdir()) == []
     extras = PROJECT["project"]["optional-dependencies"]
     assert any(name.startswith("mpmath") for name in extras["reference"])

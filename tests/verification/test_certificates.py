@@ -8,6 +8,7 @@ from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
 from made_results import last_released, with_column, with_field
 
@@ -19,7 +20,6 @@ from sam import choose_grid
 from sam.contact.normal import Search, solve_contact
 from sam.scene import FrictionMap, Status
 from sam.scene.result import Attempt, residual_table, stagnates, unfinished
-from verification.cases import all_cases
 from verification.cases.case import Context, with_loading
 from verification.cases.certificates import certificates as case
 from verification.cases.recipes import Resolution
@@ -85,17 +85,12 @@ def test_all_conditions_hold(solve, group, name):
         assert value <= limit(group, name, what), what
 
 
-def test_what_no_scene_was_measured_for_is_no_success():
-    """And the largest value of a group counts."""
-    own, found = all_cases()["certificates"], {group: {"a": ({}, [])} for group in case.TITLES}
-    for group, what in own.asked():
-        found[group]["a"][0][what] = 0.0
-    found["rough"]["b"] = {"load": 1.0}, []
-    measured = own.measure(found)
-    assert measured["rough-load"].value == 1.0 and set(measured) == set(LIMITS)
-    del found["coated"]["a"][0]["interface"]
-    with pytest.raises(ValueError, match="coated: no scene has interface"):
-        own.measure(found)
+def test_the_worst_scene_counts_and_a_condition_without_one_is_no_success():
+    frame = pd.DataFrame({"values": [{"load": 1.0}, {"load": 3.0}, {}]})
+    assert case.worst(frame, "load") == 3.0
+    assert np.isnan(case.worst(pd.DataFrame({"values": [{"load": 1.0}, {"load": np.nan}]}), "load"))
+    with pytest.raises(ValueError, match="zero-size"):
+        case.worst(frame, "interface")
 
 
 # --- perturbed answers: (scene, result, records) -> the same, of which something is wrong ---

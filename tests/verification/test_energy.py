@@ -12,7 +12,7 @@ from builders import RADIUS, hertz_force, scene
 from sam.scene import CounterBody, Scene, plastic_work
 from sam.scene.yield_curve import Linear, Swift, Tabulated
 from tests.system.test_repeated_loading import MELAN, pressed
-from verification.cases.energy.energy import cycle, flow, pressing, within
+from verification.cases.energy.energy import row
 from verification.cases.recipes import Resolution, resolved_at
 from verification.energy import of_fem, of_sam
 from verification.energy.balance import Balance, along_path
@@ -101,10 +101,16 @@ def by_hand() -> Balance:
 def test_errors_of_a_balance_by_hand():
     one = by_hand()
     assert one.peak == 1 and one.pressing[1] == 2.0
-    assert one.error_of_cells == pytest.approx(2.4 / 8.0)
-    assert one.error_of_steps == pytest.approx(0.75 / 8.0) and within(one) == pytest.approx(0.4 / 8.0)
-    assert pressing(one) == pytest.approx(0.5)
-    assert cycle(one) == pytest.approx(4.0 / 2.0 - 1.0) and flow(one) == pytest.approx(2.5 / 2.0 - 1.0)
+    expected = {"work": 4.0, "dissipated": 4.0, "locked": 0.5, "error-of-cells": 2.4 / 8.0}
+    expected |= {"error-of-steps": 0.75 / 8.0, "within-cells": 0.4 / 8.0}
+    for contact, more in (
+        ("perfect", {"pressing": 0.5}),
+        ("alternating", {"cycle": 4.0 / 2.0 - 1.0, "flow": 2.5 / 2.0 - 1.0}),
+        ("sliding", {}),
+    ):
+        found = row(one, contact)
+        assert found.pop("balance") == [one]
+        assert found == pytest.approx(expected | more)
 
 
 # --- back-stresses ------------------------------------------------------------------------------------------

@@ -43,12 +43,6 @@ def test_heights_that_are_not_worn_and_strains_of_other_cycles_are_seen(worn):
     assert through["flow"] > 1e-2
 
 
-def test_the_worst_of_all_cycles_counts_and_the_least_that_was_worn():
-    found = {2: {"load": 1.0, "worn": 2.0}, 5: {"load": 3.0, "worn": 4.0}}
-    values = study.CASES[0].measure(found)
-    assert values["load"].value == 3.0 and values["worn"].value == 2.0
-
-
 def test_a_record_is_counted_from_another_one():
     def record(value: float) -> SimpleNamespace:
         tree = {

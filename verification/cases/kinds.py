@@ -398,9 +398,9 @@ def _limits(file: CaseFile, frame: DataFrame, column: str) -> Plot:
     return Plot(refinement(panels, labels, f"{words} [%]"), "refinement", title, alt, caption)
 
 
-def _lines(file: CaseFile, frame: DataFrame, y: str, *words: str) -> Plot:
+def _lines(file: CaseFile, frame: DataFrame, y: str, *words: str) -> Plot | None:
     """`lines Y over X by SERIES in PANEL`: a column over an axis or a column, each a number or an array; what
-    is expected is dotted.
+    is expected is dotted. None where no line has two points.
     """
     said = dict(zip(words[::2], words[1::2], strict=True))
     x, by, panel = said["over"], said.get("by", "model"), said.get("in", "sweep")
@@ -411,11 +411,13 @@ def _lines(file: CaseFile, frame: DataFrame, y: str, *words: str) -> Plot:
             if rows[column].notna().all() if column in rows else False:
                 values = (np.concatenate([np.atleast_1d(each) for each in rows[c]]) for c in (x, column))
                 panels.setdefault(spelt(title), {})[series] = Curve(*values)
+    if all(len(curve.x) < 2 for series in panels.values() for curve in series.values()):
+        return None
     names = dict.fromkeys(name for series in panels.values() for name in series)
     plain, dashed = ([n for n in names if n.endswith(", expected") is ends] for ends in (False, True))
     looks = dict(zip(plain, cycle(CYCLES)))
     looks |= {n: {"color": looks[n.removesuffix(", expected")]["color"], "linestyle": ":"} for n in dashed}
-    what = words_of(file, y)
+    what = words_of(file, y) if file.sweeps else y.replace("-", " ")
     title = f"{what[0].upper()}{what[1:]}"
     text = f"Curves of the {what} over {x.replace('.', ' ')}, by {by}; dotted: what is expected."
     return Plot(curves(panels, x.replace(".", " "), fill(what, 40), looks=looks), y, title, text, text)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is checked of a solution in each model, as conditions with a value: see `verification.checks`."""
+"""What is checked of a solution in each model: condition -> value, see `verification.checks`."""
 
 from __future__ import annotations
 
@@ -20,35 +20,6 @@ from verification.checks import (
 )
 from verification.runs import models
 
-NAMES = {
-    "load": "load: |sum of p - F|/F",
-    "complementarity": "contact: |gap| where p > 0, penetration elsewhere, over the approach",
-    "displacement": "the same on all cells, displacements summed directly over pressure, traction and "
-    "plastic strain",
-    "friction": "friction: |q - μp| over p_max; at nodes of FEM over F",
-    "equilibrium": "equilibrium: nodal forces on free degrees of freedom over F",
-    "yield": "yield: (σ_vM - σ_y)/σ_y",
-    "flow": "flow rule: 2G |Δεᵖ - 3/2 Δγ s/σ_vM| over σ_y0, Δεᵖ without volume, Δγ its length and never "
-    "negative",
-    "consistency": "consistency: |σ_vM - σ_y|/σ_y where Δγ > 0",
-    "surface": "surface: tractions at z = 0 or extrapolated to it less those returned, away from the edge of "
-    "contact, over p_max",
-    "stress": "stress below the surface of elastic SAM, summed directly over pressure and traction, over "
-    "p_max",
-    "fields": "stress and plastic strain of the returned elements less the means of their points, over the "
-    "largest",
-    "interface": "film: jumps of σ_zz, σ_xz, σ_yz over p_max, and of ε_xx, ε_yy, ε_xy over p_max/E",
-    "film": "chemical film where it is whole: its plastic strain, thinning and traction beyond their limits, "
-    "over the limits; cells that have healed",
-    "planes": "planes: force through z = const over the load, less 1",
-    "histories": "histories: steps that were accepted above the residual where they may stop",
-}
-"""Condition -> what it says, in words."""
-
-
-Values = dict[str, float]
-"""Condition (of NAMES) -> value, of a scene with one model."""
-
 
 def solved(scene: Scene, model: str) -> tuple[Result, list]:
     """The result of a model, and all that it handed out after its load steps."""
@@ -59,7 +30,7 @@ def solved(scene: Scene, model: str) -> tuple[Result, list]:
     return result, records
 
 
-def of_sam(scene: Scene, result: Result, records: list) -> Values:
+def of_sam(scene: Scene, result: Result, records: list) -> dict[str, float]:
     """All conditions of a result of SAM, smooth or rough, without film."""
     plastic, rough = scene.body.plasticity is not None, scene.surface is not None
     values = common(scene, result) | {"displacement": cell_checks.displaced(scene, result, records)}
@@ -83,7 +54,7 @@ def of_sam(scene: Scene, result: Result, records: list) -> Values:
     return values
 
 
-def of_coated(scene: Scene, result: Result, _records: list) -> Values:
+def of_coated(scene: Scene, result: Result, _records: list) -> dict[str, float]:
     """All conditions of a result of SAM with an elastic film."""
     values = common(scene, result) | {
         "surface": contact_checks.sam_surface(scene, result),
@@ -95,7 +66,7 @@ def of_coated(scene: Scene, result: Result, _records: list) -> Values:
     return values
 
 
-def of_fem(scene: Scene, result: Result, records: list) -> Values:
+def of_fem(scene: Scene, result: Result, records: list) -> dict[str, float]:
     """All conditions of the axisymmetric FEM; an elastic body hands out no steps: they are taken again."""
     values = common(scene, result)
     model, steps = fem_checks.steps_of(scene, records)
@@ -116,7 +87,7 @@ def of_fem(scene: Scene, result: Result, records: list) -> Values:
     return values
 
 
-def of_spatial(scene: Scene, result: Result, records: list) -> Values:
+def of_spatial(scene: Scene, result: Result, records: list) -> dict[str, float]:
     """All conditions of a result of the three-dimensional FEM, in every step."""
     values, steps = spatial_checks.surface(scene, result), spatial_checks.steps_of(scene, records)
     for each in steps:

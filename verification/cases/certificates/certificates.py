@@ -5,37 +5,33 @@ small scenes in groups, for each of which a row holds.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sam.scene import Attempt, Friction, FrictionMap, Grid, Scene, Surface
+from sam.scene import Friction, FrictionMap, Grid, Scene, Surface
 from verification.cases.case import (
     FEM,
     FEM_3D,
     SAM,
-    Case,
     Context,
-    Measured,
     Plot,
-    SmallTable,
-    number,
     with_body,
     with_grid,
     with_loading,
     with_mesh,
 )
 from verification.cases.recipes import Resolution, at_ratio, resolved_at
-from verification.checks.certificates import NAMES, OF_GROUP, Values, curves_of, solved
+from verification.checks.certificates import OF_GROUP, curves_of, solved
 from verification.figures.lines import histories
 
-TITLES = {
-    "sam": "SAM, sphere",
-    "fem": "axisymmetric FEM",
-    "coated": "SAM, film",
-    "rough": "SAM, rough",
-    "fem-3d": "FEM in three dimensions",
-}
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+    from verification.rows import CaseFile
+
+__all__ = ["frame", "residuals", "worst"]
 
 LEVEL = {"quick": Resolution(8, 10), "full": Resolution(12, 20)}
 STEPS, RATIO, PERFECT_RATIO, COEFFICIENT = 5, 4.0, 3.0, 0.2
@@ -119,78 +115,40 @@ def rough(context: Context, model: str) -> dict[str, Scene]:
     return {"rough, elastic": elastic, "rough, Swift": slides, "rough, film that fails": chemical}
 
 
-def groups(context: Context) -> list[tuple[str, str, str, Scene]]:
+def groups(context: Context) -> Iterator[tuple[str, str, str, Scene]]:
     """(group, name, model, scene) of all that is solved."""
-    found = []
-    for name, scene in smooth(context).items():
-        found.append(("sam", name, SAM, scene))
-        if scene.friction is None:
-            found.append(("fem", name, FEM, scene))
+    spheres = smooth(context)
+    at_rest = {name: scene for name, scene in spheres.items() if scene.friction is None}
     for group, model, scenes in (
-        ("fem", FEM, yielding_film(context)),
+        ("sam", SAM, spheres),
+        ("fem", FEM, at_rest | yielding_film(context)),
         ("coated", SAM, coated(context)),
         ("rough", SAM, rough(context, SAM)),
         ("fem-3d", FEM_3D, sliding(context) | rough(context, FEM_3D)),
     ):
-        found += [(group, name, model, scene) for name, scene in scenes.items()]
-    return found
+        yield from ((group, name, model, scene) for name, scene in scenes.items())
 
 
-Found = Mapping[str, Mapping[str, tuple[Values, list[tuple[str, Attempt]]]]]
-"""Group -> name of a scene -> what was measured of it, and its attempts by load step."""
-
-
-class Certificates(Case):
+def frame(context: Context) -> Iterator[dict[str, Any]]:
     """Each scene solved with the models that apply, and all conditions measured; a row is GROUP-CONDITION."""
-
-    def solve(self, context: Context) -> Found:
-        found: Found = {group: {} for group in TITLES}
-        for group, name, model, scene in groups(context):
-            result, records = solved(scene, model)
-            found[group][name] = OF_GROUP[group](scene, result, records), curves_of(result)
-        return found
-
-    def asked(self) -> Iterator[tuple[str, str]]:
-        """Group and condition of each row."""
-        for row in self.file.rows:
-            name = row.id.partition(".")[2]
-            group = max((each for each in TITLES if name.startswith(f"{each}-")), key=len)
-            yield group, name.removeprefix(f"{group}-")
-
-    def measure(self, found: Found) -> dict[str, Measured]:
-        """The largest value of each condition in each group. ValueError for one that no scene of the group
-        was measured for.
-        """
-        values = {}
-        for group, what in self.asked():
-            measured = [values[what] for values, _ in found[group].values() if what in values]
-            if not measured:
-                raise ValueError(f"{group}: no scene has {what}")
-            values[f"{group}-{what}"] = Measured(max(measured), 0 if what == "histories" else None)
-        return values
-
-    def tables(self, found: Found) -> Iterator[SmallTable]:
-        for group, scenes in found.items():
-            rows = [
-                (NAMES[what], *(number(values.get(what), 2) for values, _ in scenes.values()))
-                for of, what in self.asked()
-                if of == group
-            ]
-            caption = f"Conditions, measured on what was returned: {TITLES[group]}"
-            yield SmallTable(caption, ("condition", *scenes), rows)
-
-    def figures(self, found: Found) -> Iterator[Plot]:
-        curves = {
-            f"{name}, {TITLES[group].split(',')[0]}": curves
-            for group, scenes in found.items()
-            for name, (_, curves) in scenes.items()
-        }
-        words = (
-            "Each curve is one attempt at a load step; the dotted line is where it may stop. Elastic SAM: "
-            "contact; plastic SAM: yield and flow rule, the contact inside; FEM: forces of Newton's method. "
-            "A residual of exactly zero, as after elastic unloading, has no place on this axis."
-        )
-        yield Plot(histories(curves), "residuals", "Residuals over the iterations", words, words)
+    for group, name, model, scene in groups(context):
+        result, records = solved(scene, model)
+        values = OF_GROUP[group](scene, result, records)
+        row = {"sweep": group, "scene": name, "by": model, **values}
+        yield row | {"values": values, "curves": curves_of(result)}
 
 
-CASES = (Certificates("certificates"),)
+def worst(rows: DataFrame, column: str) -> float:
+    """The largest value of a condition over the scenes for which it is measured. ValueError for none."""
+    return float(np.max([one[column] for one in rows["values"] if column in one]))
+
+
+def residuals(file: CaseFile, frame: DataFrame) -> Plot:
+    """Of all solves."""
+    curves = {f"{row['scene']}, {row['by']}": row["curves"] for _, row in frame.iterrows()}
+    words = (
+        "Each curve is one attempt at a load step; the dotted line is where it may stop. Elastic SAM: "
+        "contact; plastic SAM: yield and flow rule, the contact inside; FEM: forces of Newton's method. "
+        "A residual of exactly zero, as after elastic unloading, has no place on this axis."
+    )
+    return Plot(histories(curves), "residuals", "Residuals over the iterations", words, words)

@@ -35,11 +35,10 @@ def values_of(result: Result) -> dict[str, float]:
     return {key: float(result.quantities[name]) for key, name in NAMES.items()} | {"steady": float(steady)}
 
 
-def limit(by_steps: Mapping[int, Mapping[str, float]], key: str) -> tuple[float, float]:
-    """Limit of the three finest steps, and the ratio of the changes, two to the order."""
+def limit(by_steps: Mapping[int, Mapping[str, float]], key: str) -> float:
+    """Limit of the three finest steps, of the order that they have."""
     a, b, c = (by_steps[n][key] for n in STEPS[-3:])
-    ratio = (b - a) / (c - b)
-    return c + (c - b) / (ratio - 1), ratio
+    return c + (c - b) / ((b - a) / (c - b) - 1)
 
 
 def of_cells(by_cells: Mapping[int, Mapping[str, float]], key: str) -> float:
@@ -68,7 +67,7 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
     )
     for sweep, found in (("steps", steps), ("cells", cells)):
         yield from ({"sweep": sweep, "count": n} | values for n, values in found.items())
-    short = {key: limit(steps, key)[0] for key in steps[AT]}
+    short = {key: limit(steps, key) for key in steps[AT]}
     fine = {key: of_cells(cells, key) for key in steps[AT]}
     exact = {key: short[key] + fine[key] for key in fine}
     limits = {
