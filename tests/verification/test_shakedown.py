@@ -22,12 +22,10 @@ def test_ball_of_a_simplex():
     assert centre == pytest.approx([1, 1, 0], abs=1e-6) and radius == pytest.approx(np.sqrt(2), rel=1e-6)
 
 
-@pytest.mark.parametrize(("friction", "depth"), [(0.0, 0.35), (0.2, 0.3)])
-def test_the_limit_is_that_of_the_largest_shear(friction, depth):
-    """Without friction, and of traction to and fro: both signs of the largest s_xz lie on the ball, on either
-    side of its centre.
-    """
-    limit, _ = travelling_limit(friction, alternates=friction > 0.0, depths=np.array([depth]))
+@pytest.mark.parametrize(("friction", "alternates", "depth"), [(0.0, False, 0.35), (0.2, True, 0.3)])
+def test_the_limit_is_that_of_the_largest_shear(friction, alternates, depth):
+    """Without friction, or with traction that alternates, both signs of the largest s_xz lie on the ball."""
+    limit, _ = travelling_limit(friction, alternates=alternates, depths=np.array([depth]))
     assert limit == pytest.approx(shear_limit(friction), rel=1e-3)
 
 

@@ -20,9 +20,6 @@ from verification.checks import (
 )
 from verification.runs import models
 
-Values = dict[str, float]
-"""Condition -> value, of a scene with one model."""
-
 
 def solved(scene: Scene, model: str) -> tuple[Result, list]:
     """The result of a model, and all that it handed out after its load steps."""
@@ -33,7 +30,7 @@ def solved(scene: Scene, model: str) -> tuple[Result, list]:
     return result, records
 
 
-def of_sam(scene: Scene, result: Result, records: list) -> Values:
+def of_sam(scene: Scene, result: Result, records: list) -> dict[str, float]:
     """All conditions of a result of SAM, smooth or rough, without film."""
     plastic, rough = scene.body.plasticity is not None, scene.surface is not None
     values = common(scene, result) | {"displacement": cell_checks.displaced(scene, result, records)}
@@ -57,7 +54,7 @@ def of_sam(scene: Scene, result: Result, records: list) -> Values:
     return values
 
 
-def of_coated(scene: Scene, result: Result, _records: list) -> Values:
+def of_coated(scene: Scene, result: Result, _records: list) -> dict[str, float]:
     """All conditions of a result of SAM with an elastic film."""
     values = common(scene, result) | {
         "surface": contact_checks.sam_surface(scene, result),
@@ -69,7 +66,7 @@ def of_coated(scene: Scene, result: Result, _records: list) -> Values:
     return values
 
 
-def of_fem(scene: Scene, result: Result, records: list) -> Values:
+def of_fem(scene: Scene, result: Result, records: list) -> dict[str, float]:
     """All conditions of the axisymmetric FEM; an elastic body hands out no steps: they are taken again."""
     values = common(scene, result)
     model, steps = fem_checks.steps_of(scene, records)
@@ -90,7 +87,7 @@ def of_fem(scene: Scene, result: Result, records: list) -> Values:
     return values
 
 
-def of_spatial(scene: Scene, result: Result, records: list) -> Values:
+def of_spatial(scene: Scene, result: Result, records: list) -> dict[str, float]:
     """All conditions of a result of the three-dimensional FEM, in every step."""
     values, steps = spatial_checks.surface(scene, result), spatial_checks.steps_of(scene, records)
     for each in steps:
