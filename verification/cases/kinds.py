@@ -25,7 +25,6 @@ from verification.figures.lines import (
     below_spots,
     convergence,
     curves,
-    film_pressures,
     grooves,
     new_strains,
     profile_of,
@@ -46,7 +45,7 @@ from verification.figures.maps import (
 )
 from verification.figures.profiles import Profile, axis_profiles, profiles, residual_surface
 from verification.figures.style import Drawing
-from verification.quantities import OF_TRACKS, Solved, ladders, of_passes, planes, refined, strain_below
+from verification.quantities import Solved, ladders, of_passes, planes, strain_below
 from verification.reference.convergence import extrapolate
 from verification.references import REFERENCES, coated_contact, contact_of
 from verification.rows import CaseFile
@@ -198,17 +197,6 @@ def _residual_line(found: Solved) -> Plot:
     return Plot(residual(*near), "residual", "Residual heights", words, words)
 
 
-def _pressure_line(found: Solved) -> Plot:
-    hertz, series = contact_of(found.scene), {}
-    for run, result in found.results.items():
-        x, p = peak(result.tables["line"], "x_m", "p_Pa")
-        near = np.abs(x) <= 1.4 * hertz.contact_radius
-        series[run.upper()] = Curve(x[near] / hertz.contact_radius, p[near] / hertz.peak_pressure)
-    words = "Pressure on y = 0 of SAM and FEM. The traction acts on the body along +x."
-    drawn = curves({"": series}, "$x/a_0$", "$p/p_0$")
-    return Plot(drawn, "pressure", "Pressure along the sliding direction", words, words)
-
-
 def _mises_below_film(found: Solved) -> Plot:
     hertz, thickness = contact_of(found.scene), found.scene.body.coating.thickness
     units = hertz.contact_radius, hertz.peak_pressure
@@ -288,27 +276,6 @@ def _grooves(found: Solved) -> Plot:
     return Plot(grooves(lines, length), "groove", "Groove of one pass in both models", words, words)
 
 
-def _cost_of_errors(found: Solved) -> Plot:
-    """The largest error of each run against the limit of the two finest of its model, over its time."""
-    series = {}
-    for run in ("sam", "fem"):
-        named = {int(name.rpartition("-")[2]): r for name, r in found.results.items() if f"{run}-" in name}
-        limits = [(of, refined(named, of)) for of in OF_TRACKS.values()]
-        error = [100 * max(abs(of(named[n]) / limit - 1) for of, limit in limits) for n in sorted(named)]
-        series[run.upper()] = Curve(
-            np.array([named[n].cost["cpu_s"] for n in sorted(named)]), np.array(error)
-        )
-    looks = dict(zip(series, CYCLES, strict=False))
-    drawing = curves(
-        {"Cost of an error": series}, "processor time [s]", "error [%]", looks=looks, logarithmic="xy"
-    )
-    words = (
-        "The largest error of groove, depth and strain over the processor time, against the limit of the two "
-        "finest runs of each model in second order; in the same steps along the path."
-    )
-    return Plot(drawing, "cost", "Error and processor time", words, words)
-
-
 def _new_strains(found: Mapping[str, Solved], words: Mapping[str, str]) -> Iterator[Plot]:
     """What each pass adds, a figure a variant."""
     for variant, solved in found.items():
@@ -353,11 +320,9 @@ KINDS: Mapping[str, Callable[[Solved], Plot]] = {
     "residual-surface": _residual_surface,
     "strain-planes": _strain_planes,
     "grooves": _grooves,
-    "cost-of-errors": _cost_of_errors,
     "spot-pressures": _spot_pressures,
     "spot-strains": _spot_strains,
     "residual-line": _residual_line,
-    "pressure-line": _pressure_line,
     "mises-below-film": _mises_below_film,
 }
 """Name in a case file -> how it is drawn."""
@@ -435,33 +400,11 @@ def _at(file: CaseFile, frame: DataFrame, kind: str, *where: str) -> Plot:
     return replace(plot, name=name, title=f"{plot.title}, {said}")
 
 
-def _film_pressures(file: CaseFile, frame: DataFrame) -> Plot:
-    """Pressure over the radius, a panel for each modulus and counter-body, with that of Hertz."""
-    panels: dict[str, dict] = {}
-    for _, rows in frame.groupby(frame["film"].map(spelt), sort=False):
-        (ratio, thickness, counterbody), scene = rows["film"].iloc[0], rows["scene"].iloc[0]
-        contact = coated_contact(scene)
-        a, p0 = contact.bare.contact_radius, contact.bare.peak_pressure
-        x = contact.contact_radius * np.sin(np.linspace(0.0, np.pi / 2, 201))
-        series = {"reference": (x / a, contact.pressure(x) / p0)}
-        for model, result in zip(rows["model"], rows["result"], strict=True):
-            x, p = peak(result.tables["line"], "x_m", "p_Pa")
-            use = np.flatnonzero((x >= 0.0) & (p > 0.0))[::4]
-            series[model.upper()] = x[use] / a, p[use] / p0
-        panel = panels.setdefault(f"$E_1/E_2$ = {ratio:.3g}, {counterbody}", {})
-        panel[f"$h/a_0$ = {thickness:g}"] = series
-    words = "Pressure over the radius for each film: lines of the spectral solution, points of SAM and FEM."
-    caption = f"{words} Dotted: Hertz, without film. Every fourth cell along y = 0 and every fourth node."
-    title = "Contact pressure with and without film"
-    return Plot(film_pressures(panels), "pressure", title, words, caption)
-
-
 SWEPT: Mapping[str, Callable[..., Plot]] = {
     "orders": _orders,
     "limits": _limits,
     "lines": _lines,
     "at": _at,
-    "film-pressures": _film_pressures,
 }
 """First word of a figure in a case file -> how the frame of its sweeps is drawn; the others are handed on."""
 VIEWS: Mapping[str, View] = {

@@ -38,17 +38,6 @@ def misfit(law: Plasticity) -> float:
     return float(np.abs((start + back_stress(peeq)) / study.swift(law, peeq) - 1).max())
 
 
-def late(run: Run) -> float:
-    """Wear of the second half of the cycles over that of the first: 1 where wear is linear."""
-    wear = run.of_cycles("wear_of_cycle_m3")
-    return float(wear[HALF:].sum() / wear[:HALF].sum()) if wear[:HALF].any() else 0.0
-
-
-def first_loading(run: Run) -> float:
-    """Largest plastic strain at the first peak."""
-    return float(run.result.tables["history"]["peeq_max"][EFFORT.steps - 1])
-
-
 def runs(context: Context) -> Iterator[dict[str, Any]]:
     """A row for each material and way to harden: volumes in m3, the first and the last friction, and the
     strain of the first loading, over that reached by the isotropic body, less 1.
@@ -67,10 +56,12 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
 def row(run: Run, isotropic: Run, fit: float) -> dict[str, Any]:
     """Of a run, beside that of the same material with isotropic hardening."""
     wear, friction = run.of_cycles("wear_of_cycle_m3"), run.of_cycles("friction_coefficient")
-    strain, reached = first_loading(run), first_loading(isotropic)
+    first = (each.result.tables["history"]["peeq_max"][EFFORT.steps - 1] for each in (run, isotropic))
+    strain, reached = map(float, first)
+    early, late = wear[:HALF].sum(), wear[HALF:].sum()
     return {
         "volume": wear.sum(),
-        "late over early": late(run),
+        "late over early": late / early if early else 0.0,
         "friction, first": friction[0],
         "friction, last": friction[-1],
         "flowing volume, last": run.of_cycles("flowing_volume_m3")[-1],
@@ -82,11 +73,6 @@ def row(run: Run, isotropic: Run, fit: float) -> dict[str, Any]:
         "cycle": np.arange(EFFORT.cycles + 1),
         "worn": np.append(0.0, wear.cumsum()),
     }
-
-
-def total(rows: DataFrame, column: str) -> float:
-    """Of all runs."""
-    return float(rows[column].sum())
 
 
 def wear(file: CaseFile, frame: DataFrame) -> Plot:
