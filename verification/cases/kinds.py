@@ -5,6 +5,7 @@ both models (`verification.quantities.Solved`). Titles and captions follow from 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from itertools import cycle
@@ -365,25 +366,29 @@ def _limits(file: CaseFile, frame: DataFrame, column: str) -> Plot:
 
 def _lines(file: CaseFile, frame: DataFrame, y: str, *words: str) -> Plot:
     """`lines Y over X by SERIES in PANEL`: a column over an axis or a column, each a number or an array; what
-    is expected is dotted.
+    is expected is dotted. Series and panels are told by one axis or by several, "model,size".
     """
     said = dict(zip(words[::2], words[1::2], strict=True))
-    x, by, panel = said["over"], said.get("by", "model"), said.get("in", "sweep")
+    x, by, panel = said["over"], said.get("by", "model").split(","), said.get("in", "sweep").split(",")
     panels: dict[str, dict[str, Curve]] = {}
-    for (title, key), rows in frame.dropna(subset=[y]).groupby([panel, by], sort=False):
-        name = spelt(key).upper() if by == "model" else spelt(key)
+    for keys, rows in frame.dropna(subset=[y]).groupby([*panel, *by], sort=False):
+        told = [
+            spelt(each).upper() if of == "model" else spelt(each)
+            for of, each in zip([*panel, *by], keys, strict=True)
+        ]
+        title, name = (", ".join(part) for part in (told[: len(panel)], told[len(panel) :]))
         for column, series in ((y, name), (f"{y} expected", f"{name}, expected")):
             if rows[column].notna().all() if column in rows else False:
                 values = (np.concatenate([np.atleast_1d(each) for each in rows[c]]) for c in (x, column))
-                panels.setdefault(spelt(title), {})[series] = Curve(*values)
+                panels.setdefault(title, {})[series] = Curve(*values)
     names = dict.fromkeys(name for series in panels.values() for name in series)
     plain, dashed = ([n for n in names if n.endswith(", expected") is ends] for ends in (False, True))
     looks = dict(zip(plain, cycle(CYCLES)))
     looks |= {n: {"color": looks[n.removesuffix(", expected")]["color"], "linestyle": ":"} for n in dashed}
-    what = words_of(file, y)
-    title = f"{what[0].upper()}{what[1:]}"
-    text = f"Curves of the {what} over {x.replace('.', ' ')}, by {by}; dotted: what is expected."
-    return Plot(curves(panels, x.replace(".", " "), fill(what, 40), looks=looks), y, title, text, text)
+    what = words_of(file, y) if file.sweeps else y.replace("-", " ")
+    title, at = f"{what[0].upper()}{what[1:]}", re.sub("[.-]", " ", x)
+    text = f"Curves of the {what} over {at}, by {' and '.join(by)}; dotted: what is expected."
+    return Plot(curves(panels, at, fill(what, 40), looks=looks), y, title, text, text)
 
 
 def _at(file: CaseFile, frame: DataFrame, kind: str, *where: str) -> Plot:

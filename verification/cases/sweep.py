@@ -207,7 +207,8 @@ def taken(file: CaseFile, frame: DataFrame, claim: Claim) -> Measured:
 def words_of(file: CaseFile, column: str) -> str:
     """A column for the reader: of the vocabulary, or what its function says of itself."""
     of = beside(file, column, QUANTITIES)
-    return of.words if isinstance(of, Quantity) else of.__doc__.strip().splitlines()[0].rstrip(".").lower()
+    said = of.words if isinstance(of, Quantity) else of.__doc__.strip().splitlines()[0].rstrip(".")
+    return said[0].lower() + said[1:]
 
 
 def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:

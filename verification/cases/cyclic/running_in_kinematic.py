@@ -12,16 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from verification.cases.case import SAM, Context, Plot, with_keys
+from verification.cases.case import SAM, Context, with_keys
 from verification.cases.running_in import study
 from verification.cases.running_in.study import MODULI, NAMES, RECOVERY, SHARES, Effort, Run
-from verification.figures.lines import CYCLES, Curve, curves
 
 if TYPE_CHECKING:
-    from pandas import DataFrame
-
     from sam.scene import Plasticity
-    from verification.rows import CaseFile
 
 EFFORT = Effort(cycles=10, steps=4, cells=48)
 FITTED, HALF = (1e-6, 0.03), EFFORT.cycles // 2
@@ -71,26 +67,5 @@ def row(run: Run, isotropic: Run, fit: float) -> dict[str, Any]:
         "fit": fit,
         "converged": int(run.result.converged),
         "cycle": np.arange(EFFORT.cycles + 1),
-        "worn": np.append(0.0, wear.cumsum()),
+        "wear-of-all": np.append(0.0, wear.cumsum()) / wear.sum() if wear.any() else None,
     }
-
-
-def wear(file: CaseFile, frame: DataFrame) -> Plot:
-    """Up to each cycle, over that of all cycles."""
-    panels = {
-        name: {
-            each["hardening"]: Curve(each["cycle"], each["worn"] / each["volume"])
-            for _, each in own.iterrows()
-        }
-        for name, own in frame.groupby("material", sort=False)
-        if (own["volume"] > 0).all()
-    }
-    looks = dict(zip(SHARES, CYCLES, strict=False))
-    return Plot(
-        curves(panels, "cycle", "wear over that of all cycles", looks=looks, count=True),
-        "wear",
-        "Wear up to each cycle",
-        "Wear up to each cycle over that of all cycles, for the materials that wear and three ways to "
-        "harden: it slows down in each of them.",
-        "Linear wear would be a straight line. Materials that do not wear are left out.",
-    )

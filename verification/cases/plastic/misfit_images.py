@@ -5,6 +5,7 @@ and each coefficient of SAM that is wrong shows.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil
@@ -82,18 +83,28 @@ def _edges(exact: GrowingSphere, cells: int) -> np.ndarray:
     return (np.arange(-half, half + 2) - 0.5) / cells
 
 
+def cell_means(of: Callable[..., np.ndarray], edges: Sequence[np.ndarray]) -> np.ndarray:
+    """Means over cells of a function of x, y and z, (..., nx, ny, nz), by Gauss points; edges: along each."""
+    t, w = np.polynomial.legendre.leggauss(POINTS)
+    x, y, z = (((e[1:] + e[:-1])[:, None] + np.diff(e)[:, None] * t) / 2 for e in edges)
+    total = np.zeros(())
+    for k, p in enumerate(w):  # one at a time, for the memory
+        field = of(x.ravel()[:, None, None], y.ravel()[:, None], z[:, k])
+        parts = field.reshape(*field.shape[:-3], len(x), POINTS, len(y), POINTS, len(z))
+        total = total + p / 8 * np.einsum("...iajbk,a,b->...ijk", parts, w, w)
+    return total
+
+
 def mean_strain(exact: GrowingSphere, edges: np.ndarray) -> np.ndarray:
     """Means of the plastic strain over cells, (6, layers, nx, ny); edges: in radii from the centre."""
-    t, w = np.polynomial.legendre.leggauss(POINTS)
-    at = ((edges[1:] + edges[:-1])[:, None] / 2 + np.diff(edges)[:, None] / 2 * t).ravel()
-    place = np.stack(np.meshgrid(at, at, at, indexing="ij"))
-    r = np.sqrt((place**2).sum(axis=0))
-    q, n = exact.fields(r * exact.radius).plastic, place / r
-    pairs = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
-    values = np.stack([q * ((i == j) - 3 * n[i] * n[j]) for i, j in pairs])
-    count = len(edges) - 1
-    values = values.reshape(6, count, POINTS, count, POINTS, count, POINTS)
-    return np.einsum("siajbkc,a,b,c->skij", values, w, w, w) / 8
+
+    def strain(*place: np.ndarray) -> np.ndarray:
+        r = np.sqrt(sum(each**2 for each in place))
+        q, n = exact.fields(r * exact.radius).plastic, [each / r for each in place]
+        pairs = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
+        return np.stack([q * ((i == j) - 3 * n[i] * n[j]) for i, j in pairs])
+
+    return np.moveaxis(cell_means(strain, (edges, edges, edges)), 3, 1)
 
 
 def _alone(strain: np.ndarray, faces: np.ndarray, nu: float) -> tuple[np.ndarray, np.ndarray]:
