@@ -334,29 +334,6 @@ def refinement(
     return drawing
 
 
-def limits(
-    panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Callable]]], band: float
-) -> Drawing:
-    """Differences from a model without small strains; panels: quantity -> material -> (a/R,
-    relative difference, its fit); band: shaded on both sides of zero.
-    """
-    drawn = {
-        title.capitalize(): {
-            f"{name} and its fit": Curve(
-                x, PERCENT * off, lambda at, fit=fit: PERCENT * fit(at), span=(0.0, x.max())
-            )
-            for name, (x, off, fit) in own.items()
-        }
-        for title, own in panels.items()
-    }
-    labels = dict.fromkeys(drawn, "difference [%]")
-    how = {"across": 2 if len(panels) > 3 else 0, "size": (3.6, 3.0), "legend": "below"}
-    drawing = curves(drawn, "$a/R$", labels, band=PERCENT * band, **how)
-    for axis in drawing.figure.axes:
-        axis.set_xlim(0.0, None)
-    return drawing
-
-
 def profile_of(plane: Plane, x: float, deep: float) -> Curve:
     """Plastic strain in % over depth at x, at the own depths of a result."""
     z = plane.z[plane.z <= deep]

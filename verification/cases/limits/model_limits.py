@@ -17,8 +17,7 @@ import numpy as np
 from fem_reference import plastic_radius
 from fem_reference.finite_strain import Curve, build, curve_of, load_to
 from sam.scene import Scene
-from verification.cases.case import Context, Plot
-from verification.figures.lines import limits as drawn
+from verification.cases.case import Context
 from verification.references import contact_of
 from verification.runs.model_range import (
     COLUMNS,
@@ -34,9 +33,7 @@ from verification.runs.tables import columns_text
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-    from verification.rows import CaseFile
-
-__all__ = ["differences_of_models", "elastic", "plastic", "stated"]
+__all__ = ["elastic", "plastic", "stated"]
 
 LIMIT = 0.05
 """Relative difference from which on the models of the scenes are called no good."""
@@ -264,7 +261,11 @@ def compared(context: Context, bodies: Sequence[Body]) -> Iterator[dict[str, Any
     named = fits | {f"{bodies[0].name}, {COARSER} elements in a": other}
     for name, each in named.items():
         row = {"sweep": OFF, "material": name} | {QUANTITIES[of]: words(fit) for of, fit in each.items()}
-        yield row | ({"fits": each} if name in fits else {})
+        if name in fits:
+            row["a-over-R"] = each["radius"].x
+            for of, fit in each.items():
+                row |= {f"difference-of-{of}": fit.values, f"difference-of-{of} expected": fit(fit.x)}
+        yield row
     values = {"table": off_table(bodies, found)}
     for name, fit in fits[bodies[0].name].items():
         values[f"{name}-limit"] = limit = fit.good_to()
@@ -339,22 +340,6 @@ def words(fit: Difference) -> str:
     if np.isinf(limit):
         return f"> {fit.x.max():.2f}"
     return f"{limit:.3f} ({low:.3f} to {high:.3f})" if np.isfinite(high) else f"{limit:.3f} (from {low:.3f})"
-
-
-def differences_of_models(file: CaseFile, frame: DataFrame) -> Plot:
-    """What finite strain and true geometry change, with the fits."""
-    fits = frame.dropna(subset=["fits"])
-    panels: dict[str, dict[str, tuple]] = {}
-    for material, each in zip(fits["material"], fits["fits"], strict=True):
-        for name, fit in each.items():
-            panels.setdefault(QUANTITIES[name], {})[material] = fit.x, fit.values, fit
-    said = (
-        "Relative differences at equal force over the contact radius divided by that of the sphere; points: "
-        f"load steps; lines: fits from which the limits are taken; shaded: ±{LIMIT:.0%}."
-    )
-    return Plot(
-        drawn(panels, LIMIT), "differences", "What finite strain and true geometry change", said, said
-    )
 
 
 def main() -> None:

@@ -33,7 +33,7 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
 
     off: how far the largest plastic strain is from that of backward Euler with as many steps; excess: max
     (mises - sigma_y)/sigma_y as the certificate states it; stated: what the plane y = 0 has beyond it;
-    z, plastic-strain: on the axis, z in um, in the fewest load steps.
+    plastic-strain: on the axis, in the fewest load steps.
     """
     for law, (name, ratio) in SCENES.items():
         loaded, euler = with_loading(at_ratio(context.scene(name), ratio), unload=False), {}
@@ -60,7 +60,7 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
                     "flow-rule residual": said["flow_residual"],
                     "stated": max(0.0, seen - said["yield_excess"]),
                     "applications": result.cost["operator_applications"],
-                    "z": 1e6 * z[near],
+                    "depth-in-um": 1e6 * z[near],
                     "plastic-strain": below[near] if steps == STEPS[context.level][0] else None,
                 }
 
