@@ -150,8 +150,7 @@ def zone(exact: GrowingSphere) -> Images:
 
 def _image(place: int, words: str) -> Callable[..., float]:
     def of(scene: Scene, result: Result, _: Reference) -> float:
-        found = zone(growing_sphere(scene))
-        return float([*found.left, found.largest][place])
+        return float(zone(growing_sphere(scene)).left()[place])
 
     of.__doc__ = words
     return of
