@@ -280,7 +280,6 @@ class TestKinematic:
         assert wrong(name, self.rows(fit=0.01)) == {"fit"}
         assert wrong(name, self.rows(first=1.2e-3)) == {"first-loading"}
         assert wrong(name, self.rows(converged=False)) == {"converged"}
-        assert list(findings(kinematic.wear(None, pd.DataFrame(rows)).drawing.figure)) == []
 
 
 class TestWay:
