@@ -6,15 +6,16 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from made_histories import CYCLES, as_the_paper_says, at_rest, history, result_of
 
+from sam.scene import load_scene
 from verification.cases.running_in.running_in_physics import ALL, FIRST, NUMBERS, PARTS
 from verification.cases.running_in.running_in_sensitivity import INPUTS, Studied, hardness, scene_at
-from verification.cases.running_in.study import NAMES, Run, framed, judged, measured, printed
+from verification.cases.running_in.study import NAMES, Run, framed, judged, measured
 from verification.compare.running_in_measures import History
 from verification.sensitivity import UNIFORM, design
 
 POINTS = 40
 GOOD = "moves, rough, new in each pass", "alternating", "kinematic"
-SCENES = {case: printed(case)[0] for case in NAMES}
+SCENES = {case: load_scene(f"verification/scenes/running-in-{case}.toml") for case in NAMES}
 
 
 def verdicts(surfaces: Sequence[Mapping[str, History]]) -> list[dict]:
@@ -43,8 +44,8 @@ def over_inputs(**changed: History) -> Studied:
 
 
 def studied(shares: np.ndarray, runs: Mapping[tuple[int, str], Run]) -> Studied:
-    hard = {case: hardness(scene) for case, scene in SCENES.items()}
-    return Studied(framed(runs, ("point", "material")), np.asarray(shares), hard)
+    printed = {case: hardness(scene) for case, scene in SCENES.items()}
+    return Studied(framed(runs, ("point", "material")), np.asarray(shares), printed)
 
 
 def over_physics(**changed: History):

@@ -32,7 +32,6 @@ from verification.cases.running_in.study import (
     at_rest_from,
     framed,
     judged,
-    printed,
     reduced,
     statements_table,
     with_seed,
@@ -40,7 +39,7 @@ from verification.cases.running_in.study import (
 from verification.compare.running_in_measures import History, Limits, Scar, Spread
 from verification.figures.running_in import regime_map
 
-SCENES = {case: printed(case)[0] for case in (*NAMES, "curve-c")}
+SCENES = {case: load_scene(f"verification/scenes/running-in-{case}.toml") for case in (*NAMES, "curve-c")}
 SMALL = reduced(SCENES[B], Effort(3, 2, 8))
 CASE, CELLS = running_in.CASES
 TEN = tuple(range(1, 11))

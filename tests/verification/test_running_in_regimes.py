@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from sam.scene import load_scene
 from verification.cases.running_in import running_in
-from verification.cases.running_in.study import BULK, HARDENING, NAMES, A, B, printed
+from verification.cases.running_in.study import BULK, HARDENING, NAMES, A, B
 from verification.reference.bonded_film import (
     Regime,
     film_pressure,
@@ -21,7 +22,7 @@ from verification.reference.bonded_film import (
 )
 
 FILM, BODY = (80e9, 0.3, 2e9 / 3), (210e9, 0.3)
-SCENES = {case: printed(case)[0] for case in (*NAMES, "curve-c")}
+SCENES = {case: load_scene(f"verification/scenes/running-in-{case}.toml") for case in (*NAMES, "curve-c")}
 
 
 def rate_integrated(p: float, mu: float) -> float:

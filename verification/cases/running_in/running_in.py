@@ -151,9 +151,7 @@ class RunningIn(Study):
                 scene = study.with_seed(scene, seed)
                 found[reading, case, seed] = renewed(scene) if reading == RENEWED else scene
         if context.level == "full":
-            curve_c, inputs = study.printed("curve-c")
-            context.inputs |= inputs
-            others = varied_scenes(printed, curve_c)
+            others = varied_scenes(printed, context.scene("running-in-curve-c"))
             found |= {(OTHER, name, label): scene for name, (label, scene) in others.items()}
         return found
 

@@ -18,35 +18,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from sam.scene import (
-    CounterSurface,
-    Hardening,
-    Inputs,
-    Plasticity,
-    Result,
-    Scene,
-    Status,
-    parse_toml,
-    scene_of,
-)
+from sam.scene import CounterSurface, Hardening, Plasticity, Result, Scene, Status
 from verification.cases.case import SAM, Case, Context, SmallTable, with_grid, with_keys, with_loading
 from verification.compare.running_in_measures import History, Scar, Spread
-from verification.rows import FOLDER
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
 BULK, A, B, DUCTILE, HARDENING = "bulk", "curve-a", "curve-b", "curve-b-ductile", "hardening"
 NAMES = {BULK: "bulk", A: "curve A", B: "curve B", DUCTILE: "curve B, 5 %", HARDENING: "hardening only"}
-"""The five materials, as runs are named -> as the reader knows them."""
-LAYERS = {
-    A: ("curve-a.csv", 0.02),
-    DUCTILE: ("curve-b.csv", 0.05),
-    HARDENING: ("hardening-only.csv", 0.02),
-    "curve-c": ("curve-c.csv", 0.02),
-}
-"""What a material has in place of curve B and its limit: file of the factors, largest strain of the layer."""
-SCENES = FOLDER.parent / "scenes"
+"""The five materials, as scenes are named -> as the reader knows them."""
 EARLY, STEADY, LAST = 6, 10, 25  # cycles of the paper's figures: end of the first wear, steady part, last
 AGREED = 0.8  # of the surfaces that must agree
 STILL = 1e-3  # of the worn volume: what cycles 21 to 25 add at least where wear goes on
@@ -79,25 +60,9 @@ class Effort(NamedTuple):
         return f"{self.cells} × {self.cells} cells of 1 µm, {self.cycles} cycles, {self.steps} load steps"
 
 
-def printed(material: str) -> tuple[Scene, dict[str, bytes]]:
-    """The scene of a material with the printed inputs, and what was read: name -> content."""
-    name = f"running-in-{BULK if material == BULK else B}.toml"
-    content, inputs = (SCENES / name).read_bytes(), Inputs(SCENES)
-    tables = parse_toml(content, name)
-    if material in LAYERS:
-        profile, limit = LAYERS[material]
-        tables["body"]["plasticity"]["profile"] = profile
-        tables["wear"]["strain_limit_layer"] = limit
-        tables["title"] = f"Running-in, {NAMES.get(material, 'curve C')}"
-    return scene_of(tables, name, inputs), {name: content, **inputs.contents}
-
-
 def printed_scenes(context: Context, effort: Effort) -> dict[str, Scene]:
     """Material -> its scene with the printed inputs at an effort."""
-    read = {case: printed(case) for case in effort.cases}
-    for _, inputs in read.values():
-        context.inputs |= inputs
-    return {case: reduced(scene, effort) for case, (scene, _) in read.items()}
+    return {case: reduced(context.scene(f"running-in-{case}"), effort) for case in effort.cases}
 
 
 def reduced(scene: Scene, effort: Effort) -> Scene:
