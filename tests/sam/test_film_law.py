@@ -48,7 +48,7 @@ class TestClosedForms:
         ],
     )
     def test_numbers_computed_elsewhere(self, low, pressures, percent):
-        """By another code, with three and four digits behind the point; and by the closed form to rounding."""
+        """By another code, with three and four digits behind the point; and the closed form, to rounding."""
         state, film = at_centre(replace(LAW, low=low), pressures), (LAW.young, LAW.poisson, LAW.yield_stress)
         assert 100.0 * state.thinning[:, 0] == pytest.approx(percent, abs=5.1e-4) and not state.failed.any()
         exact = [thinning(p, low, in_plane_strain(p, *STEEL), film) for p in pressures]
