@@ -25,7 +25,7 @@ from verification.cases.running_in import (
 )
 from verification.cases.running_in.running_in_converged import COARSEST, DEFAULT, SEEDS, Member
 from verification.cases.running_in.running_in_physics import ALL
-from verification.cases.running_in.running_in_sensitivity import INPUTS, PRINTED, deciders, scene_at, wilson
+from verification.cases.running_in.running_in_sensitivity import INPUTS, PRINTED, scene_at, wilson
 from verification.cases.running_in.study import (
     BULK,
     LAST,
@@ -41,7 +41,6 @@ from verification.cases.running_in.study import (
 from verification.cases.sweep import taken
 from verification.figures.check import findings
 from verification.scenes.asperities import SIDE
-from verification.surrogate import Surrogate
 
 OF_THE_LAYER = {"depth", "deviation", "hardening", "layer-limit"}
 
@@ -74,34 +73,23 @@ class TestInputs:
         """Each of the others is in the middle of its range."""
         for case in (BULK, A):
             shares = ([end if one.name == name else 0.5 for one in INPUTS] for end in (0.05, 0.95))
-            low, high = (resolved(scene_at(SCENES[case], each, 7)) for each in shares)
+            low, high = (resolved(scene_at(SCENES[case], each)) for each in shares)
             assert (low != high) == (case == A or name not in OF_THE_LAYER)
 
     @pytest.mark.parametrize("case", [BULK, A])
     def test_the_printed_inputs_are_those_of_the_scenes(self, case):
         own = resolved(SCENES[case])
-        again = resolved(scene_at(SCENES[case], PRINTED, own["surface"]["seed"]))
+        again = resolved(scene_at(SCENES[case], PRINTED))
         layer = again["body"]["plasticity"].pop("layer", None)
         own["body"]["plasticity"].pop("layer", None)
         assert again == _close(own)
         assert layer is None or layer["alpha"] == pytest.approx(own["body"]["plasticity"]["alpha"], rel=1e-12)
 
-    def test_a_change_within_chance_acts_only_where_a_believed_fit_names_the_input(self):
-        """Of 16 points in each half it holds at 11 and at 5: beyond the bounds of 90 %, not of 99.9 %."""
-        shares = np.full((32, len(INPUTS)), 0.4)
-        shares[:16, 3] = 0.6
-        held = np.r_[np.ones(11), np.zeros(5), np.ones(5), np.zeros(11)]
-        moves = 0.6 * np.eye(len(INPUTS))[3]
-        for predicted, parts, acts in ((0.6, moves, True), (0.4, moves, False), (0.6, 0.0 * moves, False)):
-            (found,) = deciders(shares, held, Surrogate(predicted, parts, np.sign(parts)))
-            assert found["input"] == INPUTS[3].words and found["acts"] == acts and found["bounds"][0] > 0.0
-        assert not deciders(shares, held)[0]["acts"]
-
     def test_a_lost_run_says_nothing_and_turns_the_row_red(self, found):
         assert red(self.CASE.name, self.CASE.measure(found), whole=True) == set()
-        lost = (found.frame["point"] < 11) & (found.frame["material"] == A)
+        lost = (found.frame["reading"] < 11) & (found.frame["material"] == A)
         frame = found.frame.mask(lost.to_numpy()[:, None] & (found.frame.columns == "converged"), False)
-        frame.loc[lost, list(frame.columns[4:])] = np.nan
+        frame.loc[lost, list(frame.columns[5:])] = np.nan
         some = replace(found, frame=frame)
         assert red(self.CASE.name, self.CASE.measure(some)) == {"lost"}
         of_curve_a = [A in each.how.split() for each in STATEMENTS]
@@ -130,13 +118,14 @@ class TestInputs:
         assert wilson(0, 20)[0] == 0.0 and wilson(0, 0) == (0.0, 1.0)
 
 
-def fitted(shares, lost=(), scene=None):
+def fitted(shares, lost=()):
     """Points that are as the paper says: the statements hold at all of them but those that are lost."""
     runs = {}
     for k, case in np.ndindex(len(shares), len(NAMES)):
         name = list(NAMES)[case]
-        own = scene(SCENES[name]) if scene else scene_at(SCENES[name], shares[k], 7)
-        runs[k, name] = Run(own, result_of(as_the_paper_says()[name], converged=k not in lost))
+        runs[k, name, 7] = Run(
+            scene_at(SCENES[name], shares[k]), result_of(as_the_paper_says()[name], converged=k not in lost)
+        )
     return studied(shares, runs)
 
 
@@ -165,23 +154,28 @@ class TestPhysics:
     CASE = all_cases()["running-in-physics"]
 
     def test_every_physics_is_another_scene(self, tmp_path):
-        scenes = self.CASE.scenes(context(self.CASE.name, tmp_path))
-        every = [repr(resolved(each)) for each in scenes.values()]
-        assert len(set(every)) == len(set(map(self.CASE.label, scenes))) == len(ALL) * len(NAMES) == 120
+        here = context(self.CASE.name, tmp_path)
+        scenes = self.CASE.scenes(here)
+        every, labels = [repr(resolved(each)) for each in scenes.values()], self.CASE.labels(here)
+        assert len(set(every)) == len(set(labels.values())) == len(ALL) * len(NAMES) == 120
         assert {scene.surface.seed for scene in scenes.values()} == {2}
 
     def test_lost_and_missing_runs_and_a_first_cycle_of_its_own_turn_rows_red(self):
         readable(self.CASE, over_physics())
-        runs = {tuple(row[:4]): row.run for row in over_physics().itertuples(index=False)}
+        runs = {tuple(row[:3]): row.run for row in over_physics().itertuples(index=False)}
         assert red(self.CASE.name, self.CASE.measure(framed_physics(runs)), whole=True) == set()
         own = as_the_paper_says()[B]
-        first = {(*GOOD, B): Run(SCENES[B], result_of(replace(own, volume=own.volume * (1.0 + 1e-9))))}
+        first = {(GOOD, B, 2): Run(SCENES[B], result_of(replace(own, volume=own.volume * (1.0 + 1e-9))))}
         assert red(self.CASE.name, self.CASE.measure(framed_physics(runs | first))) == {"first-cycle"}
-        lost = {(*each, BULK): Run(SCENES[BULK], Made(converged=False)) for each in ALL[:7]}
+        lost = {(each, BULK, 2): Run(SCENES[BULK], Made(converged=False)) for each in list(ALL)[:7]}
         found = framed_physics(runs | lost)
         assert red(self.CASE.name, self.CASE.measure(found)) == {"lost"}
-        table, worn = self.CASE.tables(found)
-        assert "(IHK)" in table.rows[0][2] and worn.rows[0][2] == "not converged"
+        under, hold = self.CASE.tables(found)
+        assert under.rows[0][1:3] == ("13", "bulk: worn in the first six cycles") and under.rows[0][-1] == "7"
+        good = next(row for row in hold.rows if row[0] == GOOD)
+        assert good[1:] == ("17", ", ".join(map(str, range(1, 18))), "") and hold.rows[0][3].startswith(
+            "1, 2"
+        )
         assert "missing" in red(self.CASE.name, self.CASE.measure(found.iloc[1:]))
 
 

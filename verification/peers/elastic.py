@@ -61,7 +61,7 @@ HERTZ_ERROR = 5e-6
 def solution(problem: str, n: int, python: Path, program: str = SAM) -> np.ndarray:
     """The pressure on these cells with a tight tolerance. RuntimeError when there is none."""
     measurement = Measurement(Job(problem, n, TIGHT[program]))
-    run(program, [measurement], python)
+    run(program, measurement, python)
     if measurement.failure or "pressure" not in measurement.fields:
         raise RuntimeError(
             f"{program} on {n} x {n} cells of {problem}: {measurement.failure or 'no pressure'}"
@@ -116,7 +116,7 @@ def hertz(
         n, side = each.job.cells, each.job.settings.get("side", problems.SIDE)
         if (n, side) not in least:
             tight = Measurement(Job(problems.HERTZ, n, {**TIGHT[SAM], "side": side}))
-            run(SAM, [tight], pythons[SAM])
+            run(SAM, tight, pythons[SAM])
             least[n, side] = abs(float(tight.fields["pressure"].max()) / problems.P0 - 1)
         return hertz_errors(each.fields["pressure"], n, side, least[n, side])
 

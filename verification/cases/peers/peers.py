@@ -197,18 +197,15 @@ def hertz_times(frame: DataFrame) -> SmallTable:
     return _table(f"Hertz: time to an error of {at} {words}", lines)
 
 
-def _rough_fastest(frame: DataFrame) -> dict[str, DataFrame]:
-    rows = frame[frame["sweep"] == problems.ROUGH]
-    return {n: fastest(rows, n, elastic.ROUGH_ERROR) for n in map(cells_in_words, elastic.ROUGH_SIZES)}
-
-
 def rough_times(frame: DataFrame) -> SmallTable:
     """The rough patch: time at an error of the pressure that all reach."""
+    rows = frame[frame["sweep"] == problems.ROUGH]
     lines = [
         {"grid": n, "program": NAMES[program], "time [s]": row["seconds"]}
         | {"error, L2 of the pressure": row["error"]}
         | {"over SAM's": ratio(row["seconds"], own["seconds"].get(SAM))}
-        for n, own in _rough_fastest(frame).items()
+        for n in map(cells_in_words, elastic.ROUGH_SIZES)
+        for own in [fastest(rows, n, elastic.ROUGH_ERROR)]
         for program, row in own.iterrows()
     ]
     at = number(elastic.ROUGH_ERROR, 1)
@@ -242,22 +239,4 @@ def over_time(file: CaseFile, frame: DataFrame, problem: str) -> Plot:
     shade = "Shaded: the uncertainty of the references." if floor else "Dotted: where times are compared."
     return Plot(
         drawing, problem, f"{title}: error over time", words, f"A marker a grid, coarse to fine. {shade}"
-    )
-
-
-def over_size(file: CaseFile, frame: DataFrame) -> Plot:
-    """Time over the size of the rough patch."""
-    fast, at = _rough_fastest(frame), number(elastic.ROUGH_ERROR, 1)
-    sizes = dict(zip(fast, elastic.ROUGH_SIZES, strict=True))
-    series = {}
-    for program, name in NAMES.items():
-        if there := [n for n, own in fast.items() if program in own.index]:
-            times = [fast[n]["seconds"][program] for n in there]
-            series[name] = name, np.array([sizes[n] for n in there]), np.array(times)
-    return Plot(
-        of_programs(series, "cells a side", "processor time [s]"),
-        "rough",
-        "Rough patch: time over size",
-        f"Processor time over cells a side for {', '.join(series)}.",
-        f"Each at the loosest tolerance with an error of at most {at} on that grid.",
     )

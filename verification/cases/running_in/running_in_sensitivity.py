@@ -14,9 +14,8 @@ that is plausible is said.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
-from itertools import product
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -25,10 +24,20 @@ from scipy.stats import binomtest, norm
 from sam.scene import Scene
 from verification.cases.case import Context, Measured, Plot, SmallTable, with_keys, with_loading
 from verification.cases.running_in import study
-from verification.cases.running_in.study import BULK, DEEPER, LAST, NAMES, STATEMENTS, A, B, Effort, Study
+from verification.cases.running_in.study import (
+    BULK,
+    DEEPER,
+    LAST,
+    NAMES,
+    STATEMENTS,
+    A,
+    B,
+    Effort,
+    Reading,
+    Readings,
+)
 from verification.figures.specials import probabilities
 from verification.sensitivity import UNIFORM, design
-from verification.surrogate import Surrogate, surrogate
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -39,9 +48,7 @@ EFFORTS = {"quick": (4, Effort(2, 2, 24, (BULK, A))), "full": (64, Effort(LAST, 
 all."""
 SEED = 26  # of the design
 CHANCE = 1e-3  # of each of 17 × 16 changes of probability: less than one of them is named by chance
-PREDICTS = 0.5  # Q² of a fit that is believed: of 200 results without any cause at most two have it
-PART = 0.1  # of the variance: an input with less of it is not named
-DECIDING, EXPLAINING = 2, 3  # inputs named for each statement, and for its measure
+DECIDING = 2  # inputs named for each statement
 LAYER_LIMIT = 0.02  # of the layers of the printed scenes; curve B with 5 % keeps its 2.5 times as much
 SMOOTH = 0.5e-9  # m: below it the counter-surface is a plane
 NOMINAL = 1e-6  # m: printed thickness of the layer
@@ -153,9 +160,8 @@ PRINTED = np.array([each.share for each in INPUTS])
 """(inputs,) shares of the printed inputs."""
 
 
-def scene_at(scene: Scene, shares: Sequence[float], seed: int) -> Scene:
-    """The scene of a material with every input at its share, on a surface of its own."""
-    scene = study.with_seed(scene, seed)
+def scene_at(scene: Scene, shares: Sequence[float]) -> Scene:
+    """The scene of a material with every input at its share."""
     for each, share in zip(INPUTS, shares, strict=True):
         scene = each.put(scene, each.value(float(share)))
     while (
@@ -174,31 +180,21 @@ def wilson(held: int, of: int, level: float = 0.9) -> tuple[float, float]:
     return float(found.low), float(found.high)
 
 
-def deciders(shares: np.ndarray, held: np.ndarray, fit: Surrogate | None = None) -> list[dict[str, Any]]:
-    """The inputs that decide a statement, the first most. held: (points,), NaN: says nothing; fit:
-    of its measure.
+def deciders(shares: np.ndarray, held: np.ndarray) -> list[dict[str, Any]]:
+    """The inputs that decide a statement beyond chance, the first most. held: (points,), NaN: says nothing.
 
     change: how much more often it holds in the upper half of an input's range than in the lower
-    one, with bounds of 90 %; acts: whether that is beyond chance: by itself, or beyond its bounds
-    where a fit of the measure tells that the input moves it.
+    one, with bounds of 90 %.
     """
-    says = np.isfinite(held)
-    moves = fit.shares >= PART if believed(fit) else np.zeros(len(INPUTS), dtype=bool)
-    found = []
-    for share, one, moved in zip(shares.T[:, says], INPUTS, moves, strict=True):
+    says, found = np.isfinite(held), []
+    for share, one in zip(shares.T[:, says], INPUTS, strict=True):
         high, low = held[says][share >= 0.5], held[says][share < 0.5]
         if high.size and low.size:
-            bounds = change_between(high, low, 0.9)
-            wide = bounds if moved else change_between(high, low, 1.0 - CHANCE)
-            acts = wide[0] > 0.0 or wide[1] < 0.0
-            change = float(high.mean() - low.mean())
-            found.append({"input": one.words, "change": change, "bounds": bounds, "acts": acts})
-    return sorted(found, key=lambda each: (not each["acts"], -abs(each["change"])))
-
-
-def believed(fit: Surrogate | None) -> bool:
-    """Whether a fit predicts the points that it has not seen."""
-    return fit is not None and fit.predicted >= PREDICTS
+            least, most = change_between(high, low, 1.0 - CHANCE)
+            if least > 0.0 or most < 0.0:
+                bounds, change = change_between(high, low, 0.9), float(high.mean() - low.mean())
+                found.append({"input": one.words, "change": change, "bounds": bounds})
+    return sorted(found, key=lambda each: -abs(each["change"]))
 
 
 def change_between(high: np.ndarray, low: np.ndarray, level: float) -> tuple[float, float]:
@@ -220,8 +216,8 @@ def least_change(points: int) -> float:
 
 @dataclass(frozen=True)
 class Studied:
-    """frame: of all runs, by point and material; shares: of the inputs, (points, inputs); printed:
-    material -> bounds of the hardness of its surface with the printed inputs in Pa.
+    """frame: of all runs, a reading is the number of a point; shares: of the inputs, (points, inputs);
+    printed: material -> bounds of the hardness of its surface with the printed inputs in Pa.
     """
 
     frame: DataFrame
@@ -231,7 +227,7 @@ class Studied:
     @cached_property
     def measures(self) -> np.ndarray:
         """Of each statement at each point, (statements, points); NaN where it says nothing there."""
-        return study.measured(self.frame, ["point"]).reindex(range(len(self.shares))).to_numpy().T
+        return study.measured(self.frame, ["reading"]).reindex(range(len(self.shares))).to_numpy().T
 
     @cached_property
     def held(self) -> np.ndarray:
@@ -243,20 +239,14 @@ class Studied:
         return np.where(np.isnan(self.measures), np.nan, holds)
 
     @cached_property
-    def fits(self) -> list[Surrogate | None]:
-        """Of the measure of each statement."""
-        return [surrogate(self.shares, row) for row in self.measures]
-
-    @cached_property
     def chances(self) -> list[dict[str, Any]]:
         """Of each statement: at how many points it holds, of those at which it says anything,
         bounds of that share, and the inputs that decide it.
         """
         found = []
-        for said, row, fit in zip(STATEMENTS, self.held, self.fits, strict=True):
-            holds, of = int(np.nansum(row)), int(np.isfinite(row).sum())
-            acting = [each for each in deciders(self.shares, row, fit)[:DECIDING] if each["acts"]]
-            words = []
+        for said, row in zip(STATEMENTS, self.held, strict=True):
+            holds, of, words = int(np.nansum(row)), int(np.isfinite(row).sum()), []
+            acting = deciders(self.shares, row)[:DECIDING]
             for each in acting:
                 low, high = (f"{100 * end:+.0f}" for end in each["bounds"])
                 words.append(f"{each['input']}: {100 * each['change']:+.0f} % ({low} to {high})")
@@ -287,27 +277,26 @@ class Studied:
 
     def scene(self, point: int, case: str) -> Scene:
         """What ran at a point."""
-        own = self.frame[(self.frame["point"] == point) & (self.frame["material"] == case)]
+        own = self.frame[(self.frame["reading"] == point) & (self.frame["material"] == case)]
         return own["run"].iloc[0].scene
 
 
-class RunningInSensitivity(Study):
-    """All materials at every point of the design."""
+class RunningInSensitivity(Readings):
+    """All materials at every point of the design, which stand for readings, each on a surface of its own."""
 
-    def scenes(self, context: Context) -> dict[Any, Scene]:
+    def readings(self, context: Context) -> dict[int, Reading]:
         points, effort = EFFORTS[context.level]
-        shares, bases = design(UNIFORM, len(INPUTS), points, SEED), study.printed_scenes(context, effort)
-        runs = product(range(points), effort.cases)
-        return {(point, case): scene_at(bases[case], shares[point], SURFACES + point) for point, case in runs}
-
-    def label(self, key: tuple[int, str]) -> str:
-        return "point-{:03}-{}".format(*key)
+        return {
+            k: Reading(
+                f"point-{k:03}-", replace(effort, seeds=(SURFACES + k,)), partial(scene_at, shares=shares)
+            )
+            for k, shares in enumerate(design(UNIFORM, len(INPUTS), points, SEED))
+        }
 
     def solve(self, context: Context) -> Studied:
         points, effort = EFFORTS[context.level]
         printed = {case: hardness(scene) for case, scene in study.printed_scenes(context, effort).items()}
-        frame = study.framed(self.runs(context), ("point", "material"))
-        return Studied(frame, design(UNIFORM, len(INPUTS), points, SEED), printed)
+        return Studied(super().solve(context), design(UNIFORM, len(INPUTS), points, SEED), printed)
 
     def measure(self, found: Studied) -> dict[str, Measured]:
         points, cases = len(found.shares), len(found.printed)
@@ -319,7 +308,11 @@ class RunningInSensitivity(Study):
     def setup(self, found: Studied) -> Iterator[tuple[str, str]]:
         points, (_, effort) = len(found.shares), EFFORTS["full" if found.judged else "quick"]
         size = f"{points} points, {len(found.printed)} materials: {len(found.frame)} runs"
-        yield "Runs", f"{size} of {effort.words}"
+        yield (
+            "Runs",
+            f"{size} of {effort.cells} × {effort.cells} cells of 1 µm, {effort.cycles} cycles, "
+            f"{effort.steps} load steps",
+        )
         yield "Inputs", "uniform and independent over their ranges, each point on another surface"
         half = 50 * np.diff(wilson(points // 2, points))[0]
         yield "Sampling error of a share of points", f"±{half:.0f} % at a half (90 %)"
@@ -362,31 +355,17 @@ class RunningInSensitivity(Study):
 
 
 def statements_table(found: Studied) -> SmallTable:
-    """How probable each statement is, what decides it, and what a fit of its measure says."""
+    """How probable each statement is, and what decides it."""
     rows = []
-    for each, fit in zip(found.chances, found.fits, strict=True):
+    for each in found.chances:
         held, of, (low, high) = each["holds"], each["of"], each["bounds"]
         share = f"{100 * held / of:.0f} % ({100 * low:.0f} to {100 * high:.0f})" if of else "says nothing"
-        explained = ["no fit predicts it"]
-        if believed(fit):
-            order = [int(k) for k in np.argsort(-fit.shares, kind="stable")[:EXPLAINING]]
-            explained = [
-                f"{INPUTS[k].words}: {100 * fit.shares[k]:.0f} %, "
-                + {1: "rises", -1: "falls"}.get(int(fit.slopes[k]), "bends")
-                for k in order
-                if fit.shares[k] >= PART
-            ]
-        predicted = "–" if fit is None else f"{fit.predicted:.2f}"
         cells = each["figure"], each["statement"], f"{held} of {of}", share
-        rows.append((*cells, "; ".join(each["words"]), predicted, "; ".join(explained)))
+        rows.append((*cells, "; ".join(each["words"])))
     return SmallTable(
         "Probability that a statement holds, and what changes it by most between the halves of its range, "
-        f"with bounds of 90 %: beyond what chance does once in {1 / CHANCE:.0f}, or, where the fit names the "
-        "input, beyond those bounds. Explained: shares of the variance of the measure (its ranks) by a "
-        "sparse polynomial of single inputs, and whether the measure rises or falls with the input; Q²: of "
-        f"the variance, what the fit predicts at points left out; no share where it is below {PREDICTS:g}. "
-        "The rest is the surface, and what inputs do together",
-        "Fig.|statement of the paper|holds|share of points (90 %)|decided by|Q²|explained by".split("|"),
+        f"with bounds of 90 %, beyond what chance does once in {1 / CHANCE:.0f}",
+        "Fig.|statement of the paper|holds|share of points (90 %)|decided by".split("|"),
         rows,
     )
 
