@@ -239,9 +239,8 @@ class TestReadings:
             assert {len(row) for row in table.rows} == {len(table.columns)}, table.caption
         data = CASE.data(found)
         assert [{each["by_median"] for each in of} for of in data["statements"].values()] == [{HELD}] * 2
-        bulk = data["regimes"][RENEWED]["bulk"]
+        bulk = running_in.regimes(found, RENEWED)["bulk"]
         assert bulk["reached"] == 5e9 and bulk["removed_from"] == Limits.of(SCENES[BULK]).removal
-        assert data["last_cycle"][RENEWED]["curve A"]["rest_from"] == [25.0] * 10
 
     def test_where_the_plastic_zone_reaches_the_last_layer_there_are_more(self, solved):
         shallow = {"bulk-seed-7", "renewed-bulk-seed-7", "renewed-bulk-seed-7-deeper"}

@@ -208,35 +208,20 @@ def fitted(
     counts: Sequence[Mapping[str, float]],
     measured: Sequence[float],
     matters: float,
-    known: Mapping[str, float] | None = None,
+    known: Mapping[str, float],
 ) -> dict[str, float]:
-    """Factors >= 0 of the counts with the least sum of the largest relative error of what was measured and
-    the mean one, those of what is smaller than `matters` in proportion; known: factors that are not looked
-    for.
+    """Factors >= 0 of the counts with the least squares of the relative errors of what was measured, those of
+    what is smaller than `matters` in proportion; known: factors that are not looked for.
     """
-    from scipy.optimize import linprog
+    from scipy.optimize import nnls
 
-    known = known or {}
     names = [name for name in dict.fromkeys(name for each in counts for name in each) if name not in known]
-    measured = np.maximum(np.asarray(measured, dtype=float), 1e-3 * matters)
-    rest = (
-        1 - np.array([sum(known[name] * each.get(name, 0.0) for name in known) for each in counts]) / measured
-    )
-    rows = np.array([[each.get(name, 0.0) for name in names] for each in counts]) / measured[:, None]
+    weight = 1.0 / np.maximum(np.asarray(measured, dtype=float), matters)
+    rest = measured - np.array([sum(known[n] * each.get(n, 0.0) for n in known) for each in counts])
+    rows = weight[:, None] * np.array([[each.get(name, 0.0) for name in names] for each in counts])
     scale = rows.max(axis=0)
-    rows, weight, n = rows / scale, np.diag(np.maximum(matters / measured, 1.0)), len(measured)
-    above, below = (
-        np.hstack([sign * rows, -weight, np.zeros((n, 1))]) for sign in (1, -1)
-    )  # of factors, errors, largest
-    largest = np.hstack([np.zeros_like(rows), np.eye(n), -np.ones((n, 1))])
-    price = np.concatenate([np.zeros(len(names)), np.full(n, 1 / n), [1.0]])
-    found = linprog(
-        price,
-        np.vstack([above, below, largest]),
-        np.concatenate([rest, -rest, np.zeros(n)]),
-        bounds=(0.0, None),
-    )
-    return dict(zip(names, (found.x[: len(names)] / scale).tolist(), strict=True)) | dict(known)
+    found = nnls(rows / scale, weight * rest)[0] / scale
+    return dict(zip(names, found.tolist(), strict=True)) | dict(known)
 
 
 def factors(
@@ -251,7 +236,9 @@ def factors(
         memory[model] = fitted(
             [count.bytes for count in counts], [row["memory"] for row in own], MEMORY_MATTERS, known
         )
-        seconds[model] = fitted([count.work for count in counts], [row["cpu-s"] for row in own], TIME_MATTERS)
+        seconds[model] = fitted(
+            [count.work for count in counts], [row["cpu-s"] for row in own], TIME_MATTERS, {}
+        )
     return memory, seconds
 
 

@@ -163,18 +163,7 @@ class RunningIn(Readings):
         return values | {"unconverged": Measured(len(found) - len(good), 0)}
 
     def data(self, found: DataFrame) -> dict[str, Any]:
-        rests = {
-            reading: {
-                NAMES[case]: {
-                    "rest_from": [study.at_rest_from(one.of_cycles("new_strain_max")) for one in runs]
-                }
-                for case, runs in runs_of(found[found["converged"]], reading)
-            }
-            for reading in WORDS
-        }
-        own = {reading: regimes(found, reading) for reading in WORDS}
-        said = {"statements": readings_of(found), "second_reading": WORDS[RENEWED]}
-        return said | {"regimes": own, "last_cycle": rests}
+        return {"statements": readings_of(found), "second_reading": WORDS[RENEWED]}
 
     def tables(self, found: DataFrame) -> Iterator[SmallTable]:
         if statements := readings_of(found):
