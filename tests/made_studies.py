@@ -8,7 +8,7 @@ from made_histories import CYCLES, as_the_paper_says, at_rest, history, result_o
 
 from sam.scene import load_scene
 from verification.cases.running_in.running_in_physics import ALL, RunningInPhysics
-from verification.cases.running_in.running_in_sensitivity import INPUTS, Studied, hardness, scene_at
+from verification.cases.running_in.running_in_sensitivity import INPUTS, Studied, scene_at
 from verification.cases.running_in.study import NAMES, PARTS, Run, framed, judged, measured, with_seed
 from verification.compare.running_in_measures import History
 from verification.sensitivity import UNIFORM, design
@@ -44,8 +44,7 @@ def over_inputs(**changed: History) -> Studied:
 
 
 def studied(shares: np.ndarray, runs: Mapping[tuple, Run]) -> Studied:
-    printed = {case: hardness(scene) for case, scene in SCENES.items()}
-    return Studied(framed(runs, PARTS), np.asarray(shares), printed)
+    return Studied(framed(runs, PARTS), np.asarray(shares))
 
 
 def over_physics(**changed: History):

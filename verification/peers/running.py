@@ -48,14 +48,12 @@ class Job:
 class Measurement:
     """A job as measured.
 
-    setup_s, solve_s: one a round; again_s: of second solutions, where there were any; record: counts of the
-    last round; failure: why there is no answer.
+    setup_s, solve_s: one a round; record: counts of the last round; failure: why there is no answer.
     """
 
     job: Job
     setup_s: list[float] = field(default_factory=list)
     solve_s: list[float] = field(default_factory=list)
-    again_s: list[float] = field(default_factory=list)
     record: dict = field(default_factory=dict)
     fields: dict[str, np.ndarray] = field(default_factory=dict)
     failure: str = ""
@@ -68,11 +66,6 @@ class Measurement:
     def seconds(self) -> float:
         """Median over the rounds; nan without an answer."""
         return float(np.median(self.cpu_s)) if self.solved else float("nan")
-
-    @property
-    def again(self) -> float:
-        """Median of the second solutions in the process of the first; nan where there is none."""
-        return float(np.median(self.again_s)) if self.solved and self.again_s else float("nan")
 
     @property
     def solved(self) -> bool:
@@ -179,8 +172,6 @@ def run(program: str, measurement: Measurement, python: Path, allowance: float =
         if not measurement.failure:
             measurement.setup_s.append(record.pop("setup_s"))
             measurement.solve_s.append(record.pop("solve_s"))
-            if (again := record.pop("again_s")) is not None:
-                measurement.again_s.append(again)
             with np.load(target.with_suffix(".npz")) as fields:
                 measurement.fields = dict(fields)
 
@@ -195,15 +186,13 @@ Errors = Callable[[Measurement], tuple[float, Mapping[str, float]]]
 
 
 def rows_of(problem: str, found: Mapping[str, Sequence[Measurement]], errors: Errors) -> list[dict[str, Any]]:
-    """A row for every measurement; the error is nan for those without an answer. again: seconds of a second
-    solution in the process of the first.
-    """
+    """A row for every measurement; the error is nan for those without an answer."""
     rows = []
     for program, own in found.items():
         for each in own:
             label = ", ".join(filter(None, (NAMES[program], each.job.label)))
             row: dict[str, Any] = {"sweep": problem, "model": program, "curve": label}
-            row |= {"cells": cells_in_words(each.job.cells), "seconds": each.seconds, "again": each.again}
+            row |= {"cells": cells_in_words(each.job.cells), "seconds": each.seconds}
             row["error"] = float("nan")
             if each.solved:
                 row["error"], also = errors(each)

@@ -22,7 +22,6 @@ import numpy as np
 from verification.peers import problems
 from verification.runs import models
 
-AGAIN_S = 30.0  # what takes less is solved a second time in the same process
 BEFORE = {problems.HERTZ: 36, problems.ROUGH: 132, problems.STEP: (10, 5)}  # cells; sizes that no job has
 
 
@@ -33,7 +32,7 @@ def main(task: str, target: str) -> None:
     program.load()
     fields: dict[str, np.ndarray] = {}
     with suppress(Exception):  # told below, where it is timed
-        measured(program, job | {"cells": BEFORE[job["problem"]]}, again=False)
+        measured(program, job | {"cells": BEFORE[job["problem"]]})
     try:
         record, fields = measured(program, job)
     except Exception as problem:
@@ -43,25 +42,16 @@ def main(task: str, target: str) -> None:
     Path(f"{target}.json").write_text(json.dumps(record), encoding="utf-8")
 
 
-def measured(program, job: dict, again: bool = True) -> tuple[dict, dict[str, np.ndarray]]:
-    """Times and counts, and fields of a job. again_s: of a second set-up and solution, with what the program
-    keeps of the first; None if that took long.
-    """
-    setup = program.setup(
-        job["problem"], job["cells"], job["settings"]
-    )  # heights: the problem, not its solution
+def measured(program, job: dict) -> tuple[dict, dict[str, np.ndarray]]:
+    """Times and counts, and fields of a job."""
+    setup = program.setup(job["problem"], job["cells"], job["settings"])  # with the heights: of the problem
     began = time.process_time()
     solve = setup()
     ready = time.process_time()
     answer = solve()
     ended = time.process_time()
     counts, fields = program.read(answer)
-    times = {"setup_s": ready - began, "solve_s": ended - ready, "again_s": None}
-    if again and ended - began < AGAIN_S:
-        began = time.process_time()
-        setup()()
-        times["again_s"] = time.process_time() - began
-    return {**times, **counts}, fields
+    return {"setup_s": ready - began, "solve_s": ended - ready, **counts}, fields
 
 
 if __name__ == "__main__":

@@ -33,7 +33,7 @@ from verification.cost import measured
 from verification.cost.advice import BELOW, COLUMNS, LOAD_STEPS, NEVER, ON_TWO_GRIDS, AdviceRow, texts_of
 from verification.cost.precision import TARGETS, Ladder, Reached, Reference, agreed, at_error
 from verification.figures.style import Drawing
-from verification.figures.work_precision import Line, curves, overview
+from verification.figures.work_precision import curves, overview
 from verification.rows import CaseFile
 
 if TYPE_CHECKING:
@@ -331,12 +331,6 @@ def references(frame: DataFrame) -> SmallTable:
     return SmallTable("References", ("problem", "quantity (SI)", "value", "uncertainty", "from"), lines)
 
 
-def line_of(rows: DataFrame, name: str) -> Line:
-    """The curve of a method."""
-    own = rows[rows["method"] == name]
-    return Line(*(own[column].to_numpy(dtype=float) for column in ("cpu_s", "error", "resolution")))
-
-
 def advice(file: CaseFile, frame: DataFrame) -> Plot:
     """The time to 1 % in every kind of scene; its data are the advice of samfem plan."""
     to_1_percent = {
@@ -357,12 +351,10 @@ def advice(file: CaseFile, frame: DataFrame) -> Plot:
 
 def errors(file: CaseFile, frame: DataFrame, name: str) -> Plot:
     """`errors PROBLEM`: error over processor time, the grid refined, or the load steps."""
-    problem, panels = STUDIED[name], {}
-    for refined, rows in frame[frame["sweep"] == name].groupby("refined", sort=False):
-        panels[refined] = {each: line_of(rows, each) for each in methods(rows)}, max(rows["floor"])
+    problem = STUDIED[name]
     words = " and ".join(MEASURES[measure] for measure in problem.measures)
     return Plot(
-        curves(panels, f"error of the {words}"),
+        curves(frame[frame["sweep"] == name], f"error of the {words}"),
         name,
         problem.title,
         f"Log-log plot of the error of the {words} over processor time, a falling curve for each method.",

@@ -89,16 +89,14 @@ def half_space(context: Context) -> StoredReference:
 # what rows take
 
 
-def reached(
-    rows: DataFrame, target: float, floor: float = 0.0, seconds: str = "seconds"
-) -> dict[str, tuple[str, float | None]]:
+def reached(rows: DataFrame, target: float, floor: float = 0.0) -> dict[str, tuple[str, float | None]]:
     """Program -> its curve that is first at an error of `target`, and when; a curve that never is there
     counts last.
     """
     found: dict[str, tuple[str, float | None]] = {}
-    solved = rows[rows[seconds].notna()]
+    solved = rows[rows["seconds"].notna()]
     for (program, curve), own in solved.groupby(["model", "curve"], sort=False):
-        time = at_error(own[seconds], own["error"], target, floor).value
+        time = at_error(own["seconds"], own["error"], target, floor).value
         if program not in found or (time or math.inf) < (found[program][1] or math.inf):
             found[program] = curve, time
     return found
@@ -138,17 +136,15 @@ def contact_mechanics_on_finest(rows: DataFrame, _: str) -> float:
 
 def step_on(rows: DataFrame, cells: tuple[int, int]) -> dict[str, Any]:
     """Tamaas' step on these cells beside SAM's at its error, which counts as no smaller than what is unknown
-    of SAM's reference: ratios of times, of those of second solutions in one process, and on the same cells.
+    of SAM's reference: ratios of times there, and on the same cells.
     """
     same, theirs = fastest(rows, cells_in_words(cells)).reindex([SAM, TAMAAS]).iloc
     own = rows[rows["model"] == SAM]
     floor = own["floor"].max()
     target = max(theirs["error"], floor)
     curve, time = reached(own, target, floor).get(SAM, ("", None))
-    again = reached(own, target, floor, "again").get(SAM, ("", None))[1]
     found = {"cells": cells_in_words(cells), "Tamaas [s]": theirs["seconds"], "its error": theirs["error"]}
     found |= {"SAM's curve": curve, "SAM at that error [s]": time, "ratio": ratio(theirs["seconds"], time)}
-    found |= {"ratio of second solves": ratio(theirs["again"], again)}
     on_same = ratio(theirs["seconds"], same["seconds"])
     return found | {"ratio on the same cells": on_same, "SAM's error there": same["error"]}
 

@@ -125,7 +125,7 @@ def restless_cycles(one: Run) -> int:
 
 
 LARGEST: Mapping[str, Callable[[Run], float]] = {
-    "volume": lambda one: one.off,
+    "volume": lambda one: study.apart(one.scar.volume, one.history.volume[-1]),
     "friction-sum": lambda one: abs(one.scar.coefficient(*one.friction) - one.history.friction[-1]),
     "protected": lambda one: abs(one.scar.protected_fraction(*one.friction) - one.history.protected[-1]),
     "load": lambda one: study.apart(one.scar.force, one.scene.loading.force),
@@ -168,14 +168,12 @@ class RunningIn(Readings):
     def tables(self, found: DataFrame) -> Iterator[SmallTable]:
         if statements := readings_of(found):
             yield study.statements_table(statements)
-        last = found["run"].iloc[0].scene.loading.cycles
-        cycles = f"cycles 1, {min(study.EARLY, last)} and {last}"
         for reading, words in WORDS.items():
             groups = {NAMES[case]: runs for case, runs in runs_of(found, reading)}
-            yield study.runs_table(f"{words.capitalize()}, {cycles}", groups)
+            yield study.runs_table(words.capitalize(), groups)
         varied = found[~found["reading"].isin(WORDS)].groupby(["material", "reading"], sort=False)["run"]
         if groups := {f"{NAMES[case]}, {reading}": runs for (case, reading), runs in varied}:
-            yield study.runs_table(f"Other assumptions on the surface of the scenes, {cycles}", groups)
+            yield study.runs_table("Other assumptions on the surface of the scenes", groups)
         yield regimes_table(found)
 
     def notes(self, found: DataFrame) -> Iterator[str]:

@@ -53,8 +53,8 @@ LAYER_LIMIT = 0.02  # of the layers of the printed scenes; curve B with 5 % keep
 SMOOTH = 0.5e-9  # m: below it the counter-surface is a plane
 NOMINAL = 1e-6  # m: printed thickness of the layer
 TABOR, STRAIN = (2.8, 3.0), 0.08  # hardness over yield stress at STRAIN: Tabor, The Hardness of Metals (1951)
-STEEL = (6.8e9, 8.2e9)  # Pa: 697 to 832 HV, 60 to 65 HRC by ASTM E140, of AISI 52100 hardened through
-DISCS = (5e-9, 60e-9)  # m rms: polished to ground, as in running-in-physics
+STEEL = "6.8 to 8.2 GPa of AISI 52100 hardened through (60 to 65 HRC, 697 to 832 HV by ASTM E140)"
+DISCS = "5 to 60 nm of polished to ground discs"
 BEST = 3  # points that are shown
 MATERIALS = (BULK, A, B)
 
@@ -158,6 +158,7 @@ INPUTS = tuple(
 )
 PRINTED = np.array([each.share for each in INPUTS])
 """(inputs,) shares of the printed inputs."""
+LOW, HIGH = np.zeros(len(INPUTS)), np.ones(len(INPUTS))
 
 
 def scene_at(scene: Scene, shares: Sequence[float]) -> Scene:
@@ -216,27 +217,19 @@ def least_change(points: int) -> float:
 
 @dataclass(frozen=True)
 class Studied:
-    """frame: of all runs, a reading is the number of a point; shares: of the inputs, (points, inputs);
-    printed: material -> bounds of the hardness of its surface with the printed inputs in Pa.
-    """
+    """frame: of all runs, a reading is the number of a point; shares: of the inputs, (points, inputs)."""
 
     frame: DataFrame
     shares: np.ndarray
-    printed: Mapping[str, tuple[float, float]]
-
-    @cached_property
-    def measures(self) -> np.ndarray:
-        """Of each statement at each point, (statements, points); NaN where it says nothing there."""
-        return study.measured(self.frame, ["reading"]).reindex(range(len(self.shares))).to_numpy().T
 
     @cached_property
     def held(self) -> np.ndarray:
         """Whether a statement holds at a point, (statements, points); NaN where it says nothing
         there.
         """
-        limits = np.array([(each.low, each.high) for each in STATEMENTS])
-        holds = (limits[:, :1] <= self.measures) & (self.measures <= limits[:, 1:])
-        return np.where(np.isnan(self.measures), np.nan, holds)
+        measures = study.measured(self.frame, ["reading"]).reindex(range(len(self.shares)))
+        holds = [[each.holds(value) for value in measures[each.words]] for each in STATEMENTS]
+        return np.where(np.isnan(measures.to_numpy().T), np.nan, holds)
 
     @cached_property
     def chances(self) -> list[dict[str, Any]]:
@@ -260,6 +253,11 @@ class Studied:
         return self.frame["run"].iloc[0].scene.loading.cycles >= LAST
 
     @property
+    def effort(self) -> Effort:
+        """What was run at each point."""
+        return EFFORTS["full" if self.judged else "quick"][1]
+
+    @property
     def counts(self) -> np.ndarray:
         """Statements that hold together at a point, (points,)."""
         return np.nansum(self.held, axis=0).astype(int)
@@ -275,11 +273,6 @@ class Studied:
         most = np.flatnonzero(self.counts == self.counts.max())
         return [int(point) for point in most[np.argsort(self.away[most], kind="stable")]][:BEST]
 
-    def scene(self, point: int, case: str) -> Scene:
-        """What ran at a point."""
-        own = self.frame[(self.frame["reading"] == point) & (self.frame["material"] == case)]
-        return own["run"].iloc[0].scene
-
 
 class RunningInSensitivity(Readings):
     """All materials at every point of the design, which stand for readings, each on a surface of its own."""
@@ -294,20 +287,19 @@ class RunningInSensitivity(Readings):
         }
 
     def solve(self, context: Context) -> Studied:
-        points, effort = EFFORTS[context.level]
-        printed = {case: hardness(scene) for case, scene in study.printed_scenes(context, effort).items()}
-        return Studied(super().solve(context), design(UNIFORM, len(INPUTS), points, SEED), printed)
+        points, _ = EFFORTS[context.level]
+        return Studied(super().solve(context), design(UNIFORM, len(INPUTS), points, SEED))
 
     def measure(self, found: Studied) -> dict[str, Measured]:
-        points, cases = len(found.shares), len(found.printed)
+        every = len(found.shares) * len(found.effort.cases)
         return {
-            "missing": Measured(points * cases - len(found.frame), 0),
+            "missing": Measured(every - len(found.frame), 0),
             "lost": Measured(1.0 - float(found.frame["converged"].mean())),
         }
 
     def setup(self, found: Studied) -> Iterator[tuple[str, str]]:
-        points, (_, effort) = len(found.shares), EFFORTS["full" if found.judged else "quick"]
-        size = f"{points} points, {len(found.printed)} materials: {len(found.frame)} runs"
+        points, effort = len(found.shares), found.effort
+        size = f"{points} points, {len(effort.cases)} materials: {len(found.frame)} runs"
         yield (
             "Runs",
             f"{size} of {effort.cells} × {effort.cells} cells of 1 µm, {effort.cycles} cycles, "
@@ -325,11 +317,9 @@ class RunningInSensitivity(Readings):
         return {"statements": found.chances, "resolved": resolved, "best": best} if found.judged else {}
 
     def tables(self, found: Studied) -> Iterator[SmallTable]:
-        rows = [(one.words, one.shown(0.0), one.shown(1.0), one.even) for one in INPUTS]
-        yield SmallTable("Inputs, each drawn evenly", ("input", "from", "to", "even in"), rows)
+        yield inputs_table(found)
         if found.judged:
             yield statements_table(found)
-            yield fitted_table(found)
         groups = found.frame.groupby("material", sort=False)["run"]
         yield study.runs_table("Over all points", {NAMES[case]: runs for case, runs in groups})
 
@@ -370,54 +360,42 @@ def statements_table(found: Studied) -> SmallTable:
     )
 
 
-def hardness(scene: Scene) -> tuple[float, float]:
-    """Of the material at the surface in Pa, bounds by Tabor."""
-    yields = float(scene.body.plasticity.strength().stress(0.0, STRAIN))
-    return TABOR[0] * yields, TABOR[1] * yields
-
-
-def _range(ends: tuple[float, float]) -> str:
-    return f"{1e-9 * ends[0]:.1f} to {1e-9 * ends[1]:.1f}"
-
-
-def fitted_table(found: Studied) -> SmallTable:
-    """The points at which most statements hold, beside the printed inputs."""
-    best = found.best
+def inputs_table(found: Studied) -> SmallTable:
+    """What is drawn, and where most statements hold."""
+    best = found.best if found.judged else []
     rows = [
-        (one.words, *(one.shown(float(of[n])) for of in (PRINTED, *found.shares[best])))
+        (
+            one.words,
+            one.even,
+            *(one.shown(float(each[n])) for each in (LOW, HIGH, PRINTED, *found.shares[best])),
+        )
         for n, one in enumerate(INPUTS)
     ]
-    words = "distance from the printed inputs, in shares of the ranges (rms)"
-    rows.append((words, "0", *(f"{found.away[k]:.2f}" for k in best)))
+    away = (f"{found.away[point]:.2f}" for point in best)
+    rows.append(("distance from the printed inputs, in shares of the ranges (rms)", "", "", "", "0", *away))
     return SmallTable(
-        "Fitted: inputs of the points at which most statements hold together, the nearest to the "
-        "printed ones first",
-        ("input", "printed inputs", *(f"point {k}: {found.counts[k]} hold" for k in best)),
+        "Inputs, each drawn evenly; fitted: the points at which most statements hold together, the nearest "
+        "to the printed inputs first",
+        ("input", "even in", "from", "to", "printed", *(f"point {k}: {found.counts[k]} hold" for k in best)),
         rows,
     )
 
 
 def fitted_note(found: Studied) -> str:
     """What the nearest of them would mean."""
-    point, said = found.best[0], []
+    point, hard = found.best[0], []
+    scenes = found.frame[found.frame["reading"] == point].set_index("material")["run"]
     for case in MATERIALS:
-        own, plausible = hardness(found.scene(point, case)), "plausible"
-        if own[0] > STEEL[1]:
-            plausible = f"{own[0] / STEEL[1]:.2f} times the hardest steel, not plausible"
-        elif own[1] < STEEL[0]:
-            plausible = f"{own[1] / STEEL[0]:.2f} times the softest"
-        said.append(f"{NAMES[case]} {_range(own)} GPa, {plausible} (printed {_range(found.printed[case])})")
-    rough = found.scene(point, BULK).counterbody.surface
-    sq = rough.sq if rough else 0.0
-    discs = "as polished to ground" if DISCS[0] <= sq <= DISCS[1] else "smoother than polished to ground"
-    tabor = f"by Tabor ({TABOR[0]:g} to {TABOR[1]:g} σ_y at a strain of {STRAIN:.0%})"
+        yields = 1e-9 * float(scenes[case].scene.body.plasticity.strength().stress(0.0, STRAIN))
+        hard.append(f"{NAMES[case]} {TABOR[0] * yields:.1f} to {TABOR[1] * yields:.1f} GPa")
+    rough = scenes[BULK].scene.counterbody.surface
     return (
         f"Fitted: at point {point}, {found.counts[point]} of {len(STATEMENTS)} statements hold together, "
         f"chosen of {len(found.shares)} points by this result, on one surface of its own; it is "
         f"{found.away[point]:.2f} of the ranges away from the printed inputs (two random points are "
-        f"{1 / np.sqrt(6):.2f} apart). It would mean a surface hardness, {tabor}, of {'; '.join(said)}; "
-        f"AISI 52100 hardened to 60 to 65 HRC has {_range(STEEL)} GPa. The counter-surface has "
-        f"{1e9 * sq:.0f} nm rms, {discs} discs ({1e9 * DISCS[0]:.0f} to {1e9 * DISCS[1]:.0f} nm)."
+        f"{1 / np.sqrt(6):.2f} apart). It would mean a surface hardness, by Tabor ({TABOR[0]:g} to "
+        f"{TABOR[1]:g} σ_y at a strain of {STRAIN:.0%}), of {'; '.join(hard)}; plausible are {STEEL}. The "
+        f"counter-surface has {1e9 * (rough.sq if rough else 0.0):.0f} nm rms; plausible are {DISCS}."
     )
 
 

@@ -174,13 +174,6 @@ class Run:
         """A column of cycles.csv."""
         return np.asarray(self.result.tables["cycles"][column], dtype=float)
 
-    @property
-    def off(self) -> float:
-        """Volume summed over surface.csv against the last of cycles.csv, relative; 0 where both
-        are 0.
-        """
-        return apart(self.scar.volume, self.history.volume[-1])
-
 
 def apart(value: float, expected: float) -> float:
     """Relative difference, 0 where both are 0."""
@@ -220,18 +213,14 @@ MEASURES: Mapping[str, Callable[[History], float]] = {
 """Of a run of 25 cycles; grown: share of the volume that the last five wear, 0 where nothing has worn."""
 COLUMNS: Mapping[str, Callable[[Run], float]] = {
     "V, first [µm³]": lambda one: CUBIC * one.history.volume[0],
-    "V, sixth or last": lambda one: CUBIC * one.history.volume[:EARLY][-1],
     "V, last": lambda one: CUBIC * one.history.volume[-1],
     "μ, first": lambda one: one.history.friction[0],
     "μ, last": lambda one: one.history.friction[-1],
     "Sa, first [nm]": lambda one: 1e9 * one.history.sa[0],
     "Sa, last": lambda one: 1e9 * one.history.sa[-1],
-    "protected, last [%]": lambda one: 100.0 * one.history.protected[-1],
     "p_max, first [GPa]": lambda one: GIGA * one.history.p_max[0],
     "p_max, last": lambda one: GIGA * one.history.p_max[-1],
     "at rest from cycle": lambda one: at_rest_from(one.of_cycles("new_strain_max")),
-    "new strain, last [%]": lambda one: 100.0 * one.of_cycles("new_strain_max")[-1],
-    "processor time [s]": lambda one: one.result.cost["cpu_s"],
 }
 """What tables show of runs -> of a run that converged."""
 
