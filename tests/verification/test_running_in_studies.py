@@ -156,10 +156,10 @@ class TestPhysics:
 
     def test_every_physics_is_another_scene(self, tmp_path):
         here = context(self.CASE.name, tmp_path)
-        scenes = self.CASE.scenes(here)
-        every, labels = [repr(resolved(each)) for each in scenes.values()], self.CASE.labels(here)
-        assert len(set(every)) == len(set(labels.values())) == len(ALL) * len(NAMES) == 120
-        assert {scene.surface.seed for scene in scenes.values()} == {2}
+        labels, scenes = zip(*self.CASE.scenes(here).values(), strict=True)
+        every = {repr(resolved(each)) for each in scenes}
+        assert len(every) == len(set(labels)) == len(ALL) * len(NAMES) == 120
+        assert {scene.surface.seed for scene in scenes} == {2}
 
     def test_lost_and_missing_runs_and_a_first_cycle_of_its_own_turn_rows_red(self):
         readable(self.CASE, over_physics())

@@ -269,29 +269,20 @@ class Readings(Case):
         """By their names."""
         raise NotImplementedError(self.name)
 
-    def scenes(self, context: Context) -> dict[tuple, Scene]:
-        """Of all runs, by a key."""
+    def scenes(self, context: Context) -> dict[tuple, tuple[str, Scene]]:
+        """Key -> label and scene of its run."""
         return {
-            (name, case, seed): reading.change(with_seed(scene, seed))
-            for name, reading in self.readings(context).items()
-            for seed in reading.effort.seeds
-            for case, scene in printed_scenes(context, reading.effort).items()
-        }
-
-    def labels(self, context: Context) -> dict[tuple, str]:
-        """What the run of a key is written as."""
-        return {
-            (name, case, seed): f"{reading.label}{case}-seed-{seed}"
-            for name, reading in self.readings(context).items()
-            for seed in reading.effort.seeds
-            for case in reading.effort.cases
+            (name, case, seed): (f"{one.label}{case}-seed-{seed}", one.change(with_seed(scene, seed)))
+            for name, one in self.readings(context).items()
+            for seed in one.effort.seeds
+            for case, scene in printed_scenes(context, one.effort).items()
         }
 
     def solve(self, context: Context) -> Any:
         return framed(self.runs(context), PARTS, self.numbers)
 
     def ahead(self, context: Context) -> Iterable[Scene]:
-        return self.scenes(context).values()
+        return (scene for _, scene in self.scenes(context).values())
 
     def then(self, scene: Scene, result: Result) -> Scene | None:
         at_edge = result.status is Status.PLASTIC_ZONE_AT_GRID_EDGE
@@ -299,9 +290,9 @@ class Readings(Case):
 
     def runs(self, context: Context) -> dict[tuple, Run]:
         """What ran, by key."""
-        found, labels = {}, self.labels(context)
-        for key, scene in self.scenes(context).items():
-            label, below = labels[key], scene
+        found = {}
+        for key, (label, scene) in self.scenes(context).items():
+            below: Scene | None = scene
             while below is not None:
                 own, result = below, context.solve(SAM, below, label, demand=False)
                 below, label = self.then(own, result), f"{label}-deeper"
