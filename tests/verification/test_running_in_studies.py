@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from made_histories import as_the_paper_says, history, result_of
-from made_results import Made, context, red
+from made_results import Made, context, of_frame, red
 from made_studies import GOOD, SCENES, framed_physics, over_inputs, over_physics, studied
 
 from fem_reference.spatial import WornCycle
@@ -38,7 +38,6 @@ from verification.cases.running_in.study import (
     B,
     Run,
 )
-from verification.cases.sweep import taken
 from verification.figures.check import findings
 from verification.scenes.asperities import SIDE
 
@@ -56,8 +55,7 @@ def readable(case, found) -> list:
 def wrong(case: str, rows) -> set[str]:
     """The rows of a case that are red on a frame."""
     frame = pd.DataFrame([{"sweep": "", "model": "", **row} for row in rows])
-    file = all_cases()[case].file
-    return red(case, {claim.name: taken(file, frame, claim) for claim in file.taken}, whole=True)
+    return red(case, of_frame(case, frame), whole=True)
 
 
 @pytest.fixture(scope="module")

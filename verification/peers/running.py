@@ -157,7 +157,12 @@ def run(program: str, measurement: Measurement, python: Path, allowance: float =
     with tempfile.TemporaryDirectory(prefix="samfem-peers-") as folder:
         target = Path(folder, "answer")
         words = [python, "-m", "verification.peers.worker", task, target]
-        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE, "text": True, "errors": "replace"}
+        quiet: dict[str, Any] = {
+            "stdout": subprocess.DEVNULL,
+            "stderr": subprocess.PIPE,
+            "text": True,
+            "errors": "replace",
+        }
         try:
             done = subprocess.run(words, cwd=folder, env=environment, timeout=allowance, check=False, **quiet)
         except subprocess.TimeoutExpired:

@@ -152,9 +152,7 @@ constants of the body.
 """
 INPUTS = tuple(
     Input(name, words, *map(float, numbers), even, key)
-    for name, words, *numbers, even, key in (
-        [part.strip() for part in line.split("|")] for line in TABLE.splitlines()
-    )
+    for name, words, *numbers, even, key in study.parts_of(TABLE)
 )
 PRINTED = np.array([each.share for each in INPUTS])
 """(inputs,) shares of the printed inputs."""

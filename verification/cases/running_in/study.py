@@ -175,6 +175,11 @@ class Run:
         return np.asarray(self.result.tables["cycles"][column], dtype=float)
 
 
+def parts_of(table: str) -> list[list[str]]:
+    """Of each line, between |."""
+    return [[part.strip() for part in line.split("|")] for line in table.splitlines()]
+
+
 def apart(value: float, expected: float) -> float:
     """Relative difference, 0 where both are 0."""
     return abs(value - expected) / max(abs(expected), abs(value)) if value != expected else 0.0
@@ -375,9 +380,7 @@ TABLE = """\
 """
 STATEMENTS = tuple(
     Statement(figure, words, measure, float(low), float(high), how)
-    for figure, words, measure, low, high, how in (
-        [part.strip() for part in line.split("|")] for line in TABLE.splitlines()
-    )
+    for figure, words, measure, low, high, how in parts_of(TABLE)
 )
 
 
