@@ -332,6 +332,7 @@ class TestFem:
             for mode in ("own", "given")
             for cycle in (1, 3)
         ]
+        assert fem.shrinking(pd.DataFrame(rows[::4]), "strain") == pytest.approx(5 / 6, rel=1e-12)
         assert wrong(self.NAME, rows) == set()
         assert wrong(self.NAME, [{**row, "wears": 0.0} for row in rows]) == {"wears"}
         coarsest = fem.CELLS[0]

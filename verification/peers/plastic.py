@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from textwrap import fill
 from typing import Any
@@ -58,17 +57,13 @@ def step(
     found, kernel = measure(jobs, pythons, rounds, progress)
     rows = []
     for program, own in found.items():
-        errors, floor = partial(step_errors, to=references[program]), references[program].profile_uncertainty
-        rows += [row | {"floor": floor} for row in rows_of(problems.STEP, {program: own}, errors)]
+        to = references[program]
+
+        def error(each: Measurement, to: StoredReference = to) -> float:
+            return profile_error(each.fields["z"], each.fields["peeq"], to.z, to.peeq)
+
+        rows += [row | {"floor": to.uncertainty} for row in rows_of(problems.STEP, {program: own}, error)]
     return rows, kernel
-
-
-def step_errors(each: Measurement, to: StoredReference) -> tuple[float, dict[str, float]]:
-    """Relative L2 error of the plastic strain below the apex; beside it the error of its largest value, from
-    a parabola.
-    """
-    z, peeq = each.fields["z"], each.fields["peeq"]
-    return profile_error(z, peeq, to.z, to.peeq), {"largest": abs(largest(z, peeq) / to.peeq_max - 1)}
 
 
 PLACE = Path(__file__).with_name("tamaas-step.json")
@@ -78,27 +73,12 @@ TIGHT = {"tolerance": 1e-5, "contact_tolerance": 1e-8, "relaxation": 0.3}
 
 @dataclass(frozen=True)
 class StoredReference:
-    """Largest accumulated plastic strain and its profile below the apex, in sigma_y/E and a; uncertainty:
-    relative, of the largest; profile_uncertainty: relative L2 of the profile.
-    """
+    """Accumulated plastic strain below the apex, in a and sigma_y/E; uncertainty: relative L2."""
 
-    peeq_max: float
     z: np.ndarray
     peeq: np.ndarray
     uncertainty: float
-    profile_uncertainty: float
     text: str
-
-
-def largest(z: np.ndarray, values: np.ndarray) -> float:
-    """The largest of the values below the apex, by the parabola through it and its neighbours, equally spaced
-    or not.
-    """
-    k = int(np.argmax(values))
-    if not 0 < k < len(values) - 1:
-        return float(values[k])
-    c = np.polyfit(z[k - 1 : k + 2] - z[k], values[k - 1 : k + 2], 2)
-    return float(c[2] - c[1] ** 2 / (4 * c[0]))
 
 
 def profile_error(z: np.ndarray, values: np.ndarray, reference_z: np.ndarray, reference: np.ndarray) -> float:
@@ -111,8 +91,7 @@ def between(
     finer: tuple[np.ndarray, np.ndarray], coarser: tuple[np.ndarray, np.ndarray], text: str
 ) -> StoredReference:
     """The finer of two profiles (z, peeq), which differs from the limit by no more than from the coarser."""
-    best, next_best = largest(*finer), largest(*coarser)
-    return StoredReference(best, *finer, abs(next_best / best - 1), profile_error(*coarser, *finer), text)
+    return StoredReference(*finer, profile_error(*coarser, *finer), text)
 
 
 def periodic() -> StoredReference:

@@ -186,22 +186,19 @@ def pythons_of(python: Path, peers: Mapping[str, str]) -> dict[str, Path]:
     return {SAM: Path(sys.executable)} | dict.fromkeys(peers, python)
 
 
-Errors = Callable[[Measurement], tuple[float, Mapping[str, float]]]
-"""Of a measurement: the error that times are compared at, and other measures, name -> value."""
-
-
-def rows_of(problem: str, found: Mapping[str, Sequence[Measurement]], errors: Errors) -> list[dict[str, Any]]:
-    """A row for every measurement; the error is nan for those without an answer."""
+def rows_of(
+    problem: str, found: Mapping[str, Sequence[Measurement]], error: Callable[[Measurement], float]
+) -> list[dict[str, Any]]:
+    """A row for every measurement. error: that times are compared at, nan without an answer."""
     rows = []
     for program, own in found.items():
         for each in own:
             label = ", ".join(filter(None, (NAMES[program], each.job.label)))
             row: dict[str, Any] = {"sweep": problem, "model": program, "curve": label}
             row |= {"cells": cells_in_words(each.job.cells), "seconds": each.seconds}
-            row["error"] = float("nan")
+            row["error"] = error(each) if each.solved else float("nan")
             if each.solved:
-                row["error"], also = errors(each)
-                row |= {**also, "rounds": len(each.cpu_s), "iterations": each.record.get("iterations")}
+                row |= {"rounds": len(each.cpu_s), "iterations": each.record.get("iterations")}
                 row |= {"least": min(each.cpu_s), "most": max(each.cpu_s), "set-up": np.median(each.setup_s)}
                 row["memory"] = each.record["peak_memory_bytes"]
             rows.append(row | {"status": "" if each.solved else each.failure or "not converged"})

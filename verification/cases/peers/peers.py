@@ -66,8 +66,7 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
         measured.append(plastic.step(pair, rounds, references, told))
         for program, each in references.items():
             row = {"sweep": REFERENCES, "model": program, "for": NAMES[program], "what": each.text}
-            row |= {"largest strain [σ_y/E]": each.peeq_max, "uncertainty": each.uncertainty}
-            yield row | {"of the profile, L2": each.profile_uncertainty}
+            yield row | {"uncertainty of the profile, L2": each.uncertainty}
     for rows, kernel in measured:
         unit = float(np.median(kernel))
         yield from (row | {"in kernels": row["seconds"] / unit, "kernel": unit} for row in rows)
