@@ -35,7 +35,7 @@ from verification.figures.style import (
     sheet,
     zero_line,
 )
-from verification.reference.convergence import Limit, Order, Power
+from verification.reference.convergence import Limit, Order
 
 MICRO, GIGA, PERCENT = 1e6, 1e-9, 1e2
 POINTS = {"SAM": SAM | {"marker": "o", "fillstyle": "none"}, "FEM": FEM | {"marker": "x"}}
@@ -482,30 +482,6 @@ def coverage(panels: Mapping[str, Sequence[tuple[str, str, float, float]]]) -> D
         }
     how = {"logarithmic": "xy", "legend": "each", "size": (4.0, 3.8)}
     return Drawing(curves(drawn, "error [%]", "uncertainty [%]", **how).figure, data)
-
-
-def growth(columns: Mapping[str, tuple[str, Mapping[str, Curve], Mapping[str, Curve]]]) -> Drawing:
-    """Title -> (label of x, name -> seconds over x, name -> bytes over x): seconds above, megabytes
-    underneath, with the powers that are their fits.
-    """
-    panels, xlabels, rows = {}, {}, {"processor time [s]": 1.0, "memory [MB]": 1e-6}
-    for k, (label, unit) in enumerate(rows.items(), start=1):
-        for title, column in columns.items():
-            xlabels[label, title] = column[0]
-            panels[label, title] = {name: _with_power(each, unit) for name, each in column[k].items()}
-    drawing = curves(panels, xlabels, logarithmic="xy", legend="each", size=(3.6, 3.0))
-    for axis in drawing.figure.axes:  # at least one decade upwards, and numbers enough
-        low, high = axis.get_ylim()
-        axis.set_ylim(min(low, np.sqrt(low * high / 10)), max(high, np.sqrt(low * high * 10)))
-        log_ticks(axis.yaxis)
-    return drawing
-
-
-def _with_power(curve: Curve, unit: float) -> Curve:
-    """Points in another unit, with the exponent of their power."""
-    if not isinstance(power := curve.fit, Power):
-        return Curve(curve.x, unit * curve.y, look={"linestyle": "none", "fillstyle": "none"})
-    return Curve(curve.x, unit * curve.y, lambda x: unit * power(x), str(power), (power.first, power.last))
 
 
 def over_cycles(

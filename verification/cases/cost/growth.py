@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from verification.cases.case import FEM_3D, Context, Plot, SmallTable
 from verification.cost import growth
-from verification.figures.lines import Curve, growth as draw
+from verification.figures.lines import Curve, curves
 from verification.reference.convergence import Power, fit_power
 from verification.rows import CaseFile
 
@@ -90,44 +91,17 @@ def exponents(frame: DataFrame) -> SmallTable:
     return SmallTable("Exponents of processor time", ("what", "from", "to", "exponent"), rows)
 
 
-PANELS = {
-    "Elastic, SAM": (
-        "cells",
-        {"contact": ("contact", "cpu-s"), "with all depths": ("stresses", "cpu-s")},
-        {"contact": ("contact", "memory"), "with all depths": ("stresses", "memory")},
-    ),
-    "Residual-stress operator": (
-        "cells of the box",
-        {"an application": ("operator-cells", "cpu-s"), "set-up": ("operator-cells", "set-up-s")},
-        {"stored": ("operator-cells", "stored"), "with the set-up": ("operator-cells", "memory")},
-    ),
-    "Running-in": (
-        "cycles",
-        {"running-in": ("cycles", "cpu-s")},
-        {"running-in": ("cycles", "memory")},
-    ),
-    "Finite elements, elastic": (
-        "unknowns",
-        {"axisymmetric": ("axisymmetric", "cpu-s"), "3D": ("spatial", "cpu-s")},
-        {"axisymmetric": ("axisymmetric", "memory"), "3D": ("spatial", "memory")},
-    ),
-}
-"""Title -> what grows, and name -> ladder and column, of times and of memory."""
-
-
-def time_and_memory(file: CaseFile, frame: DataFrame) -> Plot:
-    """Both over the size."""
-    of_time = {EXPONENTS[what][:2]: power for what, power in powers(frame).items()}
-
-    def drawn(columns: Mapping[str, tuple[str, str]]) -> dict[str, Curve]:
-        found = {}
-        for name, (ladder, column) in columns.items():
-            own = frame[frame["sweep"] == ladder]
-            values = own[column].to_numpy(dtype=float)
-            found[name] = Curve(own["size"].to_numpy(), values, of_time.get((ladder, column)))
-        return found
-
-    panels = {title: (size, drawn(times), drawn(memory)) for title, (size, times, memory) in PANELS.items()}
-    alt = "Log-log plots of processor time and memory over cells, cycles and unknowns."
+def times(file: CaseFile, frame: DataFrame) -> Plot:
+    """Over the size, a panel for each exponent."""
+    panels = {}
+    for what, power in powers(frame).items():
+        ladder, column, _ = EXPONENTS[what]
+        own = frame[frame["sweep"] == ladder]
+        values, ends = own[column].to_numpy(dtype=float), (power.first, power.last)
+        panels[fill(what, 36)] = {str(power): Curve(own["size"].to_numpy(), values, power, span=ends)}
+    labels = dict.fromkeys(panels, "processor time [s]")
+    how = {"across": 3, "logarithmic": "xy", "legend": "each", "size": (4.6, 3.2)}
+    drawing = curves(panels, "size", labels, **how)
+    alt = "Log-log plots of processor time over cells, cycles and unknowns."
     caption = "Lines: least squares through the points they cover; numbers: exponents ± standard error."
-    return Plot(draw(panels), "time-memory", "Time and memory over size", alt, caption)
+    return Plot(drawing, "time", "Time over size", alt, caption)
