@@ -373,12 +373,11 @@ class Search:
 
         best = min(finer, key=time)
         if finer[best] == inf:
-            entry, left = attempt.result.uncertainty[attempt.quantity], ""
-            if entry["u_steps"] < entry["u_box"]:
-                left = f"fem.box = {self.scene.fem.box:g} leaves too much"
-            elif self.steps:
-                left = f"{self.steps[0].choice.steps} load steps leave too much"
-            raise BeyondError(f"more cells do not help: {left}")
+            entry = attempt.result.uncertainty[attempt.quantity]
+            left = f"{self.steps[0].choice.steps} load steps leave too much" if self.steps else ""
+            box = f"fem.box = {self.scene.fem.box:g} leaves too much"
+            said = box if entry["u_box"] > entry["u_steps"] else left
+            raise BeyondError(f"more cells do not help: {said}")
         times = min(max(finer[best], LEAST), MOST)
         if finer[best] <= 1.0 and best > choice.steps:
             times = 1.0
