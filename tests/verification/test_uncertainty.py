@@ -204,20 +204,12 @@ def test_solves_that_are_no_family_give_none(cells, spoilt, words):
     assert found["u_num"] is None and words in found["flag"]
 
 
-def test_what_does_not_converge_has_no_uncertainty_and_nothing_more_is_solved():
-    scene, calls = Scene(**YIELDING), []
-
-    def solver(each: Scene, label: str) -> Result:
-        calls.append(label)
-        return Result(SAM, Status.NOT_CONVERGED, {"peeq_max": None}, {})
-
-    assert entries(scene, solver) == {} and len(calls) == 1
-
-
-def test_nothing_more_is_solved_where_it_is_not_asked_for():
+def test_nothing_more_is_solved_of_what_does_not_converge_or_is_not_asked_for():
     calls, scene = [], Scene(**YIELDING | {"solver": {}})
+    failed = Result(SAM, Status.NOT_CONVERGED, {"peeq_max": None}, {})
+    assert entries(Scene(**YIELDING), lambda _, label: calls.append(label) or failed) == {}
     result = solve(scene, SAM, lambda each, label: calls.append((each, label)) or made(each))
-    assert calls == [(scene, "")] and result.uncertainty is None and "quantities" not in result.tables
+    assert calls[1:] == [(scene, "")] and result.uncertainty is None and "quantities" not in result.tables
 
 
 def test_a_coarser_grid_that_the_model_refuses_gives_none():

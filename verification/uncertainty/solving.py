@@ -5,7 +5,7 @@ has none, the coarser companions of a scene, and what the results of all say tog
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import floor, inf, sqrt
 from typing import Any
@@ -141,8 +141,13 @@ class NoFamilyError(ValueError):
 
 def alone(scene: Scene) -> Scene:
     """The scene without its uncertainty, and asked for no accuracy: what a model solves."""
-    plain = {"uncertainty": False, "accuracy": None, "accuracy_of": None}
-    return scene.model_copy(update={"solver": scene.solver.model_copy(update=plain)})
+    return _changed(scene, "solver", uncertainty=False, accuracy=None, accuracy_of=None)
+
+
+def _changed(scene: Scene, section: str, **keys: Any) -> Scene:
+    """The scene with keys of a section changed."""
+    given = getattr(scene, section) or Grid()  # which alone a scene may lack
+    return scene.model_copy(update={section: given.model_copy(update=keys)})
 
 
 def family(
@@ -229,8 +234,11 @@ def _cell_members(scene: Scene, model: str, room: Room, depths: Sequence[float] 
     if scene.patch_surface is None and model != models.SAM:
         count = scene.fem.cells_per_radius
         ratio = min(max(sqrt(count / LEFT), RATIO), WIDEST) if model == models.FEM else RATIO
-        counts = (max(_whole(count / ratio**k), 2) for k in (1, 2))
-        return [_of_mesh(scene, count), *(_of_mesh(other, each) for each in counts)]
+        of = [(scene, count), *((other, max(_whole(count / ratio**k), 2)) for k in (1, 2))]
+        return [
+            Member(_changed(each, "fem", cells_per_radius=n), f"{n} elements in the radius", n, 1.0 / n)
+            for each, n in of
+        ]
     grid = sam.plan(scene).on(room).grid
     first = Member(scene, f"{grid.nx} cells", grid.nx, sqrt(grid.hx * grid.hy))
     return [first, *(_of_grid(other, grid, RATIO**k, depths) for k in (1, 2))]
@@ -240,15 +248,7 @@ def in_one_step(scene: Scene) -> Scene:
     """The same load of an elastic body at once; a way is gone as it is."""
     if scene.strokes.count:
         return scene
-    loading = scene.loading.model_copy(update={"steps": 1, "unload_steps": None})
-    return scene.model_copy(update={"loading": loading})
-
-
-def _of_mesh(scene: Scene, count: int) -> Member:
-    fem = scene.fem.model_copy(update={"cells_per_radius": count})
-    return Member(
-        scene.model_copy(update={"fem": fem}), f"{count} elements in the radius", count, 1.0 / count
-    )
+    return _changed(scene, "loading", steps=1, unload_steps=None)
 
 
 def _of_grid(scene: Scene, grid: CellGrid, factor: float, depths: Sequence[float] | None) -> Member:
@@ -262,9 +262,8 @@ def _of_grid(scene: Scene, grid: CellGrid, factor: float, depths: Sequence[float
         change |= {"depths": _faces(scene, grid.faces, nx / grid.nx), "layers": None, "depth": None}
     elif depths is not None:
         change |= {"depths": tuple(depths), "layers": None, "depth": None}
-    given = (scene.grid or Grid()).model_copy(update=change)
     size = sqrt(sides[0] * sides[1] / (nx * ny))
-    return Member(scene.model_copy(update={"grid": given}), f"{nx} cells", nx, size)
+    return Member(_changed(scene, "grid", **change), f"{nx} cells", nx, size)
 
 
 def _faces(scene: Scene, faces: np.ndarray, share: float) -> tuple[float, ...]:
@@ -286,28 +285,27 @@ def members_of_steps(coarsest: Member) -> tuple[Member, ...]:
     members = []
     for count in step_counts(whole):
         share = count / whole
-        change: dict[str, object] = {"steps": _share(loading.steps, share) if along else count}
+        change: dict[str, object] = {"steps": max(_whole(loading.steps * share), 1) if along else count}
         if loading.unload_steps:
-            change["unload_steps"] = _share(loading.unload_steps, share)
+            change["unload_steps"] = max(_whole(loading.unload_steps * share), 1)
         if along:
-            own = {"steps": _share(along, share), "step_per_radius": None}
+            own = {"steps": max(_whole(along * share), 1), "step_per_radius": None}
             change["path"] = loading.path.model_copy(update=own)
-        scene = coarsest.scene.model_copy(update={"loading": loading.model_copy(update=change)})
+        scene = _changed(coarsest.scene, "loading", **change)
         members.append(Member(scene, f"{count} load steps on {coarsest.label}", count, 1.0 / count))
     return tuple(members)
 
 
-def _share(count: int, share: float) -> int:
-    return max(_whole(count * share), 1)
-
-
 def members_of_box(coarsest: Member) -> tuple[Member, ...]:
     """A scene with its finite-element box and a smaller one; none where that would be too small."""
-    fem, members = coarsest.scene.fem, []
-    for box in (fem.box, fem.box / RATIO):
-        scene = coarsest.scene.model_copy(update={"fem": fem.model_copy(update={"box": box})})
-        members.append(Member(scene, f"a box of {box:.3g} radii on {coarsest.label}", box, 1.0 / box))
-    return tuple(members) if fem.box / RATIO >= LEAST_BOX else ()
+    scene, box = coarsest.scene, coarsest.scene.fem.box
+    if box / RATIO < LEAST_BOX:
+        return ()
+    words = f"radii on {coarsest.label}"
+    return tuple(
+        Member(_changed(scene, "fem", box=size), f"a box of {size:.3g} {words}", size, 1.0 / size)
+        for size in (box, box / RATIO)
+    )
 
 
 # their results
@@ -315,15 +313,12 @@ def members_of_box(coarsest: Member) -> tuple[Member, ...]:
 
 @dataclass(frozen=True)
 class Solved:
-    """The results of a family: those of its cells, of its load steps, and of its boxes. edge: cells in the
-    radius of a contact whose edge falls between them, else infinite.
-    """
+    """The results of a family: those of its cells, of its load steps, and of its boxes."""
 
     family: Family
     cells: Sequence[Result]
     steps: Sequence[Result] = ()
     box: Sequence[Result] = ()
-    edge: float = inf
 
     @property
     def reason(self) -> str:
@@ -351,8 +346,8 @@ def solve(scene: Scene, model: str, solver: Solve | None = None) -> Result:
 
 def asked_of(scene: Scene, source: str) -> Scene:
     """The scene, asked for its uncertainty. SceneError where there is none; source: names it in errors."""
-    solver = scene.solver.model_copy(update={"uncertainty": True})
-    asked = scene.model_copy(update={"solver": solver})
+    asked = _changed(scene, "solver", uncertainty=True)
+    solver = asked.solver
     own = ((f"solver.{key}", words) for key, words in solver.conflicts(solver.model_dump(exclude_none=True)))
     if found := [*own, *asked.excesses()]:
         raise SceneError([Problem(key, spelling(True), words) for key, words in found], source)
@@ -374,8 +369,7 @@ def with_uncertainty(scene: Scene, model: str, solver: Solve) -> Result:
     except NoFamilyError as error:
         reason = str(error)
     if reason:
-        names = _named(fine.quantities, scene)
-        return _with_entries(fine, {name: _none(why_not(name, scene) or reason) for name in names})
+        return _stated(fine, scene, reason)
     cells = [fine, *(solver(member.scene, member.label) for member in found.cells[1:])]
     steps = [cells[-1], *(solver(member.scene, member.label) for member in found.steps[1:])]
     box = [steps[-1], *(solver(member.scene, member.label) for member in found.box[1:])]
@@ -398,43 +392,47 @@ def under_resolved(scene: Scene, fine: Result, found: Family) -> str:
     return f"the coarsest grid is under-resolved: {words}"
 
 
-def _none(reason: str) -> dict[str, Any]:
-    return {"u_num": None, "flag": reason}
-
-
 def assessed(scene: Scene, solved: Solved) -> Result:
     """The finest result of a family, with the uncertainty of its quantities and the cost of all solves."""
-    fine, entries = solved.cells[0], {}
+    fine = solved.cells[0]
     reason = solved.reason or under_resolved(scene, fine, solved.family)
-    solved = replace(solved, edge=cells_to_edge(scene, fine, solved.family))
-    for name in _named(fine.quantities, scene):
-        own = why_not(name, scene) or reason
-        entries[name] = _none(own) if own else entry(name, solved, scene.solver.tolerance)
+    edge = cells_to_edge(scene, fine, solved.family)
+    found = _stated(fine, scene, reason, lambda name: entry(name, solved, edge, scene.solver.tolerance))
     members = (*solved.cells[1:], *solved.steps[1:], *solved.box[1:])
-    return replace(_with_entries(fine, entries), cost=cost_of(fine, members))
+    return replace(found, cost=cost_of(fine, members))
 
 
-def _named(quantities: Mapping[str, float | None], scene: Scene) -> list[str]:
-    return [name for name, value in quantities.items() if value is not None and not is_given(name, scene)]
+def _stated(fine: Result, scene: Scene, reason: str, of: Callable[[str], dict] | None = None) -> Result:
+    """The result with what is known of each quantity that the scene does not give, or the reason why nothing
+    is.
+    """
+    entries = {}
+    for name, value in fine.quantities.items():
+        if value is not None and not is_given(name, scene):
+            own = why_not(name, scene) or reason
+            entries[name] = {"u_num": None, "flag": own} if own else of(name)
+    rows = [{"quantity": name, "value": fine.quantities[name]} | each for name, each in entries.items()]
+    table = {column: [row.get(column) for row in rows] for column in COLUMNS["quantities"]}
+    return replace(fine, uncertainty=entries, tables={**fine.tables, "quantities": table})
 
 
-def entry(name: str, solved: Solved, tolerance: float) -> dict[str, Any]:
-    """What the members say about a quantity.
+def entry(name: str, solved: Solved, cells: float, tolerance: float) -> dict[str, Any]:
+    """What the members say about a quantity. cells: see `cells_to_edge`.
 
     u_cells, u_steps, u_box: bounds by each; u_num: their sum, as errors of one sign are usual, at least the
     tolerance of the solvers. Bounds by steps and box are relative changes on the coarsest cells; that by
     cells is at least what the edge of the contact leaves.
     """
     value = solved.cells[0].quantities[name]
-    outline = name in EDGES and solved.edge < inf and solved.cells[0].model == models.SAM
+    outline = name in EDGES and cells < inf and solved.cells[0].model == models.SAM
     factor = OUTLINE_FACTOR if outline else FACTOR
     of_cells, values = _bound(name, solved.family.cells, solved.cells, ORDERS[name], factor=factor)
     of_steps, on_steps = _bound(name, solved.family.steps, solved.steps, STEP_ORDER, factor=STEP_FACTOR)
     of_box, in_boxes = _bound(name, solved.family.box, solved.box, BOX_ORDERS.get(name, 2.0))
     if of_cells is None:
-        return _none("a coarser solve does not have it")
+        return {"u_num": None, "flag": "a coarser solve does not have it"}
     left = solved.cells[0].model == models.SAM or name in OF_ELEMENTS
-    edge = of_edge(value, solved.edge, EDGES.get(name, EDGE)) if ORDERS[name] == 2.0 and left else 0.0
+    edge = of_edge(value, cells, EDGES.get(name, EDGE)) if ORDERS[name] == 2.0 and left else 0.0
     parts = {"u_cells": max(of_cells, edge), "u_steps": _carried(of_steps, on_steps, value)}
     parts["u_box"] = _carried(of_box, in_boxes, value)
     total = max(sum(parts.values()), tolerance * abs(value))
@@ -467,13 +465,6 @@ def _bound(
     if len(values) < 2 or None in values:
         return None, []
     return bound(values, [member.size for member in members], order, factor), values
-
-
-def _with_entries(fine: Result, entries: Mapping[str, Mapping[str, Any]]) -> Result:
-    columns = COLUMNS["quantities"]
-    rows = [{"quantity": name, "value": fine.quantities[name]} | dict(each) for name, each in entries.items()]
-    table = {column: [row.get(column) for row in rows] for column in columns}
-    return replace(fine, uncertainty=entries, tables={**fine.tables, "quantities": table})
 
 
 def cost_of(fine: Result, members: Sequence[Result]) -> dict[str, float | int | None]:
