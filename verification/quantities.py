@@ -96,8 +96,7 @@ class Values:
 class Quantity:
     """words: for the reader, without the model; of: (result, reference) -> number, Values, or Measured where
     the result has the answer itself; between: (scene, SAM, other result) -> Measured; row: of `compare`, the
-    difference of both models where that alone is held.; whole: of all
-    runs of a scene.
+    difference of both models where that alone is held; whole: of all runs of a scene.
     """
 
     words: str

@@ -174,12 +174,7 @@ REFUSED = {
         ["--tolerance", "p_max=2%"],
         "unknown quantity 'p_max' (did you mean p_max_Pa?)",
     ),
-    "tolerance that is none": (
-        ["--tolerance", "p_max_Pa=two"],
-        'tolerances.p_max_Pa = "two": tolerance from 1e-12',
-    ),
     "missing data": (["--with", "none.csv"], "none.csv: cannot be read"),
-    "mesh without a mapping": (["--with", "mesh.vtu"], "the mapping (TOML) that names and explains a mesh"),
     "data of several scenes": (["good.toml", "--with", "none.csv"], "--with = none.csv: for one scene only"),
     "page in another folder": (["--report", "."], "no finished verification report here"),
     "page in a file": (["--report", "off.toml"], "--report off.toml is no folder that can be"),
