@@ -285,15 +285,19 @@ def members_of_steps(coarsest: Member) -> tuple[Member, ...]:
     members = []
     for count in step_counts(whole):
         share = count / whole
-        change: dict[str, object] = {"steps": max(_whole(loading.steps * share), 1) if along else count}
+        change: dict[str, object] = {"steps": _share(loading.steps, share) if along else count}
         if loading.unload_steps:
-            change["unload_steps"] = max(_whole(loading.unload_steps * share), 1)
+            change["unload_steps"] = _share(loading.unload_steps, share)
         if along:
-            own = {"steps": max(_whole(along * share), 1), "step_per_radius": None}
+            own = {"steps": _share(along, share), "step_per_radius": None}
             change["path"] = loading.path.model_copy(update=own)
         scene = _changed(coarsest.scene, "loading", **change)
         members.append(Member(scene, f"{count} load steps on {coarsest.label}", count, 1.0 / count))
     return tuple(members)
+
+
+def _share(count: int, share: float) -> int:
+    return max(_whole(count * share), 1)
 
 
 def members_of_box(coarsest: Member) -> tuple[Member, ...]:
@@ -313,12 +317,15 @@ def members_of_box(coarsest: Member) -> tuple[Member, ...]:
 
 @dataclass(frozen=True)
 class Solved:
-    """The results of a family: those of its cells, of its load steps, and of its boxes."""
+    """The results of a family: those of its cells, of its load steps, and of its boxes. edge: cells in the
+    radius of a contact whose edge falls between them, else infinite.
+    """
 
     family: Family
     cells: Sequence[Result]
     steps: Sequence[Result] = ()
     box: Sequence[Result] = ()
+    edge: float = inf
 
     @property
     def reason(self) -> str:
@@ -346,8 +353,8 @@ def solve(scene: Scene, model: str, solver: Solve | None = None) -> Result:
 
 def asked_of(scene: Scene, source: str) -> Scene:
     """The scene, asked for its uncertainty. SceneError where there is none; source: names it in errors."""
-    asked = _changed(scene, "solver", uncertainty=True)
-    solver = asked.solver
+    solver = scene.solver.model_copy(update={"uncertainty": True})
+    asked = scene.model_copy(update={"solver": solver})
     own = ((f"solver.{key}", words) for key, words in solver.conflicts(solver.model_dump(exclude_none=True)))
     if found := [*own, *asked.excesses()]:
         raise SceneError([Problem(key, spelling(True), words) for key, words in found], source)
@@ -369,7 +376,7 @@ def with_uncertainty(scene: Scene, model: str, solver: Solve) -> Result:
     except NoFamilyError as error:
         reason = str(error)
     if reason:
-        return _stated(fine, scene, reason)
+        return _reported(fine, scene, reason)
     cells = [fine, *(solver(member.scene, member.label) for member in found.cells[1:])]
     steps = [cells[-1], *(solver(member.scene, member.label) for member in found.steps[1:])]
     box = [steps[-1], *(solver(member.scene, member.label) for member in found.box[1:])]
@@ -396,35 +403,36 @@ def assessed(scene: Scene, solved: Solved) -> Result:
     """The finest result of a family, with the uncertainty of its quantities and the cost of all solves."""
     fine = solved.cells[0]
     reason = solved.reason or under_resolved(scene, fine, solved.family)
-    edge = cells_to_edge(scene, fine, solved.family)
-    found = _stated(fine, scene, reason, lambda name: entry(name, solved, edge, scene.solver.tolerance))
+    solved = replace(solved, edge=cells_to_edge(scene, fine, solved.family))
     members = (*solved.cells[1:], *solved.steps[1:], *solved.box[1:])
-    return replace(found, cost=cost_of(fine, members))
+    return replace(_reported(fine, scene, reason, solved), cost=cost_of(fine, members))
 
 
-def _stated(fine: Result, scene: Scene, reason: str, of: Callable[[str], dict] | None = None) -> Result:
-    """The result with what is known of each quantity that the scene does not give, or the reason why nothing
-    is.
+def _reported(fine: Result, scene: Scene, reason: str, solved: Solved | None = None) -> Result:
+    """The result with the uncertainty of each quantity that the scene does not give, or why there is none;
+    reason: of all that have none of their own.
     """
-    entries = {}
+    entries: dict[str, dict[str, Any]] = {}
     for name, value in fine.quantities.items():
-        if value is not None and not is_given(name, scene):
-            own = why_not(name, scene) or reason
-            entries[name] = {"u_num": None, "flag": own} if own else of(name)
+        if value is None or is_given(name, scene):
+            continue
+        words = why_not(name, scene) or reason
+        known = None if words or solved is None else entry(name, solved, scene.solver.tolerance)
+        entries[name] = known or {"u_num": None, "flag": words}
     rows = [{"quantity": name, "value": fine.quantities[name]} | each for name, each in entries.items()]
     table = {column: [row.get(column) for row in rows] for column in COLUMNS["quantities"]}
     return replace(fine, uncertainty=entries, tables={**fine.tables, "quantities": table})
 
 
-def entry(name: str, solved: Solved, cells: float, tolerance: float) -> dict[str, Any]:
-    """What the members say about a quantity. cells: see `cells_to_edge`.
+def entry(name: str, solved: Solved, tolerance: float) -> dict[str, Any]:
+    """What the members say about a quantity.
 
     u_cells, u_steps, u_box: bounds by each; u_num: their sum, as errors of one sign are usual, at least the
     tolerance of the solvers. Bounds by steps and box are relative changes on the coarsest cells; that by
     cells is at least what the edge of the contact leaves.
     """
     value = solved.cells[0].quantities[name]
-    outline = name in EDGES and cells < inf and solved.cells[0].model == models.SAM
+    outline = name in EDGES and solved.edge < inf and solved.cells[0].model == models.SAM
     factor = OUTLINE_FACTOR if outline else FACTOR
     of_cells, values = _bound(name, solved.family.cells, solved.cells, ORDERS[name], factor=factor)
     of_steps, on_steps = _bound(name, solved.family.steps, solved.steps, STEP_ORDER, factor=STEP_FACTOR)
@@ -432,7 +440,7 @@ def entry(name: str, solved: Solved, cells: float, tolerance: float) -> dict[str
     if of_cells is None:
         return {"u_num": None, "flag": "a coarser solve does not have it"}
     left = solved.cells[0].model == models.SAM or name in OF_ELEMENTS
-    edge = of_edge(value, cells, EDGES.get(name, EDGE)) if ORDERS[name] == 2.0 and left else 0.0
+    edge = of_edge(value, solved.edge, EDGES.get(name, EDGE)) if ORDERS[name] == 2.0 and left else 0.0
     parts = {"u_cells": max(of_cells, edge), "u_steps": _carried(of_steps, on_steps, value)}
     parts["u_box"] = _carried(of_box, in_boxes, value)
     total = max(sum(parts.values()), tolerance * abs(value))
