@@ -224,12 +224,6 @@ def test_a_fault_that_ends_wrongly_is_found(tmp_path, code, text, gates):
     assert gates_of(found) == gates
 
 
-def test_a_folder_of_another_version_is_refused_and_stays(tmp_path):
-    name = "folder of another version"
-    (_, code, message), (_, found) = case.judge_fault(name, case.FAULTS[name], tmp_path / "f")
-    assert found == [] and code == "2" and "another version" in message
-
-
 @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EFBIG])
 def test_a_full_disk_names_the_file_and_leaves_none(tmp_path, monkeypatch, capsys, number):
     def full(_descriptor):

@@ -66,12 +66,20 @@ def wide(radii: float, cells: int, depth: float, *, thickness: float = 0.0, even
     return {"cells": (cells, cells), "extent": sides, "depths": tuple(faces)}
 
 
+SHORT = {
+    "film": lambda film: ("body.coating", {"thickness": film[0], "young": film[1], "poisson": POISSON}),
+    "perfect": lambda stress: ("body.plasticity", {"law": "perfect", "yield_stress": stress}),
+}
+"""Keys of `rows.toml` that stand for longer ones: value -> key and value."""
+
+
 def meant(value: Any, key: str = "") -> Any:
     """A value of `rows.toml` as a scene has it: "none" takes a key away, "2 a" and "p0/3" are numbers in
-    UNITS; names of heights, and arguments of `wide`.
+    UNITS; names of heights, keys of SHORT, and arguments of `wide`.
     """
     if isinstance(value, Mapping):
-        own = {name: meant(each, name) for name, each in value.items()}
+        pairs = ((name, meant(each, name)) for name, each in value.items())
+        own = dict(SHORT[name](each) if name in SHORT else (name, each) for name, each in pairs)
         return wide(*own.pop("wide"), **own) if "wide" in own else own
     if isinstance(value, list):
         return tuple(meant(each, key) for each in value)
