@@ -219,8 +219,9 @@ def test_a_command_that_does_not_end_is_ended(tmp_path):
         (2, "Traceback (most recent call last)\nsamfem: error: another", {"wrong-endings"}),
     ],
 )
-def test_a_fault_that_ends_wrongly_is_found(tmp_path, code, text, gates):
-    _, (_, found) = case.judge_fault("x", (lambda base: (code, text), (2,), "another"), tmp_path / "f")
+def test_a_fault_that_ends_wrongly_is_found(tmp_path, monkeypatch, code, text, gates):
+    monkeypatch.setitem(case.FAULTS, "x", (lambda base: (code, text), (2,), "another"))
+    _, (_, found) = case.judge_fault("x", tmp_path / "f")
     assert gates_of(found) == gates
 
 

@@ -406,25 +406,17 @@ def _matrix(rng: random.Random) -> Laid:
         places = [[str(x), str(y), z] for y, row in enumerate(rows) for x, z in enumerate(row)]
         rows = [["x_um", "y_um", "z_um"], *places]
     between = rng.choice((",", ";", "\t", " ", "  ", ", "))
-    text = "\n".join(map(between.join, rows)) + rng.choice(("\n", "\n\n"))
-    if rng.random() < 0.5:
-        text = replaced(rng, text, CELL, lambda _: rng.choice(hostile.CELLS))
-    if rng.random() < 0.2:
-        text = replaced(
-            rng, text, LINE, lambda match: match[0][: rng.randrange(len(match[0]))] + "\n", most=1
-        )
-    text = text.replace(".", ",") if between != "," and rng.random() < 0.2 else text
     heads = "", "", "", "# nm\n", "x,y,z\n", "\ufeff", "1\n", "[Header]\nWidth=10 um\n\n"
-    content = (rng.choice(heads) + text).encode(
-        rng.choice(("utf-8", "utf-8", "utf-16", "latin-1")), "replace"
-    )
+    text = rng.choice(heads) + "\n".join(map(between.join, rows)) + "\n"
+    text = text.replace(".", ",") if between != "," and rng.random() < 0.2 else text
+    content = text.encode() if rng.random() < 0.4 else bad_table(rng, text.encode(), hostile.CELLS)
     ending = rng.choice((".csv", ".txt", ".npy", ".asc", ".dat"))
     if ending == ".npy":
         kinds = "<f8", "<f4", ">f8", "<i8", "<c16", "?", "|O", "<U9"
         values = _arrays()["height_m"].astype(rng.choice(kinds))  # an object is refused
         content = rng.choice((npy(values, objects=True), lying_header(rng)))
-    content = mutated(rng, content) if rng.random() < 0.2 else content
-    keys = rng.sample(hostile.MATRIX_KEYS, rng.randrange(3))
+    right, some = hostile.MATRIX_KEYS[:2], rng.sample(hostile.MATRIX_KEYS, rng.randrange(3))
+    keys = rng.choice((right, some))
     path = toml_string(f"heights{ending}") + "\n" + "\n".join(keys)
     files = {f"heights{ending}": content, SCENE: ROUGH.replace(toml_string(HEIGHTS), path).encode()}
     return {**AROUND, **files}, SCENE

@@ -15,7 +15,6 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from pathlib import Path
 from subprocess import Popen
 
@@ -144,11 +143,11 @@ FAULTS: dict[str, Fault] = {
 }
 
 
-def judge_fault(name: str, fault: Fault, base: Path) -> tuple[tuple[str, str, str], Trial]:
+def judge_fault(name: str, base: Path) -> tuple[tuple[str, str, str], Trial]:
     """The row of a fault for the reader, and what was wrong with its end."""
     base.mkdir()
     (base / "scene.toml").write_text(SCENE)
-    make, codes, says = fault
+    make, codes, says = FAULTS[name]
     code, text = make(base)
     lines, found = text.strip().splitlines() or [""], inspect(base / "run")
     message = next((line for line in reversed(lines) if line.startswith("samfem: error")), lines[-1])
@@ -227,27 +226,18 @@ def counts_table(caption: str, trials: Sequence[Trial]) -> SmallTable:
     return SmallTable(caption, columns, [(how, str(hows[how]), str(good[how])) for how in sorted(hows)])
 
 
-@dataclass(frozen=True)
-class Killed:
-    """Trials of solves (one undisturbed takes `seconds`) and of sweeps, and the other faults with
-    their rows.
-    """
-
-    solves: list[Trial]
-    sweeps: list[Trial]
-    seconds: float
-    faults: list[tuple[tuple[str, str, str], Trial]]
-
-    @property
-    def every(self) -> list[Trial]:
-        """All trials."""
-        return [*self.solves, *self.sweeps, *(trial for _, trial in self.faults)]
+def every(found: tuple) -> list[Trial]:
+    """All trials of what `Faults` solves."""
+    solved, swept, judged, _ = found
+    return [*solved, *swept, *(trial for _, trial in judged)]
 
 
 class Faults(Case):
-    """Solves and sweeps killed, then the other faults one by one."""
+    """Solves and sweeps killed, then the other faults one by one: the trials of the first two, the other
+    faults with their rows, and the seconds of an undisturbed solve.
+    """
 
-    def solve(self, context: Context) -> Killed:
+    def solve(self, context: Context) -> tuple[list[Trial], list[Trial], list, float]:
         solves, sweeps = KILLS[context.level]
 
         def progress(stage: str, done: int, total: int) -> None:
@@ -259,27 +249,26 @@ class Faults(Case):
                 (base / file).write_text(text)
             solved, seconds = kill_solves(solves, base, progress)
             swept = kill_sweeps(sweeps, base, progress)
-            judged = [
-                judge_fault(name, fault, base / f"fault-{k}")
-                for k, (name, fault) in enumerate(FAULTS.items())
-            ]
-        return Killed(solved, swept, seconds, judged)
+            judged = [judge_fault(name, base / f"fault-{k}") for k, name in enumerate(FAULTS)]
+        return solved, swept, judged, seconds
 
-    def measure(self, found: Killed) -> dict[str, Measured]:
-        return values_of(found.every)
+    def measure(self, found: tuple) -> dict[str, Measured]:
+        return values_of(every(found))
 
-    def setup(self, found: Killed) -> Iterator[tuple[str, str]]:
-        swept = f"{len(found.sweeps)} of a sweep of 24 scenes; kill -9, seed {SEED}"
-        yield "Kills", f"{len(found.solves)} of a solve of {found.seconds:.1f} s, {swept}"
+    def setup(self, found: tuple) -> Iterator[tuple[str, str]]:
+        solved, swept, _, seconds = found
+        sweeps = f"{len(swept)} of a sweep of 24 scenes; kill -9, seed {SEED}"
+        yield "Kills", f"{len(solved)} of a solve of {seconds:.1f} s, {sweeps}"
         yield "Checkpoints", "after each load step"
 
-    def tables(self, found: Killed) -> Iterator[SmallTable]:
-        yield counts_table("Solves", found.solves)
-        yield counts_table("Sweeps", found.sweeps)
-        yield SmallTable("Other faults", ("fault", "exit code", "message"), [row for row, _ in found.faults])
+    def tables(self, found: tuple) -> Iterator[SmallTable]:
+        solved, swept, judged, _ = found
+        yield counts_table("Solves", solved)
+        yield counts_table("Sweeps", swept)
+        yield SmallTable("Other faults", ("fault", "exit code", "message"), [row for row, _ in judged])
 
-    def notes(self, found: Killed) -> list[str]:
-        return [f"{gate}: {text}" for _, findings in found.every for gate, text in findings][:20]
+    def notes(self, found: tuple) -> list[str]:
+        return [f"{gate}: {text}" for _, findings in every(found) for gate, text in findings][:20]
 
 
 CASES = (Faults("faults"),)
