@@ -36,19 +36,16 @@ def plan(scene: Scene) -> dict:
 
 
 def _model(scene: Scene, model: str) -> dict:
+    chosen = []
     try:
         models.check(scene, model)
+        if scene.solver.accuracy is not None:
+            choice, later = first_choice(scene, model), expected(scene, model)
+            asked = f"{100 * scene.solver.accuracy:g} % of {', '.join(quantities_of(scene))}"
+            words = f"{asked}: begins with {choice}; the table of advice expects {later}"
+            chosen, scene = [Stage("accuracy", True, words)], chosen_scene(scene, model, later)
     except models.ModelError as reason:
         return {"model": model, "available": False, "reason": str(reason), "stages": [], "estimate": None}
-    chosen = []
-    if scene.solver.accuracy is not None:
-        try:
-            choice, later = first_choice(scene, model), expected(scene, model)
-        except models.ModelError as reason:
-            return {"model": model, "available": False, "reason": str(reason), "stages": [], "estimate": None}
-        asked = f"{100 * scene.solver.accuracy:g} % of {', '.join(quantities_of(scene))}"
-        words = f"{asked}: begins with {choice}; the table of advice expects {later}"
-        chosen, scene = [Stage("accuracy", True, words)], chosen_scene(scene, model, later)
     made = models.plan(scene, model)
     stages, estimate = _stages(scene, made), estimates.estimate(scene, model, made)
     if scene.solver.uncertainty:
@@ -70,7 +67,7 @@ def _stages(scene: Scene, made: Any) -> list[Stage]:
     found = []
     for stage in (each for each in made.stages if each.runs or each.reason == NO_FORCE):
         if stage.stage == "eigenstrain kernels" and stage.runs:
-            box = estimates.plastic_box(scene, made.grid)
+            box = estimates.plastic_boxes(scene, made.grid)[-1]
             size = {"box_cells": [box.nx, box.ny, box.layers], "coefficients": box.coefficients}
             stage = replace(stage, size=size | {"bytes": box.width * box.coefficients})
         found.append(stage)
