@@ -15,6 +15,7 @@ import time
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from sam.scene import Scene
 from samfem.executors import Failure, Processes, run
@@ -85,7 +86,8 @@ def _fill(store: Store, chosen: Iterable[Case], *, level: str, workers: int) -> 
     ]
     by_name = {case.name for case in missing}
     beside, alone = ([case for case in missing if case.alone is kind] for kind in (False, True))
-    failures, done = {}, 0
+    failures: dict[str, str] = {}
+    done = 0
     for cases, processes in ((beside, workers), (alone, 1)):
         with Processes(processes, fresh=True) as pool:
             for name, answer, _ in run(pool, make, _tasks(store, cases, level)):
@@ -97,7 +99,7 @@ def _fill(store: Store, chosen: Iterable[Case], *, level: str, workers: int) -> 
     return failures
 
 
-def _tasks(store: Store, cases: Iterable[Case], level: str) -> dict[str, tuple]:
+def _tasks(store: Store, cases: Iterable[Case], level: str) -> dict[str, tuple[Any, ...]]:
     """Name -> arguments of `make`: the cases, the scenes that are solved ahead, then the cases with such
     scenes.
     """
@@ -118,7 +120,8 @@ def make(name: str, level: str, folder: Path, scene: Scene | None = None) -> tup
     """
     case, store = all_cases()[name], KeepsAll(folder)
     if scene is not None:
-        began, further = time.perf_counter(), scene
+        further: Scene | None = scene
+        began = time.perf_counter()
         while further is not None:
             further = case.then(further, solve_or_reuse(store, further, SAM)[0])
         return "", time.perf_counter() - began
