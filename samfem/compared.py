@@ -240,7 +240,8 @@ def asked(
         given = tolerances_of(scene, tolerances or {}, source)
     with refusals.kept():
         chosen = model or models.cheapest_reference(scene)
-        check(scene, models.SAM, chosen, anyway=anyway)
+        for each in (models.SAM, chosen):
+            check(scene, each, anyway=anyway)
     for path in data:
         with refusals.kept():
             own.append(read_data(path, scene))

@@ -67,20 +67,27 @@ def solve(
     if uncertainty:
         scene = with_uncertainty(scene, str(path))
     folder = out or Path(f"{path.stem}-{model}")
-    check(scene, model, anyway=anyway or resume)
+    made = check(scene, model, anyway=anyway or resume)
     check_target(folder)
     with locked(folder):
-        return _solve(scene, model, folder, inputs, figures=figures, resume=resume)
+        return _solve(scene, model, folder, inputs, made=made, figures=figures, resume=resume)
 
 
 def _solve(
-    scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], *, figures: bool, resume: bool
+    scene: Scene,
+    model: str,
+    folder: Path,
+    inputs: dict[str, bytes],
+    *,
+    made: Any,
+    figures: bool,
+    resume: bool,
 ) -> int:
     if resume and checkpoints.is_finished(folder, scene, model):
         result: Result | Run = read_run(folder)
         print(f"samfem: {folder} is already finished: nothing is solved", file=sys.stderr)
     else:
-        result = _solved(scene, model, folder, inputs, resume=resume)
+        result = _solved(scene, model, folder, inputs, made=made, resume=resume)
     heads = status_line(result), undecided_line(result), load_line(result)
     print(*filter(None, heads), sep="\n")
     if result.uncertainty:
@@ -101,8 +108,10 @@ def _solve(
     return unconverged([result])
 
 
-def _solved(scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], *, resume: bool) -> Result:
-    """A fresh result, written to `folder`, of a solve that may be interrupted and continued."""
+def _solved(
+    scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], *, made: Any, resume: bool
+) -> Result:
+    """A fresh result, written to `folder`, of a solve that may be continued; made: its plan."""
 
     def write(result: Result, source: Reuse) -> None:
         write_solved(scene, folder, result, source=source, inputs=inputs)
@@ -110,7 +119,7 @@ def _solved(scene: Scene, model: str, folder: Path, inputs: dict[str, bytes], *,
     if not (scene.solver.uncertainty or scene.solver.accuracy):
         if not resume and (folder / CHECKPOINT).exists():
             _say(f"a checkpoint of an interrupted run is in {folder}, and is replaced; --resume continues it")
-        return _in_parts(scene, model, folder, resume=resume, write=write)
+        return _in_parts(scene, model, folder, resume=resume, write=write, made=made)
     place = folder / MEMBERS  # of a scene with its uncertainty: what is finished, until all is
     if not resume:
         rmtree(place, ignore_errors=True)
@@ -144,8 +153,11 @@ def _in_parts(
     resume: bool,
     label: str = "",
     write: Callable[[Result, Reuse], None] = lambda *_: None,
+    made: Any = None,
 ) -> Result:
-    """A fresh result, with checkpoints in a folder; write: what an interruption may not leave half done."""
+    """A fresh result, with checkpoints in a folder; write: what an interruption may not leave half done;
+    made: the plan, if there is one.
+    """
     seconds, who = checkpoints.interval(), checkpoints.identity(scene, model)
     start = _start(scene, place, who) if resume else None
     writer = checkpoints.Writer(place, who, seconds, start, warn=_say)
@@ -156,7 +168,7 @@ def _in_parts(
                 progress(f"{model}{label}: {stage}", done, total)
 
             result, source = solve_or_reuse(
-                default_store(), scene, model, told, fresh=True, checkpoint=writer, start=start
+                default_store(), scene, model, told, fresh=True, checkpoint=writer, start=start, made=made
             )
         write(result, source)
     return result
@@ -198,16 +210,16 @@ def write_solved(
     write_run(result, scene, folder, collect(inputs, scene.seeds) | source.provenance)
 
 
-def check(scene: Scene, *names: str, anyway: bool = False) -> None:
-    """Raise ModelError unless each model can represent the scene within the memory of the machine,
-    and, unless `anyway`, in the time that a command begins unasked.
+def check(scene: Scene, model: str, *, anyway: bool = False) -> Any:
+    """The plan of a model, with the first cells and load steps where an accuracy is asked for.
+
+    Raises ModelError unless the model can represent the scene within the memory of the machine, and, unless
+    `anyway`, in the time that a command begins unasked.
     """
-    for model in names:
-        chosen = scene
-        if scene.solver.accuracy is not None:
-            models.check(scene, model)
-            chosen = chosen_scene(scene, model, first_choice(scene, model))
-        plans.check_needs(chosen, model, anyway=anyway)
+    if scene.solver.accuracy is not None:
+        models.check(scene, model)
+        scene = chosen_scene(scene, model, first_choice(scene, model))
+    return plans.check_needs(scene, model, anyway=anyway)
 
 
 def unconverged(results: Sequence[Result | Run]) -> int:

@@ -314,8 +314,8 @@ def solve_scene(scene: Scene, model: str, code: str, anyway: bool = False) -> So
             return Failure(
                 "the worker runs another version of samfem, numpy or scipy: install the same one there"
             )
-        check_needs(scene, model, anyway=anyway)
-        return models.solve(scene, model), _origin()
+        made = check_needs(scene, model, anyway=anyway)
+        return models.solve(scene, model, made=made), _origin()
     except models.ModelError as error:
         return Failure(str(error))
     except MemoryError:

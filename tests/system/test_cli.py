@@ -238,13 +238,14 @@ ONCE = (make.check_bodies, make.plan_of, make.schedule_of, stages.stages_of, bod
 
 
 @pytest.mark.parametrize("add", [SMALL, SMALL + f"[body.plasticity]\n{HARDENING['swift']}"])
-def test_a_solve_checks_plans_and_estimates_a_scene_once(folder, add):
-    """The command also before it begins, where too much is refused, and in `models.solve`."""
+def test_a_scene_is_checked_planned_and_estimated_once(folder, add):
+    """By the solver, and by the command with all that it asks before it begins."""
     scene, functions = parsed(("0.65 N", "0.05 N"), add=add), (*ONCE, circular_contact_radius)
     (folder / "small.toml").write_text(scene_text(("0.65 N", "0.05 N"), add=add))
     assert set(calls_of(functions, lambda: sam.solve(scene)).values()) == {1}
-    called = calls_of(ONCE[:2], lambda: main(["solve", "small.toml"]))
-    assert called == {"sam.planner.make.check_bodies": 3, "sam.planner.make.plan_of": 2}
+    assert set(calls_of(ONCE[:4], lambda: main(["solve", "small.toml"])).values()) == {1}
+    planners, words = (fem_reference.axisymmetric.planner.plan,), ["--model", "fem-axisymmetric"]
+    assert set(calls_of(planners, lambda: main(["solve", "small.toml", *words])).values()) == {1}
 
 
 PLASTIC = '[body.plasticity]\nlaw = "table"\nfile = "curve.csv"\n'
