@@ -60,15 +60,13 @@ class Uncertain:
 class Compared:
     """Both results of a scene and the rows that hold one against the other.
 
-    sources: where each result is from; film: of a coated scene, whether its film is negligible; claim: the
-    one that decides too, if any; data, beside: data of the user, and the rows that each has, with the data
-    in the place of FEM.
+    film: of a coated scene, whether its film is negligible; claim: the one that decides too, if any; data,
+    beside: data of the user, and the rows that each has, with the data in the place of FEM.
     """
 
     scene: Scene
     sam: Result
     fem: Result
-    sources: tuple[Reuse, Reuse]
     rows: tuple[Verdict, ...]
     film: FilmVerdict | None = None
     claim: str | None = None
@@ -170,8 +168,7 @@ class Question:
         self, *, store: Store | None = None, progress: Progress | None = None, solved: Solved | None = None
     ) -> Compared:
         """The comparison; results are taken from the store, or solved and kept there."""
-        sam, of_sam = self._solve(models.SAM, store, progress, solved)
-        fem, of_fem = self._solve(self.model, store, progress, solved)
+        sam, fem = (self._solve(model, store, progress, solved) for model in (models.SAM, self.model))
         rows, film = compare_scene(self.scene, sam, fem), None
         if self.scene.body.coating is not None:
             film = verdict(self.scene, sam, fem)
@@ -181,21 +178,12 @@ class Question:
             between, own = compare_data(self.scene, sam, fem, data)
             rows += [row for row in between if row.quantity not in {each.quantity for each in rows}]
             beside.append(tuple(self.tolerances.judged(own)))
-        return Compared(
-            self.scene,
-            sam,
-            fem,
-            sources=(of_sam, of_fem),
-            rows=tuple(self.tolerances.judged(rows)),
-            film=film,
-            claim=self.claim,
-            data=self.data,
-            beside=tuple(beside),
-        )
+        judged = tuple(self.tolerances.judged(rows))
+        return Compared(self.scene, sam, fem, judged, film, self.claim, self.data, tuple(beside))
 
     def _solve(
         self, model: str, store: Store | None, progress: Progress | None, solved: Solved | None
-    ) -> tuple[Result, Reuse]:
+    ) -> Result:
         sources = []
 
         def one(scene: Scene, label: str) -> Result:
@@ -210,7 +198,7 @@ class Question:
         result = solve_family(self.scene, model, one)
         if solved:
             solved(model, result, sources[0])
-        return result, sources[0]
+        return result
 
 
 def asked(
@@ -232,10 +220,9 @@ def asked(
     wrong.
     """
     refusals, own, given, chosen = Refusals(), list[OwnData](), Tolerances(), ""
-    with refusals.kept():
-        if claim is not None and scene.body.coating is None:
-            allowed = "only for a scene with [body.coating]"
-            raise SceneError([Problem("--claim", spelling(claim), allowed)], source)
+    if claim is not None and scene.body.coating is None:
+        problem = Problem("--claim", spelling(claim), "only for a scene with [body.coating]")
+        refusals.found.append(SceneError([problem], source))
     with refusals.kept():
         given = tolerances_of(scene, tolerances or {}, source)
     with refusals.kept():
@@ -245,30 +232,13 @@ def asked(
     for path in data:
         with refusals.kept():
             own.append(read_data(path, scene))
-    with refusals.kept():
-        if len({each.name for each in own}) < len(own):
-            names = ", ".join(sorted(each.name for each in own))
-            raise SceneError(
-                [Problem("data", names, "each with a name of its own: rename the files")], source
-            )
+    names = sorted(each.name for each in own)
+    if len(set(names)) < len(names):
+        problem = Problem("data", ", ".join(names), "each with a name of its own: rename the files")
+        refusals.found.append(SceneError([problem], source))
     refusals.raise_any()
     of_scene = None if scene.compare is None else scene.compare.claim
     return Question(scene, chosen, given, claim or of_scene, tuple(own))
-
-
-def compared(
-    scene: Scene,
-    *,
-    model: str | None = None,
-    data: Sequence[str | Path] = (),
-    tolerances: Mapping[str, object] | None = None,
-    claim: str | None = None,
-    store: Store | None = None,
-    progress: Progress | None = None,
-) -> Compared:
-    """A scene solved by both models and compared; see `asked` and `Question.answer`."""
-    question = asked(scene, model=model, data=data, tolerances=tolerances, claim=claim)
-    return question.answer(store=store, progress=progress)
 
 
 def agreement(rows: Sequence[Verdict]) -> str:

@@ -16,7 +16,7 @@ from typing import Any
 
 from sam.scene import Problem, Result, Scene, SceneError, either, finer_cells, finer_mesh, read_scene
 from samfem.compared import COMPANION, NOT_COMPARED, Compared, Question, agreement, asked, seconds
-from samfem.refusals import Refusals
+from samfem.refusals import Refusals, check_folder
 from samfem.solving import unconverged, write_solved
 from verification.compare.verdicts import CLAIM, NOT_JUDGED
 from verification.figures import compare_figures
@@ -24,7 +24,6 @@ from verification.judging import Verdict
 from verification.runs import models
 from verification.runs.files import (
     FIGURES,
-    SUMMARY,
     FolderError,
     Run,
     check_target,
@@ -82,16 +81,15 @@ def _jobs(paths: Sequence[Path], given: SimpleNamespace) -> list[Job]:
             name = f"{path.stem}-compare" if given.out is None else path.stem
             folder = given.out if given.out and len(paths) == 1 else (given.out or Path()) / name
             jobs.append(_job(path, folder, given))
-    with refusals.kept():
-        if given.data and len(paths) > 1:
-            shown = ", ".join(map(str, given.data))
-            raise SceneError(
-                [Problem("--with", shown, "for one scene only: compare it by itself")], "options"
-            )
-    with refusals.kept():
-        names = [path.stem for path in paths]
-        if twice := sorted({name for name in names if names.count(name) > 1}):
-            raise FolderError(f"{', '.join(twice)}: scenes of one name would be written to one folder")
+    if given.data and len(paths) > 1:
+        problem = Problem(
+            "--with", ", ".join(map(str, given.data)), "for one scene only: compare it by itself"
+        )
+        refusals.found.append(SceneError([problem], "options"))
+    names = [path.stem for path in paths]
+    if twice := sorted({name for name in names if names.count(name) > 1}):
+        words = f"{', '.join(twice)}: scenes of one name would be written to one folder"
+        refusals.found.append(FolderError(words))
     with refusals.kept():
         _check_pages(given)
     refusals.raise_any()
@@ -105,20 +103,11 @@ def _job(path: Path, folder: Path, given: SimpleNamespace) -> Job:
     with refusals.kept():
         question = asked(scene, tolerances=dict(given.tolerances), source=str(path), **how)
     with refusals.kept():
-        _check_comparison(folder)
+        check_folder(folder, (*WRITTEN, *PARTS.values()), "comparison")
+        for part in PARTS.values():
+            check_target(folder / part)
     refusals.raise_any()
     return Job(path.stem, question, folder, inputs)
-
-
-def _check_comparison(folder: Path) -> None:
-    """Raise FolderError unless the folder is new, empty or of an older comparison."""
-    check_target(folder, also=(*WRITTEN, *PARTS.values()))
-    if (folder / SUMMARY).exists():
-        raise FolderError(
-            f"{folder} holds a single run: give a new or empty folder, or one of an older comparison"
-        )
-    for part in PARTS.values():
-        check_target(folder / part)
 
 
 def _check_pages(given: SimpleNamespace) -> None:

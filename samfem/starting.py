@@ -62,7 +62,7 @@ def examples(name: str | None, out: Path | None) -> int:
     """
     known = {entry.name[: -len(".toml")]: entry for entry in SCENES.iterdir() if entry.name.endswith(".toml")}
     if name is None:
-        titles = [(each, _tables(known[each])["title"]) for each in sorted(known)]
+        titles = [(each, parse_toml(known[each].read_bytes(), each)["title"]) for each in sorted(known)]
         print_table(("example", "title"), titles)
         print("samfem examples NAME copies one")
         return 0
@@ -72,10 +72,6 @@ def examples(name: str | None, out: Path | None) -> int:
     _copy(known[name], target)
     print(target)
     return 0
-
-
-def _tables(source: Any) -> dict[str, Any]:
-    return parse_toml(source.read_bytes(), source.name)
 
 
 def _copy(source: Any, target: Path) -> None:

@@ -23,6 +23,7 @@ import numpy as np
 
 from sam.scene import QUANTITIES, Problem, Result, Scene, SceneError, resolved, spelling
 from samfem.executors import Cluster, Failure, Processes, run
+from samfem.refusals import check_folder
 from verification.cost.plan import check_needs
 from verification.figures import sensitivity_figure, sweep_figure
 from verification.runs import models
@@ -31,7 +32,6 @@ from verification.runs.files import (
     FIGURES,
     SUMMARY,
     FolderError,
-    check_target,
     clear_run,
     json_text,
     read_summary,
@@ -161,7 +161,7 @@ def sweep(
     began = time.monotonic()
     content = read_study(path)
     folder = out or Path(f"{path.stem}-sweep")
-    _check_folder(folder)
+    check_folder(folder, (*FILES, *OF_DESIGN, RUNS), "sweep")
     known = default_store() if use_store else None
     store = None if known is None else KeepsAll(known.folder)
     with locked(folder), _executor(scheduler, workers) as executor:
@@ -207,15 +207,6 @@ def _executor(scheduler: str | None, count: int | None) -> Processes | Cluster:
 def _cores() -> int:
     """Those that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def _check_folder(folder: Path) -> None:
-    """Raise FolderError unless the folder is new, empty or of an older sweep."""
-    check_target(folder, also=(*FILES, *OF_DESIGN, RUNS))
-    if (folder / SUMMARY).exists():
-        raise FolderError(
-            f"{folder} holds a single run: give a new or empty folder, or one of an older sweep"
-        )
 
 
 def _clear(state: Sweep) -> None:
