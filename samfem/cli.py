@@ -25,7 +25,7 @@ from verification.text.console import Cleaned, print_anything, unknown
 NOT_MET, WRONG_INPUT, INTERRUPTED = 1, 2, 130
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 NO_MEMORY = ("failed to map segment", "annot allocate memory", "can't start new thread")
-"""In the errors of libraries that are loaded or threads that are started without memory for them."""
+"""In the errors of libraries and threads that are started without memory for them."""
 DEBUG = "SAMFEM_DEBUG"
 MOST_WORKERS = 1000  # more than any machine has; a mistyped number is refused
 STARTS = ("sphere", "plastic", "indentation", "sliding", "coated", "rough", "measured", "running-in")
@@ -54,7 +54,7 @@ COMMANDS = {
     "schema": "samfem.starting",
     "completion": "samfem.starting",
 }
-"""Command -> module that runs it, by a function of the same name, whose keywords are the options."""
+"""Command -> module that runs it, by a function of its name with the options as keywords."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -115,7 +115,7 @@ def _fail(message: str, code: int) -> int:
 
 
 def _options(arguments: Sequence[str]) -> argparse.Namespace:
-    """The parsed command line; a wrong one ends in SystemExit, an unknown name with those that look alike."""
+    """The parsed command line; SystemExit for a wrong one, with the names that look alike."""
     made = _parser()
     commands = tuple(COMMANDS)
     named = next((word for word in arguments if not word.startswith("-")), None)
@@ -196,7 +196,8 @@ def _of_scenes(command: Command) -> None:
     add("--figures", **ON, help="also draw figures into DIR/figures")
     add("--anyway", **ON, help=ANYWAY)
 
-    add = command("plan", "say what will be computed and what is left out; solves nothing").add_argument
+    nothing = "say what will be computed and what is left out; solves nothing"
+    add = command("plan", nothing).add_argument
     add("path", **SCENE)
     add("--json", dest="as_json", **ON, help="as JSON")
 
@@ -304,7 +305,7 @@ def _days(text: str) -> float:
 
 
 def _of_beginners(command: Command) -> argparse.ArgumentParser:
-    """The parser of the command completion is returned, which prints that of the whole command line."""
+    """The parser of completion is returned: it prints what completes the whole command line."""
     add = command("new", "write a commented scene that runs").add_argument
     kinds = f"{', '.join(STARTS)}; default: {STARTS[0]}"
     add("kind", metavar="KIND", nargs="?", choices=STARTS, default=STARTS[0], help=kinds)

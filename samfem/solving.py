@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The commands plan and solve: what a scene will compute, and from its file to the folder of a result, what
-is printed of it and an exit code.
+"""The commands plan and solve: what a scene will compute, and from its file to the folder of a result,
+what is printed of it and an exit code.
 
 Wrong input raises SceneError, ModelError or FolderError before anything is solved or written.
 """
@@ -223,7 +223,7 @@ def check(scene: Scene, model: str, *, anyway: bool = False) -> Any:
 
 
 def unconverged(results: Sequence[Result | Run]) -> int:
-    """Exit code 1 if a result did not converge, with its status and what to change on stderr; else 0."""
+    """1 if a result did not converge, with its status and what to change on stderr; else 0."""
     ended = [result for result in results if not result.converged]
     for result in ended:
         message = result.message or Status(result.status).advice
@@ -252,7 +252,7 @@ def load_line(result: Result | Run) -> str:
 
 
 def undecided_line(result: Result | Run) -> str:
-    """How many more load cycles would tell what becomes of the body, where that is undecided; else empty."""
+    """How many more load cycles would tell what becomes of the body; empty where it is decided."""
     verdict = result.verdict
     if not verdict or verdict["class"] != "undecided":
         return ""
@@ -291,7 +291,7 @@ def quantity_rows(result: Result | Run, terminal: bool) -> list[tuple[str, str]]
 
 
 def uncertain_table(result: Result | Run, terminal: bool) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-    """Heads and rows: name, value, uncertainty, and the shares of cells, load steps and box in percent."""
+    """Heads and rows: name, value, uncertainty, and shares of cells, load steps and box in percent."""
     parts = {name: f"u_{name}" for name in ("cells", "steps", "box")}
     found, rows = result.uncertainty or {}, []
     shown = {name for name in parts if any(entry.get(parts[name]) for entry in found.values())}

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The commands view and export: pictures in space of a finished run, and its meshes in formats of other
-programs, which meshio writes.
+"""The commands view and export: pictures in space of a finished run, and its meshes for other programs,
+which meshio writes.
 
 Wrong input raises FolderError before anything is drawn or written.
 """

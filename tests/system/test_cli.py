@@ -98,10 +98,16 @@ def test_a_wrong_command_line_is_refused_and_nothing_is_created(refused, argumen
     assert fragment in refused(*arguments)
 
 
-def test_what_the_axisymmetric_model_cannot_represent_is_refused_by_name(folder, refused, samfem):
-    sphere, key = '"sphere"\nradius = "105 um"', "counterbody.shape"
-    ellipsoid = sphere, '"ellipsoid"\nradius_x = "1 mm"\nradius_y = "2 mm"'
-    (folder / "scene.toml").write_text(scene_text(ellipsoid))
+ELLIPSOID = '"ellipsoid"\nradius_x = "1 mm"\nradius_y = "2 mm"'
+BEYOND = {
+    "body.poisson = 0.5": ("poisson = 0.3", "poisson = 0.5"),
+    "counterbody.shape": ('"sphere"\nradius = "105 um"', ELLIPSOID),
+}
+
+
+@pytest.mark.parametrize("key", BEYOND)
+def test_what_the_axisymmetric_model_cannot_represent_is_refused_by_name(folder, refused, samfem, key):
+    (folder / "scene.toml").write_text(scene_text(BEYOND[key]))
     for command in ("solve", "compare"):
         assert key in refused(command, "scene.toml", "--model", "fem-axisymmetric")
     shown = samfem("plan", "scene.toml").out

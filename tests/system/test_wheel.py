@@ -42,11 +42,12 @@ def test_the_wheel_has_every_file_of_the_packages_but_the_mutation_check():
 
 
 def test_a_case_without_its_extra_is_not_run_and_says_what_to_install(tmp_path, monkeypatch, capsys):
-    case = "layered-response"
-    assert all_cases()[case].needs() == ""
+    assert all_cases()["certificates"].needs() == ""
     monkeypatch.setitem(sys.modules, "mpmath", None)
-    assert verify.main([case], "quick", tmp_path / "out") == 0
-    assert capsys.readouterr().out == f'{case}: not run: install mpmath: pip install "samfem[reference]"\n'
+    assert verify.main(["certificates"], "quick", tmp_path / "out") == 0
+    assert (
+        capsys.readouterr().out == 'certificates: not run: install mpmath: pip install "samfem[reference]"\n'
+    )
     assert list(tmp_path.iterdir()) == []
     extras = PROJECT["project"]["optional-dependencies"]
     assert any(name.startswith("mpmath") for name in extras["reference"])

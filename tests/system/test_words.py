@@ -26,7 +26,7 @@ from samfem.cli import CLAIMS
 from verification.compare.rows import judged
 from verification.cost import plan as plan_module
 from verification.judging import Measured
-from verification.runs import models
+from verification.runs import checkpoints, models, store
 from verification.runs.study import read_study
 from verification.text.readable import with_prefix, with_time
 
@@ -118,6 +118,12 @@ class TestClaim:
         assert 'one of "negligible-film"' in samfem("plan", unknown, code=2).err
         samfem("compare", scene_file(add=FILM), "--claim", "no-film", code=2)
         assert get_args(get_args(Compare.model_fields["claim"].annotation)[0]) == CLAIMS
+
+    def test_a_result_does_not_depend_on_the_claim(self):
+        """Key of the store, and what --resume compares."""
+        bare, asked = (parsed(add=self.film + add) for add in ("", self.asked))
+        for identity in (store.identity, checkpoints.identity):
+            assert identity(bare, models.SAM) == identity(asked, models.SAM)
 
 
 def test_values_and_times_for_a_person():
