@@ -17,6 +17,7 @@ from sam.scene import Checkpoint, Result, Scene, Status, read_scene
 from verification.cost import plan as plans
 from verification.cost.accuracy import chosen_scene, first_choice, missed, solve as solve_family
 from verification.runs import checkpoints, models
+from verification.runs.archive import ArchiveError
 from verification.runs.files import CHECKPOINT, MEMBERS, Run, check_target, json_text, read_run, write_run
 from verification.runs.lock import locked
 from verification.runs.model_range import refusal
@@ -188,7 +189,7 @@ def _start(scene: Scene, folder: Path, who: dict[str, object]) -> Checkpoint | N
         return None
     try:
         start = checkpoints.read(folder, who)
-    except checkpoints.DamagedError as error:
+    except ArchiveError as error:
         _say(f"{error}: solved from the beginning")
         return None
     if start is None:

@@ -34,10 +34,10 @@ from verification.runs import models
 from verification.runs.files import Run
 from verification.runs.provenance import memory_bytes
 from verification.text.readable import with_prefix, with_time
-from verification.uncertainty import (
+from verification.uncertainty.rule import STEP_FACTOR, bound
+from verification.uncertainty.solving import (
     ORDERS,
     RATIO,
-    STEP_FACTOR,
     STEP_ORDER,
     Family,
     Member,
@@ -45,7 +45,6 @@ from verification.uncertainty import (
     Solved,
     alone,
     assessed,
-    bound,
     coarser,
     cost_of,
     depths_of_maxima,
