@@ -31,6 +31,7 @@ from verification.cost.advice import (
     table,
 )
 from verification.runs import models
+from verification.runs.files import Run
 from verification.runs.provenance import memory_bytes
 from verification.text.readable import with_prefix, with_time
 from verification.uncertainty.rule import STEP_FACTOR, bound
@@ -185,7 +186,7 @@ def solve(scene: Scene, model: str, solver: Solve | None = None) -> Result:
     return search.result(first_choice(scene, model))
 
 
-def missed(result: Result) -> str:
+def missed(result: Result | Run) -> str:
     """What an asked accuracy came to, where it was not reached; else empty."""
     found = result.discretisation.get("accuracy")
     if not found or found["reached"]:

@@ -85,27 +85,28 @@ def _uncertainty(scene: Scene, model: str) -> tuple[Stage, float]:
     return Stage(UNCERTAINTY, True, words, {"solves": len(found.all) - 1}), seconds
 
 
-def check_needs(scene: Scene, model: str, available: float | None = None, *, anyway: bool = False) -> None:
-    """Raise ModelError if `model` cannot represent the scene, or would need more memory than there is,
-    `available` bytes, by default this machine's; or, unless `anyway`, more time than LONGEST.
+def check_needs(scene: Scene, model: str, available: float | None = None, *, anyway: bool = False) -> Any:
+    """The plan of a scene. Raises ModelError if `model` cannot represent it, or would need more memory than
+    there is, `available` bytes, by default this machine's; or, unless `anyway`, more time than LONGEST.
     """
     models.check(scene, model)
     available = memory_bytes() if available is None else available
-    needs = estimates.estimate(scene, model)
+    made = models.plan(scene, model)
+    needs = estimates.estimate(scene, model, made)
     if available and needs.memory_bytes > available:
         needed, there = (with_prefix(number, "B") for number in (needs.memory_bytes, available))
         raise models.ModelError(
             f"model {model}: about {needed} of memory needed, {there} available: {_smaller(scene, model)}"
         )
-
     if anyway:
-        return
+        return made
     seconds = needs.time_s + (_uncertainty(scene, model)[1] if scene.solver.uncertainty else 0.0)
     if seconds > LONGEST:
         raise models.ModelError(
             f"model {model}: about {with_time(seconds)} of processor time predicted, more than "
             f"{with_time(LONGEST)}: {_smaller(scene, model)}{_fewer(scene)}, or say --anyway"
         )
+    return made
 
 
 def _fewer(scene: Scene) -> str:
