@@ -26,8 +26,6 @@ from verification.figures.style import new_figure, style
 
 TOWARDS = np.array([0.55, -1.0, 0.75])
 """Direction from the middle of the bodies to the eye: the cut y = const is seen from its open side."""
-DOTS = 200
-"""Dots an inch of the written figure."""
 PIXELS = 1560
 """Width of the drawn part before it is written: twice that in the figure, which makes its edges smooth."""
 OVER = "position: absolute; z-index: 9; pointer-events: none; top: 0.5em; font: 14px sans-serif"
@@ -208,14 +206,6 @@ def _edge(
     else:
         middle = view.place(0.5 * (first + last))[0]
         panel.text(*(middle + 0.36 * inch * towards), label, **look | {"fontsize": 9})
-
-
-def png(figure: Figure) -> bytes:
-    """The figure as a file; equal figures give equal bytes."""
-    buffer = io.BytesIO()
-    with style():
-        figure.savefig(buffer, format="png", dpi=DOTS, metadata={"Software": None})
-    return buffer.getvalue()
 
 
 def page(picture: Picture) -> str:

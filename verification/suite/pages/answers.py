@@ -16,7 +16,7 @@ from typing import Any
 
 from verification.judging import LIMITS, RowStatus
 from verification.runs.store import short
-from verification.suite.pages.judged import INPUTS, OLDER, PHYSICS, READINGS, Judged, counted
+from verification.suite.pages.headline import headline_of
 from verification.suite.pages.older import pairs_in, times_in
 from verification.suite.pages.stored import LIMIT_SIGNS, PAGES, RED, ShownCase, Stored
 from verification.text.console import number
@@ -28,11 +28,6 @@ BANDS = (0.01, 0.05)
 OPEN, REPORTED, RESULT, UNGATED = "open", "reported", "a result", "no gate"
 NORMALISED = " over the larger of "
 """Such an error is no share of the quantity, but of what the refinement leaves."""
-SAID = {
-    "printed inputs": "with the printed inputs",
-    "renewed": "in the second reading (a weakly hardening layer, a counter-surface renewed in each cycle)",
-}
-"""Readings of the paper -> for the reader."""
 
 
 @dataclass(frozen=True)
@@ -275,36 +270,10 @@ def times(evidence: Evidence, _: str) -> Iterator[Finding]:
         yield Finding(words, f"{both[0].shown} to {both[-1].shown} times", ran)
 
 
-def statements(evidence: Evidence, _: str) -> Iterator[Finding]:
-    """What holds of the statements of the paper: for each reading of it by the median of the
-    surfaces, and for each study that ran.
-    """
-    judged, found = Judged(evidence.stored), []
-    if cases := judged.older:
-        yield Finding(f"from studies that were {OLDER.format('have')}", "No number", cases)
-    for reading, said in judged.said(READINGS, "statements").items():
-        found.append(
-            (READINGS, f"{SAID.get(reading, reading)}, by the median of the surfaces", counted(said))
-        )
-    every = f"of {len(judged.statements)}"
-    if judged.likely:
-        words = (
-            "hold at more than half of the points of the study over the inputs that the paper leaves "
-            f"open, {judged.sure} of them also by the lower bound"
-        )
-        found.append((INPUTS, words, f"{len(judged.likely)} {every}"))
-    if best := judged.most_at_a_point:
-        found.append(
-            (INPUTS, "hold together at the best of its points, which is no bound", f"{best} {every}")
-        )
-    if best := max((count for count, _ in judged.physics.values()), default=0):
-        words = (
-            f"hold on one surface under the best of {len(judged.physics)} ways to harden and to load it "
-            f"({judged.physics[()][0]} on the same surface under the way of the paper)"
-        )
-        found.append((PHYSICS, words, f"{best} {every}"))
-    for name, words, text in found:
-        yield Finding(words, text, (evidence.stored.ran[name],))
+def statements(evidence: Evidence, words: str) -> Iterator[Finding]:
+    """What holds of the statements of the paper."""
+    if headline := headline_of(evidence.stored):
+        yield Finding(words, headline.answer, headline.studies)
 
 
 PARTS: Mapping[str, Callable[..., Iterator[Finding]]] = {

@@ -9,7 +9,7 @@ import os
 import re
 import struct
 import sys
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
@@ -54,7 +54,6 @@ ROOT = Path(__file__).resolve().parents[3]
 INDEX, README = "index.html", "README.md"
 ONE_FILE = "report.html"
 PICTURE = "figures/agreement"
-MANY_CASES, MANY_FIGURES = 12, 20  # on a page: with more only the first figure of a case is not folded
 WORDS = {
     "verification": {
         "title": "Verification of samfem",
@@ -85,8 +84,6 @@ WORDS = {
 }
 """What a page is about, by its kind."""
 WIDE = 1600  # pixels: letters of a picture drawn wider than 8 inches are too small in half a page
-BRIEF = 60  # letters
-_METRICS = {"relative_l2": "relative L2", "at_most": "at most", "at_least": "at least"}
 NOT_CONFIRMED = "not confirmed"
 _NUMBER = re.compile(r"[<>≤≥]? ?[+−-]?[0-9][^ ]*( [^ ]{1,4})?$")
 
@@ -102,26 +99,17 @@ class Look:
     scenes: str = ""
 
 
-def case_view(each: ShownCase, look: Look, told: set[str], above: Collection[str] = ()) -> dict:
-    """A case for the template. told: the equations that stand further up on the page; filled here;
-    above: files of the figures that stand further up.
-    """
+def case_view(each: ShownCase, look: Look) -> dict:
+    """A case for the template."""
     tight = [(share, gate["quantity"]) for gate in each.gates if (share := share_used(gate)) is not None]
     case, digest = each.case, each.case.get("code", "")[:12]
-    equations = [tuple(row) for row in case["equations"]]
-    new = [row for row in equations if row[1] not in told]
-    told.update(row[1] for row in equations)
-    figures = [figure_view(figure, look) for figure in case["figures"] if figure["png"] not in above]
     return {
         **case,
         "status": str(RowStatus.FAILED if each.failed else RowStatus.PASSED),
         "gates": sorted(each.gates, key=lambda gate: (gate["status"] not in RED, -(share_used(gate) or 0.0))),
         "red": len(each.red),
         "tightest": f"{max(tight)[1]}: {100 * max(tight)[0]:.0f} %" if tight else "",
-        "equations": new,
-        "equations_above": len(equations) - len(new),
-        "figures": [figure for figure in figures if figure["embedded"]],
-        "linked": [figure for figure in figures if not figure["embedded"]],
+        "figures": [figure_view(figure, look) for figure in case["figures"]],
         "scenes": [(name, f"{look.scenes}/{name}" if look.scenes else "") for name in each.inputs],
         "runs": [run for run in case["runs"] if (look.folder / run / SUMMARY).is_file()],
         "works": works_of(case),
@@ -175,7 +163,7 @@ def figure_view(figure: Mapping, look: Look) -> dict:
     there = [(kind, path) for kind, path in files if path and (look.folder / path).is_file()]
     width, height = _size(png)
     source = figure["png"]
-    if look.embed and figure["embedded"]:
+    if look.embed:
         content = base64.b64encode(png.read_bytes()).decode("ascii") if png.is_file() else ""
         source = content and f"data:image/png;base64,{content}"
     return {
@@ -207,12 +195,6 @@ def numeric(table: Any) -> set[int]:
     return {k for k in range(count) if 2 * sum(bool(_NUMBER.match(row[k])) for row in rows) > len(rows)}
 
 
-def brief(caption: str) -> str:
-    """A caption up to its first stop, in few words: for a line that names several."""
-    head = re.split(r"(?<=.{15})[.:;] ", caption, maxsplit=1)[0]
-    return head if len(head) <= BRIEF else f"{head[:BRIEF].rsplit(' ', 1)[0].rstrip(',')} …"
-
-
 def sources(results: Mapping) -> list[tuple[str, str]]:
     """Command, machine, versions and hashes as rows for the reader."""
     asked = {name: results[name] for name in ("command", "level") if name in results}
@@ -240,7 +222,6 @@ FILTERS = {
     "formula": formula,
     "scripts": with_scripts,
     "time": with_time,
-    "brief": brief,
     "kind_of": kind_of,
     "page_of": page_of,
     "numeric": numeric,
@@ -299,8 +280,7 @@ def remove_pages(folder: Path) -> None:
 def _one_file(results: Mapping, folder: Path) -> str:
     """All cases on one page that needs no other file; also of a comparison."""
     stored = read_stored(results)
-    look, told = Look(folder, embed=True), set[str]()
-    cases = [case_view(each, look, told) for each in _ordered(stored.ran.values())]
+    cases = [case_view(each, Look(folder, embed=True)) for each in _ordered(stored.ran.values())]
     return _page("single.html.j2", stored, cases=cases, origins=origins(stored.ran.values()))
 
 
@@ -319,25 +299,13 @@ def _ordered(cases: Iterable[ShownCase]) -> list[ShownCase]:
 def _group_page(
     group: dict, cases: list[ShownCase], answers: list[Answer], *, stored: Stored, look: Look
 ) -> str:
-    told: set[str] = set()
-    headline = headline_of(stored) if group["name"] == PAGE else None
-    pictures = headline.pictures if headline else ()
-    shown = {each["png"] for each in pictures}
-    long = len(cases) > MANY_CASES or sum(len(each.case["figures"]) for each in cases) > MANY_FIGURES
     return _page(
         "group.html.j2",
         stored,
-        headline=headline,
-        pictures=[figure_view(each, look) for each in pictures],
-        answers=[
-            each
-            for each in answers
-            if each.question["page"] == group["name"]
-            and not (headline and each.question["words"] == headline.question)
-        ],
+        headline=headline_of(stored) if group["name"] == PAGE else None,
+        answers=[each for each in answers if each.question["page"] == group["name"]],
         group=group,
-        long=long,
-        cases=[case_view(each, look, told, shown) for each in cases],
+        cases=[case_view(each, look) for each in cases],
         waiting=[row for row in stored.waiting if group_of(row[0]) == group],
         origins=origins(cases),
     )
@@ -356,7 +324,6 @@ def _index(template: str, evidence: Evidence, answers: list[Answer]) -> str:
         answers=answers,
         red=stored.red,
         broken=stored.broken,
-        headline=headline_of(stored),
         counted=groups,
         waiting=stored.waiting,
         further=stored.further,
