@@ -251,8 +251,9 @@ class TestReadings:
         assert "13 layers" in words and "15 layers, to 19.4 µm" in words
         data = CASE.data(found)
         assert [{each["by_median"] for each in of} for of in data["statements"].values()] == [{HELD}] * 2
-        bulk = running_in.regimes(found, RENEWED)[BULK]
+        bulk = data["regimes"][RENEWED]["bulk"]
         assert bulk["reached"] == 5e9 and bulk["removed_from"] == Limits.of(SCENES[BULK]).removal
+        assert data["last_cycle"][RENEWED]["curve A"]["rest_from"] == [25.0] * 10
 
     def test_where_the_plastic_zone_reaches_the_last_layer_there_are_more(self, solved):
         shallow = {"bulk-seed-7", "renewed-bulk-seed-7", "renewed-bulk-seed-7-deeper"}

@@ -68,7 +68,7 @@ def curves(panels: Mapping[str, tuple[Mapping[str, Line], float]], ylabel: str) 
                 panel[name] = Curve(line.seconds[use], PERCENT * error, look={"fillstyle": "none"})
     marks = {"an error whose times are stated": ("y", *(PERCENT * target for target in TARGETS))}
     looks = _looks(name for lines, _ in panels.values() for name in lines)
-    how = {"looks": looks, "logarithmic": "xy", "floor": floors, "marks": marks, "legend": "below"}
+    how = {"looks": looks, "logarithmic": "xy", "floor": floors, "marks": marks}
     return Drawing(drawn(shown, "processor time [s]", f"{ylabel} [%]", size=(4.9, 4.4), **how).figure, rows)
 
 

@@ -190,7 +190,13 @@ class RunningIn(Study):
         yield "Second reading", f"{layer}; {above}; {deep}; for curve B: running-in-renewed.toml"
 
     def data(self, found: DataFrame) -> dict[str, Any]:
-        return {"statements": readings_of(found), "second_reading": READINGS[RENEWED]}
+        said = {"statements": readings_of(found), "second_reading": READINGS[RENEWED]}
+        for name, of in (("regimes", regimes), ("last_cycle", last_cycles)):
+            said[name] = {
+                reading: {NAMES[case]: own for case, own in of(found, reading).items()}
+                for reading in READINGS
+            }
+        return said
 
     def tables(self, found: DataFrame) -> Iterator[SmallTable]:
         if statements := readings_of(found):
@@ -288,6 +294,20 @@ def readings_of(found: DataFrame) -> dict[str, list[dict[str, Any]]]:
         reading: study.judged(study.measured(own, ["surface"]))
         for reading, own in found.groupby("reading", sort=False)
         if reading != OTHER and own["run"].iloc[0].scene.loading.cycles >= LAST
+    }
+
+
+def last_cycles(found: DataFrame, reading: str) -> dict[str, dict[str, list[float]]]:
+    """Material -> of each surface the first cycle from which on no cell strains, NaN if the last
+    one still does, and what the last cycle adds: largest new strain, number of cells that yield,
+    wear in m3.
+    """
+    columns = {"strain": "new_strain_max", "cells": "yielding_cells", "wear_m3": "wear_of_cycle_m3"}
+    good = found[found["converged"] & (found["reading"] == reading)]
+    return {
+        case: {"rest_from": [study.at_rest_from(one.of_cycles("new_strain_max")) for one in runs]}
+        | {name: [float(one.of_cycles(column)[-1]) for one in runs] for name, column in columns.items()}
+        for case, runs in good.groupby("material", sort=False)["run"]
     }
 
 

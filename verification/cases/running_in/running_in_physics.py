@@ -129,7 +129,7 @@ class RunningInPhysics(Study):
             {"figure": each.figure, "statement": each.words, "verdicts": [said[one][k] for one in ALL]}
             for k, each in enumerate(STATEMENTS)
         ]
-        return {"physics": physics, "statements": statements}
+        return {"physics": physics, "statements": statements, "wear_goes_on": wear_goes_on(found)}
 
     def tables(self, found: DataFrame) -> Iterator[SmallTable]:
         yield statements_table(found)

@@ -7,7 +7,6 @@ import base64
 import csv
 import os
 import re
-import struct
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -17,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
+from PIL import Image
 
 from verification.judging import LIMITS, RowStatus
 from verification.runs.files import SUMMARY, write_atomically
@@ -25,8 +25,6 @@ from verification.suite.pages.answers import (
     Answer,
     Evidence,
     answers_of,
-    cost_table,
-    costs_of,
     far,
     kind_of,
     origins,
@@ -179,18 +177,16 @@ def figure_view(figure: Mapping, look: Look) -> dict:
 
 
 def _size(png: Path) -> tuple[int, int]:
-    """Width and height in pixels, as the head of the file has them; (0, 0) without the file."""
-    try:
-        with png.open("rb") as file:
-            width, height = struct.unpack(">II", file.read(24)[16:])
-    except (OSError, struct.error):
+    """Width and height in pixels; (0, 0) without the file."""
+    if not png.is_file():
         return 0, 0
-    return width, height
+    with Image.open(png) as picture:
+        return picture.size
 
 
-def numeric(table: Any) -> set[int]:
+def numeric(table: Mapping) -> set[int]:
     """The columns that hold short numbers, which stand right: more than half of their cells."""
-    rows = table["rows"] if isinstance(table, Mapping) else table.rows
+    rows = table["rows"]
     count = len(rows[0]) if rows else 0
     return {k for k in range(count) if 2 * sum(bool(_NUMBER.match(row[k])) for row in rows) > len(rows)}
 
@@ -313,18 +309,15 @@ def _group_page(
 
 def _index(template: str, evidence: Evidence, answers: list[Answer]) -> str:
     stored = evidence.stored
-    groups = [(group, cases, sum(len(each.red) for each in cases)) for group, cases in _groups(stored)]
     return _page(
         template,
         stored,
         sentence=sentence(stored, evidence.pairs),
         picture=f"{PICTURE}.png" if evidence.pairs else "",
         far=far(evidence.pairs),
-        costs=cost_table(costs_of(stored)),
         answers=answers,
         red=stored.red,
         broken=stored.broken,
-        counted=groups,
         waiting=stored.waiting,
         further=stored.further,
         origins=origins(stored.ran.values()),
@@ -360,19 +353,12 @@ def _draw(evidence: Evidence, folder: Path) -> None:
         from verification.figures.style import save  # noqa: PLC0415 - loads matplotlib
 
         (folder / PICTURE).parent.mkdir(parents=True, exist_ok=True)
-        titles = [group["title"] for group in GROUPS]
+        order = [group["title"] for group in GROUPS]
+        titled = [(group_of(each.case.name)["title"], each) for each in evidence.pairs]
+        titled.sort(key=lambda pair: order.index(pair[0]))
         rows = [
-            (
-                group_of(pair.case.name)["title"],
-                pair.against,
-                pair.predicted,
-                pair.reference,
-                pair.case.name,
-                pair.quantity,
-            )
-            for pair in sorted(
-                evidence.pairs, key=lambda pair: titles.index(group_of(pair.case.name)["title"])
-            )
+            (title, each.against, each.predicted, each.reference, each.case.name, each.quantity)
+            for title, each in titled
         ]
         save(agreement(rows), folder / PICTURE, long=sys.maxsize)
 
