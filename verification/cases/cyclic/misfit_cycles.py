@@ -100,14 +100,14 @@ def strain_of_periods(file: CaseFile, frame: DataFrame) -> Plot:
     for name, runs in frame[~frame["run"].str.startswith("prager")].groupby("run", sort=False):
         periods = np.arange(2, runs["strain"].iloc[0].size + 2)
         series = {"exact": runs["strain expected"].iloc[0]}
-        series |= dict(zip(runs["model"], runs["strain"], strict=True))
+        series |= dict(zip(runs["model"].str.upper(), runs["strain"], strict=True))
         title = f"{name.rpartition('-')[2]} % above the limit"
         panels[title] = {of: Curve(periods, 1e6 * values) for of, values in series.items()}
     words = "Largest strain that a period leaves: it falls in both models as the exact one does."
     return Plot(
         curves(
             *(panels, "period", "strain that a period leaves [$10^{-6}$]"),
-            looks=dict(zip(("exact", "sam", "fem"), CYCLES, strict=False)),
+            looks=dict(zip(("exact", "SAM", "FEM"), CYCLES, strict=False)),
             count=True,
         ),
         *("strain", "Strain that a period leaves", words, words),
