@@ -364,9 +364,10 @@ def _limits(file: CaseFile, frame: DataFrame, column: str) -> Plot:
     return Plot(refinement(panels, labels, f"{words} [%]"), "refinement", title, alt, caption)
 
 
-def _lines(file: CaseFile, frame: DataFrame, y: str, *words: str) -> Plot:
+def _lines(file: CaseFile, frame: DataFrame, y: str, *words: str) -> Plot | None:
     """`lines Y over X by SERIES in PANEL`: a column over an axis or a column, each a number or an array; what
-    is expected is dotted. Series and panels are told by one axis or by several, "model,size".
+    is expected is dotted. Series and panels are told by one axis or by several, "model,size". None where no
+    line has two points.
     """
     said = dict(zip(words[::2], words[1::2], strict=True))
     x, by, panel = said["over"], said.get("by", "model").split(","), said.get("in", "sweep").split(",")
@@ -381,6 +382,8 @@ def _lines(file: CaseFile, frame: DataFrame, y: str, *words: str) -> Plot:
             if rows[column].notna().all() if column in rows else False:
                 values = (np.concatenate([np.atleast_1d(each) for each in rows[c]]) for c in (x, column))
                 panels.setdefault(title, {})[series] = Curve(*values)
+    if all(len(curve.x) < 2 for series in panels.values() for curve in series.values()):
+        return None
     names = dict.fromkeys(name for series in panels.values() for name in series)
     plain, dashed = ([n for n in names if n.endswith(", expected") is ends] for ends in (False, True))
     looks = dict(zip(plain, cycle(CYCLES)))
@@ -405,7 +408,7 @@ def _at(file: CaseFile, frame: DataFrame, kind: str, *where: str) -> Plot:
     return replace(plot, name=name, title=f"{plot.title}, {said}")
 
 
-SWEPT: Mapping[str, Callable[..., Plot]] = {
+SWEPT: Mapping[str, Callable[..., Plot | None]] = {
     "orders": _orders,
     "limits": _limits,
     "lines": _lines,
