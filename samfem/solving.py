@@ -157,7 +157,7 @@ def _start(scene: Scene, folder: Path, who: dict[str, object]) -> Checkpoint | N
         return None
     try:
         start = checkpoints.read(folder, who)
-    except checkpoints.DamagedError as error:
+    except checkpoints.ArchiveError as error:
         _say(f"{error}: solved from the beginning")
         return None
     if start is None:

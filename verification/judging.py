@@ -122,7 +122,8 @@ class Verdict:
         return self.status is RowStatus.PASSED
 
 
-def _relative_l2(v: np.ndarray, e: np.ndarray, w: np.ndarray) -> float:
+def relative_l2(v: np.ndarray, e: np.ndarray, w: np.ndarray | float = 1.0) -> float:
+    """sqrt(sum w (v - e)^2 / sum w e^2)."""
     return float(np.sqrt(np.sum(w * (v - e) ** 2) / np.sum(w * e**2)))
 
 
@@ -130,7 +131,7 @@ _ERRORS: dict[str, Callable[[np.ndarray, np.ndarray, np.ndarray], float]] = {
     "relative": lambda v, e, w: float(np.abs(v - e) / np.abs(e)),
     "radii": lambda v, e, w: math.nan,
     "absolute": lambda v, e, w: float(np.abs(v - e)),
-    "relative_l2": _relative_l2,
+    "relative_l2": relative_l2,
     "at_most": lambda v, e, w: float(np.abs(v)),
     "at_least": lambda v, e, w: float(v),
     "equal": lambda v, e, w: float(np.abs(v - e)),

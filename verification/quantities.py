@@ -16,19 +16,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
-from sam.scene import Result, Scene
-from verification.compare import sliding_measures as sliding
-from verification.compare.rough_measures import (
-    Depths,
-    PatchPressure,
-    Spot,
-    compared_depths,
-    relative_l2,
-    residual_line,
-    spots,
-)
-from verification.compare.sliding_measures import Plane
-from verification.judging import Measured
+from sam.scene import UNLOADED, Result, Scene
+from verification.compare import measures
+from verification.compare.measures import Plane, Spot, nodal_pressures, patch_pressure, spots
+from verification.judging import Measured, relative_l2
 from verification.reference.hertz import CircularContact, effective_modulus
 from verification.reference.stress import von_mises
 from verification.runs.models import FEM_3D, SAM
@@ -40,6 +31,7 @@ from verification.runs.sampling import (
     pressure_map,
     pressure_on,
     ring_edges,
+    rows_of,
 )
 
 if TYPE_CHECKING:
@@ -102,8 +94,7 @@ class Values:
 class Quantity:
     """words: for the reader, without the model; of: (result, reference) -> number, Values, or Measured where
     the result has the answer itself; between: (scene, SAM, other result) -> Measured; row: of `compare`, the
-    difference of both models where that alone is held.; whole: of all
-    runs of a scene.
+    difference of both models where that alone is held; whole: of all runs of a scene.
     """
 
     words: str
@@ -163,7 +154,7 @@ def _pressure_on_cells(scene: Scene, sam: Result, other: Result) -> Measured:
     linear where the body yields, else p^2; of the three-dimensional model at its nodes.
     """
     if other.model == FEM_3D:
-        return Measured(*sliding.nodal_pressures(sam, other))
+        return Measured(*nodal_pressures(sam, other))
     x, y, p = pressure_map(sam)
     if other.model == SAM:
         u, v, field = pressure_map(other)
@@ -208,7 +199,7 @@ def _largest_at_nodes(scene: Scene, sam: Result, fem: Result) -> Measured:
     """Of the three-dimensional model at its nodes, which are few."""
     if fem.model != FEM_3D:
         return Measured(sam.quantities["p_max_Pa"], fem.quantities["p_max_Pa"], unit="Pa")
-    one, other, _ = sliding.nodal_pressures(sam, fem)
+    one, other, _ = nodal_pressures(sam, fem)
     return Measured(one.max(), other.max(), unit="Pa")
 
 
@@ -217,19 +208,15 @@ def _patch(scene: Scene, sam: Result, fem: Result) -> Measured:
     areas.
     """
     if scene.patch_surface:
-        return Measured(*(PatchPressure.of(each.tables).p for each in (sam, fem)))
-    return Measured(*sliding.nodal_pressures(sam, fem))
-
-
-def _spots(sam: Result, fem: Result) -> list[Spot]:
-    return spots(*(PatchPressure.of(each.tables) for each in (sam, fem)))
+        return Measured(*(patch_pressure(each.tables)[-1] for each in (sam, fem)))
+    return Measured(*nodal_pressures(sam, fem))
 
 
 def _of_spot(number: int, of: Callable[[Scene, Result, Result, Spot], Measured]) -> Callable:
     """A quantity of one of the contact spots, which are counted along x; nan where there are fewer."""
 
     def between(scene: Scene, sam: Result, fem: Result) -> Measured:
-        found = _spots(sam, fem)[number - 1 : number]
+        found = spots(sam.tables, fem.tables)[number - 1 : number]
         return of(scene, sam, fem, *found) if found else Measured(np.nan, np.nan)
 
     return between
@@ -239,19 +226,20 @@ def strain_below(scene: Scene, sam: Result, fem: Result, spot: Spot) -> tuple[np
     """Depths in m, and the plastic strains there below the centre of a spot."""
     law = scene.body.plasticity
     jump = law.layer_thickness if law.layer else 0.0
-    own, other = (Depths.of(each.tables, jump) for each in (sam, fem))
-    z = compared_depths(other, spot.x, spot.radius)
+    own, other = (Plane.of(each.tables, jump=jump) for each in (sam, fem))
+    z = measures.depths_compared(other, spot.x, spot.radius)
     return z, Measured(own.below(spot.x, z), other.below(spot.x, z))
 
 
-def _strain(scene: Scene, sam: Result, fem: Result) -> Measured:
-    pairs = (strain_below(scene, sam, fem, spot)[1] for spot in _spots(sam, fem))
+def _below_spots(scene: Scene, sam: Result, fem: Result) -> Measured:
+    """Of the spot where it is largest."""
+    pairs = (strain_below(scene, sam, fem, spot)[1] for spot in spots(sam.tables, fem.tables))
     return Measured(max((relative_l2(p.value, p.expected) for p in pairs), default=np.nan))
 
 
 def _residual(scene: Scene, sam: Result, fem: Result) -> Measured:
-    (x, own), other = residual_line(sam.tables), residual_line(fem.tables)
-    return Measured(own, np.interp(x, *other), unit="m")
+    (x, own), (u, other) = (rows_of(each.tables["line"], UNLOADED, "x_m", "uz_m") for each in (sam, fem))
+    return Measured(own, np.interp(x, u, other), unit="m")
 
 
 def _below_film(scene: Scene, sam: Result, fem: Result) -> Measured:
@@ -303,7 +291,7 @@ STILL = 1e-9  # growth that counts as none in a ratio: thousandths of what the p
 
 def planes(solved: Solved) -> dict[str, Plane]:
     """Run -> plastic strain in the plane y = 0."""
-    return {name: Plane.of(each, solved.reference.units["a"]) for name, each in solved.results.items()}
+    return {name: Plane.of(each.tables, solved.reference.units["a"]) for name, each in solved.results.items()}
 
 
 def _profile(column: bool, words: str) -> Quantity:
@@ -312,7 +300,7 @@ def _profile(column: bool, words: str) -> Quantity:
     def whole(solved: Solved) -> float:
         both = planes(solved)
         x = both["fem"].place_of_maximum() if column else 0.0
-        return sliding.profile_difference(both["sam"], both["fem"], x)
+        return measures.profile_difference(both["sam"], both["fem"], x)
 
     return Quantity(f"{words}, largest relative difference", whole=whole)
 
@@ -323,67 +311,49 @@ def _limit(column: bool, words: str) -> Quantity:
     def whole(solved: Solved) -> float:
         a, fem = solved.reference.units["a"], planes(solved)["fem"]
         x = fem.place_of_maximum() if column else 0.0
-        z = sliding.depths_compared(fem, x)
-        one, other = (sliding.limit_of_strain(solved.results, m, a=a, x=x, z=z) for m in ("sam", "fem"))
+        z = measures.depths_compared(fem, x)
+        one, other = (measures.limit_of_strain(solved.results, m, a=a, x=x, z=z) for m in ("sam", "fem"))
         return float(np.abs(one / other - 1.0).max())
 
     return Quantity(f"{words} without cells and load steps, largest relative difference", whole=whole)
 
 
 def _contour(percent: float, extent: str) -> Quantity:
-    """Depth or length of the part of y = 0 beyond a plastic strain."""
+    """Depth or length of the part of y = 0 beyond a plastic strain, from the first depth of both on."""
 
     def whole(solved: Solved) -> Measured:
-        both = planes(solved)
-        sam, fem = sliding.contours((both["sam"], both["fem"]), percent / 100)
+        both = [planes(solved)[name] for name in ("sam", "fem")]
+        top = max(plane.z[0] for plane in both)
+        sam, fem = (measures.contour(plane, percent / 100, top) for plane in both)
         return Measured(sam and getattr(sam, extent), fem and getattr(fem, extent), unit="a")
 
     return Quantity(f"{extent} of the part of y = 0 beyond {percent:g} % of plastic strain", "a", whole=whole)
 
 
-def _nodal(solved: Solved, run: str = "sam") -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    return sliding.nodal_pressures(solved.results[run], solved.results["fem"])
+def _decoupled(distance: Callable[[Result, Result, float], float]) -> Callable[[Solved], float]:
+    """Pressure of the decoupled form off FEM over that of the coupled one."""
+
+    def whole(solved: Solved) -> float:
+        runs, a = solved.results, solved.reference.units["a"]
+        return distance(runs["decoupled"], runs["fem"], a) / distance(runs["sam"], runs["fem"], a)
+
+    return whole
 
 
-def _decoupled(solved: Solved) -> float:
-    """Pressure of the decoupled form off FEM over that of the coupled one, at the nodes of FEM."""
-    form, coupled = (sliding.pressure_distance(*_nodal(solved, run)) for run in ("decoupled", "sam"))
-    return form / coupled
-
-
-def _decoupled_hats(solved: Solved) -> float:
-    width, results = PATCH * solved.reference.units["a"], solved.results
-    form, coupled = (
-        sliding.patch_distance(results[run], results["fem"], width) for run in ("decoupled", "sam")
-    )
-    return form / coupled
-
-
-def _component(k: int) -> Quantity:
-    """A stress against the closed form of the reference, in p0."""
+def _stress(words: str, inside: Callable, of_tensor: Callable = np.asarray, part: Any = np.s_[:]) -> Quantity:
+    """What `inside` takes of a result, or a part of it, against the closed form of the reference, in p0."""
 
     def of(result: Result, reference: Reference) -> float:
-        places, stress = sliding.stresses_inside(result, reference.units["a"])
-        exact = reference.values["stress"](*places)[:, k]
-        return float(np.abs(stress[:, k] / reference.units["p0"] - exact).max())
+        places, found = inside(result, reference.units["a"])
+        exact = of_tensor(reference.values["stress"](*places))
+        return float(np.abs(found / reference.units["p0"] - exact)[part].max())
 
-    return Quantity(f"largest error of {sliding.COMPONENTS[k]} at interior points, in p0", of=of)
-
-
-def _mises_inside(result: Result, reference: Reference) -> float:
-    places, mises = sliding.mises_inside(result, reference.units["a"])
-    exact = von_mises(reference.values["stress"](*places))
-    return float(np.abs(mises / reference.units["p0"] - exact).max())
-
-
-def _added(result: Result, reference: Reference | None) -> float:
-    strain = result.tables["cycles"]["peeq_max"]
-    return float(strain[-1] / strain[0] - 1.0)
+    return Quantity(f"largest error of {words}, in p0", of=of)
 
 
 def _growth(lead: str) -> Callable[[Solved], float]:
     """Of two runs of a travelling load, the latter of more passes."""
-    return lambda solved: sliding.growth(*(r for n, r in solved.results.items() if n.startswith(lead)))
+    return lambda solved: measures.growth(*(r for n, r in solved.results.items() if n.startswith(lead)))
 
 
 _ON_AXIS = "plastic strain at z >= 0.3 a on the axis"
@@ -401,17 +371,21 @@ SLIDING: Mapping[str, Quantity] = {
     },
     "decoupled": Quantity(
         "pressure of the decoupled form off FEM over that of the coupled one, L2 at the nodes of FEM",
-        whole=_decoupled,
+        whole=_decoupled(lambda sam, fem, a: relative_l2(*nodal_pressures(sam, fem))),
     ),
     "decoupled-hats": Quantity(
         "the same over hats of 0.2 a, which take both sides of the contact's edge together",
-        whole=_decoupled_hats,
+        whole=_decoupled(lambda sam, fem, a: measures.patch_distance(sam, fem, PATCH * a)),
     ),
-    **{name: _component(k) for k, name in enumerate(sliding.COMPONENTS)},
-    "plane": Quantity(
-        "largest error of the von Mises stress in y = 0 from 0.25 a on, in p0", of=_mises_inside
+    **{
+        name: _stress(f"{name} at interior points", measures.stresses_inside, part=np.s_[:, k])
+        for k, name in enumerate(measures.COMPONENTS)
+    },
+    "plane": _stress("the von Mises stress in y = 0 from 0.25 a on", measures.mises_inside, von_mises),
+    "adds": Quantity(
+        "plastic strain added by later cycles over that of the first",
+        of=lambda result, _: float((peeq := result.tables["cycles"]["peeq_max"])[-1] / peeq[0] - 1.0),
     ),
-    "adds": Quantity("plastic strain added by later cycles over that of the first", of=_added),
     "moved": _scalar("residual_ux_center_m", "residual displacement of the centre along x", "m"),
     "settles": Quantity("plastic strain that a pass adds anywhere in y = 0, p0/k = 4.4", whole=_settles),
     "grows": Quantity("plastic strain that a pass adds anywhere in y = 0, p0/k = 4.9", whole=_grows),
@@ -474,10 +448,6 @@ def of_passes(result: Result, name: str) -> np.ndarray:
     return np.asarray(result.tables[table][column], dtype=float)
 
 
-def _limits_of_passes(solved: Solved, name: str) -> list[np.ndarray]:
-    return [refined(runs, lambda result: of_passes(result, name)) for runs in ladders(solved)]
-
-
 def _counted(solved: Solved) -> np.ndarray:
     """Which passes strain more than the floor of the verdict, in all runs of both models."""
     runs = solved.results.values()
@@ -490,7 +460,7 @@ def _pass(name: str, words: str, *, own: bool = False) -> Quantity:
     """
 
     def whole(solved: Solved) -> float:
-        sam, fem = _limits_of_passes(solved, name)
+        sam, fem = (refined(runs, lambda result: of_passes(result, name)) for runs in ladders(solved))
         if own:
             return float(np.abs(sam[counted := _counted(solved)] / fem[counted] - 1.0).max())
         return float(np.abs(sam - fem).max() / fem[0])
@@ -499,20 +469,16 @@ def _pass(name: str, words: str, *, own: bool = False) -> Quantity:
     return Quantity(f"{words}, largest difference of both models {over}", whole=whole)
 
 
-def _verdicts(solved: Solved) -> Measured:
-    return Measured(float(len({each.verdict["class"] for each in solved.results.values()})), 1.0)
+def _verdicts(solved: Solved) -> set[str]:
+    return {each.verdict["class"] for each in solved.results.values()}
 
 
 def _becomes(name: str) -> Quantity:
     """Whether a run, or all runs, end with a verdict."""
-
-    def whole(solved: Solved) -> Measured:
-        return Measured(float({each.verdict["class"] for each in solved.results.values()} == {name}), 1.0)
-
     return Quantity(
         f"1 if the verdict is {name}",
         of=lambda result, _: float(result.verdict["class"] == name),
-        whole=whole,
+        whole=lambda solved: Measured(float(_verdicts(solved) == {name}), 1.0),
     )
 
 
@@ -521,7 +487,10 @@ MOVING: Mapping[str, Quantity] = {
     "groove-refined": _both_refined("groove in the middle of the track", "m"),
     "deepest-refined": _both_refined("largest depth of the groove", "m"),
     "strain-refined": _both_refined("largest plastic strain", ""),
-    "verdict": Quantity("different verdicts of both models on all grids", whole=_verdicts),
+    "verdict": Quantity(
+        "different verdicts of both models on all grids",
+        whole=lambda solved: Measured(float(len(_verdicts(solved))), 1.0),
+    ),
     "energy": _pass("energy", "energy that a pass dissipates"),
     "strain": _pass("strain", "largest strain that a pass adds"),
     "own-energy": _pass("energy", "energy of a pass", own=True),
@@ -591,7 +560,7 @@ QUANTITIES: Mapping[str, Quantity] = {
     "friction": _scalar("friction_coefficient", "coefficient of friction of the whole contact"),
     "spots": Quantity(
         "contact spots of the three asperities that bear more than 5 % of the force",
-        between=lambda scene, *both: Measured(len(_spots(*both)), 3),
+        between=lambda scene, sam, fem: Measured(len(spots(sam.tables, fem.tables)), 3),
     ),
     **{
         f"load-{k}": Quantity(
@@ -608,7 +577,9 @@ QUANTITIES: Mapping[str, Quantity] = {
         )
         for k in (1, 2, 3)
     },
-    "strain-below-spots": Quantity("plastic strain below a spot, the largest difference", between=_strain),
+    "strain-below-spots": Quantity(
+        "plastic strain below a spot, the largest difference", between=_below_spots
+    ),
     "residual-line": Quantity("displacement along y = 0 after unloading", "m", between=_residual),
     "reference-residual": Quantity(
         "error of the surface's shape in the spectral solution", of=lambda _, exact: exact.values["residual"]

@@ -13,7 +13,7 @@ from sam.scene import Result, load_scene
 from verification.cases.case import with_keys
 from verification.cases.coated import films, layered
 from verification.cases.recipes import RECIPES
-from verification.compare.rough_measures import Depths, compared_depths
+from verification.compare.measures import Plane, depths_compared
 from verification.figures.maps import compared_mises, in_body
 from verification.figures.specials import change_maps
 from verification.judging import error_of
@@ -202,12 +202,12 @@ def test_asperities_are_where_they_are_asked_for():
 def test_the_strain_on_either_side_of_a_jump_is_found_and_not_between_the_points_beside_it():
     x, z, jump = np.linspace(-1.0, 1.0, 5), np.arange(0.05, 2.0, 0.1), 0.9
     strain = np.where(z < jump, 1.0 + z, 0.5 - 0.1 * z)
-    depths = Depths(x, z, strain * np.ones((5, 1)), jump)
+    depths = Plane(x, z, strain * np.ones((5, 1)), jump)
     at_z = np.array([0.1, 0.84, 0.96, 1.5])
     np.testing.assert_allclose(depths.below(0.0, at_z), [1.1, 1.84, 0.404, 0.35], rtol=1e-9)
-    compared = compared_depths(depths, 0.0, 0.5)
+    compared = depths_compared(depths, 0.0, 0.5)
     assert not ((compared > 0.85 + 1e-9) & (compared < 0.95 - 1e-9)).any() and compared[-1] > 1.5
-    even = Depths(x, z, (1.0 + z) * np.ones((5, 1)))
+    even = Plane(x, z, (1.0 + z) * np.ones((5, 1)))
     np.testing.assert_allclose(even.below(0.0, at_z), 1.0 + at_z, rtol=1e-9)
 
 

@@ -33,22 +33,6 @@ TREES = st.recursive(
     ),
     max_leaves=12,
 )
-NAMED = st.dictionaries(st.text(max_size=3), TREES, max_size=3)
-NUMBERS = st.none() | st.floats() | st.integers()
-RECORDS = st.builds(
-    Result,
-    model=st.text(),
-    status=st.sampled_from(list(Status)),
-    quantities=st.dictionaries(st.text(max_size=3), st.none() | st.floats(), max_size=3),
-    tables=st.dictionaries(
-        st.text(max_size=3), st.dictionaries(st.text(max_size=3), st.lists(TREES) | ARRAYS)
-    ),
-    fields=st.none() | st.builds(FieldMesh, ARRAYS, st.dictionaries(st.text(max_size=3), ARRAYS, max_size=2)),
-    left_out=st.lists(st.builds(LeftOut, st.text(), st.text()), max_size=2).map(tuple),
-    discretisation=NAMED,
-    cost=st.dictionaries(st.text(max_size=3), NUMBERS, max_size=3),
-    warnings=st.lists(st.text(), max_size=2),
-)
 
 
 @settings(max_examples=150, deadline=None)
@@ -58,9 +42,12 @@ def test_any_values_come_back_through_json(value):
     assert same(decode(json.loads(json.dumps(tree)), kept_arrays, object), value)
 
 
-@settings(max_examples=60, deadline=None)
-@given(RECORDS)
-def test_any_record_comes_back_through_json(record):
+def test_a_record_comes_back_through_json_with_the_types_of_its_fields():
+    fields = FieldMesh(np.eye(3), {"quad": np.arange(4, dtype="i4")})
+    made = Result(
+        "sam", Status.CONVERGED, {"force_N": None, "approach_m": np.inf}, {"axis": {"z_m": [(1, 2.0)]}}
+    )
+    record = replace(made, fields=fields, left_out=(LeftOut("a", "b"),), cost={"ffts": 3, "solve_s": 0.1})
     tree, kept_arrays = encode(record)
     assert same(decode(json.loads(json.dumps(tree)), kept_arrays, Result), record)
 
@@ -81,18 +68,10 @@ def test_what_cannot_be_stored_is_refused(coarse_results, value):
         encode(replace(coarse_results[models.SAM], discretisation={"x": value}))
 
 
-@pytest.mark.parametrize(
-    "tree",
-    [
-        {"array": "none"},
-        {"dict": 3},
-        {"bytes": 3},
-        {"scalar": ["|O", "00" * 8]},
-        {"scalar": ["<f8", "0"]},
-        {"scalar": []},
-        {"tuple": 1},
-    ],
-)
+BAD_TREES = [{"array": "none"}, {"dict": 3}, {"bytes": 3}, {"scalar": []}, {"tuple": 1}]
+
+
+@pytest.mark.parametrize("tree", [*BAD_TREES, {"scalar": ["|O", "00" * 8]}, {"scalar": ["<f8", "0"]}])
 def test_values_that_were_not_encoded_are_refused(tree):
     with pytest.raises(CodecError):
         decode(tree, {}, object)

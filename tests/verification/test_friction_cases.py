@@ -9,7 +9,7 @@ from made_results import Made, square_mesh
 from sam.scene import UNLOADED, FieldMesh, parse_scene
 from verification.cases.sliding.sliding_sphere import limit_of_root, overtaking
 from verification.compare.comparison import compare_scene
-from verification.compare.sliding_measures import (
+from verification.compare.measures import (
     COMPONENTS,
     Plane,
     contour,
@@ -113,21 +113,20 @@ class TestMeasures:
         """Boundary of 0.2 %: 1 - u^2 - v^2 = sqrt(0.2), an ellipse with semi-axes times sqrt(1 - sqrt(0.2)),
         sheared along x.
         """
-        plane = Plane.of(like_sam(), 1.0)
+        plane = Plane.of(like_sam().tables)
         size = np.sqrt(1.0 - np.sqrt(0.2))
         found, lean = contour(plane, 0.002, 0.05), np.hypot(1.1, 0.2 * 0.75)
         assert found.depth == pytest.approx(0.35 + 0.75 * size, abs=0.01)
         assert found.length == pytest.approx(2.0 * lean * size, abs=0.02)
-        assert found.right + found.left == pytest.approx(2.0 * 0.2 * 0.35, abs=0.02)
         assert contour(plane, 0.011, 0.05) is None
         assert plane.at(np.array([0.11]), np.array([0.5]))[0, 0] == pytest.approx(strain(0.11, 0.5), rel=1e-3)
         assert np.isnan(plane.at(np.array([0.0]), np.array([0.0]))).all()
 
     def test_profile_difference_is_that_of_the_strains(self):
-        fem = Plane.of(like_fem(), 1.0)
+        fem = Plane.of(like_fem().tables)
         assert depths_compared(fem, 0.0)[0] == 0.3 and depths_compared(fem, 0.0)[-1] < 1.0
-        assert profile_difference(Plane.of(like_sam(), 1.0), fem, 0.0) < 0.01
-        assert profile_difference(Plane.of(like_sam(factor=1.04), 1.0), fem, 0.0) == pytest.approx(
+        assert profile_difference(Plane.of(like_sam().tables), fem, 0.0) < 0.01
+        assert profile_difference(Plane.of(like_sam(factor=1.04).tables), fem, 0.0) == pytest.approx(
             0.04, abs=0.01
         )
 
@@ -140,7 +139,7 @@ def test_limits_are_recovered_of_errors_of_second_order_in_cells_and_first_order
     sizes = ((12, 1), (16, 1), (12, 5), (12, 10))
     results = {f"limit-sam-{count}-{steps}": run(count, steps) for count, steps in sizes}
     z = np.array([0.3, 0.5])
-    exact = Plane.of(like_sam(), 1.0).at(np.array([0.1]), z)[0]
+    exact = Plane.of(like_sam().tables).below(0.1, z)
     assert limit_of_strain(results, "sam", a=1.0, x=0.1, z=z) == pytest.approx(exact, rel=1e-12)
 
 

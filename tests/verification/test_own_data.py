@@ -7,9 +7,9 @@ import numpy as np
 import pandas as pd
 import pytest
 import pyvista
-from builders import parsed, scene_text
-from own_meshes import ABAQUS, abaqus_mesh, mirrored, write_exodus
+from builders import parsed
 from stored import BOTH
+from vtkmodules.vtkIOExodus import vtkExodusIIWriter
 
 from sam.scene import Scene, SceneError, resolved
 from samfem.compared import NOT_COMPARED, asked, compared
@@ -22,6 +22,41 @@ from verification.runs.store import Store
 SCENE = parsed()
 PRESSURES = ("p_max_Pa", "p_center_Pa", "p_Pa over the contact")
 OF_STRESS = ("mises_max_Pa", "mises_max_depth_m", "mises_Pa on the axis", "mises_Pa in the plane y = 0")
+
+
+ABAQUS = """file = "abaqus.vtu"
+length_unit = "mm"
+stress_unit = "MPa"
+axes = { x = "x", z = "-y" }
+pressure = "CPRESS"
+displacement = "U"
+stress = "S"
+components = ["xx", "yy", "zz", "xy", "xz", "yz"]
+"""
+STRESS = ABAQUS[ABAQUS.index("stress = ") :]
+FROM_SCENE = [0, 2, 1, 4, 5, 3]
+"""S11 (radial), S22 (axial, upwards), S33 (hoop), S12, S13, S23 among xx, yy, zz, yz, xz, xy of a result."""
+
+
+def abaqus_mesh(fem) -> pyvista.UnstructuredGrid:
+    """The axisymmetric result in mm and MPa, y upwards."""
+    points, quads = np.asarray(fem.fields.points), np.asarray(fem.fields.cells["quad"])
+    mesh = pyvista.UnstructuredGrid(
+        {pyvista.CellType.QUAD: quads}, 1e3 * points[:, [0, 2, 1]] * [1.0, -1.0, 1.0]
+    )
+    mesh.point_data["CPRESS"] = np.asarray(fem.fields.point_data["p_Pa"]) * 1e-6
+    uz = np.asarray(fem.fields.point_data["uz_m"])
+    mesh.point_data["U"] = np.stack([0 * uz, -1e3 * uz, 0 * uz], axis=1)
+    stress = np.asarray(fem.fields.cell_data["stress_Pa"])[:, FROM_SCENE] * 1e-6
+    mesh.cell_data["S"] = stress * [1, 1, 1, -1, 1, -1]  # axial upwards: shear with it changes its sign
+    return mesh
+
+
+def mirrored(mesh: pyvista.UnstructuredGrid) -> pyvista.UnstructuredGrid:
+    """Both sides of the axis: the plane y = 0 of a mesh in space."""
+    other = mesh.copy()
+    other.points[:, 0] *= -1.0
+    return mesh.merge(other, merge_points=False)
 
 
 @pytest.fixture(scope="module")
@@ -131,16 +166,29 @@ def test_a_mesh_that_is_shifted_by_a_tenth_of_the_contact_is_off_by_a_tenth(resu
     assert all(row.passed for row in rows.values()) and rows[CENTRE].error < 1e-3
 
 
-def test_an_exodus_mesh_is_read_at_its_last_or_a_named_step(results, beside, mapped, tmp_path):
-    write_exodus(tmp_path / "own.exo", abaqus_mesh(results[1]))
-    stress = ABAQUS[ABAQUS.index("stress = ") :]
-    edits = (stress, ""), ('"U"', '"U_"')
-    rows, _ = beside(mapped(None, *edits, name="own.exo"))
+def test_an_exodus_mesh_is_read(results, beside, mapped, tmp_path):
+    mesh = abaqus_mesh(results[1])
+    mesh.cell_data.clear()
+    writer = vtkExodusIIWriter()
+    writer.SetFileName(str(tmp_path / "own.exo"))
+    writer.SetInputData(mesh)
+    writer.Write()
+    rows, _ = beside(mapped(None, (STRESS, ""), name="own.exo"))
     assert set(rows) == {*PRESSURES, CENTRE, "uz_m on the line"} and all(row.passed for row in rows.values())
-    rows, _ = beside(mapped(None, *edits, ("axes", "step = 1\naxes"), name="own.exo"))
+
+
+def test_a_mesh_of_several_steps_is_read_at_its_last_or_a_named_one(results, beside, mapped, tmp_path):
+    mesh, sets = abaqus_mesh(results[1]), ""
+    for step, share in ((1, 0.5), (2, 2.0)):  # the second is the whole pressure
+        mesh.point_data["CPRESS"] *= share
+        mesh.save(tmp_path / f"own-{step}.vtu")
+        sets += f'<DataSet timestep="{step}" file="own-{step}.vtu"/>'
+    (tmp_path / "own.pvd").write_text(f'<VTKFile type="Collection"><Collection>{sets}</Collection></VTKFile>')
+    assert beside(mapped(None, name="own.pvd"))[0]["p_max_Pa"].passed
+    rows, _ = beside(mapped(None, ("axes", "step = 1\naxes"), name="own.pvd"))
     assert rows["p_max_Pa"].error == pytest.approx(1.0, abs=1e-2)  # half of it
     assert "step = 3: at most 2" in refused(
-        mapped(None, *edits, ("axes", "step = 3\naxes"), name="own.exo"), tmp_path
+        mapped(None, ("axes", "step = 3\naxes"), name="own.pvd"), tmp_path
     )
 
 
@@ -231,16 +279,11 @@ def test_what_is_no_data_is_refused_by_name(tmp_path):
 
 def test_everything_that_is_wrong_is_said_at_once(tmp_path):
     (tmp_path / "own.csv").write_text(LINE.replace("p_Pa", "p"))
+    data = [tmp_path / "own.csv", tmp_path / "none.csv"]
     with pytest.raises(SeveralError) as caught:
-        asked(
-            SCENE,
-            data=[tmp_path / "own.csv", tmp_path / "none.csv"],
-            tolerances={"p": 1},
-            claim="negligible-film",
-        )
-    said = str(caught.value)
+        asked(SCENE, data=data, tolerances={"p": 1}, claim="negligible-film")
     for words in ("--claim", "tolerances.p = 1", "own.csv: p", "none.csv: cannot be read"):
-        assert words in said
+        assert words in str(caught.value)
 
 
 @pytest.fixture(scope="module")
@@ -267,7 +310,7 @@ DAMAGED = {
     "bytes.exo": (bytes(range(256)) * 12, "no mesh: it"),
     "above.pvd": (PVD % b"../cubes.vtu", "it names ../cubes.vtu, outside of its folder: copy it there"),
     "above.case": (b"FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: 1 sub/../../cubes.geo\n", "outside of its"),
-    **{f"own.{kind}": (b"\n" * 189, "its name ends in") for kind in ("neu", "res", "nek5000", "xdmf", "stl")},
+    "own.xdmf": (b"\n" * 189, "its name ends in"),
 }
 
 
@@ -282,21 +325,3 @@ def test_a_damaged_mesh_is_refused_without_noise(cubes, mapped, tmp_path, capfd,
     said = refused(mapped(None, name=name), tmp_path)
     assert f'file = "{name}": no mesh: ' in said and words in said
     assert capfd.readouterr() == ("", "")
-
-
-def test_all_malformed_data_are_named_at_once_and_nothing_is_created(
-    results, mapped, tmp_path, monkeypatch, samfem
-):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "sphere.toml").write_text(scene_text())
-    words, texts = [], dict(list(WRONG_TABLES.values())[:8])
-    for k, text in enumerate(texts):
-        (tmp_path / f"own-{k}.csv").write_text(text)
-        words += ["--with", f"own-{k}.csv"]
-    words += ["--with", mapped(abaqus_mesh(results[1]), ('"CPRESS"', '"CPRES"')), "--with", "own.vtu"]
-    before = sorted(tmp_path.rglob("*"))
-    said = samfem("compare", "sphere.toml", *words, code=2).err
-    assert sorted(tmp_path.rglob("*")) == before and "Traceback" not in said
-    for name, fragment in zip(words[1::2], [*texts.values(), "CPRES", "the mapping (TOML)"], strict=True):
-        assert any(line.startswith((f"samfem: error: {name}: ", f"{name}: ")) for line in said.splitlines())
-        assert fragment in said

@@ -171,7 +171,6 @@ def untouched(tree) -> tuple[str, ...]:
         ("fem_reference/common/plasticity.py", (0, 1, 1)),
         ("verification/runs/models.py", (1, 1, 1)),
         ("verification/cases/case.py", (0, 0, 1)),
-        ("verification/figures/space/child.py", (0, 0, 1)),
         ("verification/data/advice.csv", (0, 0, 1)),
         ("tests/sam/test_wear.py", (0, 0, 0)),
         ("verification/runs/code_version.py", (0, 0, 0)),
@@ -184,19 +183,14 @@ def test_one_byte_changes_the_version_of_what_depends_on_it(tree, untouched, pat
     (tree / path).write_bytes(content[:-1] + b"#")
     after = versions(tree)
     (tree / path).write_bytes(content)
-    assert versions(tree) == untouched  # written again, and the same
     assert tuple(int(a != b) for a, b in zip(untouched, after, strict=True)) == changes
 
 
 def test_a_new_file_and_another_numpy_change_the_version_too(tree, untouched, monkeypatch):
     (tree / "sam" / "extra.py").write_text("")
-    assert [a != b for a, b in zip(untouched, versions(tree), strict=True)] == [
-        True,
-        False,
-        True,
-    ]
+    assert [a != b for a, b in zip(untouched, versions(tree), strict=True)] == [True, False, True]
     (tree / "sam" / "extra.py").unlink()
-    monkeypatch.setattr("verification.runs.code_version._installed", lambda package: "0.0")
+    monkeypatch.setattr("verification.runs.code_version.installed", lambda package: "0.0")
     assert all(a != b for a, b in zip(untouched, versions(tree), strict=True))
 
 
@@ -271,25 +265,24 @@ def test_an_entry_with_other_content_is_damage(kept, content):
 # faults and company
 
 
-def test_a_store_that_cannot_be_written_costs_one_warning_and_no_result(tmp_path, counted, capsys):
-    (tmp_path / "file").write_text("")
-    own = Store(tmp_path / "file" / "store")
+def full(*_):
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+@pytest.mark.parametrize("why", ["Not a directory", "No space left on device"])
+def test_a_store_that_cannot_be_written_costs_one_warning_and_no_result(
+    tmp_path, counted, capsys, monkeypatch, why
+):
+    own = Store(tmp_path / "place" / "store")
+    if why == "Not a directory":
+        own.folder.parent.write_text("")
+    else:
+        monkeypatch.setattr(os, "fsync", full)
     for _ in range(2):
         assert solve_or_reuse(own, COARSE, models.SAM)[0].converged
     message = capsys.readouterr().err
-    assert (
-        message.count("\n") == 1 and str(own.folder) in message and FOLDER in message and "warning" in message
-    )
+    assert message.count("\n") == 1 and f"warning: store {own.folder}: {why}" in message and FOLDER in message
     assert own.entries() == [] and own.left_over() == []
-
-
-def test_a_full_disk_leaves_nothing(tmp_path, counted, capsys, monkeypatch):
-    def full(*_):
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
-    monkeypatch.setattr(os, "fsync", full)
-    assert solve_or_reuse(Store(tmp_path), COARSE, models.SAM)[0].converged
-    assert "No space left on device" in capsys.readouterr().err and list(tmp_path.iterdir()) == []
 
 
 def _keep_and_look(folder: Path, result, turns: int) -> None:

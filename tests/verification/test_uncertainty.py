@@ -17,8 +17,8 @@ from verification.cost.plan import plan
 from verification.runs import models
 from verification.runs.files import read_run
 from verification.runs.models import FEM, FEM_3D, SAM
-from verification.uncertainty import bound, converging, family, order_seen, solve
-from verification.uncertainty.members import step_counts
+from verification.uncertainty.rule import bound, converging, order_seen
+from verification.uncertainty.solving import family, solve, step_counts
 
 ASKED = {"uncertainty": True}
 GRID = {"cells": (33, 33)}
@@ -134,7 +134,7 @@ def entries(scene: Scene, solver) -> dict:
 def test_cells_and_steps_are_added_up():
     """Of the strain above, with the rule's factors: 3 400/65^2 + 2 0.2/9 f(65)/f(29); force is given."""
     scene = Scene(**YIELDING | {"grid": {"cells": (65, 65), "extent": (4e-4, 4e-4)}})
-    found = entries(scene, lambda each, _: made(each))
+    found, result = entries(scene, lambda each, _: made(each)), made(scene)
     entry, values = found["peeq_max"], [5 + 400 / n**2 + 0.2 / 9 for n in (65, 43, 29)]
     assert entry["u_cells"] == pytest.approx(3 * 400 / 65**2, rel=1e-9)
     assert entry["u_steps"] == pytest.approx(2 * 0.2 / 9 * values[0] / values[2], rel=1e-9)
@@ -144,6 +144,8 @@ def test_cells_and_steps_are_added_up():
         "u_num": None,
         "flag": "the place of a maximum moves by whole points",
     }
+    least = entries(scene, lambda *_: result)["peeq_max"]  # without any change
+    assert least["u_num"] == scene.solver.tolerance * least["values"][0] and least["relative"] == 1e-6
 
 
 def test_values_that_agree_by_chance_leave_what_the_edge_of_the_contact_does():
@@ -177,13 +179,6 @@ def test_the_edge_of_a_contact_inside_an_element_leaves_something_of_the_approac
     assert parts(ELASTIC)["approach_m"] == 0.0
 
 
-def test_without_any_change_the_tolerance_of_the_solver_is_left():
-    scene = Scene(**YIELDING | {"grid": {"cells": (65, 65), "extent": (4e-4, 4e-4)}})
-    result = made(scene)
-    entry = entries(scene, lambda *_: result)["peeq_max"]
-    assert entry["u_num"] == scene.solver.tolerance * entry["values"][0] and entry["relative"] == 1e-6
-
-
 @pytest.mark.parametrize(
     "cells, spoilt, words",
     [
@@ -204,20 +199,15 @@ def test_solves_that_are_no_family_give_none(cells, spoilt, words):
     assert found["u_num"] is None and words in found["flag"]
 
 
-def test_what_does_not_converge_has_no_uncertainty_and_nothing_more_is_solved():
-    scene, calls = Scene(**YIELDING), []
-
-    def solver(each: Scene, label: str) -> Result:
-        calls.append(label)
-        return Result(SAM, Status.NOT_CONVERGED, {"peeq_max": None}, {})
-
-    assert entries(scene, solver) == {} and len(calls) == 1
-
-
-def test_nothing_more_is_solved_where_it_is_not_asked_for():
-    calls, scene = [], Scene(**YIELDING | {"solver": {}})
-    result = solve(scene, SAM, lambda each, label: calls.append((each, label)) or made(each))
-    assert calls == [(scene, "")] and result.uncertainty is None and "quantities" not in result.tables
+@pytest.mark.parametrize(
+    ("solver", "status", "found"),
+    [(ASKED, Status.NOT_CONVERGED, {}), ({}, Status.CONVERGED, None)],
+    ids=["not converged", "not asked for"],
+)
+def test_nothing_more_is_solved(solver, status, found):
+    calls, failed = [], Result(SAM, status, {"peeq_max": None}, {})
+    result = solve(Scene(**YIELDING | {"solver": solver}), SAM, lambda *call: calls.append(call) or failed)
+    assert len(calls) == 1 and result.uncertainty == found and "quantities" not in result.tables
 
 
 def test_a_coarser_grid_that_the_model_refuses_gives_none():

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sam.scene import UNLOADED
 from verification.cases.case import Plot, View
 from verification.cases.sweep import BOTH, fitted, spelt, words_of
-from verification.compare.rough_measures import Depths, PatchPressure, residual_line, spots
-from verification.compare.sliding_measures import SHALLOWEST
+from verification.compare.measures import SHALLOWEST, Plane, patch_pressure, spots
 from verification.figures.lines import (
     CYCLES,
     LOOKS,
@@ -50,7 +50,7 @@ from verification.quantities import Solved, ladders, of_passes, planes, strain_b
 from verification.reference.convergence import extrapolate
 from verification.references import REFERENCES, coated_contact, contact_of
 from verification.rows import CaseFile
-from verification.runs.sampling import peak, pressure_map
+from verification.runs.sampling import peak, pressure_map, rows_of
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -165,10 +165,10 @@ def _mises_maps(found: Solved) -> Drawing:
 
 
 def _spot_pressures(found: Solved) -> Plot:
-    own, fem = (PatchPressure.of(each.tables) for each in found.results.values())
+    (x, y, own), (*_, fem) = (patch_pressure(each.tables) for each in found.results.values())
     words = "Maps of the pressure by SAM and FEM at peak load, and their difference."
     return Plot(
-        rough_pressures(own.x, own.y, {"SAM": own.p, "FEM": fem.p}, reach=3.2e-6),
+        rough_pressures(x, y, {"SAM": own, "FEM": fem}, reach=3.2e-6),
         "pressure",
         "Pressure of the spots",
         words,
@@ -179,9 +179,9 @@ def _spot_pressures(found: Solved) -> Plot:
 def _spot_strains(found: Solved) -> Plot:
     """Over depth below the centre of each spot: SAM as a line, FEM at its points."""
     sam, fem = found.results.values()
-    both, panels = (Depths.of(sam.tables), Depths.of(fem.tables)), {}
+    both, panels = (Plane.of(sam.tables), Plane.of(fem.tables)), {}
     depths = np.linspace(both[0].z[0], 2e-6, 100), both[1].z[both[1].z <= 2e-6]
-    for spot in spots(*(PatchPressure.of(each.tables) for each in (sam, fem))):
+    for spot in spots(sam.tables, fem.tables):
         first = strain_below(found.scene, sam, fem, spot)[0][0]
         curves_of = [(z, each.below(spot.x, z)) for z, each in zip(depths, both, strict=True)]
         panels[f"x = {spot.x * 1e6:.2f} µm"] = (*curves_of, first)
@@ -191,7 +191,7 @@ def _spot_strains(found: Solved) -> Plot:
 
 
 def _residual_line(found: Solved) -> Plot:
-    lines = (residual_line(each.tables) for each in found.results.values())
+    lines = (rows_of(each.tables["line"], UNLOADED, "x_m", "uz_m") for each in found.results.values())
     side = found.scene.patch_surface.path.extent[0]
     near = ((x[use := np.abs(x) <= side / 2], uz[use]) for x, uz in lines)
     words = "Change of the heights along y = 0 after unloading, by SAM and FEM."

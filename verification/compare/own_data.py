@@ -64,7 +64,7 @@ FARTHEST = 100.0
 NEAR = 1.5  # contact radii: some values must be as near, and plastic flow may widen the contact so far
 SHORTEST = 0.05  # contact radii: data that reach no farther are in a wrong unit of length
 LEAST_NEAR = 2
-PLACES = {"line": ("x_m",), "axis": ("z_m",), "plane": ("x_m", "z_m")}
+PLACES = {"line": ("x_m",), "axis": ("z_m",), "plane": ("x_m", "z_m"), "history": ()}
 LARGEST = 2**30  # bytes of a table
 TABLES = ("axis", "line", "plane", "history")
 HISTORY = ("force_N", "approach_m", "contact_area_m2", "p_max_Pa", "peeq_max")
@@ -90,23 +90,23 @@ def read_data(path: str | Path, scene: Scene) -> OwnData:
     path = Path(path)
     if path.stem.lower() in COLUMNS_OF_ROWS:
         raise _refused(path, [Problem("", "", f"{path.stem} is a column of compare.csv: rename the data")])
-    expected = Expected.of(scene)
-    if not expected.radius > 0:
+    radius, sizes = _expected(scene)
+    if not radius > 0:
         raise _refused(path, [Problem("", "", "the load is zero: there is no contact to compare with")])
     if path.suffix.lower() == ".toml":
-        tables = read_mapped(path, expected.radius)
+        tables = _read_mapped(path, radius)
     elif path.is_dir():
-        tables = _folder(path)
+        files = [file for name in TABLES if (file := path / f"{name}.csv").is_file()]
+        if not files:
+            names = ", ".join(f"{name}.csv" for name in TABLES)
+            raise _refused(path, [Problem("", "", f"the folder has none of {names}")])
+        tables = dict(map(_read_csv, files))
     elif path.suffix.lower() == ".csv":
         tables = dict([_read_csv(path)])
     else:
         mapping = "a CSV file, a folder of CSV files, or the mapping (TOML) that names and explains a mesh"
         raise _refused(path, [Problem("", "", f"no data that can be read: give {mapping}")])
-    faults = [
-        Problem(f"{name}.{fault.key}", fault.value, fault.allowed)
-        for name, table in tables.items()
-        for fault in expected.faults(name, table)
-    ]
+    faults = [fault for name, table in tables.items() for fault in _faults(name, table, radius, sizes)]
     if faults:
         raise _refused(path, faults)
     return OwnData(path.stem, _quantities(tables), tables)
@@ -114,14 +114,6 @@ def read_data(path: str | Path, scene: Scene) -> OwnData:
 
 def _refused(path: Path, faults: Sequence[Problem]) -> SceneError:
     return SceneError(faults, str(path))
-
-
-def _folder(path: Path) -> Tables:
-    files = [file for name in TABLES if (file := path / f"{name}.csv").is_file()]
-    if not files:
-        names = ", ".join(f"{name}.csv" for name in TABLES)
-        raise _refused(path, [Problem("", "", f"the folder has none of {names}")])
-    return dict(_read_csv(file) for file in files)
 
 
 def _read_csv(path: Path) -> tuple[str, dict[str, np.ndarray]]:
@@ -134,10 +126,17 @@ def _read_csv(path: Path) -> tuple[str, dict[str, np.ndarray]]:
     except ValueError as error:
         raise _refused(path, [Problem("", "", f"no table of numbers: {error}")]) from None
     frame.columns = [str(name).strip() for name in frame.columns]
-    name = _kind(path, list(frame.columns))
-    has = f"{name}.csv has {', '.join(COLUMNS[name])}"
+    places = tuple(each for each in ("x_m", "y_m", "z_m") if each in frame)
+    has = bool(places or {*frame} & {*HISTORY})
+    named = [each for each, own in PLACES.items() if has and places == own]
+    if not named:
+        wanted = "x_m for the line, z_m for the axis, x_m and z_m for the plane y = 0, none for the history"
+        said = spelling(", ".join(frame.columns))
+        raise _refused(path, [Problem("columns", said, f"lengths in m as {wanted}")])
+    (name,) = named
+    known = f"{name}.csv has {', '.join(COLUMNS[name])}"
     faults = [
-        Problem(column, "", unknown("column", [column], COLUMNS[name], has))
+        Problem(column, "", unknown("column", [column], COLUMNS[name], known))
         for column in frame.columns
         if column not in COLUMNS[name]
     ]
@@ -151,35 +150,20 @@ def _read_csv(path: Path) -> tuple[str, dict[str, np.ndarray]]:
         raise _refused(path, faults or [Problem("", "", "the table has no rows")])
     if name != "history":
         columns.setdefault("state", np.full(len(frame), PEAK))
-    return name, _with_mises(_sorted(columns, PLACES.get(name, ())))
+    stresses = [f"s{each}_Pa" for each in STRESSES]
+    if "mises_Pa" not in columns and set(stresses) <= set(columns):
+        columns["mises_Pa"] = von_mises(np.stack([columns[each] for each in stresses], axis=1))
+    return name, _sorted(columns, PLACES[name])
 
 
-def _kind(path: Path, columns: list[str]) -> str:
-    """The table that has these columns of places; a history has none."""
-    places = tuple(name for name in ("x_m", "y_m", "z_m") if name in columns)
-    for name, own in PLACES.items():
-        if places == own:
-            return name
-    if not places and set(columns) & set(HISTORY):
-        return "history"
-    wanted = "x_m for the line, z_m for the axis, x_m and z_m for the plane y = 0, none for the history"
-    raise _refused(path, [Problem("columns", spelling(", ".join(columns)), f"lengths in m as {wanted}")])
-
-
-def _bad_cells(columns: Mapping[str, np.ndarray]) -> list[Problem]:
-    faults = []
-    for name, values in columns.items():
-        if name == "state":
-            bad = ~np.isin(values, (PEAK, UNLOADED))
-            allowed = f'"{PEAK}" or "{UNLOADED}"'
-        elif name not in COMPARED:
-            continue
-        else:
-            bad, allowed = ~np.isfinite(values), "a number in each row, or in none"
-        if bad.any():
-            row = int(np.flatnonzero(bad)[0])
-            faults.append(Problem(f"{name}, row {row + 1}", spelling(str(values[row])), allowed))
-    return faults
+def _bad_cells(columns: Mapping[str, np.ndarray]) -> Iterator[Problem]:
+    for column, values in columns.items():
+        bad, allowed = ~np.isfinite(values) if column in COMPARED else [], "a number in each row, or in none"
+        if column == "state":
+            bad, allowed = ~np.isin(values, (PEAK, UNLOADED)), f'"{PEAK}" or "{UNLOADED}"'
+        if np.any(bad):
+            row = int(np.argmax(bad))
+            yield Problem(f"{column}, row {row + 1}", spelling(str(values[row])), allowed)
 
 
 def _sorted(columns: dict[str, np.ndarray], places: Sequence[str]) -> dict[str, np.ndarray]:
@@ -190,15 +174,7 @@ def _sorted(columns: dict[str, np.ndarray], places: Sequence[str]) -> dict[str, 
     return {name: values[order] for name, values in columns.items()}
 
 
-def _with_mises(columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """The von Mises stress also, where all six stresses are there and it is not."""
-    names = [f"s{name}_Pa" for name in STRESSES]
-    if "mises_Pa" in columns or not set(names) <= set(columns):
-        return columns
-    return columns | {"mises_Pa": von_mises(np.stack([columns[name] for name in names], axis=1))}
-
-
-def _quantities(tables: Mapping[str, Mapping[str, np.ndarray]]) -> dict[str, float]:
+def _quantities(tables: Tables) -> dict[str, float]:
     """The scalar quantities that tables of places and loads hold."""
     found: dict[str, float] = {}
     history, line = tables.get("history"), _at(tables, "line", PEAK)
@@ -210,37 +186,26 @@ def _quantities(tables: Mapping[str, Mapping[str, np.ndarray]]) -> dict[str, flo
             found["contact_radius_m"] = float(np.sqrt(found["contact_area_m2"] / np.pi))
     if "p_Pa" in line:
         found.setdefault("p_max_Pa", float(line["p_Pa"].max()))
-        found |= _at_centre("p_center_Pa", line, "p_Pa")
-    found |= _at_centre("residual_uz_center_m", _at(tables, "line", UNLOADED), "uz_m")
+    centres = ("p_center_Pa", line, "p_Pa"), ("residual_uz_center_m", _at(tables, "line", UNLOADED), "uz_m")
+    for name, along, column in centres:
+        if column in along and along["x_m"].min() <= 0 <= along["x_m"].max():
+            found[name] = float(np.interp(0.0, along["x_m"], along[column]))
+    axis, plane = (_at(tables, name, PEAK) for name in ("axis", "plane"))
     for column, name in (("mises_Pa", "mises_max_Pa"), ("peeq", "peeq_max")):
-        found = _largest(tables, column, name) | found
+        if not (largest := [float(table[column].max()) for table in (axis, plane) if column in table]):
+            continue
+        of_fields = {name: max(largest)}
+        if column in axis and largest[0] >= max(largest):  # its depth is known on the axis alone
+            of_fields |= _refined(*np.unique(axis["z_m"], return_index=True), axis[column], name)
+        found = of_fields | found
     return found
 
 
-def _at(tables, name: str, state: str) -> dict[str, np.ndarray]:
+def _at(tables: Tables, name: str, state: str) -> dict[str, np.ndarray]:
     """The columns of a table in a state; none without rows."""
     table = tables.get(name, {})
-    rows = np.asarray(table["state"]) == state if table else np.zeros(1, bool)
+    rows = table["state"] == state if table else np.zeros(1, bool)
     return {column: values[rows] for column, values in table.items()} if rows.any() else {}
-
-
-def _at_centre(name: str, line: Mapping[str, np.ndarray], column: str) -> dict[str, float]:
-    """A value of the line at x = 0, if the line reaches there."""
-    if column not in line or not line["x_m"].min() <= 0 <= line["x_m"].max():
-        return {}
-    return {name: float(np.interp(0.0, line["x_m"], line[column]))}
-
-
-def _largest(tables, column: str, name: str) -> dict[str, float]:
-    """The largest value on the axis and in the plane; its depth where it is on the axis, by a parabola."""
-    axis, plane = (_at(tables, table, PEAK) for table in ("axis", "plane"))
-    values = [table[column].max() for table in (axis, plane) if column in table]
-    if not values:
-        return {}
-    found = {name: float(max(values))}
-    if column in axis and axis[column].max() >= found[name]:
-        return found | _refined(*np.unique(axis["z_m"], return_index=True), axis[column], name)
-    return found
 
 
 def _refined(z: np.ndarray, rows: np.ndarray, values: np.ndarray, name: str) -> dict[str, float]:
@@ -257,70 +222,57 @@ def _refined(z: np.ndarray, rows: np.ndarray, values: np.ndarray, name: str) -> 
     return {name: float(top + at * (slope + bend * at)), depth: float(z[k] + at * unit)}
 
 
-@dataclass(frozen=True)
-class Expected:
-    """Sizes to within a factor of ten: contact radius and approach in m, pressure in Pa; NaN: unknown."""
-
-    radius: float
-    pressure: float
-    approach: float
-
-    @classmethod
-    def of(cls, scene: Scene) -> Expected:
-        """By Hertz, without coating; of a rough scene the half side of its patch alone."""
-        radius = float(max(hertz_semi_axes(scene)))
-        body, other, loading = scene.body, scene.counterbody, scene.loading
-        if other is None:
-            return cls(radius, loading.p0 if loading.hertz else math.nan, math.nan)
+def _expected(scene: Scene) -> tuple[float, dict[str, float]]:
+    """Contact radius in m, and column -> what its largest value is to within a factor of ten, NaN: unknown;
+    by Hertz, without coating; of a rough scene the half side of its patch alone.
+    """
+    radius, pressure, approach = float(max(hertz_semi_axes(scene))), math.nan, math.nan
+    body, other, loading = scene.body, scene.counterbody, scene.loading
+    if other is None:
+        pressure = loading.p0 if loading.hertz else math.nan
+    elif other.shape != "flat":
         modulus = effective_modulus(body.young, body.poisson, other.young, other.poisson)
-        if other.shape == "flat":
-            return cls(radius, math.nan, math.nan)
         if other.radii is None:
             force = math.nan if loading.force is None else loading.force
-            return cls(radius, force / (math.pi * radius**2), force / (2 * modulus * radius))
-        largest = max(other.radii)
-        return cls(radius, 2 * modulus * radius / (math.pi * largest), radius**2 / largest)
+            pressure, approach = force / (math.pi * radius**2), force / (2 * modulus * radius)
+        else:
+            largest = max(other.radii)
+            pressure, approach = 2 * modulus * radius / (math.pi * largest), radius**2 / largest
+    sizes = dict.fromkeys(("p_Pa", "p_max_Pa", "mises_Pa", "szz_Pa"), pressure)
+    return radius, sizes | dict.fromkeys(("uz_m", "approach_m"), approach)
 
-    @property
-    def sizes(self) -> dict[str, float]:
-        """Column -> what its largest value is about; a column that is not here may have any value."""
-        lengths = dict.fromkeys(("uz_m", "approach_m"), self.approach)
-        return dict.fromkeys(("p_Pa", "p_max_Pa", "mises_Pa", "szz_Pa"), self.pressure) | lengths
 
-    def faults(self, name: str, table: Mapping[str, np.ndarray]) -> Iterator[Problem]:
-        """What a table says that cannot be of this scene: its place, its units, its signs."""
-        rows = np.asarray(table["state"]) == PEAK if "state" in table else slice(None)
-        at_peak = {column: np.asarray(values)[rows] for column, values in table.items() if column != "note"}
-        for column in PLACES.get(name, ()):
-            yield from self._misplaced(column, at_peak[column])
-        for column, size in self.sizes.items():
-            if column in at_peak:
-                yield from _out_of_size(column, at_peak[column], size)
-
-    def _misplaced(self, column: str, values: np.ndarray) -> Iterator[Problem]:
+def _faults(
+    name: str, table: Mapping[str, np.ndarray], radius: float, sizes: Mapping[str, float]
+) -> Iterator[Problem]:
+    """What a table says that cannot be of the scene: its place, its units, its signs."""
+    rows = table["state"] == PEAK if "state" in table else slice(None)
+    at_origin = f"the contact is at the origin, with a radius of about {with_prefix(radius, 'm')}"
+    for column in PLACES[name]:
+        values = table[column][rows]
         if not values.size:
-            return
+            continue
         low, high = float(values.min()), float(values.max())
         reach = f"{with_prefix(low, 'm')} to {with_prefix(high, 'm')}"
-        around = f"the contact is at the origin, with a radius of about {with_prefix(self.radius, 'm')}"
-        below = values[values >= 0] if column == "z_m" else np.abs(values)
+        inside, words = values[values >= 0] if column == "z_m" else np.abs(values), ""
         if column == "z_m" and high <= 0 > low:
-            yield Problem(column, reach, "z points into the body: the axis is upside down")
-        elif np.unique(below[below <= NEAR * self.radius]).size < LEAST_NEAR:
-            yield Problem(column, reach, f"{around}: the place, or the unit of length, is another")
-        elif max(abs(low), abs(high)) < SHORTEST * self.radius:
-            yield Problem(column, reach, f"{around}: the unit of length is another")
-
-
-def _out_of_size(column: str, values: np.ndarray, size: float) -> Iterator[Problem]:
-    values = values[np.isfinite(values)]
-    largest = float(np.abs(values).max(initial=0.0))
-    unit = column.rpartition("_")[2]
-    if values.size and size > 0 and not size / FARTHEST <= largest <= size * FARTHEST:
-        times = f"it is in {unit}, and expected at about {with_prefix(size, unit)}"
-        yield Problem(column, f"at most {with_prefix(largest, unit)}", f"{times}: the unit is another")
-    elif column == "p_Pa" and values.size and values.min() < -largest / 2:
-        yield Problem(column, with_prefix(float(values.min()), unit), "p > 0 is compressive: change the sign")
+            words = "z points into the body: the axis is upside down"
+        elif np.unique(inside[inside <= NEAR * radius]).size < LEAST_NEAR:
+            words = f"{at_origin}: the place, or the unit of length, is another"
+        elif max(abs(low), abs(high)) < SHORTEST * radius:
+            words = f"{at_origin}: the unit of length is another"
+        if words:
+            yield Problem(f"{name}.{column}", reach, words)
+    for column in (each for each in sizes if each in table):
+        values, size, unit = table[column][rows], sizes[column], column.rpartition("_")[2]
+        values = values[np.isfinite(values)]
+        largest = float(np.abs(values).max(initial=0.0))
+        if values.size and size > 0 and not size / FARTHEST <= largest <= size * FARTHEST:
+            words = f"it is in {unit}, and expected at about {with_prefix(size, unit)}: the unit is another"
+            yield Problem(f"{name}.{column}", f"at most {with_prefix(largest, unit)}", words)
+        elif column == "p_Pa" and values.size and values.min() < -largest / 2:
+            words = "p > 0 is compressive: change the sign"
+            yield Problem(f"{name}.{column}", with_prefix(float(values.min()), unit), words)
 
 
 class MeshAxes(Section):
@@ -399,13 +351,25 @@ def _direction(axis: str) -> np.ndarray:
     return (-1.0 if axis.startswith("-") else 1.0) * np.eye(3)["xyz".index(axis[-1])]
 
 
-def read_mapped(path: Path, radius: float) -> dict[str, dict[str, np.ndarray]]:
-    """The tables line, axis and plane of the mesh that a mapping file names.
+def _read_mapped(path: Path, radius: float) -> Tables:
+    """The tables line, axis and plane of the mesh that a mapping file names, at its load step, undeformed.
 
     radius: of the contact in m, about. Raises SceneError with everything that is wrong with mapping or mesh.
     """
-    mapping = _mapping(path)
-    mesh = _mesh(mapping, path)
+    try:
+        table = parse_toml(read_limited(path), str(path))
+        mapping = MeshMapping.model_validate(table, context={"spelling": "file"})
+    except InputError as error:
+        raise _refused(path, [Problem("", "", str(error))]) from None
+    except ValidationError as error:
+        raise _refused(path, problems(error)) from None
+    try:
+        steps, mesh = read_mesh(below(path.parent, mapping.file, "mapping"), mapping.step or 0)
+    except InputError as error:
+        raise _refused(path, [Problem("file", spelling(mapping.file), f"no mesh: {error}")]) from None
+    if (mapping.step or 1) > steps:
+        raise _refused(path, [Problem("step", str(mapping.step), f"at most {steps}")])
+    mesh = mesh.cast_to_unstructured_grid()
     fields = _fields(mapping, mesh, path)
     mesh.points = (
         (np.asarray(mesh.points, dtype=float) - (mapping.origin or 0.0)) @ mapping.turn.T * mapping.length
@@ -418,33 +382,12 @@ def read_mapped(path: Path, radius: float) -> dict[str, dict[str, np.ndarray]]:
     tables = {}
     for name in ALONG:
         columns = [each for each in fields if (each in ("p_Pa", "uz_m")) == (name == "line")]
-        wanted = {
-            each: fields[each][1] for each in columns if name != "plane" or each in ("peeq", "mises_Pa")
-        }
-        if wanted:
-            tables[name] = _along(mesh, name, wanted, radius=radius, state=mapping.state)
+        columns = [each for each in columns if name != "plane" or each in ("peeq", "mises_Pa")]
+        if columns:
+            inside = not all(fields[each][1] for each in columns)
+            table = _along(mesh, name, columns, radius=radius, inside=inside)
+            tables[name] = {"state": np.full(len(table[PLACES[name][0]]), mapping.state), **table}
     return {name: table for name, table in tables.items() if len(table["state"])}
-
-
-def _mapping(path: Path) -> MeshMapping:
-    try:
-        table = parse_toml(read_limited(path), str(path))
-        return MeshMapping.model_validate(table, context={"spelling": "file"})
-    except InputError as error:
-        raise SceneError([Problem("", "", str(error))], str(path)) from None
-    except ValidationError as error:
-        raise SceneError(problems(error), str(path)) from None
-
-
-def _mesh(mapping: MeshMapping, path: Path) -> UnstructuredGrid:
-    """The mesh as one grid, at its load step, undeformed."""
-    try:
-        steps, mesh = read_mesh(below(path.parent, mapping.file, "mapping"), mapping.step or 0)
-    except InputError as error:
-        raise SceneError([Problem("file", spelling(mapping.file), f"no mesh: {error}")], str(path)) from None
-    if (mapping.step or 1) > steps:
-        raise SceneError([Problem("step", str(mapping.step), f"at most {steps}")], str(path))
-    return mesh.cast_to_unstructured_grid()
 
 
 def _fields(mapping: MeshMapping, mesh: UnstructuredGrid, path: Path) -> dict[str, tuple[np.ndarray, bool]]:
@@ -461,7 +404,7 @@ def _fields(mapping: MeshMapping, mesh: UnstructuredGrid, path: Path) -> dict[st
         except ValueError as error:
             faults.append(Problem(key, spelling(names), str(error)))
     if faults:
-        raise SceneError(faults, str(path))
+        raise _refused(path, faults)
     pascal = float(in_unit(f"1 {mapping.stress_unit}", "Pa"))
     scalars = (("pressure", "p_Pa", pascal), ("mises", "mises_Pa", pascal), ("peeq", "peeq", 1.0))
     fields = {
@@ -535,37 +478,32 @@ def _placed(mesh: UnstructuredGrid, mapping: MeshMapping, path: Path, radius: fl
         "origin": mapping.origin or [0, 0, 0],
         "length_unit": mapping.length_unit,
     }
-    raise SceneError([Problem(key, spelling(given[key]), about + words)], str(path))
+    raise _refused(path, [Problem(key, spelling(given[key]), about + words)])
 
 
 def _along(
-    mesh: UnstructuredGrid, name: str, wanted: Mapping[str, bool], *, radius: float, state: str
+    mesh: UnstructuredGrid, name: str, columns: Sequence[str], *, radius: float, inside: bool
 ) -> dict[str, np.ndarray]:
-    """The columns of a table: at nodes of the mesh, else between them."""
+    """The columns of a table, its places first: at nodes of the mesh, else between them; inside: below the
+    surface only.
+    """
     on, reach = ON * radius, REACH * radius
     x, y, z = np.asarray(mesh.points).T
     use = (np.abs(y) <= on) & (np.abs(x) <= reach) & (z >= -on) & (z <= reach)
     use &= {"line": np.abs(z) <= on, "axis": np.abs(x) <= on, "plane": True}[name]
-    if not all(wanted.values()):
+    if inside:
         use &= z > on
-    if use.sum() >= LEAST_NODES:
-        values = {column: np.asarray(mesh.point_data[column])[use] for column in wanted}
-        return _table(name, np.stack([x, y, np.maximum(z, 0.0)], axis=1)[use], values, state)
-    from pyvista import PolyData
+    found, places = mesh, np.stack([x, y, np.maximum(z, 0.0)], axis=1)
+    if use.sum() < LEAST_NODES:
+        from pyvista import PolyData
 
-    nx, nz = ALONG[name]
-    xs = np.linspace(-reach, reach, nx) if nx > 1 else np.zeros(1)
-    zs = np.linspace(0.0, reach, nz)
-    places = np.stack([each.ravel() for each in np.meshgrid(xs, 0.0, zs, indexing="ij")], axis=1)
-    found = PolyData(places).sample(mesh, tolerance=on)
-    valid = np.asarray(found["vtkValidPointMask"], dtype=bool) & (all(wanted.values()) | (places[:, 2] > on))
-    values = {column: np.asarray(found[column])[valid] for column in wanted}
-    return _table(name, places[valid], values, state)
-
-
-def _table(name: str, places: np.ndarray, values: dict, state: str) -> dict[str, np.ndarray]:
-    """places: (n, 3), in the order of which the rows are."""
-    there = np.isfinite(np.stack(list(values.values()))).all(axis=0)  # a pressure may be on the surface only
-    columns = {column: places[there, "xyz".index(column[0])] for column in PLACES[name]}
-    columns |= {column: each[there] for column, each in values.items()}
-    return {"state": np.full(there.sum(), state), **_sorted(columns, PLACES[name])}
+        nx, nz = ALONG[name]
+        xs = np.linspace(-reach, reach, nx) if nx > 1 else np.zeros(1)
+        zs = np.linspace(0.0, reach, nz)
+        places = np.stack([each.ravel() for each in np.meshgrid(xs, 0.0, zs, indexing="ij")], axis=1)
+        found = PolyData(places).sample(mesh, tolerance=on)
+        use = np.asarray(found["vtkValidPointMask"], dtype=bool) & (places[:, 2] > (on if inside else -1.0))
+    values = {column: np.asarray(found.point_data[column]) for column in columns}
+    use &= np.isfinite(np.stack(list(values.values()))).all(axis=0)  # a pressure may be on the surface only
+    table = {column: places[use, "xyz".index(column[0])] for column in PLACES[name]}
+    return _sorted(table | {column: each[use] for column, each in values.items()}, PLACES[name])

@@ -15,7 +15,7 @@ import numpy as np
 from sam.scene import Scene
 from verification.reference.bonded_film import overall_coefficient
 from verification.reference.regime import MICROSTRAIN, film_pressure, swift, tear_pressure
-from verification.runs.sampling import Tables, rows_of
+from verification.runs.sampling import Tables, gridded, rows_of
 
 NAN = float("nan")
 
@@ -124,16 +124,13 @@ class Scar:
         return 1.0 - float(self.unprotected(low, high).sum() / self.in_contact.sum())
 
 
-def _gridded(tables: Tables, state: str, *columns: str) -> list[np.ndarray]:
+def _gridded(tables: Tables, state: str, *columns: str) -> tuple[np.ndarray, ...]:
     """x (nx,), y (ny,) and columns (nx, ny) of surface.csv. ValueError where cells are missing."""
     x, y, *fields = rows_of(tables["surface"], state, "x_m", "y_m", *columns)
-    (xs, i), (ys, j) = (np.unique(c, return_inverse=True) for c in (x, y))
+    xs, ys, *grids = gridded(x, y, *fields)
     if xs.size * ys.size != x.size or not x.size:
         raise ValueError(f"surface, {state}: {x.size} rows for {xs.size} × {ys.size} cells")
-    grids = [np.full((xs.size, ys.size), np.nan) for _ in fields]
-    for grid, field in zip(grids, fields, strict=True):
-        grid[i, j] = field
-    return [xs, ys, *grids]
+    return xs, ys, *grids
 
 
 @dataclass(frozen=True)

@@ -33,10 +33,10 @@ from verification.cost.advice import (
 from verification.runs import models
 from verification.runs.provenance import memory_bytes
 from verification.text.readable import with_prefix, with_time
-from verification.uncertainty import (
+from verification.uncertainty.rule import STEP_FACTOR, bound
+from verification.uncertainty.solving import (
     ORDERS,
     RATIO,
-    STEP_FACTOR,
     STEP_ORDER,
     Family,
     Member,
@@ -44,7 +44,6 @@ from verification.uncertainty import (
     Solved,
     alone,
     assessed,
-    bound,
     coarser,
     cost_of,
     depths_of_maxima,

@@ -18,7 +18,7 @@ from verification.runs.model_range import model_range, range_lines
 from verification.runs.provenance import memory_bytes
 from verification.text.console import table_lines
 from verification.text.readable import with_prefix, with_time
-from verification.uncertainty import NoFamilyError, family
+from verification.uncertainty.solving import NoFamilyError, family
 
 UNCERTAINTY = "uncertainty"
 LONGEST = 86400.0  # predicted processor seconds that a command begins unasked

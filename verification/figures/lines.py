@@ -19,7 +19,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from sam.scene import Attempt
-from verification.compare.sliding_measures import Plane
+from verification.compare.measures import Plane
 from verification.figures.style import (
     BLACK,
     BLUE,
@@ -337,7 +337,7 @@ def refinement(
 def profile_of(plane: Plane, x: float, deep: float) -> Curve:
     """Plastic strain in % over depth at x, at the own depths of a result."""
     z = plane.z[plane.z <= deep]
-    return Curve(z, PERCENT * plane.at(np.array([x]), z)[0])
+    return Curve(z, PERCENT * plane.below(x, z))
 
 
 def below_spots(spots: Mapping[str, tuple]) -> Drawing:

@@ -20,7 +20,7 @@ from matplotlib.ticker import MaxNLocator
 from scipy.interpolate import RegularGridInterpolator
 
 from sam.scene import Result
-from verification.compare.sliding_measures import Plane
+from verification.compare.measures import Plane
 from verification.figures.places import edges_of
 from verification.figures.style import BLACK, GREY, Drawing, new_figure, style
 from verification.runs.sampling import Tables, plane_field, plane_field_on, pressure_map, pressure_on

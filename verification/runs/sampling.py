@@ -36,24 +36,13 @@ def surface_pressure(
     (m,), finite for the cells of the surface only.
     """
     surface = np.isfinite(p)
-    x, y, (field,) = surface_cells(points, quads[surface], p[surface])
-    return x, y, field
-
-
-def surface_cells(
-    points: np.ndarray, quads: np.ndarray, *values: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
-    """Values (m,) of the cells of a surface, quads (m, 4) of points (n, 3), on its grid: x (nx,), y (ny,) and
-    a field (nx, ny) for each.
-    """
-    x, y = points[quads].mean(axis=1).T[:2]
-    pitch = np.ptp(points[quads[0]], axis=0)
+    corners = points[quads[surface]]
+    x, y = corners.mean(axis=1).T[:2]
+    pitch = np.ptp(corners[0], axis=0)
     column, row = (np.rint((c - c.min()) / h).astype(int) for c, h in ((x, pitch[0]), (y, pitch[1])))
-    fields = [np.full((column.max() + 1, row.max() + 1), np.nan) for _ in values]
-    for field, each in zip(fields, values, strict=True):
-        field[column, row] = each
-    nx, ny = column.max() + 1, row.max() + 1
-    return np.linspace(x.min(), x.max(), nx), np.linspace(y.min(), y.max(), ny), fields
+    field = np.full((column.max() + 1, row.max() + 1), np.nan)
+    field[column, row] = p[surface]
+    return np.linspace(x.min(), x.max(), len(field)), np.linspace(y.min(), y.max(), field.shape[1]), field
 
 
 def pressure_on(x: np.ndarray, y: np.ndarray, axisymmetric: Tables, power: int = 2) -> np.ndarray:
@@ -64,13 +53,17 @@ def pressure_on(x: np.ndarray, y: np.ndarray, axisymmetric: Tables, power: int =
     return np.interp(np.hypot(x[:, None], y[None, :]), r, p**power) ** (1 / power)
 
 
-def plane_field(tables: Tables, column: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def plane_field(tables: Tables, column: str) -> tuple[np.ndarray, ...]:
     """A column of SAM in the plane y = 0 at peak load: x (nx,), z (nz,), field (nx, nz)."""
-    x, z, values = peak(tables["plane"], "x_m", "z_m", column)
-    xs, zs = np.unique(x), np.unique(z)
-    field = np.full((xs.size, zs.size), np.nan)
-    field[np.searchsorted(xs, x), np.searchsorted(zs, z)] = values
-    return xs, zs, field
+    return gridded(*peak(tables["plane"], "x_m", "z_m", column))
+
+
+def gridded(x: np.ndarray, y: np.ndarray, *values: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Values (n,) at places (n,) on their grid: x (nx,), y (ny,), and each (nx, ny), NaN where none is."""
+    (xs, i), (ys, j) = (np.unique(each, return_inverse=True) for each in (x, y))
+    fields = np.full((len(values), xs.size, ys.size), np.nan)
+    fields[:, i, j] = values
+    return xs, ys, *fields
 
 
 def plane_field_on(x: np.ndarray, z: np.ndarray, axisymmetric: Tables, column: str) -> np.ndarray:

@@ -1,42 +1,318 @@
 # SPDX-License-Identifier: MIT
-"""A result with the numerical uncertainty of its quantities."""
+"""A result with the numerical uncertainty of its quantities: the formal order of the error of each, or why it
+has none, the coarser companions of a scene, and what the results of all say together.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from math import inf
+from math import floor, inf, sqrt
 from typing import Any
 
-from sam.grid import Room
-from sam.scene import COLUMNS, Problem, Result, Scene, SceneError, spelling
+import numpy as np
+
+import sam
+from sam.grid import CellGrid, Room
+from sam.scene import COLUMNS, Grid, Problem, Result, Scene, SceneError, spelling
 from verification.runs import models
-from verification.uncertainty.members import (
-    LEAST_IN_RADIUS,
-    Family,
-    Member,
-    NoFamilyError,
-    alone,
-    cells_in_radius,
-    cells_to_edge,
-    depths_of_maxima,
-    family,
-)
-from verification.uncertainty.quantities import (
-    BOX_ORDERS,
-    EDGES,
-    OF_ELEMENTS,
-    ORDERS,
-    OUTLINE_FACTOR,
-    STEP_ORDER,
-    is_given,
-    why_not,
-)
 from verification.uncertainty.rule import EDGE, FACTOR, STEP_FACTOR, bound, converging, of_edge, order_seen
 
 Solve = Callable[[Scene, str], Result]
 """Solves a scene of the family; the text says which it is."""
 NOT_CONVERGING = "not converging: the last refinement changed more than the one before"
+
+# the quantities
+
+ORDERS = dict.fromkeys(
+    (
+        *("force_N", "approach_m", "contact_area_m2", "contact_radius_m", "friction_coefficient"),
+        *("p_max_Pa", "p_center_Pa", "mises_max_Pa", "peeq_max", "peeq_p95", "residual_uz_center_m"),
+        *("p_max_bare_Pa", "mises_max_bare_Pa", "mises_max_substrate_Pa", "mises_max_film_Pa"),
+        *("p_max_change", "mises_max_change", "tangential_displacement_center_m", "residual_ux_center_m"),
+        *("plastic_shear_center_m", "groove_depth_m", "groove_deepest_m"),
+    ),
+    2.0,
+) | {"wear_volume_m3": 1.0}
+"""Quantity -> order in the cells; that in the load steps is 1, of backward Euler, for all."""
+EDGES = {"contact_area_m2": 0.3, "contact_radius_m": 0.15}
+OUTLINE_FACTOR = 2.0
+"""Of a contact of SAM with one outline, by quantity: EDGE of the rule, and the factor in place of FACTOR. The
+area errs to either side, more so on the coarser grids, and differences of grids are already larger than the
+error of the finest. Of 293 triplets of Hertz's contact, 4 to 33 cells in the radius, the apex at the centre
+of a cell or between four, 99.7 % are covered, U/error 4.6 in the median; with a factor of 3 as many, 6.2.
+"""
+STEP_ORDER = 1.0
+BOX_ORDERS = dict.fromkeys(("residual_uz_center_m", "residual_ux_center_m", "plastic_shear_center_m"), 1.0)
+"""The same in the size of the finite-element box; 2 of all others. From 5 to 34 radii the approach and the
+largest pressure and strain of Hertz's and of a yielding contact were seen to settle with 2.2 to 3.2, a
+residual displacement with 1.2.
+"""
+
+BALANCED = ("force_N", "approach_m", "contact_area_m2", "contact_radius_m", "friction_coefficient")
+"""What the balance of forces over many spots decides; a maximum below a rough body is that of one spot."""
+OF_EDGE = (
+    *("p_max_Pa", "mises_max_Pa", "p_max_bare_Pa", "mises_max_bare_Pa", "p_max_change", "mises_max_change"),
+    *("mises_max_substrate_Pa", "mises_max_film_Pa", "peeq_max"),
+)
+OF_ELEMENTS = ("approach_m", "force_N")
+"""What alone the edge of a contact in an element changes by more than the rest of the rule knows: coarser
+meshes have a node at Hertz's radius too, and agree by chance. Of 35 values of five spheres beyond yield (9 to
+20 elements) 24 of the approach are covered without it and all with it; of p_max all, of peeq_max 34 without.
+"""
+WHY_NOT = {
+    "mises_max_depth_m": "the place of a maximum moves by whole points",
+    "peeq_max_depth_m": "the place of a maximum moves by whole cells",
+    "residual_mises_max_Pa": "its maximum moves to another place as the cells become smaller",
+    "pressure_centroid_x_m": "it is zero, or a small difference of large numbers",
+}
+SINGULAR = "the stress is singular at the edge of the punch"
+WHOLE_RINGS = "the cells have the area of the punch as closely as whole rings allow"
+ONE_SPOT = "a maximum below a rough body is that of a single spot"
+UNKNOWN = "none was measured for it"
+
+
+def is_given(name: str, scene: Scene) -> bool:
+    """Whether the scene gives a quantity, so that it has no error."""
+    loading = scene.loading
+    if name == "friction_coefficient":
+        return scene.constant_friction
+    if name == "wear_volume_m3":
+        return scene.wear is None
+    if loading.prescribed is not None and name in ("p_max_Pa", "p_center_Pa", "contact_area_m2"):
+        return True
+    given = "approach_m" if loading.approach is not None else "force_N"
+    return name == given or (loading.prescribed is not None and name == "contact_radius_m")
+
+
+def why_not(name: str, scene: Scene) -> str:
+    """Why a quantity of a scene has no uncertainty; empty if it has one."""
+    other = scene.counterbody
+    if other is not None and other.shape == "punch" and name in (*OF_EDGE, *EDGES):
+        return SINGULAR if name in OF_EDGE else WHOLE_RINGS
+    if scene.patch_surface is not None and name not in (*BALANCED, "wear_volume_m3"):
+        return ONE_SPOT
+    return WHY_NOT.get(name, "" if name in ORDERS else UNKNOWN)
+
+
+# the family of scenes
+
+RATIO = 1.5  # of neighbouring cell sizes and load steps
+# The same of elements of the axisymmetric model, at most, and elements that are left in the radius: 96 % of
+# the errors of seven spheres with 9 to 24 elements are covered, as many as with 1.5, which costs more.
+WIDEST, LEFT = 2.0, 5.0
+LEAST_IN_RADIUS = 4.0  # cells in the contact radius of the coarsest: below it the rule covers less
+LEAST_BOX = 3.0  # of [fem], in radii
+# Of the largest von Mises stress: at depths with less its largest value is not looked for. It then takes a
+# third of the depths, and 1.4 to 1.5 times the cost of the plain solve in place of 2.2 for a coated sphere.
+LARGE = 0.85
+FEWEST_STEPS = 4  # from so many on the others have fewer, else more
+
+
+@dataclass(frozen=True)
+class Member:
+    """label: for the reader; number: of cells or load steps; size: what its error falls with."""
+
+    scene: Scene
+    label: str
+    number: float
+    size: float
+
+
+@dataclass(frozen=True)
+class Family:
+    """The scenes that an uncertainty needs. cells: finest first; steps: on the coarsest of them, beginning
+    with it; box: beginning with the last of steps, or of cells; empty where history or box decide nothing.
+    """
+
+    cells: tuple[Member, ...]
+    steps: tuple[Member, ...] = ()
+    box: tuple[Member, ...] = ()
+
+    @property
+    def all(self) -> tuple[Member, ...]:
+        """Every scene once, the finest first."""
+        return (*self.cells, *self.steps[1:], *self.box[1:])
+
+
+class NoFamilyError(ValueError):
+    """A scene that cannot be put on coarser cells; the message says why."""
+
+
+def alone(scene: Scene) -> Scene:
+    """The scene without its uncertainty, and asked for no accuracy: what a model solves."""
+    return _changed(scene, "solver", uncertainty=False, accuracy=None, accuracy_of=None)
+
+
+def _changed(scene: Scene, section: str, **keys: Any) -> Scene:
+    """The scene with keys of a section changed."""
+    given = getattr(scene, section) or Grid()  # which alone a scene may lack
+    return scene.model_copy(update={section: given.model_copy(update=keys)})
+
+
+def family(
+    scene: Scene, model: str, room: Room | None = None, depths: Sequence[float] | None = None
+) -> Family:
+    """The scenes that the uncertainty of a scene is taken from; room: of a grid that was enlarged;
+    depths: to which the coarser ones of an elastic body are limited, see `depths_of_maxima`. Raises
+    NoFamilyError.
+    """
+    scene = alone(scene)
+    cells = tuple(_cell_members(scene, model, room or Room(), depths))
+    for member in cells[1:]:
+        for key, allowed in member.scene.excesses():
+            raise NoFamilyError(f"{member.label}: {key}: {allowed}")
+        try:
+            models.check(member.scene, model)
+        except models.ModelError as reason:
+            raise NoFamilyError(f"{member.label}: {reason}") from None
+    steps = members_of_steps(cells[-1]) if has_history(scene) else ()
+    box = members_of_box((steps or cells)[-1]) if model != models.SAM else ()
+    return Family(cells, steps, box)
+
+
+def cells_to_edge(scene: Scene, fine: Result, family: Family) -> float:
+    """Cells of a result in the radius of its contact; infinite where no edge falls between cells: given
+    pressures, rough bodies, and finite elements of a bare elastic body, which have a node at the edge.
+    """
+    area = fine.quantities.get("contact_area_m2")
+    if scene.counterbody is None or scene.patch_surface is not None or not area:
+        return np.inf
+    if fine.model != models.SAM:
+        moved = scene.body.plasticity is not None or scene.body.coating is not None
+        return family.cells[0].number if moved else np.inf
+    return sqrt(area / np.pi) / family.cells[0].size
+
+
+def coarser(count: int, factor: float) -> int:
+    """A number of cells over a factor, odd if the number is: a cell centre then stays on the apex."""
+    odd = count % 2
+    return 2 * floor((count / factor - odd) / 2 + 0.5) + odd
+
+
+def step_counts(count: int) -> tuple[int, int, int]:
+    """Three numbers of load steps, that of the scene first."""
+    if count >= FEWEST_STEPS:
+        return count, _whole(count / RATIO), max(_whole(count / RATIO**2), 2)
+    middle = max(_whole(count * RATIO), count + 1)
+    return count, middle, max(_whole(count * RATIO**2), middle + 1)
+
+
+def _whole(value: float) -> int:
+    return floor(value + 0.5)
+
+
+def has_history(scene: Scene) -> bool:
+    """Whether load steps decide anything: something yields, or a film breaks down."""
+    coating, friction = scene.body.coating, scene.friction
+    if scene.body.plasticity is not None or (friction is not None and friction.film):
+        return True
+    return coating is not None and coating.yield_stress is not None
+
+
+def depths_of_maxima(scene: Scene, fine: Result) -> tuple[float, ...] | None:
+    """The output depths about the largest stresses of an elastic body, in its film and below, which decide
+    all that its coarser companions are asked for; any one below a rough body, where they are asked for no
+    stress. None where the depths of a body that yields are its layers, or for finite elements.
+    """
+    table = fine.tables.get("plane")
+    if fine.model != models.SAM or has_history(scene) or not table:
+        return None
+    z, mises = (np.asarray(table[name], dtype=float) for name in ("z_m", "mises_Pa"))
+    depths, place = np.unique(z, return_inverse=True)
+    if scene.patch_surface is not None:
+        return (float(depths[0]),)
+    largest = np.zeros(depths.size)
+    np.maximum.at(largest, place, mises)
+    film = depths < (0.0 if scene.body.coating is None else scene.body.coating.thickness)
+    kept = [each & (largest >= LARGE * largest[each].max()) for each in (film, ~film) if each.any()]
+    return tuple(map(float, depths[np.logical_or.reduce(kept)]))
+
+
+def _cell_members(scene: Scene, model: str, room: Room, depths: Sequence[float] | None) -> list[Member]:
+    other = scene if has_history(scene) else in_one_step(scene)
+    if scene.patch_surface is None and model != models.SAM:
+        count = scene.fem.cells_per_radius
+        ratio = min(max(sqrt(count / LEFT), RATIO), WIDEST) if model == models.FEM else RATIO
+        of = [(scene, count), *((other, max(_whole(count / ratio**k), 2)) for k in (1, 2))]
+        return [
+            Member(_changed(each, "fem", cells_per_radius=n), f"{n} elements in the radius", n, 1.0 / n)
+            for each, n in of
+        ]
+    grid = sam.plan(scene).on(room).grid
+    first = Member(scene, f"{grid.nx} cells", grid.nx, sqrt(grid.hx * grid.hy))
+    return [first, *(_of_grid(other, grid, RATIO**k, depths) for k in (1, 2))]
+
+
+def in_one_step(scene: Scene) -> Scene:
+    """The same load of an elastic body at once; a way is gone as it is."""
+    if scene.strokes.count:
+        return scene
+    return _changed(scene, "loading", steps=1, unload_steps=None)
+
+
+def _of_grid(scene: Scene, grid: CellGrid, factor: float, depths: Sequence[float] | None) -> Member:
+    """The scene on a grid with larger cells over the same sides; depths: as those of `family`."""
+    nx, ny = (max(coarser(count, factor), 3) for count in grid.shape)
+    sides = grid.nx * grid.hx, grid.ny * grid.hy
+    change: dict[str, object] = {"cells": (nx, ny)}
+    if scene.patch_surface is None:
+        change["extent"] = sides
+    if grid.faces is not None:
+        change |= {"depths": _faces(scene, grid.faces, nx / grid.nx), "layers": None, "depth": None}
+    elif depths is not None:
+        change |= {"depths": tuple(depths), "layers": None, "depth": None}
+    size = sqrt(sides[0] * sides[1] / (nx * ny))
+    return Member(_changed(scene, "grid", **change), f"{nx} cells", nx, size)
+
+
+def _faces(scene: Scene, faces: np.ndarray, share: float) -> tuple[float, ...]:
+    """Fewer faces of layers, interpolated in their number; those where the yield stress has a kink stay."""
+    layers = len(faces) - 1
+    places = np.linspace(0.0, layers, max(_whole(layers * share), 2) + 1)
+    found = np.interp(places, np.arange(layers + 1), faces)
+    for kink in scene.body.plasticity.strength().kinks.depths:
+        if np.isclose(faces[1:-1], kink, rtol=1e-9, atol=0.0).any():
+            found[1 + np.abs(found[1:-1] - kink).argmin()] = kink
+    return tuple(map(float, np.unique(found)))
+
+
+def members_of_steps(coarsest: Member) -> tuple[Member, ...]:
+    """A scene with its number of load steps and two others, its own first."""
+    loading = coarsest.scene.loading
+    along = coarsest.scene.strokes.count
+    whole = loading.steps + along
+    members = []
+    for count in step_counts(whole):
+        share = count / whole
+        change: dict[str, object] = {"steps": _share(loading.steps, share) if along else count}
+        if loading.unload_steps:
+            change["unload_steps"] = _share(loading.unload_steps, share)
+        if along:
+            own = {"steps": _share(along, share), "step_per_radius": None}
+            change["path"] = loading.path.model_copy(update=own)
+        scene = _changed(coarsest.scene, "loading", **change)
+        members.append(Member(scene, f"{count} load steps on {coarsest.label}", count, 1.0 / count))
+    return tuple(members)
+
+
+def _share(count: int, share: float) -> int:
+    return max(_whole(count * share), 1)
+
+
+def members_of_box(coarsest: Member) -> tuple[Member, ...]:
+    """A scene with its finite-element box and a smaller one; none where that would be too small."""
+    scene, box = coarsest.scene, coarsest.scene.fem.box
+    if box / RATIO < LEAST_BOX:
+        return ()
+    words = f"radii on {coarsest.label}"
+    return tuple(
+        Member(_changed(scene, "fem", box=size), f"a box of {size:.3g} {words}", size, 1.0 / size)
+        for size in (box, box / RATIO)
+    )
+
+
+# their results
 
 
 @dataclass(frozen=True)
@@ -96,54 +372,56 @@ def with_uncertainty(scene: Scene, model: str, solver: Solve) -> Result:
     room = fine.discretisation.get("grid_enlarged")
     try:
         found = family(scene, model, None if room is None else Room(**room), depths_of_maxima(scene, fine))
+        reason = under_resolved(scene, fine, found)
     except NoFamilyError as error:
-        return _without(fine, scene, str(error))
-    if words := under_resolved(scene, fine, found):
-        return _without(fine, scene, words)
-    return assessed(scene, _solved(found, fine, solver))
+        reason = str(error)
+    if reason:
+        return _reported(fine, scene, reason)
+    cells = [fine, *(solver(member.scene, member.label) for member in found.cells[1:])]
+    steps = [cells[-1], *(solver(member.scene, member.label) for member in found.steps[1:])]
+    box = [steps[-1], *(solver(member.scene, member.label) for member in found.box[1:])]
+    return assessed(scene, Solved(found, cells, steps if found.steps else (), box if found.box else ()))
 
 
 def under_resolved(scene: Scene, fine: Result, found: Family) -> str:
-    """Why the coarsest grid of a family is too coarse for an uncertainty; empty if it is not."""
-    resolved = cells_in_radius(scene, fine, found)
+    """Why the coarsest grid of a family has too few cells in the radius of the contact or of a misfit sphere;
+    empty if it has enough, and of rough bodies, whose members say themselves whether spots are resolved.
+    """
+    if scene.patch_surface is not None:
+        return ""
+    resolved = found.cells[-1].number
+    if fine.model == models.SAM:
+        radius = scene.loading.radius or fine.quantities["contact_radius_m"]
+        resolved = (radius or 0.0) / found.cells[-1].size
     if resolved >= LEAST_IN_RADIUS:
         return ""
     words = f"{found.cells[-1].label}, {resolved:.2g} in the contact radius, {LEAST_IN_RADIUS:g} needed"
     return f"the coarsest grid is under-resolved: {words}"
 
 
-def _solved(found: Family, fine: Result, solver: Solve) -> Solved:
-    """All members, each solved once."""
-
-    def rest(members: Sequence[Member], first: Result) -> list[Result]:
-        return [first, *(solver(member.scene, member.label) for member in members[1:])] if members else []
-
-    cells = rest(found.cells, fine)
-    steps = rest(found.steps, cells[-1])
-    return Solved(found, cells, steps, rest(found.box, (steps or cells)[-1]))
-
-
-def _without(fine: Result, scene: Scene, reason: str) -> Result:
-    """The result, of whose quantities none has an uncertainty."""
-    names = _named(fine.quantities, scene)
-    flags = ({"u_num": None, "flag": why_not(name, scene) or reason} for name in names)
-    return _with_entries(fine, dict(zip(names, flags, strict=True)))
-
-
 def assessed(scene: Scene, solved: Solved) -> Result:
     """The finest result of a family, with the uncertainty of its quantities and the cost of all solves."""
-    fine, entries = solved.cells[0], {}
+    fine = solved.cells[0]
     reason = solved.reason or under_resolved(scene, fine, solved.family)
     solved = replace(solved, edge=cells_to_edge(scene, fine, solved.family))
-    for name in _named(fine.quantities, scene):
-        own = why_not(name, scene) or reason
-        entries[name] = {"u_num": None, "flag": own} if own else entry(name, solved, scene.solver.tolerance)
     members = (*solved.cells[1:], *solved.steps[1:], *solved.box[1:])
-    return replace(_with_entries(fine, entries), cost=cost_of(fine, members))
+    return replace(_reported(fine, scene, reason, solved), cost=cost_of(fine, members))
 
 
-def _named(quantities: Mapping[str, float | None], scene: Scene) -> list[str]:
-    return [name for name, value in quantities.items() if value is not None and not is_given(name, scene)]
+def _reported(fine: Result, scene: Scene, reason: str, solved: Solved | None = None) -> Result:
+    """The result with the uncertainty of each quantity that the scene does not give, or why there is none;
+    reason: of all that have none of their own.
+    """
+    entries: dict[str, dict[str, Any]] = {}
+    for name, value in fine.quantities.items():
+        if value is None or is_given(name, scene):
+            continue
+        words = why_not(name, scene) or reason
+        known = None if words or solved is None else entry(name, solved, scene.solver.tolerance)
+        entries[name] = known or {"u_num": None, "flag": words}
+    rows = [{"quantity": name, "value": fine.quantities[name]} | each for name, each in entries.items()]
+    table = {column: [row.get(column) for row in rows] for column in COLUMNS["quantities"]}
+    return replace(fine, uncertainty=entries, tables={**fine.tables, "quantities": table})
 
 
 def entry(name: str, solved: Solved, tolerance: float) -> dict[str, Any]:
@@ -195,13 +473,6 @@ def _bound(
     if len(values) < 2 or None in values:
         return None, []
     return bound(values, [member.size for member in members], order, factor), values
-
-
-def _with_entries(fine: Result, entries: Mapping[str, Mapping[str, Any]]) -> Result:
-    columns = COLUMNS["quantities"]
-    rows = [{"quantity": name, "value": fine.quantities[name]} | dict(each) for name, each in entries.items()]
-    table = {column: [row.get(column) for row in rows] for column in columns}
-    return replace(fine, uncertainty=entries, tables={**fine.tables, "quantities": table})
 
 
 def cost_of(fine: Result, members: Sequence[Result]) -> dict[str, float | int | None]:

@@ -19,7 +19,7 @@ from verification.cost.estimates import estimate
 from verification.references import REFERENCES, coated_contact
 from verification.runs import models
 from verification.runs.store import solve_or_reuse
-from verification.uncertainty import alone, has_history
+from verification.uncertainty.solving import alone, has_history
 
 ACCURACIES = (0.05, 0.02, 0.01, 0.005)
 ELEMENTS, STEPS = 32, (20, 40)  # of the finite-element references, extrapolated in the load steps

@@ -24,7 +24,8 @@ from verification.reference.hamilton import largest_von_mises
 from verification.references import REFERENCES, coated_contact, contact_of, growing_sphere
 from verification.rows import CaseFile
 from verification.runs.store import solve_or_reuse
-from verification.uncertainty import asked_of, bound, order_seen, solve
+from verification.uncertainty.rule import bound, order_seen
+from verification.uncertainty.solving import asked_of, solve
 
 if TYPE_CHECKING:
     from pandas import DataFrame

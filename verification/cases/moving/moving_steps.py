@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sam.scene import Result, Scene
-from verification import uncertainty
 from verification.cases.case import SAM, Context, Plot
 from verification.cases.recipes import on_track
 from verification.figures.lines import errors_over_counts
 from verification.quantities import refined
+from verification.uncertainty import solving as uncertainty
 
 if TYPE_CHECKING:
     from pandas import DataFrame

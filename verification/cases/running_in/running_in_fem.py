@@ -19,8 +19,10 @@ from fem_reference.spatial import WornCycle, worn_cycles
 from sam.scene import Plasticity, Result, Scene, Wear
 from verification.cases.case import SAM, Context, Plot, with_body, with_loading
 from verification.cases.recipes import cells_of_asperities, rubbed
-from verification.compare.rough_measures import Depths, PatchPressure, compared_depths, relative_l2, spots
+from verification.compare.measures import Plane, depths_compared, patch_pressure, spots
 from verification.figures.lines import residual
+from verification.judging import relative_l2
+from verification.runs.sampling import Tables
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -64,32 +66,32 @@ def compared(context: Context) -> Iterator[dict[str, Any]]:
         for mode in ("own", "given"):
             context.progress(f"{context.case}, {cells} cells, FEM, {mode}", CELLS.index(cells), len(CELLS))
             fem = worn_cycles(scene, list(steps) if mode == "given" else None)
-            first = PatchPressure.of(alone.tables), PatchPressure.of(fem[0].tables)
+            first = alone.tables, fem[0].tables
             for cycle, own in ((1, alone), (CYCLES, sam)):
                 row = {"cells": cells, "mode": mode, "cycle": cycle}
                 yield row | differences(own, fem[cycle - 1], first) | {"wears": steps.max(axis=(1, 2)).min()}
 
 
-def differences(sam: Result, fem: WornCycle, first: tuple[PatchPressure, PatchPressure]) -> dict[str, Any]:
+def differences(sam: Result, fem: WornCycle, first: tuple[Tables, Tables]) -> dict[str, Any]:
     """L2 of SAM off FEM; the strain below the spots of the first cycle, which a scar divides
     later, the worst of them. lost, lost in fem: what the heights along y = 0 have lost in m.
     """
-    own, other = PatchPressure.of(sam.tables), PatchPressure.of(fem.tables)
-    below, strains = (Depths.of(sam.tables), Depths.of(fem.tables)), []
+    (x, _, own), (*_, other) = patch_pressure(sam.tables), patch_pressure(fem.tables)
+    below, strains = (Plane.of(sam.tables), Plane.of(fem.tables)), []
     for spot in spots(*first):
-        z = compared_depths(below[1], spot.x, spot.radius)
+        z = depths_compared(below[1], spot.x, spot.radius)
         strains.append(relative_l2(*(each.below(spot.x, z) for each in below)))
     worn, moved = (surface(sam, "unloaded", column) for column in ("worn_m", "uz_m"))
-    middle = slice(own.x.size // 2 - 1, own.x.size // 2 + 1)
+    middle = slice(x.size // 2 - 1, x.size // 2 + 1)
     lost = [each[:, middle].mean(axis=1) for each in (worn + moved, fem.worn + fem.moved)]
     return {
-        "pressure": relative_l2(own.p, other.p),
-        "squares": relative_l2(over_squares(own.p), over_squares(other.p)),
+        "pressure": relative_l2(own, other),
+        "squares": relative_l2(over_squares(own), over_squares(other)),
         "strain": max(strains),
         "residual": relative_l2(worn + moved, fem.worn + fem.moved),
         "moved": relative_l2(moved, fem.moved),
         "volume": abs(worn.sum() / fem.worn.sum() - 1.0),
-        **dict(zip(("x", "lost", "lost in fem"), (own.x, *lost), strict=True)),
+        **dict(zip(("x", "lost", "lost in fem"), (x, *lost), strict=True)),
     }
 
 

@@ -1,80 +1,106 @@
 # SPDX-License-Identifier: MIT
-"""What two three-dimensional results have in common: the plane y = 0, profiles over depth, contours, nodal
-pressures.
+"""What two results of one contact have in common: the strain in the plane y = 0, its profiles over depth and
+contours, nodal pressures, stresses inside, the spots of a rough patch and what each of them bears.
+
+On a rough patch both models give the pressure for the same cells: SAM at their centres, FEM at the nodes
+there, each of which stands for a cell.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
+from scipy import ndimage
 from scipy.interpolate import RectBivariateSpline
 
 from sam.scene import UNLOADED, Result
-from verification.runs.sampling import peak, plane_field, rows_of, surface_nodes, surface_pressure
+from verification.judging import relative_l2
+from verification.runs.sampling import (
+    Tables,
+    gridded,
+    peak,
+    plane_field,
+    pressure_map,
+    rows_of,
+    surface_nodes,
+)
 
-SHALLOWEST = 0.3  # elastic contact radii: above it the plastic strain near the surface depends on the mesh
-SPACING = 0.1  # of the depths compared, in the same
+# in elastic contact radii, or in radii of a spot
+SHALLOWEST = 0.3  # above it the plastic strain near the surface depends on the mesh
+SPACING = 0.1  # of the depths compared
 SHARE = 0.1  # of the largest strain of a profile: below it a relative difference says nothing
-FINE = 0.005  # of the grid on which contours are measured, in elastic contact radii
+FINE = 0.005  # of the grid on which contours are measured
+LEAST = 0.05  # of the force: a spot that bears less is not compared by itself
 
 
 @dataclass(frozen=True)
 class Plane:
-    """The plastic strain (nx, nz) in y = 0; x (nx,), z (nz,) in elastic contact radii, ascending."""
+    """The plastic strain (nx, nz) in y = 0 at peak load; x (nx,), z (nz,), ascending, in one unit of length.
+    jump: depth at which the strain jumps, as the hardening law does.
+    """
 
     x: np.ndarray
     z: np.ndarray
     peeq: np.ndarray
+    jump: float = 0.0
 
     @classmethod
-    def of(cls, result: Result, a: float) -> Plane:
-        """At peak load. a: contact radius of the elastic contact in m."""
-        x, z, peeq = plane_field(result.tables, "peeq")
-        return cls(x / a, z / a, peeq)
+    def of(cls, tables: Tables, unit: float = 1.0, jump: float = 0.0) -> Plane:
+        """From the tables of a result or of a run; unit: of length in m."""
+        x, z, peeq = plane_field(tables, "peeq")
+        return cls(x / unit, z / unit, peeq, jump)
 
     def at(self, x: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """At x (m,) and z (n,), (m, n), by a bicubic spline; never below zero, NaN outside."""
-        values = RectBivariateSpline(self.x, self.z, self.peeq, s=0)(x, z)
+        """At x (m,) and z (n,), (m, n), by a bicubic spline on either side of the jump; never below zero, NaN
+        outside.
+        """
+        values = np.empty((x.size, z.size))
+        for own, asked in ((self.z < self.jump, z < self.jump), (self.z >= self.jump, z >= self.jump)):
+            if asked.any():
+                degree = min(3, np.count_nonzero(own) - 1)
+                spline = RectBivariateSpline(self.x, self.z[own], self.peeq[:, own], ky=degree, s=0)
+                values[:, asked] = spline(x, z[asked])
         inside = ((x >= self.x[0]) & (x <= self.x[-1]))[:, None] & ((z >= self.z[0]) & (z <= self.z[-1]))
         return np.where(inside, np.maximum(values, 0.0), np.nan)
 
+    def below(self, x: float, z: np.ndarray) -> np.ndarray:
+        """At one x and depths z, (n,)."""
+        return self.at(np.array([x]), z)[0]
+
     def place_of_maximum(self) -> float:
         """x of the largest strain at z >= SHALLOWEST."""
-        x, z = (
-            FINE * np.arange(-round(1.0 / FINE), round(1.0 / FINE) + 1),
-            np.arange(SHALLOWEST, min(1.5, self.z[-1]), FINE),
-        )
-        values = self.at(x, z)
+        x = FINE * np.arange(-round(1.0 / FINE), round(1.0 / FINE) + 1)
+        values = self.at(x, np.arange(SHALLOWEST, min(1.5, self.z[-1]), FINE))
         return float(x[np.unravel_index(np.nanargmax(values), values.shape)[0]])
 
 
-def depths_compared(plane: Plane, x: float) -> np.ndarray:
-    """Multiples of SPACING from SHALLOWEST on with at least SHARE of the largest value there at x."""
-    z = np.arange(SHALLOWEST, plane.z[-1], SPACING)
-    peeq = plane.at(np.array([x]), z)[0]
-    return z[peeq >= SHARE * np.nanmax(peeq)]
+def depths_compared(plane: Plane, x: float, radius: float = 1.0) -> np.ndarray:
+    """Depths from SHALLOWEST radii on with at least SHARE of the largest strain there at x, none between the
+    points beside the jump.
+    """
+    z = np.arange(SHALLOWEST, plane.z[-1] / radius, SPACING) * radius
+    above, under = plane.z[plane.z < plane.jump], plane.z[plane.z >= plane.jump]
+    if above.size:
+        z = z[(z <= above[-1]) | (z >= under[0])]
+    peeq = plane.below(x, z)
+    return z[peeq >= SHARE * np.nanmax(peeq, initial=0.0)]
 
 
 def profile_difference(sam: Plane, fem: Plane, x: float) -> float:
     """Largest |sam - fem|/fem of the plastic strain at x over `depths_compared`, NaN without any."""
-    z, at = depths_compared(fem, x), np.array([x])
-    own, reference = sam.at(at, z)[0], fem.at(at, z)[0]
-    return float(np.max(np.abs(own / reference - 1.0), initial=np.nan if z.size == 0 else 0.0))
+    z = depths_compared(fem, x)
+    away = np.abs(sam.below(x, z) / fem.below(x, z) - 1.0)
+    return float(np.max(away, initial=np.nan if z.size == 0 else 0.0))
 
 
-@dataclass(frozen=True)
-class Contour:
-    """Where in y = 0 the plastic strain is at least a level, in elastic contact radii."""
+class Contour(NamedTuple):
+    """The part of y = 0 with at least a level of plastic strain: its depth and its length along x."""
 
     depth: float
-    left: float
-    right: float
-
-    @property
-    def length(self) -> float:
-        return self.right - self.left
+    length: float
 
 
 def contour(plane: Plane, level: float, top: float) -> Contour | None:
@@ -84,14 +110,8 @@ def contour(plane: Plane, level: float, top: float) -> Contour | None:
     reached = plane.at(x, z) >= level
     if not reached.any():
         return None
-    columns, rows = np.flatnonzero(reached.any(axis=1)), np.flatnonzero(reached.any(axis=0))
-    return Contour(float(z[rows[-1]]), float(x[columns[0]]), float(x[columns[-1]]))
-
-
-def contours(planes: Sequence[Plane], level: float) -> list[Contour | None]:
-    """Of several results, below the shallowest depth that all of them have."""
-    top = max(plane.z[0] for plane in planes)
-    return [contour(plane, level, top) for plane in planes]
+    columns, rows = x[reached.any(axis=1)], z[reached.any(axis=0)]
+    return Contour(float(rows[-1]), float(columns[-1] - columns[0]))
 
 
 def hat_means(nodes: np.ndarray, faces: np.ndarray) -> np.ndarray:
@@ -117,22 +137,11 @@ def nodal_pressures(sam: Result, fem: Result) -> tuple[np.ndarray, np.ndarray, n
     function of the node: that of SAM is integrated so.
     """
     x, y, p_fem = surface_nodes(fem)
-    u, v, p = surface_pressure(sam.fields.points, sam.fields.cells["quad"], sam.fields.cell_data["p_Pa"])
-    faces_x, faces_y = (faces_of(centres) for centres in (u, v))
+    u, v, p = pressure_map(sam)
+    faces_x, faces_y = (np.append(c - (h := np.ptp(c) / (c.size - 1)) / 2, c[-1] + h / 2) for c in (u, v))
     whole = np.concatenate([-y[:0:-1], y])
     p_sam = (hat_means(x, faces_x) @ p @ hat_means(whole, faces_y).T)[:, y.size - 1 :]
     return p_sam, p_fem, np.outer(spans(x), spans(y))
-
-
-def faces_of(centres: np.ndarray) -> np.ndarray:
-    """(m + 1,) of cells of one size."""
-    h = (centres[-1] - centres[0]) / (centres.size - 1)
-    return np.append(centres - h / 2, centres[-1] + h / 2)
-
-
-def pressure_distance(p: np.ndarray, reference: np.ndarray, area: np.ndarray) -> float:
-    """sqrt(sum w (p - reference)^2 / sum w reference^2)."""
-    return float(np.sqrt(np.sum(area * (p - reference) ** 2) / np.sum(area * reference**2)))
 
 
 def patch_pressures(result: Result, fem: Result, width: float) -> np.ndarray:
@@ -146,9 +155,7 @@ def patch_pressures(result: Result, fem: Result, width: float) -> np.ndarray:
     count = int(min(abs(x[0]), x[-1]) / width)
     centres = np.arange(-count, count + 1) * width
     aside = centres[centres >= 0.0]
-    across = hats_at(y, aside, width) + hats_at(
-        -y, aside, width
-    )  # the nodes on y = 0 have half of their area here
+    across = hats_at(y, aside, width) + hats_at(-y, aside, width)  # nodes on y = 0 have half of their area
     return (hats_at(x, centres, width) * spans(x)) @ p @ (across * spans(y)).T / width**2
 
 
@@ -167,7 +174,7 @@ def patch_distance(result: Result, fem: Result, width: float) -> float:
     p, reference = (patch_pressures(each, fem, width) for each in (result, fem))
     weight = np.ones(p.shape)
     weight[:, 0] = 0.5
-    return pressure_distance(p, reference, weight)
+    return relative_l2(p, reference, weight)
 
 
 INTERIOR, WIDE = (0.25, 1.5), 1.2  # depths, and |x| and |y|, at which stresses are compared, in contact radii
@@ -206,7 +213,7 @@ def limit_of_strain(
     and one of them in three numbers of steps.
     """
     at = {
-        tuple(map(int, name.split("-")[2:])): Plane.of(each, a).at(np.array([x]), z)[0]
+        tuple(map(int, name.split("-")[2:])): Plane.of(each.tables, a).below(x, z)
         for name, each in results.items()
         if name.startswith(f"limit-{model}-")
     }
@@ -223,3 +230,41 @@ def growth(before: Result, after: Result) -> float:
     cycles = [len(each.tables["cycles"]["peeq_max"]) for each in (before, after)]
     one, other = (rows_of(each.tables["plane"], UNLOADED, "peeq")[0] for each in (before, after))
     return float((other - one).max()) / (cycles[1] - cycles[0])
+
+
+def patch_pressure(tables: Tables) -> tuple[np.ndarray, ...]:
+    """Of a rough patch at peak load: x (nx,), y (ny,) in m, p (nx, ny) in Pa."""
+    x, y, p = peak(tables["surface"], "x_m", "y_m", "p_Pa")
+    return gridded(np.round(x, 15), np.round(y, 15), p)
+
+
+class Spot(NamedTuple):
+    """One contact spot. sam, fem: loads in N; x, y: centre of its pressure, radius: of the circle with the
+    area of its cells, of FEM in m.
+    """
+
+    sam: float
+    fem: float
+    x: float
+    y: float
+    radius: float
+
+
+def spots(sam: Tables, fem: Tables) -> list[Spot]:
+    """The spots that bear more than LEAST of the force, by x: connected regions where either model
+    has contact. Raises ValueError when the two are not on the same cells.
+    """
+    (u, v, own), (x, y, p) = patch_pressure(sam), patch_pressure(fem)
+    if own.shape != p.shape or not (np.allclose(u, x) and np.allclose(v, y)):
+        raise ValueError(f"the patches differ: {own.shape} and {p.shape} cells")
+    cell = float((x[1] - x[0]) * (y[1] - y[0]))
+    regions, count = ndimage.label((own > 0) | (p > 0))
+    found = []
+    for where in (regions == k for k in range(1, count + 1)):
+        if p[where].sum() > LEAST * p.sum():
+            weight = np.where(where, p, 0.0)
+            centre = ((weight.sum(axis=1 - axis) @ at) / weight.sum() for axis, at in enumerate((x, y)))
+            radius = np.sqrt(np.count_nonzero(weight > 0) * cell / np.pi)
+            loads = (each[where].sum() * cell for each in (own, p))
+            found.append(Spot(*map(float, (*loads, *centre, radius))))
+    return sorted(found, key=lambda spot: spot.x)
