@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 from itertools import cycle
 from typing import Any
 
-import matplotlib
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -36,7 +35,7 @@ from verification.figures.style import (
     sheet,
     zero_line,
 )
-from verification.reference.convergence import Limit, Order, Power
+from verification.reference.convergence import Limit, Order
 
 MICRO, GIGA, PERCENT = 1e6, 1e-9, 1e2
 POINTS = {"SAM": SAM | {"marker": "o", "fillstyle": "none"}, "FEM": FEM | {"marker": "x"}}
@@ -428,58 +427,6 @@ def coverage(panels: Mapping[str, Sequence[tuple[str, str, float, float]]]) -> D
         }
     how = {"logarithmic": "xy", "legend": "each", "size": (4.0, 3.8)}
     return Drawing(curves(drawn, "error [%]", "uncertainty [%]", **how).figure, data)
-
-
-def growth(columns: Mapping[str, tuple[str, Mapping[str, Curve], Mapping[str, Curve]]]) -> Drawing:
-    """Title -> (label of x, name -> seconds over x, name -> bytes over x): seconds above, megabytes
-    underneath, with the powers that are their fits.
-    """
-    panels, xlabels, rows = {}, {}, {"processor time [s]": 1.0, "memory [MB]": 1e-6}
-    for k, (label, unit) in enumerate(rows.items(), start=1):
-        for title, column in columns.items():
-            xlabels[label, title] = column[0]
-            panels[label, title] = {name: _with_power(each, unit) for name, each in column[k].items()}
-    drawing = curves(panels, xlabels, logarithmic="xy", legend="each", size=(3.6, 3.0))
-    for axis in drawing.figure.axes:  # at least one decade upwards, and numbers enough
-        low, high = axis.get_ylim()
-        axis.set_ylim(min(low, np.sqrt(low * high / 10)), max(high, np.sqrt(low * high * 10)))
-        log_ticks(axis.yaxis)
-    return drawing
-
-
-def _with_power(curve: Curve, unit: float) -> Curve:
-    """Points in another unit, with the exponent of their power."""
-    if not isinstance(power := curve.fit, Power):
-        return Curve(curve.x, unit * curve.y, look={"linestyle": "none", "fillstyle": "none"})
-    return Curve(curve.x, unit * curve.y, lambda x: unit * power(x), str(power), (power.first, power.last))
-
-
-def predicted(panels: Mapping[str, tuple[float, float, Mapping[str, tuple[Sequence, Sequence]]]]) -> Drawing:
-    """Title with unit -> (factor that is allowed, measured value from which it counts, family ->
-    (measured, predicted)).
-    """
-    drawn, shades = {}, []
-    names = dict.fromkeys(family for _, _, families in panels.values() for family in families)
-    colours = matplotlib.colormaps["turbo"](np.linspace(0.0, 0.95, len(names)))
-    for title, (allowed, least, families) in panels.items():
-        every = np.concatenate([np.ravel(pair) for pair in families.values()])
-        ends = np.array([0.7 * every.min(), 1.4 * every.max()])
-        even, counted = Curve(ends, ends), Curve(np.array([least, least]), ends)
-        drawn[title] = {"predicted = measured": even, "counted to its right": counted}
-        drawn[title] |= {name: Curve(*map(np.array, pair)) for name, pair in families.items()}
-        shades.append((ends, ends / allowed, ends * allowed))
-    looks: dict[str, dict] = {
-        name: {"color": color, "marker": mark, "fillstyle": "none", "linestyle": "none"}
-        for name, color, mark in zip(names, colours, cycle("os^Dv<>phXP*"), strict=False)
-    }
-    guide = {"color": BLACK, "linewidth": 0.8}
-    looks |= {"predicted = measured": guide, "counted to its right": guide | {"linestyle": ":"}}
-    labels = dict.fromkeys(drawn, "predicted")
-    how = {"logarithmic": "xy", "legend": "right", "size": (4.9, 4.4)}
-    drawing = curves(drawn, "measured", labels, looks=looks, **how)
-    for axis, shade in zip(drawing.figure.axes, shades, strict=True):
-        axis.fill_between(*shade, **BAND)
-    return drawing
 
 
 def over_cycles(
