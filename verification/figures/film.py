@@ -44,7 +44,7 @@ def changes(found: DataFrame, limit: float) -> Drawing:
                 panel[_series(*kind)] = Curve(*xy, look={"marker": "o", "markersize": 4})
             panel["limit"] = Curve(ends, np.full(2, -PERCENT * limit))
     looks = LOOKS | {"limit": {"color": GREEN, "linewidth": 1.0, "linestyle": "-."}}
-    return curves(panels, r"$a_0$ [$\mu$m]", "change [%]", looks=looks, legend="below")
+    return curves(panels, r"$a_0$ [$\mu$m]", "change [%]", looks=looks)
 
 
 def pressures(found: DataFrame, bare_radius: float) -> Drawing:
