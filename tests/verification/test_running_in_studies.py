@@ -272,7 +272,6 @@ class TestKinematic:
         assert rows[0]["late over early"] == pytest.approx(0.5)
         worse = self.rows(fit=0.01, first=1.2e-3, converged=False)
         assert wrong(name, worse) == {"fit", "first-loading", "converged"}
-        assert list(findings(kinematic.wear(None, pd.DataFrame(rows)).drawing.figure)) == []
 
 
 class TestWay:

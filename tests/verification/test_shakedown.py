@@ -21,15 +21,11 @@ def test_ball_of_a_simplex():
     assert centre == pytest.approx([1, 1, 0], abs=1e-6) and radius == pytest.approx(np.sqrt(2), rel=1e-6)
 
 
-def test_without_friction_the_limit_is_that_of_the_largest_shear():
-    """Both signs of the largest s_xz lie on the ball, on either side of its centre."""
-    limit, _ = travelling_limit(0.0, depths=np.array([0.35]))
-    assert limit == pytest.approx(shear_limit(0.0), rel=1e-3)
-
-
-def test_alternating_traction_lowers_the_limit_to_the_largest_shear():
-    limit, _ = travelling_limit(0.2, alternates=True, depths=np.array([0.3]))
-    assert limit == pytest.approx(shear_limit(0.2), rel=1e-3)
+@pytest.mark.parametrize(("friction", "alternates", "depth"), [(0.0, False, 0.35), (0.2, True, 0.3)])
+def test_the_limit_is_that_of_the_largest_shear(friction, alternates, depth):
+    """Without friction, or with traction that alternates, both signs of the largest s_xz lie on the ball."""
+    limit, _ = travelling_limit(friction, alternates=alternates, depths=np.array([depth]))
+    assert limit == pytest.approx(shear_limit(friction), rel=1e-3)
 
 
 def test_in_place_the_limit_is_twice_first_yield():

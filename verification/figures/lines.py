@@ -330,29 +330,6 @@ def refinement(
     return drawing
 
 
-def limits(
-    panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Callable]]], band: float
-) -> Drawing:
-    """Differences from a model without small strains; panels: quantity -> material -> (a/R,
-    relative difference, its fit); band: shaded on both sides of zero.
-    """
-    drawn = {
-        title.capitalize(): {
-            f"{name} and its fit": Curve(
-                x, PERCENT * off, lambda at, fit=fit: PERCENT * fit(at), span=(0.0, x.max())
-            )
-            for name, (x, off, fit) in own.items()
-        }
-        for title, own in panels.items()
-    }
-    labels = dict.fromkeys(drawn, "difference [%]")
-    how = {"across": 2 if len(panels) > 3 else 0, "size": (3.6, 3.0)}
-    drawing = curves(drawn, "$a/R$", labels, band=PERCENT * band, **how)
-    for axis in drawing.figure.axes:
-        axis.set_xlim(0.0, None)
-    return drawing
-
-
 def profile_of(plane: Plane, x: float, deep: float) -> Curve:
     """Plastic strain in % over depth at x, at the own depths of a result."""
     z = plane.z[plane.z <= deep]
@@ -384,38 +361,6 @@ LINE_ON_POINTS = {
     "SAM": SAM,
     "FEM": FEM | {"linestyle": "none", "marker": "o", "markersize": 4.0, "fillstyle": "none"},
 }
-
-
-MODEL_MARKS = {"SAM": {"marker": "o", "fillstyle": "none"}, "FEM": {"marker": "x"}}
-
-
-def film_pressures(panels: Mapping[str, Mapping[str, Mapping[str, tuple]]]) -> Drawing:
-    """Pressure over p0 over r/a0 under films of one modulus a panel; panels: title -> film ->
-    "reference" or model -> (r, p); the bare contact of Hertz dotted.
-    """
-    bare = np.linspace(0.0, 1.0, 401)
-    hertz = {"color": "#888888", "linestyle": ":", "linewidth": 1.6}
-    points, line = {"linestyle": "none", "markersize": 4.5}, {"linewidth": 1.3}
-    films = dict.fromkeys(film for own in panels.values() for film in own)
-    colours = dict(zip(films, (BLUE, VERMILION, GREEN, ORANGE, BLACK), strict=False))
-    looks = {
-        f"{film}, {name}": {"color": color} | (points | MODEL_MARKS[name] if name in MODEL_MARKS else line)
-        for film, color in colours.items()
-        for name in ("reference", *MODEL_MARKS)
-    }
-    drawn = {
-        title: {"without film": Curve(bare, np.sqrt(1.0 - bare**2))}
-        | {f"{film}, {name}": Curve(*each) for film, own in by_film.items() for name, each in own.items()}
-        for title, by_film in panels.items()
-    }
-    entries = [Line2D([], [], **line, color=color, label=film) for film, color in colours.items()]
-    entries += [Line2D([], [], **points, color=BLACK, **look, label=n) for n, look in MODEL_MARKS.items()]
-    entries += [
-        Line2D([], [], **line, color=BLACK, label="reference"),
-        Line2D([], [], **hertz, label="without film"),
-    ]
-    how = {"across": 2, "size": (4.3, 3.4), "legend": entries, "looks": looks | {"without film": hertz}}
-    return curves(drawn, "$r/a_0$", "$p/p_0$", **how)
 
 
 def thinning_curves(pressure: np.ndarray, lines: Mapping[str, np.ndarray], limit: float) -> Drawing:
