@@ -30,7 +30,7 @@ from verification.runs.lock import locked
 from verification.runs.provenance import collect
 from verification.runs.store import Reuse, Store, default_store, solve_or_reuse
 from verification.text.console import Progress, print_table
-from verification.uncertainty.solving import asked_of as with_uncertainty
+from verification.uncertainty import asked_of as with_uncertainty
 
 
 def solve(
@@ -157,7 +157,7 @@ def _start(scene: Scene, folder: Path, who: dict[str, object]) -> Checkpoint | N
         return None
     try:
         start = checkpoints.read(folder, who)
-    except checkpoints.DamagedError as error:
+    except checkpoints.ArchiveError as error:
         _say(f"{error}: solved from the beginning")
         return None
     if start is None:

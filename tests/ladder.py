@@ -2,49 +2,35 @@
 """A ladder of scenes, from an elastic sphere to full running-in, and what a solve of each does,
 counted from outside.
 
-As a program (`python tests/ladder.py MODEL:RUNG ...`) it solves rungs, each in a process of its own
-with empty caches, and prints as JSON what ran: kinds of work with their calls and sizes, and
-transforms by the work that they belong to. Nothing in the solvers counts for it: functions are
-wrapped where they are defined, once their module is loaded.
+`climb` solves rungs, each in a process of its own with empty caches, and tells what ran: kinds of work with
+their calls and sizes, and transforms by the work that they belong to. Nothing in the solvers counts for it:
+functions are wrapped where they are defined, once their module is loaded.
 """
 
 import functools
 import inspect
-import json
-import os
+import multiprocessing
 import sys
 from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from importlib import import_module
 from importlib.machinery import ModuleSpec, PathFinder
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+from builders import CHEMICAL_FILM, SPHERE, STEEL, SWIFT
+
+from sam.scene import Scene
+from verification.runs.models import MODELS
+
 KINDS = ("rfft", "irfft", "fft", "ifft", "dct", "idct", "dst", "idst")
 TRANSFORMS = [f"{kind}{axes}" for kind in KINDS for axes in ("", "2", "n")]
+LOADED = ("pytest", "numpy", "pydantic", "scipy.fft", "scipy.optimize", "scipy.special", "builders")
+"""What every solve loads of other libraries: once, before the processes are forked."""
 
-STEEL = {"young": 210e9, "poisson": 0.3}
-SWIFT = {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121}
 HARD = {"law": "perfect", "yield_stress": 50e9}
 FILM = {"thickness": 0.4e-6, "young": 80e9, "poisson": 0.3}
-SURFACE = {
-    "kind": "self-affine",
-    "ra": 0.1e-6,
-    "cutoff_long": 16e-6,
-    "cutoff_short": 8e-6,
-    "hurst": 0.8,
-    "seed": 1,
-}
+SURFACE = {"kind": "self-affine", "ra": 0.1e-6, "cutoff_long": 16e-6, "cutoff_short": 8e-6}
+SURFACE |= {"hurst": 0.8, "seed": 1}
 DEPTHS = (0.0, 0.3e-6, 0.8e-6, 2e-6, 4e-6, 8e-6)
-CHEMICAL = {
-    "law": "chemical-film",
-    "low": 0.1,
-    "high": 0.4,
-    "film_thickness": 100e-9,
-    "film_young": 80e9,
-    "film_poisson": 0.3,
-    "film_yield": 2e9 / 3,
-    "strain_limit": 0.0204,
-}
 
 
 def sphere(plasticity=None, *, coating=None, counterbody=None, friction=None, solver=None, **loading) -> dict:
@@ -52,17 +38,13 @@ def sphere(plasticity=None, *, coating=None, counterbody=None, friction=None, so
     elements that are allowed.
     """
     plastic = plasticity is not None
-    grid = (
-        {"cells": (17, 17), "extent": (12e-6, 12e-6), "layers": 8, "depth": 7e-6}
-        if plastic
-        else {"cells": (33, 33)}
-    )
+    volume = {"cells": (17, 17), "extent": (12e-6, 12e-6), "layers": 8, "depth": 7e-6}
     body = STEEL | {"plasticity": plasticity, "coating": coating}
     return {
         "body": {name: value for name, value in body.items() if value is not None},
-        "counterbody": {"shape": "sphere", "radius": 105e-6} | (counterbody or {}),
+        "counterbody": SPHERE | (counterbody or {}),
         "loading": {"force": 0.05, "steps": 2} | loading,
-        "grid": grid,
+        "grid": volume if plastic else {"cells": (33, 33)},
         "fem": {"cells_per_radius": 2, "box": 3.0},
         "solver": {"tolerance": 1e-4 if plastic else 1e-6} | (solver or {}),
     } | ({"friction": friction} if friction else {})
@@ -109,6 +91,7 @@ RUNNING_IN = {"unload": True, "cycles": 2}
 EDGE = {"shape": "rounded-punch", "flat_radius": 1e-6}
 MOVED = {"force": None, "approach": 60e-9}
 PATH = {"start": (-1e-6, 0.0), "end": (1e-6, 0.0), "steps": 2}
+LONG_PATH = {"start": (-2e-6, 0.0), "end": (2e-6, 0.0), "steps": 2}
 ON_PATCH = {"start": (0.0, 0.0), "end": (16e-6 / 12, 0.0), "steps": 1}
 SCENES = {
     "elastic sphere": sphere(),
@@ -121,9 +104,7 @@ SCENES = {
     "rounded edge": sphere(counterbody=EDGE),
     "no friction after all": sphere(friction={"coefficient": 0.0}),
     "no force": sphere(force=0.0),
-    "given load, travelling": given(
-        friction=COUPLED, path={"start": (-2e-6, 0.0), "end": (2e-6, 0.0), "steps": 2}
-    ),
+    "given load, travelling": given(friction=COUPLED, path=LONG_PATH),
     "coated": sphere(coating=FILM),
     "coated, sliding": sphere(coating=FILM, friction=COUPLED),
     "given load": given(),
@@ -143,7 +124,7 @@ SCENES = {
     "moving": sphere(path=PATH, steps=1),
     "moving, plastic": sphere(SWIFT, path=PATH, unload=True),
     "moving, rough": opposite(path=ON_PATCH, steps=1),
-    "moving, film and wear": rough(SWIFT, friction=CHEMICAL, wear={"strain_limit": 0.002}, **RUNNING_IN)
+    "moving, film and wear": rough(SWIFT, friction=CHEMICAL_FILM, wear={"strain_limit": 0.002}, **RUNNING_IN)
     | {"counterbody": opposite()["counterbody"], "loading": {"force": 0.02, "path": ON_PATCH, **RUNNING_IN}},
     "misfit": misfit(),
     "misfit, plastic": misfit(SWIFT, unload=True),
@@ -152,22 +133,20 @@ SCENES = {
     "rough plastic": rough(SWIFT),
     "rough counter-body": opposite(),
     "rough counter-body, renewed": opposite(SWIFT, renew=True, **RUNNING_IN),
-    "chemical film, elastic": rough(friction=CHEMICAL, **RUNNING_IN),
-    "chemical film": rough(SWIFT, friction=CHEMICAL, **RUNNING_IN),
+    "chemical film, elastic": rough(friction=CHEMICAL_FILM, **RUNNING_IN),
+    "chemical film": rough(SWIFT, friction=CHEMICAL_FILM, **RUNNING_IN),
     "wear": rough(SWIFT, wear={"strain_limit": 0.002}, **RUNNING_IN),
     "wear out of reach": rough(SWIFT, wear={"strain_limit": float("inf")}, **RUNNING_IN),
     "moved": sphere(**MOVED),
     "moved, coated": sphere(coating=FILM, **MOVED),
     "moved, plastic": sphere(SWIFT, unload=True, **MOVED),
     "moved, rough": rough(**MOVED),
-    "running-in": rough(SWIFT, friction=CHEMICAL, wear={"strain_limit": 0.002}, **RUNNING_IN),
+    "running-in": rough(SWIFT, friction=CHEMICAL_FILM, wear={"strain_limit": 0.002}, **RUNNING_IN),
 }
 
 
-def scene(name: str):
+def scene(name: str) -> Scene:
     """The scene of a rung."""
-    from sam.scene import Scene
-
     return Scene(**SCENES[name], title=name)
 
 
@@ -266,29 +245,25 @@ class Recorder:
     """Wraps what PROBES name while it records, and the transforms of scipy and numpy.
 
     work: kind -> [calls, numbers that it made], in the order in which they began; transforms: kind
-    of work, or "" -> [calls, values].
+    of work, or "" -> [calls, values]; wrapped: the ends of names that were found.
     """
 
     def __init__(self):
         self.work: dict[str, list[int]] = {}
         self.transforms: dict[str, list[int]] = {}
-        self.stack: list[str] = []
+        self.stack: list[str] = [""]
+        self.wrapped: set[str] = set()
 
-    def probed(self, function: Callable, namer: Namer) -> Callable:
-        """The function, which also records what it does and that the transforms inside are its own."""
-        signature = inspect.signature(function)
+    def counted(self, function: Callable, begin: Callable, end: Callable = lambda: None) -> Callable:
+        """The function, whose calls and values are added to the counts that `begin(arguments)` returns."""
 
         @functools.wraps(function)
         def recorded(*args, **keys):
-            bound = signature.bind(*args, **keys)
-            bound.apply_defaults()
-            kinds = (namer if isinstance(namer, str) else namer(bound.arguments)).split(", ")
-            counts = [self.work.setdefault(kind, [0, 0]) for kind in kinds]
-            self.stack.append(kinds[0])
+            counts = begin(args, keys)
             try:
                 out = function(*args, **keys)
             finally:
-                self.stack.pop()
+                end()
             for count in counts:
                 count[0] += 1
                 count[1] += int(getattr(out, "size", 0))
@@ -296,28 +271,29 @@ class Recorder:
 
         return recorded
 
-    def counted(self, transform: Callable) -> Callable:
-        """The transform, which also counts itself and the values that it makes for the work it is part of."""
+    def probed(self, function: Callable, namer: Namer) -> Callable:
+        """The function, which also records what it does and that the transforms inside are its own."""
+        signature = inspect.signature(function)
 
-        @functools.wraps(transform)
-        def recorded(*args, **keys):
-            out = transform(*args, **keys)
-            count = self.transforms.setdefault(self.stack[-1] if self.stack else "", [0, 0])
-            count[0] += 1
-            count[1] += int(out.size)
-            return out
+        def begin(args, keys) -> list[list[int]]:
+            bound = signature.bind(*args, **keys)
+            bound.apply_defaults()
+            kinds = (namer if isinstance(namer, str) else namer(bound.arguments)).split(", ")
+            self.stack.append(kinds[0])
+            return [self.work.setdefault(kind, [0, 0]) for kind in kinds]
 
-        return recorded
+        return self.counted(function, begin, self.stack.pop)
 
     def install(self) -> None:
         """Wrap the transforms, and what PROBES name as soon as it is defined."""
-        import numpy
-        import scipy.fft
 
-        for package in (scipy.fft, numpy.fft):
+        def begin(args, keys) -> list[list[int]]:
+            return [self.transforms.setdefault(self.stack[-1], [0, 0])]
+
+        for package in map(import_module, ("scipy.fft", "numpy.fft")):
             for name in TRANSFORMS:
                 if hasattr(package, name):
-                    setattr(package, name, self.counted(getattr(package, name)))
+                    setattr(package, name, self.counted(getattr(package, name), begin))
         sys.meta_path.insert(0, self)
 
     def find_spec(self, name: str, path=None, target=None) -> ModuleSpec | None:
@@ -332,11 +308,11 @@ class Recorder:
             run(module)
             for holder, attribute, full in defined(module):
                 for end in (end for end in probes if full.endswith(f".{end}")):
+                    self.wrapped.add(end)
                     found = inspect.getattr_static(holder, attribute)
                     wrapped = self.probed(getattr(found, "__func__", found), probes[end])
-                    setattr(
-                        holder, attribute, classmethod(wrapped) if isinstance(found, classmethod) else wrapped
-                    )
+                    of_class = isinstance(found, classmethod)
+                    setattr(holder, attribute, classmethod(wrapped) if of_class else wrapped)
 
         spec.loader.exec_module = exec_module
         return spec
@@ -355,60 +331,28 @@ def defined(module) -> list[tuple[object, str, str]]:
     return found
 
 
-def ran(rung: str, model: str) -> dict:
+def ran(model: str, rung: str) -> dict:
     """Solve a rung in this process: what it did, and parts of the result."""
     recorder = Recorder()
     recorder.install()
-    from verification.runs.models import MODELS
-
     result = import_module(MODELS[model]).solve(scene(rung))
+    history = result.tables["history"]
     return {
         "work": recorder.work,
         "transforms": recorder.transforms,
-        "left_out": [[entry.stage, entry.reason] for entry in result.left_out],
-        "cost": {name: value for name, value in result.cost.items() if value is not None},
+        "wrapped": recorder.wrapped,
+        "left_out": [(entry.stage, entry.reason) for entry in result.left_out],
+        "ffts": result.cost["ffts"],
         "depths": result.discretisation.get("depths"),
         "states": sorted(set(result.tables["line"]["state"])),
-        "notes": [str(note) for note in result.tables["history"]["note"]],
-        "cycles": [int(cycle) for cycle in result.tables["history"]["cycle"]],
+        "notes": [str(note) for note in history["note"]],
+        "cycles": [int(cycle) for cycle in history["cycle"]],
     }
 
 
-def in_child(rung: str, model: str) -> dict:
-    """What a solve does in a copy of this process, which has loaded no solver yet."""
-    reading, writing = os.pipe()
-    child = os.fork()
-    if child == 0:
-        code = 1
-        try:
-            with os.fdopen(writing, "w") as pipe:
-                json.dump(ran(rung, model), pipe, default=float)
-            code = 0
-        except BaseException:
-            sys.excepthook(*sys.exc_info())
-        finally:
-            sys.stderr.flush()
-            os._exit(code)
-    os.close(writing)
-    with os.fdopen(reading) as pipe:
-        text = pipe.read()
-    if os.waitpid(child, 0)[1] != 0:
-        raise RuntimeError(f"{rung}, {model}: the solve failed")
-    return json.loads(text)
-
-
-def main(arguments: Sequence[str]) -> int:
-    """Rungs as MODEL:RUNG; what every solve loads of other libraries is loaded once, before."""
-    sys.path.insert(0, str(ROOT))
-    for name in ("numpy", "pydantic", "scipy.fft", "scipy.optimize", "scipy.special", "sam.scene"):
-        import_module(name)
-    found = {}
-    for argument in arguments:
-        model, rung = argument.split(":")
-        found[argument] = in_child(rung, model)
-    json.dump(found, sys.stdout)
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+def climb(rungs: Sequence[tuple[str, str]]) -> dict[tuple[str, str], dict]:
+    """What ran in each (model, rung), two at once, each in a process that has loaded no solver yet."""
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(list(LOADED))
+    with ProcessPoolExecutor(2, context, max_tasks_per_child=1) as pool:
+        return dict(zip(rungs, pool.map(ran, *zip(*rungs, strict=True)), strict=True))

@@ -29,15 +29,15 @@ class Made:
     warnings: tuple = ()
     verdict: dict | None = None
     grids: dict = field(default_factory=dict)
+    certificate: dict = field(default_factory=dict)
 
 
-def square_mesh(x: np.ndarray, p: np.ndarray) -> FieldMesh:
-    """A square patch of cells with centres x along both sides and the pressure (n, n), as SAM returns it."""
-    h, n = x[1] - x[0], x.size
-    faces = np.append(x - h / 2, x[-1] + h / 2)
-    points = np.array([[a, b, 0.0] for a in faces for b in faces])
-    corner = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
-    quads = np.stack([corner, corner + n + 1, corner + n + 2, corner + 1], axis=1)
+def square_mesh(x: np.ndarray, p: np.ndarray, y: np.ndarray | None = None) -> FieldMesh:
+    """A patch of cells with centres x and y, by default x, and the pressure (nx, ny), as SAM returns it."""
+    sides = [np.append(c - (h := c[1] - c[0]) / 2, c[-1] + h / 2) for c in (x, x if y is None else y)]
+    points, n = np.array([[a, b, 0.0] for a in sides[0] for b in sides[1]]), sides[1].size
+    corner = (np.arange(x.size)[:, None] * n + np.arange(n - 1)).ravel()
+    quads = np.stack([corner, corner + n, corner + n + 1, corner + 1], axis=1)
     return FieldMesh(points, {"quad": quads}, cell_data={"p_Pa": p.ravel()})
 
 

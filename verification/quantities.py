@@ -96,8 +96,7 @@ class Values:
 class Quantity:
     """words: for the reader, without the model; of: (result, reference) -> number, Values, or Measured where
     the result has the answer itself; between: (scene, SAM, other result) -> Measured; row: of `compare`, the
-    difference of both models where that alone is held.; whole: of all
-    runs of a scene.
+    difference of both models where that alone is held; whole: of all runs of a scene.
     """
 
     words: str
@@ -234,7 +233,8 @@ def strain_below(scene: Scene, sam: Result, fem: Result, spot: Spot) -> tuple[np
     return z, Measured(own.below(spot.x, z), other.below(spot.x, z))
 
 
-def _strain(scene: Scene, sam: Result, fem: Result) -> Measured:
+def _below_spots(scene: Scene, sam: Result, fem: Result) -> Measured:
+    """Of the spot where it is largest."""
     pairs = (strain_below(scene, sam, fem, spot)[1] for spot in spots(sam.tables, fem.tables))
     return Measured(max((relative_l2(p.value, p.expected) for p in pairs), default=np.nan))
 
@@ -342,26 +342,15 @@ def _decoupled(distance: Callable[[Result, Result, float], float]) -> Callable[[
     return whole
 
 
-def _component(k: int) -> Quantity:
-    """A stress against the closed form of the reference, in p0."""
+def _stress(words: str, inside: Callable, of_tensor: Callable = np.asarray, part: Any = np.s_[:]) -> Quantity:
+    """What `inside` takes of a result, or a part of it, against the closed form of the reference, in p0."""
 
     def of(result: Result, reference: Reference) -> float:
-        places, stress = measures.stresses_inside(result, reference.units["a"])
-        exact = reference.values["stress"](*places)[:, k]
-        return float(np.abs(stress[:, k] / reference.units["p0"] - exact).max())
+        places, found = inside(result, reference.units["a"])
+        exact = of_tensor(reference.values["stress"](*places))
+        return float(np.abs(found / reference.units["p0"] - exact)[part].max())
 
-    return Quantity(f"largest error of {measures.COMPONENTS[k]} at interior points, in p0", of=of)
-
-
-def _mises_inside(result: Result, reference: Reference) -> float:
-    places, mises = measures.mises_inside(result, reference.units["a"])
-    exact = von_mises(reference.values["stress"](*places))
-    return float(np.abs(mises / reference.units["p0"] - exact).max())
-
-
-def _added(result: Result, reference: Reference | None) -> float:
-    strain = result.tables["cycles"]["peeq_max"]
-    return float(strain[-1] / strain[0] - 1.0)
+    return Quantity(f"largest error of {words}, in p0", of=of)
 
 
 def _growth(lead: str) -> Callable[[Solved], float]:
@@ -390,11 +379,15 @@ SLIDING: Mapping[str, Quantity] = {
         "the same over hats of 0.2 a, which take both sides of the contact's edge together",
         whole=_decoupled(lambda sam, fem, a: measures.patch_distance(sam, fem, PATCH * a)),
     ),
-    **{name: _component(k) for k, name in enumerate(measures.COMPONENTS)},
-    "plane": Quantity(
-        "largest error of the von Mises stress in y = 0 from 0.25 a on, in p0", of=_mises_inside
+    **{
+        name: _stress(f"{name} at interior points", measures.stresses_inside, part=np.s_[:, k])
+        for k, name in enumerate(measures.COMPONENTS)
+    },
+    "plane": _stress("the von Mises stress in y = 0 from 0.25 a on", measures.mises_inside, von_mises),
+    "adds": Quantity(
+        "plastic strain added by later cycles over that of the first",
+        of=lambda result, _: float((peeq := result.tables["cycles"]["peeq_max"])[-1] / peeq[0] - 1.0),
     ),
-    "adds": Quantity("plastic strain added by later cycles over that of the first", of=_added),
     "moved": _scalar("residual_ux_center_m", "residual displacement of the centre along x", "m"),
     "settles": Quantity("plastic strain that a pass adds anywhere in y = 0, p0/k = 4.4", whole=_settles),
     "grows": Quantity("plastic strain that a pass adds anywhere in y = 0, p0/k = 4.9", whole=_grows),
@@ -457,10 +450,6 @@ def of_passes(result: Result, name: str) -> np.ndarray:
     return np.asarray(result.tables[table][column], dtype=float)
 
 
-def _limits_of_passes(solved: Solved, name: str) -> list[np.ndarray]:
-    return [refined(runs, lambda result: of_passes(result, name)) for runs in ladders(solved)]
-
-
 def _counted(solved: Solved) -> np.ndarray:
     """Which passes strain more than the floor of the verdict, in all runs of both models."""
     runs = solved.results.values()
@@ -473,7 +462,7 @@ def _pass(name: str, words: str, *, own: bool = False) -> Quantity:
     """
 
     def whole(solved: Solved) -> float:
-        sam, fem = _limits_of_passes(solved, name)
+        sam, fem = (refined(runs, lambda result: of_passes(result, name)) for runs in ladders(solved))
         if own:
             return float(np.abs(sam[counted := _counted(solved)] / fem[counted] - 1.0).max())
         return float(np.abs(sam - fem).max() / fem[0])
@@ -482,20 +471,16 @@ def _pass(name: str, words: str, *, own: bool = False) -> Quantity:
     return Quantity(f"{words}, largest difference of both models {over}", whole=whole)
 
 
-def _verdicts(solved: Solved) -> Measured:
-    return Measured(float(len({each.verdict["class"] for each in solved.results.values()})), 1.0)
+def _verdicts(solved: Solved) -> set[str]:
+    return {each.verdict["class"] for each in solved.results.values()}
 
 
 def _becomes(name: str) -> Quantity:
     """Whether a run, or all runs, end with a verdict."""
-
-    def whole(solved: Solved) -> Measured:
-        return Measured(float({each.verdict["class"] for each in solved.results.values()} == {name}), 1.0)
-
     return Quantity(
         f"1 if the verdict is {name}",
         of=lambda result, _: float(result.verdict["class"] == name),
-        whole=whole,
+        whole=lambda solved: Measured(float(_verdicts(solved) == {name}), 1.0),
     )
 
 
@@ -504,7 +489,10 @@ MOVING: Mapping[str, Quantity] = {
     "groove-refined": _both_refined("groove in the middle of the track", "m"),
     "deepest-refined": _both_refined("largest depth of the groove", "m"),
     "strain-refined": _both_refined("largest plastic strain", ""),
-    "verdict": Quantity("different verdicts of both models on all grids", whole=_verdicts),
+    "verdict": Quantity(
+        "different verdicts of both models on all grids",
+        whole=lambda solved: Measured(float(len(_verdicts(solved))), 1.0),
+    ),
     "energy": _pass("energy", "energy that a pass dissipates"),
     "strain": _pass("strain", "largest strain that a pass adds"),
     "own-energy": _pass("energy", "energy of a pass", own=True),
@@ -591,7 +579,9 @@ QUANTITIES: Mapping[str, Quantity] = {
         )
         for k in (1, 2, 3)
     },
-    "strain-below-spots": Quantity("plastic strain below a spot, the largest difference", between=_strain),
+    "strain-below-spots": Quantity(
+        "plastic strain below a spot, the largest difference", between=_below_spots
+    ),
     "residual-line": Quantity("displacement along y = 0 after unloading", "m", between=_residual),
     "reference-residual": Quantity(
         "error of the surface's shape in the spectral solution", of=lambda _, exact: exact.values["residual"]

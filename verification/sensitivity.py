@@ -11,7 +11,7 @@ correlation of ranks.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -76,16 +76,16 @@ def indices(method: str, shares: np.ndarray, values: np.ndarray, seed: int) -> l
     values = np.asarray(values, dtype=float).reshape(-1, size(method, factors))
     if method == MORRIS:
         samples = effects(shares.reshape(*values.shape, factors), values)
-        found = {"mu_star": _mean_size, "mu": _mean, "sigma": _spread}
         count = np.isfinite(samples).sum(axis=0)
     else:
         there = np.isfinite(values).all(axis=1)
         samples = values[there] if method == SOBOL else np.column_stack([values, shares])[there]
-        found = {"first": _first, "total": _total} if method == SOBOL else {"rank_correlation": _ranked}
         count = np.full(factors, len(samples))
     if len(samples) < 2 or len(np.unique(values[np.isfinite(values)])) < 2:
         return []
-    return [Index(name, of(samples), _bounds(of, samples, seed), count) for name, of in found.items()]
+    return [
+        Index(name, of(samples), _bounds(of, samples, seed), count) for name, of in OF_SAMPLES[method].items()
+    ]
 
 
 def effects(shares: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -98,28 +98,6 @@ def effects(shares: np.ndarray, values: np.ndarray) -> np.ndarray:
     return found
 
 
-def _mean_size(samples: np.ndarray) -> np.ndarray:
-    return _mean(np.abs(samples))
-
-
-def _mean(samples: np.ndarray) -> np.ndarray:
-    return np.ma.masked_invalid(samples).mean(axis=0).filled(np.nan)
-
-
-def _spread(samples: np.ndarray) -> np.ndarray:
-    return np.ma.masked_invalid(samples).std(axis=0, ddof=1).filled(np.nan)
-
-
-def _first(samples: np.ndarray) -> np.ndarray:
-    """1 - E[(f_B - f_AB)^2]/(2 V): Jansen (1999)."""
-    return 1.0 - np.mean((samples[:, 1:2] - samples[:, 2:]) ** 2, axis=0) / (2.0 * _variance(samples))
-
-
-def _total(samples: np.ndarray) -> np.ndarray:
-    """E[(f_A - f_AB)^2]/(2 V): Jansen (1999)."""
-    return np.mean((samples[:, :1] - samples[:, 2:]) ** 2, axis=0) / (2.0 * _variance(samples))
-
-
 def _ranked(samples: np.ndarray) -> np.ndarray:
     """Spearman's correlation of the first column with each of the others; 0 where that one does not vary."""
     from scipy.stats import rankdata  # noqa: PLC0415 - 0.4 s, for designs alone
@@ -130,8 +108,19 @@ def _ranked(samples: np.ndarray) -> np.ndarray:
     return (away[:, :1] * away[:, 1:]).sum(axis=0) / np.maximum(scale[0] * scale[1:], np.finfo(float).tiny)
 
 
-def _variance(samples: np.ndarray) -> float:
-    return np.var(samples[:, :2])
+OF_SAMPLES: Mapping[str, Mapping[str, Callable[[np.ndarray], np.ndarray]]] = {
+    MORRIS: {
+        "mu_star": lambda effects: np.ma.masked_invalid(np.abs(effects)).mean(axis=0).filled(np.nan),
+        "mu": lambda effects: np.ma.masked_invalid(effects).mean(axis=0).filled(np.nan),
+        "sigma": lambda effects: np.ma.masked_invalid(effects).std(axis=0, ddof=1).filled(np.nan),
+    },
+    SOBOL: {  # 1 - E[(f_B - f_AB)^2]/(2 V), and E[(f_A - f_AB)^2]/(2 V): Jansen (1999)
+        "first": lambda f: 1.0 - np.mean((f[:, 1:2] - f[:, 2:]) ** 2, axis=0) / (2.0 * np.var(f[:, :2])),
+        "total": lambda f: np.mean((f[:, :1] - f[:, 2:]) ** 2, axis=0) / (2.0 * np.var(f[:, :2])),
+    },
+    UNIFORM: {"rank_correlation": _ranked},
+}
+"""Method -> index -> how it follows from the samples, or their effects; NaN: not known."""
 
 
 def _bounds(of: Callable, samples: np.ndarray, seed: int) -> np.ndarray:

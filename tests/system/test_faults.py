@@ -16,10 +16,8 @@ from samfem import cli
 from verification.cases.robustness import faults as case
 from verification.robustness import kills
 from verification.robustness.kills import (
-    Ended,
-    KillTrial,
     children,
-    compare,
+    differences,
     fault_of,
     finish,
     inspect,
@@ -36,6 +34,11 @@ PROC = Path("/proc/self").exists()
 needs_proc = pytest.mark.skipif(
     not PROC, reason="child processes are found in /proc, which this machine has not"
 )
+
+
+def gates_of(findings) -> set[str]:
+    return {gate for gate, _ in findings}
+
 
 HOLD = """import sys, time
 from verification.runs.lock import locked
@@ -125,33 +128,25 @@ def test_a_file_that_is_cut_is_found(tmp_path, name, good, bad):
         assert fault_of(path) == ""
     path.write_bytes(bad)
     assert fault_of(path)
-    trial = KillTrial()
-    inspect(tmp_path, trial)
-    assert set(trial.findings) == {"broken-files"}
+    assert [gate for gate, _ in inspect(tmp_path)] == ["broken-files"]
 
 
 def test_early_summaries_left_over_files_and_changed_tables_are_found(tmp_path):
     (tmp_path / "summary.json").write_text("{}")
     (tmp_path / ".history.csv.1.part").write_text("cut")
     (tmp_path / "a.csv").write_bytes(b"x\n1\n")
-    killed, finished = KillTrial(), KillTrial()
-    inspect(tmp_path, killed)
-    inspect(tmp_path, finished, unfinished=False)
-    assert set(killed.findings) == {"early-summaries"}
-    assert set(finished.findings) == {"early-summaries", "broken-files"}
+    assert gates_of(inspect(tmp_path)) == {"early-summaries"}
+    assert gates_of(inspect(tmp_path, unfinished=False)) == {"early-summaries", "broken-files"}
     for expected, names in (({"a.csv": b"x\n1\n"}, 0), ({"a.csv": b"x\n2\n"}, 1), ({"b.csv": b"x\n1\n"}, 2)):
-        trial = KillTrial()
-        compare(tmp_path, expected, trial)
-        assert len(trial.findings.get("changed-tables", ())) == names
+        found = differences(tmp_path, expected, "killed")
+        assert [gate for gate, _ in found] == ["changed-tables"] * names
 
 
 def test_every_finding_turns_its_gate_red():
-    every = [KillTrial(how) for how in case.KINDS]
+    every = [(how, []) for how in case.KINDS]
     for gate in case.GATES:
-        trial = KillTrial()
-        trial.found(gate, "wrong")
-        values = {f"faults.{name}": value for name, value in case.values_of([*every, trial]).items()}
-        assert {name for name, measured in values.items() if measured.value} == {f"faults.{gate}"}
+        values = case.values_of([*every, ("", [(gate, "wrong")])])
+        assert {name for name, measured in values.items() if measured.value} == {gate}
     assert case.values_of(every[:-1])["missing-kinds"].value == 1
 
 
@@ -183,8 +178,8 @@ def fake(monkeypatch, body: str) -> None:
 )
 def test_a_solve_that_leaves_something_wrong_is_found(tmp_path, monkeypatch, body, gates):
     fake(monkeypatch, body)
-    trial = killed_solve(["solve"], tmp_path / "run", {"a.csv": b"x\n1\n"}, 0.0, base=tmp_path)
-    assert set(trial.findings) == gates
+    _, found = killed_solve(["solve"], tmp_path / "run", {"a.csv": b"x\n1\n"}, 0.0, store=tmp_path)
+    assert gates_of(found) == gates
 
 
 def test_a_sweep_that_solves_finished_points_again_is_found(tmp_path, monkeypatch):
@@ -192,14 +187,14 @@ def test_a_sweep_that_solves_finished_points_again_is_found(tmp_path, monkeypatc
     counts = """write('sweep.json', '{"counts": {"reused": 0}}')"""
     again = f"(folder / 'again').exists() and ({counts}, sys.exit(0))\n"
     fake(monkeypatch, f"{again}write('sweep.csv', {table!r}); write('again', ''); time.sleep(30)")
-    how = {"whom": "parent", "rng": random.Random(1), "base": tmp_path}
-    trial = killed_sweep(["sweep"], tmp_path / "s", table.encode(), 1.0, **how)
-    assert set(trial.findings) == {"lost-points"} and len(trial.findings["lost-points"]) == 2
+    how = {"whom": "parent", "rng": random.Random(1)}
+    _, found = killed_sweep(["sweep"], tmp_path / "s", table.encode(), 1.0, **how)
+    assert [gate for gate, _ in found] == ["lost-points"] * 2
 
 
 @needs_proc
 def test_children_are_found_and_ended(tmp_path, monkeypatch):
-    monkeypatch.setattr("verification.robustness.kills.ORPHANS_S", 0.1)
+    monkeypatch.setattr(kills, "ORPHANS_S", 0.1)
     code = "import subprocess, sys; p = subprocess.Popen(['sleep', '60']); print(p.pid, flush=True); p.wait()"
     parent = start([], tmp_path, command=(sys.executable, "-c", code))
     child = int(parent.stdout.readline())
@@ -211,9 +206,8 @@ def test_children_are_found_and_ended(tmp_path, monkeypatch):
     assert left_behind([child]) == []
 
 
-def test_a_command_that_does_not_end_is_ended(tmp_path, monkeypatch):
-    monkeypatch.setattr("verification.robustness.kills.LIMIT_S", 0.2)
-    assert finish(start([], tmp_path, command=("sh", "-c", "sleep 60 & wait"))).code is None
+def test_a_command_that_does_not_end_is_ended(tmp_path):
+    assert finish(start([], tmp_path, command=("sh", "-c", "sleep 60 & wait")), 0.2)[0] is None
 
 
 @pytest.mark.parametrize(
@@ -225,15 +219,10 @@ def test_a_command_that_does_not_end_is_ended(tmp_path, monkeypatch):
         (2, "Traceback (most recent call last)\nsamfem: error: another", {"wrong-endings"}),
     ],
 )
-def test_a_fault_that_ends_wrongly_is_found(tmp_path, code, text, gates):
-    fault = case.Fault("x", lambda base: (Ended(code, text), base), (2,), "another")
-    assert set(case.judge_fault(fault, tmp_path / "f")[1].findings) == gates
-
-
-def test_a_folder_of_another_version_is_refused_and_stays(tmp_path):
-    fault = next(fault for fault in case.FAULTS if fault.make is case.other_version)
-    (_, code, message), trial = case.judge_fault(fault, tmp_path / "f")
-    assert trial.findings == {} and code == "2" and "another version" in message
+def test_a_fault_that_ends_wrongly_is_found(tmp_path, monkeypatch, code, text, gates):
+    monkeypatch.setitem(case.FAULTS, "x", (lambda base: (code, text), (2,), "another"))
+    _, (_, found) = case.judge_fault("x", tmp_path / "f")
+    assert gates_of(found) == gates
 
 
 @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EFBIG])
@@ -253,7 +242,7 @@ def test_commands_hear_interrupts_where_this_process_does_not(tmp_path):
     question = "import signal; print(signal.getsignal(signal.SIGINT) is signal.default_int_handler)"
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
-        ended = finish(start([], tmp_path, command=(sys.executable, "-c", question)))
+        _, text = finish(start([], tmp_path, command=(sys.executable, "-c", question)))
     finally:
         signal.signal(signal.SIGINT, before)
-    assert ended.text.strip() == "True"
+    assert text.strip() == "True"

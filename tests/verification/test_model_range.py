@@ -108,22 +108,16 @@ def test_nothing_is_known_of_a_flat_punch_and_its_size_is_not_limited():
     assert model_range(found) is None
 
 
-def rough(heights, pressure, worn=0.0):
-    """A result on a patch of 3 by 4 cells of 1 by 2 m."""
-    x, y = (each.ravel() for each in np.meshgrid([0.0, 1.0, 2.0], [0.0, 2.0, 4.0, 6.0], indexing="ij"))
-    columns = {"x_m": x, "y_m": y, "height_m": heights(x, y), "p_Pa": pressure(x), "worn_m": worn + 0 * x}
-    return {"state": ["peak"] * x.size} | columns
-
-
 @pytest.mark.parametrize(("worn", "lost"), [(0.0, []), (0.03, ["lost height 5 % of the relief"])])
 def test_a_rough_body_counts_by_its_slope_in_contact_and_its_strain(worn, lost):
-    """A slope of 0.3 everywhere but where nothing touches: a sphere at whose edge it is sqrt(2) larger."""
+    """A slope of 0.3, on cells of 1 by 2 m: a sphere at whose edge it is sqrt(2) larger."""
     surface = {"kind": "sinusoid", "amplitude": 1e-8, "wavelength_x": 1e-5}
     wear = {"wear": {"strain_limit": 0.02}, "loading": {"force": 1.0, "unload": True}}
     grid = {"cells": (16, 16), "extent": (2e-5, 2e-5)}
     found = scene(YIELDING, {"shape": "flat"}, grid=grid, surface=surface, **(wear if worn else {}))
-    table = rough(lambda x, y: 0.3 * x + (y > 4.0) * 0.0, lambda x: x < 2.0, worn)
-    assert np.ptp(table["height_m"]) == pytest.approx(0.6)
+    x, y = (each.ravel() for each in np.meshgrid([0.0, 1.0, 2.0], [0.0, 2.0, 4.0, 6.0], indexing="ij"))
+    table = {"state": ["peak"] * x.size, "x_m": x, "y_m": y, "height_m": 0.3 * x, "p_Pa": 1.0 * (x < 2.0)}
+    table["worn_m"] = np.full(x.size, worn)
 
     def solved(peeq):
         values = {"peeq_max": peeq, "contact_radius_m": 1e-6}

@@ -3,10 +3,9 @@
 shifted or transposed is seen.
 """
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
+from made_results import Made, square_mesh
 
 from verification.judging import error_of
 from verification.quantities import QUANTITIES, Reference, Values
@@ -33,29 +32,15 @@ def peak(**columns):
 
 def made(model: str, change=lambda field: field):
     """A result with these fields; change: of the pressure (nx, ny), and of every other field."""
-    corners = np.stack(
-        np.meshgrid(*((np.append(c, c[-1] + h) - h / 2) for c, h in ((X, 0.5), (Y, 0.5))), indexing="ij")
-    )
-    points = np.pad(corners.reshape(2, -1).T, ((0, 0), (0, 1)))
-    index = np.arange(points.shape[0]).reshape(corners.shape[1:])
-    quads = np.stack([index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:]], axis=-1).reshape(-1, 4)
-    p = change(pressure(X[:, None], Y[None, :]))
-    fields = SimpleNamespace(points=points, cells={"quad": quads}, cell_data={"p_Pa": p.ravel()})
+    fields = square_mesh(X, change(pressure(X[:, None], Y[None, :])), Y)
     r = np.linspace(0.0, 3.0, 31)
     tables = {
         "line": peak(x_m=r, p_Pa=change(pressure(r, 0.0))),
         "axis": peak(z_m=Z, mises_Pa=change(mises(Z))),
     }
-    quantities = {
-        quantity.row: change(np.array(7.0)) for quantity in QUANTITIES.values() if " " not in quantity.row
-    }
-    return SimpleNamespace(
-        model=model,
-        fields=fields,
-        tables=tables,
-        quantities=quantities,
-        certificate={"force_balance": float(change(np.array(1e-9)))},
-    )
+    quantities = {each.row: change(np.array(7.0)) for each in QUANTITIES.values() if " " not in each.row}
+    certificate = {"force_balance": float(change(np.array(1e-9)))}
+    return Made(quantities, tables, fields, model=model, certificate=certificate)
 
 
 SCALARS = {name: 7.0 for name, quantity in QUANTITIES.items() if quantity.row and " " not in quantity.row}

@@ -190,7 +190,7 @@ def test_a_new_file_and_another_numpy_change_the_version_too(tree, untouched, mo
     (tree / "sam" / "extra.py").write_text("")
     assert [a != b for a, b in zip(untouched, versions(tree), strict=True)] == [True, False, True]
     (tree / "sam" / "extra.py").unlink()
-    monkeypatch.setattr("verification.runs.code_version._installed", lambda package: "0.0")
+    monkeypatch.setattr("verification.runs.code_version.installed", lambda package: "0.0")
     assert all(a != b for a, b in zip(untouched, versions(tree), strict=True))
 
 

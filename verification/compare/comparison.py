@@ -24,7 +24,7 @@ from scipy.interpolate import RectBivariateSpline, RegularGridInterpolator
 from sam.scene import PEAK, UNLOADED, Compare, Problem, Scene, SceneError, problems, spelling
 from verification.compare.measures import Spot, patch_pressure, spots
 from verification.compare.own_data import OwnData
-from verification.compare.rows import Pair, Solution, field_row, judged, number, scalar_row
+from verification.compare.rows import Limit, Pair, Solution, field_row, judged, number, scalar_row
 from verification.compare.verdicts import CHANGES, CLAIM
 from verification.judging import Measured, RowStatus, Verdict
 from verification.runs.sampling import gridded, rows_of
@@ -42,15 +42,12 @@ EDGE_ZONE = 0.25  # of a punch's radius: around its edge no stress is compared
 ROUNDING = 1e-9  # of a depth: the interface is where a model says it is to within this
 
 
-def _read_tables() -> Mapping[str, Mapping[str, Any]]:
-    """Kind of scene -> name -> what `rows.toml` says, with reasons written out."""
-    text = Path(__file__).with_name("rows.toml").read_text(encoding="utf-8")
-    reasons = tomllib.loads(text)["reasons"]
-    content = tomllib.loads(re.sub(r"@([a-z-]+)", lambda found: reasons[found[1]], text))
-    return {kind: table for kind, table in content.items() if kind != "reasons"}
-
-
-TABLES = _read_tables()
+_TEXT = Path(__file__).with_name("rows.toml").read_text(encoding="utf-8")
+_REASONS = tomllib.loads(_TEXT)["reasons"]
+TABLES: Mapping[str, Mapping[str, Any]] = tomllib.loads(
+    re.sub(r"@([a-z-]+)", lambda found: _REASONS[found[1]], _TEXT)
+)
+"""Kind of scene -> name -> what `rows.toml` says, with reasons written out."""
 
 
 def wanted(kinds: Collection[str], left_out: bool = True) -> dict[str, list]:
@@ -116,9 +113,7 @@ def compare_scene(scene: Scene, sam: Solution, fem: Solution) -> list[Verdict]:
         if metric != "relative_l2":
             rows += [scalar_row(pair, name, metric, limit)] if loaded or metric == "relative" else []
         elif name == SPOT and loaded:
-            rows += [
-                field_row(pair, f"{SPOT} at {_place(spot)}", _load_of(spot), limit) for spot in _spots(pair)
-            ]
+            rows += [_spot_row(pair, spot, limit) for spot in _spots(pair)]
         elif loaded:
             rows.append(field_row(pair, name, (ROUGH if "rough" in pair.kinds else FIELDS)[name], limit))
     if scene.moves and not _rough(scene):
@@ -311,13 +306,10 @@ def _spots(pair: Pair) -> list[Spot]:
         return []
 
 
-def _place(spot: Spot) -> str:
-    return f"{spot.x * 1e6:.2f}, {spot.y * 1e6:.2f} um"
-
-
-def _load_of(spot: Spot) -> Callable:
-    """The load of a spot as a field of one value."""
-    return lambda _pair: (np.array([spot.sam]), np.array([spot.fem]), np.ones(1))
+def _spot_row(pair: Pair, spot: Spot, limit: Limit) -> Verdict:
+    """The row of the load of a spot, a field of one value."""
+    name = f"{SPOT} at {spot.x * 1e6:.2f}, {spot.y * 1e6:.2f} um"
+    return field_row(pair, name, lambda _: (np.array([spot.sam]), np.array([spot.fem]), np.ones(1)), limit)
 
 
 def _patch(pair: Pair):

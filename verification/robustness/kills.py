@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Runs that are killed on purpose, and what they leave: whole files, early summaries, tables, processes."""
+"""Commands in processes of their own, killed on purpose or not, and what they leave: whole files, early
+summaries, tables, processes.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,6 @@ import subprocess
 import sys
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -26,37 +27,23 @@ SAMFEM = (sys.executable, "-m", "samfem.cli")
 LIMIT_S = 300.0
 ORPHANS_S = 10.0  # processes that a killed one leaves must end by then
 OF_EVERY_RUN = (SUMMARY, FIELDS, SURFACE, STEPS, "history.csv", "axis.csv", "line.csv", "plane.csv")
+Ended = tuple[int | None, str]
+"""Exit code (negative: by a signal, None: stopped after its limit) and what a command printed."""
+Findings = list[tuple[str, str]]
+"""(gate, what was wrong)."""
 
 
-@dataclass(frozen=True)
-class Ended:
-    """A command that ended: exit code (negative: by a signal, None: stopped after LIMIT_S) and what
-    it printed.
-    """
-
-    code: int | None
-    text: str
-
-
-@dataclass
-class KillTrial:
-    """What a killed run left. how: when it was killed, in words; findings: gate -> what was wrong."""
-
-    how: str = ""
-    findings: dict[str, list[str]] = field(default_factory=dict)
-
-    def found(self, gate: str, text: str) -> None:
-        self.findings.setdefault(gate, []).append(text)
-
-
-def start(words: Sequence[str], store: Path, command: Sequence[str] | None = None) -> subprocess.Popen:
+def start(
+    words: Sequence[str], store: Path, command: Sequence[str] = (), cwd: Path | None = None, **variables: str
+) -> subprocess.Popen:
     """A command in a session of its own, with a checkpoint at each step. It hears SIGINT, as
     started from a terminal: a job in the background of a script inherits that it does not.
     """
     own = {"SAMFEM_STORE": str(store), "SAMFEM_CHECKPOINT_S": "0", "OMP_NUM_THREADS": "1"}
     return subprocess.Popen(
-        [*(SAMFEM if command is None else command), *words],
-        env=os.environ | own,
+        [*(command or SAMFEM), *words],
+        cwd=cwd,
+        env=os.environ | own | variables,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
@@ -65,43 +52,34 @@ def start(words: Sequence[str], store: Path, command: Sequence[str] | None = Non
     )
 
 
-def finish(process: subprocess.Popen) -> Ended:
-    """Wait for a command; one that does not end is killed, with its children."""
+def finish(process: subprocess.Popen, limit_s: float = 0.0) -> Ended:
+    """Wait for a command; one that does not end within the limit, or LIMIT_S, is killed with its children."""
     try:
-        text = process.communicate(timeout=LIMIT_S)[0]
+        text = process.communicate(timeout=limit_s or LIMIT_S)[0]
     except subprocess.TimeoutExpired:
         os.killpg(process.pid, signal.SIGKILL)  # the session that `start` made
         process.communicate()
-        return Ended(None, "")
-    return Ended(process.returncode, text.decode(errors="replace"))
+        return None, ""
+    return process.returncode, text.decode(errors="replace")
 
 
-def parent_of(pid: int | str) -> int | None:
-    """The parent of a process that runs, from /proc; None where it ended, or there is no /proc."""
-    try:
-        state, parent = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[:2]
-    except (OSError, ValueError):
-        return None
-    return None if state in "ZX" else int(parent)
-
-
-def children(pid: int) -> list[int]:
-    """The living descendants of a process; none where there is no /proc."""
-    parents = {int(entry.name): parent_of(entry.name) for entry in Path("/proc").glob("[0-9]*")}
-    found, new = [], [pid]
-    while new:
-        new = [child for child, parent in parents.items() if parent in new]
-        found += new
+def living() -> dict[int, tuple[int, bytes]]:
+    """Process -> its parent and command line, of all that run; none where there is no /proc."""
+    found = {}
+    for entry in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError, ValueError):  # it has ended
+            state, parent = (entry / "stat").read_text(encoding="utf-8").rpartition(")")[2].split()[:2]
+            if state not in "ZX":
+                found[int(entry.name)] = int(parent), (entry / "cmdline").read_bytes()
     return found
 
 
-def workers(pid: int) -> list[int]:
-    """The descendants that solve: processes spawned for a pool."""
-    found = []
-    for child in children(pid):
-        with contextlib.suppress(OSError):
-            if b"spawn_main" in Path(f"/proc/{child}/cmdline").read_bytes():
-                found.append(child)
+def children(pid: int, words: bytes = b"") -> list[int]:
+    """The living descendants of a process whose command line has these words."""
+    processes, found, new = living(), [], [pid]
+    while new:
+        new = [child for child, (parent, _) in processes.items() if parent in new]
+        found += [child for child in new if words in processes[child][1]]
     return found
 
 
@@ -115,27 +93,30 @@ def kill(pids: Sequence[int]) -> None:
 def left_behind(pids: Sequence[int]) -> list[int]:
     """Those of the processes that still run after ORPHANS_S; they are killed."""
     until = time.monotonic() + ORPHANS_S
-    while (alive := [pid for pid in pids if parent_of(pid) is not None]) and time.monotonic() < until:
+    while (alive := sorted(living().keys() & set(pids))) and time.monotonic() < until:
         time.sleep(0.1)
     kill(alive)
     return alive
 
 
-def inspect(folder: Path, trial: KillTrial, unfinished: bool = True) -> None:
-    """Enter every file of a folder that is not whole, and summaries that came too early.
+def inspect(folder: Path, unfinished: bool = True) -> Findings:
+    """Every file of a folder that is not whole, and summaries that came too early.
 
     unfinished: temporary files may be there.
     """
+    found = []
     for path in sorted(folder.rglob("*")):
         if path.name.endswith(".part"):
             if not unfinished:
-                trial.found("broken-files", f"{path.name} is left over")
+                found.append(("broken-files", f"{path.name} is left over"))
         elif path.is_file() and (fault := fault_of(path)):
-            trial.found("broken-files", f"{path.relative_to(folder)}: {fault}")
+            found.append(("broken-files", f"{path.relative_to(folder)}: {fault}"))
     for summary in folder.rglob(SUMMARY):
         missing = [name for name in OF_EVERY_RUN if not (summary.parent / name).is_file()]
         if missing:
-            trial.found("early-summaries", f"{summary.relative_to(folder)} without {', '.join(missing)}")
+            text = f"{summary.relative_to(folder)} without {', '.join(missing)}"
+            found.append(("early-summaries", text))
+    return found
 
 
 def fault_of(path: Path) -> str:
@@ -161,87 +142,75 @@ def tables(folder: Path) -> Mapping[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*.csv"))}
 
 
-def compare(folder: Path, undisturbed: Mapping[str, bytes], trial: KillTrial) -> None:
-    """Enter the tables that differ from those of the undisturbed run."""
+def differences(folder: Path, undisturbed: Mapping[str, bytes], how: str) -> Findings:
+    """The tables of a folder that differ from those of the undisturbed run."""
     found = tables(folder)
-    for name in sorted(found.keys() | undisturbed.keys()):
-        if found.get(name) != undisturbed.get(name):
-            trial.found("changed-tables", f"{name}: {trial.how}")
+    names = sorted(found.keys() | undisturbed.keys())
+    return [
+        ("changed-tables", f"{name}: {how}") for name in names if found.get(name) != undisturbed.get(name)
+    ]
+
+
+Trial = tuple[str, Findings]
+"""When or what was killed, in words, and what it left wrong."""
 
 
 def killed_solve(
-    words: Sequence[str], folder: Path, undisturbed: Mapping[str, bytes], delay: float, *, base: Path
-) -> KillTrial:
+    words: Sequence[str], folder: Path, undisturbed: Mapping[str, bytes], delay: float, *, store: Path
+) -> Trial:
     """Kill `samfem solve` after `delay` seconds, look at its folder, continue it, and compare the tables."""
-    trial, store = KillTrial(), base / "store"
     process = start([*words, "--out", str(folder)], store)
     time.sleep(delay)
     kill([process.pid])
     process.communicate()
-    inspect(folder, trial)
+    found = inspect(folder)
     done, kept = (folder / SUMMARY).exists(), (folder / "checkpoint.npz").exists()
-    trial.how = ("before the first checkpoint", "after a checkpoint")[kept]
-    trial.how = "finished before the kill" if done else trial.how
-    again = finish(start([*words, "--out", str(folder), "--resume"], store))
-    if again.code != 0:
-        trial.found("wrong-endings", f"--resume {trial.how}: exit code {again.code}: {again.text[-200:]}")
-    if kept and not done and "continued" not in again.text:
-        trial.found("wrong-endings", f"--resume did not continue from its checkpoint: {again.text[-200:]}")
-    inspect(folder, trial, unfinished=False)
-    compare(folder, undisturbed, trial)
-    return trial
+    how = "after a checkpoint" if kept else "before the first checkpoint"
+    how = "finished before the kill" if done else how
+    code, text = finish(start([*words, "--out", str(folder), "--resume"], store))
+    if code != 0:
+        found.append(("wrong-endings", f"--resume {how}: exit code {code}: {text[-200:]}"))
+    if kept and not done and "continued" not in text:
+        found.append(("wrong-endings", f"--resume did not continue from its checkpoint: {text[-200:]}"))
+    found += inspect(folder, unfinished=False)
+    return how, found + differences(folder, undisturbed, how)
 
 
 def killed_sweep(
-    words: Sequence[str],
-    folder: Path,
-    table: bytes,
-    delay: float,
-    *,
-    whom: str,
-    rng: random.Random,
-    base: Path,
-) -> KillTrial:
+    words: Sequence[str], folder: Path, table: bytes, delay: float, *, whom: str, rng: random.Random
+) -> Trial:
     """Kill a sweep ("parent") or one of its workers ("worker") after `delay`, start it again if
     need be, and compare.
     """
-    trial, store = KillTrial(), base / f"{folder.name}-store"
+    store, file = folder.with_name(f"{folder.name}-store"), folder / "sweep.csv"
     process = start([*words, "--out", str(folder)], store)
     time.sleep(delay)
-    below, at_work = children(process.pid), workers(process.pid)
+    below, at_work = children(process.pid), children(process.pid, b"spawn_main")
     victim = rng.choice(at_work) if whom == "worker" and at_work else process.pid
     kill([victim])
     if victim == process.pid:
         process.wait()
-        alive, ended = left_behind(below), finish(process)
+        alive, (code, text) = left_behind(below), finish(process)
     else:
-        ended, alive = finish(process), left_behind(below)
+        (code, text), alive = finish(process), left_behind(below)
+    found = inspect(folder)
     if alive:
-        trial.found("wrong-endings", f"{len(alive)} processes are left behind")
-    inspect(folder, trial)
-    finished = finished_points(folder)
-    trial.how = "a worker" if victim != process.pid else "the sweep"
+        found.append(("wrong-endings", f"{len(alive)} processes are left behind"))
+    rows = csv.DictReader(file.read_text(encoding="utf-8").splitlines() if file.exists() else ())
+    finished = sum(row["status"] == "converged" for row in rows)
+    how = "the sweep" if victim == process.pid else "a worker"
     if (folder / "sweep.json").exists():
-        trial.how += ", and it finished"
-    if ended.code != 0:
-        ended, reused = finish(start([*words, "--out", str(folder)], store)), 0
-        if ended.code == 0:
+        how += ", and it finished"
+    if code != 0:
+        (code, text), reused = finish(start([*words, "--out", str(folder)], store)), 0
+        if code == 0:
             reused = json.loads((folder / "sweep.json").read_text(encoding="utf-8"))["counts"]["reused"]
-        for _ in range(finished - reused):
-            trial.found("lost-points", f"{finished} finished, {reused} taken from the store")
-        trial.how += ", started again" + (" with points finished" if finished else "")
-    if ended.code != 0:
-        trial.found("wrong-endings", f"the sweep ended in {ended.code}: {ended.text[-200:]}")
-    inspect(folder, trial, unfinished=False)
-    if not (folder / "sweep.csv").exists() or (folder / "sweep.csv").read_bytes() != table:
-        trial.found("changed-tables", f"sweep.csv: {trial.how}")
-    return trial
-
-
-def finished_points(folder: Path) -> int:
-    """Rows of sweep.csv with a converged result."""
-    try:
-        text = (folder / "sweep.csv").read_text(encoding="utf-8")
-    except FileNotFoundError:
-        return 0
-    return sum(row["status"] == "converged" for row in csv.DictReader(io.StringIO(text, newline="")))
+        lost = ("lost-points", f"{finished} finished, {reused} taken from the store")
+        found += [lost] * (finished - reused)
+        how += ", started again" + (" with points finished" if finished else "")
+    if code != 0:
+        found.append(("wrong-endings", f"the sweep ended in {code}: {text[-200:]}"))
+    found += inspect(folder, unfinished=False)
+    if not file.exists() or file.read_bytes() != table:
+        found.append(("changed-tables", f"sweep.csv: {how}"))
+    return how, found

@@ -21,7 +21,6 @@ from sam.scene import open_file
 from verification.runs.files import replacing
 
 VALUES, DIGEST = "values.json", "sha256"
-_TAKEN = {VALUES, DIGEST}
 
 
 class ArchiveError(ValueError):
@@ -32,8 +31,6 @@ def write_archive(path: Path, arrays: Mapping[str, np.ndarray], values: Mapping)
     """Write arrays (no objects among them) and values (what JSON holds; floats keep every digit, NaN and inf
     allowed).
     """
-    if taken := _TAKEN & arrays.keys():
-        raise ValueError(f"the name {min(taken)} is taken")
     members = {**arrays, VALUES: np.frombuffer(json.dumps(values).encode(), dtype=np.uint8)}
     members[DIGEST] = digest_of(members)
     with replacing(path) as temporary, open(temporary, "wb") as stream:

@@ -41,10 +41,6 @@ WORDS = {
 """Names of the identity for the reader, where they differ."""
 
 
-class DamagedError(ValueError):
-    """A checkpoint that cannot be read; the message says why."""
-
-
 def interval() -> float:
     """Seconds between checkpoints: INTERVAL_S, or what the environment says. Raises FolderError for what is
     no such number.
@@ -144,7 +140,7 @@ def interruptible(writer: Writer) -> Iterator[None]:
 
 def read(folder: Path, who: Mapping) -> Checkpoint | None:
     """The checkpoint in `folder`, None if there is none. Raises FolderError for one that belongs to something
-    else, DamagedError for one that cannot be read.
+    else, ArchiveError for one that cannot be read.
     """
     path = folder / CHECKPOINT
     if not path.exists():
@@ -174,7 +170,7 @@ def is_finished(folder: Path, scene: Scene, model: str) -> bool:
         return True
     try:
         return _content(folder / CHECKPOINT)[1]["replaces"] != _digest(folder / SUMMARY)
-    except DamagedError:
+    except ArchiveError:
         return True
 
 
@@ -184,17 +180,11 @@ def _solved(scene: Scene) -> dict:
 
 
 def _content(path: Path) -> tuple[dict, dict]:
-    """(arrays, values) of the file, its values checked for their kinds. Raises DamagedError."""
-    try:
-        arrays, values = read_archive(path)
-    except ArchiveError as error:
-        raise DamagedError(str(error)) from None
-    if not (
-        isinstance(values.get("identity"), dict)
-        and isinstance(values.get("values"), dict)
-        and "replaces" in values
-    ):
-        raise DamagedError(f"{path} is no checkpoint")
+    """(arrays, values) of the file, its values checked for their kinds. Raises ArchiveError."""
+    arrays, values = read_archive(path)
+    tables = all(isinstance(values.get(name), dict) for name in ("identity", "values"))
+    if not (tables and "replaces" in values):
+        raise ArchiveError(f"{path} is no checkpoint")
     return arrays, values
 
 

@@ -11,10 +11,10 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
-from importlib import metadata
 from pathlib import Path
 
 from verification.runs.models import FEM, FEM_3D, SAM
+from verification.runs.provenance import installed
 
 ROOT = Path(__file__).resolve().parents[2]
 SUFFIXES = (".py", ".json", ".toml", ".csv")
@@ -77,7 +77,7 @@ def _digest(root: Path, places: Iterable[str], without: Iterable[str], packages:
             content = hashlib.sha256(path.read_bytes()).hexdigest()
             total.update(f"{path.relative_to(root).as_posix()}\0{content}\n".encode())
     for package in packages:
-        total.update(f"{package} {_installed(package)}\n".encode())
+        total.update(f"{package} {installed(package) or 'none'}\n".encode())
     return total.hexdigest()
 
 
@@ -88,10 +88,3 @@ def _files(place: Path) -> Iterator[Path]:
     for path in place.rglob("*"):
         if path.suffix in SUFFIXES and CACHE not in path.parts and path.is_file():
             yield path
-
-
-def _installed(package: str) -> str:
-    try:
-        return metadata.version(package)
-    except metadata.PackageNotFoundError:
-        return "none"

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 import platform
@@ -27,7 +28,7 @@ def collect(inputs: Mapping[str, bytes] | None = None, seeds: Sequence[int] = ()
     """
     return {
         "time_utc": datetime.now(UTC).isoformat(timespec="seconds"),
-        "versions": dict(_versions()),
+        "versions": {"python": platform.python_version()} | {name: installed(name) for name in PACKAGES},
         **_commit(Path(__file__).resolve().parents[2]),
         "machine": dict(_machine()),
         "threads": {name: os.environ.get(name) for name in THREADS},
@@ -37,8 +38,13 @@ def collect(inputs: Mapping[str, bytes] | None = None, seeds: Sequence[int] = ()
 
 
 def hashes(inputs: Mapping[str, bytes]) -> dict[str, str]:
-    """Name of each input as text -> SHA-256 of its content."""
-    return {_unicode(name): hashlib.sha256(content).hexdigest() for name, content in inputs.items()}
+    """Name of each input as text (its bytes as UTF-8, whatever the language of the machine) -> SHA-256 of its
+    content.
+    """
+    return {
+        name.encode(errors="surrogateescape").decode(errors="replace"): hashlib.sha256(content).hexdigest()
+        for name, content in inputs.items()
+    }
 
 
 def without_places(text: str, *folders: Path) -> str:
@@ -48,23 +54,11 @@ def without_places(text: str, *folders: Path) -> str:
     return text
 
 
-def _unicode(name: str) -> str:
-    """The name of a file as text: its bytes read as UTF-8, also where the language of the machine is
-    another.
-    """
-    return (
-        os.fsencode(name).decode(errors="replace") if any("\udc80" <= x <= "\udcff" for x in name) else name
-    )
-
-
 @cache
-def _versions() -> tuple[tuple[str, str | None], ...]:
-    return (("python", platform.python_version()), *((name, _version(name)) for name in PACKAGES))
-
-
-def _version(name: str) -> str | None:
+def installed(package: str) -> str | None:
+    """The version of a package, None where it is not there."""
     try:
-        return metadata.version(name)
+        return metadata.version(package)
     except metadata.PackageNotFoundError:
         return None
 
@@ -90,37 +84,28 @@ def _git(root: Path, *arguments: str) -> str | None:
 
 
 @cache
-def _machine() -> tuple[tuple[str, Any], ...]:
-    return (
-        ("os", platform.platform()),
-        ("architecture", platform.machine()),
-        ("cpu", _cpu()),
-        ("cores", len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()),
-        ("memory_bytes", memory_bytes()),
-    )
-
-
-def _cpu() -> str | None:
+def _machine() -> Mapping[str, Any]:
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
         lines = []
     names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
-    return names[0] if names else platform.processor() or None
+    return {
+        "os": platform.platform(),
+        "architecture": platform.machine(),
+        "cpu": names[0] if names else platform.processor() or None,
+        "cores": len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count(),
+        "memory_bytes": memory_bytes(),
+    }
 
 
 def memory_bytes() -> int | None:
     """The memory of the machine, or of the control group if that is less; None if unknown."""
     try:
-        whole = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+        found = [os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")]
     except (AttributeError, OSError, ValueError):
         return None
-    limits = [_number_in(path) for path in GROUP_LIMITS]
-    return min([whole, *(limit for limit in limits if limit)])
-
-
-def _number_in(path: Path) -> int | None:
-    try:
-        return int(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):  # not there, or "max"
-        return None
+    for path in GROUP_LIMITS:
+        with contextlib.suppress(OSError, ValueError):  # not there, or "max"
+            found.append(int(path.read_text(encoding="utf-8")))
+    return min(each for each in found if each)

@@ -36,24 +36,13 @@ def surface_pressure(
     (m,), finite for the cells of the surface only.
     """
     surface = np.isfinite(p)
-    x, y, (field,) = surface_cells(points, quads[surface], p[surface])
-    return x, y, field
-
-
-def surface_cells(
-    points: np.ndarray, quads: np.ndarray, *values: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
-    """Values (m,) of the cells of a surface, quads (m, 4) of points (n, 3), on its grid: x (nx,), y (ny,) and
-    a field (nx, ny) for each.
-    """
-    x, y = points[quads].mean(axis=1).T[:2]
-    pitch = np.ptp(points[quads[0]], axis=0)
+    corners = points[quads[surface]]
+    x, y = corners.mean(axis=1).T[:2]
+    pitch = np.ptp(corners[0], axis=0)
     column, row = (np.rint((c - c.min()) / h).astype(int) for c, h in ((x, pitch[0]), (y, pitch[1])))
-    fields = [np.full((column.max() + 1, row.max() + 1), np.nan) for _ in values]
-    for field, each in zip(fields, values, strict=True):
-        field[column, row] = each
-    nx, ny = column.max() + 1, row.max() + 1
-    return np.linspace(x.min(), x.max(), nx), np.linspace(y.min(), y.max(), ny), fields
+    field = np.full((column.max() + 1, row.max() + 1), np.nan)
+    field[column, row] = p[surface]
+    return np.linspace(x.min(), x.max(), len(field)), np.linspace(y.min(), y.max(), field.shape[1]), field
 
 
 def pressure_on(x: np.ndarray, y: np.ndarray, axisymmetric: Tables, power: int = 2) -> np.ndarray:

@@ -13,6 +13,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 import sys
 import threading
 from collections.abc import Callable, Iterator
@@ -32,7 +33,7 @@ FOLDER = "SAMFEM_STORE"
 FORMAT = "samfem store 2"
 RESULT, UNCONVERGED, OUTCOME = "result", "unconverged", "outcome"
 CURRENT, STALE, DAMAGED = "current", "stale", "damaged"
-_KEY_DIGITS = 64
+_KEY = re.compile(r"[0-9a-f]{64}")
 _WRITING = threading.Lock()
 
 
@@ -132,8 +133,6 @@ class Store:
             if not path.is_file():
                 return Lookup()
             values, arrays = _read(path)
-            if values["identity"] != who:
-                raise ArchiveError(f"{path} holds something else than its name says")
             made = {"created": values["created"], "commit": values["commit"]}
             if _is_stale(values, version):
                 return Lookup(
@@ -161,12 +160,12 @@ class Store:
 
     def entries(self) -> list[Entry]:
         """Every entry, the oldest first; each is read whole, so that damage shows."""
-        paths = [path for path in self.folder.glob("*.npz") if _is_key(path.stem)]
+        paths = [path for path in self.folder.glob("*.npz") if _KEY.fullmatch(path.stem)]
         return sorted(map(_entry, paths), key=lambda entry: (entry.created, entry.path.name))
 
     def left_over(self) -> list[Path]:
         """Temporary files of processes that were killed while they wrote."""
-        found = [path for path in self.folder.glob(".*.npz.*.part") if _is_key(path.name[1:].split(".")[0])]
+        found = [path for path in self.folder.glob(".*.npz.*.part") if _KEY.match(path.name[1:])]
         return sorted(path for path in found if not _is_running(path.name.split(".")[-2]))
 
     def prune(self, chosen: Callable[[Entry], bool]) -> Iterator[tuple[str, int]]:
@@ -244,10 +243,6 @@ def _key(who: dict) -> str:
     return hashlib.sha256(json.dumps(who, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
 
 
-def _is_key(stem: str) -> bool:
-    return len(stem) == _KEY_DIGITS and set(stem) <= set("0123456789abcdef")
-
-
 def _is_running(process: str) -> bool:
     """Whether a process of this number lives on this machine; another's temporary file is not touched."""
     try:
@@ -280,6 +275,8 @@ def _read(path: Path) -> tuple[dict, dict]:
         all(isinstance(values.get(name), str) for name in texts) and isinstance(values.get("identity"), dict)
     ):
         raise ArchiveError(f"{path} is no entry of a store")
+    if _key(values["identity"]) != path.stem:
+        raise ArchiveError(f"{path} holds something else than its name says")
     return values, arrays
 
 
@@ -293,14 +290,10 @@ def _entry(path: Path) -> Entry:
         size = path.stat().st_size
         values, _ = _read(path)
         who = values["identity"]
-        if _key(who) != path.stem:
-            raise ArchiveError(f"{path} holds something else than its name says")
         kind = who.get("kind")
         what = who.get("model") if kind == RESULT else f"{who.get('case')}, {who.get('level')}"
-        if kind == OUTCOME:
-            version = version_of_cases()
-        else:
-            version = code_version(what) if what in models.MODELS else ""
+        version = code_version(what) if what in models.MODELS else ""
+        version = version_of_cases() if kind == OUTCOME else version
         state = STALE if _is_stale(values, version) else CURRENT
         return Entry(
             path, str(kind), str(what), values["title"], values["created"], values["commit"], state, size

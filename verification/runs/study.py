@@ -63,19 +63,12 @@ def refused(text: str) -> PydanticCustomError:
     return PydanticCustomError("allowed", "allowed: {allowed}", {"allowed": text})
 
 
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < math.inf
-
-
-def _is_plain(value: object) -> bool:
-    return isinstance(value, str | bool) or _is_number(value)
-
-
 def _listed(value: object) -> tuple:
     if not isinstance(value, list) or not 1 <= len(value) <= MOST_POINTS:
         raise refused(_LIST)
-    plain = (all(map(_is_plain, each)) if isinstance(each, list) else _is_plain(each) for each in value)
-    if not all(plain) or len(set(map(si_unit, value))) > 1:
+    single = [entry for each in value for entry in (each if isinstance(each, list) else [each])]
+    plain = all(isinstance(each, str | bool) or _in("", each) is not None for each in single)
+    if not plain or len(set(map(si_unit, value))) > 1:
         raise refused(_LIST)
     return tuple(value)
 
@@ -112,7 +105,8 @@ def _in(unit: str, value: object) -> Decimal | None:
     """A value as a number of `unit` (empty: a plain number); None if it is not one."""
     if unit:
         return in_unit(value, unit)
-    return Decimal(repr(value)) if _is_number(value) else None
+    plain = isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < math.inf
+    return Decimal(repr(value)) if plain else None
 
 
 Ends = Annotated[tuple | None, BeforeValidator(_ends)]
@@ -184,17 +178,15 @@ class Axis(Section):
             return given
         if kind in ("range", "log"):
             steps = [Decimal(k) / (self.count - 1) for k in range(1, self.count - 1)]
-            return [given[0], *self._between(steps), given[1]]
-        return self._between(drawn(key, seed, self.count))
+            return [given[0], *self.at(steps), given[1]]
+        return self.at(drawn(key, seed, self.count))
 
     def at(self, shares: Sequence[Decimal]) -> Sequence:
-        """The values at shares (0 to 1) of the way from first to last, as a scene file spells them."""
+        """Values at shares (0 to 1) of the way from first to last, as a scene file spells them; those between
+        two ends in the unit of the first, rounded to 15 digits.
+        """
         if self.list:
             return [self.list[min(int(share * self.size), self.size - 1)] for share in shares]
-        return self._between(shares)
-
-    def _between(self, shares: Sequence[Decimal]) -> Sequence:
-        """Values at shares (0 to 1) of the way, in the unit of the first end, rounded to 15 digits."""
         ends = self.ends(self.kind)
         low, high = (_in(self.unit, end) for end in ends)
         if self.logarithmic:

@@ -3,3 +3,7 @@
 
 The solvers know nothing of it.
 """
+
+from verification.uncertainty.solving import asked_of, solve
+
+__all__ = ["asked_of", "solve"]

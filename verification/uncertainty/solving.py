@@ -141,8 +141,13 @@ class NoFamilyError(ValueError):
 
 def alone(scene: Scene) -> Scene:
     """The scene without its uncertainty, and asked for no accuracy: what a model solves."""
-    plain = {"uncertainty": False, "accuracy": None, "accuracy_of": None}
-    return scene.model_copy(update={"solver": scene.solver.model_copy(update=plain)})
+    return _changed(scene, "solver", uncertainty=False, accuracy=None, accuracy_of=None)
+
+
+def _changed(scene: Scene, section: str, **keys: Any) -> Scene:
+    """The scene with keys of a section changed."""
+    given = getattr(scene, section) or Grid()  # which alone a scene may lack
+    return scene.model_copy(update={section: given.model_copy(update=keys)})
 
 
 def family(
@@ -229,8 +234,11 @@ def _cell_members(scene: Scene, model: str, room: Room, depths: Sequence[float] 
     if scene.patch_surface is None and model != models.SAM:
         count = scene.fem.cells_per_radius
         ratio = min(max(sqrt(count / LEFT), RATIO), WIDEST) if model == models.FEM else RATIO
-        counts = (max(_whole(count / ratio**k), 2) for k in (1, 2))
-        return [_of_mesh(scene, count), *(_of_mesh(other, each) for each in counts)]
+        of = [(scene, count), *((other, max(_whole(count / ratio**k), 2)) for k in (1, 2))]
+        return [
+            Member(_changed(each, "fem", cells_per_radius=n), f"{n} elements in the radius", n, 1.0 / n)
+            for each, n in of
+        ]
     grid = sam.plan(scene).on(room).grid
     first = Member(scene, f"{grid.nx} cells", grid.nx, sqrt(grid.hx * grid.hy))
     return [first, *(_of_grid(other, grid, RATIO**k, depths) for k in (1, 2))]
@@ -240,15 +248,7 @@ def in_one_step(scene: Scene) -> Scene:
     """The same load of an elastic body at once; a way is gone as it is."""
     if scene.strokes.count:
         return scene
-    loading = scene.loading.model_copy(update={"steps": 1, "unload_steps": None})
-    return scene.model_copy(update={"loading": loading})
-
-
-def _of_mesh(scene: Scene, count: int) -> Member:
-    fem = scene.fem.model_copy(update={"cells_per_radius": count})
-    return Member(
-        scene.model_copy(update={"fem": fem}), f"{count} elements in the radius", count, 1.0 / count
-    )
+    return _changed(scene, "loading", steps=1, unload_steps=None)
 
 
 def _of_grid(scene: Scene, grid: CellGrid, factor: float, depths: Sequence[float] | None) -> Member:
@@ -262,9 +262,8 @@ def _of_grid(scene: Scene, grid: CellGrid, factor: float, depths: Sequence[float
         change |= {"depths": _faces(scene, grid.faces, nx / grid.nx), "layers": None, "depth": None}
     elif depths is not None:
         change |= {"depths": tuple(depths), "layers": None, "depth": None}
-    given = (scene.grid or Grid()).model_copy(update=change)
     size = sqrt(sides[0] * sides[1] / (nx * ny))
-    return Member(scene.model_copy(update={"grid": given}), f"{nx} cells", nx, size)
+    return Member(_changed(scene, "grid", **change), f"{nx} cells", nx, size)
 
 
 def _faces(scene: Scene, faces: np.ndarray, share: float) -> tuple[float, ...]:
@@ -292,7 +291,7 @@ def members_of_steps(coarsest: Member) -> tuple[Member, ...]:
         if along:
             own = {"steps": _share(along, share), "step_per_radius": None}
             change["path"] = loading.path.model_copy(update=own)
-        scene = coarsest.scene.model_copy(update={"loading": loading.model_copy(update=change)})
+        scene = _changed(coarsest.scene, "loading", **change)
         members.append(Member(scene, f"{count} load steps on {coarsest.label}", count, 1.0 / count))
     return tuple(members)
 
@@ -303,11 +302,14 @@ def _share(count: int, share: float) -> int:
 
 def members_of_box(coarsest: Member) -> tuple[Member, ...]:
     """A scene with its finite-element box and a smaller one; none where that would be too small."""
-    fem, members = coarsest.scene.fem, []
-    for box in (fem.box, fem.box / RATIO):
-        scene = coarsest.scene.model_copy(update={"fem": fem.model_copy(update={"box": box})})
-        members.append(Member(scene, f"a box of {box:.3g} radii on {coarsest.label}", box, 1.0 / box))
-    return tuple(members) if fem.box / RATIO >= LEAST_BOX else ()
+    scene, box = coarsest.scene, coarsest.scene.fem.box
+    if box / RATIO < LEAST_BOX:
+        return ()
+    words = f"radii on {coarsest.label}"
+    return tuple(
+        Member(_changed(scene, "fem", box=size), f"a box of {size:.3g} {words}", size, 1.0 / size)
+        for size in (box, box / RATIO)
+    )
 
 
 # their results

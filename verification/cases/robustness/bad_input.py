@@ -12,7 +12,6 @@ import random
 import re
 import resource
 import signal
-import subprocess
 import sys
 import tempfile
 import time
@@ -35,7 +34,6 @@ from verification.robustness.fuzz import (
     KINDS,
     MAPPINGS,
     MESHES,
-    MORE_KINDS,
     RUN,
     SCENE,
     STUDIES,
@@ -44,19 +42,16 @@ from verification.robustness.fuzz import (
     good_scenes,
     lay,
 )
+from verification.robustness.kills import SAMFEM, Findings, finish, start
 from verification.runs.archive import ArchiveError, read_archive
 from verification.runs.files import FolderError, json_text, read_run
 from verification.runs.study import read_study
 
 SEED = 20260
-READ = {"quick": 120, "full": 400}
-RUNS = {"quick": 8, "full": 32}
-CAMPAIGN = (
-    "once, by commit 0f8782d: 20000 inputs read (-1000 to 18999), 300 through the command (-150 to 149)"
-)
-"""How often, by what and on which inputs `main` was run for verification/data/bad-input.csv."""
-ALL_KINDS = (*KINDS, *MORE_KINDS)
-MORE = 4  # so many inputs for each one of MORE_KINDS
+READ = {"quick": 150, "full": 500}
+RUNS = {"quick": 10, "full": 40}
+CAMPAIGN = "once, by commit 0f8782d and with its inputs: 20000 read, 300 through the command"
+"""How often and by what `main` was run for verification/data/bad-input.csv."""
 LIMIT_S = 2.0  # of processor time for a reader; the usual input takes milliseconds
 MEMORY = 1 << 30  # bytes that a reader may take beyond what the process has
 ADDRESSES = (1 << 30, 2 << 30, 4 << 30, None)  # bytes that a command may take
@@ -67,7 +62,6 @@ MOST_SCENES = 3  # of a study that is solved
 AT_ONCE = 2
 OUT = "cwd/out"
 TRACEBACK = re.compile(r"Traceback \(most recent|internal error")
-SAMFEM = (sys.executable, "-m", "samfem.cli")
 GATES = ("tracebacks", "hangs", "writes-outside", "wrong-errors", "exit-codes")
 
 
@@ -77,17 +71,11 @@ class Hang(BaseException):
 
 @dataclass
 class Tally:
-    """counts: (kind, how it ended) -> number; findings: gate -> what was wrong, one text each;
-    slowest: seconds, input.
-    """
+    """counts: (kind, how it ended) -> number; slowest: seconds, input."""
 
     counts: Counter = field(default_factory=Counter)
-    findings: dict[str, list[str]] = field(default_factory=dict)
+    findings: Findings = field(default_factory=list)
     slowest: tuple[float, str] = (0.0, "")
-
-    def found(self, gate: str, text: str) -> None:
-        """Enter what was wrong under its gate."""
-        self.findings.setdefault(gate, []).append(text)
 
 
 def read_all(path: Path, bad: BadInput) -> str:
@@ -132,15 +120,15 @@ def judge_readers(
                     end = reader(path, bad)
             except Hang:
                 end = "hang"
-                tally.found("hangs", what)
+                tally.findings.append(("hangs", what))
             except Exception as error:
                 end = "wrong error"
-                tally.found("wrong-errors", f"{what}: {type(error).__name__}: {error}"[:200])
+                tally.findings.append(("wrong-errors", f"{what}: {type(error).__name__}: {error}"[:200]))
             taken = time.process_time() - began
         tally.counts[bad.kind, end] += 1
         tally.slowest = max(tally.slowest, (taken, what))
     for made in sorted(set(os.listdir()) - before):
-        tally.found("writes-outside", f"{made} appeared in the current folder")
+        tally.findings.append(("writes-outside", f"{made} appeared in the current folder"))
     return tally
 
 
@@ -212,30 +200,26 @@ def _is_small(path: Path, read: Callable[[Path], Any] = read_scene) -> bool:
 
 
 def run_command(
-    words: Sequence[str], base: Path, command: Sequence[str] = SAMFEM, how: random.Random | None = None
+    words: Sequence[str], base: Path, command: Sequence[str] = (), how: random.Random | None = None
 ) -> tuple[int | None, str, set[str]]:
     """Run a command in base/cwd with homes of its own: its exit code, None where it was stopped
     after COMMAND_LIMIT_S, what it printed, and the paths below `base` that changed.
 
     how: draws its address space and what is closed; without it neither is limited.
     """
-    homes = {"HOME": "home", "TMPDIR": "tmp", "XDG_CACHE_HOME": "home/cache", "SAMFEM_STORE": "cwd/out/store"}
+    homes = {"HOME": "home", "TMPDIR": "tmp", "XDG_CACHE_HOME": "home/cache"}
     homes["MPLCONFIGDIR"] = "cwd/out/matplotlib"  # it keeps a list of fonts
     for name in ("home", "tmp", "cwd"):
         (base / name).mkdir(exist_ok=True)
-    own = {key: str(base / name) for key, name in homes.items()} | {"OMP_NUM_THREADS": "1"}
+    own = {key: str(base / name) for key, name in homes.items()}
     words = [word.partition("\0")[0] for word in words]  # a system passes no more of it to a program
     if how is not None:
         most, closed = how.choice(ADDRESSES), how.choice(STREAMS)
         limit = f"ulimit -v {most >> 10}; " if most else ""
-        command = ["sh", "-c", f'{limit}exec "$@" {closed}', "sh", *command]
-    told = {"stdin": subprocess.DEVNULL, "capture_output": True, "timeout": COMMAND_LIMIT_S, "check": False}
+        command = ["sh", "-c", f'{limit}exec "$@" {closed}', "sh", *SAMFEM]
     before = snapshot(base)
-    try:
-        done = subprocess.run([*command, *words], cwd=base / "cwd", env=os.environ | own, **told)
-        code, text = done.returncode, (done.stdout + done.stderr).decode(errors="replace")
-    except subprocess.TimeoutExpired:
-        code, text = None, ""
+    process = start(words, base / OUT / "store", command, base / "cwd", **own)
+    code, text = finish(process, COMMAND_LIMIT_S)
     after = snapshot(base)
     return code, text, {path for path in before.keys() | after if before.get(path) != after.get(path)}
 
@@ -254,7 +238,7 @@ def snapshot(base: Path) -> dict[str, tuple]:
 
 
 def judge_commands(
-    numbers: Sequence[int], base: Path, command: Sequence[str] = SAMFEM, progress=lambda *_: None
+    numbers: Sequence[int], base: Path, command: Sequence[str] = (), progress=lambda *_: None
 ) -> Tally:
     """Run the command on inputs of SEED, AT_ONCE at a time, each in a folder of its own, of which
     it may change cwd/out, unless it ends in 2.
@@ -270,7 +254,7 @@ def judge_commands(
 
     def ended(each: tuple) -> tuple:
         number, _, folder, words = each
-        how, began = random.Random(f"{SEED}/{number}/how") if command is SAMFEM else None, time.perf_counter()
+        how, began = None if command else random.Random(f"{SEED}/{number}/how"), time.perf_counter()
         return *run_command(words, folder, command, how), time.perf_counter() - began
 
     with ThreadPoolExecutor(AT_ONCE) as pool:
@@ -279,50 +263,48 @@ def judge_commands(
             what = f"input {number}: samfem {' '.join(words)}"[:160]
             tally.counts[kind, "hang" if code is None else f"exit {code}"] += 1
             if code is None:
-                tally.found("hangs", what)
+                tally.findings.append(("hangs", what))
             elif code not in (0, 1, 2):
-                tally.found("exit-codes", f"{what}: {code}")
+                tally.findings.append(("exit-codes", f"{what}: {code}"))
             if TRACEBACK.search(text):
-                tally.found("tracebacks", f"{what}: {text.strip().splitlines()[-1]}"[:300])
+                tally.findings.append(("tracebacks", f"{what}: {text.strip().splitlines()[-1]}"[:300]))
             if code != 2:
                 changed = {path for path in changed if path != OUT and not path.startswith(f"{OUT}/")}
             if changed:
-                tally.found("writes-outside", f"{what}: {min(changed)}")
+                tally.findings.append(("writes-outside", f"{what}: {min(changed)}"))
             tally.slowest = max(tally.slowest, (seconds, what))
             progress(done, len(prepared))
     return tally
 
 
-def counts_table(caption: str, tally: Tally) -> SmallTable:
+def counts_table(caption: str, counts: Counter) -> SmallTable:
     """How the inputs of each kind ended."""
-    ends = sorted({end for _, end in tally.counts})
-    rows = [(kind, *(str(tally.counts[kind, end]) for end in ends)) for kind in ALL_KINDS]
-    total = ("all", *(str(sum(tally.counts[kind, end] for kind in ALL_KINDS)) for end in ends))
+    ends = sorted({end for _, end in counts})
+    rows = [(kind, *(str(counts[kind, end]) for end in ends)) for kind in KINDS]
+    total = ("all", *(str(sum(counts[kind, end] for kind in KINDS)) for end in ends))
     return SmallTable(caption, ("kind of input", *ends), [*rows, total])
 
 
 class BadInputs(Case):
-    """Inputs read in this process, and the command run on others: (level, tally of the readers, of
-    the command).
-    """
+    """Inputs read in this process, and the command run on others: tally of the readers, of the command."""
 
-    def solve(self, context: Context) -> tuple[str, Tally, Tally]:
+    def solve(self, context: Context) -> tuple[Tally, Tally]:
         reads, runs = READ[context.level], RUNS[context.level]
         with tempfile.TemporaryDirectory(prefix="samfem-bad-input-") as base:
-            read = judge_readers(range(-reads // MORE, reads), Path(base))
+            read = judge_readers(range(reads), Path(base))
             stride = range(reads, reads + 5 * runs, 5)  # 5 and the number of kinds have no common factor
-            stride = [*range(-reads // MORE - runs // MORE, -reads // MORE), *stride]
             progress = partial(context.progress, f"{self.name}: commands")
-            return context.level, read, judge_commands(stride, Path(base), progress=progress)
+            return read, judge_commands(stride, Path(base), progress=progress)
 
-    def measure(self, found: tuple[str, Tally, Tally]) -> dict[str, Measured]:
+    def measure(self, found: tuple[Tally, Tally]) -> dict[str, Measured]:
         """How many inputs ended wrongly, in each way; and of how many kinds none was read."""
-        values = {name: sum(len(tally.findings.get(name, ())) for tally in found[1:]) for name in GATES}
-        values["kinds-left-out"] = len(set(ALL_KINDS) - {kind for kind, _ in found[1].counts})
+        wrong = Counter(gate for tally in found for gate, _ in tally.findings)
+        values = {name: wrong[name] for name in GATES}
+        values["kinds-left-out"] = len(set(KINDS) - {kind for kind, _ in found[0].counts})
         return {name: Measured(count, 0) for name, count in values.items()}
 
-    def setup(self, found: tuple[str, Tally, Tally]) -> Iterator[tuple[str, str]]:
-        _, read, ran = found
+    def setup(self, found: tuple[Tally, Tally]) -> Iterator[tuple[str, str]]:
+        read, ran = found
         commands = f"{ran.counts.total()} through the command; seed {SEED}"
         yield "Inputs", f"{read.counts.total()} read in one process, {commands}"
         spaces = "an address space of 1, 2, 4 GiB or any for a command, half of them with closed streams"
@@ -332,19 +314,18 @@ class BadInputs(Case):
         slowest = f"{read.slowest[0]:.2f} s ({read.slowest[1]})"
         yield "Slowest", f"{slowest}; command {ran.slowest[0]:.1f} s"
 
-    def tables(self, found: tuple[str, Tally, Tally]) -> Iterator[SmallTable]:
-        captions = "Read: valid or refused, with every reason", "Through the command, by exit code"
-        yield from map(counts_table, captions, found[1:])
+    def tables(self, found: tuple[Tally, Tally]) -> Iterator[SmallTable]:
+        read, ran = (tally.counts for tally in found)
+        yield counts_table("Read: valid or refused, with every reason", read)
+        yield counts_table("Through the command, by exit code", ran)
         kept = resources.files("verification").joinpath("data", "bad-input.csv").read_text(encoding="utf-8")
-        campaign = {"read": Tally(), "run": Tally()}
-        for how, kind, end, count in list(csv.reader(kept.splitlines()))[1:]:
-            campaign[how].counts[kind, end] = int(count)
-        for how, tally in campaign.items():
-            yield counts_table(f"Campaign: {how}", tally)
+        lines = list(csv.reader(kept.splitlines()))[1:]
+        for which in ("read", "run"):
+            counts = Counter({(kind, end): int(count) for how, kind, end, count in lines if how == which})
+            yield counts_table(f"Campaign: {which}", counts)
 
-    def notes(self, found: tuple[str, Tally, Tally]) -> list[str]:
-        every = (item for tally in found[1:] for item in tally.findings.items())
-        return [f"{gate}: {text}" for gate, texts in every for text in texts][:20]
+    def notes(self, found: tuple[Tally, Tally]) -> list[str]:
+        return [f"{gate}: {text}" for tally in found for gate, text in tally.findings][:20]
 
 
 CASES = (BadInputs("bad-input"),)

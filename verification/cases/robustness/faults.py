@@ -15,14 +15,13 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from pathlib import Path
 from subprocess import Popen
 
 from verification.cases.case import Case, Context, Measured, SmallTable
 from verification.robustness.kills import (
     Ended,
-    KillTrial,
+    Trial,
     finish,
     inspect,
     killed_solve,
@@ -76,114 +75,101 @@ def solve_in(base: Path, out: Path, *more: str, **how) -> Ended:
 def begun(base: Path) -> Popen:
     """A solve into base/run that has written a checkpoint."""
     process = start(["solve", str(base / "scene.toml"), "--out", str(base / "run")], base / "store")
-    until = time.monotonic() + 60.0
-    while (
-        not (base / "run" / "checkpoint.npz").exists() and process.poll() is None and time.monotonic() < until
-    ):
+    checkpoint, until = base / "run" / "checkpoint.npz", time.monotonic() + 60.0
+    while not checkpoint.exists() and process.poll() is None and time.monotonic() < until:
         time.sleep(0.02)
     return process
 
 
-def interrupted(base: Path) -> tuple[Ended, Path]:
+def interrupted(base: Path) -> Ended:
     """SIGINT, as from Ctrl-C, once there is a checkpoint."""
     process = begun(base)
     process.send_signal(signal.SIGINT)
-    return finish(process), base / "run"
+    return finish(process)
 
 
-def full_disk(base: Path) -> tuple[Ended, Path]:
+def full_disk(base: Path) -> Ended:
     """No file may grow beyond 4 KiB: as on a full disk, writing fails in the middle of a file."""
     code = "import resource, sys; from samfem.cli import main; "
     code += "resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)); sys.exit(main())"
-    return solve_in(base, base / "run", command=(sys.executable, "-c", code)), base / "run"
+    return solve_in(base, base / "run", command=(sys.executable, "-c", code))
 
 
-def read_only(base: Path) -> tuple[Ended, Path]:
+def read_only(base: Path) -> Ended:
     """A folder that cannot be written to; /proc for root, whom rights do not stop."""
     (folder := base / "locked").mkdir(mode=0o500)
     place = Path("/proc/samfem") if os.access(folder, os.W_OK) else folder / "run"
-    return solve_in(base, place), place
+    return solve_in(base, place)
 
 
-def two_runs(base: Path) -> tuple[Ended, Path]:
-    """A second solve into the folder of one that runs."""
+def two_runs(base: Path) -> Ended:
+    """A second solve into the folder of one that runs, and ends well."""
     first = begun(base)
-    second, ended = solve_in(base, base / "run"), finish(first)
-    if ended.code != 0:
-        second = Ended(ended.code, f"the first run: {ended.text}")
-    return second, base / "run"
+    second, (code, text) = solve_in(base, base / "run"), finish(first)
+    if code != 0:
+        return code, f"the first run: {text}"
+    (base / "run" / SUMMARY).unlink()
+    return second
 
 
-def other_version(base: Path) -> tuple[Ended, Path]:
+def other_version(base: Path) -> Ended:
     """A folder that another version wrote."""
     (base / "run").mkdir()
     older = '{"format": "samfem run 0"}'
     (summary := base / "run" / SUMMARY).write_text(older)
     ended = solve_in(base, base / "run")
     if summary.read_text(encoding="utf-8") != older:
-        return Ended(None, "the summary of the other version was overwritten"), base
+        return None, "the summary of the other version was overwritten"
     summary.unlink()
-    return ended, base / "run"
+    return ended
 
 
-def other_scene(base: Path) -> tuple[Ended, Path]:
+def other_scene(base: Path) -> Ended:
     """--resume in the folder of another scene's interrupted run."""
     interrupted(base)
     (base / "scene.toml").write_text(SCENE.replace("0.17 N", "0.16 N"))
-    return solve_in(base, base / "run", "--resume"), base / "run"
+    return solve_in(base, base / "run", "--resume")
 
 
-@dataclass(frozen=True)
-class Fault:
-    """A fault and how it should end. make: how it ended, and the folder to look at; says: what the message
-    must hold; written: whether a summary may be there.
-    """
-
-    name: str
-    make: Callable[[Path], tuple[Ended, Path]]
-    codes: tuple[int, ...]
-    says: str
-    written: bool = False
-
-
-FAULTS = (
-    Fault("interrupt (SIGINT)", interrupted, (130,), "--resume"),
-    Fault("full disk: files end at 4 KiB", full_disk, (1,), "free"),
-    Fault("folder that cannot be written to", read_only, (1, 2), "cannot"),
-    Fault("two runs into one folder", two_runs, (2,), "is being written by", written=True),
-    Fault("folder of another version", other_version, (2,), "another"),
-    Fault("--resume with another scene's checkpoint", other_scene, (2,), "another scene"),
-)
+Fault = tuple[Callable[[Path], Ended], tuple[int, ...], str]
+"""What makes it in a folder, with base/run for the run; the right exit codes; what the message says."""
+FAULTS: dict[str, Fault] = {
+    "interrupt (SIGINT)": (interrupted, (130,), "--resume"),
+    "full disk: files end at 4 KiB": (full_disk, (1,), "free"),
+    "folder that cannot be written to": (read_only, (1, 2), "cannot"),
+    "two runs into one folder": (two_runs, (2,), "is being written by"),
+    "folder of another version": (other_version, (2,), "another"),
+    "--resume with another scene's checkpoint": (other_scene, (2,), "another scene"),
+}
 
 
-def judge_fault(fault: Fault, base: Path) -> tuple[tuple[str, str, str], KillTrial]:
+def judge_fault(name: str, base: Path) -> tuple[tuple[str, str, str], Trial]:
     """The row of a fault for the reader, and what was wrong with its end."""
     base.mkdir()
     (base / "scene.toml").write_text(SCENE)
-    ended, folder = fault.make(base)
-    trial = KillTrial(fault.name)
-    lines = ended.text.strip().splitlines() or [""]
+    make, codes, says = FAULTS[name]
+    code, text = make(base)
+    lines, found = text.strip().splitlines() or [""], inspect(base / "run")
     message = next((line for line in reversed(lines) if line.startswith("samfem: error")), lines[-1])
-    if ended.code not in fault.codes or "Traceback" in ended.text:
-        trial.found("wrong-endings", f"{fault.name}: exit code {ended.code}: {message}")
-    elif fault.says not in message:
-        trial.found("wrong-endings", f"{fault.name}: the message does not say {fault.says}: {message}")
-    inspect(folder, trial)
-    if not fault.written and any(folder.rglob(SUMMARY)):
-        trial.found("early-summaries", f"{fault.name}: there is a {SUMMARY}")
-    return (fault.name, str(ended.code), message.replace(str(base), "…")), trial
+    if code not in codes or "Traceback" in text:
+        found.append(("wrong-endings", f"{name}: exit code {code}: {message}"))
+    elif says not in message:
+        found.append(("wrong-endings", f"{name}: the message does not say {says}: {message}"))
+    if (base / "run" / SUMMARY).exists():
+        found.append(("early-summaries", f"{name}: there is a {SUMMARY}"))
+    return (name, str(code), message.replace(str(base), "…")), (name, found)
 
 
 def undisturbed(words: Sequence[str], out: Path, store: Path) -> float:
     """Seconds that a command takes which is not killed. RuntimeError where it does not end well."""
     began = time.monotonic()
-    ended = finish(start([*words, "--out", str(out)], store))
-    if ended.code != 0:
-        raise RuntimeError(f"the undisturbed {words[0]} ended in {ended.code}: {ended.text[-300:]}")
+    code, text = finish(start([*words, "--out", str(out)], store))
+    if code != 0:
+        raise RuntimeError(f"the undisturbed {words[0]} ended in {code}: {text[-300:]}")
     return time.monotonic() - began
 
 
-def kill_solves(count: int, base: Path, progress) -> tuple[list[KillTrial], float]:
+def kill_solves(count: int, base: Path, progress) -> tuple[list[Trial], float]:
     """Trials of solves killed at moments uniform over the time of an undisturbed one, which is
     returned too.
     """
@@ -192,10 +178,10 @@ def kill_solves(count: int, base: Path, progress) -> tuple[list[KillTrial], floa
     expected = tables(base / "undisturbed")
     moments, trials = delays(count, seconds, random.Random(SEED)), []
 
-    def trial(k: int) -> KillTrial:
+    def trial(k: int) -> Trial:
         folder = base / f"solve-{k}"
         try:
-            return killed_solve(words, folder, expected, moments[k], base=base)
+            return killed_solve(words, folder, expected, moments[k], store=base / "store")
         finally:
             shutil.rmtree(folder, ignore_errors=True)
 
@@ -206,14 +192,14 @@ def kill_solves(count: int, base: Path, progress) -> tuple[list[KillTrial], floa
     return trials, seconds
 
 
-def kill_sweeps(count: int, base: Path, progress) -> list[KillTrial]:
+def kill_sweeps(count: int, base: Path, progress) -> list[Trial]:
     """Trials of sweeps killed likewise, the parent and a worker in turns."""
     words = ["sweep", str(base / "study.toml"), "--workers", "2"]
     seconds = undisturbed(words, base / "sweep", base / "sweep-store")
     table, rng, trials = (base / "sweep" / "sweep.csv").read_bytes(), random.Random(SEED + 1), []
     for k, delay in enumerate(delays(count, seconds, rng)):
         whom, folder = ("worker", "parent")[k % 2], base / f"sweep-{k}"
-        trials.append(killed_sweep(words, folder, table, delay, whom=whom, rng=rng, base=base))
+        trials.append(killed_sweep(words, folder, table, delay, whom=whom, rng=rng))
         for left in (folder, base / f"{folder.name}-store"):  # a gigabyte
             shutil.rmtree(left, ignore_errors=True)
         progress("kills of a sweep", k + 1, count)
@@ -225,45 +211,33 @@ def delays(count: int, seconds: float, rng: random.Random) -> list[float]:
     return [seconds * (k + rng.random()) / count for k in range(count)]
 
 
-def values_of(trials: Sequence[KillTrial]) -> dict[str, Measured]:
+def values_of(trials: Sequence[Trial]) -> dict[str, Measured]:
     """The gates: what was found wrong, and kinds of kills that did not occur."""
-    counts = Counter(gate for trial in trials for gate, texts in trial.findings.items() for _ in texts)
-    missing = sum(not any(kind in trial.how for trial in trials) for kind in KINDS)
+    counts = Counter(gate for _, findings in trials for gate, _ in findings)
+    missing = sum(not any(kind in how for how, _ in trials) for kind in KINDS)
     return {gate: Measured(counts[gate], 0) for gate in GATES} | {"missing-kinds": Measured(missing, 0)}
 
 
-def counts_table(caption: str, trials: Sequence[KillTrial]) -> SmallTable:
+def counts_table(caption: str, trials: Sequence[Trial]) -> SmallTable:
     """How often what was killed, and how often nothing was wrong afterwards."""
-    hows = Counter(trial.how for trial in trials)
-    good = Counter(trial.how for trial in trials if not trial.findings)
-    return SmallTable(
-        caption,
-        ("killed", "times", "ended with equal tables, nothing lost"),
-        [(how, str(hows[how]), str(good[how])) for how in sorted(hows)],
-    )
+    hows = Counter(how for how, _ in trials)
+    good = Counter(how for how, findings in trials if not findings)
+    columns = ("killed", "times", "ended with equal tables, nothing lost")
+    return SmallTable(caption, columns, [(how, str(hows[how]), str(good[how])) for how in sorted(hows)])
 
 
-@dataclass(frozen=True)
-class Killed:
-    """Trials of solves (one undisturbed takes `seconds`) and of sweeps, and the other faults with
-    their rows.
-    """
-
-    solves: list[KillTrial]
-    sweeps: list[KillTrial]
-    seconds: float
-    faults: list[tuple[tuple[str, str, str], KillTrial]]
-
-    @property
-    def every(self) -> list[KillTrial]:
-        """All trials."""
-        return [*self.solves, *self.sweeps, *(trial for _, trial in self.faults)]
+def every(found: tuple) -> list[Trial]:
+    """All trials of what `Faults` solves."""
+    solved, swept, judged, _ = found
+    return [*solved, *swept, *(trial for _, trial in judged)]
 
 
 class Faults(Case):
-    """Solves and sweeps killed, then the other faults one by one."""
+    """Solves and sweeps killed, then the other faults one by one: the trials of the first two, the other
+    faults with their rows, and the seconds of an undisturbed solve.
+    """
 
-    def solve(self, context: Context) -> Killed:
+    def solve(self, context: Context) -> tuple[list[Trial], list[Trial], list, float]:
         solves, sweeps = KILLS[context.level]
 
         def progress(stage: str, done: int, total: int) -> None:
@@ -275,25 +249,26 @@ class Faults(Case):
                 (base / file).write_text(text)
             solved, seconds = kill_solves(solves, base, progress)
             swept = kill_sweeps(sweeps, base, progress)
-            judged = [judge_fault(fault, base / f"fault-{k}") for k, fault in enumerate(FAULTS)]
-        return Killed(solved, swept, seconds, judged)
+            judged = [judge_fault(name, base / f"fault-{k}") for k, name in enumerate(FAULTS)]
+        return solved, swept, judged, seconds
 
-    def measure(self, found: Killed) -> dict[str, Measured]:
-        return values_of(found.every)
+    def measure(self, found: tuple) -> dict[str, Measured]:
+        return values_of(every(found))
 
-    def setup(self, found: Killed) -> Iterator[tuple[str, str]]:
-        swept = f"{len(found.sweeps)} of a sweep of 24 scenes; kill -9, seed {SEED}"
-        yield "Kills", f"{len(found.solves)} of a solve of {found.seconds:.1f} s, {swept}"
+    def setup(self, found: tuple) -> Iterator[tuple[str, str]]:
+        solved, swept, _, seconds = found
+        sweeps = f"{len(swept)} of a sweep of 24 scenes; kill -9, seed {SEED}"
+        yield "Kills", f"{len(solved)} of a solve of {seconds:.1f} s, {sweeps}"
         yield "Checkpoints", "after each load step"
 
-    def tables(self, found: Killed) -> Iterator[SmallTable]:
-        yield counts_table("Solves", found.solves)
-        yield counts_table("Sweeps", found.sweeps)
-        yield SmallTable("Other faults", ("fault", "exit code", "message"), [row for row, _ in found.faults])
+    def tables(self, found: tuple) -> Iterator[SmallTable]:
+        solved, swept, judged, _ = found
+        yield counts_table("Solves", solved)
+        yield counts_table("Sweeps", swept)
+        yield SmallTable("Other faults", ("fault", "exit code", "message"), [row for row, _ in judged])
 
-    def notes(self, found: Killed) -> list[str]:
-        every = (item for trial in found.every for item in trial.findings.items())
-        return [f"{gate}: {text}" for gate, texts in every for text in texts][:20]
+    def notes(self, found: tuple) -> list[str]:
+        return [f"{gate}: {text}" for _, findings in every(found) for gate, text in findings][:20]
 
 
 CASES = (Faults("faults"),)

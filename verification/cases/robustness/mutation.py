@@ -17,9 +17,8 @@ from verification.cases.case import Case, Context, Measured, SmallTable
 from verification.runs.threads import EVERY_LIBRARY
 
 ROOT = Path(__file__).resolve().parents[3]
-TOOL = "verification.robustness.mutants"
+TOOL, FEW = "verification.robustness.mutants", "sam.tribofilm.law"
 """The program that perturbs the numbers: of the source, and not imported here before it is needed."""
-DRAWN = ("number", "comparison", "branch")
 
 
 def needs() -> str:
@@ -30,13 +29,13 @@ def needs() -> str:
     return f'install {" and ".join(missing)}: pip install -e ".[test]"' if missing else ""
 
 
-def checked(quick: bool) -> dict:
+def checked(*options: str) -> dict:
     """What `python -m verification.robustness.mutants` finds, in a process of its own: it forks, and replaces
     code.
     """
     with tempfile.TemporaryDirectory(prefix="samfem-mutation-") as base:
         found = Path(base, "judged.json")
-        words = [sys.executable, "-m", TOOL, "--json", str(found), *["--quick"] * quick]
+        words = [sys.executable, "-m", TOOL, "--json", str(found), *options]
         environment = os.environ | dict.fromkeys(EVERY_LIBRARY, "1") | {"SAMFEM_STORE": ""}
         ended = subprocess.run(words, cwd=ROOT, env=environment, capture_output=True, text=True)
         if not found.is_file():
@@ -44,66 +43,49 @@ def checked(quick: bool) -> dict:
         return json.loads(found.read_text(encoding="utf-8"))
 
 
-def numbers_of_core(found: Mapping) -> list[tuple]:
-    """(mutant, judgement) of each changed number of the core, of which none is left out."""
+def mutants_of(found: Mapping) -> list[tuple]:
+    """(mutant, judgement, whether it is a changed number of the core, of which none is left out)."""
     from verification.robustness.mutants import changes, scope  # noqa: PLC0415 - of the source only
 
     pairs = [(changes.Mutant(**one["mutant"]), one) for one in found["judged"]]
-    return [pair for pair in pairs if scope.whole(pair[0])]
+    return [(mutant, one, scope.whole(mutant)) for mutant, one in pairs]
 
 
 def values_of(found: Mapping) -> dict[str, Measured]:
     """The gates, from the judgements as read back."""
-    outcomes = Counter(one["outcome"] for _, one in numbers_of_core(found))
-    killed = [one for one in found["judged"] if one["outcome"] == "killed"]
+    outcomes = Counter(one["outcome"] for _, one, whole in mutants_of(found) if whole)
+    killed = [one["seconds"] for one in found["judged"] if one["outcome"] == "killed"]
     moving = [one for one in found["shown"] if not one["equivalent"]]
-    share = outcomes["killed"] / max(outcomes["killed"] + outcomes["survived"], 1)
-    slowest = max((one["seconds"] for one in killed), default=float("nan"))
     return {
-        "killed": Measured(share),
+        "killed": Measured(outcomes["killed"] / max(outcomes["killed"] + outcomes["survived"], 1)),
         "unexplained": Measured(len(found["lost"]), 0),
         "not-inert": Measured(len(moving)),
         "rewriting": Measured(len(found["control"])),
-        "slowest-kill": Measured(slowest, unit="s"),
+        "slowest-kill": Measured(max(killed, default=float("nan")), unit="s"),
     }
 
 
 def counts_table(found: Mapping) -> SmallTable:
-    """Numbers of the core by module: all that count, killed, survived, equivalent; those of structure."""
-    counts: Counter = Counter()
-    for mutant, one in numbers_of_core(found):
-        counts[mutant.module, one["outcome"]] += 1
-        counts[mutant.module, mutant.kind] += one["outcome"] != "structure"
-    for one in found["shown"]:
-        counts[one["mutant"]["module"], "equivalent"] += one["equivalent"]
-    for (_, what), count in list(counts.items()):
-        counts["all", what] += count
-
-    def row(name: str) -> tuple[str, ...]:
-        parts = [counts[name, what] for what in ("row", "killed", "survived", "equivalent", "structure")]
-        return (name, *map(str, [parts[1] + parts[2], *parts]))
-
-    columns = "module|mutants|of them table rows|killed|survived|equivalent|structure, left out".split("|")
-    names = dict.fromkeys([*sorted({name for name, _ in counts} - {"all"}), "all"])
-    return SmallTable("Mutants by module", columns, [row(name) for name in names])
-
-
-def drawn_table(found: Mapping) -> SmallTable:
-    """Comparisons, conditions and the numbers around the core, which are drawn: killed of all, by package."""
-    core, counts = {(mutant.module, mutant.kind) for mutant, _ in numbers_of_core(found)}, Counter()
-    for one in found["judged"]:
-        mutant = one["mutant"]
-        package, kind = ".".join(mutant["module"].split(".")[:2]), mutant["kind"].replace("count", "number")
-        if one["outcome"] != "structure" and (mutant["module"], mutant["kind"]) not in core:
-            for name in (package, "all"):
-                counts[name, kind, "of"] += 1
-                counts[name, kind, "killed"] += one["outcome"] == "killed"
+    """By module how many mutants were killed of all that count, and integers of structure: all numbers of the
+    core, and what is drawn.
+    """
+    counts, kinds = Counter(), ("number", "row", "comparison", "branch")
+    for mutant, one, _ in mutants_of(found):
+        kind = mutant.kind.replace("count", "number")
+        for name in (mutant.module, "all"):
+            counts[name, one["outcome"]] += 1
+            counts[name, kind, one["outcome"]] += 1
     names = [*sorted({name for name, *_ in counts} - {"all"}), "all"]
+
+    def killed_of(*key: str) -> str:
+        killed = counts[*key, "killed"]
+        return f"{killed} of {killed + counts[*key, 'survived']}"
+
     rows = [
-        (name, *(f"{counts[name, kind, 'killed']} of {counts[name, kind, 'of']}" for kind in DRAWN))
-        for name in names
+        (name, *(killed_of(name, kind) for kind in kinds), str(counts[name, "structure"])) for name in names
     ]
-    return SmallTable("Drawn mutants, killed", ("package", "numbers", "comparisons", "branches"), rows)
+    columns = ("module", "numbers", "table rows", "comparisons", "branches", "structure, left out")
+    return SmallTable("Mutants by module, killed", columns, rows)
 
 
 def survivors_table(found: Mapping) -> SmallTable:
@@ -114,8 +96,8 @@ def survivors_table(found: Mapping) -> SmallTable:
     rows = [(name, *what.rsplit(": ", 1), "") for name, what in lost.items()]
     rows += [
         (mutant.name, f"{mutant.text} in {mutant.line}", explained.get(mutant.key, ""), str(one["asked"]))
-        for mutant, one in numbers_of_core(found)
-        if one["outcome"] == "survived" and mutant.name not in lost
+        for mutant, one, whole in mutants_of(found)
+        if whole and one["outcome"] == "survived" and mutant.name not in lost
     ]
     return SmallTable("Survivors", ("where", "what", "why", "tests asked"), rows)
 
@@ -132,10 +114,11 @@ def equivalent_table(found: Mapping) -> SmallTable:
 
 
 class Mutation(Case):
-    """What `checked` finds, at the level quick of a few mutants."""
+    """What `checked` finds, at the level quick, where it is asked by name, of one module."""
 
     def solve(self, context: Context) -> dict:
-        return checked(context.level == "quick") | {"quick": context.level == "quick"}
+        quick = context.level == "quick"
+        return checked(*("--module", FEW) * quick) | {"quick": quick}
 
     def measure(self, found: Mapping) -> dict[str, Measured]:
         return values_of(found)
@@ -156,11 +139,10 @@ class Mutation(Case):
         yield "Killed by", f"{failed} by an assertion, {others} by an error or by the time that they take"
         yield "Time", f"{found['seconds']:.0f} s"
         if found["quick"]:
-            few = f"{scope.QUICK_COUNT} mutants of the film's law, seed {scope.SEED}"
-            yield "Sample", f"{few}; all of them at level full"
+            yield "Sample", f"{FEW}; all modules at level full"
 
     def tables(self, found: Mapping) -> Iterator[SmallTable]:
-        for table in (counts_table, drawn_table, survivors_table, equivalent_table):
+        for table in (counts_table, survivors_table, equivalent_table):
             if (made := table(found)).rows:
                 yield made
 

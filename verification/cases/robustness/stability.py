@@ -8,8 +8,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from verification.cases.case import FEM, FEM_3D, SAM, Case, Context, Measured, SmallTable
-from verification.robustness.matrix.row import Bench, Cell, Expectation, Kind, Refused, Right, Row, judge
-from verification.robustness.matrix.rows import all_rows, topics
+from verification.robustness.matrix.checks import Bench
+from verification.robustness.matrix.rows import ERROR, KINDS, RIGHT, WRONG, Cell, Row, all_rows, judge, topics
 
 MODELS = (SAM, FEM, FEM_3D)
 Judged = Mapping[str, Mapping[str, Cell]]  # row -> model -> cell
@@ -44,7 +44,7 @@ class Stability(Case):
         cells = [(row.expected[model], judged[row.name].get(model)) for row in rows for model in row.expected]
         missing = set(topics()) - {row.topic for row in rows} if found.level == "full" else set()
         return {
-            "wrong": Measured(sum(cell is not None and cell.kind is Kind.WRONG for _, cell in cells), 0),
+            "wrong": Measured(sum(cell is not None and cell.kind == WRONG for _, cell in cells), 0),
             "rows": Measured(sum(set(row.expected) == set(judged[row.name]) for row in rows), len(rows)),
             "topics-missing": Measured(len(missing), 0),
             "errors-explained": Measured(sum(not _explained(expected, cell) for expected, cell in cells), 0),
@@ -55,14 +55,14 @@ class Stability(Case):
         seconds = sum(cell.seconds for *_, cell in found.cells)
         cells = f"{sum(counts.values())} cells; {seconds:.0f} s of processor time"
         yield "Matrix", f"{len(found.rows)} extremes, {cells}"
-        yield "Cells", ", ".join(f"{counts[kind]} {kind.value}" for kind in Kind)
+        yield "Cells", ", ".join(f"{counts[kind]} {kind}" for kind in KINDS)
         wrong = "a cell that does otherwise is wrong"
         yield "Beforehand", f"each row says what must become of it in each model, and why; {wrong}"
         yield "Always wrong", "another exception, a warning of numpy, a quantity that is not finite"
 
     def tables(self, found: Matrix) -> Iterator[SmallTable]:
         rows = [
-            (row.name, row.what, _expected(row), *(cells[m].kind.value if m in cells else "" for m in MODELS))
+            (row.name, row.what, _expected(row), *(cells[m].kind if m in cells else "" for m in MODELS))
             for row in found.rows
             if (cells := found.judged[row.name]) is not None
         ]
@@ -71,40 +71,37 @@ class Stability(Case):
         rows = [
             (name, model, str(len(cell.deviations)), w.what, f"{w.error:.2g}", f"{w.bound:g}", w.reason)
             for name, model, cell in found.cells
-            if cell.kind is Kind.RIGHT and (w := cell.worst)
+            if cell.kind == RIGHT and (w := cell.worst)
         ]
         columns = ("row", "model", "comparisons", "nearest to its bound", "error", "bound", "why this bound")
         yield SmallTable("Right cells", columns, rows)
         expected = {row.name: row.expected for row in found.rows}
         rows = [
-            (name, model, cell.text, expected[name][model].reason)
+            (name, model, cell.text, expected[name][model][1])
             for name, model, cell in found.cells
-            if cell.kind is Kind.ERROR
+            if cell.kind == ERROR
         ]
         yield SmallTable("Errors", ("row", "model", "message", "why it is right"), rows)
 
     def notes(self, found: Matrix) -> list[str]:
-        wrong = [each for each in found.cells if each[-1].kind is Kind.WRONG]
+        wrong = [each for each in found.cells if each[-1].kind == WRONG]
         return [f"Wrong: {name}, {model}: {cell.text}" for name, model, cell in wrong]
 
 
-def _explained(expected: Expectation, cell: Cell | None) -> bool:
+def _explained(expected: Sequence, cell: Cell | None) -> bool:
     """Whether an error cell has its reason, and its message words that tell what to change."""
-    if cell is None or cell.kind is not Kind.ERROR:
+    if cell is None or cell.kind != ERROR:
         return True
-    return isinstance(expected, Refused) and bool(expected.reason and expected.says and cell.text)
+    return expected[0] == "error" and bool(expected[1] and expected[3:] and cell.text)
 
 
 def _expected(row: Row) -> str:
     """One text where all models are expected to do the same."""
-    words = {model: f"{_verb(expected)}: {expected.reason}" for model, expected in row.expected.items()}
+    verbs = {"absent": "not applicable"}
+    words = {m: f"{verbs.get(kind, kind)}: {reason}" for m, (kind, reason, *_) in row.expected.items()}
     if len(set(words.values())) == 1:
         return next(iter(words.values()))
     return "; ".join(f"{model} {text}" for model, text in words.items())
-
-
-def _verb(expected: Expectation) -> str:
-    return {Right: "right", Refused: "error"}.get(type(expected), "not applicable")
 
 
 CASES = (Stability("stability"),)

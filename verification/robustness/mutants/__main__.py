@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Mutation check: ``python -m verification.robustness.mutants [--quick] [--module NAME]``.
+"""Mutation check: ``python -m verification.robustness.mutants [--module NAME]``.
 
 After a change of module X or of its tests, run ``--module X``: each mutant that survives and did not when
 `frozen.csv` was written is named, and the exit code is 1. A function that moved to another module is found by
@@ -14,7 +14,6 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import random
 import sys
 import time
 from collections import Counter
@@ -25,9 +24,7 @@ from pathlib import Path
 from verification.runs.threads import EVERY_LIBRARY
 
 
-def check(
-    quick: bool, modules: Sequence[str], files: Sequence[str], progress: Callable[[str, int, int], None]
-) -> dict:
+def check(modules: Sequence[str], files: Sequence[str], progress: Callable[[str, int, int], None]) -> dict:
     """{"judged": judgements, "shown": equivalent mutants, "control": tests that fail with numbers as they are
     and files that cannot be collected, "lost", "gone": see `frozen.compare`, "tests", "seconds"}.
 
@@ -36,13 +33,10 @@ def check(
     from verification.robustness.mutants import frozen, judge, scope
     from verification.robustness.mutants.equivalent import show
 
-    chosen = list(modules or (scope.QUICK_MODULES if quick else scope.modules()))
+    chosen = list(modules or scope.modules())
     every = [mutant for module in chosen for mutant in scope.mutants_of(module)]
     equivalent = [mutant for mutant in every if mutant.key in scope.constants("equivalent")]
     mutants = [mutant for mutant in every if mutant not in equivalent and scope.drawn(mutant)]
-    if quick:
-        numbers = [mutant for mutant in mutants if scope.whole(mutant)]
-        mutants, equivalent = random.Random(scope.SEED).sample(numbers, scope.QUICK_COUNT), []
     rows, names, known = frozen.read(), {mutant.function for mutant in every}, set(scope.modules())
     killers = {
         test
@@ -66,7 +60,7 @@ def check(
         judged = judge.judge(mutants, items, (seen, loaded), lambda done, of: progress("mutants", done, of))
         answer.update(judged=judged, control=control, tests=len(seen), seconds=time.monotonic() - start)
 
-    uncollected = judge.with_tests(files or (scope.QUICK_FILES if quick else ("test_*.py",)), work)
+    uncollected = judge.with_tests(files or ("test_*.py",), work)
     answer["control"] += uncollected
     there = {(m.module, m.function) for name in known.union(chosen) for m in scope.mutants_of(name)}
     lost, gone = frozen.compare(answer["judged"], there)
@@ -78,7 +72,6 @@ def main() -> int:
     parser = argparse.ArgumentParser(
         description="Change numbers, comparisons and conditions, each by itself, and ask the fast tests"
     )
-    parser.add_argument("--quick", action="store_true", help="a sample of a few modules")
     parser.add_argument(
         "--module",
         action="append",
@@ -100,7 +93,7 @@ def main() -> int:
         if done == of or done % 100 == 0:
             os.write(terminal, f"{what}: {done}/{of}\n".encode())
 
-    answer = check(words.quick, words.module, words.tests, progress)
+    answer = check(words.module, words.tests, progress)
     if words.json:
         words.json.write_text(json.dumps(answer, indent=1, default=_plain))
     if words.freeze:

@@ -12,7 +12,7 @@ from importlib import import_module
 
 import numpy as np
 
-from sam.scene import Result, Scene
+from sam.scene import Scene
 from verification.robustness.mutants import inject
 from verification.robustness.mutants.changes import Mutant
 from verification.robustness.mutants.judge import forked
@@ -33,27 +33,6 @@ TWO_STEPS, THREE_STEPS = ({"steps": steps, "unload": True} for steps in (2, 3))
 GROWTH = {"prescribed": "misfit-sphere", "depth": 35e-6, "radius": 10e-6, "misfit": 0.02, "steps": 2}
 GROWTH |= {"profile": "gauss", "surface": "held"}
 ELEMENTS = {"fem": {"cells_per_radius": 4}}
-
-
-@dataclass(frozen=True)
-class Probe:
-    """A scene for one solver, as tables; of the solver's tolerance a number may change by ten times,
-    relatively.
-    """
-
-    name: str
-    solver: str
-    tables: Mapping
-
-    @property
-    def tolerance(self) -> float:
-        return self.tables["solver"]["tolerance"] if "solver" in self.tables else 1e-9
-
-    def solve(self) -> Result:
-        result = models.solve(Scene.model_validate({"title": self.name, **self.tables}), self.solver)
-        if not result.converged:
-            raise ArithmeticError(f"{self.name} ended {result.status}: {result.message}")
-        return result
 
 
 def pressed(body: Mapping, counter: Mapping, force: float, **loading) -> dict:
@@ -87,46 +66,46 @@ RUNNING_IN = pressed(YIELDING, {"shape": "flat"}, 0.06, **TWO_STEPS) | {
 }
 BY_APPROACH = {"body": STEEL, "counterbody": PUNCH, "loading": {"approach": 1e-7}}
 GROWING = {"body": LINEAR, "loading": GROWTH}
-PROBES = tuple(
-    Probe(name, solver, tables)
-    for solver, scenes in {
-        models.SAM: {
-            "elastic sphere that slides": pressed(STEEL, ELASTIC, 0.1) | sliding(0.3) | on(49, 1e-9),
-            "coated half-space that slides": pressed(COATED, ELASTIC, 0.1) | sliding(0.2) | on(33, 1e-8),
-            "plastic sphere": pressed(YIELDING, SPHERE, 0.17, **THREE_STEPS) | on(33, 1e-6),
-            "sphere with back-stresses": pressed(BACK, SPHERE, 0.17, **TWO_STEPS) | on(17, 1e-6),
-            "punch with a rounded edge": BY_APPROACH | on(65, 1e-9),
-            "the loops of the paper": pressed(YIELDING, SPHERE, 0.1, steps=2) | on(17, 1e-4, method="paper"),
-            "running-in": RUNNING_IN,
-            "misfit sphere": GROWING | on(13, 1e-6),
-        },
-        models.FEM: {
-            "plastic sphere of elements": pressed(YIELDING, SPHERE, 0.17, **THREE_STEPS) | ELEMENTS,
-            "elements with back-stresses": pressed(BACK, SPHERE, 0.17, **TWO_STEPS) | ELEMENTS,
-            "misfit sphere of elements": GROWING | ELEMENTS,
-            "coated sphere of elements": pressed(COATED, SPHERE, 0.1) | ELEMENTS,
-        },
-        models.FEM_3D: {
-            "coated sphere of hexahedra that slides": pressed(COATED, SPHERE, 0.1)
-            | sliding(0.2)
-            | {"fem": {"cells_per_radius": 4, "box": 5.0}},
-        },
-    }.items()
-    for name, tables in scenes.items()
-)
+PROBES: Mapping[str, Mapping[str, Mapping]] = {
+    models.SAM: {
+        "elastic sphere that slides": pressed(STEEL, ELASTIC, 0.1) | sliding(0.3) | on(49, 1e-9),
+        "coated half-space that slides": pressed(COATED, ELASTIC, 0.1) | sliding(0.2) | on(33, 1e-8),
+        "plastic sphere": pressed(YIELDING, SPHERE, 0.17, **THREE_STEPS) | on(33, 1e-6),
+        "sphere with back-stresses": pressed(BACK, SPHERE, 0.17, **TWO_STEPS) | on(17, 1e-6),
+        "punch with a rounded edge": BY_APPROACH | on(65, 1e-9),
+        "the loops of the paper": pressed(YIELDING, SPHERE, 0.1, steps=2) | on(17, 1e-4, method="paper"),
+        "running-in": RUNNING_IN,
+        "misfit sphere": GROWING | on(13, 1e-6),
+    },
+    models.FEM: {
+        "plastic sphere of elements": pressed(YIELDING, SPHERE, 0.17, **THREE_STEPS) | ELEMENTS,
+        "elements with back-stresses": pressed(BACK, SPHERE, 0.17, **TWO_STEPS) | ELEMENTS,
+        "misfit sphere of elements": GROWING | ELEMENTS,
+        "coated sphere of elements": pressed(COATED, SPHERE, 0.1) | ELEMENTS,
+    },
+    models.FEM_3D: {
+        "coated sphere of hexahedra that slides": pressed(COATED, SPHERE, 0.1)
+        | sliding(0.2)
+        | {"fem": {"cells_per_radius": 4, "box": 5.0}},
+    },
+}
+"""Solver -> title -> tables of a scene."""
+NO_ANSWER = ("iterations", "residual", "operator_applications")
 
 
-def numbers(result: Result) -> dict[str, np.ndarray]:
-    """All numbers of a result but its work: the quantities, and the columns of the tables but iterations and
-    residuals.
+def solved(solver: str, title: str) -> dict[str, np.ndarray]:
+    """All numbers of the result of a probe but its work: the quantities, and the columns of the tables but
+    those of NO_ANSWER.
 
     The table of all residuals has a row for each iteration, and the goals that the constants set.
     """
+    result = models.solve(Scene.model_validate({"title": title, **PROBES[solver][title]}), solver)
+    if not result.converged:
+        raise ArithmeticError(f"{title} ended {result.status}: {result.message}")
     found = {name: np.array([value]) for name, value in result.quantities.items() if value is not None}
     for table in result.tables.keys() - {"residuals"}:
         for name, column in result.tables[table].items():
-            values = np.asarray(column)
-            if values.dtype.kind == "f" and name not in ("iterations", "residual", "operator_applications"):
+            if (values := np.asarray(column)).dtype.kind == "f" and name not in NO_ANSWER:
                 found[f"{table}.{name}"] = values
     return found
 
@@ -170,24 +149,24 @@ class Shown:
         return self.probes > 0 and self.change <= WITHIN
 
 
-def solved(probe: Probe) -> tuple[dict[str, np.ndarray], frozenset[str]]:
-    """Its numbers, and the files of the project that ran."""
+def observed(solver: str, title: str) -> tuple[dict[str, np.ndarray], set[str]]:
+    """The numbers of a probe, and the files of the project that ran."""
     files: set[str] = set()
     sys.settrace(lambda frame, event, argument: files.add(frame.f_code.co_filename))
     try:
-        result = probe.solve()
+        return solved(solver, title), files
     finally:
         sys.settrace(None)
-    return numbers(result), frozenset(files)
 
 
-def changed(mutants: list[Mutant], probes: list[tuple[Probe, dict]]) -> float:
-    """Largest change in tolerances; in a fork, since the mutants stay."""
-    inject.put(mutants)
+def changed(mutant: Mutant, before: Mapping[tuple[str, str], Mapping[str, np.ndarray]]) -> float:
+    """Largest change of these probes in tolerances of their solver; in a fork, since the mutant stays."""
+    inject.put([mutant])
     worst = 0.0
-    for probe, before in probes:
+    for (solver, title), numbers in before.items():
+        tolerance = PROBES[solver][title].get("solver", {}).get("tolerance", 1e-9)
         try:
-            worst = max(worst, change(before, numbers(probe.solve())) / probe.tolerance)
+            worst = max(worst, change(numbers, solved(solver, title)) / tolerance)
         except ArithmeticError:
             return float("inf")
     return worst
@@ -195,20 +174,16 @@ def changed(mutants: list[Mutant], probes: list[tuple[Probe, dict]]) -> float:
 
 def show(mutants: Iterable[Mutant]) -> list[Shown]:
     """What each of the mutants changes in the probes that run its module."""
-    known = dict(forked([(p.name, lambda p=p: solved(p)) for p in PROBES], SECONDS))
+    every = [(solver, title) for solver, titles in PROBES.items() for title in titles]
+    known = dict(forked([(probe, lambda probe=probe: observed(*probe)) for probe in every], SECONDS))
     tasks, counts = [], {}
     for mutant in mutants:
         file = import_module(mutant.module).__file__
-        relevant = [(probe, known[probe.name][0]) for probe in PROBES if file in known[probe.name][1]]
-        counts[mutant] = len(relevant)
-        tasks.append((mutant, lambda mutant=mutant, relevant=relevant: changed([mutant], relevant)))
-    answers = forked(tasks, SECONDS)
+        before = {probe: known[probe][0] for probe in every if file in known[probe][1]}
+        counts[mutant] = len(before)
+        tasks.append((mutant, lambda mutant=mutant, before=before: changed(mutant, before)))
+    reasons = constants("equivalent")
     return [
-        Shown(
-            mutant,
-            constants("equivalent")[mutant.key],
-            float("inf") if answer is None else answer,
-            counts[mutant],
-        )
-        for mutant, answer in answers
+        Shown(mutant, reasons[mutant.key], float("inf") if answer is None else answer, counts[mutant])
+        for mutant, answer in forked(tasks, SECONDS)
     ]

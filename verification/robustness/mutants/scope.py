@@ -41,9 +41,6 @@ AROUND = (
 """Packages and modules of which, as of the comparisons and conditions of the core, PERCENT are drawn."""
 PERCENT, SEED = 33, 417
 TABLES = {"sam.kernels.patches": "load_table", "sam.kernels.eigenstrain": "eigenstrain_table"}
-QUICK_FILES = ("test_film_law.py",)
-QUICK_MODULES = ("sam.tribofilm.law",)
-QUICK_COUNT = 20
 NUMBERS = ("number", "count", "row")
 
 
