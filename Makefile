@@ -31,7 +31,7 @@ lint: $(INSTALLED)
 	$(BIN)/vulture
 
 # The wheel, installed without extras in an environment of its own, runs these cases; CASES=quick: all of the quick level.
-CASES ?= coefficients hertz-sphere certificates mutation
+CASES ?= hertz-ellipse hertz-sphere certificates mutation
 wheel: $(INSTALLED)
 	PYTHON=$(PYTHON) .ci/wheel $(CASES)
 
@@ -46,7 +46,7 @@ environments: $(INSTALLED)
 	$(BIN)/python tests/run_environments.py $(ENVIRONMENTS) --out reports/latest-environments.md -- $(PARALLEL) $(TESTS)
 
 # Every case at the full level, on two processes, and the pages of them in $(PAGES). Each case is kept in $(KEPT) as it
-# ends: stopped or killed, the same command goes on. Some cases: PUBLISH="pavement coefficients" PAGES=/tmp/pages. The programs of `peers`
+# ends: stopped or killed, the same command goes on. Some cases: PUBLISH="pavement hertz-sphere" PAGES=/tmp/pages. The programs of `peers`
 # are installed for all cases; where that fails, its page says that it did not run.
 PAGES ?= reports
 KEPT ?= reports/latest-publish

@@ -53,6 +53,8 @@ def solve(
     progress: Progress | None = None,
     checkpoint: Keep | None = None,
     start: Checkpoint | None = None,
+    *,
+    plan: Plan | None = None,
 ) -> Result:
     """Solve a scene, at rest or sliding, smooth or rough, elastic or plastic.
 
@@ -66,6 +68,8 @@ def solve(
         Called with a `Checkpoint` after each committed step of a scene that yields.
     start : Checkpoint, optional
         One of them, of the same scene, to go on from there to the same result.
+    plan : Plan, optional
+        What `sam.plan` made of the scene, once `sam.check` allowed it; without it both are done here.
 
     Returns
     -------
@@ -79,10 +83,11 @@ def solve(
     ValueError
         For a `start` of another model.
     """
-    bodies = Bodies(scene)
-    check_bodies(bodies)
+    if plan is None:
+        bodies = Bodies(scene)
+        check_bodies(bodies)
+        plan = plan_of(bodies)
     check_model(start, MODEL)
-    plan = plan_of(bodies)
     report = progress or (lambda *_: None)
     if plan.coarser is None:
         return _executed(plan, report, checkpoint, start)

@@ -6,14 +6,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sam.scene import Problem, Progress, Result, Scene, SceneError, spelling
 from samfem.refusals import Refusals
 from samfem.solving import check
 from verification.compare.comparison import Tolerances, compare_data, compare_scene, tolerances_of
 from verification.compare.own_data import OwnData, read_data
-from verification.compare.rows import COLUMNS, Solution, table_rows
+from verification.compare.rows import COLUMNS, table_rows
 from verification.compare.verdicts import FilmVerdict, change_rows, claim_rows, verdict
 from verification.cost.accuracy import solve as solve_family
 from verification.judging import Verdict
@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 NOT_COMPARED = "not compared"
+"""What stands in a table for a row that data do not have."""
 COMPANION = "compare.json"
 """Beside compare.csv: verdict and cost."""
-"""What a table has of the rows of data, besides the value and whether they passed."""
 Solved = Callable[[str, Result, Reuse], None]
 """Told of the result of a model as soon as it is there, and whether it is from the store."""
 
@@ -60,15 +60,13 @@ class Uncertain:
 class Compared:
     """Both results of a scene and the rows that hold one against the other.
 
-    sources: where each result is from; film: of a coated scene, whether its film is negligible; claim: the
-    one that decides too, if any; data, beside: data of the user, and the rows that each has, with the data
-    in the place of FEM.
+    film: of a coated scene, whether its film is negligible; claim: the one that decides too, if any; data,
+    beside: data of the user, and the rows that each has, with the data in the place of FEM.
     """
 
     scene: Scene
     sam: Result
     fem: Result
-    sources: tuple[Reuse, Reuse]
     rows: tuple[Verdict, ...]
     film: FilmVerdict | None = None
     claim: str | None = None
@@ -80,7 +78,7 @@ class Compared:
         return self.sam, self.fem
 
     @property
-    def solutions(self) -> dict[str, Solution]:
+    def solutions(self) -> dict[str, Any]:
         """SAM, FEM and the data, to be drawn."""
         return {"SAM": self.sam, "FEM": self.fem} | {data.name: data for data in self.data}
 
@@ -91,8 +89,8 @@ class Compared:
 
         table = DataFrame(table_rows(self.rows), columns=list(COLUMNS))
         if self.scene.solver.uncertainty or self.scene.solver.accuracy:
-            found = {row.quantity: row for row in self.uncertain}
-            both = [found.get(row.quantity) for row in self.rows]
+            uncertain = {row.quantity: row for row in self.uncertain}
+            both = [uncertain.get(row.quantity) for row in self.rows]
             table["u_num"] = [each and each.u_num for each in both]
             table["within_u_num"] = [str(each.holds) if each else "" for each in both]
         for data, rows in zip(self.data, self.beside, strict=True):
@@ -110,7 +108,7 @@ class Compared:
         found = []
         for row in self.rows:
             own = [(each.uncertainty or {}).get(row.quantity, {}).get("u_num") for each in self.results]
-            if None not in own:
+            if None not in own and row.value is not None and row.expected is not None:
                 found.append(Uncertain(row.quantity, abs(row.value - row.expected), *own))
         return tuple(found)
 
@@ -170,8 +168,7 @@ class Question:
         self, *, store: Store | None = None, progress: Progress | None = None, solved: Solved | None = None
     ) -> Compared:
         """The comparison; results are taken from the store, or solved and kept there."""
-        sam, of_sam = self._solve(models.SAM, store, progress, solved)
-        fem, of_fem = self._solve(self.model, store, progress, solved)
+        sam, fem = (self._solve(model, store, progress, solved) for model in (models.SAM, self.model))
         rows, film = compare_scene(self.scene, sam, fem), None
         if self.scene.body.coating is not None:
             film = verdict(self.scene, sam, fem)
@@ -181,15 +178,12 @@ class Question:
             between, own = compare_data(self.scene, sam, fem, data)
             rows += [row for row in between if row.quantity not in {each.quantity for each in rows}]
             beside.append(tuple(self.tolerances.judged(own)))
-        rows = tuple(self.tolerances.judged(rows))
-        sources, judged_too = (of_sam, of_fem), {"film": film, "claim": self.claim}
-        return Compared(
-            self.scene, sam, fem, sources, rows, **judged_too, data=self.data, beside=tuple(beside)
-        )
+        judged = tuple(self.tolerances.judged(rows))
+        return Compared(self.scene, sam, fem, judged, film, self.claim, self.data, tuple(beside))
 
     def _solve(
         self, model: str, store: Store | None, progress: Progress | None, solved: Solved | None
-    ) -> tuple[Result, Reuse]:
+    ) -> Result:
         sources = []
 
         def one(scene: Scene, label: str) -> Result:
@@ -204,7 +198,7 @@ class Question:
         result = solve_family(self.scene, model, one)
         if solved:
             solved(model, result, sources[0])
-        return result, sources[0]
+        return result
 
 
 def asked(
@@ -225,47 +219,35 @@ def asked(
     errors; anyway: however long that takes. Raises SceneError, ModelError, or SeveralError with all that is
     wrong.
     """
-    refusals, own, given = Refusals(), [], Tolerances()
-    with refusals.kept():
-        if claim is not None and scene.body.coating is None:
-            allowed = "only for a scene with [body.coating]"
-            raise SceneError([Problem("--claim", spelling(claim), allowed)], source)
+    refusals, own, given, chosen = Refusals(), list[OwnData](), Tolerances(), ""
+    if claim is not None and scene.body.coating is None:
+        problem = Problem("--claim", spelling(claim), "only for a scene with [body.coating]")
+        refusals.found.append(SceneError([problem], source))
     with refusals.kept():
         given = tolerances_of(scene, tolerances or {}, source)
     with refusals.kept():
-        model = model or models.cheapest_reference(scene)
-        check(scene, models.SAM, model, anyway=anyway)
+        chosen = model or models.cheapest_reference(scene)
+        for each in (models.SAM, chosen):
+            check(scene, each, anyway=anyway)
     for path in data:
         with refusals.kept():
             own.append(read_data(path, scene))
-    with refusals.kept():
-        if len({each.name for each in own}) < len(own):
-            names = ", ".join(sorted(each.name for each in own))
-            raise SceneError(
-                [Problem("data", names, "each with a name of its own: rename the files")], source
-            )
+    names = sorted(each.name for each in own)
+    if len(set(names)) < len(names):
+        problem = Problem("data", ", ".join(names), "each with a name of its own: rename the files")
+        refusals.found.append(SceneError([problem], source))
     refusals.raise_any()
-    return Question(scene, model, given, claim or (scene.compare and scene.compare.claim), tuple(own))
-
-
-def compared(
-    scene: Scene,
-    *,
-    model: str | None = None,
-    data: Sequence[str | Path] = (),
-    tolerances: Mapping[str, object] | None = None,
-    claim: str | None = None,
-    store: Store | None = None,
-    progress: Progress | None = None,
-) -> Compared:
-    """A scene solved by both models and compared; see `asked` and `Question.answer`."""
-    question = asked(scene, model=model, data=data, tolerances=tolerances, claim=claim)
-    return question.answer(store=store, progress=progress)
+    of_scene = None if scene.compare is None else scene.compare.claim
+    return Question(scene, chosen, given, claim or of_scene, tuple(own))
 
 
 def agreement(rows: Sequence[Verdict]) -> str:
     """How many rows agree, and which uses most of its tolerance."""
-    used = {row.error / row.row.tolerance: row.quantity for row in rows if row.error >= 0}
+    used = {
+        row.error / row.row.tolerance: row.quantity
+        for row in rows
+        if row.error is not None and row.error >= 0
+    }
     closest = f", closest {used[max(used)]} at {100 * max(used):.0f} % of its tolerance" if used else ""
     return f"{sum(row.passed for row in rows)} of {len(rows)} agree{closest}"
 

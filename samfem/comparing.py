@@ -12,10 +12,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 from sam.scene import Problem, Result, Scene, SceneError, either, finer_cells, finer_mesh, read_scene
-from samfem.compared import COMPANION, Compared, Question, Uncertain, agreement, asked, seconds
-from samfem.refusals import Refusals
+from samfem.compared import COMPANION, NOT_COMPARED, Compared, Question, agreement, asked, seconds
+from samfem.refusals import Refusals, check_folder
 from samfem.solving import unconverged, write_solved
 from verification.compare.verdicts import CLAIM, NOT_JUDGED
 from verification.figures import compare_figures
@@ -23,7 +24,6 @@ from verification.judging import Verdict
 from verification.runs import models
 from verification.runs.files import (
     FIGURES,
-    SUMMARY,
     FolderError,
     Run,
     check_target,
@@ -52,7 +52,7 @@ class Job:
     inputs: dict[str, bytes]
 
 
-def compare(paths: Sequence[Path], **options) -> int:
+def compare(paths: Sequence[Path], **options: Any) -> int:
     """Solve each scene with SAM and another model, and write DIR/sam, DIR/fem and compare.csv.
 
     Returns 0 if all converged and every row held. options: of the command, as its --help says.
@@ -81,16 +81,15 @@ def _jobs(paths: Sequence[Path], given: SimpleNamespace) -> list[Job]:
             name = f"{path.stem}-compare" if given.out is None else path.stem
             folder = given.out if given.out and len(paths) == 1 else (given.out or Path()) / name
             jobs.append(_job(path, folder, given))
-    with refusals.kept():
-        if given.data and len(paths) > 1:
-            shown = ", ".join(map(str, given.data))
-            raise SceneError(
-                [Problem("--with", shown, "for one scene only: compare it by itself")], "options"
-            )
-    with refusals.kept():
-        names = [path.stem for path in paths]
-        if twice := sorted({name for name in names if names.count(name) > 1}):
-            raise FolderError(f"{', '.join(twice)}: scenes of one name would be written to one folder")
+    if given.data and len(paths) > 1:
+        problem = Problem(
+            "--with", ", ".join(map(str, given.data)), "for one scene only: compare it by itself"
+        )
+        refusals.found.append(SceneError([problem], "options"))
+    names = [path.stem for path in paths]
+    if twice := sorted({name for name in names if names.count(name) > 1}):
+        words = f"{', '.join(twice)}: scenes of one name would be written to one folder"
+        refusals.found.append(FolderError(words))
     with refusals.kept():
         _check_pages(given)
     refusals.raise_any()
@@ -104,20 +103,11 @@ def _job(path: Path, folder: Path, given: SimpleNamespace) -> Job:
     with refusals.kept():
         question = asked(scene, tolerances=dict(given.tolerances), source=str(path), **how)
     with refusals.kept():
-        _check_comparison(folder)
+        check_folder(folder, (*WRITTEN, *PARTS.values()), "comparison")
+        for part in PARTS.values():
+            check_target(folder / part)
     refusals.raise_any()
     return Job(path.stem, question, folder, inputs)
-
-
-def _check_comparison(folder: Path) -> None:
-    """Raise FolderError unless the folder is new, empty or of an older comparison."""
-    check_target(folder, also=(*WRITTEN, *PARTS.values()))
-    if (folder / SUMMARY).exists():
-        raise FolderError(
-            f"{folder} holds a single run: give a new or empty folder, or one of an older comparison"
-        )
-    for part in PARTS.values():
-        check_target(folder / part)
 
 
 def _check_pages(given: SimpleNamespace) -> None:
@@ -175,14 +165,12 @@ def _write_pages(jobs: Sequence[Job], found: Sequence[Compared], given: SimpleNa
     """The page and the JUnit file, if they are asked for."""
     if given.report is None and given.junit is None:
         return
-    from samfem.comparison_page import Scenes, junit_of, write_report  # noqa: PLC0415 - loads the suite
+    from samfem.comparison_page import junit_of, write_report  # noqa: PLC0415 - loads the suite
 
-    scenes = Scenes(
-        {job.name: each for job, each in zip(jobs, found, strict=True)},
-        {name: content for job in jobs for name, content in job.inputs.items()},
-    )
+    scenes = {job.name: each for job, each in zip(jobs, found, strict=True)}
     if given.report is not None:
-        print(write_report(scenes, given.report))
+        inputs = {name: content for job in jobs for name, content in job.inputs.items()}
+        print(write_report(scenes, inputs, given.report))
     if given.junit is not None:
         write_atomically(given.junit, junit_of(scenes))
         print(given.junit)
@@ -193,7 +181,7 @@ def _show_all(jobs: Sequence[Job], found: Sequence[Compared]) -> None:
     rows = []
     for job, each in zip(jobs, found, strict=True):
         times = map(with_time, map(seconds, each.results))
-        rows.append((job.name, agreement(each.rows), *times, "passed" if each.passed else "FAILED"))
+        rows.append((job.name, agreement(each.rows), *times, _ended(each)))
     print_table(("scene", "rows", "SAM", "FEM", ""), rows, red=[not each.passed for each in found])
 
 
@@ -207,37 +195,35 @@ def _verdict(jobs: Sequence[Job], found: Sequence[Compared]) -> str:
 
 def _show(job: Job, found: Compared, *, figures: bool) -> None:
     """The rows, the verdict on a film, and what was written."""
-    table = found.frame.astype(object).where(found.frame.notna(), None)
-    own = [data.name for data in found.data]
-    cells, red = [], []
-    for row, (_, values) in zip(found.rows, table.iterrows(), strict=True):
-        beside = [cell for name in own for cell in (digits(values[name]), _mark(values, name))]
-        numbers = digits(row.value), digits(row.expected), digits(row.error, 3), digits(row.row.tolerance)
-        cells.append((row.quantity, *numbers, "passed" if row.passed else "FAILED", *beside))
-        red.append("FAILED" in " ".join(cells[-1]))
-    heads = [head for name in own for head in (name, "")]
-    if both := {each.quantity: each for each in found.uncertain}:
-        heads.append("u_num")
-        marks = [both.get(row.quantity) for row in found.rows]
-        cells = [(*row, _around(each)) for row, each in zip(cells, marks, strict=True)]
+    of_data = [{row.quantity: row for row in rows} for rows in found.beside]
+    heads = [head for data in found.data for head in (data.name, "")]
+    both, cells, red = {each.quantity: each for each in found.uncertain}, [], []
+    for row in found.rows:
+        numbers = map(digits, (row.value, row.expected))
+        line = [row.quantity, *numbers, digits(row.error, 3), digits(row.row.tolerance), _ended(row)]
+        for own in (rows.get(row.quantity) for rows in of_data):
+            line += [digits(None if own is None else own.expected), _beside(own)]
+        if both:
+            around = both.get(row.quantity)
+            line.append(f"{digits(around.u_num, 2)}{'' if around.holds else ' exceeded'}" if around else "")
+        cells.append(line)
+        red.append("FAILED" in " ".join(line))
+    heads += ["u_num"] * bool(both)
     print_table(("quantity", "sam", "fem", "difference", "tolerance", "", *heads), cells, red=red)
     if found.film is not None:
         print(found.film.words + ("" if found.claim else NOT_JUDGED))
     print(job.folder / COMPARISON)
     if figures:
-        for drawn in sorted((job.folder / FIGURES).iterdir()):
-            print(drawn)
+        print(*sorted((job.folder / FIGURES).iterdir()), sep="\n")
 
 
-def _around(each: Uncertain | None) -> str:
-    """The uncertainty of both models, and whether their difference is larger."""
-    return "" if each is None else f"{digits(each.u_num, 2)}{'' if each.holds else ' exceeded'}"
+def _ended(row: Verdict | Compared) -> str:
+    return "passed" if row.passed else "FAILED"
 
 
-def _mark(values, name: str) -> str:
+def _beside(row: Verdict | None) -> str:
     """What became of a row of data, with its difference."""
-    words = {"True": "passed", "False": "FAILED"}.get(values[f"{name}_passed"])
-    return f"{digits(values[f'{name}_difference'], 3)} {words}" if words else "not compared"
+    return NOT_COMPARED if row is None else f"{digits(row.error, 3)} {_ended(row)}"
 
 
 def _judge(

@@ -4,16 +4,15 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from samfem.compared import Compared, seconds
-from samfem.shown import status_line
+from samfem.solving import status_line
 from verification.compare.rows import metric_of
 from verification.figures import compare_figures
-from verification.judging import RowStatus, Verdict
+from verification.judging import RowStatus
 from verification.runs import provenance
 from verification.runs.files import FIGURES, FolderError, check_place, json_text, plain, write_atomically
 from verification.suite import pages
@@ -29,12 +28,8 @@ FIGURE_TITLES = {
 }
 
 
-@dataclass(frozen=True)
-class Scenes:
-    """Comparisons by the names of their scenes. inputs: name of a file that was read -> its content."""
-
-    found: Mapping[str, Compared]
-    inputs: Mapping[str, bytes]
+Scenes = Mapping[str, Compared]
+"""Comparisons by the names of their scenes."""
 
 
 def check_report(folder: Path) -> None:
@@ -47,13 +42,28 @@ def check_report(folder: Path) -> None:
         finished(folder)
 
 
-def write_report(scenes: Scenes, folder: Path) -> Path:
-    """Write report.html, its figures and the rows as data; returns the path of the page."""
+def write_report(scenes: Scenes, inputs: Mapping[str, bytes], folder: Path) -> Path:
+    """Write report.html, its figures and the rows as data; returns the path of the page.
+
+    inputs: name of a file that was read -> its content.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     shutil.rmtree(folder / FIGURES, ignore_errors=True)  # of an older page
-    for name, each in scenes.found.items():
+    for name, each in scenes.items():
         compare_figures(folder, each.solutions, prefix=f"{name}-")
-    results = _results(scenes)
+    gates = _gates(scenes)
+    results: dict[str, Any] = plain(
+        {
+            "format": FORMAT,
+            "kind": "comparison",
+            "complete": True,
+            "command": f"samfem compare {' '.join(scenes)}",
+            "provenance": provenance.collect(dict(inputs)),
+            "summary": {status: sum(gate["status"] == status for gate in gates) for status in RowStatus},
+            "cases": [_case(name, each) for name, each in scenes.items()],
+            "gates": gates,
+        }
+    )
     write_atomically(folder / "gates.csv", gates_csv(results["gates"]).encode())
     write_atomically(folder / "junit.xml", junit_of(scenes))
     page = pages.write_report(results, folder)
@@ -63,58 +73,24 @@ def write_report(scenes: Scenes, folder: Path) -> Path:
 
 def junit_of(scenes: Scenes) -> bytes:
     """A test suite for each scene, a test case for each row."""
-    cases = [_case(name, each) for name, each in scenes.found.items()]
+    cases = [_case(name, each) for name, each in scenes.items()]
     return junit_xml(cases, _gates(scenes), name="samfem compare")
 
 
-def _results(scenes: Scenes) -> dict[str, Any]:
-    gates = _gates(scenes)
-    content: dict[str, Any] = plain(
-        {
-            "format": FORMAT,
-            "kind": "comparison",
-            "complete": True,
-            "command": f"samfem compare {' '.join(scenes.found)}",
-            "provenance": provenance.collect(dict(scenes.inputs)),
-            "summary": {status: sum(gate["status"] == status for gate in gates) for status in RowStatus},
-            "cases": [_case(name, each) for name, each in scenes.found.items()],
-            "gates": gates,
-        }
-    )
-    return content
-
-
 def _gates(scenes: Scenes) -> list[dict[str, Any]]:
-    return [gate for name, each in scenes.found.items() for gate in _rows(name, each)]
-
-
-def _rows(case: str, found: Compared) -> Iterator[dict[str, Any]]:
     """Every row as a gate: SAM is what is computed, FEM or the data what is expected."""
-    for row in found.rows:
-        yield _gate(case, row.quantity, row)
-    for data, rows in zip(found.data, found.beside, strict=True):
-        for row in rows:
-            yield _gate(case, f"{data.name}: {row.quantity}", row)
-
-
-def _gate(case: str, name: str, row: Verdict) -> dict[str, Any]:
-    unit = row.quantity.split(" ")[0].rpartition("_")[2]
-    values = {"value": row.value, "expected": row.expected, "error": row.error}
-    gate: dict[str, Any] = plain(
-        {
-            "id": name,
-            "case": case,
-            "quantity": name,
-            "metric": metric_of(row),
-            **values,
-            "tolerance": row.row.tolerance,
-            "unit": unit if unit in ("Pa", "m", "m2", "N") else "",
-            "status": row.status,
-            "reason": row.row.reason,
-            "note": "",
-        }
-    )
-    return gate
+    found = []
+    for case, each in scenes.items():
+        rows = [(row.quantity, row) for row in each.rows]
+        for data, beside in zip(each.data, each.beside, strict=True):
+            rows += [(f"{data.name}: {row.quantity}", row) for row in beside]
+        for name, row in rows:
+            unit = row.quantity.split(" ")[0].rpartition("_")[2]
+            gate = {"id": name, "case": case, "quantity": name, "metric": metric_of(row), "value": row.value}
+            gate |= {"expected": row.expected, "error": row.error, "tolerance": row.row.tolerance}
+            gate |= {"unit": unit if unit in ("Pa", "m", "m2", "N") else "", "status": row.status}
+            found.append(plain(gate | {"reason": row.row.reason, "note": ""}))
+    return found
 
 
 def _case(name: str, found: Compared) -> dict[str, Any]:
@@ -144,15 +120,13 @@ def _figure(case: str, kind: str, title: str, words: str) -> dict[str, Any]:
 
 
 def _uncertainties(found: Compared) -> dict[str, Any]:
+    columns = ["Quantity", "|SAM - FEM|", "of SAM", "of FEM", "Within both"]
+    caption = "Difference of both models and their numerical uncertainties, in SI units"
     rows = [
         [each.quantity, *(f"{value:.2g}" for value in (each.difference, each.sam, each.fem)), str(each.holds)]
         for each in found.uncertain
     ]
-    return {
-        "caption": "Difference of both models and their numerical uncertainties, in SI units",
-        "columns": ["Quantity", "|SAM - FEM|", "of SAM", "of FEM", "Within both"],
-        "rows": rows,
-    }
+    return {"caption": caption, "columns": columns, "rows": rows}
 
 
 def _costs(found: Compared) -> dict[str, Any]:

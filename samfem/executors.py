@@ -19,8 +19,9 @@ from collections.abc import Callable, Hashable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
+from importlib import import_module
 from multiprocessing.connection import Connection
-from typing import Protocol
+from typing import Any, TypeVar
 
 from verification.runs.threads import computing_with
 
@@ -28,6 +29,7 @@ MOST_DEATHS = 3
 POLL_S = 1.0
 CONNECT_S = 10.0
 GONE = "the scheduler is gone: start the sweep again, what is finished is kept"
+Key = TypeVar("Key", bound=Hashable)
 WORKER_DIED = "its worker died at every attempt: killed, or out of memory"
 
 
@@ -38,34 +40,16 @@ class Failure:
     reason: str
 
 
-class Workers(Protocol):
-    """An executor with what `run` must know of it.
-
-    slots: tasks to keep in it; lost: workers that died; alone: whether a death tells only that one of several
-    tasks is to blame, so that the next attempt has to be alone; most_deaths: attempts of one task that may
-    end by it.
-    """
-
-    executor: Executor
-    lost: int
-    alone: bool
-    most_deaths: int
-
-    def slots(self) -> int: ...
-
-    def died(self, error: BaseException) -> bool: ...
-
-
 def run(
-    workers: Workers, function: Callable, tasks: Mapping[Hashable, tuple]
-) -> Iterator[tuple[Hashable, object, int]]:
+    workers: Processes | Cluster, function: Callable[..., Any], tasks: Mapping[Key, tuple[Any, ...]]
+) -> Iterator[tuple[Key, Any, int]]:
     """(key, value or Failure, repeats so far) of each task function(*arguments), as they finish.
 
     A task that raises is a Failure, one whose worker died is repeated. Raises ConnectionError if the cluster
     is gone.
     """
-    waiting, suspects, deaths, repeats = deque(tasks), deque(), Counter(), 0
-    running: dict[Future, Hashable] = {}
+    waiting, suspects, deaths, repeats = deque(tasks), deque[Key](), Counter[Key](), 0
+    running: dict[Future[Any], Key] = {}
     while waiting or suspects or running:
         room = workers.slots() - len(running)
         if suspects:
@@ -95,18 +79,19 @@ class Processes(Executor):
     """Processes, each a pool of its own: one that is killed takes only its own task along, and is replaced.
 
     A worker has one thread, and ends at once when this process is gone or the block is left by an exception.
-    fresh: each task gets a new process, so that none finds what another left there.
+    fresh: each task gets a new process, so that none finds what another left there. alone: whether a death
+    tells only that one of several tasks is to blame, so that the next attempt has to be alone; most_deaths:
+    attempts of one task that may end by it.
     """
 
     alone, most_deaths = False, MOST_DEATHS
 
     def __init__(self, count: int, *, fresh: bool = False):
         self._replaced, self._count, self._fresh = 0, count, fresh
-        self._context = multiprocessing.get_context(
-            "spawn"
-        )  # fork would copy locks held by threads of this process
+        # fork would copy locks held by threads of this process
+        self._context = multiprocessing.get_context("spawn")
         self._reader, self._writer = self._context.Pipe(duplex=False)  # its end is the sign to the workers
-        self._lanes: list[tuple[ProcessPoolExecutor, Future | None]] = []
+        self._lanes: list[tuple[ProcessPoolExecutor, Future[Any] | None]] = []
 
     @property
     def executor(self) -> Executor:
@@ -114,15 +99,17 @@ class Processes(Executor):
 
     @property
     def lost(self) -> int:
+        """Workers that died."""
         return self._replaced + len(self._broken())
 
     def slots(self) -> int:
+        """Tasks to keep in it."""
         return self._count
 
-    def died(self, error: BaseException) -> bool:
+    def died(self, error: BaseException | None) -> bool:
         return isinstance(error, BrokenProcessPool)
 
-    def submit(self, function: Callable, /, *arguments, **keywords) -> Future:
+    def submit(self, function: Callable[..., Any], /, *arguments: Any, **keywords: Any) -> Future[Any]:
         """As Executor.submit. Raises BrokenProcessPool if new processes die before they take a task."""
         for k in self._broken():
             self._renew(k)
@@ -156,7 +143,7 @@ class Processes(Executor):
         self._writer.close()
         self._reader.close()
 
-    def __exit__(self, kind, *_) -> None:
+    def __exit__(self, kind: object, *_: object) -> None:
         self.shutdown(wait=kind is None)
 
     def _new(self) -> ProcessPoolExecutor:
@@ -179,7 +166,8 @@ def _leave_writing_to_the_worker(pool: ProcessPoolExecutor) -> None:
     The pipe then ends with a worker that is killed while it writes; with this end open, the pool would wait
     for the rest of the result for ever.
     """
-    pool._result_queue._writer.close()  # noqa: SLF001 - the pool has no public way to its pipe
+    results: Any = pool._result_queue  # noqa: SLF001 - the pool has no public way to its pipe
+    results._writer.close()  # noqa: SLF001
 
 
 def _start(parent: Connection) -> None:
@@ -208,7 +196,7 @@ class Cluster:
         cannot be loaded.
         """
         try:
-            import distributed
+            distributed: Any = import_module("distributed")
         except ImportError:
             raise
         except Exception as error:  # its psutil needs /proc
@@ -224,9 +212,9 @@ class Cluster:
         except Exception as error:
             self._client.close()
             raise OSError(f"no workers there after {CONNECT_S:g} s") from error
-        self.executor = self._client.get_executor(pure=False)
-        self.lost, self._killed, self._workers = 0, distributed.KilledWorker, set()
-        self._told = False
+        self.executor: Executor = self._client.get_executor(pure=False)
+        self.lost, self._killed, self._told = 0, distributed.KilledWorker, False
+        self._workers: set[str] = set()
 
     def slots(self) -> int:
         """Two tasks for each thread of the cluster as it is now, so that no worker waits."""
@@ -237,9 +225,8 @@ class Cluster:
         self.lost += len(self._workers - set(workers))
         self._workers = set(workers)
         if not workers and not self._told:
-            print(
-                "samfem: sweep: the cluster has no workers now: waiting for some", file=sys.stderr, flush=True
-            )
+            words = "samfem: sweep: the cluster has no workers now: waiting for some"
+            print(words, file=sys.stderr, flush=True)
         self._told = not workers
         return 2 * sum(workers.values()) or 1
 
@@ -249,7 +236,7 @@ class Cluster:
     def __enter__(self) -> Cluster:
         return self
 
-    def __exit__(self, kind, *_) -> None:
+    def __exit__(self, kind: object, *_: object) -> None:
         self.executor.shutdown(wait=kind is None)
         self._client.close()
 

@@ -23,8 +23,13 @@ def store(prune: str | None, older_than: float | None) -> int:
     if kept is None:
         print(f"no store: {FOLDER} is empty, so nothing is kept")
     elif prune:
+
+        def goes(entry: Entry) -> bool:
+            old = older_than is not None and entry.age_days > older_than
+            return prune == ALL or entry.state != CURRENT or old
+
         sizes = []
-        for what, size in kept.prune(lambda entry: _goes(entry, prune, older_than)):
+        for what, size in kept.prune(goes):
             print(f"removed {what}")
             sizes.append(size)
         print(f"{len(sizes)} removed, {with_prefix(sum(sizes), 'B')} freed: {kept.folder}")
@@ -42,11 +47,6 @@ def store(prune: str | None, older_than: float | None) -> int:
         over = len(kept.left_over())
         print(f"{len(entries)} entries ({', '.join(counts)}), {over} left over, {total}: {kept.folder}")
     return 0
-
-
-def _goes(entry: Entry, prune: str, older_than: float | None) -> bool:
-    old = older_than is not None and entry.age_days > older_than
-    return prune == ALL or entry.state != CURRENT or old
 
 
 def _cells(entry: Entry) -> tuple[str, ...]:

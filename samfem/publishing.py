@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""The command publish: every case at a level, each kept as it ends, then the pages from what is kept.
+"""The commands verify, report, pages and publish: the cases of the suite, what they must reach, their pages.
 
-What a case found is kept in a store of its own, times included, so that a run that was stopped or killed goes
-on with the cases that are missing. Cases that the report holds already, of this code, stay as they are. The
-longest begin; cases that measure times run last and alone.
+publish runs every case at a level and makes the pages from what it keeps: what a case found is kept in a
+store of its own, times included, so that a run that was stopped or killed goes on with the cases that are
+missing. Cases that the report holds already, of this code, stay as they are. The longest begin; cases that
+measure times run last and alone.
 """
 
 from __future__ import annotations
@@ -15,19 +16,24 @@ import time
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from sam.scene import Scene
 from samfem.executors import Failure, Processes, run
 from samfem.sweeping import KeepsAll
 from verification.cases import Case, all_cases
 from verification.cases.case import Context, Outcome
+from verification.figures import solve_figures
 from verification.runs.code_version import version_of_cases
+from verification.runs.files import SUMMARY
 from verification.runs.lock import locked
 from verification.runs.models import SAM
-from verification.runs.store import Lookup, Reuse, Store, solve_or_reuse
-from verification.suite import outcomes, verify
-from verification.suite.freshness import earlier
+from verification.runs.store import Lookup, Reuse, Store, default_store, solve_or_reuse
+from verification.suite import outcomes, verify as suite
+from verification.suite.changes import show_changes
+from verification.suite.freshness import earlier, older, stale
 from verification.suite.verify import RanCase
+from verification.text.console import Progress
 
 SCRATCH = "scratch"
 """Folder in the store where the cases that run have their files."""
@@ -35,6 +41,57 @@ REPORTS = Path("reports")
 """Its report says how long cases took, where that of the folder to write does not."""
 UNKNOWN = math.inf  # s: what may be the longest begins
 CHANGED = "files of the code changed while it ran: publish again"
+
+
+def verify(
+    case: Sequence[str], *, level: str, out: Path, use_store: bool = True, show: str | None = None
+) -> int:
+    """Run the named cases (none: all of the level) and write the report, or list them.
+
+    show: "cases" or "gates", to list them and run none.
+    """
+    if show:
+        return suite.show(show, case)
+    with Progress(remaining=True) as progress:
+        return suite.main(list(case), level, out, progress, store=default_store() if use_store else None)
+
+
+def report(
+    folder: Path,
+    against: Path | None = None,
+    *,
+    table: Path | None = None,
+    single_file: bool = False,
+    pdf: bool = False,
+) -> int:
+    """Write the pages of a finished report again, or list what changed since an older one, or draw the
+    figures of a report or a run as PDF. table: of the gates that the older one had and what they are now.
+    """
+    if against is not None:
+        return show_changes(folder, against, table)
+    if pdf and (folder / SUMMARY).is_file():
+        print(*solve_figures(folder, pdf=True), sep="\n")
+        return 0
+    if pdf:
+        with Progress() as progress:
+            written = suite.draw_pdf(folder, progress, default_store())
+        print(*written, sep="\n")
+        return 0
+    return suite.rebuild(folder, single_file=single_file)
+
+
+def pages(folder: Path, *, list_stale: bool = False, single_file: bool = False) -> int:
+    """Write the pages of a published report again, or list the cases that are older than the code; 1 if any
+    is.
+    """
+    if not list_stale:
+        return suite.rebuild(folder, single_file=single_file)
+    results = suite.finished(folder)
+    found = stale(results)
+    print("".join(f"{name}: {why}\n" for name, why in found.items()), end="")
+    count = sum(case["status"] != "not run" for case in results["cases"]) - len(older(results))
+    print(f"{len(found)} stale, {count} as the code in front of you")
+    return 1 if found else 0
 
 
 def publish(case: Sequence[str], *, level: str, out: Path, store: Path, workers: int) -> int:
@@ -47,34 +104,34 @@ def publish(case: Sequence[str], *, level: str, out: Path, store: Path, workers:
     """
     known = all_cases()
     wanted = [each for each in known.values() if (each.name in case if case else each.published_at(level))]
-    before = verify.before(out)
-    problem = verify.problem_of(case, level, known, out)
+    before = suite.before(out)
+    problem = suite.problem_of(case, level, known, out)
     if not problem and before.get("level", level) != level:
         problem = f"{out} holds a report of level {before['level']}: choose another folder with --out"
     if problem:
         print(f"samfem: error: {problem}", file=sys.stderr)
         return 2
-    chosen, unmet = verify.runnable(wanted)
+    chosen, unmet = suite.runnable(wanted)
     if not chosen:
         return 0
     with locked(store), locked(out):
         kept = KeepsAll(store)
         took = _seconds(REPORTS) | _seconds(out)
-        stays = earlier(before, known, [each.name for each in chosen]) if before else verify.NOTHING
+        stays = earlier(before, known, [each.name for each in chosen]) if before else suite.NOTHING
         missing = [each for each in chosen if each.name not in stays.cases]
         longest = sorted(missing, key=lambda each: -took.get(each.name, UNKNOWN))
         failures = _fill(kept, longest, level=level, workers=workers)
-        verify.start(out, stays)
+        suite.start(out, stays)
         ran = {
             each.name: _ran(each, kept, failures.get(each.name, ""), level=level, out=out) for each in missing
         }
         words = " ".join(["samfem publish", *case, "--level", level])
-        return verify.finish(ran, known, level=level, out=out, command=words, unmet=unmet, stays=stays)
+        return suite.finish(ran, known, level=level, out=out, command=words, unmet=unmet, stays=stays)
 
 
 def _seconds(folder: Path) -> dict[str, float]:
     """How long each case of a report took, by its name; none where there is no report."""
-    cases = verify.before(folder).get("cases", ())
+    cases = suite.before(folder).get("cases", ())
     return {case["name"]: case["seconds"] for case in cases if case["seconds"] is not None}
 
 
@@ -85,7 +142,8 @@ def _fill(store: Store, chosen: Iterable[Case], *, level: str, workers: int) -> 
     ]
     by_name = {case.name for case in missing}
     beside, alone = ([case for case in missing if case.alone is kind] for kind in (False, True))
-    failures, done = {}, 0
+    failures: dict[str, str] = {}
+    done = 0
     for cases, processes in ((beside, workers), (alone, 1)):
         with Processes(processes, fresh=True) as pool:
             for name, answer, _ in run(pool, make, _tasks(store, cases, level)):
@@ -97,7 +155,7 @@ def _fill(store: Store, chosen: Iterable[Case], *, level: str, workers: int) -> 
     return failures
 
 
-def _tasks(store: Store, cases: Iterable[Case], level: str) -> dict[str, tuple]:
+def _tasks(store: Store, cases: Iterable[Case], level: str) -> dict[str, tuple[Any, ...]]:
     """Name -> arguments of `make`: the cases, the scenes that are solved ahead, then the cases with such
     scenes.
     """
@@ -118,15 +176,14 @@ def make(name: str, level: str, folder: Path, scene: Scene | None = None) -> tup
     """
     case, store = all_cases()[name], KeepsAll(folder)
     if scene is not None:
-        began, further = time.perf_counter(), scene
-        while further is not None:
-            further = case.then(further, solve_or_reuse(store, further, SAM)[0])
+        began = time.perf_counter()
+        solve_or_reuse(store, scene, SAM)
         return "", time.perf_counter() - began
     context = _context(case, store, level)
     shutil.rmtree(context.out, ignore_errors=True)
     version_of_cases()  # of the files as they are before anything is computed
     began = time.perf_counter()
-    outcome, failure = verify.attempt(case, context)
+    outcome, failure = suite.attempt(case, context)
     seconds = time.perf_counter() - began + context.taken_s
     if failure:
         return failure, seconds

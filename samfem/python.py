@@ -35,7 +35,7 @@ from sam.scene import (  # noqa: E402 - only once they are ours
     SceneError as SceneError,
     load_scene,
 )
-from samfem.compared import COMPANION, Compared, compared  # noqa: E402
+from samfem.compared import COMPANION, asked  # noqa: E402
 from samfem.refusals import SeveralError as SeveralError  # noqa: E402
 from verification import figures  # noqa: E402
 from verification.compare.own_data import OwnData  # noqa: E402
@@ -257,10 +257,10 @@ def compare(
     SeveralError
         For more than one of these; a ValueError too.
     """
-    kept = default_store()
-    return _comparison_of(
-        compared(_scene(scene), model=model, data=data, tolerances=tolerances, claim=claim, store=kept)
-    )
+    question = asked(_scene(scene), model=model, data=data, tolerances=tolerances, claim=claim)
+    found = question.answer(store=default_store())
+    sam, fem = (_run_of(result, found.scene) for result in found.results)
+    return Comparison(found.frame, sam, fem, found.line, {data.name: data for data in found.data})
 
 
 def sweep(study: str | Path, out: str | Path | None = None, workers: int | None = None) -> Sweep:
@@ -338,11 +338,6 @@ def _run_of(result: Result, scene: Scene) -> Run:
 
 def _run_in(folder: Path) -> Run:
     return Run(**vars(files.read_run(folder)))
-
-
-def _comparison_of(found: Compared) -> Comparison:
-    sam, fem = (_run_of(result, found.scene) for result in (found.sam, found.fem))
-    return Comparison(found.frame, sam, fem, found.line, {data.name: data for data in found.data})
 
 
 def _comparison_in(folder: Path) -> Comparison:

@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import json
 from argparse import ArgumentParser
-from collections.abc import Iterator, Mapping
 from importlib import import_module
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
+
+from pydantic.json_schema import GenerateJsonSchema
+from pydantic_core import core_schema
 
 from sam.scene import load_scene, parse_toml, read_scene
 from verification.runs import models
@@ -60,7 +62,7 @@ def examples(name: str | None, out: Path | None) -> int:
     """
     known = {entry.name[: -len(".toml")]: entry for entry in SCENES.iterdir() if entry.name.endswith(".toml")}
     if name is None:
-        titles = [(each, _tables(known[each])["title"]) for each in sorted(known)]
+        titles = [(each, parse_toml(known[each].read_bytes(), each)["title"]) for each in sorted(known)]
         print_table(("example", "title"), titles)
         print("samfem examples NAME copies one")
         return 0
@@ -70,10 +72,6 @@ def examples(name: str | None, out: Path | None) -> int:
     _copy(known[name], target)
     print(target)
     return 0
-
-
-def _tables(source: Any) -> dict[str, Any]:
-    return parse_toml(source.read_bytes(), source.name)
 
 
 def _copy(source: Any, target: Path) -> None:
@@ -101,31 +99,27 @@ def schema(study: bool) -> int:
 
 
 def json_schema(section: Any) -> dict[str, Any]:
-    """JSON schema of the file that a `Section` is read from; TOML has no null: a key is there or is not."""
-    found = _without_null(section.model_json_schema(by_alias=True))
+    """JSON schema of the file that a `Section` is read from."""
+    found: dict[str, Any] = section.model_json_schema(by_alias=True, schema_generator=_OfFile)
     return {"$schema": DRAFT, **found}
 
 
-def _without_null(value: Any) -> Any:
-    """The schema without the alternative null and the default null."""
-    if isinstance(value, list):
-        return [_without_null(entry) for entry in value]
-    if not isinstance(value, Mapping):
-        return value
-    found = dict(_kept(value))
-    others = [entry for entry in found.get("anyOf", ()) if entry != {"type": "null"}]
-    if len(others) == 1:
-        del found["anyOf"]
-        found = {**others[0], **found}
-    elif others:
-        found["anyOf"] = others
-    return found
+class _OfFile(GenerateJsonSchema):
+    """TOML has no null, a key is there or is not; titles would only repeat the names."""
 
+    def nullable_schema(self, schema: core_schema.NullableSchema) -> dict[str, Any]:
+        return self.generate_inner(schema["schema"])
 
-def _kept(value: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    for name, entry in value.items():
-        if not (name == "default" and entry is None) and not (name == "title" and isinstance(entry, str)):
-            yield name, _without_null(entry)
+    def default_schema(self, schema: core_schema.WithDefaultSchema) -> dict[str, Any]:
+        if schema.get("default", "") is None:
+            return self.generate_inner(schema["schema"])
+        return super().default_schema(schema)
+
+    def model_schema(self, schema: core_schema.ModelSchema) -> dict[str, Any]:
+        return {name: entry for name, entry in super().model_schema(schema).items() if name != "title"}
+
+    def field_title_should_be_set(self, schema: object) -> bool:
+        return False
 
 
 def completion(shell: str, parser: ArgumentParser) -> int:

@@ -13,15 +13,17 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, suppress
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from sam.scene import QUANTITIES, Problem, Result, Scene, SceneError, resolved, spelling
-from samfem.executors import Cluster, Failure, Processes, Workers, run
+from samfem.executors import Cluster, Failure, Processes, run
+from samfem.refusals import check_folder
 from verification.cost.plan import check_needs
 from verification.figures import sensitivity_figure, sweep_figure
 from verification.runs import models
@@ -30,7 +32,6 @@ from verification.runs.files import (
     FIGURES,
     SUMMARY,
     FolderError,
-    check_target,
     clear_run,
     json_text,
     read_summary,
@@ -69,12 +70,10 @@ class KeepsAll(Store):
         super().keep(scene, model, result, unconverged=unconverged)
 
 
-@dataclass(frozen=True)
-class SolvedPoint:
-    """A result and where it was computed: versions, machine and threads of the worker."""
-
-    result: Result
-    origin: Mapping[str, object]
+Solved = tuple[Result, Mapping[str, object]]
+"""A result and where it was computed: versions, machine and threads of the worker."""
+Cells = Sequence[Any]
+"""Of a row of a table."""
 
 
 @dataclass
@@ -87,11 +86,11 @@ class Sweep:
     folder: Path
     store: Store | None
     runs: bool
-    rows: dict[int, tuple] = field(default_factory=dict)
-    counts: Counter = field(default_factory=Counter)
+    provenance: Mapping[str, Any]
+    rows: dict[int, Cells] = field(default_factory=dict)
+    counts: Counter[str] = field(default_factory=Counter)
     notes: list[str] = field(default_factory=list)
     repeats: int = 0
-    provenance: Mapping = field(default_factory=dict)
     _rest_until: float = 0.0
 
     @property
@@ -100,21 +99,23 @@ class Sweep:
         return ("index", *vary, "model", "status", "reason", *QUANTITIES, *COUNTERS, "warnings")
 
     @property
-    def ordered(self) -> list[tuple]:
+    def ordered(self) -> list[Cells]:
         return [self.rows[index] for index in sorted(self.rows)]
 
-    def add(self, point: StudyPoint, result: Result, source: Reuse, origin: Mapping) -> None:
+    def add(self, point: StudyPoint, result: Result, source: Reuse, origin: Mapping[str, Any]) -> None:
         """A result, solved or reused."""
         self.counts["reused" if source.reused else "solved"] += 1
         self.counts["not_converged"] += not result.converged
         numbers = [result.quantities.get(name) for name in QUANTITIES]
-        numbers += [result.cost.get(name) for name in COUNTERS]
+        counts = [result.cost.get(name) for name in COUNTERS]
         reason = "" if result.converged else result.message or result.status.advice
-        self._row(point, result.status.value, reason, [*numbers, "; ".join(result.warnings)])
+        self._row(point, result.status.value, reason, [*numbers, *counts, "; ".join(result.warnings)])
         place = self.place(point.index)
         if self.runs and not (source.reused and (place / SUMMARY).exists()):
             code = {"code_version": code_version(result.model)}
-            write_run(result, point.scene, place, {**self.provenance, **code, **origin, **source.provenance})
+            write_run(
+                result, _scene_of(point), place, {**self.provenance, **code, **origin, **source.provenance}
+            )
 
     def place(self, index: int) -> Path:
         """The folder of a run; names of equal length, so that they sort."""
@@ -126,7 +127,7 @@ class Sweep:
         empty = [*[None] * (len(QUANTITIES) + len(COUNTERS)), ""]
         self._row(point, status, " ".join(reason.split()), empty)
 
-    def _row(self, point: StudyPoint, status: str, reason: str, last: Sequence) -> None:
+    def _row(self, point: StudyPoint, status: str, reason: str, last: Cells) -> None:
         model = self.content.study.model
         self.rows[point.index] = (point.index, *point.shown, model, status, reason, *last)
 
@@ -160,12 +161,12 @@ def sweep(
     began = time.monotonic()
     content = read_study(path)
     folder = out or Path(f"{path.stem}-sweep")
-    _check_folder(folder)
+    check_folder(folder, (*FILES, *OF_DESIGN, RUNS), "sweep")
     known = default_store() if use_store else None
     store = None if known is None else KeepsAll(known.folder)
     with locked(folder), _executor(scheduler, workers) as executor:
         seeds = [] if content.study.seed is None else [content.study.seed]
-        state = Sweep(content, folder, store, runs, provenance=collect(content.inputs, seeds))
+        state = Sweep(content, folder, store, runs, collect(content.inputs, seeds))
         folder.mkdir(parents=True, exist_ok=True)
         _clear(state)
         try:
@@ -176,19 +177,18 @@ def sweep(
             again = "the same command goes on from there" if store else "without a store all are solved again"
             raise KeyboardInterrupt(f"interrupted: {kept}; {again}") from None
     state.write(always=True)
-    _draw(state)
+    sweep_figure(content.study, _named(state.columns, state.ordered), folder / "sweep")
     if content.study.design:
         found = index_rows(state)
         write_atomically(folder / SENSITIVITY, csv_text(INDEX_COLUMNS, found).encode())
-        rows = [dict(zip(INDEX_COLUMNS, row, strict=True)) for row in found]
-        sensitivity_figure(rows, folder / "sensitivity")
+        sensitivity_figure(_named(INDEX_COLUMNS, found), folder / "sensitivity")
     described = {"kind": "dask" if scheduler else "processes", "lost": executor.lost}
     record = _record(state) | {"workers": described, "elapsed_s": time.monotonic() - began}
     write_atomically(folder / RECORD, json_text(record).encode())
     return _judge(state)
 
 
-def _executor(scheduler: str | None, count: int | None) -> AbstractContextManager[Workers]:
+def _executor(scheduler: str | None, count: int | None) -> Processes | Cluster:
     if scheduler is None:
         return Processes(count or _cores())
     try:
@@ -196,28 +196,17 @@ def _executor(scheduler: str | None, count: int | None) -> AbstractContextManage
     except ModuleNotFoundError:
         allowed = "needs the package distributed: pip install samfem[dask]"
     except ImportError as error:
-        allowed = (
-            f"needs the package distributed, which cannot be loaded on this machine ({error}): use --workers"
-        )
+        lacks = f"which cannot be loaded on this machine ({error}): use --workers"
+        allowed = f"needs the package distributed, {lacks}"
     except OSError as error:
-        allowed = (
-            f"the address of a running Dask scheduler with workers, such as tcp://localhost:8786 ({error})"
-        )
+        such = f"such as tcp://localhost:8786 ({error})"
+        allowed = f"the address of a running Dask scheduler with workers, {such}"
     raise SceneError([Problem("--scheduler", spelling(scheduler), allowed)], "samfem sweep")
 
 
 def _cores() -> int:
     """Those that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def _check_folder(folder: Path) -> None:
-    """Raise FolderError unless the folder is new, empty or of an older sweep."""
-    check_target(folder, also=(*FILES, *OF_DESIGN, RUNS))
-    if (folder / SUMMARY).exists():
-        raise FolderError(
-            f"{folder} holds a single run: give a new or empty folder, or one of an older sweep"
-        )
 
 
 def _clear(state: Sweep) -> None:
@@ -251,7 +240,7 @@ def _is_run_of(place: Path, point: StudyPoint | None, state: Sweep) -> bool:
     )
 
 
-def _fill(state: Sweep, workers: Workers, anyway: bool) -> None:
+def _fill(state: Sweep, workers: Processes | Cluster, anyway: bool) -> None:
     """A row for each point: refused, from the store, or solved."""
     points, model = state.content.points, state.content.study.model
     with Progress(remaining=True) as progress:
@@ -260,7 +249,7 @@ def _fill(state: Sweep, workers: Workers, anyway: bool) -> None:
             state.write(always=True)
         equal: dict[str, list[int]] = {}
         for index, point in missing.items():
-            equal.setdefault(json_text(identity(point.scene, model)), []).append(index)
+            equal.setdefault(json_text(identity(_scene_of(point), model)), []).append(index)
         same = {indices[0]: indices for indices in equal.values()}
         tasks = {index: (points[index].scene, model, code_version(model), anyway) for index in same}
         progress("sweep", 0, len(tasks))
@@ -291,16 +280,23 @@ def _look_up(state: Sweep, progress: Progress) -> Iterator[StudyPoint]:
         print(f"samfem: sweep: {text}: {state.notes[0]}", file=sys.stderr)
 
 
-def _take(state: Sweep, point: StudyPoint, outcome: SolvedPoint | Failure) -> None:
+def _scene_of(point: StudyPoint) -> Scene:
+    """Of a point that is not refused."""
+    assert point.scene is not None
+    return point.scene
+
+
+def _take(state: Sweep, point: StudyPoint, outcome: Solved | Failure) -> None:
     if isinstance(outcome, Failure):
         state.add_without(point, FAILED, outcome.reason)
         return
+    result, origin = outcome
     if state.store is not None:
-        state.store.keep(point.scene, outcome.result.model, outcome.result)
-    state.add(point, outcome.result, Reuse(False), outcome.origin)
+        state.store.keep(_scene_of(point), result.model, result)
+    state.add(point, result, Reuse(False), origin)
 
 
-def solve_scene(scene: Scene, model: str, code: str, anyway: bool = False) -> SolvedPoint | Failure:
+def solve_scene(scene: Scene, model: str, code: str, anyway: bool = False) -> Solved | Failure:
     """In a worker: the result of a scene. A Failure if it raises, or if the worker runs another
     version of the code.
     """
@@ -309,8 +305,8 @@ def solve_scene(scene: Scene, model: str, code: str, anyway: bool = False) -> So
             return Failure(
                 "the worker runs another version of samfem, numpy or scipy: install the same one there"
             )
-        check_needs(scene, model, anyway=anyway)
-        return SolvedPoint(models.solve(scene, model), _origin())
+        made = check_needs(scene, model, anyway=anyway)
+        return models.solve(scene, model, made=made), _origin()
     except models.ModelError as error:
         return Failure(str(error))
     except MemoryError:
@@ -325,16 +321,16 @@ def _origin() -> Mapping[str, object]:
     return {name: found[name] for name in ("versions", "machine", "threads")}
 
 
-def _draw(state: Sweep) -> None:
-    rows = [dict(zip(state.columns, row, strict=True)) for row in state.ordered]
-    sweep_figure(state.content.study, rows, state.folder / "sweep")
+def _named(columns: Sequence[str], rows: Sequence[Cells]) -> list[dict[str, Any]]:
+    return [dict(zip(columns, row, strict=True)) for row in rows]
 
 
-def index_rows(state: Sweep) -> list[tuple]:
+def index_rows(state: Sweep) -> Sequence[Cells]:
     """The indices of sensitivity of each quantity that changes over a design, by what moves it most."""
     study, shares, found = state.content.study, state.content.study.shares(), []
     columns = dict(zip(state.columns, zip(*state.ordered, strict=True), strict=True))
     converged = np.array(columns["status"]) == "converged"
+    assert study.seed is not None  # every design has one
     for name in QUANTITIES:
         values = np.where(converged, np.array(columns[name], dtype=float), np.nan)
         for index in indices(study.mode, shares, values, study.seed):
@@ -344,7 +340,7 @@ def index_rows(state: Sweep) -> list[tuple]:
     return found
 
 
-def _record(state: Sweep) -> dict:
+def _record(state: Sweep) -> dict[str, Any]:
     study = state.content.study
     counts = {name: state.counts[name] for name in ("solved", "reused", "not_converged", FAILED, REFUSED)}
     return {
@@ -357,7 +353,9 @@ def _record(state: Sweep) -> dict:
         "counts": counts,
         "retries": state.repeats,
         "store": state.store is not None,
-        "not_used_of_store": [without_places(note, state.store.folder) for note in state.notes],
+        "not_used_of_store": [
+            without_places(each, state.store.folder) for each in state.notes if state.store
+        ],
         "units": {key: axis.si_unit for key, axis in study.vary.items()},
         "columns": state.columns,
         "provenance": state.provenance,

@@ -47,18 +47,8 @@ SHAPES = {
     "flat": {"shape": "flat"},
 }
 """An example of each shape."""
-LENGTHS = {
-    "approach",
-    "radius",
-    "flat_radius",
-    "radius_x",
-    "radius_y",
-    "thickness",
-    "film_thickness",
-    "extent",
-    "depth",
-    "depths",
-}
+LENGTHS = {"approach", "depth", "depths", "extent", "film_thickness", "flat_radius", "radius", "thickness"}
+LENGTHS |= {"radius_x", "radius_y"}
 STRESSES = {"young", "yield_stress", "modulus", "B", "p0", "film_young", "film_yield"}
 
 

@@ -6,15 +6,16 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from made_histories import CYCLES, as_the_paper_says, at_rest, history, result_of
 
-from verification.cases.running_in.running_in_physics import ALL, FIRST, NUMBERS, PARTS
-from verification.cases.running_in.running_in_sensitivity import INPUTS, Studied, hardness, scene_at
-from verification.cases.running_in.study import NAMES, Run, framed, judged, measured, printed
+from sam.scene import load_scene
+from verification.cases.running_in.running_in_physics import ALL, RunningInPhysics
+from verification.cases.running_in.running_in_sensitivity import INPUTS, Studied, scene_at
+from verification.cases.running_in.study import NAMES, PARTS, Run, framed, judged, measured, with_seed
 from verification.compare.running_in_measures import History
 from verification.sensitivity import UNIFORM, design
 
 POINTS = 40
-GOOD = "moves, rough, new in each pass", "alternating", "kinematic"
-SCENES = {case: printed(case)[0] for case in NAMES}
+GOOD = "moves, rough, new in each pass; alternating friction; kinematic"
+SCENES = {case: load_scene(f"verification/scenes/running-in-{case}.toml") for case in NAMES}
 
 
 def verdicts(surfaces: Sequence[Mapping[str, History]]) -> list[dict]:
@@ -23,8 +24,8 @@ def verdicts(surfaces: Sequence[Mapping[str, History]]) -> list[dict]:
     for k, case in ((k, case) for k in range(len(surfaces)) for case in NAMES):
         there = case in surfaces[k]
         own = surfaces[k][case] if there else history(CYCLES)
-        runs[case, k] = Run(SCENES[case], result_of(own, converged=there))
-    return judged(measured(framed(runs, ("material", "surface")), ["surface"]))
+        runs["", case, k] = Run(SCENES[case], result_of(own, converged=there))
+    return judged(measured(framed(runs, PARTS), ["surface"]))
 
 
 def over_inputs(**changed: History) -> Studied:
@@ -38,20 +39,19 @@ def over_inputs(**changed: History) -> Studied:
         own = said[name]
         if shares[point, deciding] < 0.5:
             own = history(0.0 * own.volume, 0.3, own.sa)
-        runs[point, name] = Run(scene_at(SCENES[name], shares[point], 7), result_of(own))
+        runs[point, name, 7] = Run(scene_at(with_seed(SCENES[name], 7), shares[point]), result_of(own))
     return studied(shares, runs)
 
 
-def studied(shares: np.ndarray, runs: Mapping[tuple[int, str], Run]) -> Studied:
-    hard = {case: hardness(scene) for case, scene in SCENES.items()}
-    return Studied(framed(runs, ("point", "material")), np.asarray(shares), hard)
+def studied(shares: np.ndarray, runs: Mapping[tuple, Run]) -> Studied:
+    return Studied(framed(runs, PARTS), np.asarray(shares))
 
 
 def over_physics(**changed: History):
     """As the paper says under one physics; under the others nothing wears after the first cycle."""
     said = as_the_paper_says() | changed
     runs = {
-        (*physics, name): Run(SCENES[name], result_of(own if physics == GOOD else at_rest(own)))
+        (physics, name, 2): Run(SCENES[name], result_of(own if physics == GOOD else at_rest(own)))
         for physics in ALL
         for name, own in said.items()
     }
@@ -59,4 +59,4 @@ def over_physics(**changed: History):
 
 
 def framed_physics(runs):
-    return framed(runs, [*PARTS, "material"], NUMBERS | FIRST)
+    return framed(runs, PARTS, RunningInPhysics.numbers)

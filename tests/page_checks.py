@@ -5,22 +5,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 VOID = {"meta", "img", "br", "input", "link", "hr"}
-BLOCKS = {
-    "p",
-    "div",
-    "ul",
-    "ol",
-    "dl",
-    "table",
-    "section",
-    "figure",
-    "details",
-    "fieldset",
-    "h1",
-    "h2",
-    "h3",
-    "h4",
-}
+BLOCKS = set("p div ul ol dl table section figure details fieldset h1 h2 h3 h4".split())
 
 
 class PageReader(HTMLParser):

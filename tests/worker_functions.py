@@ -71,7 +71,7 @@ def solve_but_raise(scene, model, code, *how):
 
     if scene.loading.force != SPECIAL:
         return solve_scene(scene, model, code, *how)
-    original, models.solve = models.solve, lambda *_: fail(0.0)
+    original, models.solve = models.solve, lambda *_, **__: fail(0.0)
     try:
         return solve_scene(scene, model, code, *how)
     finally:

@@ -44,8 +44,7 @@ class Reference:
 
     values: quantity -> number in SI, or function of the places of its field; units: a (length), p0,
     approach, or others by which figures divide; curves: (table, column) -> function of the place in m;
-    deepest, inside: how far a field on the axis, a pressure along the surface is compared, in m; facts:
-    (name, number with unit) for the reader.
+    deepest, inside: how far a field on the axis, a pressure along the surface is compared, in m.
     """
 
     values: Mapping[str, Any]
@@ -53,7 +52,6 @@ class Reference:
     curves: Mapping[tuple[str, str], Callable] = field(default_factory=dict)
     deepest: float = np.inf
     inside: float = np.inf
-    facts: tuple[tuple[str, str], ...] = ()
 
 
 def modulus_of(scene: Scene) -> float:

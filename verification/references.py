@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -28,7 +29,7 @@ from verification.reference.coated_traction import (
 from verification.reference.elliptic import EllipticContact
 from verification.reference.flat_punch import FlatPunch
 from verification.reference.hamilton import sliding_stress
-from verification.reference.hertz import axis_stress, largest_von_mises
+from verification.reference.hertz import CircularContact, axis_stress, largest_von_mises
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
 from verification.reference.misfit_sphere import GrowingSphere
 from verification.reference.rounded_punch import RoundedPunch
@@ -42,41 +43,52 @@ def elliptic_contact(scene: Scene) -> EllipticContact:
     return EllipticContact(scene.loading.force, other.radius_x, other.radius_y, modulus_of(scene))
 
 
+def _pressed(
+    exact: CircularContact | FlatPunch | RoundedPunch,
+    stress: Callable[[np.ndarray], np.ndarray],
+    values: Mapping[str, float],
+    *,
+    p0: float,
+    inside: float = np.inf,
+    share: float = 1.0,
+) -> Reference:
+    """What contacts on a circle have in common. stress: at depths on the axis, (..., 6); share: of the body
+    in the displacement of both.
+    """
+    a = exact.contact_radius
+    known = {
+        "approach": exact.approach,
+        "pressure": lambda x, y: exact.pressure(np.hypot(x, y)),
+        "mises-axis": lambda z: von_mises(stress(z)),
+        **values,
+    }
+    curves = {
+        ("line", "p_Pa"): lambda x: exact.pressure(np.abs(x)),
+        ("line", "uz_m"): lambda x: share * exact.displacement(np.abs(x)),
+        ("axis", "szz_Pa"): lambda z: stress(z)[..., 2],
+        ("axis", "sxx_Pa"): lambda z: stress(z)[..., 0],
+        ("axis", "mises_Pa"): lambda z: von_mises(stress(z)),
+    }
+    return Reference(known, {"a": a, "p0": p0, "approach": exact.approach}, curves, 2.0 * a, inside)
+
+
 def hertz_sphere(scene: Scene) -> Reference:
     """Hertz (1882), Huber (1904)."""
     exact, nu = contact_of(scene), scene.body.poisson
-    a, p0, delta = exact.contact_radius, exact.peak_pressure, exact.approach
+    a, p0 = exact.contact_radius, exact.peak_pressure
     largest, depth = largest_von_mises(p0, a, nu)
-    share = exact.modulus * (1.0 - nu**2) / scene.body.young  # of the body in the displacement of both
-
-    def stress(z: np.ndarray) -> np.ndarray:
-        return axis_stress(np.abs(z), p0, a, nu)
-
-    return Reference(
-        {
-            "p-max": p0,
-            "approach": delta,
-            "load": exact.force,
-            "radius": a,
-            "area": math.pi * a**2,
-            "mises-max": largest,
-            "mises-depth": depth,
-            "pressure": lambda x, y: exact.pressure(np.hypot(x, y)),
-            "mises-axis": lambda z: von_mises(stress(z)),
-            "peeq-max": 0.0,
-        },
-        {"a": a, "p0": p0, "approach": delta},
-        {
-            ("line", "p_Pa"): lambda x: exact.pressure(np.abs(x)),
-            ("line", "gap_m"): lambda x: exact.gap(np.abs(x)),
-            ("line", "uz_m"): lambda x: share * exact.displacement(np.abs(x)),
-            ("axis", "szz_Pa"): lambda z: stress(z)[..., 2],
-            ("axis", "sxx_Pa"): lambda z: stress(z)[..., 0],
-            ("axis", "mises_Pa"): lambda z: von_mises(stress(z)),
-        },
-        deepest=2.0 * a,
-        facts=(("Contact radius a, peak pressure p₀", f"{a * 1e6:.4f} µm, {p0 / 1e9:.4f} GPa"),),
-    )
+    share = exact.modulus * (1.0 - nu**2) / scene.body.young
+    values = {
+        "p-max": p0,
+        "load": exact.force,
+        "radius": a,
+        "area": math.pi * a**2,
+        "mises-max": largest,
+        "mises-depth": depth,
+        "peeq-max": 0.0,
+    }
+    found = _pressed(exact, lambda z: axis_stress(np.abs(z), p0, a, nu), values, p0=p0, share=share)
+    return replace(found, curves={**found.curves, ("line", "gap_m"): lambda x: exact.gap(np.abs(x))})
 
 
 def hertz_ellipse(scene: Scene) -> Reference:
@@ -88,7 +100,6 @@ def hertz_ellipse(scene: Scene) -> Reference:
     def mises(z: np.ndarray) -> np.ndarray:
         return von_mises(exact.axis_stress(z, nu))
 
-    size = f"{a * 1e6:.4f} µm, {b * 1e6:.4f} µm"
     return Reference(
         {
             "p-max": p0,
@@ -102,7 +113,6 @@ def hertz_ellipse(scene: Scene) -> Reference:
         {"a": a, "b": b, "p0": p0, "approach": exact.approach},
         {("line", "p_Pa"): lambda x: exact.pressure(x, 0.0), ("axis", "mises_Pa"): mises},
         deepest=2.0 * min(a, b),
-        facts=(("Semi-axes a (along x), b (along y)", size), ("Peak pressure p₀", f"{p0 / 1e9:.4f} GPa")),
     )
 
 
@@ -112,30 +122,8 @@ def flat_punch(scene: Scene) -> Reference:
         FlatPunch(scene.loading.force, scene.counterbody.radius, modulus_of(scene)),
         scene.body.poisson,
     )
-    a, centre = exact.contact_radius, float(exact.pressure(0.0))
-
-    def mises(z: np.ndarray) -> np.ndarray:
-        return von_mises(exact.axis_stress(z, nu))
-
-    return Reference(
-        {
-            "approach": exact.approach,
-            "p-center": centre,
-            "pressure": lambda x, y: exact.pressure(np.hypot(x, y)),
-            "mises-axis": mises,
-        },
-        {"a": a, "p0": centre, "approach": exact.approach},
-        {
-            ("line", "p_Pa"): lambda x: exact.pressure(np.abs(x)),
-            ("line", "uz_m"): lambda x: exact.displacement(np.abs(x)),
-            ("axis", "mises_Pa"): mises,
-        },
-        deepest=2.0 * a,
-        inside=0.8 * a,
-        facts=(
-            ("Approach δ, pressure in the centre", f"{exact.approach * 1e6:.5f} µm, {centre / 1e9:.4f} GPa"),
-        ),
-    )
+    centre, inside = float(exact.pressure(0.0)), 0.8 * exact.contact_radius
+    return _pressed(exact, lambda z: exact.axis_stress(z, nu), {"p-center": centre}, p0=centre, inside=inside)
 
 
 def rounded_contact(scene: Scene) -> RoundedPunch:
@@ -151,33 +139,8 @@ def rounded_punch(scene: Scene) -> Reference:
     exact, nu = rounded_contact(scene), scene.body.poisson
     a, b, centre = exact.contact_radius, exact.flat, float(exact.pressure(0.0))
     largest = float(exact.pressure(np.linspace(b, a, 4001)).max())
-
-    def mises(z: np.ndarray) -> np.ndarray:
-        return von_mises(exact.axis_stress(z, nu))
-
-    return Reference(
-        {
-            "approach": exact.approach,
-            "radius": a,
-            "p-center": centre,
-            "p-max": largest,
-            "pressure": lambda x, y: exact.pressure(np.hypot(x, y)),
-            "mises-axis": mises,
-        },
-        {"a": a, "p0": centre, "approach": exact.approach},
-        {
-            ("line", "p_Pa"): lambda x: exact.pressure(np.abs(x)),
-            ("line", "uz_m"): lambda x: exact.displacement(np.abs(x)),
-            ("axis", "mises_Pa"): mises,
-        },
-        deepest=2.0 * a,
-        inside=b,
-        facts=(
-            ("Contact radius a, flat end b/a", f"{a * 1e6:.5f} µm, {b / a:.5f}"),
-            ("Approach δ", f"{exact.approach * 1e9:.4f} nm"),
-            ("Pressure: centre, largest", f"{centre / 1e9:.4f}, {largest / 1e9:.4f} GPa"),
-        ),
-    )
+    values = {"radius": a, "p-center": centre, "p-max": largest}
+    return _pressed(exact, lambda z: exact.axis_stress(z, nu), values, p0=centre, inside=b)
 
 
 @cache
@@ -243,15 +206,13 @@ def hamilton(scene: Scene) -> Reference:
     return Reference(
         {"stress": lambda x, y, z: sliding_stress(x, y, z, 1.0, **unit)},
         {"a": a, "p0": p0},
-        facts=(("Radius a of the pressure", f"{a * 1e6:.4f} µm"),),
     )
 
 
 def travelling_load(scene: Scene) -> Reference:
     """The shakedown limit below a Hertz pressure that travels."""
     bound = upper_bound(scene.coefficient, nu=scene.body.poisson)
-    facts = (("Upper bound of p₀/k", f"{bound:.3f}"),)
-    return Reference({}, {"a": scene.loading.radius, "p0": scene.loading.p0}, facts=facts)
+    return Reference({"bound of p0/k": bound}, {"a": scene.loading.radius, "p0": scene.loading.p0})
 
 
 def coated_traction(scene: Scene) -> Reference:
@@ -259,10 +220,6 @@ def coated_traction(scene: Scene) -> Reference:
     load, layers, h = scene.loading, layers_of(scene), scene.body.coating.thickness
     given = layers, load.p0, load.radius, scene.coefficient
     film, body = (coated_traction_mises(*given, film=side) for side in (True, False))
-    size = ", ".join(
-        f"{name} {each.value / 1e9:.5g} GPa at x = {each.r / load.radius:+.3f} a, z = {each.z / h:.3f} h"
-        for name, each in (("film", film), ("body", body))
-    )
 
     def interface(x: np.ndarray) -> np.ndarray:
         return von_mises(coated_sliding_stress(*given, x=x, z=h)[:, 0])
@@ -270,7 +227,6 @@ def coated_traction(scene: Scene) -> Reference:
     return Reference(
         {"mises-film": film.value, "mises-body": body.value, "mises-interface": interface},
         {"a": load.radius, "p0": load.p0, "h": h},
-        facts=(("Largest von Mises stress in closed form", size),),
     )
 
 

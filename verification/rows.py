@@ -4,8 +4,9 @@
 A file `verification/cases/<family>/<name>.toml` is a case, or several where it has tables `[cases.NAME]`,
 each of which overrides the keys above it. A row is `name = [metric, tolerance, reason, words]` in a table
 `[rows.KIND]`; its id is `<case>.<name>`; words may be the name of its quantity where the row has another.
-Braces stand for several rows: `"{sam,fem}-radius"` with "radius, {SAM,FEM}" are two. A reason, or words,
-"@name" stand in `[reasons]`, an equation "name" in equations.toml.
+Braces stand for several rows: `"{sam,fem}-radius"` with "radius, {SAM,FEM}" are two; in the name of a case
+for several cases, with as many in its title and values. A reason, or words, "@name" stand in `[reasons]`, an
+equation "name" in equations.toml.
 
 Where a case has tables `[sweeps.NAME]`, the last entry of a row of a kind alone says what it takes of their
 points, see `Take`: `"order p-max of sam"`, `"share of fem at depth = 3"`, `"limit peeq-max of sam | of fem"`
@@ -243,8 +244,24 @@ def read_cases(path: Path) -> list[CaseFile]:
         raise SceneError([Problem("case file", path.name, str(error))], str(path)) from error
     own, reasons = content.pop("cases", {}), content.pop("reasons", {})
     common = {"name": path.stem.replace("_", "-"), "family": path.parent.name, "path": path}
-    cases = [merged(content, case | {"name": name}) for name, case in own.items()] if own else [content]
+    named: dict[str, dict[str, Any]] = {}
+    for heads, case in own.items():
+        for k, name in enumerate(names := _braces(heads)):
+            one = {
+                key: value if key == "rows" else _chosen(value, k, len(names)) for key, value in case.items()
+            }
+            named[name] = merged(named.get(name, {}), one)
+    cases = [merged(content, case | {"name": name}) for name, case in named.items()] if own else [content]
     return [_case(common | case, reasons) for case in cases]
+
+
+def _chosen(value: Any, k: int, count: int) -> Any:
+    """The one of `count` texts or numbers that braces stand for; other values as they are."""
+    if isinstance(value, dict):
+        return {key: _chosen(each, k, count) for key, each in value.items()}
+    if not isinstance(value, str) or len(texts := _braces(value)) != count or count == 1:
+        return value
+    return float(texts[k]) if re.fullmatch(r"[0-9.e+-]+", texts[k]) else texts[k]
 
 
 def merged(first: Mapping, second: Mapping) -> dict:

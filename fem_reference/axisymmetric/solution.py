@@ -11,7 +11,7 @@ import numpy as np
 
 from fem_reference.axisymmetric import recovery
 from fem_reference.axisymmetric.model import Model, build
-from fem_reference.axisymmetric.planner import plan
+from fem_reference.axisymmetric.planner import AxisymmetricPlan, plan
 from fem_reference.axisymmetric.recovery import Stresses
 from fem_reference.common import solution
 from fem_reference.common.arrays import Array
@@ -103,6 +103,8 @@ def solve(
     progress: Progress | None = None,
     checkpoint: Keep | None = None,
     start: Checkpoint | None = None,
+    *,
+    plan: AxisymmetricPlan | None = None,
 ) -> Result:
     """Solve a frictionless, smooth scene by axisymmetric finite elements.
 
@@ -116,6 +118,8 @@ def solve(
         Called with a Checkpoint after each step of the schedule of a body that can yield.
     start : Checkpoint, optional
         One of them, of the same scene, to go on from there to the same result.
+    plan : AxisymmetricPlan, optional
+        What `plan` made of the scene; without it that is done here.
 
     Returns
     -------
@@ -131,7 +135,7 @@ def solve(
     ValueError
         For a `start` of another model.
     """
-    return solution.solve(METHOD, scene, progress=progress, checkpoint=checkpoint, start=start)
+    return solution.solve(METHOD, scene, progress=progress, checkpoint=checkpoint, start=start, plan=plan)
 
 
 def load_steps(scene: Scene, record: Checkpoint | None = None) -> tuple[Model, list[Step]]:

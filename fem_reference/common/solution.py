@@ -150,9 +150,10 @@ def solve(
     progress: Progress | None,
     checkpoint: Keep | None,
     start: Checkpoint | None,
+    plan: P | None,
 ) -> Result:
     """Solve a scene with the method of a geometry; parameters as of `fem_reference.solve`."""
-    plan = method.plan(scene)
+    plan = method.plan(scene) if plan is None else plan
     check_model(start, plan.model)
     clock = Clock(start)
     model = method.build(plan)

@@ -150,6 +150,8 @@ def solve(
     progress: Progress | None = None,
     checkpoint: Keep | None = None,
     start: Checkpoint | None = None,
+    *,
+    plan: SpatialPlan | None = None,
 ) -> Result:
     """Solve a smooth or rough scene with or without friction by finite elements in three dimensions.
 
@@ -157,7 +159,7 @@ def solve(
     ----------
     scene : Scene
         A rigid counter-body on a smooth or rough body, or given tractions of Hertz.
-    progress, checkpoint, start : optional
+    progress, checkpoint, start, plan : optional
         As of `fem_reference.solve`.
 
     Returns
@@ -173,7 +175,7 @@ def solve(
     ValueError
         For a `start` of another model.
     """
-    return solution.solve(METHOD, scene, progress=progress, checkpoint=checkpoint, start=start)
+    return solution.solve(METHOD, scene, progress=progress, checkpoint=checkpoint, start=start, plan=plan)
 
 
 def load_steps(scene: Scene, record: Checkpoint | None = None) -> tuple[Model, list[Step]]:

@@ -32,16 +32,13 @@ README = (ROOT / "README.md").read_text()
 FILM = {"thickness": 1e-6, "young": 400e9, "poisson": 0.3}
 
 
-def hardened(law: str, folder: Path):
-    (folder / "curve.csv").write_text(YIELD_CURVE)
-    (folder / "p.csv").write_text("depth_m,factor\n0,2\n1e-6,1\n")
-    (folder / "scene.toml").write_text(f"{SPHERE_TEXT}[body.plasticity]\n{HARDENING[law]}profile = 'p.csv'\n")
-    return load_scene(folder / "scene.toml")
-
-
 @pytest.mark.parametrize("law", LAWS)
 def test_every_law_is_written_once_more_by_the_checks_and_in_the_guide(law, tmp_path):
-    found = hardened(law, tmp_path)
+    (tmp_path / "curve.csv").write_text(YIELD_CURVE)
+    (tmp_path / "p.csv").write_text("depth_m,factor\n0,2\n1e-6,1\n")
+    text = f"{SPHERE_TEXT}[body.plasticity]\n{HARDENING[law]}profile = 'p.csv'\n"
+    (tmp_path / "scene.toml").write_text(text)
+    found = load_scene(tmp_path / "scene.toml")
     peeq, z = np.meshgrid([0.0, 5e-4, 3e-3, 0.03], [0.0, 4e-7, 2e-6])
     expected = found.body.plasticity.depth_profile()(z) * found.body.plasticity.curve().stress(peeq)
     # fewer than ten roundings, of terms no larger than three times the result

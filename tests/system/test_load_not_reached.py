@@ -20,8 +20,8 @@ from fem_reference.common import loading
 from sam.plasticity import history, load_step as plastic_step
 from sam.scene import Status
 from sam.scene.result import LAST, PEAK
-from samfem import solving
 from samfem.cli import main
+from verification.figures import space
 from verification.runs.files import of_last_load, read_run
 
 
@@ -136,7 +136,7 @@ def solved(tmp_path_factory):
     (folder / "edge.toml").write_text(scene_text(add="steps = 8\n" + law + grid))
     command = ["solve", str(folder / "edge.toml"), "--out", str(folder / "out"), "--figures"]
     with pytest.MonkeyPatch.context() as patched, redirect_stdout(out), redirect_stderr(err):
-        patched.setattr(solving, "draw_run", lambda _folder: [])  # pictures in space: not looked at here
+        patched.setattr(space, "draw_run", lambda _folder: [])  # pictures in space: not looked at here
         assert main(command) == 1
     return folder / "out", out.getvalue(), err.getvalue()
 

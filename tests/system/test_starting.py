@@ -10,7 +10,7 @@ from builders import scene_text
 
 from sam.scene import Scene, load_scene
 from sam.scene.load import parse_toml
-from samfem.cli import STARTS, main
+from samfem.cli import SHELLS, STARTS
 from samfem.compared import asked
 from samfem.starting import KINDS, SCENES, json_schema
 from verification.runs import models
@@ -25,23 +25,16 @@ def schema():
     return jsonschema.Draft202012Validator(found)
 
 
-@pytest.fixture
-def here(tmp_path, monkeypatch):
-    """An empty folder, the current one."""
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
 @pytest.mark.parametrize("kind", STARTS)
-def test_a_new_scene_is_commented_and_can_be_solved(here, capsys, schema, kind):
-    assert main(["new", kind]) == 0
-    advised = [line.split()[1:3] for line in capsys.readouterr().out.splitlines() if "  samfem " in line]
-    text = (here / f"{kind}.toml").read_text()
+def test_a_new_scene_is_commented_and_can_be_solved(folder, samfem, schema, kind):
+    shown = samfem("new", kind).out
+    advised = [line.split()[1:3] for line in shown.splitlines() if "  samfem " in line]
+    text = (folder / f"{kind}.toml").read_text()
     assert text.count("#") >= 3 and tuple(KINDS) == STARTS
     assert not list(schema.iter_errors(parse_toml(text.encode(), kind)))
-    scene = load_scene(here / f"{kind}.toml")
+    scene = load_scene(folder / f"{kind}.toml")
     for command, path in advised:
-        assert path == f"{kind}.toml" and main(["plan", path]) == 0
+        assert path == f"{kind}.toml" and samfem("plan", path)
         asked(scene) if command == "compare" else models.check(scene, models.SAM)
     if ["compare", f"{kind}.toml"] not in advised:
         with pytest.raises(models.ModelError):
@@ -52,12 +45,11 @@ def test_a_new_scene_is_commented_and_can_be_solved(here, capsys, schema, kind):
         assert models.solve(scene, models.SAM).converged
 
 
-def test_nothing_is_overwritten(here, capsys):
-    (here / "measured.csv").write_text("mine")
-    assert main(["new", "measured"]) == 2
-    assert "measured.csv: there already" in capsys.readouterr().err
-    assert [path.name for path in here.iterdir()] == ["measured.csv"]
-    assert (here / "measured.csv").read_text() == "mine"
+def test_nothing_is_overwritten(folder, samfem):
+    (folder / "measured.csv").write_text("mine")
+    assert "measured.csv: there already" in samfem("new", "measured", code=2).err
+    assert [path.name for path in folder.iterdir()] == ["measured.csv"]
+    assert (folder / "measured.csv").read_text() == "mine"
 
 
 @pytest.mark.parametrize(
@@ -70,18 +62,16 @@ def test_nothing_is_overwritten(here, capsys):
         (("completion", "ksh"), "ksh"),
     ],
 )
-def test_wrong_words_are_refused_and_nothing_is_made(here, capsys, words, said):
-    assert main(words) == 2
-    assert said in capsys.readouterr().err
-    assert not list(here.iterdir())
+def test_wrong_words_are_refused_and_nothing_is_made(refused, words, said):
+    assert said in refused(*words)
 
 
-def test_examples_are_listed_and_copied_with_their_files(here, capsys):
-    assert main(["examples"]) == 0
-    assert "hertz-sphere" in (listed := capsys.readouterr().out) and "pin" in listed
-    assert main(["examples", "pin", "--out", "mine.toml"]) == 0
-    assert {path.name for path in here.iterdir()} == {"mine.toml", "pin.csv"}
-    assert load_scene(here / "mine.toml").surface.measured.cells == (64, 64)
+def test_examples_are_listed_and_copied_with_their_files(folder, samfem):
+    listed = samfem("examples").out
+    assert "hertz-sphere" in listed and "pin" in listed
+    samfem("examples", "pin", "--out", "mine.toml")
+    assert {path.name for path in folder.iterdir()} == {"mine.toml", "pin.csv"}
+    assert load_scene(folder / "mine.toml").surface.measured.cells == (64, 64)
 
 
 def test_the_schema_takes_every_scene_of_the_cases(schema):
@@ -109,17 +99,11 @@ def test_the_schema_refuses_what_the_program_refuses(schema, old, new):
     assert list(schema.iter_errors(parse_toml(text.replace(old, new, 1).encode(), "scene")))
 
 
-@pytest.mark.parametrize("words", [(), ("--study",)])
-def test_schema_prints_json(capsys, words):
-    assert main(["schema", *words]) == 0
-    jsonschema.Draft202012Validator.check_schema(json.loads(capsys.readouterr().out))
-
-
-@pytest.mark.parametrize("shell", ["bash", "zsh"])
-def test_completion_names_commands_and_options(here, capsys, shell):
-    assert main(["completion", shell]) == 0
-    script = capsys.readouterr().out
-    assert "compare" in script and "--figures" in script
-    if shell == "bash":
-        (here / "complete").write_text(script)
-        subprocess.run(["bash", "-n", here / "complete"], check=True)
+def test_schema_and_completion_are_printed(folder, samfem):
+    for words in ((), ("--study",)):
+        jsonschema.Draft202012Validator.check_schema(json.loads(samfem("schema", *words).out))
+    for shell in SHELLS:
+        script = samfem("completion", shell).out
+        assert "compare" in script and "figures" in script
+    (folder / "complete").write_text(samfem("completion", "bash").out)
+    subprocess.run(["bash", "-n", folder / "complete"], check=True)

@@ -3,11 +3,9 @@
 
 import json
 
-import numpy as np
-import pandas as pd
 import pytest
 from builders import PERFECT, SPHERE, STEEL, scene_text
-from made_results import context, of_frame, red
+from made_results import context
 from pydantic import ValidationError
 
 from sam import choose_grid
@@ -161,6 +159,7 @@ def test_load_steps_that_are_cut_differently_are_made_more():
         ({"solver": {"accuracy": 0.01, "accuracy_of": ("peak",)}}, "p_max_Pa"),
         ({"solver": {"accuracy": 1e-6}}, 'or in percent, such as "1 %"'),
         ({"solver": {"accuracy": "a little"}}, 'or in percent, such as "1 %"'),
+        ({"loading": {"force": 0.0}}, "loading.force above 0: without contact there is no error"),
     ],
 )
 def test_wrong_keys_are_refused(tables, words):
@@ -180,12 +179,6 @@ def test_what_was_not_measured_is_refused(change, more, words):
         first_choice(asked(0.01, ELASTIC | change, **more), SAM)
 
 
-@pytest.mark.parametrize("tables", [ELASTIC, YIELDING])
-def test_there_is_no_error_without_load(tables):
-    with pytest.raises(ValidationError, match=r"loading.force above 0: without contact there is no error"):
-        Scene(**tables | {"loading": {"force": 0.0}, "solver": {"accuracy": 0.01}})
-
-
 def test_the_plan_announces_it():
     content = plan(asked(0.02))["models"][0]
     (stage,) = (each for each in content["stages"] if each["stage"] == "accuracy")
@@ -203,19 +196,6 @@ def test_the_command_reaches_it(folder, samfem):
     assert found["reached"] and found["quantity"] == "p_max_Pa" and found["relative"] <= 0.01
     exact = CircularContact(0.65, SPHERE["radius"], STEEL["young"] / (1 - 0.3**2)).peak_pressure
     assert abs(summary["quantities"]["p_max_Pa"] / exact - 1) < 0.01
-
-
-def test_the_case_counts_what_is_missed_without_a_word():
-    """Of three runs one is reached, one is refused, one is missed unsaid."""
-    good = {"sweep": "", "model": "sam", "reached": 1.0, "unsaid": 0.0, "over-fixed": 2.5}
-    refused = {**good, "reached": 0.0, "over-fixed": np.nan}
-    unsaid = {**good, "reached": 0.0, "unsaid": 1.0, "over-fixed": 12.0}
-
-    def red_of(*rows):
-        return red("accuracy", of_frame("accuracy", pd.DataFrame(rows)), whole=True)
-
-    assert red_of(good) == set() and red_of(good, refused) == {"reached"}
-    assert red_of(good, refused, unsaid) == {"reached", "unsaid", "over-fixed"}
 
 
 def test_the_scenes_of_the_case_have_a_first_choice_and_rows(tmp_path):

@@ -9,7 +9,7 @@ from builders import parsed
 from stored import COARSE
 
 from sam.scene import Scene, SceneError, Status, resolved
-from samfem.compared import asked, compared
+from samfem.compared import asked
 from verification.compare.comparison import compare_scene, names_of_rows
 from verification.compare.rows import COLUMNS
 
@@ -17,7 +17,7 @@ from verification.compare.rows import COLUMNS
 def judged(tolerances=None, base: Scene = COARSE, *, wide: float | None = 1.0, **how):
     """The comparison of a scene, with every tolerance `wide` but those given."""
     every = dict.fromkeys(names_of_rows(base), wide) if wide else {}
-    return compared(base, tolerances=every | (tolerances or {}), **how)
+    return asked(base, tolerances=every | (tolerances or {}), **how).answer()
 
 
 def test_the_frame_and_the_line_say_what_the_rows_say(counted):
@@ -47,8 +47,8 @@ def test_a_model_that_did_not_converge_is_named_and_nothing_passes(counted):
 def test_a_tolerance_that_is_given_stands_before_that_of_the_scene_and_that_before_the_default(counted):
     of_scene = {"p_max_Pa": 0.02, "approach_m": 0.03}
     base = Scene(**{**resolved(COARSE), "compare": {"tolerances": of_scene}})
-    default = {row.quantity: row for row in compared(COARSE).rows}
-    rows = {row.quantity: row for row in compared(base, tolerances={"p_max_Pa": "4 %"}).rows}
+    default = {row.quantity: row for row in asked(COARSE).answer().rows}
+    rows = {row.quantity: row for row in asked(base, tolerances={"p_max_Pa": "4 %"}).answer().rows}
     assert rows["p_max_Pa"].row.tolerance == 0.04 and "argument tolerance" in rows["p_max_Pa"].row.reason
     assert (
         rows["approach_m"].row.tolerance == 0.03 and "[compare] tolerances" in rows["approach_m"].row.reason

@@ -10,8 +10,8 @@ from builders import MODULUS, RADIUS, SPHERE, STEEL, SWIFT, scene_text
 
 import sam
 from sam.scene import Result, Scene, Status
-from samfem.compared import compared
-from samfem.comparison_page import Scenes, write_report
+from samfem.compared import asked
+from samfem.comparison_page import write_report
 from verification.runs import models
 from verification.runs.files import read_run, read_summary
 from verification.runs.meshes import mesh_names
@@ -168,9 +168,9 @@ def test_every_file_and_figure_says_that_a_contact_is_outside_of_the_model(folde
 
 
 def test_compare_says_it_on_its_page_and_in_python(folder):
-    found = compared(scene(fem={"cells_per_radius": 8}, loading={"force": 5.0}))
+    found = asked(scene(fem={"cells_per_radius": 8}, loading={"force": 5.0})).answer()
     assert len(found.range_lines) == 1 and "mean pressure -3.2 %" in found.range_lines[0]
-    page = write_report(Scenes({"five": found}, {}), folder / "page").read_text()
+    page = write_report({"five": found}, {}, folder / "page").read_text()
     assert "the flat half-space of small strains: mean pressure" in page
     assert (
         found.range_lines[0]

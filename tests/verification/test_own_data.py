@@ -12,7 +12,7 @@ from stored import BOTH
 from vtkmodules.vtkIOExodus import vtkExodusIIWriter
 
 from sam.scene import Scene, SceneError, resolved
-from samfem.compared import NOT_COMPARED, asked, compared
+from samfem.compared import NOT_COMPARED, asked
 from samfem.refusals import SeveralError
 from verification.compare.comparison import CENTRE
 from verification.runs import models
@@ -78,7 +78,7 @@ def beside(store, tmp_path):
     """Quantity -> row of the one data that are compared, and the frame of the comparison."""
 
     def run(path):
-        found = compared(SCENE, data=[tmp_path / path], store=store)
+        found = asked(SCENE, data=[tmp_path / path]).answer(store=store)
         assert not found.failed
         return {row.quantity: row for row in found.beside[0]}, found.frame.set_index("quantity")
 

@@ -181,19 +181,16 @@ def interrupted(*arguments, **keys):
 class Shared(Case):
     """A case of hours, of which scenes may be solved ahead."""
 
-    scenes = tuple(with_loading(COARSE, force=share * COARSE.loading.force) for share in (1.0, 1.1, 1.2))
+    scenes = tuple(with_loading(COARSE, force=share * COARSE.loading.force) for share in (1.0, 1.1))
 
     def ahead(self, context):
-        return self.scenes[:2]
-
-    def then(self, scene, result):
-        return self.scenes[2] if scene == self.scenes[1] else None
+        return self.scenes
 
     def solve(self, context):
         return [context.solve(models.SAM, scene, str(k)) for k, scene in enumerate(self.scenes)]
 
     def measure(self, found):
-        return {"one": Measured(len(found), 3)}
+        return {"one": Measured(len(found), 2)}
 
 
 def test_scenes_of_a_long_case_are_solved_ahead_and_the_case_says_their_time(
@@ -205,7 +202,7 @@ def test_scenes_of_a_long_case_are_solved_ahead_and_the_case_says_their_time(
     run(tmp_path)
     order = [name for name, _ in Here.started]
     assert order == ["first", "long", "long", "long"]  # two scenes, and the case
-    assert counted == 3 * [models.SAM]  # "first" has one of the scenes, and the second leads to another
+    assert counted == 2 * [models.SAM]  # "first" has one of the scenes
     results = report_in(tmp_path)
     assert results["cases"][0]["seconds"] > 0.0 and not results["cases"][0]["failure"]
 
@@ -213,11 +210,8 @@ def test_scenes_of_a_long_case_are_solved_ahead_and_the_case_says_their_time(
 class Lost(Shared):
     """None of its runs converges, which it expects."""
 
-    def then(self, scene, result):
-        return None
-
     def solve(self, context):
-        return [context.solve(models.SAM, scene, "lost", demand=False) for scene in self.scenes[:2]]
+        return [context.solve(models.SAM, scene, "lost", demand=False) for scene in self.scenes]
 
     def measure(self, found):
         return {"one": Measured(sum(not one.converged for one in found), 2)}

@@ -77,13 +77,6 @@ def test_a_value_without_a_row_of_its_case_is_red():
         assert verdict.row.id == name and verdict.status is RowStatus.FAILED and "no gate" in verdict.note
 
 
-@pytest.mark.parametrize("metric", ["relative", "absolute", "relative_l2", "at_most", "at_least", "equal"])
-def test_every_metric_turns_red_outside_its_tolerance(metric):
-    gate = row("x", "y", metric=metric, tolerance=0.0 if metric == "equal" else 0.1)
-    assert judge(gate, synthetic(gate, 0.99)).status is RowStatus.PASSED
-    assert judge(gate, synthetic(gate, 1.01)).status is RowStatus.FAILED
-
-
 @pytest.mark.parametrize(
     ("metric", "measured"),
     [
@@ -146,6 +139,14 @@ def test_a_file_holds_several_cases_which_override_and_rows_in_braces(tmp_path):
         rows = {"a": (tolerance, "quantity a", "exact"), **pair}
         assert said[name] == {f"{name}.{key}": row for key, row in rows.items()}
     assert cases["first"].rows[0].reason == "why it is so" and cases["second"].levels == ("full",)
+
+
+def test_braces_in_the_name_of_a_case_stand_for_several(tmp_path):
+    text = '[cases."c-{2,3}"]\ntitle = "p = {2,3}"\nscene = "s"\nvary = {p = "{2,3}", law = "{a,b,c}"}\n'
+    cases = cases_in(text + '[cases.c-3]\nlevels = ["full"]\n', tmp_path)
+    said = {name: (case.title, case.vary["p"], case.levels) for name, case in cases.items()}
+    assert said == {"c-2": ("p = 2", 2.0, ("quick", "full")), "c-3": ("p = 3", 3.0, ("full",))}
+    assert {case.vary["law"] for case in cases.values()} == {"{a,b,c}"}
 
 
 def test_rows_of_models_take_their_words_from_the_vocabulary(tmp_path):

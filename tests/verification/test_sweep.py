@@ -55,7 +55,7 @@ def folder(folder) -> Path:
 @pytest.fixture
 def no_figure(monkeypatch) -> None:
     """For tests of something else: drawing takes longer than the scenes."""
-    monkeypatch.setattr(sweeping, "_draw", lambda _state: None)
+    monkeypatch.setattr(sweeping, "sweep_figure", lambda *_: None)
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +78,7 @@ def calm(tmp_path_factory) -> bytes:
     write_study(place)
     words = ["sweep", str(place / "study.toml"), "--out", str(place / "out"), "--workers", "1", "--no-store"]
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(sweeping, "_draw", lambda _state: None)
+        patched.setattr(sweeping, "sweep_figure", lambda *_: None)
         assert main(words) == 0
     return (place / "out" / "sweep.csv").read_bytes()
 

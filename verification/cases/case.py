@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel
 
-from sam.scene import Body, CounterBody, Grid, Progress, Result, Scene, printable, read_scene
+from sam.scene import Grid, Progress, Result, Scene, printable, read_scene
 from verification.figures import space
 from verification.judging import Measured
 from verification.rows import LEVELS, CaseFile
@@ -144,10 +144,6 @@ class Case:
         `solve` then takes the results from the store.
         """
         return ()
-
-    def then(self, scene: Scene, result: Result) -> Scene | None:
-        """The scene that `solve` goes on to from one of `ahead` with its result; none where it does not."""
-        return None
 
     def measure(self, found: Any) -> Mapping[str, Measured | float]:
         """Row id without the name of the case -> value; a number alone stands for one without an expected
@@ -329,22 +325,6 @@ def with_mesh(scene: Scene, cells_per_radius: int) -> Scene:
     return with_keys(scene, "fem", cells_per_radius=cells_per_radius)
 
 
-def elastic_text(body: Body | CounterBody) -> str:
-    """The elastic constants of a body for the reader."""
-    return f"E = {body.young / 1e9:g} GPa, ν = {body.poisson:g}"
-
-
-def grid_text(sam: Result, a: float) -> str:
-    """The cells of a SAM result for the reader; a: the contact radius in m, along x."""
-    cells, cell = sam.discretisation["cells"], sam.discretisation["cell_m"][0]
-    return f"{cells[0]} × {cells[1]} cells of {cell * 1e9:.1f} nm (a/{a / cell:.1f})"
-
-
-def mesh_text(fem: Result) -> str:
-    """The mesh of a FEM result for the reader."""
-    return f"{fem.discretisation['elements']} elements, {fem.discretisation['dofs']} degrees of freedom"
-
-
 __all__ = [
     "FEM",
     "FEM_3D",
@@ -357,9 +337,6 @@ __all__ = [
     "Outcome",
     "Plot",
     "SmallTable",
-    "elastic_text",
-    "grid_text",
-    "mesh_text",
     "number",
     "with_body",
     "with_grid",

@@ -1,48 +1,29 @@
 # SPDX-License-Identifier: MIT
-"""A case without code: one scene or variants of one, solved by the models that its file names, each held
-against the reference, and SAM against finite elements; and the points of its sweeps. Everything that is shown
-follows from the vocabulary.
+"""The case of a file: one scene or variants of one, solved by the models that the file names, each held
+against the reference, and SAM against finite elements; and the points of its sweeps. What is shown follows
+from the vocabulary.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import reduce
+from numbers import Real
 from typing import Any
 
 import numpy as np
 
-from sam.scene import Result, Scene
-from verification.cases.case import (
-    Case,
-    Context,
-    Plot,
-    SmallTable,
-    View,
-    elastic_text,
-    grid_text,
-    mesh_text,
-)
+from sam.scene import Result, Scene, Section
+from verification.cases.case import Case, Context, Plot, SmallTable, View
 from verification.cases.recipes import RECIPES, beside, changed
-from verification.cases.sweep import MODELS, framed, points, ran, tables_of, taken
-from verification.compare.comparison import compare_scene
+from verification.cases.sweep import MODELS, differences, framed, points, spelt, tables_of, taken
 from verification.judging import Measured
 from verification.quantities import QUANTITIES, Quantity, Reference, Solved, of_passes
 from verification.references import REFERENCES
 from verification.rows import CaseFile, merged
 from verification.runs.models import SAM
 from verification.text.console import number
-
-COUNTED = {
-    "plastic_iterations": "plastic iterations",
-    "operator_applications": "applications of the residual-stress operator",
-    "newton_iterations": "Newton iterations",
-    "step_cuts": "load steps cut",
-    "setup_s": "set-up [s]",
-    "solve_s": "solution [s]",
-}
 
 
 def scene_of(context: Context, file: CaseFile, *changes: Mapping[str, Any]) -> Scene:
@@ -70,11 +51,12 @@ class Compared(Case):
         }
 
     def _solved(self, context: Context, name: str, variant: Mapping[str, Any]) -> Solved:
-        if not self.file.scene:
-            return Solved(None, None, {}, framed(context, self.file, None))
-        file, scene = self.file, scene_of(context, self.file, variant)
-        answer = beside(file, file.reference, REFERENCES) if file.reference else None
-        given, results = Reference(file.values, {}) if file.values else None, {}
+        file = self.file
+        if not file.scene:
+            return Solved(None, None, {}, framed(context, file, None))
+        scene, results = scene_of(context, file, variant), {}
+        answer = beside(file, file.reference, REFERENCES)(scene) if file.reference else None
+        given = Reference(file.values, {}) if file.values else None
         models = {model.partition("-")[0]: MODELS[model] for model in file.models}
         for run, model in models.items():
             results[run] = context.solve(model, scene, "-".join(filter(None, (name, run))))
@@ -82,7 +64,7 @@ class Compared(Case):
             other, label = scene_of(context, file, variant, said), "-".join(filter(None, (name, run)))
             results[run] = context.solve(MODELS[said["model"]], other, label, demand=False)
         frame = framed(context, file, scene) if file.taken else None
-        found = Solved(scene, answer(scene) if answer else given, results, frame)
+        found = Solved(scene, answer or given, results, frame)
         if not file.allowance:
             return found
         coarse = scene_of(context, file, {"vary": {"resolution": file.coarser}})
@@ -92,19 +74,15 @@ class Compared(Case):
         return replace(found, coarser=tuple(zip(before, ratios, strict=True)))
 
     def ahead(self, context: Context) -> Iterator[Scene]:
-        """Of the sweeps; of a frame what a function `scenes` beside the file says, if there is one."""
-        if self.file.frame:
-            yield from beside(self.file, "scenes", {"scenes": lambda _: ()})(context)
-            return
+        """Of the sweeps."""
         sweeps = [sweep for sweep in self.file.sweeps.values() if "sam" in sweep.models]
         base = scene_of(context, self.file) if sweeps else None
         for sweep in sweeps:
             yield from (changed(base, changes, self.file) for _, changes in points(sweep, context.level))
 
     def measure(self, found: Mapping[str, Solved]) -> dict[str, Measured]:
-        """The rows of the file: `sam/exact` and the like by the vocabulary; `sam/fem`, and what is said of
-        both models, by what is between them, where only the difference is held by the rows of `compare`; and
-        what they take of the sweeps.
+        """The rows of the file: `sam/exact` and the like by the vocabulary; what is said of both models, or
+        of all runs, by what is between them; and what they take of the sweeps.
         """
         values: dict[str, Measured] = {}
         for claim in self.file.claims:
@@ -118,79 +96,55 @@ class Compared(Case):
             elif claim.quantity in self.file.allowance:
                 *_, apart, allowed = refinement(solved, quantity)
                 measured = Measured(apart / allowed)
+            elif quantity.whole:
+                whole = quantity.whole(solved)
+                measured = whole if isinstance(whole, Measured) else Measured(whole)
+            elif quantity.between and not (quantity.row and claim.row.metric == "at_most"):
+                measured = quantity.between(solved.scene, solved.results["sam"], solved.results["fem"])
             else:
-                measured = between(quantity, solved, claim.row.metric)
+                measured = Measured(differences(solved)[quantity.row])
             values[claim.name] = measured
         return values
 
     def setup(self, found: Mapping[str, Solved]) -> Iterator[tuple[str, str]]:
+        """The keys of the scene in SI, what the reference says of it, and the discretisation."""
         yield from self.file.setting
         first = next(iter(found.values()))
         if first.scene is None:
             return
-        scenes = [first.scene] if first.results else list(first.frame["scene"])
-        scene, other, loading = scenes[0], scenes[0].counterbody, scenes[0].loading
-        units = first.reference.units if first.reference else {}
-        solved = first.results.get("sam")
-        a = units.get("a") or loading.radius or (solved and solved.quantities["contact_radius_m"]) or math.nan
-        plasticity = scene.body.plasticity
-        law = (
-            f"; {plasticity.law}, {plasticity.curve().stress(0.0) / 1e6:.1f} MPa at first yield"
-            if plasticity
-            else ""
-        )
-        yield "Half-space", elastic_text(scene.body) + law
-        if film := scene.body.coating:
-            yield "Film", f"{elastic_text(film)}, {1e9 * film.thickness:.4g} nm"
-        if other:
-            sizes = ("radius", "radius_x", "radius_y", "flat_radius")
-            size = "".join(
-                f"{n.replace('_', ' ')} {v * 1e6:g} µm, " for n in sizes if (v := getattr(other, n))
-            )
-            yield other.shape.capitalize(), f"{size}{elastic_text(other) if other.elastic else 'rigid'}"
-        again = f", {loading.cycles} times" * (loading.cycles > 1)
-        forces = sorted({each.loading.force for each in scenes} - {None})
-        if loading.misfit:
-            load = f"a sphere that grows, e = {loading.misfit:g} in its centre, radius {1e6 * a:g} µm"
-        elif other:
-            load = f"{' to '.join(f'{force:.5g}' for force in forces[:: max(1, len(forces) - 1)])} N"
-        else:
-            load = f"given, {loading.p0 / 1e9:.4f} GPa in the centre"
-        steps = f"{load} in {loading.steps} equal steps{', then unloaded' * loading.unload}{again}"
-        yield "Force" if other else "Load", steps
-        if loading.path:
-            ends = " a to ".join(f"{end[0] / a:g}" for end in (loading.path.start, loading.path.end))
-            yield "Way", f"from {ends} a along x in {loading.path.steps} steps"
+        scene = first.scene if first.results else first.frame["scene"].iloc[0]
+        for name in ("body", "counterbody", "loading", "friction"):
+            if (section := getattr(scene, name)) is not None:
+                yield f"{name}, SI", keys_of(section)
         if self.file.variants:
             yield "Solved", "; ".join(self.file.variants[name]["words"] for name in found)
-        if any(each.scene.friction for each in found.values()):
-            mu = f"μ = {scene.coefficient:g}; " if scene.friction and scene.friction.law == "constant" else ""
-            yield "Traction", f"{mu}full slip along +x on the body in every step"
-        yield from first.reference.facts if first.reference else ()
+        if first.reference:
+            known = {**first.reference.units, **first.reference.values}
+            numbers = (f"{name} = {value:.5g}" for name, value in known.items() if isinstance(value, Real))
+            yield "reference, SI", ", ".join(numbers)
         for run, result in [*first.results.items()][: len(self.file.models) or 1]:
-            yield run.upper(), grid_text(result, a) if result.model == SAM else mesh_text(result)
-        yield from ran(self.file, first.frame) if self.file.sweeps else ()
+            size = result.discretisation
+            cells = f"{size['cells'][0]} × {size['cells'][1]} cells" if result.model == SAM else ""
+            if cells and (cell := size.get("cell_m")):
+                cells += f" of {1e9 * cell[0]:.1f} nm"
+            yield run.upper(), cells or f"{size['elements']} elements, {size['dofs']} degrees of freedom"
+        for name, sweep in self.file.sweeps.items():
+            rows = first.frame[first.frame["sweep"] == name]
+            axes = (f"{axis} {', '.join(dict.fromkeys(map(spelt, rows[axis])))}" for axis in sweep.axes)
+            yield f"Points, {', '.join(map(str.upper, sweep.models))}", "; ".join(axes)
 
     def tables(self, found: Mapping[str, Solved]) -> Iterator[SmallTable]:
-        if self.file.variants or self.file.runs:
-            yield _results(self.file, found)
-            for name, solved in found.items():
-                yield from _passes(self.file.variants[name]["words"] if name else "", solved.results)
-            return
-        solved = found[""]
-        yield from (beside(self.file, name, {})(solved.frame) for name in self.file.tables)
-        yield from tables_of(self.file, solved.frame) if self.file.taken else ()
-        if set(solved.results) != {"sam", "fem"}:
-            return
-        both = beside_each_other(*solved.results.values())
-        rows = [(q, number(a, 5), number(b, 5), f"{1e2 * (a / b - 1.0):+.2f} %") for q, a, b in both]
-        yield SmallTable("Results", ("quantity", "SAM", "FEM", "difference"), rows)
-        costs = [each.cost for each in solved.results.values()]
-        rows = [(words, *(number(cost.get(n), 3) for cost in costs)) for n, words in COUNTED.items()]
-        yield SmallTable("Cost", ("counter", "SAM", "FEM"), rows)
+        words = {name: self.file.variants[name]["words"] if name else "" for name in found}
+        for name, solved in found.items():
+            if solved.frame is not None:
+                yield from (beside(self.file, table, {})(solved.frame) for table in self.file.tables)
+                yield from tables_of(self.file, solved.frame)
+            if len(solved.results) > 1:
+                yield _results(words[name], solved.results)
+                yield from _passes(words[name], solved.results)
         if self.file.allowance:
             named = [QUANTITIES[name] for name in self.file.allowance]
-            rows = [(q.words, *(f"{1e2 * share:.2f} %" for share in refinement(solved, q))) for q in named]
+            rows = [(q.words, *(f"{1e2 * share:.2f} %" for share in refinement(found[""], q))) for q in named]
             columns = "quantity", "uncertainty of SAM", "of FEM", "difference", "largest of 1 % and their sum"
             yield SmallTable("Refinement uncertainties", columns, rows)
 
@@ -203,10 +157,10 @@ class Compared(Case):
         for name, solved in found.items():
             if {"sam", "fem"} <= set(solved.results):
                 said = f" ({self.file.variants[name]['words'].replace('mu = ', 'μ = ')})" if name else ""
-                for words, sam, fem in beside_each_other(*(solved.results[run] for run in ("sam", "fem"))):
+                for words, values in _in_words([solved.results[run] for run in ("sam", "fem")]):
                     where = words.startswith("depth of")  # a place, which the mesh decides
-                    if words.startswith("largest ") or not (name or where):
-                        pairs.append((words + said, sam, fem))
+                    if all(values) and (words.startswith("largest ") or not (name or where)):
+                        pairs.append((words + said, *values))
         return {"pairs": pairs} | handed
 
     def figures(self, found: Mapping[str, Solved]) -> Iterator[Plot]:
@@ -233,6 +187,19 @@ class Compared(Case):
         yield from (VIEWS[name] for name in self.file.views)
 
 
+def keys_of(section: Section, above: str = "") -> str:
+    """Keys and values of a table of a scene that are not left at their defaults."""
+    said = []
+    for name in sorted(section.model_fields_set, key=list(type(section).model_fields).index):
+        value = getattr(section, name)
+        if isinstance(value, Section):
+            said.append(keys_of(value, f"{above}{name}."))
+        elif value is not None and value != type(section).model_fields[name].default:
+            shown = spelt(value) if isinstance(value, str | float | tuple) else str(value).lower()
+            said.append(f"{above}{name} = {shown}")
+    return ", ".join(filter(None, said))
+
+
 def refinement(found: Solved, quantity: Quantity) -> tuple[float, float, float, float]:
     """Refinement uncertainties of SAM and FEM, their difference, and what is allowed: 1 %, or both
     uncertainties where that is more.
@@ -254,39 +221,23 @@ def refinement(found: Solved, quantity: Quantity) -> tuple[float, float, float, 
     return *rests, apart, max(0.01, sum(rests))
 
 
-def between(quantity: Quantity, solved: Solved, metric: str) -> Measured:
-    """A quantity of all runs of a scene, or of SAM against finite elements."""
-    if quantity.whole:
-        measured = quantity.whole(solved)
-        return measured if isinstance(measured, Measured) else Measured(measured)
-    pair = solved.results["sam"], solved.results["fem"]
-    by_row = quantity.row and metric == "at_most"
-    if quantity.between and not by_row:
-        return quantity.between(solved.scene, *pair)
-    rows = {row.quantity: row.error for row in compare_scene(solved.scene, *pair)}
-    return Measured(rows[quantity.row])
+def _in_words(results: list[Result]) -> Iterator[tuple[str, list[float]]]:
+    """The quantities that one of the results has, in words, with their values."""
+    for quantity in QUANTITIES.values():
+        values = [each.quantities.get(quantity.row) for each in results]
+        if any(value is not None for value in values):
+            yield f"{quantity.words} [{quantity.unit}]" if quantity.unit else quantity.words, values
 
 
-def _results(file: CaseFile, found: Mapping[str, Solved]) -> SmallTable:
-    """The quantities of every run."""
-    runs = [(name, run, each) for name, solved in found.items() for run, each in solved.results.items()]
-    shown = [
-        q for q in QUANTITIES.values() if any(each.quantities.get(q.row) is not None for *_, each in runs)
-    ]
-    words = [file.variants[name]["words"].replace("mu = ", "μ = ") if name else "" for name in found]
-    heads = {each.rpartition(" = ")[0] for each in words}
-    said = {n: w.rpartition(" = ")[2] if len(heads) == 1 else w for n, w in zip(found, words, strict=True)}
-    rows = [
-        (
-            said[name],
-            run.upper() if run in ("sam", "fem") else f"{'SAM' if each.model == SAM else 'FEM'}, {run}",
-            *(number(each.quantities.get(q.row), 5) for q in shown),
-        )
-        for name, run, each in runs
-    ]
-    columns = (f"{q.words} [{q.unit}]" if q.unit else q.words for q in shown)
-    head = heads.pop() if len(heads) == 1 else ""
-    return SmallTable("Results", (head or "variant", "model", *columns), rows)
+def _results(words: str, results: Mapping[str, Result]) -> SmallTable:
+    """The quantities of every run; of one of each model their difference."""
+    rows = []
+    for quantity, values in _in_words(list(results.values())):
+        apart = [f"{1e2 * (values[0] / values[1] - 1.0):+.2f} %" if all(values) else ""] * (len(values) == 2)
+        rows.append((quantity, *(number(value, 5) for value in values), *apart))
+    heads = [name.upper() if name in ("sam", "fem") else name for name in results]
+    caption = ", ".join(filter(None, ("Results", words)))
+    return SmallTable(caption, ("quantity", *heads, *["difference"] * (len(heads) == 2)), rows)
 
 
 def _passes(words: str, results: Mapping[str, Result]) -> Iterator[SmallTable]:
@@ -308,11 +259,3 @@ def _passes(words: str, results: Mapping[str, Result]) -> Iterator[SmallTable]:
         if rows:
             passes = (f"pass {k + 1}" for k in range(len(rows[0]) - 3))
             yield SmallTable(f"{head}, {words}", ("model", "in a", *passes, "verdict"), rows)
-
-
-def beside_each_other(sam: Result, fem: Result) -> Iterator[tuple[str, float, float]]:
-    """The quantities that both results have and that are not zero, in words."""
-    for quantity in QUANTITIES.values():
-        values = [each.quantities.get(quantity.row) for each in (sam, fem)]
-        if all(values):
-            yield f"{quantity.words} [{quantity.unit}]" if quantity.unit else quantity.words, *values

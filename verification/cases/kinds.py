@@ -5,6 +5,7 @@ both models (`verification.quantities.Solved`). Titles and captions follow from 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from itertools import cycle
@@ -25,7 +26,6 @@ from verification.figures.lines import (
     below_spots,
     convergence,
     curves,
-    film_pressures,
     grooves,
     new_strains,
     profile_of,
@@ -46,7 +46,7 @@ from verification.figures.maps import (
 )
 from verification.figures.profiles import Profile, axis_profiles, profiles, residual_surface
 from verification.figures.style import Drawing
-from verification.quantities import OF_TRACKS, Solved, ladders, of_passes, planes, refined, strain_below
+from verification.quantities import Solved, ladders, of_passes, planes, strain_below
 from verification.reference.convergence import extrapolate
 from verification.references import REFERENCES, coated_contact, contact_of
 from verification.rows import CaseFile
@@ -198,17 +198,6 @@ def _residual_line(found: Solved) -> Plot:
     return Plot(residual(*near), "residual", "Residual heights", words, words)
 
 
-def _pressure_line(found: Solved) -> Plot:
-    hertz, series = contact_of(found.scene), {}
-    for run, result in found.results.items():
-        x, p = peak(result.tables["line"], "x_m", "p_Pa")
-        near = np.abs(x) <= 1.4 * hertz.contact_radius
-        series[run.upper()] = Curve(x[near] / hertz.contact_radius, p[near] / hertz.peak_pressure)
-    words = "Pressure on y = 0 of SAM and FEM. The traction acts on the body along +x."
-    drawn = curves({"": series}, "$x/a_0$", "$p/p_0$")
-    return Plot(drawn, "pressure", "Pressure along the sliding direction", words, words)
-
-
 def _mises_below_film(found: Solved) -> Plot:
     hertz, thickness = contact_of(found.scene), found.scene.body.coating.thickness
     units = hertz.contact_radius, hertz.peak_pressure
@@ -288,27 +277,6 @@ def _grooves(found: Solved) -> Plot:
     return Plot(grooves(lines, length), "groove", "Groove of one pass in both models", words, words)
 
 
-def _cost_of_errors(found: Solved) -> Plot:
-    """The largest error of each run against the limit of the two finest of its model, over its time."""
-    series = {}
-    for run in ("sam", "fem"):
-        named = {int(name.rpartition("-")[2]): r for name, r in found.results.items() if f"{run}-" in name}
-        limits = [(of, refined(named, of)) for of in OF_TRACKS.values()]
-        error = [100 * max(abs(of(named[n]) / limit - 1) for of, limit in limits) for n in sorted(named)]
-        series[run.upper()] = Curve(
-            np.array([named[n].cost["cpu_s"] for n in sorted(named)]), np.array(error)
-        )
-    looks = dict(zip(series, CYCLES, strict=False))
-    drawing = curves(
-        {"Cost of an error": series}, "processor time [s]", "error [%]", looks=looks, logarithmic="xy"
-    )
-    words = (
-        "The largest error of groove, depth and strain over the processor time, against the limit of the two "
-        "finest runs of each model in second order; in the same steps along the path."
-    )
-    return Plot(drawing, "cost", "Error and processor time", words, words)
-
-
 def _new_strains(found: Mapping[str, Solved], words: Mapping[str, str]) -> Iterator[Plot]:
     """What each pass adds, a figure a variant."""
     for variant, solved in found.items():
@@ -353,11 +321,9 @@ KINDS: Mapping[str, Callable[[Solved], Plot]] = {
     "residual-surface": _residual_surface,
     "strain-planes": _strain_planes,
     "grooves": _grooves,
-    "cost-of-errors": _cost_of_errors,
     "spot-pressures": _spot_pressures,
     "spot-strains": _spot_strains,
     "residual-line": _residual_line,
-    "pressure-line": _pressure_line,
     "mises-below-film": _mises_below_film,
 }
 """Name in a case file -> how it is drawn."""
@@ -400,17 +366,22 @@ def _limits(file: CaseFile, frame: DataFrame, column: str) -> Plot:
 
 def _lines(file: CaseFile, frame: DataFrame, y: str, *words: str) -> Plot | None:
     """`lines Y over X by SERIES in PANEL`: a column over an axis or a column, each a number or an array; what
-    is expected is dotted. None where no line has two points.
+    is expected is dotted. Series and panels are told by one axis or by several, "model,size". None where no
+    line has two points.
     """
     said = dict(zip(words[::2], words[1::2], strict=True))
-    x, by, panel = said["over"], said.get("by", "model"), said.get("in", "sweep")
+    x, by, panel = said["over"], said.get("by", "model").split(","), said.get("in", "sweep").split(",")
     panels: dict[str, dict[str, Curve]] = {}
-    for (title, key), rows in frame.dropna(subset=[y]).groupby([panel, by], sort=False):
-        name = spelt(key).upper() if by == "model" else spelt(key)
+    for keys, rows in frame.dropna(subset=[y]).groupby([*panel, *by], sort=False):
+        told = [
+            spelt(each).upper() if of == "model" else spelt(each)
+            for of, each in zip([*panel, *by], keys, strict=True)
+        ]
+        title, name = (", ".join(part) for part in (told[: len(panel)], told[len(panel) :]))
         for column, series in ((y, name), (f"{y} expected", f"{name}, expected")):
             if rows[column].notna().all() if column in rows else False:
                 values = (np.concatenate([np.atleast_1d(each) for each in rows[c]]) for c in (x, column))
-                panels.setdefault(spelt(title), {})[series] = Curve(*values)
+                panels.setdefault(title, {})[series] = Curve(*values)
     if all(len(curve.x) < 2 for series in panels.values() for curve in series.values()):
         return None
     names = dict.fromkeys(name for series in panels.values() for name in series)
@@ -418,9 +389,9 @@ def _lines(file: CaseFile, frame: DataFrame, y: str, *words: str) -> Plot | None
     looks = dict(zip(plain, cycle(CYCLES)))
     looks |= {n: {"color": looks[n.removesuffix(", expected")]["color"], "linestyle": ":"} for n in dashed}
     what = words_of(file, y) if file.sweeps else y.replace("-", " ")
-    title = f"{what[0].upper()}{what[1:]}"
-    text = f"Curves of the {what} over {x.replace('.', ' ')}, by {by}; dotted: what is expected."
-    return Plot(curves(panels, x.replace(".", " "), fill(what, 40), looks=looks), y, title, text, text)
+    title, at = f"{what[0].upper()}{what[1:]}", re.sub("[.-]", " ", x)
+    text = f"Curves of the {what} over {at}, by {' and '.join(by)}; dotted: what is expected."
+    return Plot(curves(panels, at, fill(what, 40), looks=looks), y, title, text, text)
 
 
 def _at(file: CaseFile, frame: DataFrame, kind: str, *where: str) -> Plot:
@@ -437,33 +408,11 @@ def _at(file: CaseFile, frame: DataFrame, kind: str, *where: str) -> Plot:
     return replace(plot, name=name, title=f"{plot.title}, {said}")
 
 
-def _film_pressures(file: CaseFile, frame: DataFrame) -> Plot:
-    """Pressure over the radius, a panel for each modulus and counter-body, with that of Hertz."""
-    panels: dict[str, dict] = {}
-    for _, rows in frame.groupby(frame["film"].map(spelt), sort=False):
-        (ratio, thickness, counterbody), scene = rows["film"].iloc[0], rows["scene"].iloc[0]
-        contact = coated_contact(scene)
-        a, p0 = contact.bare.contact_radius, contact.bare.peak_pressure
-        x = contact.contact_radius * np.sin(np.linspace(0.0, np.pi / 2, 201))
-        series = {"reference": (x / a, contact.pressure(x) / p0)}
-        for model, result in zip(rows["model"], rows["result"], strict=True):
-            x, p = peak(result.tables["line"], "x_m", "p_Pa")
-            use = np.flatnonzero((x >= 0.0) & (p > 0.0))[::4]
-            series[model.upper()] = x[use] / a, p[use] / p0
-        panel = panels.setdefault(f"$E_1/E_2$ = {ratio:.3g}, {counterbody}", {})
-        panel[f"$h/a_0$ = {thickness:g}"] = series
-    words = "Pressure over the radius for each film: lines of the spectral solution, points of SAM and FEM."
-    caption = f"{words} Dotted: Hertz, without film. Every fourth cell along y = 0 and every fourth node."
-    title = "Contact pressure with and without film"
-    return Plot(film_pressures(panels), "pressure", title, words, caption)
-
-
 SWEPT: Mapping[str, Callable[..., Plot]] = {
     "orders": _orders,
     "limits": _limits,
     "lines": _lines,
     "at": _at,
-    "film-pressures": _film_pressures,
 }
 """First word of a figure in a case file -> how the frame of its sweeps is drawn; the others are handed on."""
 VIEWS: Mapping[str, View] = {

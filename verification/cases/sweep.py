@@ -10,7 +10,8 @@ result. The function that a case names as `frame` returns such rows as mappings.
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Iterator, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from itertools import product
 from numbers import Real
@@ -23,7 +24,7 @@ from verification.cases.case import Context, SmallTable
 from verification.cases.recipes import beside, changed
 from verification.compare.comparison import compare_scene
 from verification.judging import Measured, error_of
-from verification.quantities import QUANTITIES, Quantity, Reference
+from verification.quantities import QUANTITIES, Quantity, Reference, Solved
 from verification.reference.convergence import Power, extrapolate, fit_power
 from verification.references import REFERENCES, hertz_sphere
 from verification.rows import CaseFile, Claim, SweepFile, Take
@@ -38,7 +39,6 @@ BOTH = "sam/fem"
 MOST = 60
 """Lines of a table for the page."""
 SIGNS = {"<": operator.lt, ">": operator.gt}
-
 ERRORS = {
     "value": "",
     "between": ", SAM against FEM",
@@ -75,6 +75,7 @@ def _runs(context: Context, file: CaseFile, name: str, base: Scene) -> Iterator[
     sweep = file.sweeps[name]
     every = list(points(sweep, context.level))
     varied = [axis for axis in every[0][0] if len({spelt(where[axis]) for where, _ in every}) > 1]
+    between = [column for column, how in sweep.columns.items() if how == "between"]
     for where, changes in every:
         scene = changed(base, changes, file)
         reference = beside(file, file.reference, REFERENCES)(scene) if file.reference else None
@@ -97,27 +98,32 @@ def _runs(context: Context, file: CaseFile, name: str, base: Scene) -> Iterator[
                 if np.ndim(found.value) == 0:
                     own[f"{column} value"] = found.value
             runs.append(own)
-        between = [column for column, how in sweep.columns.items() if how == "between"]
         if between and all(result.converged for result in results.values()):
-            both = between_models(scene, *results.values(), names=between)
+            runs.append(row | {"model": BOTH} | between_models(scene, *results.values(), names=between))
             for column in between:
-                pair = both[f"{column} pair"]
+                pair = runs[-1][f"{column} pair"]
                 if pair and np.ndim(pair.value) == 0:
                     runs[0][column], runs[1][column] = pair.value, pair.expected
-            runs.append(row | {"model": BOTH} | both)
         yield from runs
 
 
-def between_models(scene: Scene, sam: Result, fem: Result, *, names: Sequence[str]) -> dict[str, Any]:
+def differences(solved: Solved) -> dict[str, float]:
+    """Row of `compare` -> difference of both models."""
+    pair = solved.results["sam"], solved.results["fem"]
+    return {row.quantity: row.error for row in compare_scene(solved.scene, *pair)}
+
+
+def between_models(scene: Scene, sam: Result, fem: Result, *, names: list[str]) -> dict[str, Any]:
     """The differences of both models: relative, or as the row of `compare` says; NAME pair: their values."""
-    rows, values = {row.quantity: row.error for row in compare_scene(scene, sam, fem)}, {}
+    rows, values = differences(Solved(scene, None, {"sam": sam, "fem": fem})), {}
     for name in names:
         between = QUANTITIES[name].between
-        measured = between(scene, sam, fem) if between else None
-        metric = "relative_l2" if measured and np.ndim(measured.value) else "relative"
-        metric = metric if measured is None or measured.expected is not None else "at_most"
-        values[name] = error_of(metric, measured) if measured else rows[QUANTITIES[name].row]
-        values[f"{name} pair"] = measured
+        measured = values[f"{name} pair"] = between(scene, sam, fem) if between else None
+        if measured is None:
+            values[name] = rows[QUANTITIES[name].row]
+        else:
+            metric = "relative_l2" if np.ndim(measured.value) else "relative"
+            values[name] = error_of("at_most" if measured.expected is None else metric, measured)
     return values
 
 
@@ -201,20 +207,8 @@ def taken(file: CaseFile, frame: DataFrame, claim: Claim) -> Measured:
 def words_of(file: CaseFile, column: str) -> str:
     """A column for the reader: of the vocabulary, or what its function says of itself."""
     of = beside(file, column, QUANTITIES)
-    return of.words if isinstance(of, Quantity) else of.__doc__.strip().splitlines()[0].rstrip(".").lower()
-
-
-def _plain(axis: str) -> str:
-    return axis.replace(".", " ").replace("-", " ").replace("_", " ")
-
-
-def ran(file: CaseFile, frame: DataFrame) -> Iterator[tuple[str, str]]:
-    """The points of each sweep, for the reader."""
-    for name, sweep in file.sweeps.items():
-        rows = frame[frame["sweep"] == name]
-        values = ((axis, dict.fromkeys(map(spelt, rows[axis]))) for axis in sweep.axes)
-        said = "; ".join(f"{_plain(axis)} {', '.join(own)}" for axis, own in values)
-        yield f"Points, {', '.join(map(str.upper, sweep.models))}", said
+    said = of.words if isinstance(of, Quantity) else of.__doc__.strip().splitlines()[0].rstrip(".")
+    return said[0].lower() + said[1:]
 
 
 def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
@@ -232,11 +226,11 @@ def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
             shown |= {f"{column} expected": f"{shown[column]}, expected" for column in values}
         known = {c: rows[c].dropna() for c in shown if c in rows}
         shown = {c: shown[c] for c, own in known.items() if len(own) and isinstance(own.iloc[0], str | Real)}
-        head = (*map(_plain, axes), *["model"] * any(rows["model"]))
+        modelled = ["model"] * any(rows["model"])
         lines = [
             (
                 *(spelt(row[each]) for each in axes),
-                *[row["model"].upper()] * any(rows["model"]),
+                *(row[each].upper() for each in modelled),
                 *(_cell(row[c]) for c in shown),
             )
             for _, row in rows.iterrows()
@@ -246,8 +240,8 @@ def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
             if any(orders):
                 cells = (f"order {order.exponent:.2f}" if order else "" for order in orders)
                 lines.append((*[""] * len(axes), model.upper(), *cells))
-        caption = f"Points {name}".strip() if file.sweeps else name
-        yield SmallTable(caption or "Points", (*head, *shown.values()), lines)
+        heads = (re.sub(r"[._-]", " ", axis) for axis in axes)
+        yield SmallTable(f"Points {name}" if sweep else name, (*heads, *modelled, *shown.values()), lines)
 
 
 def _cell(value: Any) -> str:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -29,8 +29,11 @@ solver."""
 class Solution(Protocol):
     """The part of a `Result` or a `Run` that is compared."""
 
-    quantities: Mapping[str, float | None]
-    tables: Mapping[str, Mapping[str, Sequence]]
+    @property
+    def quantities(self) -> Mapping[str, float | None]: ...
+
+    @property
+    def tables(self) -> Mapping[str, Any]: ...
 
 
 COLUMNS = ("quantity", "sam", "fem", "metric", "difference", "tolerance", "passed", "reason")

@@ -140,16 +140,12 @@ def _gridded(tables: Tables, state: str, *columns: str) -> tuple[np.ndarray, ...
 
 @dataclass(frozen=True)
 class Spread:
-    """Median, range and interquartile range over seeds of what is a number, infinite ones too; n: of how
-    many. The quartiles are the medians of the lower and of the upper half (Tukey's hinges), each with the
-    median of all where their number is odd.
-    """
+    """Median and range over seeds of what is a number, infinite ones too; n: of how many."""
 
     median: float
     low: float
     high: float
     n: int
-    interquartile: float
 
     @classmethod
     def of(cls, values: Sequence[float]) -> Spread:
@@ -157,57 +153,39 @@ class Spread:
         known = np.sort([value for value in values if not np.isnan(value)])
         n = known.size
         if not n:
-            return cls(NAN, NAN, NAN, 0, NAN)
-        lower, upper = (float(np.median(half)) for half in (known[: (n + 1) // 2], known[n // 2 :]))
-        between = upper - lower if upper > lower else 0.0
-        return cls(float(np.median(known)), float(known[0]), float(known[-1]), n, between)
+            return cls(NAN, NAN, NAN, 0)
+        return cls(float(np.median(known)), float(known[0]), float(known[-1]), n)
 
-    def text(self, digits: int = 3) -> str:
+    @property
+    def text(self) -> str:
         """Median (lowest to highest); a dash where nothing is known."""
         if not self.n:
             return "–"
-        median, low, high = (
-            f"{value:.{digits}g}".replace("inf", "∞") for value in (self.median, self.low, self.high)
-        )
+        median, low, high = (f"{v:.3g}".replace("inf", "∞") for v in (self.median, self.low, self.high))
         return median if self.n == 1 else f"{median} ({low} to {high})"
 
 
 @dataclass(frozen=True)
 class Limits:
     """What decides the regime of a scene's spots, in Pa. strength: of the surface at its strain limit;
-    removal: pressure above which the traction after film breakdown removes it; first: the same for the middle
-    of the first layer of cells, where a solver looks; film: pressure of film breakdown; removal_whole: like
-    removal, below a whole film.
+    removal: pressure above which the traction after film breakdown removes it; film: pressure of film
+    breakdown.
     """
 
     strength: float
     removal: float
-    first: float
     film: float
-    removal_whole: float
 
     @classmethod
     def of(cls, scene: Scene) -> Limits:
-        """From the materials, the film and the first layer of a scene."""
-        friction, depths = scene.friction, scene.grid.depths
-        surface, first = (strength_at(scene, z) for z in (0.0, 0.5 * (depths[0] + depths[1])))
+        """From the materials and the film of a scene; below z = 0 the layer, if there is one."""
+        friction, wear, plasticity = scene.friction, scene.wear, scene.body.plasticity
+        limit, law = wear.strain_limit, plasticity
+        if plasticity.layer_thickness is not None:
+            limit, law = wear.strain_limit_layer or limit, plasticity.layer or law
+        own = swift(law.B, law.C, law.n, limit * (law.alpha / MICROSTRAIN))
+        strength = float(plasticity.depth_profile()(0.0)) * own
         film = friction.film_young, friction.film_poisson, friction.film_yield
-        fails = film_pressure(
-            friction.thinning_limit, friction.low, film, (scene.body.young, scene.body.poisson)
-        )
-        removal, lower, whole = (
-            tear_pressure(strength, mu)
-            for strength, mu in ((surface, friction.high), (first, friction.high), (surface, friction.low))
-        )
-        return cls(surface, removal, lower, fails, whole)
-
-
-def strength_at(scene: Scene, z: float) -> float:
-    """Yield stress in Pa at depth z of material strained to its limit of wear."""
-    plasticity, wear = scene.body.plasticity, scene.wear
-    inside = plasticity.layer_thickness is not None and z < plasticity.layer_thickness
-    limit = wear.strain_limit_layer if inside and wear.strain_limit_layer is not None else wear.strain_limit
-    law = plasticity.layer if inside and plasticity.layer is not None else plasticity
-    return float(plasticity.depth_profile()(z)) * swift(
-        law.B, law.C, law.n, limit * (law.alpha / MICROSTRAIN)
-    )
+        body = scene.body.young, scene.body.poisson
+        fails = film_pressure(friction.thinning_limit, friction.low, film, body)
+        return cls(strength, tear_pressure(strength, friction.high), fails)

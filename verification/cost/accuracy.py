@@ -31,6 +31,7 @@ from verification.cost.advice import (
     table,
 )
 from verification.runs import models
+from verification.runs.files import Run
 from verification.runs.provenance import memory_bytes
 from verification.text.readable import with_prefix, with_time
 from verification.uncertainty.rule import STEP_FACTOR, bound
@@ -185,7 +186,7 @@ def solve(scene: Scene, model: str, solver: Solve | None = None) -> Result:
     return search.result(first_choice(scene, model))
 
 
-def missed(result: Result) -> str:
+def missed(result: Result | Run) -> str:
     """What an asked accuracy came to, where it was not reached; else empty."""
     found = result.discretisation.get("accuracy")
     if not found or found["reached"]:
@@ -372,7 +373,11 @@ class Search:
 
         best = min(finer, key=time)
         if finer[best] == inf:
-            raise BeyondError(f"more cells do not help: {self.beside(attempt)}")
+            entry = attempt.result.uncertainty[attempt.quantity]
+            left = f"{self.steps[0].choice.steps} load steps leave too much" if self.steps else ""
+            box = f"fem.box = {self.scene.fem.box:g} leaves too much"
+            said = box if entry["u_box"] > entry["u_steps"] else left
+            raise BeyondError(f"more cells do not help: {said}")
         times = min(max(finer[best], LEAST), MOST)
         if finer[best] <= 1.0 and best > choice.steps:
             times = 1.0
@@ -394,16 +399,6 @@ class Search:
             times = (entry["u_cells"] / value / left) ** (1 / order) if left > 0.0 else inf
             found = max(found, times)
         return found
-
-    def beside(self, attempt: Attempt) -> str:
-        """What is left of the worst uncertainty by load steps and box, for the reader."""
-        entry = attempt.result.uncertainty[attempt.quantity]
-        of_steps = f"{self.steps[0].choice.steps} load steps leave too much" if self.steps else ""
-        return (
-            of_steps
-            if entry["u_steps"] >= entry["u_box"]
-            else f"fem.box = {self.scene.fem.box:g} leaves too much"
-        )
 
     def member(
         self, choice: Choice, room: Room | None = None, depths: Sequence[float] | None = None

@@ -18,7 +18,7 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from verification.cost.estimates import SETTLES
+from verification.cost.estimates import SETTLES, peak_pressure
 from verification.runs.tables import csv_text
 from verification.text.readable import with_time
 
@@ -134,19 +134,11 @@ def _load_ratio(scene: Scene) -> float | None:
     """p0 of the elastic contact over the initial yield stress, the smallest over depth; None without
     plasticity or load.
     """
-    plastic, loading = scene.body.plasticity, scene.loading
-    if plastic is None:
+    plastic = scene.body.plasticity
+    if plastic is None or scene.loading.force == 0.0:
         return None
     limit = plastic.strength().least(0.0)
-    if loading.prescribed is not None:
-        return loading.p0 / limit if limit else math.inf
-    if loading.force == 0.0:
-        return None
-    from sam import expected_force, hertz_semi_axes
-
-    a, b = hertz_semi_axes(scene)
-    bearing = math.pi * a * b * limit
-    return 1.5 * expected_force(scene) / bearing if bearing else math.inf
+    return peak_pressure(scene) / limit if limit else math.inf
 
 
 def advice_of(scene: Scene, usable: Sequence[str], rows: Sequence[AdviceRow] | None = None) -> dict:

@@ -144,11 +144,6 @@ def flows(scene: Scene) -> bool:
     return scene.body.plasticity is not None or (coating is not None and coating.yield_stress is not None)
 
 
-def plastic_box(scene: Scene, grid: CellGrid) -> ExpectedBox:
-    """The last of the boxes around the plastic zone."""
-    return plastic_boxes(scene, grid)[-1]
-
-
 def plastic_boxes(scene: Scene, grid: CellGrid, beyond: float = 0.0) -> list[ExpectedBox]:
     """The boxes around the plastic zone, the first one and what it grows to, as the solver makes them: a
     little wider (SPREAD) than the zone of Hertz' elastic stress; below a rough body the patch. beyond: cells
@@ -228,14 +223,11 @@ def load_ratio(scene: Scene, depths: np.ndarray) -> tuple[float, float]:
     """(p0 of the elastic contact over the least yield stress at these depths, yield stress at 1 % over that
     at 0).
     """
-    from sam import hertz_semi_axes
-
-    plasticity = scene.body.plasticity
-    strength = plasticity.strength()
+    strength = scene.body.plasticity.strength()
     over_depth = strength.stress(depths, np.zeros(1))
     weakest = strength.curve_at(depths[over_depth.argmin()])
     first, later = (float(weakest.stress(np.full(1, strain))[0]) for strain in (0.0, 0.01))
-    return _peak_pressure(scene, *hertz_semi_axes(scene)) / float(over_depth.min()), later / first
+    return peak_pressure(scene) / float(over_depth.min()), later / first
 
 
 def plastic_iterations(scene: Scene, grid: CellGrid) -> float:
@@ -278,14 +270,15 @@ def newton_iterations(scene: Scene) -> float:
     return NEWTON + NEWTON_STEEPER * ratio if ratio < CUT_ABOVE else NEWTON_CUT * ratio
 
 
-def _peak_pressure(scene: Scene, a: float, b: float) -> float:
+def peak_pressure(scene: Scene) -> float:
+    """p0 of the elastic contact in Pa; of a misfit sphere that of a contact with its largest stress."""
     if scene.loading.hertz:
         return scene.loading.p0
     if scene.loading.misfit_sphere:
         return _largest_mises(scene) / MISES
-    from sam import expected_force
+    from sam import expected_force, hertz_semi_axes
 
-    area = np.pi * a * b
+    area = np.pi * np.prod(hertz_semi_axes(scene))
     return 1.5 * expected_force(scene) / area if area else 0.0
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from importlib import resources
 from typing import Any
 
@@ -130,22 +130,20 @@ def _patch(scene: Scene, cells: int) -> Scene:
     )
 
 
-def square(family: str, sizes: Iterable[int], name: str, *, bare: bool = False, **loading) -> list[Rung]:
-    """A scene of SAM on n x n cells; bare: without its film; loading: keys of it."""
+def square(
+    family: str, sizes: Iterable[int], name: str, *, bare: bool = False, grid: Mapping = {}, **loading
+) -> list[Rung]:
+    """A scene of SAM on n x n cells; bare: without its film; grid, loading: keys of them."""
     scene = _loaded(scene_of(name), **loading)
     if bare:
         scene = scene.model_copy(update={"body": scene.body.model_copy(update={"coating": None})})
-    return [Rung(family, f"{n} x {n} cells", models.SAM, _gridded(scene, cells=(n, n)), n**2) for n in sizes]
+    scenes = {n: _gridded(scene, cells=(n, n), **grid) for n in sizes}
+    return [Rung(family, f"{n} x {n} cells", models.SAM, each, n**2) for n, each in scenes.items()]
 
 
-def at_surface(rungs: Iterable[Rung]) -> list[Rung]:
-    """The same with the stresses at the surface alone, in place of the depths of a user who names none."""
-    return [replace(rung, scene=_gridded(rung.scene, depths=(0.0,))) for rung in rungs]
-
-
-def running_in(sizes: Iterable[int], steps: int = 3) -> list[Rung]:
+def running_in(sizes: Iterable[int]) -> list[Rung]:
     """A cycle on a rough patch, with film and wear, in cells of 1 um."""
-    scene = _loaded(scene_of("running-in-bulk"), steps=steps, unload_steps=steps, cycles=1)
+    scene = _loaded(scene_of("running-in-bulk"), steps=3, unload_steps=3, cycles=1)
     return [Rung("running-in", f"{n} x {n} cells", models.SAM, _patch(scene, n), n**2) for n in sizes]
 
 
@@ -177,8 +175,12 @@ LOADED = {"steps": 5, "unload": False}
 YIELDING = "plastic-swift-rigid"
 """Swift steel at four times the load of first yield's pressure."""
 FAMILIES: Mapping[str, Callable[[], list[Rung]]] = {
-    "contact": lambda: at_surface(
-        square("elastic contact", (65, 129, 257, 513, 1025, 2049), "hertz-sphere", **ONE_STEP)
+    "contact": lambda: square(
+        "elastic contact",
+        (65, 129, 257, 513, 1025, 2049),
+        "hertz-sphere",
+        grid={"depths": (0.0,)},
+        **ONE_STEP,
     ),
     "stresses": lambda: square("elastic, all depths", (65, 129, 257, 513), "hertz-sphere", **ONE_STEP),
     "cycles": lambda: cycles((1, 2, 4, 8, 16)),
@@ -208,35 +210,20 @@ def fitted(
     counts: Sequence[Mapping[str, float]],
     measured: Sequence[float],
     matters: float,
-    known: Mapping[str, float] | None = None,
+    known: Mapping[str, float],
 ) -> dict[str, float]:
-    """Factors >= 0 of the counts with the least sum of the largest relative error of what was measured and
-    the mean one, those of what is smaller than `matters` in proportion; known: factors that are not looked
-    for.
+    """Factors >= 0 of the counts with the least squares of the relative errors of what was measured, those of
+    what is smaller than `matters` in proportion; known: factors that are not looked for.
     """
-    from scipy.optimize import linprog
+    from scipy.optimize import nnls
 
-    known = known or {}
     names = [name for name in dict.fromkeys(name for each in counts for name in each) if name not in known]
-    measured = np.maximum(np.asarray(measured, dtype=float), 1e-3 * matters)
-    rest = (
-        1 - np.array([sum(known[name] * each.get(name, 0.0) for name in known) for each in counts]) / measured
-    )
-    rows = np.array([[each.get(name, 0.0) for name in names] for each in counts]) / measured[:, None]
+    weight = 1.0 / np.maximum(np.asarray(measured, dtype=float), matters)
+    rest = measured - np.array([sum(known[n] * each.get(n, 0.0) for n in known) for each in counts])
+    rows = weight[:, None] * np.array([[each.get(name, 0.0) for name in names] for each in counts])
     scale = rows.max(axis=0)
-    rows, weight, n = rows / scale, np.diag(np.maximum(matters / measured, 1.0)), len(measured)
-    above, below = (
-        np.hstack([sign * rows, -weight, np.zeros((n, 1))]) for sign in (1, -1)
-    )  # of factors, errors, largest
-    largest = np.hstack([np.zeros_like(rows), np.eye(n), -np.ones((n, 1))])
-    price = np.concatenate([np.zeros(len(names)), np.full(n, 1 / n), [1.0]])
-    found = linprog(
-        price,
-        np.vstack([above, below, largest]),
-        np.concatenate([rest, -rest, np.zeros(n)]),
-        bounds=(0.0, None),
-    )
-    return dict(zip(names, (found.x[: len(names)] / scale).tolist(), strict=True)) | dict(known)
+    found = nnls(rows / scale, weight * rest)[0] / scale
+    return dict(zip(names, found.tolist(), strict=True)) | dict(known)
 
 
 def factors(
@@ -251,7 +238,9 @@ def factors(
         memory[model] = fitted(
             [count.bytes for count in counts], [row["memory"] for row in own], MEMORY_MATTERS, known
         )
-        seconds[model] = fitted([count.work for count in counts], [row["cpu-s"] for row in own], TIME_MATTERS)
+        seconds[model] = fitted(
+            [count.work for count in counts], [row["cpu-s"] for row in own], TIME_MATTERS, {}
+        )
     return memory, seconds
 
 

@@ -36,19 +36,16 @@ def plan(scene: Scene) -> dict:
 
 
 def _model(scene: Scene, model: str) -> dict:
+    chosen = []
     try:
         models.check(scene, model)
+        if scene.solver.accuracy is not None:
+            choice, later = first_choice(scene, model), expected(scene, model)
+            asked = f"{100 * scene.solver.accuracy:g} % of {', '.join(quantities_of(scene))}"
+            words = f"{asked}: begins with {choice}; the table of advice expects {later}"
+            chosen, scene = [Stage("accuracy", True, words)], chosen_scene(scene, model, later)
     except models.ModelError as reason:
         return {"model": model, "available": False, "reason": str(reason), "stages": [], "estimate": None}
-    chosen = []
-    if scene.solver.accuracy is not None:
-        try:
-            choice, later = first_choice(scene, model), expected(scene, model)
-        except models.ModelError as reason:
-            return {"model": model, "available": False, "reason": str(reason), "stages": [], "estimate": None}
-        asked = f"{100 * scene.solver.accuracy:g} % of {', '.join(quantities_of(scene))}"
-        words = f"{asked}: begins with {choice}; the table of advice expects {later}"
-        chosen, scene = [Stage("accuracy", True, words)], chosen_scene(scene, model, later)
     made = models.plan(scene, model)
     stages, estimate = _stages(scene, made), estimates.estimate(scene, model, made)
     if scene.solver.uncertainty:
@@ -70,7 +67,7 @@ def _stages(scene: Scene, made: Any) -> list[Stage]:
     found = []
     for stage in (each for each in made.stages if each.runs or each.reason == NO_FORCE):
         if stage.stage == "eigenstrain kernels" and stage.runs:
-            box = estimates.plastic_box(scene, made.grid)
+            box = estimates.plastic_boxes(scene, made.grid)[-1]
             size = {"box_cells": [box.nx, box.ny, box.layers], "coefficients": box.coefficients}
             stage = replace(stage, size=size | {"bytes": box.width * box.coefficients})
         found.append(stage)
@@ -88,27 +85,28 @@ def _uncertainty(scene: Scene, model: str) -> tuple[Stage, float]:
     return Stage(UNCERTAINTY, True, words, {"solves": len(found.all) - 1}), seconds
 
 
-def check_needs(scene: Scene, model: str, available: float | None = None, *, anyway: bool = False) -> None:
-    """Raise ModelError if `model` cannot represent the scene, or would need more memory than there is,
-    `available` bytes, by default this machine's; or, unless `anyway`, more time than LONGEST.
+def check_needs(scene: Scene, model: str, available: float | None = None, *, anyway: bool = False) -> Any:
+    """The plan of a scene. Raises ModelError if `model` cannot represent it, or would need more memory than
+    there is, `available` bytes, by default this machine's; or, unless `anyway`, more time than LONGEST.
     """
     models.check(scene, model)
     available = memory_bytes() if available is None else available
-    needs = estimates.estimate(scene, model)
+    made = models.plan(scene, model)
+    needs = estimates.estimate(scene, model, made)
     if available and needs.memory_bytes > available:
         needed, there = (with_prefix(number, "B") for number in (needs.memory_bytes, available))
         raise models.ModelError(
             f"model {model}: about {needed} of memory needed, {there} available: {_smaller(scene, model)}"
         )
-
     if anyway:
-        return
+        return made
     seconds = needs.time_s + (_uncertainty(scene, model)[1] if scene.solver.uncertainty else 0.0)
     if seconds > LONGEST:
         raise models.ModelError(
             f"model {model}: about {with_time(seconds)} of processor time predicted, more than "
             f"{with_time(LONGEST)}: {_smaller(scene, model)}{_fewer(scene)}, or say --anyway"
         )
+    return made
 
 
 def _fewer(scene: Scene) -> str:

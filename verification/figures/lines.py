@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 from itertools import cycle
 from typing import Any
 
-import matplotlib
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -18,7 +17,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from sam.scene import Attempt
 from verification.compare.measures import Plane
 from verification.figures.style import (
     BLACK,
@@ -34,7 +32,6 @@ from verification.figures.style import (
     Drawing,
     log_ticks,
     sheet,
-    zero_line,
 )
 from verification.reference.convergence import Limit, Power
 
@@ -238,16 +235,6 @@ def new_strains(found: Mapping[str, Sequence[float]], floors: Sequence[float] = 
     return curves({"": drawn}, "pass", "largest new plastic strain", **how)
 
 
-def errors_over_counts(panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray]]]) -> Drawing:
-    """Relative errors (n,) over the number (n,) of steps or cells in a radius of the contact,
-    logarithmic. panels: what is counted -> quantity -> line.
-    """
-    drawn = {of: {name: Curve(n, 1e2 * e) for name, (n, e) in own.items()} for of, own in panels.items()}
-    xlabels = {counted: f"{counted} in $a$" for counted in panels}
-    how = {"logarithmic": "xy", "ticks": "{:g}".format, "legend": "each"}
-    return curves(drawn, xlabels, "error against the limit [%]", **how)
-
-
 def of_passes(passes: Mapping[str, Sequence]) -> Drawing:
     """Coefficient of friction and wear of each pass, from passes.csv."""
     wanted = {"coefficient of friction": ("friction_mean", 1.0), "wear [µm³]": ("wear_of_pass_m3", 1e18)}
@@ -334,29 +321,6 @@ def refinement(
     return drawing
 
 
-def limits(
-    panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Callable]]], band: float
-) -> Drawing:
-    """Differences from a model without small strains; panels: quantity -> material -> (a/R,
-    relative difference, its fit); band: shaded on both sides of zero.
-    """
-    drawn = {
-        title.capitalize(): {
-            f"{name} and its fit": Curve(
-                x, PERCENT * off, lambda at, fit=fit: PERCENT * fit(at), span=(0.0, x.max())
-            )
-            for name, (x, off, fit) in own.items()
-        }
-        for title, own in panels.items()
-    }
-    labels = dict.fromkeys(drawn, "difference [%]")
-    how = {"across": 2 if len(panels) > 3 else 0, "size": (3.6, 3.0), "legend": "below"}
-    drawing = curves(drawn, "$a/R$", labels, band=PERCENT * band, **how)
-    for axis in drawing.figure.axes:
-        axis.set_xlim(0.0, None)
-    return drawing
-
-
 def profile_of(plane: Plane, x: float, deep: float) -> Curve:
     """Plastic strain in % over depth at x, at the own depths of a result."""
     z = plane.z[plane.z <= deep]
@@ -388,47 +352,6 @@ LINE_ON_POINTS = {
     "SAM": SAM,
     "FEM": FEM | {"linestyle": "none", "marker": "o", "markersize": 4.0, "fillstyle": "none"},
 }
-
-
-MODEL_MARKS = {"SAM": {"marker": "o", "fillstyle": "none"}, "FEM": {"marker": "x"}}
-
-
-def film_pressures(panels: Mapping[str, Mapping[str, Mapping[str, tuple]]]) -> Drawing:
-    """Pressure over p0 over r/a0 under films of one modulus a panel; panels: title -> film ->
-    "reference" or model -> (r, p); the bare contact of Hertz dotted.
-    """
-    bare = np.linspace(0.0, 1.0, 401)
-    hertz = {"color": "#888888", "linestyle": ":", "linewidth": 1.6}
-    points, line = {"linestyle": "none", "markersize": 4.5}, {"linewidth": 1.3}
-    films = dict.fromkeys(film for own in panels.values() for film in own)
-    colours = dict(zip(films, (BLUE, VERMILION, GREEN, ORANGE, BLACK), strict=False))
-    looks = {
-        f"{film}, {name}": {"color": color} | (points | MODEL_MARKS[name] if name in MODEL_MARKS else line)
-        for film, color in colours.items()
-        for name in ("reference", *MODEL_MARKS)
-    }
-    drawn = {
-        title: {"without film": Curve(bare, np.sqrt(1.0 - bare**2))}
-        | {f"{film}, {name}": Curve(*each) for film, own in by_film.items() for name, each in own.items()}
-        for title, by_film in panels.items()
-    }
-    entries = [Line2D([], [], **line, color=color, label=film) for film, color in colours.items()]
-    entries += [Line2D([], [], **points, color=BLACK, **look, label=n) for n, look in MODEL_MARKS.items()]
-    entries += [
-        Line2D([], [], **line, color=BLACK, label="reference"),
-        Line2D([], [], **hertz, label="without film"),
-    ]
-    how = {"across": 2, "size": (4.3, 3.4), "legend": entries, "looks": looks | {"without film": hertz}}
-    return curves(drawn, "$r/a_0$", "$p/p_0$", **how)
-
-
-def thinning_curves(pressure: np.ndarray, lines: Mapping[str, np.ndarray], limit: float) -> Drawing:
-    """pressure in GPa, (n,); lines: name -> thinning in %, (n,), NaN where there is none; limit in %."""
-    own = {name: Curve(pressure[k := np.isfinite(y)], y[k], look=PLAIN) for name, y in lines.items()}
-    marks = {f"growth of a cycle, {limit:.2f} %": ("y", limit)}
-    drawing = curves({"": own}, "pressure [GPa]", "thinning [%]", marks=marks)
-    zero_line(drawing.figure.axes[0])
-    return drawing
 
 
 def yield_profiles(cases: Mapping[str, Callable[[np.ndarray, float], np.ndarray]], deep: float) -> Drawing:
@@ -485,58 +408,6 @@ def coverage(panels: Mapping[str, Sequence[tuple[str, str, float, float]]]) -> D
     return Drawing(curves(drawn, "error [%]", "uncertainty [%]", **how).figure, data)
 
 
-def growth(columns: Mapping[str, tuple[str, Mapping[str, Curve], Mapping[str, Curve]]]) -> Drawing:
-    """Title -> (label of x, name -> seconds over x, name -> bytes over x): seconds above, megabytes
-    underneath, with the powers that are their fits.
-    """
-    panels, xlabels, rows = {}, {}, {"processor time [s]": 1.0, "memory [MB]": 1e-6}
-    for k, (label, unit) in enumerate(rows.items(), start=1):
-        for title, column in columns.items():
-            xlabels[label, title] = column[0]
-            panels[label, title] = {name: _with_power(each, unit) for name, each in column[k].items()}
-    drawing = curves(panels, xlabels, logarithmic="xy", legend="each", size=(3.6, 3.0))
-    for axis in drawing.figure.axes:  # at least one decade upwards, and numbers enough
-        low, high = axis.get_ylim()
-        axis.set_ylim(min(low, np.sqrt(low * high / 10)), max(high, np.sqrt(low * high * 10)))
-        log_ticks(axis.yaxis)
-    return drawing
-
-
-def _with_power(curve: Curve, unit: float) -> Curve:
-    """Points in another unit, with the exponent of their power."""
-    if not isinstance(power := curve.fit, Power):
-        return Curve(curve.x, unit * curve.y, look={"linestyle": "none", "fillstyle": "none"})
-    return Curve(curve.x, unit * curve.y, lambda x: unit * power(x), str(power), (power.first, power.last))
-
-
-def predicted(panels: Mapping[str, tuple[float, float, Mapping[str, tuple[Sequence, Sequence]]]]) -> Drawing:
-    """Title with unit -> (factor that is allowed, measured value from which it counts, family ->
-    (measured, predicted)).
-    """
-    drawn, shades = {}, []
-    names = dict.fromkeys(family for _, _, families in panels.values() for family in families)
-    colours = matplotlib.colormaps["turbo"](np.linspace(0.0, 0.95, len(names)))
-    for title, (allowed, least, families) in panels.items():
-        every = np.concatenate([np.ravel(pair) for pair in families.values()])
-        ends = np.array([0.7 * every.min(), 1.4 * every.max()])
-        even, counted = Curve(ends, ends), Curve(np.array([least, least]), ends)
-        drawn[title] = {"predicted = measured": even, "counted to its right": counted}
-        drawn[title] |= {name: Curve(*map(np.array, pair)) for name, pair in families.items()}
-        shades.append((ends, ends / allowed, ends * allowed))
-    looks: dict[str, dict] = {
-        name: {"color": color, "marker": mark, "fillstyle": "none", "linestyle": "none"}
-        for name, color, mark in zip(names, colours, cycle("os^Dv<>phXP*"), strict=False)
-    }
-    guide = {"color": BLACK, "linewidth": 0.8}
-    looks |= {"predicted = measured": guide, "counted to its right": guide | {"linestyle": ":"}}
-    labels = dict.fromkeys(drawn, "predicted")
-    how = {"logarithmic": "xy", "legend": "right", "size": (4.9, 4.4)}
-    drawing = curves(drawn, "measured", labels, looks=looks, **how)
-    for axis, shade in zip(drawing.figure.axes, shades, strict=True):
-        axis.fill_between(*shade, **BAND)
-    return drawing
-
-
 def over_cycles(
     panels: Mapping[tuple[str, str], Mapping[tuple[str, str], np.ndarray]],
     names: Sequence[str],
@@ -579,33 +450,3 @@ def _broken(title: str) -> str:
     """A long title, broken at its last comma."""
     begin, comma, rest = title.rpartition(", ") if len(title) > 20 else ("", "", title)
     return f"{begin}{comma.strip()}\n{rest}" if comma else title
-
-
-def histories(panels: Mapping[str, Sequence[tuple[str, Attempt]]]) -> Drawing:
-    """Residuals over the iterations, title -> (name, attempt) of all steps; the last ones are darker,
-    attempts that were given up are red. A residual of zero has no place on a logarithmic axis.
-    """
-    pale, goal = 0.25, {"color": BLACK, "linestyle": ":", "linewidth": 0.9}
-    drawn: dict[str, dict[str, Curve]] = {}
-    for title, attempts in panels.items():
-        panel = drawn[title] = {}
-        for k, (name, each) in enumerate(attempts):
-            shade = pale + (1.0 - pale) * k / max(1, len(attempts) - 1)
-            look = {"color": BLUE if each.accepted else VERMILION, "alpha": shade, "linewidth": 1.1}
-            at, residuals = np.arange(1, len(each.residuals) + 1), np.array(each.residuals, dtype=float)
-            shown = np.where(residuals > 0.0, residuals, np.nan)
-            words = f"{name}{'' if each.accepted else ', given up'}"
-            panel[f"{k}: {words}"] = Curve(at, shown, look=look)
-            panel[f"goal {each.goal:g}"] = Curve(at[[0, -1]], np.full(2, each.goal), look=goal)
-    entries = [
-        Line2D([], [], color=BLUE, alpha=pale, label="first load step"),
-        Line2D([], [], color=BLUE, label="last load step"),
-        Line2D([], [], color=VERMILION, label="attempt given up: its step is cut"),
-        Line2D([], [], **goal, label="goal"),
-    ]
-    looks = {name: {} for panel in drawn.values() for name in panel}
-    how = {"across": min(4, len(panels)), "size": (2.6, 2.4), "logarithmic": "y", "count": True}
-    drawing = curves(drawn, "iteration", "residual", looks=looks, legend=entries, **how)
-    for axis in drawing.figure.axes:
-        axis.title.set_fontsize(8.5)
-    return drawing

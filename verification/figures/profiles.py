@@ -1,21 +1,20 @@
 # SPDX-License-Identifier: MIT
-"""Curves against a closed form, a correlation or FEM, with the errors underneath."""
+"""Curves against a closed form or FEM, with the errors underneath."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
 
 from sam.scene import Result
-from verification.figures.lines import BAND, GIGA, MICRO, PERCENT, POINTS
+from verification.figures.lines import GIGA, MICRO, PERCENT, POINTS
 from verification.figures.maps import INTERFACE, mark_interface
 from verification.figures.style import (
     EXACT,
     FEM,
-    ORANGE,
     SAM,
     Columns,
     Drawing,
@@ -33,9 +32,8 @@ class Profile:
     """One panel above its errors: an exact curve, the computed series, and what their difference is divided
     by.
 
-    exact: x -> y (vectorised); series: "SAM" or "FEM" -> (x, y); scale: the error is 100 (y - exact) / scale,
-    None: / exact; points: draw markers instead of lines; xlim: what is shown (and written); others: functions
-    like the exact one, beside it; band: of tolerance, in %; logarithmic: x and y.
+    exact: x -> y (vectorised); series: "SAM" or "FEM" -> (x, y); scale: the error is 100 (y - exact) / scale;
+    xlim: what is shown (and written).
     """
 
     title: str
@@ -43,13 +41,9 @@ class Profile:
     ylabel: str
     exact: Callable[[np.ndarray], np.ndarray]
     series: Mapping[str, tuple[np.ndarray, np.ndarray]]
-    scale: float | None
+    scale: float
     scale_name: str
     xlim: tuple[float, float]
-    points: bool = False
-    others: Mapping[str, Callable[[np.ndarray], np.ndarray]] = field(default_factory=dict)
-    band: float = 0.0
-    logarithmic: bool = False
 
 
 CLOSED_FORM = "closed form"
@@ -87,55 +81,26 @@ def draw_profile(axes: tuple[Axes, Axes], panel: Profile, reference: str, rows: 
     upper, lower = axes
 
     def off(y: np.ndarray, exact: np.ndarray) -> np.ndarray:
-        return PERCENT * (y - exact) / (panel.scale or exact)
+        return PERCENT * (y - exact) / panel.scale
 
     for name, (x, y) in panel.series.items():
         x, y = x[inside := (x >= panel.xlim[0]) & (x <= panel.xlim[1])], y[inside]
         exact = panel.exact(x)
-        look = POINTS[name] | {"linestyle": "none"} if panel.points else {"SAM": SAM, "FEM": FEM}[name]
+        look = {"SAM": SAM, "FEM": FEM}[name]
         upper.plot(x, y, **look, label=name)
         lower.plot(x, off(y, exact), **look)
         rows.add(panel.title, name, x, y, exact, off(y, exact))
     low, high = panel.xlim
-    dense = np.geomspace(low, high, 801) if panel.logarithmic else np.linspace(low, high, 801)
+    dense = np.linspace(low, high, 801)
     upper.plot(
         dense, panel.exact(dense), **EXACT | (FEM if reference == "FEM" else {}), label=reference, zorder=3
     )
-    for name, other in panel.others.items():
-        look = {"color": ORANGE, "linestyle": "--", "linewidth": 1.6}
-        upper.plot(dense, other(dense), **look, label=name)
-        lower.plot(dense, off(other(dense), panel.exact(dense)), **look)
-    room = 0.03 * (high - low) if panel.points and not panel.logarithmic else 0.0  # for markers at the ends
     lower.sharex(upper)
-    if panel.logarithmic:
-        upper.set(xscale="log", yscale="log")
-    upper.set(title=panel.title, ylabel=panel.ylabel, xlim=(low - room, high + room))
+    upper.set(title=panel.title, ylabel=panel.ylabel, xlim=(low, high))
     upper.tick_params(labelbottom=False)
     zero_line(lower)
-    if panel.band:
-        lower.axhspan(-panel.band, panel.band, **BAND)
     word = "error" if reference == CLOSED_FORM else "difference"
-    lower.set(
-        xlabel=panel.xlabel, ylabel=f"{word}\n[% of {panel.scale_name}]" if panel.scale else f"{word} [%]"
-    )
-
-
-def correlations(
-    panels: Mapping[str, tuple[Mapping[str, Callable], Mapping[str, tuple[np.ndarray, np.ndarray]]]],
-    limits: tuple[float, float],
-    band: float,
-) -> Drawing:
-    """Ratios over w* with published fits, and underneath the distance from the first fit.
-
-    panels: label -> (name of the fit -> function of w*, "SAM" or "FEM" -> (w*, ratio)); band:
-    tolerance, shaded.
-    """
-    drawn, how = [], {"points": True, "band": PERCENT * band, "logarithmic": True}
-    for label, (fits, series) in panels.items():
-        (reference, first), *others = fits.items()
-        labels = "", "approach $w^*$", label
-        drawn.append(Profile(*labels, first, series, None, "", limits, others=dict(others), **how))
-    return profiles(drawn, reference)
+    lower.set(xlabel=panel.xlabel, ylabel=f"{word}\n[% of {panel.scale_name}]")
 
 
 def axis_profiles(sam: Result, fem: Result, a: float, deep: float = 2.0) -> Drawing:

@@ -61,7 +61,7 @@ HERTZ_ERROR = 5e-6
 def solution(problem: str, n: int, python: Path, program: str = SAM) -> np.ndarray:
     """The pressure on these cells with a tight tolerance. RuntimeError when there is none."""
     measurement = Measurement(Job(problem, n, TIGHT[program]))
-    run(program, [measurement], python)
+    run(program, measurement, python)
     if measurement.failure or "pressure" not in measurement.fields:
         raise RuntimeError(
             f"{program} on {n} x {n} cells of {problem}: {measurement.failure or 'no pressure'}"
@@ -83,16 +83,12 @@ def disagreements(problem: str, n: int, pythons: Mapping[str, Path]) -> dict[str
     return {program: distance(solution(problem, n, pythons[program], program), own) for program in others}
 
 
-def hertz_errors(
-    p: np.ndarray, n: int, side: float, converged_error: float
-) -> tuple[float, dict[str, float]]:
-    """Error of the largest pressure, and the relative L2 error of the pressure against Hertz' mean over each
-    cell. converged_error: of the discrete problem, solved tightly; the larger counts, as an iteration that
-    stops where its own error cancels that of the grid has solved the problem no better.
+def hertz_error(p: np.ndarray, converged_error: float) -> float:
+    """Error of the largest pressure. converged_error: of the discrete problem, solved tightly; the larger
+    counts, as an iteration that stops where its own error cancels that of the grid has solved the problem no
+    better.
     """
-    found = abs(float(p.max()) / problems.P0 - 1)
-    also = {"as-found": found, "l2": distance(p, problems.hertz_pressure(n, side))}
-    return max(found, converged_error), also
+    return max(abs(float(p.max()) / problems.P0 - 1), converged_error)
 
 
 def hertz(
@@ -112,15 +108,15 @@ def hertz(
     found, kernel = measure(jobs, pythons, rounds, progress)
     least: dict[tuple[int, float], float] = {}
 
-    def errors(each: Measurement) -> tuple[float, dict[str, float]]:
+    def error(each: Measurement) -> float:
         n, side = each.job.cells, each.job.settings.get("side", problems.SIDE)
         if (n, side) not in least:
             tight = Measurement(Job(problems.HERTZ, n, {**TIGHT[SAM], "side": side}))
-            run(SAM, [tight], pythons[SAM])
-            least[n, side] = abs(float(tight.fields["pressure"].max()) / problems.P0 - 1)
-        return hertz_errors(each.fields["pressure"], n, side, least[n, side])
+            run(SAM, tight, pythons[SAM])
+            least[n, side] = hertz_error(tight.fields["pressure"], 0.0)
+        return hertz_error(each.fields["pressure"], least[n, side])
 
-    return rows_of(problems.HERTZ, found, errors), kernel
+    return rows_of(problems.HERTZ, found, error), kernel
 
 
 def rough(
@@ -133,9 +129,8 @@ def rough(
     rows, kernel = [], []
     open_ = {(program, n): 0 for program in pythons for n in ROUGH_SIZES}  # -> place in the ladder
 
-    def errors(each: Measurement) -> tuple[float, dict[str, float]]:
-        p, reference = each.fields["pressure"], tight[each.job.cells]
-        return distance(p, reference), {"p-max": abs(float(p.max() / reference.max()) - 1)}
+    def error(each: Measurement) -> float:
+        return distance(each.fields["pressure"], tight[each.job.cells])
 
     while open_:
         jobs: dict[str, list[Job]] = {}
@@ -145,10 +140,10 @@ def rough(
                 Job(problems.ROUGH, n, settings, f"{settings['tolerance']:g}")
             )
         found, seconds = measure(
-            jobs, pythons, rounds, progress, reaches=lambda each: errors(each)[0] <= ROUGH_ERROR
+            jobs, pythons, rounds, progress, reaches=lambda each: error(each) <= ROUGH_ERROR
         )
         kernel += seconds
-        fresh = rows_of(problems.ROUGH, found, errors)
+        fresh = rows_of(problems.ROUGH, found, error)
         rows += fresh
         missed = {(row["model"], row["cells"]) for row in fresh if not row["error"] <= ROUGH_ERROR}
         open_ = {

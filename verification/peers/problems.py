@@ -9,7 +9,6 @@ composite modulus E*. Elastic-plastic: the modulus E and the Hertz radius are th
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
@@ -36,8 +35,6 @@ STEP_FORCE = 4 * STEP_MODULUS / (3 * RADIUS)
 YIELD = STEP_P0 / 3
 HARDENING = 0.02  # d sigma_y / d peeq
 BOX = (6.0, 2.5)  # side and depth
-
-EDGE_SAMPLES = 16  # a side, in each cell, of the exact mean pressure
 
 
 @dataclass(frozen=True)
@@ -68,21 +65,6 @@ def hertz_centres(n: int, side: float = SIDE) -> np.ndarray:
     case.
     """
     return (np.arange(n) - n // 2) * (side * A / n)
-
-
-@lru_cache(maxsize=32)
-def hertz_pressure(n: int, side: float = SIDE) -> np.ndarray:
-    """Mean of the exact pressure over each cell, by the midpoint rule on EDGE_SAMPLES^2 points of it."""
-    h = side * A / n
-    offsets = ((np.arange(EDGE_SAMPLES) + 0.5) / EDGE_SAMPLES - 0.5) * h
-    x2 = (hertz_centres(n, side)[:, None] + offsets) ** 2 / A**2
-    total = np.zeros((n, n))
-    for i in range(EDGE_SAMPLES):
-        for j in range(EDGE_SAMPLES):
-            total += np.sqrt(np.maximum(1 - x2[:, None, i] - x2[None, :, j], 0.0))
-    total *= P0 / EDGE_SAMPLES**2
-    total.setflags(write=False)  # shared
-    return total
 
 
 def rough_heights(n: int) -> np.ndarray:

@@ -9,7 +9,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -43,23 +43,17 @@ class Job:
     settings: Mapping[str, Any]
     label: str = ""
 
-    @property
-    def content(self) -> dict:
-        return {"problem": self.problem, "cells": self.cells, "settings": dict(self.settings)}
-
 
 @dataclass
 class Measurement:
     """A job as measured.
 
-    setup_s, solve_s: one a round; again_s: of second solutions, where there were any; record: counts of the
-    last round; failure: why there is no answer.
+    setup_s, solve_s: one a round; record: counts of the last round; failure: why there is no answer.
     """
 
     job: Job
     setup_s: list[float] = field(default_factory=list)
     solve_s: list[float] = field(default_factory=list)
-    again_s: list[float] = field(default_factory=list)
     record: dict = field(default_factory=dict)
     fields: dict[str, np.ndarray] = field(default_factory=dict)
     failure: str = ""
@@ -72,11 +66,6 @@ class Measurement:
     def seconds(self) -> float:
         """Median over the rounds; nan without an answer."""
         return float(np.median(self.cpu_s)) if self.solved else float("nan")
-
-    @property
-    def again(self) -> float:
-        """Median of the second solutions in the process of the first; nan where there is none."""
-        return float(np.median(self.again_s)) if self.solved and self.again_s else float("nan")
 
     @property
     def solved(self) -> bool:
@@ -152,81 +141,44 @@ def measure(
     for number in range(rounds):
         for k, (program, own) in enumerate(found.items()):
             progress(f"round {number + 1} of {rounds}, {NAMES.get(program, program)}", k + 1, len(found))
-            due = [
-                each
-                for each in own
-                if each.wanted(number) and (number == 0 or not each.solved or reaches(each))
-            ]
+            due = [each for each in own if each.wanted(number) and (not each.solved or reaches(each))]
             for each in due:
-                run(program, [each], pythons[program])
+                run(program, each, pythons[program])
             if due:
                 kernel.append(calibrate())
     return found, kernel
 
 
-def run(program: str, due: Sequence[Measurement], python: Path, allowance: float = ALLOWANCE_S) -> None:
-    """One process of a program through the jobs; adds their times, and says of each without an answer why."""
-    with tempfile.TemporaryDirectory(prefix="samfem-peers-") as name:
-        source, target = Path(name, "task.json"), Path(name, "out")
-        target.mkdir()
-        source.write_text(
-            json.dumps({"program": program, "jobs": [each.job.content for each in due]}), encoding="utf-8"
-        )
-        words = [python, "-m", "verification.peers.worker", source, target]
-        ended = _ended(words, target, allowance)
-        for k, measurement in enumerate(due):
-            _take(measurement, target / f"{k}.json", ended)
-
-
-def _ended(words: Sequence[Any], folder: Path, allowance: float) -> str:
-    """Run the worker to its end in `folder`; why it ended early, or an empty text. It is ended when no job
-    ends for long.
-    """
-    environment = {
-        **os.environ,
-        **dict.fromkeys(THREADS, "1"),
-        "PYTHONPATH": str(ROOT),
-        "PYTHONDONTWRITEBYTECODE": "1",
-    }
-    told = folder.parent / "stderr"
-    with told.open("wb") as stderr:
-        process = subprocess.Popen(
-            words, stdout=subprocess.DEVNULL, stderr=stderr, cwd=folder, env=environment
-        )
+def run(program: str, measurement: Measurement, python: Path, allowance: float = ALLOWANCE_S) -> None:
+    """One process of a program for a job; adds its times, or says why there is no answer."""
+    environment = {**os.environ, **dict.fromkeys(THREADS, "1"), "PYTHONPATH": str(ROOT)}
+    environment["PYTHONDONTWRITEBYTECODE"] = "1"
+    task = json.dumps({"program": program, "job": asdict(measurement.job)})
+    with tempfile.TemporaryDirectory(prefix="samfem-peers-") as folder:
+        target = Path(folder, "answer")
+        words = [python, "-m", "verification.peers.worker", task, target]
+        quiet: dict[str, Any] = {
+            "stdout": subprocess.DEVNULL,
+            "stderr": subprocess.PIPE,
+            "text": True,
+            "errors": "replace",
+        }
         try:
-            done = -1
-            while done < len(list(folder.glob("*.json"))):
-                done = len(list(folder.glob("*.json")))
-                try:
-                    process.wait(allowance)
-                    break
-                except subprocess.TimeoutExpired:
-                    continue
-            else:
-                return f"no answer within {allowance:g} s"
-        finally:
-            if process.poll() is None:
-                process.kill()
-                process.wait()
-    last = told.read_text(errors="replace").strip().splitlines()[-1:] or [""]
-    return f"ended with code {process.returncode}: {last[0][:200]}" if process.returncode else ""
-
-
-def _take(measurement: Measurement, place: Path, ended: str) -> None:
-    try:
-        record = json.loads(place.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        measurement.failure = ended or "no answer"
-        return
-    measurement.failure = record.pop("failure", "")
-    if not measurement.failure:
-        measurement.setup_s.append(record.pop("setup_s"))
-        measurement.solve_s.append(record.pop("solve_s"))
-        if (again := record.pop("again_s")) is not None:
-            measurement.again_s.append(again)
-        with np.load(place.with_suffix(".npz")) as fields:
-            measurement.fields = dict(fields)
-    measurement.record = record
+            done = subprocess.run(words, cwd=folder, env=environment, timeout=allowance, check=False, **quiet)
+        except subprocess.TimeoutExpired:
+            measurement.failure = f"no answer within {allowance:g} s"
+            return
+        if done.returncode:
+            last = done.stderr.strip().splitlines()[-1:] or [""]
+            measurement.failure = f"ended with code {done.returncode}: {last[0][:200]}"
+            return
+        record = measurement.record = json.loads(target.with_suffix(".json").read_text(encoding="utf-8"))
+        measurement.failure = record.pop("failure", "")
+        if not measurement.failure:
+            measurement.setup_s.append(record.pop("setup_s"))
+            measurement.solve_s.append(record.pop("solve_s"))
+            with np.load(target.with_suffix(".npz")) as fields:
+                measurement.fields = dict(fields)
 
 
 def pythons_of(python: Path, peers: Mapping[str, str]) -> dict[str, Path]:
@@ -234,24 +186,19 @@ def pythons_of(python: Path, peers: Mapping[str, str]) -> dict[str, Path]:
     return {SAM: Path(sys.executable)} | dict.fromkeys(peers, python)
 
 
-Errors = Callable[[Measurement], tuple[float, Mapping[str, float]]]
-"""Of a measurement: the error that times are compared at, and other measures, name -> value."""
-
-
-def rows_of(problem: str, found: Mapping[str, Sequence[Measurement]], errors: Errors) -> list[dict[str, Any]]:
-    """A row for every measurement; the error is nan for those without an answer. again: seconds of a second
-    solution in the process of the first.
-    """
+def rows_of(
+    problem: str, found: Mapping[str, Sequence[Measurement]], error: Callable[[Measurement], float]
+) -> list[dict[str, Any]]:
+    """A row for every measurement. error: that times are compared at, nan without an answer."""
     rows = []
     for program, own in found.items():
         for each in own:
             label = ", ".join(filter(None, (NAMES[program], each.job.label)))
             row: dict[str, Any] = {"sweep": problem, "model": program, "curve": label}
-            row |= {"cells": cells_in_words(each.job.cells), "seconds": each.seconds, "again": each.again}
-            row["error"] = float("nan")
+            row |= {"cells": cells_in_words(each.job.cells), "seconds": each.seconds}
+            row["error"] = error(each) if each.solved else float("nan")
             if each.solved:
-                row["error"], also = errors(each)
-                row |= {**also, "rounds": len(each.cpu_s), "iterations": each.record.get("iterations")}
+                row |= {"rounds": len(each.cpu_s), "iterations": each.record.get("iterations")}
                 row |= {"least": min(each.cpu_s), "most": max(each.cpu_s), "set-up": np.median(each.setup_s)}
                 row["memory"] = each.record["peak_memory_bytes"]
             rows.append(row | {"status": "" if each.solved else each.failure or "not converged"})

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""One program, run through a list of jobs by the interpreter of its environment: python -m
-verification.peers.worker IN OUT.
+"""One job of one program, run by the interpreter of its environment: python -m verification.peers.worker
+TASK TARGET.
 
-IN: JSON, {"program", "jobs": [{"problem", "cells", "settings"}, ...]}; OUT: a folder, in which 0.json,
-1.json, ... with times, memory and counts and 0.npz, 1.npz, ... with fields are written as the jobs end. A
-smaller problem of the kind is solved before and not timed: what a program loads at its first call is not its
-price, what it computes for a grid is. Time is processor time of all threads; imports and the making of the
-heights are outside.
+TASK: JSON, {"program", "job": {"problem", "cells", "settings"}}; TARGET.json gets times, memory and counts,
+TARGET.npz fields. A smaller problem of the kind is solved before and not timed: what a program loads at its
+first call is not its price, what it computes for a grid is. Time is processor time of all threads; imports
+and the making of the heights are outside.
 """
 
 from __future__ import annotations
@@ -14,6 +13,7 @@ from __future__ import annotations
 import json
 import sys
 import time
+from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 
@@ -22,51 +22,36 @@ import numpy as np
 from verification.peers import problems
 from verification.runs import models
 
-AGAIN_S = 30.0  # what takes less is solved a second time in the same process
 BEFORE = {problems.HERTZ: 36, problems.ROUGH: 132, problems.STEP: (10, 5)}  # cells; sizes that no job has
 
 
-def main(source: str, target: str) -> None:
-    """Solve the tasks of the file `source` with their program, and write what was measured into `target`."""
-    task = json.loads(Path(source).read_text(encoding="utf-8"))
-    program = import_module(f"verification.peers.programs.{task['program']}")
+def main(task: str, target: str) -> None:
+    """Solve the job with its program, and write what was measured."""
+    said = json.loads(task)
+    program, job = import_module(f"verification.peers.programs.{said['program']}"), said["job"]
     program.load()
-    jobs = task["jobs"]
+    fields: dict[str, np.ndarray] = {}
+    with suppress(Exception):  # told below, where it is timed
+        measured(program, job | {"cells": BEFORE[job["problem"]]})
     try:
-        measured(program, jobs[0] | {"cells": BEFORE[jobs[0]["problem"]]}, again=False)
-    except Exception:  # told below, where it is timed
-        pass
-    for k, job in enumerate(jobs):
-        try:
-            record, fields = measured(program, job)
-        except Exception as problem:
-            record, fields = {"failure": f"{type(problem).__name__}: {problem}"[:300]}, {}
-        record["peak_memory_bytes"] = models.peak_memory()
-        np.savez(Path(target, f"{k}.npz"), **fields)
-        Path(target, f"{k}.json").write_text(
-            json.dumps(record | {"versions": program.versions()}), encoding="utf-8"
-        )
+        record, fields = measured(program, job)
+    except Exception as problem:
+        record = {"failure": f"{type(problem).__name__}: {problem}"[:300]}
+    record |= {"peak_memory_bytes": models.peak_memory(), "versions": program.versions()}
+    np.savez(f"{target}.npz", **fields)
+    Path(f"{target}.json").write_text(json.dumps(record), encoding="utf-8")
 
 
-def measured(program, job: dict, again: bool = True) -> tuple[dict, dict[str, np.ndarray]]:
-    """Times and counts, and fields of a job. again_s: of a second set-up and solution, with what the program
-    keeps of the first; None if that took long.
-    """
-    setup = program.setup(
-        job["problem"], job["cells"], job["settings"]
-    )  # heights: the problem, not its solution
+def measured(program, job: dict) -> tuple[dict, dict[str, np.ndarray]]:
+    """Times and counts, and fields of a job."""
+    setup = program.setup(job["problem"], job["cells"], job["settings"])  # with the heights: of the problem
     began = time.process_time()
     solve = setup()
     ready = time.process_time()
     answer = solve()
     ended = time.process_time()
     counts, fields = program.read(answer)
-    times = {"setup_s": ready - began, "solve_s": ended - ready, "again_s": None}
-    if again and ended - began < AGAIN_S:
-        began = time.process_time()
-        setup()()
-        times["again_s"] = time.process_time() - began
-    return {**times, **counts}, fields
+    return {"setup_s": ready - began, "solve_s": ended - ready, **counts}, fields
 
 
 if __name__ == "__main__":

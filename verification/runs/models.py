@@ -70,25 +70,28 @@ def solve(
     checkpoint: Keep | None = None,
     *,
     start: Checkpoint | None = None,
+    made: Any = None,
 ) -> Result:
     """The result of `model`, with by how much small strains of a flat half-space are off; its cost completed
     by cpu_s and peak_memory_bytes (of this process so far).
 
     checkpoint, start: see the solvers; the times of a solve in parts add up, and its memory is that of the
-    largest part. Raises ModelError for a scene that the model cannot represent.
+    largest part; made: the plan of the scene where it was checked and planned already, which then is not done
+    again. Raises ModelError for a scene that the model cannot represent.
     """
-    check(scene, model)
+    if made is None:
+        check(scene, model)
     began, before = time.process_time(), start.cost if start else {}
 
     def measured() -> dict[str, float | int]:
         cpu = before.get("cpu_s", 0.0) + time.process_time() - began
         return {"cpu_s": cpu, "peak_memory_bytes": max(before.get("peak_memory_bytes", 0), peak_memory())}
 
-    def keep(made: Checkpoint) -> None:
-        checkpoint(made.with_cost(measured()))
+    def keep(record: Checkpoint) -> None:
+        checkpoint(record.with_cost(measured()))
 
     result = _package(model).solve(
-        scene, progress=progress, checkpoint=keep if checkpoint else None, start=start
+        scene, progress=progress, checkpoint=keep if checkpoint else None, start=start, plan=made
     )
     from verification.runs.model_range import with_range  # noqa: PLC0415 - loads numpy
 

@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Tables in and out through pandas, as CSV: numbers keep every digit, what is not a number is an empty cell.
+"""Tables in and out as CSV: numbers keep every digit, what is not a number is an empty cell.
 
-pandas is loaded where a table is written or read, not with this module: planning needs no table.
+pandas is loaded where a table is read, not with this module: to plan and to solve need none.
 """
 
 from __future__ import annotations
 
+import csv
 import io
 import re
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,21 +23,19 @@ TEXT_COLUMNS = ("state", "note", "verdict", "quantity", "flag")
 _QUOTED = re.compile(rb'"[^"]*"')
 
 
-def csv_text(columns: Sequence[str], rows: Sequence[Sequence]) -> str:
+def csv_text(columns: Sequence[str], rows: Iterable[Sequence]) -> str:
     """Rows as CSV: floats with the shortest digits that read back the same, None and NaN as empty cells."""
-    from pandas import DataFrame
-
-    return _csv_of(DataFrame(list(rows), columns=list(columns), dtype=object))
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows([None if value != value else value for value in row] for row in rows)
+    return text.getvalue()
 
 
 def columns_text(table: Mapping[str, Sequence[Any]]) -> str:
     """The same of a mapping from column name to values. Raises ValueError for columns of unequal length."""
-    from pandas import DataFrame
-
-    lengths = {name: len(values) for name, values in table.items()}
-    if len(set(lengths.values())) > 1:
-        raise ValueError(f"a column is shorter than another: {lengths}")
-    return _csv_of(DataFrame({name: _column(values) for name, values in table.items()}))
+    columns = [values.tolist() if isinstance(values, np.ndarray) else values for values in table.values()]
+    return csv_text(list(table), zip(*columns, strict=True))
 
 
 def read_table(content: bytes) -> DataFrame:
@@ -68,16 +67,3 @@ def read_any_table(content: bytes) -> DataFrame:
 def frame_of(table: Mapping[str, Sequence[Any]]) -> DataFrame:
     """A table of a result as `read_table` gives it back from a file."""
     return read_table(columns_text(table).encode())
-
-
-def _column(values: Sequence[Any]) -> Any:
-    """An array in double precision; of a list each entry as it is: a whole number beside None stays whole."""
-    if isinstance(values, np.ndarray):
-        return values.astype(float) if values.dtype.kind == "f" else values
-    column = np.empty(len(values), dtype=object)
-    column[:] = [value.item() if isinstance(value, np.generic) else value for value in values]
-    return column
-
-
-def _csv_of(table: DataFrame) -> str:
-    return table.to_csv(index=False, lineterminator="\n")

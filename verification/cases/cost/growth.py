@@ -4,14 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from verification.cases.case import FEM_3D, Context, Plot, SmallTable
 from verification.cost import growth
-from verification.cost.growth import MEMORY_MATTERS, TIME_MATTERS
-from verification.figures.lines import Curve, growth as draw, predicted as draw_predicted
+from verification.figures.lines import Curve, curves
 from verification.reference.convergence import Power, fit_power
 from verification.rows import CaseFile
 
@@ -24,7 +24,6 @@ BOXES = {
     "depth": ((64, 64, 4), (64, 64, 8), (64, 64, 16), (64, 64, 32)),
 }
 """What grows -> boxes of the residual-stress operator by itself."""
-MEMORY_ALLOWED, TIME_ALLOWED = 1.2, 2.0  # factors between predicted and measured
 EXPONENTS = {
     "elastic contact, whole solve, in cells": ("contact", "cpu-s", 257**2),
     "elastic stresses at all depths, in cells": ("stresses", "further-s", 0),
@@ -92,73 +91,17 @@ def exponents(frame: DataFrame) -> SmallTable:
     return SmallTable("Exponents of processor time", ("what", "from", "to", "exponent"), rows)
 
 
-def time_and_memory(file: CaseFile, frame: DataFrame) -> Plot:
-    """Both over the size."""
-    of_time = {EXPONENTS[what][:2]: power for what, power in powers(frame).items()}
-
-    def curve(ladder: str, column: str, *, top: int = 0) -> Curve:
+def times(file: CaseFile, frame: DataFrame) -> Plot:
+    """Over the size, a panel for each exponent."""
+    panels = {}
+    for what, power in powers(frame).items():
+        ladder, column, _ = EXPONENTS[what]
         own = frame[frame["sweep"] == ladder]
-        power = fit_power(own["size"][-top:], own[column][-top:]) if top else of_time.get((ladder, column))
-        return Curve(own["size"].to_numpy(), own[column].to_numpy(dtype=float), power)
-
-    elements = {"axisymmetric": "axisymmetric", "3D": "spatial"}
-    columns = {
-        "Elastic, SAM": (
-            "cells",
-            {"contact": curve("contact", "cpu-s"), "with all depths": curve("stresses", "cpu-s")},
-            {
-                "contact": curve("contact", "memory", top=3),
-                "with all depths": curve("stresses", "memory", top=3),
-            },
-        ),
-        "Residual-stress operator": (
-            "cells of the box",
-            {
-                "an application": curve("operator-cells", "cpu-s"),
-                "set-up": curve("operator-cells", "set-up-s"),
-            },
-            {
-                "stored": curve("operator-cells", "stored"),
-                "with the set-up": curve("operator-cells", "memory"),
-            },
-        ),
-        "Running-in": (
-            "cycles",
-            {"running-in": curve("cycles", "cpu-s")},
-            {"running-in": curve("cycles", "memory")},
-        ),
-        "Finite elements, elastic": (
-            "unknowns",
-            *(
-                {label: curve(name, column) for label, name in elements.items()}
-                for column in ("cpu-s", "memory")
-            ),
-        ),
-    }
-    alt = "Log-log plots of processor time and memory over cells, cycles and unknowns."
+        values, ends = own[column].to_numpy(dtype=float), (power.first, power.last)
+        panels[fill(what, 36)] = {str(power): Curve(own["size"].to_numpy(), values, power, span=ends)}
+    labels = dict.fromkeys(panels, "processor time [s]")
+    how = {"across": 3, "logarithmic": "xy", "legend": "each", "size": (4.6, 3.2)}
+    drawing = curves(panels, "size", labels, **how)
+    alt = "Log-log plots of processor time over cells, cycles and unknowns."
     caption = "Lines: least squares through the points they cover; numbers: exponents ± standard error."
-    return Plot(draw(columns), "time-memory", "Time and memory over size", alt, caption)
-
-
-def predicted(file: CaseFile, frame: DataFrame) -> Plot:
-    """Predicted over measured memory and time."""
-    solves = frame[frame["predicted-s"].notna()]
-
-    def families(measured: str, expected: str, unit: float, least: float) -> dict[str, tuple[list, list]]:
-        return {
-            name: tuple((unit * own[column].clip(lower=least)).tolist() for column in (measured, expected))
-            for name, own in solves.groupby("sweep", sort=False)
-        }
-
-    memory = families("memory", "predicted-memory", 1e-6, 1e5)
-    time = families("cpu-s", "predicted-s", 1.0, 0.0)
-    panels = {
-        "Memory over idle [MB]": (MEMORY_ALLOWED, 1e-6 * MEMORY_MATTERS, memory),
-        "Processor time [s]": (TIME_ALLOWED, TIME_MATTERS, time),
-    }
-    alt = "Log-log plots of predicted over measured memory and processor time, one mark a solve."
-    caption = (
-        f"Shaded: factor {MEMORY_ALLOWED:g} for memory, {TIME_ALLOWED:g} for time; counted right of the "
-    )
-    caption += "dotted line."
-    return Plot(draw_predicted(panels), "predicted", "Predicted over measured", alt, caption)
+    return Plot(drawing, "time", "Time over size", alt, caption)

@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from itertools import pairwise, zip_longest
 from typing import TYPE_CHECKING, Any
 
@@ -34,9 +33,8 @@ from verification.cost import measured
 from verification.cost.advice import BELOW, COLUMNS, LOAD_STEPS, NEVER, ON_TWO_GRIDS, AdviceRow, texts_of
 from verification.cost.precision import TARGETS, Ladder, Reached, Reference, agreed, at_error
 from verification.figures.style import Drawing
-from verification.figures.work_precision import Line, curves, overview
+from verification.figures.work_precision import curves, overview
 from verification.rows import CaseFile
-from verification.runs.sampling import peak
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -49,9 +47,6 @@ ONES = (COUPLED, TWICE)
 KNOWN = 3.0
 """Times better than an error that two methods are held against each other at, its reference has to be known:
 below that their curves are those of the reference."""
-ASKED = 50.0
-"""How many times faster SAM is to be where no model in two dimensions can solve: the goal, which is said
-beside what was measured."""
 FAST_S, REPEATS = 1.0, 3
 """A solve of less processor time is repeated, in rounds with the others; its median counts."""
 OLD_S = 30.0
@@ -61,7 +56,6 @@ EXACT = 1e-8
 others.
 """
 FEWEST = 3  # points of an extrapolation
-COSTS = ("cpu_s", "setup_s", "solve_s", "peak_memory_bytes")
 STEPS = "load steps"
 Solve = Callable[[Scene, str], Result]
 
@@ -83,7 +77,8 @@ def solved(problem: Problem, scene: Scene, solve: Solve) -> list[dict[str, Any]]
     each, so that a slow minute of the machine hits all of them. kernel: seconds of the calibration kernel
     beside it; spread: largest over smallest processor time of the repeats.
     """
-    jobs = [("resolution", method) for method in problem.methods] + [(STEPS, m) for m in problem.steps]
+    jobs = [("resolution", method) for method in problem.methods]
+    jobs += [(STEPS, problem.steps)] if problem.steps else []
     runs: dict[tuple, list[dict[str, Any]]] = {turn: [] for turn in in_turn([m.ladder for _, m in jobs])}
     kernel, ran_at = math.nan, -math.inf
     for repeat in range(REPEATS):
@@ -109,24 +104,21 @@ def once(problem: Problem, method: Method, scene: Scene, resolution: int, *, sol
     """One solve. Values are left out where they do not count, or the peak was not reached; a solve that
     breaks off is a row without values that says why.
     """
-    row = {"method": method.name, "resolution": resolution, **dict.fromkeys(COSTS, math.nan)}
-    row |= {"values": {}, "profile": None, "applications": None}
+    row: dict[str, Any] = {"method": method.name, "resolution": resolution, "cpu_s": math.nan, "values": {}}
     try:
         result = solve(method.at(scene, resolution), method.model)
     except (ValueError, ArithmeticError, MemoryError, RuntimeError) as error:
         return row | {"status": f"{type(error).__name__}: {error}"[:80]}
-    row |= {name: float(result.cost[name]) for name in COSTS} | {"status": result.status.value}
-    row["applications"] = result.cost.get("operator_applications")
+    row |= {"cpu_s": float(result.cost["cpu_s"]), "status": result.status.value}
     if result.converged or (not method.strict and not result.last_fitting):
         row["values"] = {name: result.quantities[name] for name in problem.measures}
-        row["profile"] = problem.profile and peak(result.tables["axis"], "z_m", problem.profile)
     return row
 
 
 def merged(repeats: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """One row of the repeats of a solve: medians of times and memory, and the spread of processor time."""
+    """One row of the repeats of a solve: medians of times, and the spread of processor time."""
     times = [row["cpu_s"] for row in repeats]
-    medians = {name: float(np.median([row[name] for row in repeats])) for name in (*COSTS, "kernel")}
+    medians = {name: float(np.median([row[name] for row in repeats])) for name in ("cpu_s", "kernel")}
     return {**repeats[0], **medians, "spread": max(times) / min(times) if min(times) > 0 else 1.0}
 
 
@@ -140,7 +132,6 @@ def with_errors(problem: Problem, scene: Scene, rows: Sequence[dict[str, Any]]) 
     unit, size = problem.advised(scene, values)
     if problem.steps:  # infinitely many load steps at one resolution, by the default loop
         references[STEPS] = limits(problem, [row for row in rows if row["refined"] == STEPS], [COUPLED])
-    finest = [row["profile"] for row in rows if row["method"] in problem.references[-1:] and row["profile"]]
     for row in rows:
         against = references[row["refined"]]
         errors = [one.error(row["values"].get(name)) for name, one in against.items()]
@@ -149,7 +140,6 @@ def with_errors(problem: Problem, scene: Scene, rows: Sequence[dict[str, Any]]) 
             "model": ADVISED.get(row["method"], row["method"]),
             "error": max(errors) if row["values"] else math.nan,
             "floor": max(one.uncertainty for one in against.values()),
-            "axis": profile_distance(row["profile"], finest[-1]) if row["profile"] and finest else math.nan,
             "kernels": row["cpu_s"] / row["kernel"],
             "references": against,
             "advised": (unit, size) if row["refined"] != STEPS else (LOAD_STEPS, 1.0),
@@ -179,15 +169,6 @@ def limits(problem: Problem, rows: Sequence[Mapping], methods: Sequence[str]) ->
         for quantity in problem.measures
     }
     return {quantity: agreed(*each) for quantity, each in ladders.items()}
-
-
-def profile_distance(own: tuple, best: tuple) -> float:
-    """Relative L2 over the depths of the better one, within those of both."""
-    (z, value), (depths, reference) = own, best
-    shared = (depths >= z[0]) & (depths <= z[-1])
-    at, weight = depths[shared], np.gradient(depths[shared])
-    apart = np.interp(at, z, value) - reference[shared]
-    return float(np.sqrt(np.sum(weight * apart**2) / np.sum(weight * reference[shared] ** 2)))
 
 
 # what rows take
@@ -250,22 +231,6 @@ def growth(rows: DataFrame, column: str) -> float:
     """The largest ratio of successive errors of which the later is above the floor; 0 where there is none."""
     pairs = [(a, b) for a, b in pairwise(rows[column]) if not b <= max(rows["floor"])]
     return max((b / a for a, b in pairs), default=0.0)
-
-
-def faster_range(rows: DataFrame, other: str) -> tuple[float, float]:
-    """The least and the largest of `faster` where the reference is off by its uncertainty, either way."""
-    found = []
-    for share in (-1.0, 0.0, 1.0):
-        moved = {
-            name: replace(one, value=one.value * (1.0 + share * one.uncertainty))
-            for name, one in rows["references"].iloc[0].items()
-        }
-        errors = [
-            max(one.error(values.get(name)) for name, one in moved.items()) if values else math.nan
-            for values in rows["values"]
-        ]
-        found.append(faster(rows.assign(error=errors), other)[0])
-    return min(found), max(found)
 
 
 # what is shown
@@ -345,18 +310,13 @@ def beside_elements(frame: DataFrame) -> SmallTable:
         for other in (AXISYMMETRIC, SPATIAL):
             ratio, error = faster(rows, other)
             if math.isfinite(ratio):
-                least, most = faster_range(rows, other)
-                goal = other == SPATIAL and AXISYMMETRIC not in methods(rows)
-                of_goal = f"{number(ratio / ASKED, 2)} of {ASKED:g}" if goal else ""
                 cells = (f"{100.0 * error:.2g} %", f"{100.0 * max(rows['floor']):.2g} %", number(ratio, 3))
-                between = f"{number(least, 3)} to {number(most, 3)}"
-                lines.append((problem.title, other, *cells, between, of_goal))
+                lines.append((problem.title, other, *cells))
     return SmallTable(
         "How many times the time of SAM finite elements take at the smallest error that both reach, and that "
         f"is {KNOWN:g} times the uncertainty of the reference. A sphere at rest is a problem in two "
         "dimensions for the axisymmetric model and in three for SAM",
-        "problem|beside|error|uncertainty of the reference|times|with the reference off by its uncertainty"
-        "|share of the goal".split("|"),
+        "problem|beside|error|uncertainty of the reference|times".split("|"),
         lines,
     )
 
@@ -369,12 +329,6 @@ def references(frame: DataFrame) -> SmallTable:
         for q, one in rows["references"].iloc[0].items()
     ]
     return SmallTable("References", ("problem", "quantity (SI)", "value", "uncertainty", "from"), lines)
-
-
-def line_of(rows: DataFrame, name: str) -> Line:
-    """The curve of a method."""
-    own = rows[rows["method"] == name]
-    return Line(*(own[column].to_numpy(dtype=float) for column in ("cpu_s", "error", "resolution")))
 
 
 def advice(file: CaseFile, frame: DataFrame) -> Plot:
@@ -397,12 +351,10 @@ def advice(file: CaseFile, frame: DataFrame) -> Plot:
 
 def errors(file: CaseFile, frame: DataFrame, name: str) -> Plot:
     """`errors PROBLEM`: error over processor time, the grid refined, or the load steps."""
-    problem, panels = STUDIED[name], {}
-    for refined, rows in frame[frame["sweep"] == name].groupby("refined", sort=False):
-        panels[refined] = {each: line_of(rows, each) for each in methods(rows)}, max(rows["floor"])
+    problem = STUDIED[name]
     words = " and ".join(MEASURES[measure] for measure in problem.measures)
     return Plot(
-        curves(panels, f"error of the {words}"),
+        curves(frame[frame["sweep"] == name], f"error of the {words}"),
         name,
         problem.title,
         f"Log-log plot of the error of the {words} over processor time, a falling curve for each method.",

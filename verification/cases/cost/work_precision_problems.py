@@ -78,13 +78,11 @@ class Method:
 @dataclass(frozen=True)
 class Problem:
     """One contact. scene: from that of `file`; kind: of the advice it gives, empty for none; measures:
-    quantities of the result, the error being the largest of theirs; unit: of a resolution.
+    quantities of the result, the error being the largest of theirs.
 
     advised: what the advice calls a resolution of 1, its name and size, from the scene and the reference
     values. exact: closed form, quantity -> value; else the reference is extrapolated from the `tops` finest
-    points of each of `references`, names of methods. steps: methods whose load steps are refined at
-    `at_steps`; profile: a column of axis.csv whose L2 distance from that of the finest of the last of
-    `references` is listed.
+    points of each of `references`, names of methods. steps: SAM with its load steps refined.
     """
 
     name: str
@@ -94,17 +92,11 @@ class Problem:
     scene: Callable[[Scene], Scene]
     measures: tuple[str, ...]
     methods: tuple[Method, ...]
-    unit: str = "cells in a"
     advised: Callable[[Scene, Mapping[str, float]], tuple[str, float]] = lambda *_: (IN_RADIUS, 1.0)
     exact: Callable[[Scene], Mapping[str, float]] | None = None
     references: tuple[str, ...] = ()
     tops: int = 4
-    steps: tuple[Method, ...] = ()
-    profile: str | None = None
-
-    def method(self, name: str) -> Method:
-        """A method by its name."""
-        return next(method for method in self.methods if method.name == name)
+    steps: Method | None = None
 
 
 MEASURES = {
@@ -189,28 +181,8 @@ def changed(at: Callable[[Scene, int], Scene], change: Callable[[Scene], Scene])
     return lambda scene, n: change(at(scene, n))
 
 
-def _hertz(scene: Scene) -> Mapping[str, float]:
-    return {"p_max_Pa": contact_of(scene).peak_pressure}
-
-
-def _elliptic(scene: Scene) -> Mapping[str, float]:
-    return {"p_max_Pa": elliptic_contact(scene).peak_pressure}
-
-
-def _coated(scene: Scene) -> Mapping[str, float]:
-    return {"p_max_Pa": coated_contact(scene).largest_pressure()[0]}
-
-
-def _loaded(ratio: float) -> Callable[[Scene], Scene]:
-    return lambda base: loaded(at_ratio(base, ratio), STEPS)
-
-
 def _sliding(base: Scene) -> Scene:
     return loaded(at_ratio(base, 4.0), STEPS).model_copy(update={"friction": Friction(coefficient=0.2)})
-
-
-def _elastic(base: Scene) -> Scene:
-    return loaded(with_body(base, plasticity=None))
 
 
 def _worn(base: Scene) -> Scene:
@@ -220,15 +192,13 @@ def _worn(base: Scene) -> Scene:
     return with_loading(with_grid(base, extent=(PATCH, PATCH)), force=share * base.loading.force, **keys)
 
 
-def _steps(
-    change: Callable[[Scene], Scene] = lambda each: each, name: str = COUPLED, strict: bool = True
-) -> Method:
-    """Load steps refined at one resolution."""
-
-    def at(scene: Scene, steps: int) -> Scene:
-        return change(with_loading(plastic_cells(scene, AT_STEPS), steps=steps))
-
-    return Method(name, SAM, LOAD_STEPS, at, strict)
+OVER_STEPS = Method(
+    COUPLED,
+    SAM,
+    LOAD_STEPS,
+    lambda scene, steps: with_loading(plastic_cells(scene, AT_STEPS), steps=steps),
+)
+"""Load steps refined at one resolution."""
 
 
 def _sphere(name: str, ratio: float, kind: str, spatial: Sequence[int] = ()) -> Problem:
@@ -245,12 +215,11 @@ def _sphere(name: str, ratio: float, kind: str, spatial: Sequence[int] = ()) -> 
         f"Rigid sphere on Swift steel, p₀/σ_y0 = {ratio:g}, {STEPS} load steps",
         kind,
         "plastic-swift-rigid",
-        _loaded(ratio),
+        lambda base: loaded(at_ratio(base, ratio), STEPS),
         ("peeq_max",),
         tuple(methods),
         references=(COUPLED, AXISYMMETRIC),
-        steps=(_steps(), _steps(by_paper, PAPER, strict=False)),
-        profile="peeq",
+        steps=OVER_STEPS,
     )
 
 
@@ -282,7 +251,7 @@ PROBLEMS = (
             Method(AXISYMMETRIC, FEM, (4, 6, 8, 12, 16, 32), with_mesh),
             Method(SPATIAL, FEM_3D, (4, 5, 6, 7, 8), smaller_box),
         ),
-        exact=_hertz,
+        exact=lambda scene: {"p_max_Pa": contact_of(scene).peak_pressure},
     ),
     _sphere("ratio-3", 3.0, YIELDING, SPATIAL_MESHES),
     _sphere("ratio-6-2", 6.2, DEEP),
@@ -301,7 +270,7 @@ PROBLEMS = (
             Method(SPATIAL, FEM_3D, SPATIAL_MESHES, smaller_box),
         ),
         references=(COUPLED, SPATIAL),
-        steps=(_steps(), _steps(uncoupled, DECOUPLED), _steps(by_paper, PAPER, strict=False)),
+        steps=OVER_STEPS,
     ),
     Problem(
         "coated",
@@ -315,20 +284,19 @@ PROBLEMS = (
             Method(AXISYMMETRIC, FEM, (4, 6, 8, 12, 16, 32), with_mesh),
             Method(SPATIAL, FEM_3D, (4, 5, 6), smaller_box),
         ),
-        exact=_coated,
+        exact=lambda scene: {"p_max_Pa": coated_contact(scene).largest_pressure()[0]},
     ),
     Problem(
         "rough-elastic",
         "Three elastic asperities under a rigid plane",
         ROUGH,
         "rough-asperities",
-        _elastic,
+        lambda base: loaded(with_body(base, plasticity=None)),
         ("p_max_Pa", "contact_area_m2"),
         (
             Method(COUPLED, SAM, (16, 20, 24, 32, 48, 64, 96, 192, 384), asperities),
             Method(SPATIAL, FEM_3D, (16, 24, 32), asperities),
         ),
-        unit="cells a side",
         advised=_in_spot,
         references=(COUPLED,),
     ),
@@ -343,7 +311,6 @@ PROBLEMS = (
             Method(COUPLED, SAM, (16, 20, 24, 32, 48, 64), asperities),
             Method(SPATIAL, FEM_3D, (16, 24, 32), asperities),
         ),
-        unit="cells a side",
         advised=_in_spot,
         references=(COUPLED,),
     ),
@@ -355,7 +322,6 @@ PROBLEMS = (
         _worn,
         ("wear_volume_m3",),
         (Method(COUPLED, SAM, (24, 32, 40, 48, 64), worn_cells),),
-        unit="cells a side",
         advised=_in_wave,
         references=(COUPLED,),
     ),
@@ -372,7 +338,6 @@ ELLIPSOID = Problem(
         Method(COUPLED, SAM, (3, 4, 5, 6, 8, 12, 16), elliptic_cells),
         Method(SPATIAL, FEM_3D, (4, 5, 6, 7, 8), with_mesh),
     ),
-    unit="cells in b",
-    exact=_elliptic,
+    exact=lambda scene: {"p_max_Pa": elliptic_contact(scene).peak_pressure},
 )
 """Beside the others, without advice: a smooth contact that no axisymmetric model can represent."""

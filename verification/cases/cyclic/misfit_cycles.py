@@ -8,24 +8,17 @@ or less: nothing ratchets, and it takes many periods to see that.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from sam.scene import Plasticity, Result, Scene
-from verification.cases.case import Plot, with_body, with_keys, with_loading, with_mesh
+from verification.cases.case import with_body, with_keys, with_loading, with_mesh
 from verification.cases.recipes import sphere_cells
-from verification.figures.lines import CYCLES, Curve, curves
 from verification.judging import Measured
 from verification.quantities import Reference
 from verification.reference.misfit_sphere import PROFILES
 from verification.references import growing_sphere
-from verification.rows import CaseFile
 
-__all__ = ["even_sphere", "strain_of_periods"]
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
+__all__ = ["even_sphere", "period"]
 
 YIELD, MODULUS = 1e9, 160e9
 REACHES = np.linspace(0.3, 3.0, 2701)  # radii at which the exact solution is looked at
@@ -94,21 +87,6 @@ def ratchets(scene: Scene, result: Result, _: Reference | None) -> float:
     return float(_column(result, "verdict").count("ratchetting"))
 
 
-def strain_of_periods(file: CaseFile, frame: DataFrame) -> Plot:
-    """The strain that a period leaves, with Armstrong and Frederick's law."""
-    panels = {}
-    for name, runs in frame[~frame["run"].str.startswith("prager")].groupby("run", sort=False):
-        periods = np.arange(2, runs["strain"].iloc[0].size + 2)
-        series = {"exact": runs["strain expected"].iloc[0]}
-        series |= dict(zip(runs["model"], runs["strain"], strict=True))
-        title = f"{name.rpartition('-')[2]} % above the limit"
-        panels[title] = {of: Curve(periods, 1e6 * values) for of, values in series.items()}
-    words = "Largest strain that a period leaves: it falls in both models as the exact one does."
-    return Plot(
-        curves(
-            *(panels, "period", "strain that a period leaves [$10^{-6}$]"),
-            looks=dict(zip(("exact", "sam", "fem"), CYCLES, strict=False)),
-            count=True,
-        ),
-        *("strain", "Strain that a period leaves", words, words),
-    )
+def period(scene: Scene, result: Result, _: Reference | None) -> np.ndarray:
+    """Number of the period after the first."""
+    return np.arange(2, scene.loading.cycles + 1)

@@ -13,13 +13,11 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from sam.scene import Plasticity, Result, Scene
-from verification.cases.case import Plot, with_body, with_keys, with_loading
-from verification.figures.lines import Curve, curves
+from verification.cases.case import with_body, with_keys, with_loading
 from verification.judging import Measured
 from verification.quantities import Reference
 from verification.reference.hertz import subsurface_stress
 from verification.reference.stress import von_mises
-from verification.rows import CaseFile
 from verification.runs.sampling import rows_of
 
 __all__ = [
@@ -29,18 +27,17 @@ __all__ = [
     "later_strain",
     "other_classes",
     "splines_apart",
+    "strain_on_axis",
 ]
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
 LAWS = {
-    "prager": (3.4e9, {"modulus": (210e9 / 19,), "recovery": (0.0,)}, "Prager's law"),
-    "chaboche": (
-        *(4e9, {"modulus": (400e9, 60e9, 6e9), "recovery": (2000.0, 300.0, 0.0)}, "three back-stresses"),
-    ),
+    "prager": (3.4e9, {"modulus": (210e9 / 19,), "recovery": (0.0,)}),
+    "chaboche": (4e9, {"modulus": (400e9, 60e9, 6e9), "recovery": (2000.0, 300.0, 0.0)}),
 }
-"""Name -> largest pressure in Pa, back-stresses, words."""
+"""Name -> largest pressure in Pa, back-stresses."""
 LOW, HIGH = {"limits": 0.2, "splines": 0.3}, 1.2
 """Depths in a: from below the first coarse cell to where elements are even."""
 Profile = tuple[np.ndarray, np.ndarray]
@@ -49,7 +46,7 @@ Profile = tuple[np.ndarray, np.ndarray]
 
 def law(scene: Scene, name: str) -> Scene:
     """The scene with one of LAWS and its load."""
-    p0, back, _ = LAWS[name]
+    p0, back = LAWS[name]
     stress = scene.body.plasticity.yield_stress
     return with_loading(
         with_body(scene, plasticity=Plasticity(law="perfect", yield_stress=stress, kinematic=back)), p0=p0
@@ -162,6 +159,16 @@ along_x, along_z, shear = (
 cells = _column("Classes of the cells on the axis.", "class")
 
 
+def depths(scene: Scene, result: Result, _: Reference | None) -> np.ndarray:
+    """Depth in contact radii."""
+    return on_axis(scene, result, "peeq")[0]
+
+
+def strain_on_axis(scene: Scene, result: Result, _: Reference | None) -> np.ndarray:
+    """Accumulated plastic strain on the axis after the last cycle."""
+    return on_axis(scene, result, "peeq")[1]
+
+
 def same(rows: DataFrame, column: str) -> Measured:
     """Whether all runs have one value."""
     return Measured(float(rows[column].nunique() == 1), 1.0)
@@ -227,18 +234,3 @@ def other_classes(rows: DataFrame, column: str) -> Measured:
         for at in z[(z > z[0]) & (z <= HIGH)]
     ]
     return Measured(float(sum(one != other for one, other in about if len(one) == len(other) == 1)), 0.0)
-
-
-def depth(file: CaseFile, frame: DataFrame, how: str) -> Plot:
-    """The accumulated strain of both models over depth; how: `limits` or `splines`."""
-    panels: dict[str, dict[str, Curve]] = {}
-    if how == "limits":
-        frame = frame[frame["loading.steps"] == frame["loading.steps"].min()]
-    for name, rows in frame[frame["peeq"].notna()].groupby("law", sort=False):
-        z, (sam, fem) = {"limits": limits, "splines": splines}[how](rows, "peeq")
-        panels[LAWS[name][2]] = {"FEM": Curve(z, 1e2 * fem), "SAM": Curve(z, 1e2 * sam)}
-    words = "Accumulated plastic strain on the axis, extrapolated in cells and elements: SAM on FEM."
-    return Plot(
-        curves(panels, "$z/a$", "accumulated plastic strain [%]"),
-        *("depth", "Plastic strain over depth after the last cycle", words, words),
-    )

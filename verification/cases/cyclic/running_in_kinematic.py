@@ -12,16 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from verification.cases.case import SAM, Context, Plot, with_keys
+from verification.cases.case import SAM, Context, with_keys
 from verification.cases.running_in import study
 from verification.cases.running_in.study import MODULI, NAMES, RECOVERY, SHARES, Effort, Run
-from verification.figures.lines import CYCLES, Curve, curves
 
 if TYPE_CHECKING:
-    from pandas import DataFrame
-
     from sam.scene import Plasticity
-    from verification.rows import CaseFile
 
 EFFORT = Effort(cycles=10, steps=4, cells=48)
 FITTED, HALF = (1e-6, 0.03), EFFORT.cycles // 2
@@ -36,17 +32,6 @@ def misfit(law: Plasticity) -> float:
     """Largest relative error of the back-stresses."""
     peeq, start = np.geomspace(*FITTED, 200), float(study.swift(law, np.zeros(1))[0])
     return float(np.abs((start + back_stress(peeq)) / study.swift(law, peeq) - 1).max())
-
-
-def late(run: Run) -> float:
-    """Wear of the second half of the cycles over that of the first: 1 where wear is linear."""
-    wear = run.of_cycles("wear_of_cycle_m3")
-    return float(wear[HALF:].sum() / wear[:HALF].sum()) if wear[:HALF].any() else 0.0
-
-
-def first_loading(run: Run) -> float:
-    """Largest plastic strain at the first peak."""
-    return float(run.result.tables["history"]["peeq_max"][EFFORT.steps - 1])
 
 
 def runs(context: Context) -> Iterator[dict[str, Any]]:
@@ -67,10 +52,12 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
 def row(run: Run, isotropic: Run, fit: float) -> dict[str, Any]:
     """Of a run, beside that of the same material with isotropic hardening."""
     wear, friction = run.of_cycles("wear_of_cycle_m3"), run.of_cycles("friction_coefficient")
-    strain, reached = first_loading(run), first_loading(isotropic)
+    first = (each.result.tables["history"]["peeq_max"][EFFORT.steps - 1] for each in (run, isotropic))
+    strain, reached = map(float, first)
+    early, late = wear[:HALF].sum(), wear[HALF:].sum()
     return {
         "volume": wear.sum(),
-        "late over early": late(run),
+        "late over early": late / early if early else 0.0,
         "friction, first": friction[0],
         "friction, last": friction[-1],
         "flowing volume, last": run.of_cycles("flowing_volume_m3")[-1],
@@ -80,31 +67,5 @@ def row(run: Run, isotropic: Run, fit: float) -> dict[str, Any]:
         "fit": fit,
         "converged": int(run.result.converged),
         "cycle": np.arange(EFFORT.cycles + 1),
-        "worn": np.append(0.0, wear.cumsum()),
+        "wear-of-all": np.append(0.0, wear.cumsum()) / wear.sum() if wear.any() else None,
     }
-
-
-def total(rows: DataFrame, column: str) -> float:
-    """Of all runs."""
-    return float(rows[column].sum())
-
-
-def wear(file: CaseFile, frame: DataFrame) -> Plot:
-    """Up to each cycle, over that of all cycles."""
-    panels = {
-        name: {
-            each["hardening"]: Curve(each["cycle"], each["worn"] / each["volume"])
-            for _, each in own.iterrows()
-        }
-        for name, own in frame.groupby("material", sort=False)
-        if (own["volume"] > 0).all()
-    }
-    looks = dict(zip(SHARES, CYCLES, strict=False))
-    return Plot(
-        curves(panels, "cycle", "wear over that of all cycles", looks=looks, count=True),
-        "wear",
-        "Wear up to each cycle",
-        "Wear up to each cycle over that of all cycles, for the materials that wear and three ways to "
-        "harden: it slows down in each of them.",
-        "Linear wear would be a straight line. Materials that do not wear are left out.",
-    )

@@ -10,25 +10,19 @@ settles beyond the limit of the body, and rightly so.
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sam.scene import Path, Plasticity, Result, Scene
-from verification.cases.case import Plot, with_body, with_loading
-from verification.figures.lines import CYCLES, Curve, curves
+from verification.cases.case import with_body, with_loading
 from verification.quantities import Reference
 from verification.reference.shakedown import cell_limit, in_place_limit, travelling_limit
-from verification.rows import CaseFile
 
 __all__ = [
     "limit_of_cells",
     "share_of_limit",
     "strain_over_first",
 ]
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 
 def back_stress(scene: Scene, modulus: float) -> Scene:
@@ -83,24 +77,11 @@ def steady(scene: Scene, result: Result, _: Reference | None) -> float:
     return float(last / before) if before else 0.0
 
 
-def strain_over_first(file: CaseFile, frame: DataFrame) -> Plot:
-    """Strain of each cycle over that of the first, below and above the limit."""
-    fades = frame["scene"].iloc[0].loading.path is not None
-    panels: dict[str, dict[str, Curve]] = {}
-    for _, run in frame.iterrows():
-        off, strain = run["share-of-limit"] - 1, strains(run["result"]) / strains(run["result"])[0]
-        shown = (strain > 0) | (not fades)
-        name = f"μ = {run['friction']}" + ", coarse cells" * (run["sweep"] == "coarse")
-        panel = panels.setdefault(f"{abs(1e2 * off):.2g} % {'below' if off < 0 else 'above'} the limit", {})
-        panel[name] = Curve(np.arange(1, strain.size + 1)[shown], strain[shown])
-    names = dict.fromkeys(name for panel in panels.values() for name in panel)
-    words = "Strain of each cycle over the cycle: below the limit it falls to nothing, above it stays."
-    return Plot(
-        curves(
-            *(panels, "cycle", "strain of a cycle over that of the first"),
-            looks=dict(zip(names, CYCLES, strict=False)),
-            count=True,
-            logarithmic="y" * fades,
-        ),
-        *("strain", "Strain that each cycle adds", words, words),
-    )
+def strain_over_first(scene: Scene, result: Result, _: Reference | None) -> np.ndarray:
+    """Strain that each cycle adds over that of the first."""
+    return strains(result) / strains(result)[0]
+
+
+def cycle(scene: Scene, result: Result, _: Reference | None) -> np.ndarray:
+    """Number of the cycle."""
+    return np.arange(1, strains(result).size + 1)

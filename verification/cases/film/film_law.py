@@ -6,24 +6,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Friction
 from sam.tribofilm import FilmLaw, FilmState
-from verification.cases.case import Context, Plot
-from verification.figures.lines import thinning_curves
+from verification.cases.case import Context
 from verification.reference.bonded_film import film_pressure, in_plane_strain, normal_strain
 from verification.reference.convergence import fit_power
 from verification.reference.film_flow import Film, FlowPoint
 
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
-    from verification.rows import CaseFile
-
-__all__ = ["frame", "thinning_of_the_film"]
+__all__ = ["frame"]
 
 FILM, BODY = (80e9, 0.3, 2e9 / 3.0), (210e9, 0.3)
 """E in Pa and nu, of the film also its yield stress in Pa, a third of its hardness: Bosman & Schipper (2011),
@@ -92,29 +86,20 @@ def failure_pressure(mu: float, limit: float) -> float:
 
 
 def frame(context: Context) -> Iterator[dict[str, Any]]:
-    """The pressure at which the film breaks down by friction, the growth in a cycle at the bath of the paper,
-    and the law along a path against its rate equations.
+    """The thinning and the pressure at which the film breaks down by friction, and the thinning by the
+    equations as printed; the growth in a cycle at the bath of the paper; and the law along a path against its
+    rate equations.
     """
     friction, (errors, extrapolated) = friction_of(100.0), path_errors()
-    for mu in FRICTIONS:
-        row = {"sweep": "breakdown", "friction": mu, "fails": failure_pressure(mu, friction.thinning_limit)}
-        yield row | {"fails expected": film_pressure(friction.thinning_limit, mu, FILM, BODY)}
-    yield {"sweep": "growth", "growth": friction.growth}
+    pressure, laws = np.linspace(0.0, 6.5e9, 27), {mu: law_of(mu) for mu in FRICTIONS}
+    for name, law in (laws | {"0.1, as printed": law_of(FRICTIONS[1], printed=True)}).items():
+        state = at_centre(law, pressure)
+        thinning = np.where(state.failed, np.nan, state.thinning)[:, 0]
+        row = {"sweep": "breakdown", "friction": name, "pressure": 1e-9 * pressure, "thinning": thinning}
+        if name in laws:
+            row["fails"] = failure_pressure(name, friction.thinning_limit)
+            row["fails expected"] = film_pressure(friction.thinning_limit, name, FILM, BODY)
+        yield row
+    yield {"sweep": "growth", "growth": friction.growth, "over the thickness": friction.thinning_limit}
     order = fit_power([1.0 / n for n in SUBSTEPS], errors).exponent
     yield {"sweep": "path", "order": order, "path": extrapolated}
-
-
-def thinning_of_the_film(file: CaseFile, found: DataFrame) -> Plot:
-    """Thinning over the pressure."""
-    pressure = np.linspace(0.0, 6.5e9, 261)
-    laws = {f"μ = {mu:g}": law_of(mu) for mu in FRICTIONS}
-    laws["μ = 0.1, as printed"] = law_of(FRICTIONS[1], printed=True)
-    states = {name: at_centre(law, pressure) for name, law in laws.items()}
-    lines = {name: np.where(s.failed, np.nan, 100.0 * s.thinning)[:, 0] for name, s in states.items()}
-    words = (
-        "Thinning of the film against the pressure at the centre of a Hertz contact on elastic steel. The "
-        "line at μ = 0.1 ends where no equilibrium exists; as printed the film grows thicker. Dotted: the "
-        "growth of a cycle, within which the film lasts."
-    )
-    drawing = thinning_curves(pressure / 1e9, lines, 100.0 * friction_of(100.0).thinning_limit)
-    return Plot(drawing, "thinning", "Thinning of the film", words, words)

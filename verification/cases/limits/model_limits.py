@@ -17,8 +17,7 @@ import numpy as np
 from fem_reference import plastic_radius
 from fem_reference.finite_strain import Curve, build, curve_of, load_to
 from sam.scene import Scene
-from verification.cases.case import Context, Measured, Plot
-from verification.figures.lines import limits as drawn
+from verification.cases.case import Context
 from verification.references import contact_of
 from verification.runs.model_range import (
     COLUMNS,
@@ -34,9 +33,7 @@ from verification.runs.tables import columns_text
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-    from verification.rows import CaseFile
-
-__all__ = ["differences_of_models", "elastic", "plastic", "stated"]
+__all__ = ["elastic", "plastic", "stated"]
 
 LIMIT = 0.05
 """Relative difference from which on the models of the scenes are called no good."""
@@ -50,7 +47,6 @@ COLUMN_OF = dict(zip(QUANTITIES, WORDS, strict=True))
 """Names of the quantities in the table of `verification.runs.model_range`."""
 STEP = 0.025  # of a/R in that table: linear in between, fits are off by less than 0.002 by their curvature
 POWERS = np.arange(1, 4)
-Table = dict[str, np.ndarray]
 RESOLVED = 6  # elements in the contact radius from which a load step counts
 YOUNG, RADIUS = 210e9, 105e-6
 SWIFT = {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121}
@@ -177,17 +173,18 @@ def differences(found: Mapping[str, Curve], elements: int) -> dict[str, Differen
     return {name: Difference.of(x[use], t / f - 1.0) for name, (f, t) in both.items() if (f > 0.0).all()}
 
 
-def range_rows(body: Body, found: Mapping[str, Curve]) -> Table:
-    """Rows of the table of `verification.runs.model_range`, by column: errors of the flat model over its own
-    a/R, by the fits, with two of their standard errors.
+def range_rows(body: Body, found: Mapping[str, Curve]) -> DataFrame:
+    """Rows of the table of `verification.runs.model_range`: errors of the flat model over its own a/R, by the
+    fits, with two of their standard errors.
     """
+    import pandas as pd
+
     fits = errors_of_flat(body, found)
     x = STEP * np.arange(1, int(fits["radius"].x.max() / STEP + 0.01) + 1)
-    columns: Table = dict.fromkeys(COLUMNS, np.full(x.size, np.nan))
-    columns |= {"law": np.full(x.size, law_of(body)), "poisson": np.full(x.size, body.poisson), "a_over_R": x}
+    columns = {"law": law_of(body), "poisson": body.poisson, "a_over_R": x}
     for name, fit in fits.items():
         columns |= {COLUMN_OF[name]: fit(x), f"u_{COLUMN_OF[name]}": fit.error(x)}
-    return columns
+    return pd.DataFrame(columns).reindex(columns=list(COLUMNS))
 
 
 def errors_of_flat(body: Body, found: Mapping[str, Curve]) -> dict[str, Difference]:
@@ -201,18 +198,12 @@ def law_of(body: Body) -> str:
     return {None: ELASTIC_LAW, "swift": SWIFT_LAW, "perfect": PERFECT_LAW}[law]
 
 
-def with_spread(rows: Table, same: Table, others: Sequence[Table]) -> Table:
+def with_spread(rows: DataFrame, same: DataFrame, others: Sequence[DataFrame]) -> DataFrame:
     """The rows, whose uncertainty has in it by how much `others` differ from `same`, all of one law."""
-    widened = dict(rows)
+    widened = rows.copy()
     for name in WORDS if others else ():
-        apart = [
-            abs(
-                np.interp(rows["a_over_R"], each["a_over_R"], each[name])
-                - np.interp(rows["a_over_R"], same["a_over_R"], same[name])
-            )
-            for each in others
-        ]
-        widened[f"u_{name}"] = rows[f"u_{name}"] + np.max(apart, axis=0)
+        one, *rest = (np.interp(rows["a_over_R"], each["a_over_R"], each[name]) for each in (same, *others))
+        widened[f"u_{name}"] += np.max(np.abs(np.array(rest) - one), axis=0)
     return widened
 
 
@@ -232,7 +223,7 @@ def loaded_once(kind: str, reach: float, elements: int) -> tuple[Scene, Curve]:
     return scene, curve_of(model, load_to(model, [1.0]))
 
 
-def small_load() -> dict[str, Measured]:
+def small_load() -> dict[str, float]:
     """At a/R = 1e-3 by the finite model against Hertz; at 2e-3 the first-order change by true geometry alone.
 
     By Johnson's u_r = -(1 - 2 nu)(1 + nu) a^2 p0/(3 E r) (1 - (1 - r^2/a^2)^(3/2)) the gap changes by r
@@ -249,10 +240,14 @@ def small_load() -> dict[str, Measured]:
         return float(getattr(sphere, name)[-1] / getattr(flat, name)[-1] - 1.0) / flat.radius[-1]
 
     return {
-        "small-radius": Measured(curve.radius[-1] * RADIUS, exact.contact_radius, unit="m"),
-        "small-approach": Measured(curve.approach[-1] * RADIUS, exact.approach, unit="m"),
-        "first-order-radius": Measured(change("radius"), first),
-        "first-order-approach": Measured(change("approach"), first),
+        "small-radius": curve.radius[-1] * RADIUS,
+        "small-radius expected": exact.contact_radius,
+        "small-approach": curve.approach[-1] * RADIUS,
+        "small-approach expected": exact.approach,
+        "first-order-radius": change("radius"),
+        "first-order-radius expected": first,
+        "first-order-approach": change("approach"),
+        "first-order-approach expected": first,
     }
 
 
@@ -266,7 +261,11 @@ def compared(context: Context, bodies: Sequence[Body]) -> Iterator[dict[str, Any
     named = fits | {f"{bodies[0].name}, {COARSER} elements in a": other}
     for name, each in named.items():
         row = {"sweep": OFF, "material": name} | {QUANTITIES[of]: words(fit) for of, fit in each.items()}
-        yield row | ({"fits": each} if name in fits else {})
+        if name in fits:
+            row["a-over-R"] = each["radius"].x
+            for of, fit in each.items():
+                row |= {f"difference-of-{of}": fit.values, f"difference-of-{of} expected": fit(fit.x)}
+        yield row
     values = {"table": off_table(bodies, found)}
     for name, fit in fits[bodies[0].name].items():
         values[f"{name}-limit"] = limit = fit.good_to()
@@ -274,17 +273,14 @@ def compared(context: Context, bodies: Sequence[Body]) -> Iterator[dict[str, Any
     if bodies == PLASTIC:
         perfect = PLASTIC[1]
         values["perfect-limit"] = fits[perfect.name]["pressure"].good_to()
-        mean = hardness(found[perfect.name]["finite"], perfect)
-        values |= {"hardness": mean.value, "hardness expected": mean.expected}
+        values |= {"hardness": hardness(found[perfect.name]["finite"], perfect), "hardness expected": PLATEAU}
     yield {"sweep": "values"} | values
 
 
 def elastic(context: Context) -> Iterator[dict[str, Any]]:
     """All Poisson's ratios, at the quick level the first; and small loads."""
     yield from compared(context, ELASTIC if context.level == "full" else ELASTIC[:1])
-    small = {name: (each.value, each.expected) for name, each in small_load().items()}
-    values = {name: value for name, (value, _) in small.items()}
-    yield {"sweep": "small load"} | values | {f"{name} expected": each for name, (_, each) in small.items()}
+    yield {"sweep": "small load"} | small_load()
 
 
 def plastic(context: Context) -> Iterator[dict[str, Any]]:
@@ -325,20 +321,17 @@ def off_table(bodies: Sequence[Body], found: Mapping[str, Mapping[str, Curve]]) 
     """Largest difference of the errors in data/model_range.csv from those that are found here."""
     apart = []
     for body in bodies:
-        rows = range_rows(body, found[body.name])
-        for k, x in enumerate(rows["a_over_R"]):
-            kept = errors(law_of(body), body.poisson, float(x))
-            apart += [abs(kept[name][0] - rows[name][k]) for name in kept]
+        for row in range_rows(body, found[body.name]).to_dict("records"):
+            kept = errors(law_of(body), body.poisson, row["a_over_R"])
+            apart += [abs(kept[name][0] - row[name]) for name in kept]
     return float(max(apart))
 
 
-def hardness(curve: Curve, body: Body) -> Measured:
-    """Mean pressure over yield stress where it is fully plastic, averaged over the load steps, against
-    PLATEAU.
-    """
+def hardness(curve: Curve, body: Body) -> float:
+    """Mean pressure over yield stress where it is fully plastic, averaged over the load steps."""
     fully = (curve.radius >= 0.1) & (curve.radius <= 0.2)
     modulus = YOUNG / (1.0 - body.poisson**2)
-    return Measured(float(curve.pressure[fully].mean()) * modulus / body.plasticity["yield_stress"], PLATEAU)
+    return float(curve.pressure[fully].mean()) * modulus / body.plasticity["yield_stress"]
 
 
 def words(fit: Difference) -> str:
@@ -349,24 +342,10 @@ def words(fit: Difference) -> str:
     return f"{limit:.3f} ({low:.3f} to {high:.3f})" if np.isfinite(high) else f"{limit:.3f} (from {low:.3f})"
 
 
-def differences_of_models(file: CaseFile, frame: DataFrame) -> Plot:
-    """What finite strain and true geometry change, with the fits."""
-    fits = frame.dropna(subset=["fits"])
-    panels: dict[str, dict[str, tuple]] = {}
-    for material, each in zip(fits["material"], fits["fits"], strict=True):
-        for name, fit in each.items():
-            panels.setdefault(QUANTITIES[name], {})[material] = fit.x, fit.values, fit
-    said = (
-        "Relative differences at equal force over the contact radius divided by that of the sphere; points: "
-        f"load steps; lines: fits from which the limits are taken; shaded: ±{LIMIT:.0%}."
-    )
-    return Plot(
-        drawn(panels, LIMIT), "differences", "What finite strain and true geometry change", said, said
-    )
-
-
 def main() -> None:
     """Measure data/model_range.csv anew."""
+    import pandas as pd
+
     found = {}
     for body in (*ELASTIC, *PLASTIC, *OTHERS):
         print(body.name, flush=True)
@@ -376,11 +355,10 @@ def main() -> None:
         same = next(each for each in PLASTIC + ELASTIC if law_of(each) == law_of(body))
         others = [found[each.name] for each in OTHERS if law_of(each) == law_of(body)]
         parts.append(with_spread(found[body.name], found[same.name], others))
-    table = {name: np.concatenate([part[name] for part in parts]) for name in COLUMNS}
-    rounded = {name: each.round(5) if each.dtype.kind == "f" else each for name, each in table.items()}
+    table = pd.concat(parts).round(5)
     target = Path(__file__).parents[2] / "data" / KEPT
-    target.write_text(columns_text(rounded), encoding="utf-8")
-    print(f"{target}: {len(table['law'])} rows")
+    target.write_text(columns_text({name: table[name].to_numpy() for name in COLUMNS}), encoding="utf-8")
+    print(f"{target}: {len(table)} rows")
 
 
 if __name__ == "__main__":

@@ -66,8 +66,7 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
         measured.append(plastic.step(pair, rounds, references, told))
         for program, each in references.items():
             row = {"sweep": REFERENCES, "model": program, "for": NAMES[program], "what": each.text}
-            row |= {"largest strain [σ_y/E]": each.peeq_max, "uncertainty": each.uncertainty}
-            yield row | {"of the profile, L2": each.profile_uncertainty}
+            yield row | {"uncertainty of the profile, L2": each.uncertainty}
     for rows, kernel in measured:
         unit = float(np.median(kernel))
         yield from (row | {"in kernels": row["seconds"] / unit, "kernel": unit} for row in rows)
@@ -89,16 +88,14 @@ def half_space(context: Context) -> StoredReference:
 # what rows take
 
 
-def reached(
-    rows: DataFrame, target: float, floor: float = 0.0, seconds: str = "seconds"
-) -> dict[str, tuple[str, float | None]]:
+def reached(rows: DataFrame, target: float, floor: float = 0.0) -> dict[str, tuple[str, float | None]]:
     """Program -> its curve that is first at an error of `target`, and when; a curve that never is there
     counts last.
     """
     found: dict[str, tuple[str, float | None]] = {}
-    solved = rows[rows[seconds].notna()]
+    solved = rows[rows["seconds"].notna()]
     for (program, curve), own in solved.groupby(["model", "curve"], sort=False):
-        time = at_error(own[seconds], own["error"], target, floor).value
+        time = at_error(own["seconds"], own["error"], target, floor).value
         if program not in found or (time or math.inf) < (found[program][1] or math.inf):
             found[program] = curve, time
     return found
@@ -138,17 +135,15 @@ def contact_mechanics_on_finest(rows: DataFrame, _: str) -> float:
 
 def step_on(rows: DataFrame, cells: tuple[int, int]) -> dict[str, Any]:
     """Tamaas' step on these cells beside SAM's at its error, which counts as no smaller than what is unknown
-    of SAM's reference: ratios of times, of those of second solutions in one process, and on the same cells.
+    of SAM's reference: ratios of times there, and on the same cells.
     """
     same, theirs = fastest(rows, cells_in_words(cells)).reindex([SAM, TAMAAS]).iloc
     own = rows[rows["model"] == SAM]
     floor = own["floor"].max()
     target = max(theirs["error"], floor)
     curve, time = reached(own, target, floor).get(SAM, ("", None))
-    again = reached(own, target, floor, "again").get(SAM, ("", None))[1]
     found = {"cells": cells_in_words(cells), "Tamaas [s]": theirs["seconds"], "its error": theirs["error"]}
     found |= {"SAM's curve": curve, "SAM at that error [s]": time, "ratio": ratio(theirs["seconds"], time)}
-    found |= {"ratio of second solves": ratio(theirs["again"], again)}
     on_same = ratio(theirs["seconds"], same["seconds"])
     return found | {"ratio on the same cells": on_same, "SAM's error there": same["error"]}
 
@@ -197,18 +192,15 @@ def hertz_times(frame: DataFrame) -> SmallTable:
     return _table(f"Hertz: time to an error of {at} {words}", lines)
 
 
-def _rough_fastest(frame: DataFrame) -> dict[str, DataFrame]:
-    rows = frame[frame["sweep"] == problems.ROUGH]
-    return {n: fastest(rows, n, elastic.ROUGH_ERROR) for n in map(cells_in_words, elastic.ROUGH_SIZES)}
-
-
 def rough_times(frame: DataFrame) -> SmallTable:
     """The rough patch: time at an error of the pressure that all reach."""
+    rows = frame[frame["sweep"] == problems.ROUGH]
     lines = [
         {"grid": n, "program": NAMES[program], "time [s]": row["seconds"]}
         | {"error, L2 of the pressure": row["error"]}
         | {"over SAM's": ratio(row["seconds"], own["seconds"].get(SAM))}
-        for n, own in _rough_fastest(frame).items()
+        for n in map(cells_in_words, elastic.ROUGH_SIZES)
+        for own in [fastest(rows, n, elastic.ROUGH_ERROR)]
         for program, row in own.iterrows()
     ]
     at = number(elastic.ROUGH_ERROR, 1)
@@ -242,22 +234,4 @@ def over_time(file: CaseFile, frame: DataFrame, problem: str) -> Plot:
     shade = "Shaded: the uncertainty of the references." if floor else "Dotted: where times are compared."
     return Plot(
         drawing, problem, f"{title}: error over time", words, f"A marker a grid, coarse to fine. {shade}"
-    )
-
-
-def over_size(file: CaseFile, frame: DataFrame) -> Plot:
-    """Time over the size of the rough patch."""
-    fast, at = _rough_fastest(frame), number(elastic.ROUGH_ERROR, 1)
-    sizes = dict(zip(fast, elastic.ROUGH_SIZES, strict=True))
-    series = {}
-    for program, name in NAMES.items():
-        if there := [n for n, own in fast.items() if program in own.index]:
-            times = [fast[n]["seconds"][program] for n in there]
-            series[name] = name, np.array([sizes[n] for n in there]), np.array(times)
-    return Plot(
-        of_programs(series, "cells a side", "processor time [s]"),
-        "rough",
-        "Rough patch: time over size",
-        f"Processor time over cells a side for {', '.join(series)}.",
-        f"Each at the loosest tolerance with an error of at most {at} on that grid.",
     )

@@ -5,8 +5,8 @@ and each coefficient of SAM that is wrong shows.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from math import ceil
 
 import numpy as np
@@ -17,12 +17,9 @@ from sam.plasticity import BoxOperator
 from verification.reference.misfit_sphere import GrowingSphere
 
 NAMES = ("xx", "yy", "zz", "yz", "xz", "xy")
-BY_SYMMETRY = {"yy": "xx", "yz": "xz"}
-"""Components that an exchange of x and y turns into others, which are gated."""
 CELLS = 8  # in the radius: with 6 the cells leave so much that 1 % of four coefficients shows by 1.1 only
 CENTRE = 1.3  # depth of the centre in radii: the zone of linear hardening ends 0.19 radii below the surface
 DEEP = 10.0  # in radii: a five-hundredth of the images is left
-SHARE = 0.01  # by which a coefficient is perturbed, in either sense
 POINTS = 4  # Gauss points of a cell each way, for means of the closed form
 
 
@@ -39,32 +36,14 @@ class Images:
     raised: np.ndarray
     stress: float
 
-    @property
-    def left(self) -> np.ndarray:
-        """L2 of the images of each stress component over the stress, (6,): zero but for the cells."""
-        return self._norms(self.parts.sum(axis=0))
-
-    @property
-    def largest(self) -> float:
-        """Largest displacement of the surface: zero but for the cells."""
-        return float(np.abs(self.raised.sum(axis=0)).max())
-
-    @cached_property
-    def perturbed(self) -> np.ndarray:
-        """What `left` of stress I, and in the last row `largest`, become over what they are if the
-        coefficient of strain J is wrong by SHARE, in the sense that shows less, (7, J). The answer is linear
-        in it.
+    def left(self, factors: Sequence[float] = (1.0,) * 6) -> np.ndarray:
+        """L2 of the images of each stress over the stress, and the largest displacement of the surface, (7,):
+        zero but for the cells. factors: by which the coefficients of each strain J are wrong.
         """
-        rows = []
-        for sign in (1, -1):
-            changed = self.parts.sum(axis=0) + sign * SHARE * self.parts
-            stress = np.array([self._norms(each) for each in changed]).T / self.left[:, None]
-            moved = self.raised.sum(axis=0) + sign * SHARE * self.raised
-            rows.append(np.vstack([stress, np.abs(moved).max(axis=(1, 2)) / self.largest]))
-        return np.minimum(*rows)
-
-    def _norms(self, stress: np.ndarray) -> np.ndarray:
-        return np.sqrt((stress**2).reshape(6, -1).sum(axis=1)) / self.stress
+        wrong = np.array(factors)[:, None, None]
+        stress = (wrong[..., None, None] * self.parts).sum(axis=0)
+        norms = np.sqrt((stress**2).reshape(6, -1).sum(axis=1)) / self.stress
+        return np.append(norms, np.abs((wrong * self.raised).sum(axis=0)).max())
 
 
 def images(exact: GrowingSphere, cells: int = CELLS) -> Images:
@@ -82,18 +61,28 @@ def _edges(exact: GrowingSphere, cells: int) -> np.ndarray:
     return (np.arange(-half, half + 2) - 0.5) / cells
 
 
+def cell_means(of: Callable[..., np.ndarray], edges: Sequence[np.ndarray]) -> np.ndarray:
+    """Means over cells of a function of x, y and z, (..., nx, ny, nz), by Gauss points; edges: along each."""
+    t, w = np.polynomial.legendre.leggauss(POINTS)
+    x, y, z = (((e[1:] + e[:-1])[:, None] + np.diff(e)[:, None] * t) / 2 for e in edges)
+    total = np.zeros(())
+    for k, p in enumerate(w):  # one at a time, for the memory
+        field = of(x.ravel()[:, None, None], y.ravel()[:, None], z[:, k])
+        parts = field.reshape(*field.shape[:-3], len(x), POINTS, len(y), POINTS, len(z))
+        total = total + p / 8 * np.einsum("...iajbk,a,b->...ijk", parts, w, w)
+    return total
+
+
 def mean_strain(exact: GrowingSphere, edges: np.ndarray) -> np.ndarray:
     """Means of the plastic strain over cells, (6, layers, nx, ny); edges: in radii from the centre."""
-    t, w = np.polynomial.legendre.leggauss(POINTS)
-    at = ((edges[1:] + edges[:-1])[:, None] / 2 + np.diff(edges)[:, None] / 2 * t).ravel()
-    place = np.stack(np.meshgrid(at, at, at, indexing="ij"))
-    r = np.sqrt((place**2).sum(axis=0))
-    q, n = exact.fields(r * exact.radius).plastic, place / r
-    pairs = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
-    values = np.stack([q * ((i == j) - 3 * n[i] * n[j]) for i, j in pairs])
-    count = len(edges) - 1
-    values = values.reshape(6, count, POINTS, count, POINTS, count, POINTS)
-    return np.einsum("siajbkc,a,b,c->skij", values, w, w, w) / 8
+
+    def strain(*place: np.ndarray) -> np.ndarray:
+        r = np.sqrt(sum(each**2 for each in place))
+        q, n = exact.fields(r * exact.radius).plastic, [each / r for each in place]
+        pairs = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
+        return np.stack([q * ((i == j) - 3 * n[i] * n[j]) for i, j in pairs])
+
+    return np.moveaxis(cell_means(strain, (edges, edges, edges)), 3, 1)
 
 
 def _alone(strain: np.ndarray, faces: np.ndarray, nu: float) -> tuple[np.ndarray, np.ndarray]:

@@ -12,14 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sam.scene import Plasticity, Result, Scene
-from verification.cases.case import Plot, with_body, with_loading
-from verification.cases.plastic.misfit_images import NAMES, Images, images
-from verification.figures.profiles import Profile, profiles
+from verification.cases.case import with_body, with_loading
+from verification.cases.plastic.misfit_images import NAMES, Images, cell_means, images
 from verification.judging import Measured
 from verification.quantities import Reference
 from verification.reference.misfit_sphere import GrowingSphere
 from verification.references import growing_sphere
-from verification.rows import CaseFile
 from verification.runs.sampling import peak
 
 __all__ = [
@@ -31,7 +29,8 @@ __all__ = [
     "infinite_body",
     "l2",
     "l2_at_points",
-    "rays",
+    "radii",
+    "ray",
     "removed_mises",
     "removed_total",
     "sam_on_fem",
@@ -48,8 +47,6 @@ LAWS = {
     "perfect": (0.04, {"law": "perfect", "yield_stress": 1e9}),
 }
 """Misfit strain at the centre and hardening law."""
-POINTS = 4  # Gauss points of a cell each way, for means of the closed form
-FARTHEST = 1.6  # radii of the sphere: where its plastic zone has ended
 REMOVED = (1.0, 0.0)  # shares of the misfit: loaded, and taken back
 
 
@@ -74,14 +71,8 @@ def in_cells(result: Result, state: str) -> tuple[np.ndarray, np.ndarray]:
 def means_of_cells(scene: Scene, result: Result) -> np.ndarray:
     """Plastic strain of the closed form over the cells of SAM."""
     exact, box = growing_sphere(scene), result.grids["peak"]["body"]
-    t, w = np.polynomial.legendre.leggauss(POINTS)
     edges = box.x, box.y, box.z - scene.loading.depth
-    x, y, z = ((e[1:] + e[:-1])[:, None] / 2 + np.diff(e)[:, None] / 2 * t for e in edges)
-    mean = np.zeros((len(x), len(y), len(z)))
-    for k, p in enumerate(w):
-        r = np.sqrt(x[:, :, None, None, None] ** 2 + y[:, :, None] ** 2 + z[:, k] ** 2)
-        mean += p / 8 * np.einsum("iajbk,a,b->ijk", exact.fields(r).peeq, w, w)
-    return mean
+    return cell_means(lambda x, y, z: exact.fields(np.sqrt(x**2 + y**2 + z**2)).peeq, edges)
 
 
 def at_points(scene: Scene, result: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -159,8 +150,7 @@ def zone(exact: GrowingSphere) -> Images:
 
 def _image(place: int, words: str) -> Callable[..., float]:
     def of(scene: Scene, result: Result, _: Reference) -> float:
-        found = zone(growing_sphere(scene))
-        return float([*found.left, found.largest][place])
+        return float(zone(growing_sphere(scene)).left()[place])
 
     of.__doc__ = words
     return of
@@ -191,31 +181,14 @@ def sam_on_fem(rows: DataFrame, column: str) -> Measured:
     return Measured(*rows[column])
 
 
-def rays(file: CaseFile, frame: DataFrame, law: str) -> Plot:
-    """Plastic strain, deviator and radial stress of SAM on cells of a/12 along the axis below the centre."""
-    run = frame[(frame["sweep"] == "sizes") & (frame["law"] == law) & (frame["sphere-cells"] == 12)].iloc[0]
-    exact, centre = growing_sphere(run["scene"]), run["scene"].loading.depth
-    z, *values = peak(run["result"].tables["axis"], "z_m", "peeq", "sxx_Pa", "szz_Pa")
-    peeq, across, along = (each[z >= centre] for each in values)
-    at, r = (z[z >= centre] - centre) / exact.radius, exact.radius
-    wanted = (
-        ("Plastic strain", "plastic strain [%]", 1e2 * peeq, lambda x: 1e2 * exact.fields(r * x).peeq),
-        (
-            *("Deviator", r"$\sigma_\theta - \sigma_r$ [GPa]", 1e-9 * (across - along)),
-            lambda x: 1e-9 * exact.fields(r * x).deviator,
-        ),
-        (
-            *("Radial stress", r"$\sigma_r$ [GPa]", 1e-9 * along),
-            lambda x: 1e-9 * exact.radial_stress(r * x),
-        ),
-    )
-    panels = []
-    for title, label, found, value in wanted:
-        largest = float(np.abs(value(np.linspace(0.01, FARTHEST, 200))).max())
-        series = {"SAM": (at, found)}
-        panels.append(Profile(title, "$r/a$", label, value, series, largest, "max", (0.0, FARTHEST)))
-    words = (
-        "Plastic strain, deviator and radial stress over the distance from the centre: cells of SAM (a/12) "
-        "along the axis, and the closed form."
-    )
-    return Plot(profiles(panels), f"ray-{law}", f"Along a ray through the centre, {law}", words, words)
+def ray(scene: Scene, result: Result, _: Reference) -> Measured:
+    """Plastic strain on the axis below the centre."""
+    z, peeq = peak(result.tables["axis"], "z_m", "peeq")
+    r = z - scene.loading.depth
+    return Measured(peeq[r > 0.0], growing_sphere(scene).fields(r[r > 0.0]).peeq)
+
+
+def radii(scene: Scene, result: Result, _: Reference) -> np.ndarray:
+    """Distance from the centre over the radius."""
+    r = peak(result.tables["axis"], "z_m")[0] - scene.loading.depth
+    return r[r > 0.0] / scene.loading.radius

@@ -8,18 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from verification.cases.case import SAM, Context, Plot, with_keys, with_loading
+from verification.cases.case import SAM, Context, with_keys, with_loading
 from verification.cases.recipes import Resolution, at_ratio, resolved_at
-from verification.figures.lines import Curve, curves
 from verification.references import contact_of
 from verification.runs.sampling import peak
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-    from verification.rows import CaseFile
-
-__all__ = ["largest_excess", "on_the_axis", "shrinks"]
+__all__ = ["largest_excess", "shrinks"]
 
 SCENES = {"perfect": ("plastic-perfect", 2.5), "swift": ("plastic-swift-rigid", 4.0)}
 STEPS = {"quick": (1, 10), "full": (1, 2, 5, 10, 20)}
@@ -35,7 +32,8 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
     """Each law, method and number of load steps once; the loops of the paper need not converge in our sense.
 
     off: how far the largest plastic strain is from that of backward Euler with as many steps; excess: max
-    (mises - sigma_y)/sigma_y as the certificate states it; stated: what the plane y = 0 has beyond it.
+    (mises - sigma_y)/sigma_y as the certificate states it; stated: what the plane y = 0 has beyond it;
+    plastic-strain: on the axis, in the fewest load steps.
     """
     for law, (name, ratio) in SCENES.items():
         loaded, euler = with_loading(at_ratio(context.scene(name), ratio), unload=False), {}
@@ -47,6 +45,8 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
                 strain, said = result.quantities["peeq_max"], result.certificate
                 off = abs(strain / euler.setdefault(steps, strain) - 1.0)
                 peeq, mises = peak(result.tables["plane"], "peeq", "mises_Pa")
+                z, below = peak(result.tables["axis"], "z_m", "peeq")
+                near = z <= 1.5 * contact_of(scene).contact_radius
                 seen = float(np.max(mises / scene.body.plasticity.curve().stress(peeq) - 1.0))
                 yield {
                     "sweep": f"{law}: what each loop leaves",
@@ -60,8 +60,8 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
                     "flow-rule residual": said["flow_residual"],
                     "stated": max(0.0, seen - said["yield_excess"]),
                     "applications": result.cost["operator_applications"],
-                    "scene": at,
-                    "result": result,
+                    "depth-in-um": 1e6 * z[near],
+                    "plastic-strain": below[near] if steps == STEPS[context.level][0] else None,
                 }
 
 
@@ -78,25 +78,3 @@ def shrinks(rows: DataFrame, column: str) -> float:
     """Of the stop on stress, that of most load steps over that of fewest."""
     few, many = _of_fewest_and_most(rows, column)
     return many / few
-
-
-def on_the_axis(file: CaseFile, frame: DataFrame) -> Plot:
-    """Plastic strain under the centre of every method in the fewest load steps, and of backward Euler in the
-    most.
-    """
-    panels: dict[str, dict[str, Curve]] = {}
-    few, many = frame["steps"].min(), frame["steps"].max()
-    for _, run in frame[
-        (frame["steps"] == few) | ((frame["steps"] == many) & (frame["method"] == EULER))
-    ].iterrows():
-        z, strain = peak(run["result"].tables["axis"], "z_m", "peeq")
-        a = contact_of(run["scene"]).contact_radius
-        name = f"{run['method']}, {run['steps']} step{'s' * (run['steps'] > 1)}"
-        panels.setdefault(run["law"], {})[name] = Curve(z[use := z <= 1.5 * a] / a, 1e2 * strain[use])
-    words = (
-        "Plastic strain over depth. The loop of the paper adds up returns at the pressures and stresses of "
-        "its iteration, which is no load path, and takes none of them back: it meets the yield condition, at "
-        "a larger plastic strain. More load steps help."
-    )
-    drawing = curves(panels, "$z/a$", "plastic strain [%]")
-    return Plot(drawing, "axis", "Plastic strain under the centre", words, words)

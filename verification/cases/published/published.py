@@ -11,9 +11,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from sam.scene import Friction, Result, Scene
-from verification.cases.case import Plot, with_grid, with_keys, with_loading
+from verification.cases.case import with_grid, with_keys, with_loading
 from verification.cases.recipes import initial_yield
-from verification.figures.profiles import correlations
 from verification.judging import Measured
 from verification.quantities import Reference
 from verification.reference.hamilton import largest_von_mises
@@ -27,26 +26,24 @@ from verification.reference.indentation import (
 )
 from verification.references import modulus_of
 
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
 __all__ = [
     "area_jackson",
     "area_kogut",
+    "farthest",
     "full_slip",
     "load_jackson",
     "load_kogut",
-    "over_approach",
     "sixty_depths",
+    "w_of_steps",
     "w_star",
     "yields_at",
 ]
 
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
-    from verification.rows import CaseFile
-
 LARGEST = 20.0  # w*: beyond it the two correlations part, 14 % at 110
 RESOLVED = 0.35  # contact radius over that at the largest load from which a point counts
-BAND = 0.05
 
 
 def jackson_green(scene: Scene) -> tuple[JacksonGreen, CircularContact]:
@@ -137,34 +134,25 @@ def fits(scene: Scene) -> dict[str, JacksonGreen | KogutEtsion]:
     }
 
 
-def _distance(what: str, name: str) -> Callable[[Scene, Result, Reference | None], float]:
-    def of(scene: Scene, result: Result, reference: Reference | None) -> float:
+def _beside(what: str, name: str) -> Callable[[Scene, Result, Reference | None], Measured]:
+    def of(scene: Scene, result: Result, reference: Reference | None) -> Measured:
         at = points(scene, result)
-        return float(np.max(np.abs(at[what] / getattr(fits(scene)[name], what)(at["w"]) - 1.0)))
+        return Measured(at[what], getattr(fits(scene)[name], what)(at["w"]))
 
-    of.__doc__ = f"Largest distance of the {what} from {name}."
+    of.__doc__ = f"{what.capitalize()} over that at first yield, beside {name}."
     return of
 
 
-load_jackson, area_jackson = (_distance(what, "Jackson & Green 2005") for what in ("load", "area"))
-load_kogut, area_kogut = (_distance(what, "Kogut & Etsion 2002") for what in ("load", "area"))
+load_jackson, area_jackson = (_beside(what, "Jackson & Green 2005") for what in ("load", "area"))
+load_kogut, area_kogut = (_beside(what, "Kogut & Etsion 2002") for what in ("load", "area"))
 
 
-def over_approach(file: CaseFile, frame: DataFrame) -> Plot:
-    """Every load step of one run of each model on the correlations."""
-    scene = frame["scene"].iloc[0]
-    runs = {row["model"].upper(): points(row["scene"], row["result"]) for _, row in frame.iterrows()}
-    panels = {
-        f"{what} ${ratio}$": (
-            {name: getattr(fit, what) for name, fit in fits(scene).items()},
-            {name: (each["w"], each[what]) for name, each in runs.items()},
-        )
-        for what, ratio in (("load", "P/P_c"), ("area", "A/A_c"))
-    }
-    alt = (
-        "Log-log curves of the load and of the contact area over the approach, each divided by its value at "
-        "first yield: points of SAM and FEM on both correlations, distances underneath."
-    )
-    caption = f"Underneath: off Jackson & Green; shaded: ±{100 * BAND:g} %. Kogut & Etsion jump at w* = 6."
-    drawing = correlations(panels, (1.0, LARGEST), BAND)
-    return Plot(drawing, "correlations", "Load and area over the approach", alt, caption)
+def w_of_steps(scene: Scene, result: Result, reference: Reference | None) -> np.ndarray:
+    """Approach over that at first yield."""
+    return points(scene, result)["w"]
+
+
+def farthest(rows: DataFrame, column: str) -> float:
+    """The largest distance from a fit at all load steps of a run."""
+    ((found, fit),) = rows[[column, f"{column} expected"]].to_numpy()
+    return float(np.max(np.abs(found / fit - 1.0)))

@@ -16,13 +16,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-import sam
-from sam.contact import stresses, von_mises
-from sam.grid import Window
 from sam.scene import Result, Scene
 from verification.cases.case import SAM, Context, Plot, with_body, with_grid, with_keys
 from verification.compare.verdicts import LIMIT, breaking_radius
-from verification.figures.maps import rough_pressures, sections
+from verification.figures.maps import rough_pressures
 from verification.runs.sampling import pressure_map
 
 if TYPE_CHECKING:
@@ -30,7 +27,7 @@ if TYPE_CHECKING:
 
     from verification.rows import CaseFile
 
-__all__ = ["frame", "mises", "pressure", "size", "spread"]
+__all__ = ["frame", "pressure", "size", "spread"]
 
 SCENE = "rough-patch"
 GRIDS = {"quick": (64, 128), "full": (64, 128, 256, 512)}
@@ -108,7 +105,7 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
             row["claim"] = "holds" if max(map(abs, changes.values())) <= LIMIT else "fails"
             if name == SMOOTH and scene is scenes[1]:
                 bare = context.solve(SAM, with_body(scene, coating=None), "steel-bare")
-                row |= {"scene": scene, "result": result, "bare": bare}
+                row |= {"result": result, "bare": bare}
             yield row
 
 
@@ -122,37 +119,16 @@ def size(rows: DataFrame, column: str) -> float:
     return abs(rows[column].iloc[-1])
 
 
-def shown(frame: DataFrame) -> tuple[Scene, Result, Result]:
-    """The scene that is drawn, with its coated and its bare result."""
-    return tuple(frame.dropna(subset="bare").iloc[0][["scene", "result", "bare"]])
-
-
 def pressure(file: CaseFile, frame: DataFrame) -> Plot:
     """Of the coated and the bare patch."""
-    _, *results = shown(frame)
-    (x, y, p), (_, _, bare) = map(pressure_map, results)
+    both = frame.dropna(subset="bare").iloc[0]
+    (x, y, p), (_, _, bare) = pressure_map(both["result"]), pressure_map(both["bare"])
     words = (
         "Maps of the pressure with and without the film and their difference: the same spots, a bit larger "
         "and softer. The patch of the paper's Fig. 3a and c, on a surface like theirs; coated less bare."
     )
     drawing = rough_pressures(x, y, {"coated": p, "bare": bare})
     return Plot(drawing, "pressure", "Pressure on the rough patch", words, words)
-
-
-def mises(file: CaseFile, frame: DataFrame) -> Plot:
-    """Of the coated and the bare patch, in the plane of the largest pressure."""
-    scene, *results = shown(frame)
-    (x, y, p), (_, _, bare) = map(pressure_map, results)
-    j = int(np.unravel_index(np.argmax(bare), bare.shape)[1])
-    depths = np.array([z for z in scene.grid.depths if z <= 4e-6])
-    bodies = (scene, p), (with_body(scene, coating=None), bare)
-    words = (
-        "Sections of the von Mises stress, coated and bare; they differ most in the film. At "
-        f"y = {y[j] * 1e6:.1f} µm, where the pressure is largest (Fig. 3b and d), sliding along +x."
-    )
-    fields = [section(each, p_of, j, depths) for each, p_of in bodies]
-    drawing = sections(x, depths, *fields, thickness=scene.body.coating.thickness)
-    return Plot(drawing, "mises", "Von Mises stress under the rough patch", words, words)
 
 
 def summit_radius(result: Result) -> float:
@@ -167,14 +143,3 @@ def summit_radius(result: Result) -> float:
     along_x = (p[i - 1, j] - 2 * p[i, j] + p[i + 1, j]) / (x[1] - x[0]) ** 2
     along_y = (p[i, j - 1] - 2 * p[i, j] + p[i, j + 1]) / (y[1] - y[0]) ** 2
     return math.sqrt(-2 * p[i, j] / (along_x + along_y))
-
-
-def section(scene: Scene, pressure: np.ndarray, j: int, depths: np.ndarray) -> np.ndarray:
-    """Von Mises stress in the row j of cells, (nx, nz) in Pa, of the pressure (nx, ny) and its traction."""
-    (nx, ny), (lx, ly) = scene.grid.cells, scene.grid.extent
-    tractions = {3: pressure, 1: scene.coefficient * pressure}
-    layered = sam.plan(scene).coated.layered if scene.body.coating else None
-    stress = stresses(
-        tractions, (lx / nx, ly / ny), depths, Window(0, j, nx, 1), nu=scene.body.poisson, layered=layered
-    )
-    return von_mises(stress)[:, :, 0].T

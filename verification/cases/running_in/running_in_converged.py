@@ -44,7 +44,7 @@ TENTH = 0.1
 @dataclass(frozen=True)
 class Member:
     """A run. thirds: of a cell, by which the surface is shifted along x and y; parts: of each
-    layer; window: cells, None: those of the length SMOOTHED; force: over FORCE.
+    layer; force: over FORCE.
     """
 
     seed: int
@@ -52,7 +52,6 @@ class Member:
     thirds: int = 0
     parts: int = 1
     steps: int = STEPS
-    window: int | None = None
     force: float = 1.0
 
     @property
@@ -71,29 +70,23 @@ class Member:
             Grid(depths=cut(FACES, self.parts)),
         )
         scene = with_plasticity(base.model_copy(update={"surface": surface, "grid": grid}), B=LITERATURE_B)
-        window = window_of(self.cells) if self.window is None else self.window
-        scene, force = with_keys(scene, "wear", smoothing_window=window), self.force * FORCE
-        return with_loading(scene, force=force, cycles=CYCLES, steps=self.steps, unload_steps=1)
+        scene = with_keys(scene, "wear", smoothing_window=round(SMOOTHED * self.cells / SIDE))
+        keys = {"force": self.force * FORCE, "cycles": CYCLES, "steps": self.steps, "unload_steps": 1}
+        return with_loading(scene, **keys)
 
 
 VARIATIONS = {
     "layers": partial(Member, cells=VARIED_ON, parts=FINER),
     "steps": partial(Member, cells=VARIED_ON, steps=FINER * STEPS),
     "load": partial(Member, cells=DEFAULT, force=1.01),
-    "smoothing": partial(Member, cells=DEFAULT, window=5),
 }
-"""What else is varied -> the run of a surface: layers and load steps of a third, 1 % more load, fewer cells
-of smoothing; each against the same without.
+"""What else is varied -> the run of a surface: layers and load steps of a third, 1 % more load; each against
+the same without.
 """
 LEFT = {"layers": 1 / (FINER - 1), "steps": FINER / (FINER - 1)}
 """Share of that change which is left, of first order: of the finer layers, which are recommended, and of the
 coarser load steps, which are.
 """
-
-
-def window_of(cells: int) -> int:
-    """Cells in the length of smoothing."""
-    return round(SMOOTHED * cells / SIDE)
 
 
 def shifted(like: Surface, seed: int, cells: int, shift: float) -> Surface:
@@ -130,9 +123,8 @@ def surfaces(context: Context) -> Iterator[dict[str, Any]]:
     """A row for each surface. N cells: its worn volumes in m3 at all shifts on N cells a side;
     off-N: that of the shift that is furthest off the mean on the finest cells, heights-N: of what
     residual heights have lost, root mean square, both relative; layers, steps: relative, what is
-    left of their change; load, smoothing: change by them; uncertain: cells and shift, layers and
-    steps, added; time: on the recommended cells over that on the coarsest; error: of the volume
-    summed over a scar, over the median.
+    left of their change; load: change by it; time: on the recommended cells over that on the coarsest;
+    error: of the volume summed over a scar, over the median.
     """
     base, errors = context.scene("running-in-bulk"), dict.fromkeys(SEEDS, 0.0)
     volumes, heights, seconds = {}, {}, {}
@@ -156,7 +148,6 @@ def surfaces(context: Context) -> Iterator[dict[str, Any]]:
             member = varied(seed)
             change = volumes[member] / volumes[Member(seed, member.cells)] - 1.0
             row[name] = LEFT[name] * abs(change) if name in LEFT else change
-        row["uncertain"] = row[f"off-{DEFAULT}"] + sum(row[name] for name in LEFT)
         time = seconds[Member(seed, DEFAULT)] / seconds[Member(seed, COARSEST)]
         yield row | {"time": time, "error": errors[seed] / median}
 

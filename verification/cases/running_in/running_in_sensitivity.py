@@ -14,9 +14,8 @@ that is plausible is said.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
-from itertools import product
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -25,10 +24,20 @@ from scipy.stats import binomtest, norm
 from sam.scene import Scene
 from verification.cases.case import Context, Measured, Plot, SmallTable, with_keys, with_loading
 from verification.cases.running_in import study
-from verification.cases.running_in.study import BULK, DEEPER, LAST, NAMES, STATEMENTS, A, B, Effort, Study
+from verification.cases.running_in.study import (
+    BULK,
+    DEEPER,
+    LAST,
+    NAMES,
+    STATEMENTS,
+    A,
+    B,
+    Effort,
+    Reading,
+    Readings,
+)
 from verification.figures.specials import probabilities
 from verification.sensitivity import UNIFORM, design
-from verification.surrogate import Surrogate, surrogate
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -39,15 +48,13 @@ EFFORTS = {"quick": (4, Effort(2, 2, 24, (BULK, A))), "full": (64, Effort(LAST, 
 all."""
 SEED = 26  # of the design
 CHANCE = 1e-3  # of each of 17 × 16 changes of probability: less than one of them is named by chance
-PREDICTS = 0.5  # Q² of a fit that is believed: of 200 results without any cause at most two have it
-PART = 0.1  # of the variance: an input with less of it is not named
-DECIDING, EXPLAINING = 2, 3  # inputs named for each statement, and for its measure
+DECIDING = 2  # inputs named for each statement
 LAYER_LIMIT = 0.02  # of the layers of the printed scenes; curve B with 5 % keeps its 2.5 times as much
 SMOOTH = 0.5e-9  # m: below it the counter-surface is a plane
 NOMINAL = 1e-6  # m: printed thickness of the layer
 TABOR, STRAIN = (2.8, 3.0), 0.08  # hardness over yield stress at STRAIN: Tabor, The Hardness of Metals (1951)
-STEEL = (6.8e9, 8.2e9)  # Pa: 697 to 832 HV, 60 to 65 HRC by ASTM E140, of AISI 52100 hardened through
-DISCS = (5e-9, 60e-9)  # m rms: polished to ground, as in running-in-physics
+STEEL = "6.8 to 8.2 GPa of AISI 52100 hardened through (60 to 65 HRC, 697 to 832 HV by ASTM E140)"
+DISCS = "5 to 60 nm of polished to ground discs"
 BEST = 3  # points that are shown
 MATERIALS = (BULK, A, B)
 
@@ -145,17 +152,15 @@ constants of the body.
 """
 INPUTS = tuple(
     Input(name, words, *map(float, numbers), even, key)
-    for name, words, *numbers, even, key in (
-        [part.strip() for part in line.split("|")] for line in TABLE.splitlines()
-    )
+    for name, words, *numbers, even, key in study.parts_of(TABLE)
 )
 PRINTED = np.array([each.share for each in INPUTS])
 """(inputs,) shares of the printed inputs."""
+LOW, HIGH = np.zeros(len(INPUTS)), np.ones(len(INPUTS))
 
 
-def scene_at(scene: Scene, shares: Sequence[float], seed: int) -> Scene:
-    """The scene of a material with every input at its share, on a surface of its own."""
-    scene = study.with_seed(scene, seed)
+def scene_at(scene: Scene, shares: Sequence[float]) -> Scene:
+    """The scene of a material with every input at its share."""
     for each, share in zip(INPUTS, shares, strict=True):
         scene = each.put(scene, each.value(float(share)))
     while (
@@ -174,31 +179,21 @@ def wilson(held: int, of: int, level: float = 0.9) -> tuple[float, float]:
     return float(found.low), float(found.high)
 
 
-def deciders(shares: np.ndarray, held: np.ndarray, fit: Surrogate | None = None) -> list[dict[str, Any]]:
-    """The inputs that decide a statement, the first most. held: (points,), NaN: says nothing; fit:
-    of its measure.
+def deciders(shares: np.ndarray, held: np.ndarray) -> list[dict[str, Any]]:
+    """The inputs that decide a statement beyond chance, the first most. held: (points,), NaN: says nothing.
 
     change: how much more often it holds in the upper half of an input's range than in the lower
-    one, with bounds of 90 %; acts: whether that is beyond chance: by itself, or beyond its bounds
-    where a fit of the measure tells that the input moves it.
+    one, with bounds of 90 %.
     """
-    says = np.isfinite(held)
-    moves = fit.shares >= PART if believed(fit) else np.zeros(len(INPUTS), dtype=bool)
-    found = []
-    for share, one, moved in zip(shares.T[:, says], INPUTS, moves, strict=True):
+    says, found = np.isfinite(held), []
+    for share, one in zip(shares.T[:, says], INPUTS, strict=True):
         high, low = held[says][share >= 0.5], held[says][share < 0.5]
         if high.size and low.size:
-            bounds = change_between(high, low, 0.9)
-            wide = bounds if moved else change_between(high, low, 1.0 - CHANCE)
-            acts = wide[0] > 0.0 or wide[1] < 0.0
-            change = float(high.mean() - low.mean())
-            found.append({"input": one.words, "change": change, "bounds": bounds, "acts": acts})
-    return sorted(found, key=lambda each: (not each["acts"], -abs(each["change"])))
-
-
-def believed(fit: Surrogate | None) -> bool:
-    """Whether a fit predicts the points that it has not seen."""
-    return fit is not None and fit.predicted >= PREDICTS
+            least, most = change_between(high, low, 1.0 - CHANCE)
+            if least > 0.0 or most < 0.0:
+                bounds, change = change_between(high, low, 0.9), float(high.mean() - low.mean())
+                found.append({"input": one.words, "change": change, "bounds": bounds})
+    return sorted(found, key=lambda each: -abs(each["change"]))
 
 
 def change_between(high: np.ndarray, low: np.ndarray, level: float) -> tuple[float, float]:
@@ -220,32 +215,19 @@ def least_change(points: int) -> float:
 
 @dataclass(frozen=True)
 class Studied:
-    """frame: of all runs, by point and material; shares: of the inputs, (points, inputs); printed:
-    material -> bounds of the hardness of its surface with the printed inputs in Pa.
-    """
+    """frame: of all runs, a reading is the number of a point; shares: of the inputs, (points, inputs)."""
 
     frame: DataFrame
     shares: np.ndarray
-    printed: Mapping[str, tuple[float, float]]
-
-    @cached_property
-    def measures(self) -> np.ndarray:
-        """Of each statement at each point, (statements, points); NaN where it says nothing there."""
-        return study.measured(self.frame, ["point"]).reindex(range(len(self.shares))).to_numpy().T
 
     @cached_property
     def held(self) -> np.ndarray:
         """Whether a statement holds at a point, (statements, points); NaN where it says nothing
         there.
         """
-        limits = np.array([(each.low, each.high) for each in STATEMENTS])
-        holds = (limits[:, :1] <= self.measures) & (self.measures <= limits[:, 1:])
-        return np.where(np.isnan(self.measures), np.nan, holds)
-
-    @cached_property
-    def fits(self) -> list[Surrogate | None]:
-        """Of the measure of each statement."""
-        return [surrogate(self.shares, row) for row in self.measures]
+        measures = study.measured(self.frame, ["reading"]).reindex(range(len(self.shares)))
+        holds = [[each.holds(value) for value in measures[each.words]] for each in STATEMENTS]
+        return np.where(np.isnan(measures.to_numpy().T), np.nan, holds)
 
     @cached_property
     def chances(self) -> list[dict[str, Any]]:
@@ -253,10 +235,9 @@ class Studied:
         bounds of that share, and the inputs that decide it.
         """
         found = []
-        for said, row, fit in zip(STATEMENTS, self.held, self.fits, strict=True):
-            holds, of = int(np.nansum(row)), int(np.isfinite(row).sum())
-            acting = [each for each in deciders(self.shares, row, fit)[:DECIDING] if each["acts"]]
-            words = []
+        for said, row in zip(STATEMENTS, self.held, strict=True):
+            holds, of, words = int(np.nansum(row)), int(np.isfinite(row).sum()), []
+            acting = deciders(self.shares, row)[:DECIDING]
             for each in acting:
                 low, high = (f"{100 * end:+.0f}" for end in each["bounds"])
                 words.append(f"{each['input']}: {100 * each['change']:+.0f} % ({low} to {high})")
@@ -268,6 +249,11 @@ class Studied:
     def judged(self) -> bool:
         """Whether there are as many cycles as the statements ask for."""
         return self.frame["run"].iloc[0].scene.loading.cycles >= LAST
+
+    @property
+    def effort(self) -> Effort:
+        """What was run at each point."""
+        return EFFORTS["full" if self.judged else "quick"][1]
 
     @property
     def counts(self) -> np.ndarray:
@@ -285,41 +271,38 @@ class Studied:
         most = np.flatnonzero(self.counts == self.counts.max())
         return [int(point) for point in most[np.argsort(self.away[most], kind="stable")]][:BEST]
 
-    def scene(self, point: int, case: str) -> Scene:
-        """What ran at a point."""
-        own = self.frame[(self.frame["point"] == point) & (self.frame["material"] == case)]
-        return own["run"].iloc[0].scene
 
+class RunningInSensitivity(Readings):
+    """All materials at every point of the design, which stand for readings, each on a surface of its own."""
 
-class RunningInSensitivity(Study):
-    """All materials at every point of the design."""
-
-    def scenes(self, context: Context) -> dict[Any, Scene]:
+    def readings(self, context: Context) -> dict[int, Reading]:
         points, effort = EFFORTS[context.level]
-        shares, bases = design(UNIFORM, len(INPUTS), points, SEED), study.printed_scenes(context, effort)
-        runs = product(range(points), effort.cases)
-        return {(point, case): scene_at(bases[case], shares[point], SURFACES + point) for point, case in runs}
-
-    def label(self, key: tuple[int, str]) -> str:
-        return "point-{:03}-{}".format(*key)
+        return {
+            k: Reading(
+                f"point-{k:03}-", replace(effort, seeds=(SURFACES + k,)), partial(scene_at, shares=shares)
+            )
+            for k, shares in enumerate(design(UNIFORM, len(INPUTS), points, SEED))
+        }
 
     def solve(self, context: Context) -> Studied:
-        points, effort = EFFORTS[context.level]
-        printed = {case: hardness(scene) for case, scene in study.printed_scenes(context, effort).items()}
-        frame = study.framed(self.runs(context), ("point", "material"))
-        return Studied(frame, design(UNIFORM, len(INPUTS), points, SEED), printed)
+        points, _ = EFFORTS[context.level]
+        return Studied(super().solve(context), design(UNIFORM, len(INPUTS), points, SEED))
 
     def measure(self, found: Studied) -> dict[str, Measured]:
-        points, cases = len(found.shares), len(found.printed)
+        every = len(found.shares) * len(found.effort.cases)
         return {
-            "missing": Measured(points * cases - len(found.frame), 0),
+            "missing": Measured(every - len(found.frame), 0),
             "lost": Measured(1.0 - float(found.frame["converged"].mean())),
         }
 
     def setup(self, found: Studied) -> Iterator[tuple[str, str]]:
-        points, (_, effort) = len(found.shares), EFFORTS["full" if found.judged else "quick"]
-        size = f"{points} points, {len(found.printed)} materials: {len(found.frame)} runs"
-        yield "Runs", f"{size} of {effort.words}"
+        points, effort = len(found.shares), found.effort
+        size = f"{points} points, {len(effort.cases)} materials: {len(found.frame)} runs"
+        yield (
+            "Runs",
+            f"{size} of {effort.cells} × {effort.cells} cells of 1 µm, {effort.cycles} cycles, "
+            f"{effort.steps} load steps",
+        )
         yield "Inputs", "uniform and independent over their ranges, each point on another surface"
         half = 50 * np.diff(wilson(points // 2, points))[0]
         yield "Sampling error of a share of points", f"±{half:.0f} % at a half (90 %)"
@@ -332,11 +315,9 @@ class RunningInSensitivity(Study):
         return {"statements": found.chances, "resolved": resolved, "best": best} if found.judged else {}
 
     def tables(self, found: Studied) -> Iterator[SmallTable]:
-        rows = [(one.words, one.shown(0.0), one.shown(1.0), one.even) for one in INPUTS]
-        yield SmallTable("Inputs, each drawn evenly", ("input", "from", "to", "even in"), rows)
+        yield inputs_table(found)
         if found.judged:
             yield statements_table(found)
-            yield fitted_table(found)
         groups = found.frame.groupby("material", sort=False)["run"]
         yield study.runs_table("Over all points", {NAMES[case]: runs for case, runs in groups})
 
@@ -362,83 +343,57 @@ class RunningInSensitivity(Study):
 
 
 def statements_table(found: Studied) -> SmallTable:
-    """How probable each statement is, what decides it, and what a fit of its measure says."""
+    """How probable each statement is, and what decides it."""
     rows = []
-    for each, fit in zip(found.chances, found.fits, strict=True):
+    for each in found.chances:
         held, of, (low, high) = each["holds"], each["of"], each["bounds"]
         share = f"{100 * held / of:.0f} % ({100 * low:.0f} to {100 * high:.0f})" if of else "says nothing"
-        explained = ["no fit predicts it"]
-        if believed(fit):
-            order = [int(k) for k in np.argsort(-fit.shares, kind="stable")[:EXPLAINING]]
-            explained = [
-                f"{INPUTS[k].words}: {100 * fit.shares[k]:.0f} %, "
-                + {1: "rises", -1: "falls"}.get(int(fit.slopes[k]), "bends")
-                for k in order
-                if fit.shares[k] >= PART
-            ]
-        predicted = "–" if fit is None else f"{fit.predicted:.2f}"
         cells = each["figure"], each["statement"], f"{held} of {of}", share
-        rows.append((*cells, "; ".join(each["words"]), predicted, "; ".join(explained)))
+        rows.append((*cells, "; ".join(each["words"])))
     return SmallTable(
         "Probability that a statement holds, and what changes it by most between the halves of its range, "
-        f"with bounds of 90 %: beyond what chance does once in {1 / CHANCE:.0f}, or, where the fit names the "
-        "input, beyond those bounds. Explained: shares of the variance of the measure (its ranks) by a "
-        "sparse polynomial of single inputs, and whether the measure rises or falls with the input; Q²: of "
-        f"the variance, what the fit predicts at points left out; no share where it is below {PREDICTS:g}. "
-        "The rest is the surface, and what inputs do together",
-        "Fig.|statement of the paper|holds|share of points (90 %)|decided by|Q²|explained by".split("|"),
+        f"with bounds of 90 %, beyond what chance does once in {1 / CHANCE:.0f}",
+        "Fig.|statement of the paper|holds|share of points (90 %)|decided by".split("|"),
         rows,
     )
 
 
-def hardness(scene: Scene) -> tuple[float, float]:
-    """Of the material at the surface in Pa, bounds by Tabor."""
-    yields = float(scene.body.plasticity.strength().stress(0.0, STRAIN))
-    return TABOR[0] * yields, TABOR[1] * yields
-
-
-def _range(ends: tuple[float, float]) -> str:
-    return f"{1e-9 * ends[0]:.1f} to {1e-9 * ends[1]:.1f}"
-
-
-def fitted_table(found: Studied) -> SmallTable:
-    """The points at which most statements hold, beside the printed inputs."""
-    best = found.best
+def inputs_table(found: Studied) -> SmallTable:
+    """What is drawn, and where most statements hold."""
+    best = found.best if found.judged else []
     rows = [
-        (one.words, *(one.shown(float(of[n])) for of in (PRINTED, *found.shares[best])))
+        (
+            one.words,
+            one.even,
+            *(one.shown(float(each[n])) for each in (LOW, HIGH, PRINTED, *found.shares[best])),
+        )
         for n, one in enumerate(INPUTS)
     ]
-    words = "distance from the printed inputs, in shares of the ranges (rms)"
-    rows.append((words, "0", *(f"{found.away[k]:.2f}" for k in best)))
+    away = (f"{found.away[point]:.2f}" for point in best)
+    rows.append(("distance from the printed inputs, in shares of the ranges (rms)", "", "", "", "0", *away))
     return SmallTable(
-        "Fitted: inputs of the points at which most statements hold together, the nearest to the "
-        "printed ones first",
-        ("input", "printed inputs", *(f"point {k}: {found.counts[k]} hold" for k in best)),
+        "Inputs, each drawn evenly; fitted: the points at which most statements hold together, the nearest "
+        "to the printed inputs first",
+        ("input", "even in", "from", "to", "printed", *(f"point {k}: {found.counts[k]} hold" for k in best)),
         rows,
     )
 
 
 def fitted_note(found: Studied) -> str:
     """What the nearest of them would mean."""
-    point, said = found.best[0], []
+    point, hard = found.best[0], []
+    scenes = found.frame[found.frame["reading"] == point].set_index("material")["run"]
     for case in MATERIALS:
-        own, plausible = hardness(found.scene(point, case)), "plausible"
-        if own[0] > STEEL[1]:
-            plausible = f"{own[0] / STEEL[1]:.2f} times the hardest steel, not plausible"
-        elif own[1] < STEEL[0]:
-            plausible = f"{own[1] / STEEL[0]:.2f} times the softest"
-        said.append(f"{NAMES[case]} {_range(own)} GPa, {plausible} (printed {_range(found.printed[case])})")
-    rough = found.scene(point, BULK).counterbody.surface
-    sq = rough.sq if rough else 0.0
-    discs = "as polished to ground" if DISCS[0] <= sq <= DISCS[1] else "smoother than polished to ground"
-    tabor = f"by Tabor ({TABOR[0]:g} to {TABOR[1]:g} σ_y at a strain of {STRAIN:.0%})"
+        yields = 1e-9 * float(scenes[case].scene.body.plasticity.strength().stress(0.0, STRAIN))
+        hard.append(f"{NAMES[case]} {TABOR[0] * yields:.1f} to {TABOR[1] * yields:.1f} GPa")
+    rough = scenes[BULK].scene.counterbody.surface
     return (
         f"Fitted: at point {point}, {found.counts[point]} of {len(STATEMENTS)} statements hold together, "
         f"chosen of {len(found.shares)} points by this result, on one surface of its own; it is "
         f"{found.away[point]:.2f} of the ranges away from the printed inputs (two random points are "
-        f"{1 / np.sqrt(6):.2f} apart). It would mean a surface hardness, {tabor}, of {'; '.join(said)}; "
-        f"AISI 52100 hardened to 60 to 65 HRC has {_range(STEEL)} GPa. The counter-surface has "
-        f"{1e9 * sq:.0f} nm rms, {discs} discs ({1e9 * DISCS[0]:.0f} to {1e9 * DISCS[1]:.0f} nm)."
+        f"{1 / np.sqrt(6):.2f} apart). It would mean a surface hardness, by Tabor ({TABOR[0]:g} to "
+        f"{TABOR[1]:g} σ_y at a strain of {STRAIN:.0%}), of {'; '.join(hard)}; plausible are {STEEL}. The "
+        f"counter-surface has {1e9 * (rough.sq if rough else 0.0):.0f} nm rms; plausible are {DISCS}."
     )
 
 

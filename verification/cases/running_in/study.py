@@ -1,52 +1,34 @@
 # SPDX-License-Identifier: MIT
-"""The study of running-in (Bosman & Schipper 2011, Figs. 13-17): five materials as scenes and what
-readings of the paper change in them; their runs as one frame; the statements of the paper as
-measures with limits.
+"""The study of running-in (Bosman & Schipper 2011, Figs. 13-17): five materials as scenes, named readings
+of the paper that change them, their runs as one frame, and the statements of the paper as measures with
+limits.
 
-A frame has a row a run: the parts of its key, `run`, `converged`, and its measures and other
-numbers, NaN where it did not converge. The paper's surface is not public and its numbers belong to
+A study (`Readings`) runs a list of named readings, each on some surfaces; `judged` says of each which of
+STATEMENTS hold. A frame has a row a run: the parts of its key, `run`, `converged`, and its measures and
+other numbers, NaN where it did not converge. The paper's surface is not public and its numbers belong to
 it: only directions and ratios are asked for. A statement that the model contradicts is a finding;
 nothing here is a row.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from sam.scene import (
-    CounterSurface,
-    Hardening,
-    Inputs,
-    Plasticity,
-    Result,
-    Scene,
-    Status,
-    parse_toml,
-    scene_of,
-)
+from sam.scene import CounterSurface, Hardening, Plasticity, Result, Scene, Status
 from verification.cases.case import SAM, Case, Context, SmallTable, with_grid, with_keys, with_loading
 from verification.compare.running_in_measures import History, Scar, Spread
-from verification.rows import FOLDER
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
 BULK, A, B, DUCTILE, HARDENING = "bulk", "curve-a", "curve-b", "curve-b-ductile", "hardening"
 NAMES = {BULK: "bulk", A: "curve A", B: "curve B", DUCTILE: "curve B, 5 %", HARDENING: "hardening only"}
-"""The five materials, as runs are named -> as the reader knows them."""
-LAYERS = {
-    A: ("curve-a.csv", 0.02),
-    DUCTILE: ("curve-b.csv", 0.05),
-    HARDENING: ("hardening-only.csv", 0.02),
-    "curve-c": ("curve-c.csv", 0.02),
-}
-"""What a material has in place of curve B and its limit: file of the factors, largest strain of the layer."""
-SCENES = FOLDER.parent / "scenes"
+"""The five materials, as scenes are named -> as the reader knows them."""
 EARLY, STEADY, LAST = 6, 10, 25  # cycles of the paper's figures: end of the first wear, steady part, last
 AGREED = 0.8  # of the surfaces that must agree
 STILL = 1e-3  # of the worn volume: what cycles 21 to 25 add at least where wear goes on
@@ -64,40 +46,20 @@ LARGEST, POINTS = 0.2, 60  # of the plastic strain in the table of a yield stres
 CUBIC, GIGA, NAN = 1e18, 1e-9, float("nan")
 
 
-class Effort(NamedTuple):
-    """How much is run: cycles, load steps each way, cells of 1 um a side, names of scenes, seeds."""
+@dataclass(frozen=True)
+class Effort:
+    """How much is run: cycles, load steps each way, cells of 1 um a side, materials, seeds."""
 
     cycles: int
     steps: int
     cells: int
     cases: tuple[str, ...] = tuple(NAMES)
-    seeds: tuple[int, ...] = ()
-
-    @property
-    def words(self) -> str:
-        """For the reader."""
-        return f"{self.cells} × {self.cells} cells of 1 µm, {self.cycles} cycles, {self.steps} load steps"
-
-
-def printed(material: str) -> tuple[Scene, dict[str, bytes]]:
-    """The scene of a material with the printed inputs, and what was read: name -> content."""
-    name = f"running-in-{BULK if material == BULK else B}.toml"
-    content, inputs = (SCENES / name).read_bytes(), Inputs(SCENES)
-    tables = parse_toml(content, name)
-    if material in LAYERS:
-        profile, limit = LAYERS[material]
-        tables["body"]["plasticity"]["profile"] = profile
-        tables["wear"]["strain_limit_layer"] = limit
-        tables["title"] = f"Running-in, {NAMES.get(material, 'curve C')}"
-    return scene_of(tables, name, inputs), {name: content, **inputs.contents}
+    seeds: tuple[int, ...] = (2,)
 
 
 def printed_scenes(context: Context, effort: Effort) -> dict[str, Scene]:
     """Material -> its scene with the printed inputs at an effort."""
-    read = {case: printed(case) for case in effort.cases}
-    for _, inputs in read.values():
-        context.inputs |= inputs
-    return {case: reduced(scene, effort) for case, (scene, _) in read.items()}
+    return {case: reduced(context.scene(f"running-in-{case}"), effort) for case in effort.cases}
 
 
 def reduced(scene: Scene, effort: Effort) -> Scene:
@@ -212,12 +174,10 @@ class Run:
         """A column of cycles.csv."""
         return np.asarray(self.result.tables["cycles"][column], dtype=float)
 
-    @property
-    def off(self) -> float:
-        """Volume summed over surface.csv against the last of cycles.csv, relative; 0 where both
-        are 0.
-        """
-        return apart(self.scar.volume, self.history.volume[-1])
+
+def parts_of(table: str) -> list[list[str]]:
+    """Of each line, between |."""
+    return [[part.strip() for part in line.split("|")] for line in table.splitlines()]
 
 
 def apart(value: float, expected: float) -> float:
@@ -258,18 +218,14 @@ MEASURES: Mapping[str, Callable[[History], float]] = {
 """Of a run of 25 cycles; grown: share of the volume that the last five wear, 0 where nothing has worn."""
 COLUMNS: Mapping[str, Callable[[Run], float]] = {
     "V, first [µm³]": lambda one: CUBIC * one.history.volume[0],
-    "V, sixth or last": lambda one: CUBIC * one.history.volume[:EARLY][-1],
     "V, last": lambda one: CUBIC * one.history.volume[-1],
     "μ, first": lambda one: one.history.friction[0],
     "μ, last": lambda one: one.history.friction[-1],
     "Sa, first [nm]": lambda one: 1e9 * one.history.sa[0],
     "Sa, last": lambda one: 1e9 * one.history.sa[-1],
-    "protected, last [%]": lambda one: 100.0 * one.history.protected[-1],
     "p_max, first [GPa]": lambda one: GIGA * one.history.p_max[0],
     "p_max, last": lambda one: GIGA * one.history.p_max[-1],
     "at rest from cycle": lambda one: at_rest_from(one.of_cycles("new_strain_max")),
-    "new strain, last [%]": lambda one: 100.0 * one.of_cycles("new_strain_max")[-1],
-    "processor time [s]": lambda one: one.result.cost["cpu_s"],
 }
 """What tables show of runs -> of a run that converged."""
 
@@ -292,32 +248,56 @@ def framed(
     return pd.DataFrame(rows, columns=[*parts, "run", "converged", *own])
 
 
-class Study(Case):
-    """Runs that may stay unconverged: a row counts those, and a set of hours does not break off
-    for one of them. Where the plastic zone reaches the last layer a run begins again with deeper
-    ones.
+@dataclass(frozen=True)
+class Reading:
+    """How the paper is read. label: in names of runs; change: of the printed scene of a material."""
+
+    label: str
+    effort: Effort
+    change: Callable[[Scene], Scene] = lambda scene: scene
+
+
+PARTS = ("reading", "material", "surface")
+"""Of a key."""
+
+
+class Readings(Case):
+    """Every material on every surface in each of some readings.
+
+    Runs may stay unconverged: a row counts those, and a set of hours does not break off for one of them.
+    Where the plastic zone reaches the last layer a run begins again with deeper ones.
     """
 
-    def scenes(self, context: Context) -> dict[Hashable, Scene]:
-        """Of all runs, by a key."""
+    numbers: Mapping[str, Callable[[Run], float]] = {}
+
+    def readings(self, context: Context) -> Mapping[Any, Reading]:
+        """By their names."""
         raise NotImplementedError(self.name)
 
-    def label(self, key: Any) -> str:
-        """What the run of a key is written as."""
-        raise NotImplementedError(self.name)
+    def scenes(self, context: Context) -> dict[tuple, tuple[str, Scene]]:
+        """Key -> label and scene of its run."""
+        return {
+            (name, case, seed): (f"{one.label}{case}-seed-{seed}", one.change(with_seed(scene, seed)))
+            for name, one in self.readings(context).items()
+            for seed in one.effort.seeds
+            for case, scene in printed_scenes(context, one.effort).items()
+        }
+
+    def solve(self, context: Context) -> Any:
+        return framed(self.runs(context), PARTS, self.numbers)
 
     def ahead(self, context: Context) -> Iterable[Scene]:
-        return self.scenes(context).values()
+        return (scene for _, scene in self.scenes(context).values())
 
     def then(self, scene: Scene, result: Result) -> Scene | None:
         at_edge = result.status is Status.PLASTIC_ZONE_AT_GRID_EDGE
         return deeper(scene) if at_edge and scene.grid.depths[-1] < DEEPER[-1][0] else None
 
-    def runs(self, context: Context) -> dict[Any, Run]:
+    def runs(self, context: Context) -> dict[tuple, Run]:
         """What ran, by key."""
         found = {}
-        for key, scene in self.scenes(context).items():
-            label, below = self.label(key), scene
+        for key, (label, scene) in self.scenes(context).items():
+            below: Scene | None = scene
             while below is not None:
                 own, result = below, context.solve(SAM, below, label, demand=False)
                 below, label = self.then(own, result), f"{label}-deeper"
@@ -332,7 +312,7 @@ def runs_table(caption: str, groups: Mapping[str, Iterable[Run]]) -> SmallTable:
     for name, runs in groups.items():
         every = list(runs)
         good = [one for one in every if one.result.converged]
-        cells = (Spread.of([of(one) for one in good]).text() for of in COLUMNS.values())
+        cells = (Spread.of([of(one) for one in good]).text for of in COLUMNS.values())
         rows.append((name, f"{len(good)} of {len(every)}", *cells))
     return SmallTable(f"{caption}: median and range", ("runs", "converged", *COLUMNS), rows)
 
@@ -400,9 +380,7 @@ TABLE = """\
 """
 STATEMENTS = tuple(
     Statement(figure, words, measure, float(low), float(high), how)
-    for figure, words, measure, low, high, how in (
-        [part.strip() for part in line.split("|")] for line in TABLE.splitlines()
-    )
+    for figure, words, measure, low, high, how in parts_of(TABLE)
 )
 
 
@@ -424,9 +402,7 @@ def judged(measures: DataFrame) -> list[dict[str, Any]]:
     """What pages are told of each statement, of its measures on surfaces, see `measured`.
 
     by_agreement: held or failed where eight surfaces of ten agree; one on which it says nothing
-    agrees with neither. by_median: nothing where no more than half of them say anything. margin:
-    distance of the median from the nearest limit over the interquartile range of the surfaces, NaN
-    without median; below 1 the statement is close: decided by less than they scatter. none_on:
+    agrees with neither. by_median: nothing where no more than half of them say anything. none_on:
     surfaces without a value.
     """
     found = []
@@ -438,14 +414,10 @@ def judged(measures: DataFrame) -> list[dict[str, Any]]:
             agreed = HELD if holds >= needed else FAILED
         if 2 * spread.n > of:
             median = HELD if said.holds(spread.median) else FAILED
-        away = min(abs(spread.median - limit) for limit in (said.low, said.high) if np.isfinite(limit))
-        scatters = spread.interquartile > 0.0 and np.isfinite(away)
-        margin = away / spread.interquartile if scatters else away and away * np.inf
         found.append(
             {"figure": said.figure, "statement": said.words, "measure": said.measure, "asked": said.asked}
             | {"values": values, "holds_on": holds, "of": of, "none_on": of - spread.n}
             | {"by_median": median, "by_agreement": agreed}
-            | {"margin": margin, "close": median != OPEN and margin < 1.0}
         )
     return found
 
@@ -461,14 +433,46 @@ def statements_table(readings: Mapping[str, Sequence[Mapping[str, Any]]]) -> Sma
         row = [said[0][key] for key in ("figure", "statement", "measure", "asked")]
         for one in said:
             silent = f", none on {one['none_on']}" * (one["none_on"] > 0)
-            far = one["by_median"] == OPEN or np.isinf(one["margin"])
-            row += [Spread.of(one["values"]).text(), f"{one['holds_on']} of {one['of']}{silent}"]
-            row += [one["by_median"] + ("" if far else f" by {one['margin']:.2g} IQR"), one["by_agreement"]]
+            row += [Spread.of(one["values"]).text, f"{one['holds_on']} of {one['of']}{silent}"]
+            row += [one["by_median"], one["by_agreement"]]
         rows.append(row)
     return SmallTable(
-        "What the paper says of its Figures 13 to 17, on surfaces of our own. By the median: the distance of "
-        "the median from the limit in interquartile ranges (IQR) of the surfaces; below 1, the surfaces "
-        f"scatter by more. By agreement: of {AGREED:.0%} of the surfaces. None: surfaces without a value",
+        "What the paper says of its Figures 13 to 17, on surfaces of our own, by their median and by "
+        f"agreement of {AGREED:.0%} of them. None: surfaces without a value",
         columns,
         rows,
     )
+
+
+def readings_of(frame: DataFrame) -> dict[str, list[dict[str, Any]]]:
+    """Reading -> what is told of the statements; none without all materials, or with fewer cycles than
+    they ask for.
+    """
+    return {
+        reading: judged(measured(own, ["surface"]))
+        for reading, own in frame.groupby("reading", sort=False)
+        if own["material"].nunique() == len(NAMES) and own["run"].iloc[0].scene.loading.cycles >= LAST
+    }
+
+
+def together(readings: Mapping[str, Sequence[Mapping[str, Any]]]) -> list[SmallTable]:
+    """Under how many readings each statement holds by agreement, and which hold together under each."""
+    numbered, under = list(enumerate(zip(*readings.values(), strict=True), start=1)), []
+    for number, said in numbered:
+        verdicts = [one["by_agreement"] for one in said]
+        words = [said[0][key] for key in ("figure", "statement", "measure", "asked")]
+        under.append((str(number), *words, *(str(verdicts.count(each)) for each in (HELD, FAILED, OPEN))))
+    hold = []
+    for name, said in readings.items():
+        places = [
+            [str(k) for k, one in enumerate(said, start=1) if one["by_agreement"] == verdict]
+            for verdict in (HELD, OPEN)
+        ]
+        hold.append((name, str(len(places[0])), *map(", ".join, places)))
+    columns = ("no.", "Fig.", "statement of the paper", "measure", "asked", HELD, FAILED, OPEN)
+    return [
+        SmallTable(f"Under how many of {len(readings)} readings a statement holds", columns, under),
+        SmallTable(
+            "Which statements hold together", ("reading", "how many", "numbers", f"{OPEN}: numbers"), hold
+        ),
+    ]

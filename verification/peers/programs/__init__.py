@@ -5,5 +5,5 @@ gives:
 load(): imports the program. versions(): name -> version. setup(problem, cells, settings): a function that
 sets the problem up and returns one that solves it. read(answer): ({"iterations", "converged", ...}, fields).
 Elastic fields: "pressure", (n, n) in units of E*. Elastic-plastic: "z" and "peeq" below the apex in units of
-a and sigma_y/E, and the number peeq_max in these.
+a and sigma_y/E.
 """

@@ -107,7 +107,6 @@ def step_of(result) -> tuple[dict, dict[str, np.ndarray]]:
     if "layers" in result.discretisation:  # of SAM: cells hold means, as points of other programs do not
         peeq = _below_the_apex(result, len(z))
     fields = {"z": z / RADIUS_M, "peeq": peeq / unit}
-    found = {"peeq_max": result.quantities["peeq_max"] / unit, "p_max": result.quantities["p_max_Pa"] / YOUNG}
     one_step = not result.cost.get("step_cuts")
     iterations = result.cost.get("plastic_iterations") or result.cost.get("newton_iterations")
-    return {"iterations": iterations, "converged": result.converged and one_step, **found}, fields
+    return {"iterations": iterations, "converged": result.converged and one_step}, fields

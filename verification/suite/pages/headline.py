@@ -41,7 +41,7 @@ MEANING = (
     "on 2`: on two of them it says nothing. Share of points: of the study over inputs, each on another "
     "surface, with bounds of 90 %. Decided by: how much more often the statement holds in the upper half "
     "of the range of an input; not resolved: no input changes that by more than chance does with so many "
-    "points, nor does a fit that predicts points it has not seen name one. Holds under: of the ways to "
+    "points. Holds under: of the ways to "
     "harden and to load. Of equal changes that make a statement hold the smallest are named. Bulk: steel "
     "without a layer, removed above a plastic strain of 0.2 %; curve A, curve B, hardening only: with a "
     "nano-crystalline layer as after polishing, mild wear or harder towards the surface, removed above 2 "
