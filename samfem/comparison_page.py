@@ -116,7 +116,7 @@ def _case(name: str, found: Compared) -> dict[str, Any]:
 
 def _figure(case: str, kind: str, title: str, words: str) -> dict[str, Any]:
     files = {suffix: f"figures/{case}-{kind}.{suffix}" for suffix in ("png", "csv")}
-    return {"title": title, "alt": words, "caption": words, "embedded": True, **files}
+    return {"title": title, "alt": words, "caption": words, **files}
 
 
 def _uncertainties(found: Compared) -> dict[str, Any]:

@@ -105,7 +105,7 @@ def publish(case: Sequence[str], *, level: str, out: Path, store: Path, workers:
     known = all_cases()
     wanted = [each for each in known.values() if (each.name in case if case else each.published_at(level))]
     before = suite.before(out)
-    problem = suite.problem_of(case, level, known, out)
+    problem = suite.problem_of(case, known, out)
     if not problem and before.get("level", level) != level:
         problem = f"{out} holds a report of level {before['level']}: choose another folder with --out"
     if problem:

@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 import pyvista
 from builders import PERFECT, running_in, scene as small_scene
-from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkFiltersTensor import vtkTensorPrincipalInvariants
 
 from sam.scene import HeightMap, Scene
@@ -24,9 +23,6 @@ SINGLE = 1e-6
 """Of the largest stress: what single precision, in which some filters of VTK calculate, leaves; measured
 1e-15.
 """
-OURS = ("xx", "yy", "zz", "yz", "xz", "xy")
-"""The order of a result record, whatever the file's is."""
-STRESS = "stress_Pa"
 SIDE = 12e-6
 
 
@@ -53,11 +49,9 @@ def rough(n: int) -> Scene:
 
 CASES = {models.SAM: rough(17), models.FEM: smooth(), models.FEM_3D: rough(16)}
 """On 17 cells nodes of SAM's plane lie under the origin, on 16 the middle of an element does."""
-
-
 STATES = {"peak": "", "unloaded": "-unloaded"}
-TURNED = {"yz": -1.0, "xz": -1.0}
-"""Components of a tensor that change their sign where z points the other way."""
+OURS = {"xx": 1.0, "yy": 1.0, "zz": 1.0, "yz": -1.0, "xz": -1.0, "xy": 1.0}
+"""Components of a result record, in its order -> sign where z points the other way."""
 
 
 @pytest.fixture(scope="module")
@@ -81,56 +75,41 @@ def written(request, solved):
     return solved(request.param)
 
 
-def in_record(result, name: str, state: str = "peak") -> np.ndarray:
-    """The values of fields.vtu in the record, (n,) or (n, 6), in the order of the file."""
+def in_record(result, name: str, state: str) -> np.ndarray:
+    """The values of fields.vtu in the record, (n, 6), in the order of the file."""
     if result.model == models.SAM:
         values = result.grids[state]["plane"].point_data[name]
         return values.reshape(*values.shape[:-3], -1).T
     return result.bodies[state].cell_data[name]
 
 
-def by_name(data: pyvista.DataSet, name: str) -> dict[str, np.ndarray]:
-    """The components of a tensor by the names that the file gives them, in lower case."""
-    at_points = name in data.point_data
-    array = (data.GetPointData() if at_points else data.GetCellData()).GetArray(name)
-    names = [array.GetComponentName(k).lower() for k in range(array.GetNumberOfComponents())]
-    return dict(zip(names, vtk_to_numpy(array).T, strict=True))
-
-
-def principal(*components: np.ndarray) -> np.ndarray:
-    """Principal values, largest first, (3, n), of xx, yy, zz, yz, xz, xy."""
-    xx, yy, zz, yz, xz, xy = components
+def principal(xx, yy, zz, yz, xz, xy) -> np.ndarray:
+    """Principal values, largest first, (3, n)."""
     tensor = np.stack([np.stack(row, -1) for row in ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))], -1)
     return np.linalg.eigvalsh(tensor)[:, ::-1].T
 
 
-def principal_of_vtk(grid: pyvista.DataSet, name: str) -> np.ndarray:
-    """The same as VTK's filter finds them from six components in its order, (3, n)."""
-    finder = vtkTensorPrincipalInvariants()
-    finder.SetInputData(grid)
-    at_points = name in grid.point_data
-    selection = finder.GetPointDataArraySelection() if at_points else finder.GetCellDataArraySelection()
-    selection.EnableArray(name)
-    finder.Update()
-    data = finder.GetOutput().GetPointData() if at_points else finder.GetOutput().GetCellData()
-    return np.stack([vtk_to_numpy(data.GetArray(f"{name} - Sigma {k}")) for k in (1, 2, 3)])
-
-
-def of_state(table, state: str):
-    return table[table["state"] == state]
-
-
 @pytest.mark.parametrize("state", STATES)
-@pytest.mark.parametrize("name", [STRESS, "plastic_strain"])
+@pytest.mark.parametrize("name", ["stress_Pa", "plastic_strain"])
 def test_components_have_the_names_order_and_turned_values_that_vtk_expects(written, name, state):
     grid = pyvista.read(written[1].folder / f"fields{STATES[state]}.vtu")
-    found, values = by_name(grid, name), in_record(written[0], name, state)
-    assert tuple(each.upper() for each in found) == TENSOR_NAMES == ("XX", "YY", "ZZ", "XY", "YZ", "XZ")
-    for k, component in enumerate(OURS):
-        np.testing.assert_array_equal(found[component], TURNED.get(component, 1.0) * values[:, k])
+    of_points, values = name in grid.point_data, in_record(written[0], name, state)
+    array = (grid.GetPointData() if of_points else grid.GetCellData()).GetArray(name)
+    names = tuple(array.GetComponentName(k) for k in range(array.GetNumberOfComponents()))
+    assert names == TENSOR_NAMES == ("XX", "YY", "ZZ", "XY", "YZ", "XZ")
+    for k, (component, sign) in enumerate(OURS.items()):
+        found = (grid.point_data if of_points else grid.cell_data)[name][:, names.index(component.upper())]
+        np.testing.assert_array_equal(found, sign * values[:, k])
+    finder = vtkTensorPrincipalInvariants()
+    finder.SetInputData(grid)
+    selected = finder.GetPointDataArraySelection() if of_points else finder.GetCellDataArraySelection()
+    selected.EnableArray(name)
+    finder.Update()
+    of_vtk = pyvista.wrap(finder.GetOutput())
+    found = np.stack([of_vtk[f"{name} - Sigma {k}"] for k in (1, 2, 3)])
     expected = principal(*values.T)
     largest = np.abs(expected).max()
-    assert np.abs(principal_of_vtk(grid, name) - expected).max() < SINGLE * largest
+    assert np.abs(found - expected).max() < SINGLE * largest
     swapped = principal(*values[:, [0, 1, 2, 4, 5, 3]].T)  # the record read in the order of VTK
     assert np.abs(swapped - expected).max() > 0.01 * largest
 
@@ -166,7 +145,7 @@ def test_every_file_is_listed_in_order_reads_without_gaps_and_says_where_z_point
 def test_the_cells_of_the_surface_are_those_of_the_table(written, state):
     run = written[1]
     mesh = pyvista.read(run.folder / f"surface{STATES[state]}.vtr")
-    table = of_state(run.tables["surface"], state).sort_values(["y_m", "x_m"])
+    table = run.tables["surface"].query("state == @state").sort_values(["y_m", "x_m"])
     places = mesh.cell_centers().points
     assert places[:, :2] == pytest.approx(table[["x_m", "y_m"]].to_numpy(), abs=1e-9 * SIDE)
     for name in ("p_Pa", "height_m"):

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from made_histories import as_the_paper_says
-from made_studies import GOOD, over_inputs, over_physics, verdicts
+from made_studies import over_inputs, over_physics, verdicts
 from page_checks import PageReader, faults_of
 
 from verification.cases import all_cases
@@ -14,16 +14,15 @@ from verification.cases.running_in import running_in_physics, running_in_sensiti
 from verification.cases.running_in.study import BULK, HARDENING, STATEMENTS
 from verification.runs.files import plain
 from verification.suite.pages import write_report
-from verification.suite.pages.answers import Evidence, statements as of_paper
-from verification.suite.pages.headline import COLUMNS, MEANING, NOTHING, headline_of
-from verification.suite.pages.judged import (
+from verification.suite.pages.headline import (
+    COLUMNS,
     FINER,
     INPUTS,
+    MEANING,
     NOT_RUN,
     PHYSICS,
     READINGS,
-    WORDS,
-    Judged,
+    headline_of,
 )
 from verification.suite.pages.stored import read_stored
 
@@ -37,10 +36,7 @@ def record(name, data, tables=(), notes=(), setup=()):
     ]
     words = {"title": name, "question": "", "failure": "", "status": "passed", "reused": None}
     lists = {"equations": [], "runs": [], "setup": list(map(list, setup)), "notes": list(notes)}
-    figure = dict.fromkeys(("title", "alt", "caption", "csv"), "") | {"embedded": True}
-    own = ("probabilities", "volume")
-    figures = [figure | {"png": f"figures/{name}-{each}.png"} for each in own]
-    made = {"name": name, "seconds": 1.0, "tables": shown, "figures": figures, "data": plain(data)}
+    made = {"name": name, "seconds": 1.0, "tables": shown, "figures": [], "data": plain(data)}
     return made | words | lists
 
 
@@ -75,89 +71,54 @@ def studies():
     ]
 
 
-def test_each_statement_has_a_row_with_what_decides_it_and_what_makes_it_hold(readings, studies):
+def test_each_statement_has_a_row_with_what_decides_it_and_where_it_holds(readings, studies):
     found = headline_of(read_stored(stored(readings, *studies)))
     rows = {row[1].partition(" (")[0]: dict(zip(COLUMNS, row, strict=True)) for row in found.rows}
     assert list(rows) == [each.words for each in STATEMENTS]
     assert found.rows[0][1].endswith("(V(6)/V(25) ≥ 0.9)")
     held, failed = rows["curve A: friction falls"], rows[NEVER]
-    assert held["printed inputs"] == "held, 3 of 3" and held["what makes it hold"] == ""
-    assert (
-        held["share of points (90 %)"].startswith("50 %") and "deviation of the layer" in held["decided by"]
-    )
-    assert held["holds under"] == "24 of 24"
-    assert failed["printed inputs"].startswith("failed") and failed["what makes it hold"] == NOTHING
-    assert failed["holds under"] == "0 of 24" and failed["share of points (90 %)"].startswith("0 %")
+    assert held["printed inputs"] == "held, 3 of 3" and held["holds under"] == "24 of 24"
+    assert held["share of points (90 %)"].startswith("50 %")
+    assert "deviation of the layer" in held["decided by"]
+    assert failed["printed inputs"].startswith("failed") and failed["holds under"] == "0 of 24"
+    assert failed["share of points (90 %)"].startswith("0 %")
     assert rows["curve B: still wears linearly"]["holds under"] == "1 of 24"
-    assert rows["hardening: wears as much as bulk"]["what makes it hold"] == "the second reading"
-    plain, *others = running_in_physics.ALL.values()
-    assert set(WORDS) == {key for each in others for key in each} - set(plain)
-    (good,) = Judged(read_stored(stored(*studies))).under("curve B: still wears linearly")
-    assert good == tuple(WORDS[each] for each in reversed(running_in_physics.ALL[GOOD]))
 
 
-def said(headline):
-    return " ".join([headline.answer, *(text for _, text in headline.depends)])
-
-
-def test_the_answer_counts_what_the_tables_hold_and_the_index_and_the_page_begin_with_it(
-    readings, studies, tmp_path
-):
+def test_the_answer_counts_what_the_data_hold_and_the_index_and_the_page_say_it(readings, studies, tmp_path):
     results = stored(readings, *studies)
     found = headline_of(read_stored(results))
-    text = said(found)
-    assert text.startswith("In part. With the printed inputs, 15 of its 17 statements")
-    assert "of the 15 independent ones 13 hold, in the second reading 14." in text and "curve C" in text
-    assert "(a soft layer) 16 and 16" in text and "40 points, 5 materials" in text
-    assert "deviation of the layer, factor (" in text and f"1 holds ({NEVER}) under nothing" in text
-    assert "In the study over hardening and loading cycles 21 to 25 add more than 0.1 %" in text
-    assert [each["png"][19:-4] for each in found.pictures] == [
-        *("sensitivity-probabilities", "physics-volume")
-    ]
+    assert found.answer.startswith("In part. With the printed inputs, 15 of its 17 statements")
+    assert "of the 15 independent ones 13 hold, in the second reading 14." in found.answer
+    assert "(a soft layer) 16 and 16" in found.answer
+    assert "first on deviation of the layer, factor (" in found.depends
+    assert "of 24 ways to harden and to load it, 15 hold together at best" in found.depends
     write_report(results, tmp_path)
-    page, index = (
-        PageReader((tmp_path / name).read_text(encoding="utf-8"))
-        for name in ("running-in.html", "index.html")
-    )
-    for each in (page, index):
-        assert faults_of(each) == [] and found.answer[:80] in each.text and MEANING[:40] in each.text
-    assert page.text.index(found.question) < page.text.index("Closest to its limit")
-    (*_, most, under) = of_paper(Evidence(read_stored(results), []), "")
-    assert most.value == under.value == "15 of 17"
+    names = "running-in.html", "index.html"
+    page, index = (PageReader((tmp_path / name).read_text(encoding="utf-8")) for name in names)
+    assert faults_of(page) == faults_of(index) == []
+    assert found.answer[:80] in index.text and MEANING[:40] not in index.text
+    places = [page.text.index(words[:40]) for words in (found.answer, found.depends, MEANING)]
+    assert sorted(places) == places and places[-1] < page.text.index("Closest to its limit")
 
 
-def test_what_finer_cells_refute_and_the_pressures_that_remove_metal_are_said(readings, studies):
-    said_so = as_the_paper_says()
-    busy = {**said_so, BULK: replace(said_so[BULK], volume=1e-18 * np.arange(1.0, 26.0))}
-    finer = record(FINER, statements(coarse=verdicts([said_so]), fine=verdicts([busy])))
-    regimes = {
-        "hard": {"removed_from": 9.87e9, "film_fails_from": 3.42e9, "reached": 10.2e9},
-        "lost": {"removed_from": 2.0e9, "film_fails_from": 3.5e9, "reached": None},
-    }
-
-    def text(*rest_from):
-        last = {"bulk": {"rest_from": [3.0]}, "hard": {"rest_from": rest_from}}
-        found = {name: {"printed inputs": own} for name, own in (("regimes", regimes), ("last_cycle", last))}
-        read = {**readings, "data": readings["data"] | found}
-        return said(headline_of(read_stored(stored(read, *studies, finer))))
-
-    assert "1 of these 13 (bulk: worn in the first six cycles) failed on finer cells" in text()
-    assert "not counting such, 12 of 15 hold." in text()
-    assert "above 9.87 (hard), 2.00 (lost) GPa; films fail from 3.42 GPa" in text()
-    assert "reaches 10.20 GPa (median)" in text()
-    assert "anew in the last cycle in 1 of 3 runs" in text(None, 7.0)
-    assert "no cell strains anew in the last cycle in any of 2 runs" in text(7.0)
+def test_what_finer_cells_refute_is_said(readings):
+    said = as_the_paper_says()
+    busy = {**said, BULK: replace(said[BULK], volume=1e-18 * np.arange(1.0, 26.0))}
+    finer = record(FINER, statements(coarse=verdicts([said]), fine=verdicts([busy])))
+    text = headline_of(read_stored(stored(readings, finer))).answer
+    assert "1 of these 13 (bulk: worn in the first six cycles) failed on finer cells" in text
+    assert "not counting such, 12 of 15 hold." in text
 
 
 def test_a_study_that_did_not_run_is_said_not_to_have_run(readings, studies):
     found = headline_of(read_stored(stored(readings)))
-    text = said(found)
-    assert all(f"(case {name}) did not run." in text for name in (INPUTS, PHYSICS))
+    assert all(f"(case {name}) did not run." in found.depends for name in (INPUTS, PHYSICS))
     assert {row[4] for row in found.rows} == {row[6] for row in found.rows} == {NOT_RUN}
-    assert found.pictures == [] and headline_of(read_stored(stored())) is None
+    assert headline_of(read_stored(stored())) is None
     short = record(INPUTS, {})
     assert headline_of(read_stored(stored(short))) is None
-    assert "was made without" in said(headline_of(read_stored(stored(readings, short))))
+    assert "was made without" in headline_of(read_stored(stored(readings, short))).depends
     (_, of_physics) = studies
     found = headline_of(read_stored(stored(of_physics)))
     assert {row[2] for row in found.rows} == {NOT_RUN} and len(found.rows) == len(STATEMENTS)

@@ -28,14 +28,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Plot:
-    """A drawing that a case asks for. name: of its files, led by that of the case; embedded: see `Figure`."""
+    """A drawing that a case asks for. name: of its files, led by that of the case."""
 
     drawing: Drawing
     name: str
     title: str
     alt: str
     caption: str
-    embedded: bool = True
 
 
 @dataclass(frozen=True)
@@ -56,9 +55,9 @@ class View:
 
 @dataclass(frozen=True)
 class Figure:
-    """A drawn figure; paths relative to the report's folder, a picture in space has no csv. embedded: shown
-    on the page, not only linked from it; findings: what cannot be read in it, see
-    `verification.figures.check`: the case has failed then.
+    """A drawn figure; paths relative to the report's folder, a picture in space has no csv.
+
+    findings: what cannot be read in it, see `verification.figures.check`: the case has failed then.
     """
 
     title: str
@@ -66,7 +65,6 @@ class Figure:
     caption: str
     png: str
     csv: str = ""
-    embedded: bool = True
     findings: tuple[str, ...] = ()
 
     @property
@@ -278,7 +276,7 @@ class Context:
         folder.mkdir(parents=True, exist_ok=True)
         picture, *data = (f"figures/{path.name}" for path in save(plot.drawing, stem, pdf=self.pdf))
         unread = tuple(findings(plot.drawing.figure))
-        return Figure(plot.title, plot.alt, plot.caption, picture, "".join(data), plot.embedded, unread)
+        return Figure(plot.title, plot.alt, plot.caption, picture, "".join(data), unread)
 
     def look(self, views: Iterable[View]) -> tuple[list[Figure], list[str]]:
         """Write pictures in space as figures/<case>-<name>.png; a line says why others are missing."""

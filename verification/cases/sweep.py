@@ -148,7 +148,8 @@ def _single(rows: DataFrame, column: str) -> Measured:
     if len(rows) != 1:
         raise ValueError(f"{column}: {len(rows)} points where one is meant")
     value, expected = rows.get(f"{column} value", rows[column]), rows.get(f"{column} expected")
-    return Measured(value.iloc[0], None if expected is None else expected.iloc[0])
+    unit = QUANTITIES[column].unit if column in QUANTITIES and f"{column} value" in rows else ""
+    return Measured(value.iloc[0], None if expected is None else expected.iloc[0], unit=unit)
 
 
 STATISTICS: Mapping[str, Callable[[DataFrame, str], float | Measured]] = {
@@ -223,6 +224,8 @@ def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
             axes = [axis for axis in sweep.axes if len(set(map(spelt, rows[axis]))) > 1]
             shown = {column: words_of(file, column) + ERRORS[how] for column, how in sweep.columns.items()}
             values = [column for column, how in sweep.columns.items() if how == "value"]
+            units = {column: QUANTITIES[column].unit for column in values if column in QUANTITIES}
+            shown |= {column: f"{shown[column]} [{unit}]" for column, unit in units.items() if unit}
             shown |= {f"{column} expected": f"{shown[column]}, expected" for column in values}
         known = {c: rows[c].dropna() for c in shown if c in rows}
         shown = {c: shown[c] for c, own in known.items() if len(own) and isinstance(own.iloc[0], str | Real)}

@@ -3,7 +3,7 @@
 
 Texts keep apart and stay on the sheet; an axis has at least two numbers, whole ones where it counts; every
 look of a line is in a legend or beside a text of its colour; a colour bar stands beside the panel that it is
-of; iso-lines carry their numbers; no name of a variable of the code is written.
+of; no name of a variable of the code is written.
 """
 
 from __future__ import annotations
@@ -17,7 +17,6 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, to_hex
-from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
@@ -29,8 +28,6 @@ APART = 0.2
 """Of the size of the letters: least distance of two texts side by side."""
 TOUCH = 0.2
 """Of the lower of two texts: how much the boxes may overlap in height; a box is higher than its letters."""
-BESIDE = 0.1
-"""Of the width of the sheet: largest distance of a colour bar from its panel."""
 FEW = 8
 """Colours of a map that a legend may name instead of a colour bar."""
 _RAW = re.compile(r"[^\W\d_]+_\w")
@@ -43,10 +40,8 @@ def findings(figure: Figure) -> list[str]:
     """One sentence for each thing in a figure that breaks a rule; none of a good one."""
     figure.draw_without_rendering()
     panels = [panel for panel in figure.axes if panel.get_visible()]
-    found = [*_of_texts(figure, panels), *_of_bars(figure, panels), *_of_lines(figure, panels)]
-    known = {part for each in _legends(figure, panels) for one in each.legend_handles for part in _look(one)}
-    for panel in panels:
-        found += [*_of_ticks(panel), *_of_contours(panel, known)]
+    found = [*_of_texts(figure, panels), *_of_bars(panels), *_of_lines(figure, panels)]
+    found += [finding for panel in panels for finding in _of_ticks(panel)]
     return list(dict.fromkeys(found))
 
 
@@ -139,19 +134,6 @@ def _is_name(word: str) -> bool:
     return not _NUMBER.search(word)
 
 
-def _of_contours(panel: Axes, known: set[tuple[str, str, str]]) -> Iterator[str]:
-    """Iso-lines without numbers, but for those whose dashes a legend has."""
-    for lines in panel.findobj(ContourSet):
-        drawn = sum(bool(len(path.vertices)) for path in lines.get_paths())
-        look = (to_hex(lines.get_edgecolor()[0]), "line", str(lines.linestyles))
-        if not lines.filled and look not in known and len(set(_words(lines))) < min(drawn, 2):
-            yield f"of {drawn} iso-lines in '{panel.get_title()}' {len(set(_words(lines)))} have a number"
-
-
-def _words(lines: ContourSet) -> list[str]:
-    return [text.get_text() for text in getattr(lines, "labelTexts", ())]
-
-
 def _of_lines(figure: Figure, panels: list[Axes]) -> Iterator[str]:
     """Looks of lines that no legend has; a panel with one look is named by its axis.
 
@@ -201,7 +183,7 @@ def _scale(each: ScalarMappable) -> tuple:
     return each.get_cmap().name, *each.get_clim()
 
 
-def _of_bars(figure: Figure, panels: list[Axes]) -> Iterator[str]:
+def _of_bars(panels: list[Axes]) -> Iterator[str]:
     bars = _bars(panels)
     taken, scaled = {id(bar) for bar, _ in bars}, {_scale(each) for _, each in bars}
     fields = [panel for panel in panels if fields_of(panel) and id(panel) not in taken]
@@ -214,8 +196,6 @@ def _of_bars(figure: Figure, panels: list[Axes]) -> Iterator[str]:
         nearest = min(fields, key=lambda panel: _distance(panel, bar))
         if _scale(each) not in map(_scale, fields_of(nearest)):
             yield f"a colour bar stands beside '{nearest.get_title()}', and is of another panel"
-        elif _distance(nearest, bar) > BESIDE * figure.bbox.width:
-            yield f"the colour bar of '{nearest.get_title()}' is far from it"
 
 
 def _distance(one: Axes, other: Axes) -> float:

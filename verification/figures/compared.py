@@ -12,6 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from verification.compare.rows import Solution
+from verification.figures import lines
+from verification.figures.lines import Curve
 from verification.figures.style import (
     BLACK,
     FEM,
@@ -23,7 +25,6 @@ from verification.figures.style import (
     Drawing,
     marked,
     save,
-    sheet,
 )
 from verification.runs.files import FIGURES
 from verification.runs.sampling import peak
@@ -47,7 +48,7 @@ PANELS = {
 """Table -> label -> column and factor to its unit."""
 
 
-def draw_comparison(folder: Path, solutions: Mapping[str, Solution], prefix: str = "") -> list[Path]:
+def compare_figures(folder: Path, solutions: Mapping[str, Solution], prefix: str = "") -> list[Path]:
     """Write the figures of results of one scene into `folder`/figures; returns the paths (PNG, CSV of each).
 
     solutions: "SAM", "FEM" and names of data -> each; prefix: of the names of the files.
@@ -69,22 +70,21 @@ def curves(runs: Mapping[str, Solution], table: str) -> Drawing:
 
     What data lack is not drawn, and everything only as far as SAM's, or the first with a contact radius.
     """
-    place, looks = {"line": "x_m", "axis": "z_m"}[table], _looks(runs)
+    place = {"line": "x_m", "axis": "z_m"}[table]
     radius = next((size for run in runs.values() if (size := run.quantities.get("contact_radius_m"))), 0.0)
-    data = Columns("panel", "model", place, "value")
-    with sheet(3.45 * len(PANELS[table]), 3.2, len(PANELS[table])) as (figure, axes):
-        for panel, (label, (column, factor)) in zip(axes, PANELS[table].items(), strict=True):
-            for model, run in runs.items():
-                if column not in run.tables.get(table, ()):
-                    continue
-                x, y = peak(run.tables[table], place, column)
-                order = np.argsort(x, kind="stable")
-                shown = order[np.abs(x[order]) <= WITHIN * radius] if radius else order
-                panel.plot(x[shown] * MICRO, y[shown] * factor, label=model, **looks[model])
-                data.add(column, model, x[shown], y[shown])
-            panel.set(xlabel=f"${place[0]}$ [$\\mu$m]", ylabel=label)
-        axes[0].legend()
-    return Drawing(figure, data)
+    data, panels = Columns("panel", "model", place, "value"), dict[str, dict[str, Curve]]()
+    for label, (column, factor) in PANELS[table].items():
+        panels[label] = {}
+        for model, run in runs.items():
+            if column not in run.tables.get(table, ()):
+                continue
+            x, y = peak(run.tables[table], place, column)
+            order = np.argsort(x, kind="stable")
+            shown = order[np.abs(x[order]) <= WITHIN * radius] if radius else order
+            panels[label][model] = Curve(x[shown] * MICRO, y[shown] * factor)
+            data.add(column, model, x[shown], y[shown])
+    how = {"looks": _looks(runs), "size": (3.45, 3.2)}
+    return Drawing(lines.curves(panels, f"${place[0]}$ [$\\mu$m]", None, **how).figure, data)
 
 
 def _looks(runs: Mapping[str, Solution]) -> dict[str, dict]:
@@ -96,16 +96,13 @@ def _looks(runs: Mapping[str, Solution]) -> dict[str, dict]:
 
 def history(runs: Mapping[str, Solution]) -> Drawing:
     """Force over approach, every row of the histories that have both."""
-    data, looks = Columns("panel", "model", "approach_m", "value"), _looks(runs)
-    with sheet(4.6, 3.2) as (figure, panel):
-        for (model, run), marker in zip(runs.items(), cycle("oxs^v"), strict=False):
-            table = run.tables.get("history", {})
-            if not {"approach_m", "force_N"} <= set(table):
-                continue
+    data, drawn, looks = Columns("panel", "model", "approach_m", "value"), {}, _looks(runs)
+    for (model, run), marker in zip(runs.items(), cycle("oxs^v"), strict=False):
+        table = run.tables.get("history", {})
+        if {"approach_m", "force_N"} <= set(table):
             approach, force = (np.asarray(table[name], dtype=float) for name in ("approach_m", "force_N"))
             look = looks[model] | {"marker": marker, "linestyle": "none", "fillstyle": "none"}
-            panel.plot(approach * MICRO, force, label=model, **look)
+            drawn[model] = Curve(approach * MICRO, force, look=look)
             data.add("force_N", model, approach, force)
-        panel.set(xlabel="approach [$\\mu$m]", ylabel="force [N]")
-        panel.legend()
-    return Drawing(figure, data)
+    panel = {"force [N]": drawn}
+    return Drawing(lines.curves(panel, "approach [$\\mu$m]", None, size=(4.6, 3.2)).figure, data)

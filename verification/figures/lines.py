@@ -80,8 +80,8 @@ class How:
     logarithmic: axes, "x", "y" or "xy"; count: x are whole numbers, and y begins at zero, so that a small
     change looks small; ticks: words of the x of the points, which alone have a number; shade: range of x that
     is not compared, floor: y below which nothing is claimed, each of all panels or of each; band: of
-    tolerance on both sides of zero; marks: words -> ("x" or "y", places of guide lines); legend: in the
-    "fullest" panel or in "each", "below" or "right" of all, its entries, below all, or none.
+    tolerance on both sides of zero; marks: words -> ("x" or "y", places of guide lines); legend: "below"
+    all panels or in "each", its entries, below all, or none.
     """
 
     looks: Mapping[str, Mapping] = field(default_factory=lambda: LOOKS)
@@ -94,18 +94,19 @@ class How:
     floor: float | Mapping[str, float] = 0.0
     band: float = 0.0
     marks: Mapping[str, Sequence] = field(default_factory=dict)
-    legend: str | Sequence[Artist] | None = "fullest"
+    legend: str | Sequence[Artist] | None = "below"
 
 
 def curves(
     panels: Mapping[Any, Mapping[str, Curve]],
     xlabel: str | Mapping[Any, str],
-    ylabel: str | Mapping[Any, str] = "",
+    ylabel: str | Mapping[Any, str] | None = "",
     shade: tuple[float, float] | None = None,
     **how: Any,
 ) -> Drawing:
     """Panels of series: title -> name -> curve, side by side; or (label of y, title) -> name -> curve, a row
-    of panels for each label. One label of y for all: one scale for all in a row. how: see `How`.
+    of panels for each label. One label of y for all: one scale for all in a row; None: the title of a panel
+    is its label of y. how: see `How`.
     """
     way = How(**{"shade": shade} | how)
     rows = list(dict.fromkeys(key[0] for key in panels)) if isinstance(next(iter(panels)), tuple) else []
@@ -122,16 +123,16 @@ def curves(
         for axis in grid.ravel()[len(panels) :]:
             axis.set_visible(False)
         for k, (axis, (key, series)) in enumerate(zip(grid.ravel(), panels.items(), strict=False)):
-            label, title = key if rows else (ylabel if isinstance(ylabel, str) else ylabel[key], key)
+            label, title = key if rows else (_of(key, ylabel) if ylabel is not None else key, key)
             for name, curve in series.items():
                 fit = curve.fit(curve.x) if curve.fit else np.full(np.size(curve.x), np.nan)
                 panel = f"{title}, {label}" if rows else title
                 data.add(panel, name, curve.x, curve.y, *([fit] if fitted else []))
                 _draw(axis, curve, name, {**looks[name], **curve.look})
             _finish(axis, title, series.values(), way)
-            axis.set(title=title if not rows or k < across else "")
+            axis.set(title=title if ylabel is not None and (not rows or k < across) else "")
             if not rows or label == rows[-1]:
-                axis.set_xlabel(xlabel if isinstance(xlabel, str) else xlabel[key])
+                axis.set_xlabel(_of(key, xlabel))
             if not shared or k % across == 0:
                 axis.set_ylabel(label)
         if way.count and "y" not in way.logarithmic:
@@ -141,6 +142,11 @@ def curves(
         _name(figure, list(grid.ravel()), way)
         figure.align_ylabels()
     return Drawing(figure, data)
+
+
+def _of(key: Any, words: str | Mapping[Any, str]) -> str:
+    """The words of a panel, one text for all or one for each."""
+    return words if isinstance(words, str) else words[key]
 
 
 def _draw(axis: Axes, curve: Curve, name: str, look: Mapping) -> None:
@@ -191,20 +197,16 @@ def _name(figure: Figure, axes: Sequence[Axes], way: How) -> None:
     """The legends."""
     if way.legend is None:
         return
-    drawn = [axis.get_legend_handles_labels() for axis in axes]
-    if way.legend in ("each", "fullest"):
-        fullest = np.argmax([len(labels) for _, labels in drawn])
-        for axis in axes if way.legend == "each" else [axes[fullest]]:
+    if way.legend == "each":
+        for axis in axes:
             axis.legend()
         return
+    drawn = [axis.get_legend_handles_labels() for axis in axes]
     named = {label: handle for pair in drawn for handle, label in zip(*pair, strict=True)}
     handles = list(named.values()) if isinstance(way.legend, str) else list(way.legend)
-    if way.legend == "right":
-        figure.legend(handles=handles, loc="outside right center")
-    else:
-        letters = max(len(handle.get_label()) for handle in handles)
-        wide = min(len(handles), max(1, int(14 * figure.get_figwidth() / (letters + 6))))
-        figure.legend(handles=handles, loc="outside lower center", ncols=wide)
+    letters = max(len(handle.get_label()) for handle in handles)
+    wide = min(len(handles), max(1, int(14 * figure.get_figwidth() / (letters + 6))))
+    figure.legend(handles=handles, loc="outside lower center", ncols=wide)
 
 
 PLAIN = {"marker": "", "linestyle": "-", "linewidth": 1.4}
@@ -231,22 +233,17 @@ def new_strains(found: Mapping[str, Sequence[float]], floors: Sequence[float] = 
         for name, own in found.items()
     }
     marks = {"floor of the verdict": ("y", *floors)} if len(floors) else {}
-    how = {"logarithmic": "y", "count": True, "marks": marks, "legend": "right", "size": (6.6, 3.2)}
+    how = {"logarithmic": "y", "count": True, "marks": marks, "size": (6.6, 3.2)}
     return curves({"": drawn}, "pass", "largest new plastic strain", **how)
 
 
 def of_passes(passes: Mapping[str, Sequence]) -> Drawing:
     """Coefficient of friction and wear of each pass, from passes.csv."""
-    wanted = {"coefficient of friction": ("friction_mean", 1.0), "wear [µm³]": ("wear_of_pass_m3", 1e18)}
-    drawn = {
-        words.partition(" [")[0].capitalize(): {
-            "SAM": Curve(
-                np.asarray(passes["pass"]), scale * np.asarray(passes[column], dtype=float), look=PLAIN
-            )
-        }
-        for words, (column, scale) in wanted.items()
-    }
-    return curves(drawn, "pass", dict(zip(drawn, wanted, strict=True)), count=True)
+    found = {"coefficient of friction": passes["friction_mean"]}
+    found["wear [µm³]"] = 1e18 * np.asarray(passes["wear_of_pass_m3"], dtype=float)
+    at = np.asarray(passes["pass"])
+    drawn = {words: {"SAM": Curve(at, np.asarray(y, float), look=PLAIN)} for words, y in found.items()}
+    return curves(drawn, "pass", None, count=True)
 
 
 PROGRAMS = {
@@ -275,7 +272,7 @@ def of_programs(
         looks[label] = PROGRAMS[program] | {"linestyle": DASHES[seen[program] % 3], "fillstyle": "none"}
         seen[program] += 1
     marks = {} if target is None else {"error whose times are compared": ("y", target)}
-    how = {"logarithmic": "xy", "marks": marks, "floor": floor, "legend": "right", "size": (8.4, 4.2)}
+    how = {"logarithmic": "xy", "marks": marks, "floor": floor, "size": (8.4, 4.2)}
     drawn = {label: Curve(x, y) for label, (_, x, y) in series.items()}
     return curves({"": drawn}, xlabel, ylabel, looks=looks, **how)
 
@@ -367,7 +364,7 @@ def yield_profiles(cases: Mapping[str, Callable[[np.ndarray, float], np.ndarray]
         }
         for strain, title in titles.items()
     }
-    drawing = curves(drawn, "depth $z$ [µm]", "yield stress [GPa]", legend="below", size=(4.5, 3.6))
+    drawing = curves(drawn, "depth $z$ [µm]", "yield stress [GPa]", size=(4.5, 3.6))
     drawing.figure.axes[0].set_ylim(0.0, None)
     return drawing
 
@@ -383,7 +380,7 @@ def over_cells(volumes: Mapping[str, Mapping[float, Sequence[float]]], default: 
         mean, *ends = (np.array([of(each) for each in of_cells.values()]) for of in (np.mean, min, max))
         drawn[name] = Curve(np.array(list(of_cells)), mean, ends=tuple(ends))
     marks, xlabel = {"recommended": ("x", default)}, "cells in the shortest wave of the surface"
-    how = {"logarithmic": "x", "marks": marks, "legend": "right", "size": (6.2, 3.6)}
+    how = {"logarithmic": "x", "marks": marks, "size": (6.2, 3.6)}
     drawing = curves({"": drawn}, xlabel, "worn volume [µm³]", **how)
     drawing.figure.axes[0].set_ylim(bottom=0.0)
     return drawing

@@ -3,16 +3,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
 from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.contour import ContourSet
+from matplotlib.colorbar import Colorbar
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Ellipse, Patch
@@ -27,11 +26,10 @@ from verification.runs.sampling import Tables, plane_field, plane_field_on, pres
 
 SHOWN_SHARE = 0.995
 """Share of the points whose difference lies within the colour limits."""
+LINE_WIDTH = 0.7
 PANEL, AROUND = 2.8, 1.9
 """Inches: the width of one of three panels, and what stands above and below it."""
 VON_MISES_LEVELS = np.arange(0.1, 0.95, 0.1)
-MANY_LINES = 4
-"""Iso-lines, from which on every second one has a number."""
 _OUTLINE = {"facecolor": "none", "linestyle": "--", "linewidth": 1.0}
 _BAR = {"color": BLACK, "linewidth": 4.0, "solid_capstyle": "butt"}
 _CROSS = {"color": BLACK, "marker": "x", "markersize": 7, "markeredgewidth": 1.6, "linestyle": "none"}
@@ -97,7 +95,7 @@ def _plain(label: str) -> str:
 def pressure_maps(pair: FieldPair) -> Drawing:
     """Pressure over (x, y): first | second | difference, with the contact outline; grey out of contact."""
     with style():
-        figure, axes = three_panels(pair, touching=True)
+        figure, axes, _ = three_panels(pair, touching=True)
         names = [Patch(color=GREY, label="no contact")]
         if any(pair.semi_axes):
             for panel in axes:
@@ -133,7 +131,8 @@ def plane_maps(
     strip: depth down to which nothing is compared, hatched; interface: depth at which a film ends, a line.
     """
     with style():
-        figure, axes = three_panels(pair, strip=strip)
+        figure, axes, bar = three_panels(pair, strip=strip)
+        mark_levels(bar, levels)
         axes[0].invert_yaxis()  # shared by all panels
         for panel in axes:
             mark_contact(panel, pair.semi_axes[0])
@@ -155,12 +154,14 @@ def plane_maps(
 def iso_lines(
     panel: Axes, places: tuple[np.ndarray, np.ndarray], field: np.ndarray, levels: Sequence[float]
 ) -> None:
-    """Iso-lines at `levels` that occur, with their numbers, of many every second one; places: (u, v)."""
-    low, high = np.nanmin(field), np.nanmax(field)
-    levels = [level for level in levels if low < level < high]
-    if levels:
-        lines = panel.contour(*places, field.T, levels=levels, colors="white", linewidths=0.7)
-        panel.clabel(lines, levels[::-1][:: 1 + (len(levels) > MANY_LINES)], fmt="%.3g", fontsize=7)
+    """Iso-lines at those of `levels` that occur; places: (u, v); the colour bar says what they are."""
+    if levels := [level for level in levels if np.nanmin(field) < level < np.nanmax(field)]:
+        panel.contour(*places, field.T, levels=levels, colors="white", linewidths=LINE_WIDTH)
+
+
+def mark_levels(bar: Colorbar, levels: Sequence[float]) -> None:
+    """The iso-lines on their colour bar."""
+    bar.add_lines(np.array(levels), ["white"] * len(levels), [LINE_WIDTH] * len(levels))
 
 
 def mark_largest(panel: Axes, peak: MapPeak) -> None:
@@ -187,15 +188,15 @@ def three_panels(pair: FieldPair, *, touching: bool = False, strip: float = 0.0)
         shown = np.where(field > 0.0, field, np.nan) if touching else field
         mesh = draw_field(panel, pair.u, pair.v, shown, cmap="viridis", vmin=0.0, vmax=top)
         panel.set_title(name, loc="left")
-    bar = {"location": "bottom", "aspect": 30, "pad": 0.03}
-    figure.colorbar(mesh, ax=list(axes[:2]), label=pair.quantity, shrink=0.45, **bar)
-    _draw_difference(axes[2], pair, bar | {"shrink": 0.9}, touching=touching, strip=strip)
+    how = {"location": "bottom", "aspect": 30, "pad": 0.03}
+    bar = figure.colorbar(mesh, ax=list(axes[:2]), label=pair.quantity, shrink=0.45, **how)
+    _draw_difference(axes[2], pair, how | {"shrink": 0.9}, touching=touching, strip=strip)
     for panel in axes:
         panel.set_xlabel(pair.axes[0])
         if strip:
             panel.axhspan(0.0, strip, **_STRIP)
     axes[0].set_ylabel(pair.axes[1])
-    return figure, axes
+    return figure, axes, bar
 
 
 def _draw_difference(panel: Axes, pair: FieldPair, bar: Mapping, *, touching: bool, strip: float) -> None:
@@ -271,7 +272,6 @@ VON_MISES, STRAIN = r"$\sigma_\mathrm{vM}/p_0$", "plastic strain [%]"
 SURFACE_AXES, PLANE_AXES = ("$x/a$", "$y/a$"), ("$x/a$", "$z/a$")
 PERCENT, MICRO, GIGA = 1e2, 1e6, 1e-9
 LINE = 0.2  # %: the proof strain of tensile tests
-CONTOURS = (LINE, 2.0)  # % of plastic strain under a sliding contact
 CLEAR = 0.25
 """Of an element; the Gauss points of eight-node elements are 0.21 of it from its edges."""
 
@@ -320,8 +320,7 @@ def compared_peeq(sam: Result, fem: Result, a: float) -> Drawing:
     """
     pair, peaks = _both(sam, fem, "peeq", (a, 1.0 / PERCENT))
     pair = replace(pair, semi_axes=(edge := fem.quantities["contact_radius_m"] / a, edge))
-    levels = iso_levels(max(peak.value for peak in peaks))
-    return readable(lambda left: plane_maps(pair, peaks, left), levels, keep=(LINE,))
+    return plane_maps(pair, peaks, iso_levels(max(peak.value for peak in peaks)))
 
 
 def _both(
@@ -381,7 +380,7 @@ def in_body(fem: Result, x: np.ndarray, z: np.ndarray, thickness: float) -> np.n
 def compared_planes(
     first: Plane, second: Plane, names: tuple[str, str], edge: float, *, strip: float = 0.0
 ) -> Drawing:
-    """Plastic strain in % in y = 0: first | second | difference, with iso-lines, among them 0.2 % and 2 %.
+    """Plastic strain in % in y = 0: first | second | difference, with iso-lines, among them that of 0.2 %.
 
     edge: contact radius in that of the elastic contact, for the bar over the maps; strip: depth down to which
     nothing is compared; the maxima are those below it, and what the strip holds is said beside them.
@@ -395,9 +394,7 @@ def compared_planes(
         words = f"max {peak.value:#.3g} %" + f" below the strip{inside}" * bool(strip)
         peaks.append(replace(peak, words=words))
     largest = max(peak.value for peak in peaks)
-    wanted = [level for level in CONTOURS if level < largest]
-    levels = np.union1d(iso_levels(largest), wanted)
-    return readable(lambda left: plane_maps(pair, peaks, left, strip=strip), levels, keep=wanted)
+    return plane_maps(pair, peaks, iso_levels(largest), strip=strip)
 
 
 def peak_at(x: np.ndarray, z: np.ndarray, field: np.ndarray) -> MapPeak:
@@ -411,42 +408,3 @@ def iso_levels(largest: float) -> np.ndarray:
     ticks = MaxNLocator(6).tick_values(0.0, largest)
     apart = ticks[(ticks > 0.0) & (ticks < largest) & (np.abs(ticks - LINE) > 0.25 * ticks[1])]
     return np.union1d(apart, [LINE] if largest > LINE else [])
-
-
-def readable(
-    draw: Callable[[Sequence[float]], Drawing], levels: Sequence[float], keep: Collection[float] = ()
-) -> Drawing:
-    """A drawing of iso-lines at `levels`, less those whose number touches another one or finds no place.
-
-    keep: of those that touch, the levels that go last.
-    """
-    left = [float(level) for level in levels]
-    drawing = draw(left)
-    while len(left) > 1 and (going := _unreadable(drawing, left)):
-        left.remove(min(going, key=lambda level: (level in keep, -level)))
-        drawing = draw(left)
-    return drawing
-
-
-def _unreadable(drawing: Drawing, levels: Sequence[float]) -> set[float]:
-    """Levels whose line found no place for a number, in panels where fewer than two have one;
-    without such, those whose number is nearer to another one than half its size.
-    """
-    drawing.figure.draw_without_rendering()  # the layout says where the numbers are
-    without, touching = set(), set()
-    for lines in drawing.figure.findobj(ContourSet):
-        texts = getattr(lines, "labelTexts", ())
-        places = [np.array(text.get_window_extent().extents) for text in texts]
-        said = [float(text.get_text()) for text in texts]
-        numbered = [min(levels, key=lambda level, near=value: abs(level - near)) for value in said]
-        paths = zip(lines.levels, lines.get_paths(), strict=True)
-        drawn = {float(level) for level, path in paths if len(path.vertices)}
-        if len(set(numbered)) < min(len(drawn), 2):
-            without |= drawn - set(numbered)
-        for (text, one, level), (_, other, beside) in combinations(
-            zip(texts, places, numbered, strict=True), 2
-        ):
-            room = 0.5 * text.get_fontsize() * drawing.figure.dpi / 72.0
-            if np.all(np.minimum(one, other)[2:] + room > np.maximum(one, other)[:2]):
-                touching |= {level, beside}
-    return without or touching

@@ -66,7 +66,7 @@ def profiles(
             if interface is not None:
                 mark_interface((upper, lower), interface)
         entries = axes[0, 0].get_legend_handles_labels()[0] + [INTERFACE] * (interface is not None)
-        axes[0, 0].legend(handles=entries)
+        figure.legend(handles=entries, loc="outside lower center", ncols=len(entries))
         figure.align_ylabels()
     return Drawing(figure, rows)
 

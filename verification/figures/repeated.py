@@ -109,7 +109,7 @@ def loops(run: Run) -> Drawing:
         np.empty(0), np.empty(0), look=dot | {"color": BLACK, "label": "start of the period"}
     )
     labels = "plastic strain since the start of the period [%]", "deviatoric stress [GPa]"
-    return curves({"": drawn}, *labels, legend="below", size=(5.0, 3.8))
+    return curves({"": drawn}, *labels, size=(5.0, 3.8))
 
 
 def classified(folder: Path) -> tuple[np.ndarray, np.ndarray] | None:

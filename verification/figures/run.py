@@ -47,7 +47,7 @@ def draw_run(folder: Path, *, pdf: bool = False) -> list[Path]:
     Raises FolderError (a ValueError) when the folder holds no result. A run without load has only its history
     to show, one that did not reach its peak the last load that it reached.
     """
-    drawings = drawings_of(of_last_load(read_run(folder)))
+    drawings = drawings_of(read_run(folder))
     (folder / FIGURES).mkdir(exist_ok=True)
     return [
         path for name, drawing in drawings.items() for path in save(drawing, folder / FIGURES / name, pdf=pdf)
@@ -55,7 +55,8 @@ def draw_run(folder: Path, *, pdf: bool = False) -> list[Path]:
 
 
 def drawings_of(run: Run) -> dict[str, Drawing]:
-    """The figures of a run by name."""
+    """The figures of a run, at the last load that it reached, by name."""
+    run = of_last_load(run)
     return marked(_drawings_of(run), run)
 
 
@@ -103,10 +104,7 @@ def _drawn(run: Run, horizontal: str, found: Mapping[str, tuple[np.ndarray, np.n
     """One panel a curve; found: label -> (x, y) in the units of its axes."""
     look = SAM if run.model == "sam" else FEM
     panels = {label: {"": Curve(x, y, look=look)} for label, (x, y) in found.items()}
-    how = {"size": (3.45, 3.2), "legend": None} | how
-    drawing = curves(panels, horizontal, {label: label for label in found}, **how)
-    for panel in drawing.figure.axes:
-        panel.set_title("")
+    drawing = curves(panels, horizontal, None, **{"size": (3.45, 3.2), "legend": None} | how)
     data = {horizontal: next(iter(found.values()))[0]} | {label: y for label, (_, y) in found.items()}
     return Drawing(drawing.figure, {_plain(label): values for label, values in data.items()})
 

@@ -20,6 +20,7 @@ from verification.figures.maps import (
     iso_lines,
     mark_interface,
     mark_largest,
+    mark_levels,
     mark_spots,
     name_marks,
     outline,
@@ -76,7 +77,7 @@ def plane_map(run: Run, section: Section, column: str, label: str) -> Drawing:
         panel.set(xlabel=names[0], ylabel=names[1])
         if film is not None:
             mark_interface([panel], film / length, across=True)
-        figure.colorbar(mesh, ax=panel, label=label)
+        mark_levels(figure.colorbar(mesh, ax=panel, label=label), levels)
         name_marks(figure, [BAR, CROSS, *([INTERFACE] if film is not None else [])])
     places = (each.ravel() for each in np.meshgrid(u, v, indexing="ij"))
     columns = ("x/a", "z/a") if circular else ("x_um", "z_um")

@@ -6,6 +6,7 @@ changes, two inputs of a study, and every number of SAM beside its reference.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,6 +27,8 @@ from verification.figures.style import (
     VERMILION,
     Columns,
     Drawing,
+    log_ticks,
+    save,
     sheet,
 )
 from verification.figures.sweep import QUANTITIES
@@ -100,6 +103,12 @@ MORE = {
     "friction_coefficient": ("coefficient of friction", 1.0),
     "wear_volume_m3": ("wear volume [$\\mu$m$^3$]", 1e18),
 }
+
+
+def sensitivity_figure(rows: Sequence[Mapping], path: Path) -> None:
+    """Draw the indices of a study as `path`.png, if there are any."""
+    if rows:
+        save(sensitivities(rows), path, data=False)
 
 
 def sensitivities(rows: Sequence[Mapping]) -> Drawing:
@@ -183,11 +192,8 @@ def change_maps(maps: Mapping[str, DataFrame], paper: tuple[float, Mapping[str, 
             for limit, line in ((1, "--"), (5, "-")):
                 axis.contour(*dense, fine, [-limit, limit], colors=BLACK, linestyles=line, linewidths=1.2)
             axis.grid(False)
-            for along, side in zip((axis.xaxis, axis.yaxis), sides, strict=True):
-                ticks = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10)
-                shown = [t for t in ticks if side.min() <= 1.001 * t <= 1.002 * side.max()]
-                along.set_ticks(shown, labels=[f"{t:g}" for t in shown])
-                along.set_minor_locator(NullLocator())
+            log_ticks(axis.xaxis)
+            log_ticks(axis.yaxis)
             axis.set(title=title, xlabel="$h/a_0$, thickness over bare contact radius")
             modulus, places = paper
             axis.plot(list(places.values()), [modulus] * len(places), **look)

@@ -66,8 +66,6 @@ GREY = "#d9d9d9"
 """Of what is not in contact, not known or not compared: never a colour of a map."""
 GUIDE = "guide"
 """`gid` of a line that a reader knows without a word: zero, or the diagonal of two equal axes."""
-STEP = 4
-"""Of the 256 values of a channel of a map: not seen, and a quarter of the bytes less."""
 MANY_DECADES = 2.0
 
 
@@ -169,12 +167,8 @@ def save(
     """Write stem.png and, if `data`, stem.csv (beyond `long` bytes compressed, stem.csv.gz), or
     stem.pdf alone; equal drawings give equal bytes, without a date. Returns what it wrote.
     """
-    kind, dated = ("pdf", "CreationDate") if pdf else ("png", "Software")
-    buffer, paths = io.BytesIO(), [stem.with_name(f"{stem.name}.{kind}")]
-    colours = any(fields_of(panel) or panel.images for panel in drawing.figure.axes)
-    with style():
-        drawing.figure.savefig(buffer, format=kind, dpi=DPI, metadata={dated: None})
-    write_atomically(paths[0], buffer.getvalue() if pdf else _small(buffer, colours))
+    paths = [stem.with_name(f"{stem.name}.{'pdf' if pdf else 'png'}")]
+    write_atomically(paths[0], encoded(drawing.figure, pdf=pdf))
     if data and not pdf:
         # five digits are more than a figure shows; the runs keep every digit
         columns = [
@@ -188,16 +182,21 @@ def save(
     return paths
 
 
-def _small(png: io.BytesIO, colours: bool) -> bytes:
-    """The same picture without transparency. colours: one with maps keeps its full colour, no
-    channel off by more than 2 of 255; one of lines and areas has a palette of 256.
+def encoded(figure: Figure, *, pdf: bool = False) -> bytes:
+    """A figure as PDF, or as PNG with a palette of 256 colours, which makes it small: the most frequent ones
+    where a map has many, else such that each line keeps its colour.
     """
-    picture, smaller = Image.open(png).convert("RGB"), io.BytesIO()
-    if colours:
-        rounded = (np.asarray(picture, dtype=int) + STEP // 2) // STEP * STEP
-        picture = Image.fromarray(np.minimum(rounded, 255).astype(np.uint8))
-    else:
-        picture = picture.quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=3, dither=Image.Dither.NONE)
+    buffer, smaller = io.BytesIO(), io.BytesIO()
+    with style():
+        figure.savefig(
+            buffer, format="pdf" if pdf else "png", dpi=DPI, metadata={"CreationDate": None} if pdf else {}
+        )
+    if pdf:
+        return buffer.getvalue()
+    maps = any(map(fields_of, figure.axes))
+    method = Image.Quantize.MEDIANCUT if maps else Image.Quantize.MAXCOVERAGE
+    picture = Image.open(buffer).convert("RGB")
+    picture = picture.quantize(256, method, kmeans=3, dither=Image.Dither.NONE)
     picture.save(smaller, "PNG", optimize=True, dpi=(DPI, DPI))
     return smaller.getvalue()
 

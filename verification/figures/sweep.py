@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import cycle
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -21,9 +23,13 @@ from verification.figures.style import (
     Drawing,
     log_ticks,
     new_figure,
+    save,
     style,
 )
 from verification.runs.study import Axis, Study, in_si
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 QUANTITIES = {
     "p_max_Pa": ("largest pressure [GPa]", 1e-9),
@@ -41,6 +47,17 @@ COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, BLACK)
 _GOOD = {"color": BLUE, "marker": "o", "markersize": 4.0, "fillstyle": "none", "linewidth": 0.0}
 _BAD = {"color": VERMILION, "marker": "x", "markersize": 5.0, "linewidth": 0.0}
 _SAME = {"color": BLUE, "linewidth": 0.7, "alpha": 0.5}
+
+
+def drawing_of_sweep(frame: DataFrame, study: Mapping[str, Any]) -> Drawing:
+    """The figure of a finished sweep, not written. frame, study: its table and what its record says of it."""
+    rows = frame.astype(object).where(frame.notna(), None).to_dict("records")
+    return summary(Study.model_validate(dict(study)), rows)
+
+
+def sweep_figure(study: Study, rows: Sequence[Mapping], path: Path) -> None:
+    """Draw the table of a sweep as `path`.png."""
+    save(summary(study, rows), path, data=False)
 
 
 def summary(study: Study, rows: Sequence[Mapping]) -> Drawing:
@@ -66,7 +83,12 @@ def summary(study: Study, rows: Sequence[Mapping]) -> Drawing:
             for panel, (name, (_, factor)) in zip(panels[:, column], shown.items(), strict=True):
                 y = np.array([np.nan if row[name] is None else factor * row[name] for row in rows])
                 _join(panel, lines, x, np.where(converged, y, np.nan))
-                _mark(panel, x, y, converged)
+                there, bitmap = np.isfinite(y), {"rasterized": x.size > MANY}
+                for marked, look in ((there & converged, _GOOD), (there & ~converged, _BAD)):
+                    panel.plot(x[marked], y[marked], **look, **bitmap)
+                if not there.all():  # matplotlib cannot lay out an empty line that is not clipped
+                    at_foot = {"transform": panel.get_xaxis_transform(), "clip_on": False, "zorder": 3}
+                    panel.plot(x[~there], np.zeros(np.sum(~there)), **_BAD, **at_foot, **bitmap)
             _label(panels[-1, column], study.vary[key], key, ticks)
         for panel, (label, _) in zip(panels[:, 0], shown.values(), strict=True):
             panel.set_ylabel(label)
@@ -102,9 +124,7 @@ def _lines(rows: Sequence[Mapping], others: Sequence[str]) -> dict[str, np.ndarr
     if len(groups) > MOST_LINES:
         return {}
     return {
-        ", ".join(
-            f"{other} = {_short(value)}" for other, value in zip(others, values, strict=True)
-        ): np.array(group)
+        ", ".join(f"{o} = {_short(v)}" for o, v in zip(others, values, strict=True)): np.array(group)
         for values, group in groups.items()
     }
 
@@ -123,18 +143,6 @@ def _join(panel: Axes, lines: Mapping[str, np.ndarray], x: np.ndarray, y: np.nda
     if few and panel.get_subplotspec().is_first_row():
         for text in panel.legend(fontsize=6.5).get_texts():
             text.set_parse_math(False)
-
-
-def _mark(panel: Axes, x: np.ndarray, y: np.ndarray, converged: np.ndarray) -> None:
-    there = np.isfinite(y)
-    bitmap = {"rasterized": x.size > MANY}
-    panel.plot(x[there & converged], y[there & converged], **_GOOD, **bitmap)
-    panel.plot(x[there & ~converged], y[there & ~converged], **_BAD, **bitmap)
-    if not there.all():  # matplotlib cannot lay out an empty line that is not clipped
-        foot = panel.get_xaxis_transform()
-        panel.plot(
-            x[~there], np.zeros(np.sum(~there)), **_BAD, transform=foot, clip_on=False, zorder=3, **bitmap
-        )
 
 
 def _label(panel: Axes, axis: Axis, key: str, ticks: Sequence[str]) -> None:

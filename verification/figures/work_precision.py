@@ -45,7 +45,7 @@ def curves(solves: DataFrame, ylabel: str) -> Drawing:
                 error = np.maximum(error[use], max(LOWEST, DEEPEST * floor))
                 panel[name] = Curve(seconds[use], PERCENT * error, look={"fillstyle": "none"})
     marks = {"an error whose times are stated": ("y", *(PERCENT * target for target in TARGETS))}
-    how = {"looks": LOOKS, "logarithmic": "xy", "floor": floors, "marks": marks, "legend": "below"}
+    how = {"looks": LOOKS, "logarithmic": "xy", "floor": floors, "marks": marks}
     return Drawing(drawn(shown, "processor time [s]", f"{ylabel} [%]", size=(4.9, 4.4), **how).figure, rows)
 
 

@@ -20,7 +20,7 @@ from tempfile import TemporaryDirectory
 from textwrap import fill
 
 from sam.scene import Progress
-from verification.cases import LEVELS, Case, all_cases, case_of
+from verification.cases import Case, all_cases, case_of
 from verification.cases.case import Context, NotDrawnError, Outcome
 from verification.judging import Row, RowStatus, Verdict, evaluate
 from verification.rows import load_rows, read_cases
@@ -70,14 +70,14 @@ def main(
     `out`. A name that ends with .toml is a file of own cases, which then are all that there are.
 
     Returns 0 when every gate of every case that ran held and its figures can be read, 1 when not, 2 for an
-    unknown case or level, or a folder that holds something else (nothing is written then). An earlier report
+    unknown case or a folder that holds something else (nothing is written then). An earlier report
     in `out` is replaced. A case that needs what is not there is not run, with the reason; if that is so for
     all, nothing is written.
     """
     files = [each for name in cases if name.endswith(".toml") for each in read_cases(Path(name))]
     known = {file.name: case_of(file) for file in files} or all_cases()
     cases = [name for name in cases if not name.endswith(".toml")] or list(known if files else ())
-    problem = problem_of(cases, level, known, out)
+    problem = problem_of(cases, known, out)
     if problem:
         print(f"samfem: error: {problem}", file=sys.stderr)
         return 2
@@ -150,12 +150,10 @@ def rebuild(folder: Path, *, single_file: bool = False) -> int:
     return 0
 
 
-def problem_of(names: Sequence[str], level: str, known: dict[str, Case], out: Path) -> str:
+def problem_of(names: Sequence[str], known: dict[str, Case], out: Path) -> str:
     """What is wrong with the request, or an empty text."""
     if unknown := unknown_cases(names, known):
         return unknown
-    if level not in LEVELS:
-        return f"unknown level {level}; known: {', '.join(LEVELS)}"
     if out.exists() and not out.is_dir():
         return f"{out} is not a folder: choose another with --out"
     if out.is_dir() and any(out.iterdir()) and stored(out) is None:

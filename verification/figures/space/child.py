@@ -12,7 +12,8 @@ from pathlib import Path
 
 from verification.figures.space.meshes import Found
 from verification.figures.space.pictures import PICTURES
-from verification.figures.space.view import drawn, page, png
+from verification.figures.space.view import drawn, page
+from verification.figures.style import encoded
 from verification.runs.files import FolderError, of_last_load, read_run
 from verification.runs.model_range import outside_in_words, outside_of_model
 
@@ -37,7 +38,7 @@ def main() -> None:
         if options.page:
             (options.into / f"{name}.html").write_text(page(picture), encoding="utf-8")
         else:
-            (options.into / f"{name}.png").write_bytes(png(drawn(picture)))
+            (options.into / f"{name}.png").write_bytes(encoded(drawn(picture)))
         if options.one:
             return
 

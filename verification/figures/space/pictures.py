@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 import pyvista as pv
 
 from sam.scene import UNLOADED
 from verification.figures.places import interface_of
-from verification.figures.space.meshes import MICRO, Found, Sheet
+from verification.figures.space.meshes import MICRO, RAISED, Found, around, drawn_at
 from verification.figures.space.view import BODY, FLAT, LIT, Picture
 
 GIGA, NANO, PERCENT = 1e-9, 1e9, 1e2
@@ -32,29 +33,25 @@ BEFORE_IT = 2e-3
 def surface(found: Found) -> Picture | None:
     """The heights of a rough surface before any load."""
     sheet = found.sheet()
-    if sheet is None or "height_m" not in sheet.fields:
+    if sheet is None or "height_m" not in sheet.point_data:
         return None
-    height = MICRO * sheet.at_nodes("height_m")
-    times = _exaggeration(sheet, height)
-    mesh = sheet.mesh(times * height, height)
-    kind = found.scene["surface"]["kind"]
+    kind, height = found.scene["surface"]["kind"], MICRO * sheet.point_data["height_m"]
     title = f"Rough surface before the first load ({'from a file' if kind == 'file' else kind})"
-    limits = (float(height.min()), float(height.max()))
-    return Picture(title, "height [$\\mu$m]", limits, [(mesh, VALUE | LIT)], _box(mesh), times)
+    return _coloured(title, "height [$\\mu$m]", sheet, height, values=height)
 
 
 def worn(found: Found) -> Picture | None:
     """The surface around what was removed, and there the original one, transparent."""
     whole = found.sheet(UNLOADED)
-    if whole is None or not (whole.at_nodes("worn_m") > 0.0).any():
+    if whole is None or "worn_m" not in whole.cell_data or not (whole.cell_data["worn_m"] > 0.0).any():
         return None
-    sheet = whole.around(whole.in_cells("worn_m") > 0.0)
-    height, depth = MICRO * sheet.at_nodes("height_m"), NANO * sheet.in_cells("worn_m")
+    sheet = around(whole, whole.cell_data["worn_m"] > 0.0)
+    lost, depth = sheet.point_data["worn_m"], NANO * sheet.cell_data["worn_m"]
+    height = MICRO * sheet.point_data["height_m"]
     times = _exaggeration(sheet, height)
-    lowered = times * (height - MICRO * sheet.at_nodes("worn_m"))
-    solid = sheet.mesh(lowered, np.where(depth > 0.0, depth, np.nan))
-    before = sheet.mesh(times * height, depth)
-    removed = before.extract_points(sheet.at_nodes("worn_m").ravel(order="F") > 0.0, adjacent_cells=False)
+    solid = drawn_at(sheet, times * (height - MICRO * lost), np.where(depth > 0.0, depth, np.nan))
+    before = drawn_at(sheet, times * height, depth)
+    removed = before.extract_points(lost > 0.0, adjacent_cells=False)
     parts = [(solid, VALUE | LIT), (removed, GLASS), (removed, LINES)]
     cycles = found.scene["loading"].get("cycles") or 1
     after = "one cycle" if cycles == 1 else f"{cycles} cycles"
@@ -65,40 +62,49 @@ def worn(found: Found) -> Picture | None:
 def contact(found: Found) -> Picture | None:
     """The surface, deformed where that is known, with the pressure where it is in contact."""
     whole = found.sheet()
-    if whole is None or not (whole.in_cells("p_Pa") > 0.0).any():
+    if whole is None or not (whole.cell_data["p_Pa"] > 0.0).any():
         return None
-    rough = "height_m" in whole.fields
-    sheet = whole if rough else whole.around(whole.in_cells("p_Pa") > 0.0)
-    height = MICRO * (sheet.at_nodes("height_m") - sheet.at_nodes("worn_m"))
-    if sheet.raised is not None:
-        height = height + sheet.raised
-    elif not rough:
+    rough = "height_m" in whole.point_data
+    if not rough and RAISED not in whole.point_data:
         return None
-    p = GIGA * sheet.in_cells("p_Pa")
-    times = _exaggeration(sheet, height)
-    mesh = sheet.mesh(times * height, np.where(p > 0.0, p, np.nan))
+    sheet = whole if rough else around(whole, whole.cell_data["p_Pa"] > 0.0)
+    height = MICRO * (_known(sheet, "height_m") - _known(sheet, "worn_m") + _known(sheet, RAISED))
+    p = GIGA * sheet.cell_data["p_Pa"]
     title = f"{'Contact spots' if rough else 'Deformed surface and contact pressure'} {_load(found)}"
-    top = GIGA * float(sheet.fields["p_Pa"].max())
-    return Picture(title, "pressure [GPa]", (0.0, top), [(mesh, VALUE | LIT)], _box(mesh), times)
+    limits = (0.0, GIGA * float(max(sheet.cell_data["p_Pa"].max(), sheet.point_data["p_Pa"].max())))
+    return _coloured(
+        title, "pressure [GPa]", sheet, height, values=np.where(p > 0.0, p, np.nan), limits=limits
+    )
 
 
 def imprint(found: Found) -> Picture | None:
     """The surface after unloading of a body that has yielded and is not worn."""
-    whole, run = found.sheet(UNLOADED), found.run
-    if whole is None or whole.raised is None or "worn_m" in whole.fields or not run.quantities["peeq_max"]:
+    whole = found.sheet(UNLOADED)
+    if whole is None or "worn_m" in whole.point_data or not found.run.quantities["peeq_max"]:
         return None
-    largest = np.abs(whole.raised).max()
-    if not largest > NOTHING * np.abs(found.sheet().raised).max():
+    largest = np.abs(_known(whole, RAISED)).max()
+    if not largest > NOTHING * np.abs(_known(found.sheet(), RAISED)).max():
         return None
-    rough = "height_m" in whole.fields
-    sheet = whole if rough else whole.around(np.abs(whole.raised) > 0.05 * largest)
-    height = MICRO * sheet.at_nodes("height_m") + sheet.raised
-    times = _exaggeration(sheet, height)
-    moved = 1e3 * sheet.raised
-    mesh = sheet.mesh(times * height, moved)
-    limits = (float(moved.min()), float(moved.max()))
+    rough = "height_m" in whole.point_data
+    sheet = whole if rough else around(whole, np.abs(whole.point_data[RAISED]) > 0.05 * largest)
+    height = MICRO * (_known(sheet, "height_m") + sheet.point_data[RAISED])
     label = "residual displacement $-u_z$ [nm]"
-    return Picture("Imprint after unloading", label, limits, [(mesh, VALUE | LIT)], _box(mesh), times)
+    return _coloured("Imprint after unloading", label, sheet, height, values=NANO * sheet.point_data[RAISED])
+
+
+def _known(sheet: pv.StructuredGrid, name: str) -> np.ndarray:
+    """A field at the nodes, zero where it is not known."""
+    return sheet.point_data[name] if name in sheet.point_data else np.zeros(sheet.n_points)
+
+
+def _coloured(
+    title: str, label: str, sheet: pv.StructuredGrid, height: np.ndarray, *, values: np.ndarray, **how: Any
+) -> Picture:
+    """A surface at heights in µm, coloured by values between the least and the largest, or `limits`."""
+    times = _exaggeration(sheet, height)
+    mesh, ends = drawn_at(sheet, times * height, values), (float(values.min()), float(values.max()))
+    how = {"limits": ends, "parts": [(mesh, VALUE | LIT)], "box": _box(mesh), "exaggeration": times} | how
+    return Picture(title, label, **how)
 
 
 def plastic_zone(found: Found) -> Picture | None:
@@ -165,7 +171,7 @@ def _load(found: Found) -> str:
     return "at the last load reached" if found.run.last_fitting else "at the peak load"
 
 
-def _exaggeration(sheet: Sheet, height: np.ndarray) -> float:
+def _exaggeration(sheet: pv.StructuredGrid, height: np.ndarray) -> float:
     """1, 2 or 5 times a power of ten: the largest by which the heights stay within RELIEF of the
     width; 1 for a plane.
     """
@@ -202,8 +208,8 @@ def _contact_line(found: Found, box: np.ndarray) -> list[tuple[pv.DataSet, dict]
     sheet = found.sheet()
     if sheet is None:
         return []
-    p = sheet.at_nodes("p_Pa")
-    mesh = sheet.mesh(np.full(p.shape, BEFORE_IT * np.ptp(box[0])), p)
+    p = sheet.point_data["p_Pa"]
+    mesh = drawn_at(sheet, np.full(p.shape, BEFORE_IT * np.ptp(box[0])), p)
     line = mesh.contour([0.02 * float(p.max())], scalars="value").clip_box(
         (*box[:2].ravel(), -np.inf, np.inf), invert=False
     )

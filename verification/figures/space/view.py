@@ -16,35 +16,28 @@ from typing import Any
 
 import numpy as np
 import pyvista as pv
-from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
+from mpl_toolkits.mplot3d.proj3d import proj_transform
 
 from verification.figures.style import new_figure, style
 
 TOWARDS = np.array([0.55, -1.0, 0.75])
 """Direction from the middle of the bodies to the eye: the cut y = const is seen from its open side."""
-DOTS = 200
-"""Dots an inch of the written figure."""
 PIXELS = 1560
-"""Width of the drawn part before it is written: twice that in the figure, which makes its edges smooth."""
+"""Side of the drawn square before it is written: twice that in the figure, which makes its edges smooth."""
 OVER = "position: absolute; z-index: 9; pointer-events: none; top: 0.5em; font: 14px sans-serif"
 """Of what lies over the scene of a page."""
 ADD_OVER = """<script type="module">
 document.documentElement.append(document.getElementById("over").content)
 </script>"""
 """The scene empties the body of its page: what lies over it waits in the head and is then added."""
-WIDTH, DRAWN, MARGINS, BAR = 6.2, 3.9, (0.7, 0.45, 0.4), 2.6
-"""In inches: the width of the figure and that of the bodies in it, the margins to the left, below and above
-them, and the length of the colour bar."""
 COLOURS = "viridis"
 BODY = "#d0d0d0"
 """Of surfaces without a value."""
 LIT = {"ambient": 0.4, "diffuse": 0.6, "specular": 0.0, "smooth_shading": True}
-UPRIGHT, APART = 2, 0.35
-"""The axis z, and inches between ticks at least."""
 FLAT = {"lighting": False}
 """Colours as in the colour bar: nothing shaded."""
 
@@ -72,75 +65,49 @@ class Picture:
         return "; ".join(filter(None, (times, self.note)))
 
 
-@dataclass(frozen=True)
-class _Projection:
-    """The parallel projection of a box: unit vectors on the screen, and the middle and the size of
-    what is seen.
-    """
-
-    right: np.ndarray
-    up: np.ndarray
-    centre: np.ndarray
-    half: np.ndarray
-
-    @classmethod
-    def of(cls, box: np.ndarray) -> _Projection:
-        towards = TOWARDS / np.linalg.norm(TOWARDS)
-        right = np.cross([0.0, 0.0, 1.0], towards)
-        right /= np.linalg.norm(right)
-        up = np.cross(towards, right)
-        corners = np.stack(np.meshgrid(*box, indexing="ij"), axis=-1).reshape(-1, 3)
-        seen = np.stack([corners @ right, corners @ up])
-        middle = 0.5 * (seen.max(axis=1) + seen.min(axis=1))
-        about = corners.mean(axis=0)
-        centre = about + (middle[0] - about @ right) * right + (middle[1] - about @ up) * up
-        return cls(right, up, centre, 0.505 * np.ptp(seen, axis=1))
-
-    def place(self, *points: Sequence[float]) -> np.ndarray:
-        """Points in µm on the screen, (n, 2)."""
-        return np.stack([(np.array(points) - self.centre) @ axis for axis in (self.right, self.up)], axis=1)
-
-
 def drawn(picture: Picture) -> Figure:
-    """The picture as a figure of matplotlib in the house style."""
-    view = _Projection.of(picture.box)
+    """The picture as a figure of matplotlib in the house style: bodies behind axes of the same projection."""
+    towards = TOWARDS / np.linalg.norm(TOWARDS)
+    right = np.cross([0.0, 0.0, 1.0], towards)
+    right /= np.linalg.norm(right)
+    across, up = right, np.cross(towards, right)
+    middle, half = picture.box.mean(axis=1), 0.5 * np.linalg.norm(np.ptp(picture.box, axis=1))
+    corners = middle + half * np.array([-across - up, across + up])
+    ends, times = picture.box.copy(), [1.0, 1.0, picture.exaggeration]
+    ends[2] /= picture.exaggeration
     with style():
-        (width, height), pixels = view.half, _pixels(picture, view)
-        figure, panel, bar = _sheet(height / width)
-        panel.imshow(pixels, extent=(-width, width, -height, height), interpolation="antialiased", zorder=2)
+        figure = new_figure(6.2, 4.4, "none")
+        panel = figure.add_axes((0.03, 0.06, 0.78, 0.86), projection="3d", proj_type="ortho")
+        panel.set(xlim=ends[0], ylim=ends[1], zlim=ends[2], facecolor="none")
+        panel.set(xlabel="$x$ [$\\mu$m]", ylabel="$y$ [$\\mu$m]", zlabel="$z$ [$\\mu$m]")
+        panel.set_box_aspect(np.ptp(picture.box, axis=1), zoom=1.05)
+        panel.view_init(np.degrees(np.arcsin(towards[2])), np.degrees(np.arctan2(towards[1], towards[0])))
+        panel.grid(False)
+        for axis in (panel.xaxis, panel.yaxis, panel.zaxis):
+            axis.set_pane_color((1.0, 1.0, 1.0, 0.0))
+            axis.set_major_locator(MaxNLocator(4))
+            axis.labelpad = 6
+        figure.draw_without_rendering()
+        x, y, _ = proj_transform(*(corners / times).T, panel.get_proj())
+        (x0, y0), (x1, y1) = (panel.transData + figure.transFigure.inverted()).transform(np.stack([x, y], 1))
+        bodies = figure.add_axes((x0, y0, x1 - x0, y1 - y0), zorder=-1)
+        bodies.imshow(_pixels(picture, middle, half), interpolation="antialiased", aspect="auto")
+        bodies.set_axis_off()
         figure.suptitle(picture.title, fontsize=9.5, fontweight="bold")
-        _axes(panel, picture, view)
-        figure.colorbar(ScalarMappable(Normalize(*picture.limits), COLOURS), cax=bar, label=picture.label)
-        bar.grid(False)
-        if picture.said:
-            figure.text(0.99, 0.06 / figure.get_figheight(), picture.said, ha="right", fontsize=8)
+        colours = ScalarMappable(Normalize(*picture.limits), COLOURS)
+        bar = figure.add_axes((0.85, 0.2, 0.02, 0.6))
+        figure.colorbar(colours, cax=bar, label=picture.label).ax.grid(False)
+        figure.text(0.99, 0.015, picture.said, ha="right", fontsize=8)
     return figure
 
 
-def _sheet(flat: float) -> tuple[Figure, Axes, Axes]:
-    """An empty figure for bodies `flat` times as high as wide, the axes of these, and of the colour bar."""
-    left, below, above = MARGINS
-    high = DRAWN * flat + below + above
-    figure = new_figure(WIDTH, high, "none")
-    panel = figure.add_axes((left / WIDTH, below / high, DRAWN / WIDTH, DRAWN * flat / high))
-    panel.set_axis_off()
-    length = min(BAR, 0.9 * (high - above))
-    return (
-        figure,
-        panel,
-        figure.add_axes((5.25 / WIDTH, 0.5 * (1.0 - length / high), 0.13 / WIDTH, length / high)),
-    )
-
-
-def _pixels(picture: Picture, view: _Projection) -> np.ndarray:
-    """The bodies alone, (rows, columns, 4), on a transparent background."""
-    size = (PIXELS, round(PIXELS * view.half[1] / view.half[0]))
-    plotter = pv.Plotter(off_screen=True, window_size=size, lighting="none")
+def _pixels(picture: Picture, middle: np.ndarray, half: float) -> np.ndarray:
+    """The bodies alone, on a transparent square of twice `half` around `middle`, (rows, columns, 4)."""
+    plotter = pv.Plotter(off_screen=True, window_size=(PIXELS, PIXELS), lighting="none")
     add(plotter, picture)
-    eye = view.centre + 10.0 * np.ptp(picture.box) * TOWARDS
-    plotter.camera_position = [tuple(eye), tuple(view.centre), (0.0, 0.0, 1.0)]
+    plotter.camera_position = [tuple(middle + 20.0 * half * TOWARDS), tuple(middle), (0.0, 0.0, 1.0)]
     plotter.enable_parallel_projection()
-    plotter.camera.parallel_scale = view.half[1]
+    plotter.camera.parallel_scale = half
     plotter.reset_camera_clipping_range()
     pixels = plotter.screenshot(return_img=True, transparent_background=True)
     plotter.close()
@@ -156,66 +123,6 @@ def add(plotter: pv.Plotter, picture: Picture) -> None:
     for mesh, options in picture.parts:
         coloured = {"clim": picture.limits, "cmap": COLOURS, "show_scalar_bar": False, "nan_color": BODY}
         plotter.add_mesh(mesh, **(coloured if "scalars" in options else {}) | dict(options))
-
-
-def _axes(panel: Axes, picture: Picture, view: _Projection) -> None:
-    """Three edges of the box with ticks and the others behind the bodies; z says the lengths before
-    their exaggeration.
-    """
-    (x0, x1), (y0, y1), (z0, z1) = picture.box
-    hidden = [((x0, y0, z0), (x0, y1, z0)), ((x0, y1, z0), (x1, y1, z0)), ((x0, y1, z0), (x0, y1, z1))]
-    for edge in hidden:
-        panel.plot(*view.place(*edge).T, color="#bbbbbb", linewidth=0.6, zorder=1)
-    _edge(panel, view, ((x0, y0, z0), (x1, y0, z0)), out=(0.0, -1.0, 0.0), label="$x$ [$\\mu$m]")
-    _edge(panel, view, ((x1, y0, z0), (x1, y1, z0)), out=(1.0, 0.0, 0.0), label="$y$ [$\\mu$m]")
-    upright, times = ((x0, y0, z0), (x0, y0, z1)), picture.exaggeration
-    _edge(panel, view, upright, out=(-1.0, 0.0, 0.0), label="$z$ [$\\mu$m]", times=times)
-
-
-def _edge(
-    panel: Axes,
-    view: _Projection,
-    ends: tuple[Sequence[float], Sequence[float]],
-    *,
-    out: Sequence[float],
-    label: str,
-    times: float = 1.0,
-) -> None:
-    """An edge between two corners with ticks towards `out` and its label: beside its middle, or
-    above its end where it is upright.
-    """
-    first, last = np.array(ends)
-    along = int(np.argmax(np.abs(last - first)))
-    panel.plot(*view.place(first, last).T, color="#444444", linewidth=0.8, zorder=3, clip_on=False)
-    towards = view.place(view.centre + np.array(out))[0]
-    towards /= np.linalg.norm(towards)
-    inch = 2.0 * view.half[0] / DRAWN
-    low, high = first[along] / times, last[along] / times
-    length = np.linalg.norm(np.diff(view.place(first, last), axis=0)) / inch
-    values = MaxNLocator(min(max(int(length / APART), 1), 5)).tick_values(low, high)
-    side = "center" if abs(towards[0]) < 0.3 else "left" if towards[0] > 0.0 else "right"
-    look = {"fontsize": 8, "ha": side, "va": "top" if towards[1] < -0.3 else "center"}
-    rounding = 1e-9 * (high - low)
-    for value in values[(values >= low - rounding) & (values <= high + rounding)]:
-        point = first.copy()
-        point[along] = value * times
-        (at,) = view.place(point)
-        tick = np.array([at, at + 0.05 * inch * towards])
-        panel.plot(*tick.T, color="#444444", linewidth=0.8, clip_on=False)
-        panel.text(*(at + 0.08 * inch * towards), f"{value + 0.0:.6g}".replace("-", "\N{MINUS SIGN}"), **look)
-    if along == UPRIGHT:
-        panel.text(*(view.place(last)[0] + [0.0, 0.12 * inch]), label, ha="right", fontsize=9)
-    else:
-        middle = view.place(0.5 * (first + last))[0]
-        panel.text(*(middle + 0.36 * inch * towards), label, **look | {"fontsize": 9})
-
-
-def png(figure: Figure) -> bytes:
-    """The figure as a file; equal figures give equal bytes."""
-    buffer = io.BytesIO()
-    with style():
-        figure.savefig(buffer, format="png", dpi=DOTS, metadata={"Software": None})
-    return buffer.getvalue()
 
 
 def page(picture: Picture) -> str:

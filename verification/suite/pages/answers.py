@@ -16,7 +16,7 @@ from typing import Any
 
 from verification.judging import LIMITS, RowStatus
 from verification.runs.store import short
-from verification.suite.pages.judged import INPUTS, OLDER, PHYSICS, READINGS, Judged, counted
+from verification.suite.pages.headline import headline_of
 from verification.suite.pages.older import pairs_in, times_in
 from verification.suite.pages.stored import LIMIT_SIGNS, PAGES, RED, ShownCase, Stored
 from verification.text.console import number
@@ -28,11 +28,6 @@ BANDS = (0.01, 0.05)
 OPEN, REPORTED, RESULT, UNGATED = "open", "reported", "a result", "no gate"
 NORMALISED = " over the larger of "
 """Such an error is no share of the quantity, but of what the refinement leaves."""
-SAID = {
-    "printed inputs": "with the printed inputs",
-    "renewed": "in the second reading (a weakly hardening layer, a counter-surface renewed in each cycle)",
-}
-"""Readings of the paper -> for the reader."""
 
 
 @dataclass(frozen=True)
@@ -99,68 +94,33 @@ def far(pairs: Iterable[Pair]) -> list[list[Pair]]:
 
 @dataclass(frozen=True)
 class Cost:
-    """Processor times to an error of 1 % in one contact. quantity: that has the error; sam, fem:
-    seconds (None: not reached), and whether they are a bound; model: the fastest finite elements.
+    """Processor seconds to an error of 1 % in one contact, of SAM and of the fastest finite elements (None:
+    not reached or not measured), and whether each is a bound.
     """
 
-    problem: str
-    quantity: str
-    sam: tuple[float | None, bool] | None
-    fem: tuple[float | None, bool] | None
-    model: str
+    sam: tuple[float | None, bool]
+    fem: tuple[float | None, bool]
 
     @property
     def ratio(self) -> float:
-        """Of finite elements to SAM; NaN where one of them does not reach the error."""
-        seconds = [time[0] if time else None for time in (self.fem, self.sam)]
-        return seconds[0] / seconds[1] if all(seconds) else math.nan
-
-    @property
-    def known(self) -> bool:
-        """Whether the ratio is one, and not that of two bounds."""
-        return self.ratio > 0.0 and not (self.sam[1] and self.fem[1])
+        """Of finite elements to SAM; NaN where it is not known."""
+        unknown = not self.fem[0] or not self.sam[0] or (self.sam[1] and self.fem[1])
+        return math.nan if unknown else self.fem[0] / self.sam[0]
 
     @property
     def shown(self) -> str:
         """The ratio for the reader, as a bound where a time is one."""
-        if not self.known:
-            return "" if math.isnan(self.ratio) else "not known"
         return f"{'> ' * self.sam[1]}{'< ' * self.fem[1]}{number(self.ratio, 2)}"
-
-    @property
-    def row(self) -> tuple[str, ...]:
-        """Of the table."""
-        return self.problem, self.quantity, _time(self.sam), _time(self.fem), self.shown, self.model
-
-
-def _time(time: tuple[float | None, bool] | None) -> str:
-    if time is None:
-        return ""
-    return "not reached" if time[0] is None else f"{'< ' * time[1]}{number(time[0], 3)}"
 
 
 def costs_of(stored: Stored) -> list[Cost]:
     """Every contact of the case that measured times, none where it did not run."""
-    costs, ran = [], stored.ran.get("work-precision")
+    costs, ran, nothing = [], stored.ran.get("work-precision"), (None, False)
     data = ran.case.get("data", {}) if ran else {"times": ()}
-    said = data["times"] if "times" in data else times_in(ran.case)
-    for problem, words, times in said:
-        fem = {name: time for name, time in times.items() if name.startswith("FEM")}
-        reached = {name: time[0] for name, time in fem.items() if time[0]}
-        best = min(reached, key=lambda name: reached[name], default=next(iter(fem), ""))
-        costs.append(Cost(problem, words, times.get("SAM"), fem.get(best), best.removeprefix("FEM, ")))
+    for _, _, times in data["times"] if "times" in data else times_in(ran.case):
+        fem = [time for name, time in times.items() if name.startswith("FEM") and time[0]]
+        costs.append(Cost(times.get("SAM", nothing), min(fem, default=nothing)))
     return costs
-
-
-def cost_table(costs: Sequence[Cost]) -> dict:
-    """For the templates."""
-    return {
-        "caption": "Processor seconds on one thread to an error of 1 %",
-        "columns": "contact|error of the|SAM [s]|FEM [s]|FEM over SAM|FEM: the fastest model".split("|"),
-        "rows": [each.row for each in costs],
-        "note": "Of SAM and of the finite elements that are fastest there, in a new process each. <: even "
-        "the coarsest grid or mesh has so small an error; not reached: none that was tried has.",
-    }
 
 
 @dataclass(frozen=True)
@@ -245,19 +205,18 @@ def held(evidence: Evidence, words: str, *patterns: str) -> Iterator[Finding]:
 
 
 def cell(evidence: Evidence, words: str, case: str, caption: str, *how: Any) -> Iterator[Finding]:
-    """Numbers of a row of a table as they stand. caption: its begin; how: cells that tell the row, columns of
-    the numbers, how they are shown, with {} for each, and the gate that holds the first of them, if one does.
+    """Numbers of a row of a table as they stand, which no gate holds. caption: its begin; how: cells that
+    tell the row, columns of the numbers, and how they are shown, with {} for each.
     """
-    row, columns, shown, gate = (*how, "")[:4]
-    ran, gates = evidence.stored.ran.get(case), [each for _, each in evidence.gates(gate)]
-    allowed = _allowed(gates[0], lambda of: number(of, 3)) if gates else UNGATED
+    row, columns, shown = how
+    ran = evidence.stored.ran.get(case)
     for table in ran.case["tables"] if ran else ():
         if table["caption"].startswith(caption) and set(columns) <= set(table["columns"]):
             at = [table["columns"].index(column) for column in columns]
             for cells in (cells for cells in table["rows"] if set(row) <= set(cells)):
                 signed = (cells[k].replace("-", "\N{MINUS SIGN}") for k in at)
                 spaced = (re.sub(r"(?<=\d) ?%", "\N{NO-BREAK SPACE}%", each) for each in signed)
-                yield Finding(words, shown.format(*spaced), (ran,), ran, gates, allowed)
+                yield Finding(words, shown.format(*spaced), (ran,), ran, allowed=UNGATED)
 
 
 def times(evidence: Evidence, _: str) -> Iterator[Finding]:
@@ -265,7 +224,7 @@ def times(evidence: Evidence, _: str) -> Iterator[Finding]:
     over the contacts where both reach it, and where only one does.
     """
     costs = costs_of(evidence.stored)
-    if both := sorted((each for each in costs if each.known), key=lambda each: each.ratio):
+    if both := sorted((each for each in costs if each.ratio > 0.0), key=lambda each: each.ratio):
         bounds = sum(each.sam[1] or each.fem[1] for each in both)
         words = (
             f"the processor time of SAM: finite elements to an error of 1 %, in {len(both)} of {len(costs)} "
@@ -275,36 +234,10 @@ def times(evidence: Evidence, _: str) -> Iterator[Finding]:
         yield Finding(words, f"{both[0].shown} to {both[-1].shown} times", ran)
 
 
-def statements(evidence: Evidence, _: str) -> Iterator[Finding]:
-    """What holds of the statements of the paper: for each reading of it by the median of the
-    surfaces, and for each study that ran.
-    """
-    judged, found = Judged(evidence.stored), []
-    if cases := judged.older:
-        yield Finding(f"from studies that were {OLDER.format('have')}", "No number", cases)
-    for reading, said in judged.said(READINGS, "statements").items():
-        found.append(
-            (READINGS, f"{SAID.get(reading, reading)}, by the median of the surfaces", counted(said))
-        )
-    every = f"of {len(judged.statements)}"
-    if judged.likely:
-        words = (
-            "hold at more than half of the points of the study over the inputs that the paper leaves "
-            f"open, {judged.sure} of them also by the lower bound"
-        )
-        found.append((INPUTS, words, f"{len(judged.likely)} {every}"))
-    if best := judged.most_at_a_point:
-        found.append(
-            (INPUTS, "hold together at the best of its points, which is no bound", f"{best} {every}")
-        )
-    if best := max((count for count, _ in judged.physics.values()), default=0):
-        words = (
-            f"hold on one surface under the best of {len(judged.physics)} ways to harden and to load it "
-            f"({judged.physics[()][0]} on the same surface under the way of the paper)"
-        )
-        found.append((PHYSICS, words, f"{best} {every}"))
-    for name, words, text in found:
-        yield Finding(words, text, (evidence.stored.ran[name],))
+def statements(evidence: Evidence, words: str) -> Iterator[Finding]:
+    """What holds of the statements of the paper."""
+    if headline := headline_of(evidence.stored):
+        yield Finding(words, headline.answer, headline.studies)
 
 
 PARTS: Mapping[str, Callable[..., Iterator[Finding]]] = {

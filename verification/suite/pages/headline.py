@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The headline of the pages: whether this model of running-in predicts what the paper says.
-
-It also tells on what that depends. Nothing is said here that the data or the notes of a case do not
-hold; where a study did not run, that is said.
+"""The headline of the pages: whether this model of running-in predicts what the paper says, from the data of
+the studies that judge its statements. Where a study did not run, that is said.
 """
 
 from __future__ import annotations
@@ -10,26 +8,31 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from verification.cases.running_in.study import LAST, STILL
-from verification.suite.pages.judged import (
-    FINER,
-    FOLLOWS,
-    HELD,
-    INPUTS,
-    NOT_RUN,
-    OLDER,
-    OPEN,
-    PHYSICS,
-    READINGS,
-    Judged,
-    held,
-    in_words,
-)
-from verification.suite.pages.stored import Stored
+from verification.suite.pages.stored import ShownCase, Stored
 
-QUESTION = "Does this model of running-in predict what its authors say, and on what does that depend?"
 PAGE = "running-in"
+READINGS, INPUTS, PHYSICS = "running-in", "running-in-sensitivity", "running-in-physics"
+FINER = "running-in-cells"
+STUDIES = {
+    READINGS: "The comparison of both readings",
+    INPUTS: "The study over the inputs",
+    PHYSICS: "The study over hardening and loading",
+}
+NOT_RUN = "did not run"
+HELD, OPEN = "held", "not decided"
+FOLLOWS = {
+    "bulk: hardly any wear later": "bulk: worn in the first six cycles",
+    "curve A: friction below that of bulk": "friction: A and hardening below bulk",
+}
+"""Statements that say no more than another one does -> that one. The first follows by what is asked of both:
+where nine tenths wear in 6 cycles, 15 of the other 19 wear at less than a twentieth of that rate. The second
+follows in words only: a difference of 0.001 is asked of it, and of that one a ratio of 0.999.
+"""
+COLUMNS = "Fig.|statement of the paper|printed inputs|second reading|share of points (90 %)".split("|")
+COLUMNS += ["decided by", "holds under"]
+CAPTION = "What the paper says of its Figures 13 to 17, and on what each statement depends"
 MEANING = (
     "Behind a statement: the measure that decides it, and what is asked of it; V: worn volume, μ: "
     "coefficient of friction, Sa: roughness, in brackets the cycle. Friction falls, or lies below another, "
@@ -42,91 +45,101 @@ MEANING = (
     "surface, with bounds of 90 %. Decided by: how much more often the statement holds in the upper half "
     "of the range of an input; not resolved: no input changes that by more than chance does with so many "
     "points. Holds under: of the ways to "
-    "harden and to load. Of equal changes that make a statement hold the smallest are named. Bulk: steel "
-    "without a layer, removed above a plastic strain of 0.2 %; curve A, curve B, hardening only: with a "
-    "nano-crystalline layer as after polishing, mild wear or harder towards the surface, removed above 2 "
-    "% (5 % where it is said)."
+    "harden and to load. Bulk: steel without a layer, removed above a plastic strain of 0.2 %; curve A, "
+    "curve B, hardening only: with a nano-crystalline layer as after polishing, mild wear or harder towards "
+    "the surface, removed above 2 % (5 % where it is said). That curve C is very close to curve B is not "
+    "judged: curve C runs on one surface."
 )
 """Of the columns and the words of the table."""
-PICTURES = ((INPUTS, "probabilities"), (PHYSICS, "volume"))
-"""Case and name of the figures of the headline."""
-UNTESTED = (
-    "That curve C is very close to curve B, so that the paper's Fig. 15 stands for both: curve C runs on one "
-    "surface (case running-in, other assumptions), and no statement asks for it."
-)
-NOTHING = "none of those studied"
-GIGA = 1e-9
-COLUMNS = "Fig.|statement of the paper|printed inputs|second reading|share of points (90 %)".split("|")
-COLUMNS += ["decided by", "holds under", "what makes it hold"]
+Verdicts = Mapping[str, Sequence[Mapping[str, Any]]]
+"""Words of a statement -> what was found of it in each reading, or on each size of cells."""
 
 
 @dataclass(frozen=True)
 class Headline:
-    """What the page of running-in begins with. answer: by the readings of the paper; depends: on
-    what that depends, and what each of it does; rows: of the table of statements; pictures: figures
-    as in results.json. Of an older version only the answer.
+    """What the page of running-in begins with. answer: by the readings of the paper; depends: on what that
+    depends; rows: of the table of statements; studies: behind it. Of an older version only the answer.
     """
 
     answer: str
-    depends: Sequence[tuple[str, str]] = ()
+    studies: tuple[ShownCase, ...]
+    depends: str = ""
     rows: Sequence[Sequence[str]] = ()
-    pictures: Sequence[Mapping] = ()
-    question: str = QUESTION
     page: str = f"{PAGE}.html"
 
     @property
     def table(self) -> dict:
-        """The statements, and what its columns mean."""
-        caption = "What the paper says of its Figures 13 to 17, and on what each statement depends"
-        return {"caption": caption, "columns": COLUMNS, "rows": self.rows, "note": MEANING}
+        """The statements."""
+        return {"caption": CAPTION, "columns": COLUMNS, "rows": self.rows, "note": MEANING}
 
 
 def headline_of(stored: Stored) -> Headline | None:
     """The headline, if any of the cases judged the statements of the paper."""
-    judged = Judged(stored)
-    if judged.older:
-        return Headline(f"The studies of running-in in this report were {OLDER.format('have')}.")
-    if not judged.statements:
+    studies = tuple(stored.ran[name] for name in STUDIES if name in stored.ran)
+    if studies and not any("data" in each.case for each in studies):
+        words = (
+            "The studies of running-in in this report were made by an older version and have to run again."
+        )
+        return Headline(words, studies)
+    data = {each.name: each.case.get("data", {}) for each in stored.ran.values()}
+    read, finer = (_together(data.get(name, {}).get("statements", {})) for name in (READINGS, FINER))
+    drawn, tried = (
+        {each["statement"]: each for each in data.get(name, {}).get("statements", ())}
+        for name in (INPUTS, PHYSICS)
+    )
+    figures = {words: each[0]["figure"] for words, each in read.items()}
+    figures = figures or {words: each["figure"] for words, each in (drawn or tried).items()}
+    if not figures:
         return None
-    depends = {
-        "Inputs that the paper leaves open": _of_inputs(judged),
-        "Hardening and loading": _of_physics(judged),
-        "Statements that fail with the printed inputs": _of_failed(judged),
-        "Not judged": (UNTESTED,),
-        "Size of the cells": (judged.note(FINER, "Verdicts"), judged.note(FINER, "One surface")),
-        "Wear in the last cycles": _of_last_cycles(judged),
-    }
-    ran = {name: each.case for name in (INPUTS, PHYSICS) if (each := judged.case(name))}
+
+    def missing(name: str) -> str:
+        why = "was made without what the statements ask for" if name in stored.ran else NOT_RUN
+        return f"{STUDIES[name]} (case {name}) {why}."
+
+    second = data.get(READINGS, {}).get("second_reading", "")
+    depends = [*(_of_inputs(drawn, data[INPUTS]) if drawn else [missing(INPUTS)])]
+    if tried:
+        counts = [each["held"] for each in data[PHYSICS]["physics"]]
+        depends.append(
+            f"On one surface, which gives no probability, under each of {len(counts)} ways to harden and to "
+            f"load it, {max(counts)} hold together at best; under the way of the paper {counts[0]}."
+        )
+    else:
+        depends.append(missing(PHYSICS))
     return Headline(
-        " ".join(_of_readings(judged)),
-        [(on, text) for on, said in depends.items() if (text := " ".join(filter(None, said)))],
-        [_row(judged, words) for words in judged.statements],
+        " ".join(_of_readings(read, finer, second)) if read else missing(READINGS),
+        studies,
+        " ".join(depends),
         [
-            figure
-            for case, name in PICTURES
-            for figure in ran.get(case, {}).get("figures", ())
-            if figure["png"].endswith(f"{case}-{name}.png")
+            (figure, *_row(words, read.get(words, ()), drawn.get(words), tried.get(words)))
+            for words, figure in figures.items()
         ],
     )
 
 
-def _of_readings(judged: Judged) -> Iterator[str]:
-    if not judged.verdicts:
-        yield judged.missing(READINGS)
-        return
-    count, readings = len(judged.statements), list(zip(*judged.verdicts.values(), strict=True))
+def _together(statements: Mapping[str, Sequence[Mapping]]) -> Verdicts:
+    """Of each statement what was found in every reading."""
+    return {each[0]["statement"]: each for each in zip(*statements.values(), strict=True)}
+
+
+def held(found: Mapping) -> bool:
+    """Whether a statement holds by the median of the surfaces."""
+    return found["by_median"] == HELD
+
+
+def _of_readings(read: Verdicts, finer: Verdicts, second: str) -> Iterator[str]:
+    count, readings = len(read), list(zip(*read.values(), strict=True))
     (first, agreed), *others = [
         (sum(map(held, each)), sum(one["by_agreement"] == HELD for one in each)) for each in readings
     ]
     yield "Yes." if first == count else "In part." if first else "No."
-    second = judged.said(READINGS, "second_reading")
     yield (
         f"With the printed inputs, {first} of its {count} statements on five materials hold by the median of "
         f"the surfaces, {agreed} on at least 80 % of them"
         + "".join(f"; in a second reading ({second}) {more} and {of}" for more, of in others)
         + "."
     )
-    own = {words: each for words, each in judged.verdicts.items() if words not in FOLLOWS}
+    own = {words: each for words, each in read.items() if words not in FOLLOWS}
     first, *others = (sum(map(held, each)) for each in zip(*own.values(), strict=True))
     yield (
         f"{count - len(own)} of the {count} follow from others: of the {len(own)} independent ones {first} "
@@ -134,7 +147,7 @@ def _of_readings(judged: Judged) -> Iterator[str]:
     )
     coarse = [
         words
-        for words, (coarsest, *_, finest) in judged.found(FINER).items()
+        for words, (coarsest, *_, finest) in finer.items()
         if words in own and held(own[words][0]) and held(coarsest) and not held(finest)
     ]
     if coarse:
@@ -145,129 +158,56 @@ def _of_readings(judged: Judged) -> Iterator[str]:
         )
 
 
-def _of_inputs(judged: Judged) -> Iterator[str]:
-    chances = judged.chances
-    if not chances:
-        yield judged.missing(INPUTS)
-        return
+def _of_inputs(chances: Mapping[str, Mapping], data: Mapping) -> Iterator[str]:
     known = {words: each["holds"] / each["of"] for words, each in chances.items() if each["of"]}
     if not known:
         yield "No statement says anything at any point."
         return
-    own, likely = chances.keys() - FOLLOWS.keys(), judged.likely
+    likely = [words for words, each in chances.items() if 2 * each["holds"] > each["of"]]
+    sure = sum(chances[words]["bounds"][0] > 0.5 for words in likely)
+    own = chances.keys() - FOLLOWS.keys()
     least, most = (pick(known, key=lambda words: known[words]) for pick in (min, max))
-    runs = dict(judged.stored.ran[INPUTS].case["setup"]).get("Runs", "")
     yield (
-        f"{len(likely)} of {len(chances)} statements ({len(own.intersection(likely))} of the {len(own)} "
-        f"independent ones) hold at more than half of the points, {judged.sure} of them also by the lower "
-        f"bound ({runs.partition(':')[0]}): from "
+        f"Over the inputs that the paper leaves open {len(likely)} of {len(chances)} statements "
+        f"({len(own.intersection(likely))} of the {len(own)} independent ones) "
+        f"hold at more than half of the points, {sure} of them also by the lower bound: from "
         f"{100 * known[least]:.0f} % ({least}) to {100 * known[most]:.0f} % ({most})."
     )
-    if deciding := [each["deciders"][0]["input"] for each in chances.values() if each["deciders"]]:
-        named = ", ".join(f"{name} ({count})" for name, count in Counter(deciding).most_common(3))
-        yield (
-            f"{len(deciding)} of all {len(chances)} depend{'s' * (len(deciding) == 1)} on an input beyond "
-            f"chance, first on {named}."
-        )
-    else:
-        yield "None depends on an input beyond chance."
+    deciding = [each["deciders"][0]["input"] for each in chances.values() if each["deciders"]]
+    named = ", ".join(f"{name} ({count})" for name, count in Counter(deciding).most_common(3))
     yield (
-        "Of the others the study does not tell: it resolves changes of "
-        f"{100 * judged.said(INPUTS, 'resolved'):.0f} % and more between the halves of a range."
+        f"{len(deciding)} of all {len(chances)} depend on an input beyond chance"
+        f"{f', first on {named}' * bool(named)}; of the others the study does not tell: it resolves "
+        f"changes of {100 * data['resolved']:.0f} % and more between the halves of a range."
     )
-    if best := judged.most_at_a_point:
+    if best := max((each["hold"] for each in data["best"]), default=0):
         yield (
             f"At the best of the points {best} hold together (fitted), which is no bound: "
             "nothing between the points was tried."
         )
 
 
-def _of_physics(judged: Judged) -> Iterator[str]:
-    if not judged.physics:
-        yield judged.missing(PHYSICS)
-        return
-    counts = {each: count for each, (count, _) in judged.physics.items()}
-    best = [each for each, count in counts.items() if count == max(counts.values())]
-    yield (
-        f"On one surface under each of {len(counts)} ways to harden and to load it, {counts[best[0]]} hold "
-        f"together at best, with {in_words(best, 'and')}; under the way of the paper {counts[()]}."
-    )
-    yield judged.note(PHYSICS, "One surface")
-
-
-def _of_failed(judged: Judged) -> Iterator[str]:
-    """From which pressures on the model removes metal, and whether what fails with the printed
-    inputs holds under anything.
+def _row(
+    words: str, verdicts: Sequence[Mapping], chance: Mapping | None, tried: Mapping | None
+) -> tuple[str, ...]:
+    """Of the table, from the second cell on; verdicts: in each reading; chance: over the inputs; tried: under
+    other physics.
     """
-    regimes: Mapping = next(iter(judged.said(READINGS, "regimes").values()), {})
-    if reached := [own["reached"] for own in regimes.values() if own["reached"] is not None]:
-        removed = ", ".join(f"{GIGA * own['removed_from']:.2f} ({name})" for name, own in regimes.items())
-        films = min(own["film_fails_from"] for own in regimes.values())
-        yield (
-            f"Under a failed film metal is removed where the pressure is above {removed} GPa; films fail "
-            f"from {GIGA * films:.2f} GPa, and the first cycle reaches {GIGA * max(reached):.2f} GPa "
-            "(median)."
-        )
-    if judged.verdicts and judged.chances and judged.physics:
-        never = [words for words in judged.statements if _remedy(judged, words) == NOTHING]
-        yield (
-            f"{len(never)} hold{'s' * (len(never) == 1)} ({'; '.join(never)}) under nothing that was studied."
-            if never
-            else "Each holds under something that was studied."
-        )
-
-
-def _of_last_cycles(judged: Judged) -> Iterator[str]:
-    """Whether the last cycles wear."""
-    if on := judged.said(PHYSICS, "wear_goes_on"):
-        own, of = map(sum, zip(*on.values(), strict=True))
-        yield (
-            f"In the study over hardening and loading cycles {LAST - 4} to {LAST} add more than "
-            f"{100 * STILL:g} % to the worn volume, where linear wear adds 20 %, in {own} of {of} runs "
-            f"({'; '.join(f'{counter}: {k} of {n}' for counter, (k, n) in on.items())})."
-        )
-    last: Mapping = next(iter(judged.said(READINGS, "last_cycle").values()), {})
-    if rests := [cycle for own in last.values() for cycle in own["rest_from"]]:
-        busy = rests.count(None)
-        yield (
-            f"With the printed inputs cells strain anew in the last cycle in {busy} of {len(rests)} runs: "
-            "under the same plane a cycle without new strain is followed by cycles like it."
-            if busy
-            else "With the printed inputs wear has ended because no cell strains anew in the last cycle in "
-            f"any of {len(rests)} runs: a cycle that neither strains nor wears is followed by cycles like it."
-        )
-
-
-def _row(judged: Judged, words: str) -> tuple[str, ...]:
-    verdicts, chance = judged.verdicts.get(words, ()), judged.chances.get(words)
     readings = [
         f"{each['by_median']}, {each['holds_on']} of {each['of']}"
         + f", none on {each['none_on']}" * bool(each["none_on"])
         for each in verdicts
     ]
+    readings += [NOT_RUN] * (2 - len(readings))
     share, decided, physics = NOT_RUN, NOT_RUN, NOT_RUN
     if chance:
         low, high = (100 * (end or 0.0) for end in chance["bounds"])
         says = chance["of"] and f"{100 * chance['holds'] / chance['of']:.0f} % ({low:.0f} to {high:.0f})"
         share, decided = says or "says nothing", "; ".join(chance["words"]) or "not resolved"
-    if judged.physics:
-        silent = len(judged.under(words, OPEN))
-        physics = f"{len(judged.under(words))} of {len(judged.physics)}"
-        physics += f", says nothing under {silent}" * bool(silent)
+    if tried:
+        found = Counter(tried["verdicts"])
+        physics = f"{found[HELD]} of {len(tried['verdicts'])}"
+        physics += f", says nothing under {found[OPEN]}" * bool(found[OPEN])
     text = f"{words} ({verdicts[0]['measure']} {verdicts[0]['asked']})" if verdicts else words
     text += f"; follows from: {FOLLOWS[words]}" if words in FOLLOWS else ""
-    readings += [NOT_RUN] * (2 - len(readings))
-    return judged.statements[words], text, *readings, share, decided, physics, _remedy(judged, words)
-
-
-def _remedy(judged: Judged, words: str) -> str:
-    """What makes a statement hold that fails with the printed inputs, empty where it holds."""
-    printed, *others = map(held, judged.verdicts.get(words, ({"by_median": ""},)))
-    if printed:
-        return ""
-    found = ["the second reading"] * any(others)
-    if under := judged.under(words):
-        found.append(in_words([each for each in under if len(each) == len(under[0])], "or"))
-    if (chance := judged.chances.get(words)) and chance["holds"]:
-        found.append(f"other inputs, {chance['holds']} of {chance['of']} points")
-    return "; ".join(found) or (NOTHING if judged.chances and judged.physics else "")
+    return text, *readings, share, decided, physics

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from itertools import groupby
 
 from markupsafe import Markup, escape
 
@@ -22,7 +23,9 @@ RAISED = dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻ᵖᵐᵉⁿ", "0123456789+�
 LOWERED = dict(zip("₀₁₂₃₄₅₆₇₈₉", "0123456789", strict=True))
 OPEN, CLOSE = "([{", ")]}"
 TENSORS = "σεΔ"
-PAIR = re.compile(r"[xyz]{2}")
+BRACKET = r"[(\[{]"
+FACTOR = r"(?:[^\W_]|[(\[{√∂∫∬Σ½∞|])"
+"""How a factor of a product begins."""
 SIGNS = tuple(
     (re.compile(pattern), sign)
     for pattern, sign in (
@@ -46,37 +49,26 @@ def with_scripts(text: str) -> Markup:
 
 def formula(text: str) -> Markup:
     """A line of formulas and words as HTML."""
-    parts = []
-    for words, symbols in _chunks(text):
-        parts.append(f"<math>{_Reader(symbols).row()}</math>" if symbols else str(with_scripts(words)))
+    parts = (
+        str(with_scripts(part)) if words else f"<math>{_Reader(part).row()}</math>"
+        for words, part in _chunks(text)
+    )
     return Markup(" ".join(parts))
 
 
-def _chunks(text: str) -> Iterator[tuple[str, str]]:
-    """(words, "") or ("", symbols), in their order; a chunk of symbols ends where the line may break."""
-    pieces = re.split(r"\s+", text.replace(",  ", ", \x00 ").strip())
-    words: list[str] = []
-    symbols: list[str] = []
-    depth = 0
+def _chunks(text: str) -> Iterator[tuple[bool, str]]:
+    """Words (True) and symbols in their order; a chunk of symbols ends where the line may break."""
+    pieces, marked, depth, breaks = text.replace(",  ", ", \x00 ").split(), [], 0, 0
     for k, piece in enumerate(pieces):
-        break_here = piece == "\x00"
-        if not break_here and not depth and _is_word(piece, pieces[k + 1 : k + 2]):
-            if symbols:
-                yield "", " ".join(symbols)
-                symbols = []
-            words.append(piece)
+        word = not depth and _is_word(piece, pieces[k + 1 : k + 2])
+        if piece == "\x00":
+            breaks += 1
             continue
-        if words:
-            yield " ".join(words), ""
-            words = []
-        if break_here:
-            if symbols:
-                yield "", " ".join(symbols)
-            symbols = []
-        else:
-            symbols.append(piece)
+        if not word:
             depth += sum(map(piece.count, OPEN)) - sum(map(piece.count, CLOSE))
-    yield (" ".join(words), "") if words else ("", " ".join(symbols))
+        marked.append((word, breaks, piece))
+    for (word, _), group in groupby(marked, key=lambda each: each[:2]):
+        yield word, " ".join(piece for *_, piece in group)
 
 
 def _is_word(piece: str, after: list[str]) -> bool:
@@ -96,118 +88,91 @@ class _Reader:
     """Reads one formula from left to right."""
 
     def __init__(self, text: str) -> None:
-        self._text, self._at = text, 0
+        self._left = text
+
+    def _next(self, pattern: str) -> str:
+        """What matches here, taken; empty if nothing does."""
+        found = re.match(pattern, self._left)
+        self._left = self._left[found.end() :] if found else self._left
+        return found.group() if found else ""
 
     def row(self, until: str = "") -> str:
         """Everything up to the closing bracket, or to the end."""
         out = []
-        while self._at < len(self._text) and self._peek() not in (until or "\0"):
+        while self._left and self._left[0] != until:
             out.append(self._quotient())
         return "".join(out)
 
-    def _peek(self, ahead: int = 0) -> str:
-        at = self._at + ahead
-        return self._text[at] if at < len(self._text) else ""
-
-    def _take(self) -> str:
-        self._at += 1
-        return self._text[self._at - 1]
-
     def _quotient(self) -> str:
         """A product, or a fraction of two."""
-        if self._peek().isspace():
-            self._take()
+        if self._next(r"\s"):
             return '<mspace width="0.15em"/>'
         top = self._product()
-        while top and self._peek() == "/" and self._starts_factor(1):
-            self._take()
-            below = self._product()
-            top = [f"<mfrac>{_one(top)}{_one(below)}</mfrac>"]
-        return "".join(top) or f"<mo>{_escape(self._take())}</mo>"
+        while top and re.match(f"/{FACTOR}", self._left):
+            self._next("/")
+            top = [f"<mfrac>{_one(top)}{_one(self._product())}</mfrac>"]
+        return "".join(top) or f"<mo>{escape(self._next('.'))}</mo>"
 
     def _product(self) -> list[str]:
         factors = []
-        while self._starts_factor():
+        while re.match(FACTOR, self._left):
             factors.append(self._factor())
         return factors
-
-    def _starts_factor(self, ahead: int = 0) -> bool:
-        letter = self._peek(ahead)
-        return bool(letter) and (letter.isalnum() or letter in OPEN or letter in "√∂∫∬Σ½∞" or letter == "|")
 
     def _factor(self) -> str:
         """A number, a symbol, a root or a bracket, with its scripts."""
         base = self._base()
-        lower, upper = self._scripts(base)
-        if lower and upper:
-            return f"<msubsup>{base}{lower}{upper}</msubsup>"
-        if lower:
-            return f"<msub>{base}{lower}</msub>"
-        return f"<msup>{base}{upper}</msup>" if upper else base
+        lower, upper = (_one([each]) if each else "" for each in self._scripts(base))
+        tag = f"m{'sub' * bool(lower)}{'sup' * bool(upper)}"
+        return f"<{tag}>{base}{lower}{upper}</{tag}>" if lower or upper else base
 
     def _base(self) -> str:
-        letter = self._peek()
-        if letter == "√":
-            self._take()
-            return f"<msqrt>{self._within() if self._peek() in OPEN else self._factor()}</msqrt>"
-        if letter in OPEN:
-            open_, inner = letter, self._within()
-            close = CLOSE[OPEN.index(open_)]
-            return f"<mrow><mo>{open_}</mo>{inner}<mo>{close}</mo></mrow>"
-        if number := re.match(r"[0-9]+(\.[0-9]+)?", self._text[self._at :]):
-            self._at += number.end()
-            return f"<mn>{number.group()}</mn>"
-        if name := re.match(r"[A-Za-z]+", self._text[self._at :]):
-            return f"<mi>{self._name(name.group())}</mi>"
-        if letter in "∫∬Σ|":
-            return f"<mo>{self._take()}</mo>"
-        return f"<mi>{_escape(self._take())}</mi>"
-
-    def _name(self, letters: str) -> str:
-        """The function that begins here, or a single symbol."""
-        name = letters if letters in FUNCTIONS or NAME.fullmatch(letters) else letters[0]
-        self._at += len(name)
-        return name
+        if self._next("√"):
+            return f"<msqrt>{self._within() if re.match(BRACKET, self._left) else self._factor()}</msqrt>"
+        if re.match(BRACKET, self._left):
+            sign = self._left[0]
+            return f"<mrow><mo>{sign}</mo>{self._within()}<mo>{CLOSE[OPEN.index(sign)]}</mo></mrow>"
+        if number := self._next(r"[0-9]+(\.[0-9]+)?"):
+            return f"<mn>{number}</mn>"
+        if letters := self._next("[A-Za-z]+"):  # a function, or a single symbol
+            name = letters if letters in FUNCTIONS or NAME.fullmatch(letters) else letters[0]
+            self._left = letters.removeprefix(name) + self._left
+            return f"<mi>{name}</mi>"
+        sign = self._next("[∫∬Σ|]")
+        return f"<mo>{sign}</mo>" if sign else f"<mi>{escape(self._next('.'))}</mi>"
 
     def _within(self) -> str:
-        close = CLOSE[OPEN.index(self._take())]
+        close = CLOSE[OPEN.index(self._next("."))]
         inner = self.row(close)
-        if self._peek() == close:
-            self._take()
+        self._next(re.escape(close))
         return inner
 
     def _scripts(self, base: str) -> tuple[str, str]:
         lower, upper = "", ""
-        tensor = base.removeprefix("<mi>")[:1] in TENSORS and PAIR.match(self._text[self._at :])
-        if tensor or (base == "<mi>R</mi>" and self._peek() in ("x", "y")):
-            size = 2 if tensor else 1
-            lower = "".join(f"<mi>{self._take()}</mi>" for _ in range(size))
+        if base.removeprefix("<mi>")[:1] in TENSORS:
+            lower = "".join(f"<mi>{letter}</mi>" for letter in self._next("[xyz]{2}"))
+        elif base == "<mi>R</mi>" and (letter := self._next("[xy]")):
+            lower = f"<mi>{letter}</mi>"
         while True:
-            if self._peek() == "_":
-                self._take()
+            if self._next("_"):
                 lower += self._script()
-            elif self._peek() and self._peek() in LOWERED:
-                lower += f"<mn>{LOWERED[self._take()]}</mn>"
-            elif self._peek() and self._peek() in RAISED:
-                upper += _atom(RAISED[self._take()])
-            elif self._peek() == "^":
-                self._take()
-                upper += self._within() if self._peek() in OPEN else self._script()
-            elif self._peek() and self._peek() in "'′":
-                self._take()
+            elif digit := self._next(f"[{''.join(LOWERED)}]"):
+                lower += f"<mn>{LOWERED[digit]}</mn>"
+            elif raised := self._next(f"[{''.join(RAISED)}]"):
+                upper += _atom(RAISED[raised])
+            elif self._next(r"\^"):
+                upper += self._within() if re.match(BRACKET, self._left) else self._script()
+            elif self._next("['′]"):
                 upper += "<mo>′</mo>"
-            elif self._peek() == "*" and base.startswith("<mi>"):
-                self._take()
+            elif base.startswith("<mi>") and self._next(r"\*"):
                 upper += "<mo>*</mo>"
             else:
-                return (_one([lower]) if lower else ""), (_one([upper]) if upper else "")
+                return lower, upper
 
     def _script(self) -> str:
-        run = re.match(r"[−-]?[0-9.]*[0-9]|[A-Za-z0-9]+", self._text[self._at :])
-        if run is None:
-            return self._factor() if self._starts_factor() else ""
-        self._at += run.end()
-        return _atom(run.group())
+        if run := self._next(r"[−-]?[0-9.]*[0-9]|[A-Za-z0-9]+"):
+            return _atom(run)
+        return self._factor() if re.match(FACTOR, self._left) else ""
 
 
 def _one(parts: list[str]) -> str:
@@ -221,8 +186,4 @@ def _one(parts: list[str]) -> str:
 def _atom(text: str) -> str:
     if re.fullmatch(r"[−-]?[0-9.]+", text):
         return f"<mn>{text}</mn>"
-    return f"<mo>{text}</mo>" if text in "+−" else f'<mi mathvariant="normal">{_escape(text)}</mi>'
-
-
-def _escape(text: str) -> str:
-    return str(escape(text))
+    return f"<mo>{text}</mo>" if text in "+−" else f'<mi mathvariant="normal">{escape(text)}</mi>'

@@ -7,9 +7,8 @@ import base64
 import csv
 import os
 import re
-import struct
 import sys
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
@@ -17,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
+from PIL import Image
 
 from verification.judging import LIMITS, RowStatus
 from verification.runs.files import SUMMARY, write_atomically
@@ -25,8 +25,6 @@ from verification.suite.pages.answers import (
     Answer,
     Evidence,
     answers_of,
-    cost_table,
-    costs_of,
     far,
     kind_of,
     origins,
@@ -54,7 +52,6 @@ ROOT = Path(__file__).resolve().parents[3]
 INDEX, README = "index.html", "README.md"
 ONE_FILE = "report.html"
 PICTURE = "figures/agreement"
-MANY_CASES, MANY_FIGURES = 12, 20  # on a page: with more only the first figure of a case is not folded
 WORDS = {
     "verification": {
         "title": "Verification of samfem",
@@ -85,8 +82,6 @@ WORDS = {
 }
 """What a page is about, by its kind."""
 WIDE = 1600  # pixels: letters of a picture drawn wider than 8 inches are too small in half a page
-BRIEF = 60  # letters
-_METRICS = {"relative_l2": "relative L2", "at_most": "at most", "at_least": "at least"}
 NOT_CONFIRMED = "not confirmed"
 _NUMBER = re.compile(r"[<>≤≥]? ?[+−-]?[0-9][^ ]*( [^ ]{1,4})?$")
 
@@ -102,26 +97,17 @@ class Look:
     scenes: str = ""
 
 
-def case_view(each: ShownCase, look: Look, told: set[str], above: Collection[str] = ()) -> dict:
-    """A case for the template. told: the equations that stand further up on the page; filled here;
-    above: files of the figures that stand further up.
-    """
+def case_view(each: ShownCase, look: Look) -> dict:
+    """A case for the template."""
     tight = [(share, gate["quantity"]) for gate in each.gates if (share := share_used(gate)) is not None]
     case, digest = each.case, each.case.get("code", "")[:12]
-    equations = [tuple(row) for row in case["equations"]]
-    new = [row for row in equations if row[1] not in told]
-    told.update(row[1] for row in equations)
-    figures = [figure_view(figure, look) for figure in case["figures"] if figure["png"] not in above]
     return {
         **case,
         "status": str(RowStatus.FAILED if each.failed else RowStatus.PASSED),
         "gates": sorted(each.gates, key=lambda gate: (gate["status"] not in RED, -(share_used(gate) or 0.0))),
         "red": len(each.red),
         "tightest": f"{max(tight)[1]}: {100 * max(tight)[0]:.0f} %" if tight else "",
-        "equations": new,
-        "equations_above": len(equations) - len(new),
-        "figures": [figure for figure in figures if figure["embedded"]],
-        "linked": [figure for figure in figures if not figure["embedded"]],
+        "figures": [figure_view(figure, look) for figure in case["figures"]],
         "scenes": [(name, f"{look.scenes}/{name}" if look.scenes else "") for name in each.inputs],
         "runs": [run for run in case["runs"] if (look.folder / run / SUMMARY).is_file()],
         "works": works_of(case),
@@ -175,7 +161,7 @@ def figure_view(figure: Mapping, look: Look) -> dict:
     there = [(kind, path) for kind, path in files if path and (look.folder / path).is_file()]
     width, height = _size(png)
     source = figure["png"]
-    if look.embed and figure["embedded"]:
+    if look.embed:
         content = base64.b64encode(png.read_bytes()).decode("ascii") if png.is_file() else ""
         source = content and f"data:image/png;base64,{content}"
     return {
@@ -191,26 +177,18 @@ def figure_view(figure: Mapping, look: Look) -> dict:
 
 
 def _size(png: Path) -> tuple[int, int]:
-    """Width and height in pixels, as the head of the file has them; (0, 0) without the file."""
-    try:
-        with png.open("rb") as file:
-            width, height = struct.unpack(">II", file.read(24)[16:])
-    except (OSError, struct.error):
+    """Width and height in pixels; (0, 0) without the file."""
+    if not png.is_file():
         return 0, 0
-    return width, height
+    with Image.open(png) as picture:
+        return picture.size
 
 
-def numeric(table: Any) -> set[int]:
+def numeric(table: Mapping) -> set[int]:
     """The columns that hold short numbers, which stand right: more than half of their cells."""
-    rows = table["rows"] if isinstance(table, Mapping) else table.rows
+    rows = table["rows"]
     count = len(rows[0]) if rows else 0
     return {k for k in range(count) if 2 * sum(bool(_NUMBER.match(row[k])) for row in rows) > len(rows)}
-
-
-def brief(caption: str) -> str:
-    """A caption up to its first stop, in few words: for a line that names several."""
-    head = re.split(r"(?<=.{15})[.:;] ", caption, maxsplit=1)[0]
-    return head if len(head) <= BRIEF else f"{head[:BRIEF].rsplit(' ', 1)[0].rstrip(',')} …"
 
 
 def sources(results: Mapping) -> list[tuple[str, str]]:
@@ -240,7 +218,6 @@ FILTERS = {
     "formula": formula,
     "scripts": with_scripts,
     "time": with_time,
-    "brief": brief,
     "kind_of": kind_of,
     "page_of": page_of,
     "numeric": numeric,
@@ -299,8 +276,7 @@ def remove_pages(folder: Path) -> None:
 def _one_file(results: Mapping, folder: Path) -> str:
     """All cases on one page that needs no other file; also of a comparison."""
     stored = read_stored(results)
-    look, told = Look(folder, embed=True), set[str]()
-    cases = [case_view(each, look, told) for each in _ordered(stored.ran.values())]
+    cases = [case_view(each, Look(folder, embed=True)) for each in _ordered(stored.ran.values())]
     return _page("single.html.j2", stored, cases=cases, origins=origins(stored.ran.values()))
 
 
@@ -319,25 +295,13 @@ def _ordered(cases: Iterable[ShownCase]) -> list[ShownCase]:
 def _group_page(
     group: dict, cases: list[ShownCase], answers: list[Answer], *, stored: Stored, look: Look
 ) -> str:
-    told: set[str] = set()
-    headline = headline_of(stored) if group["name"] == PAGE else None
-    pictures = headline.pictures if headline else ()
-    shown = {each["png"] for each in pictures}
-    long = len(cases) > MANY_CASES or sum(len(each.case["figures"]) for each in cases) > MANY_FIGURES
     return _page(
         "group.html.j2",
         stored,
-        headline=headline,
-        pictures=[figure_view(each, look) for each in pictures],
-        answers=[
-            each
-            for each in answers
-            if each.question["page"] == group["name"]
-            and not (headline and each.question["words"] == headline.question)
-        ],
+        headline=headline_of(stored) if group["name"] == PAGE else None,
+        answers=[each for each in answers if each.question["page"] == group["name"]],
         group=group,
-        long=long,
-        cases=[case_view(each, look, told, shown) for each in cases],
+        cases=[case_view(each, look) for each in cases],
         waiting=[row for row in stored.waiting if group_of(row[0]) == group],
         origins=origins(cases),
     )
@@ -345,19 +309,15 @@ def _group_page(
 
 def _index(template: str, evidence: Evidence, answers: list[Answer]) -> str:
     stored = evidence.stored
-    groups = [(group, cases, sum(len(each.red) for each in cases)) for group, cases in _groups(stored)]
     return _page(
         template,
         stored,
         sentence=sentence(stored, evidence.pairs),
         picture=f"{PICTURE}.png" if evidence.pairs else "",
         far=far(evidence.pairs),
-        costs=cost_table(costs_of(stored)),
         answers=answers,
         red=stored.red,
         broken=stored.broken,
-        headline=headline_of(stored),
-        counted=groups,
         waiting=stored.waiting,
         further=stored.further,
         origins=origins(stored.ran.values()),
@@ -393,19 +353,12 @@ def _draw(evidence: Evidence, folder: Path) -> None:
         from verification.figures.style import save  # noqa: PLC0415 - loads matplotlib
 
         (folder / PICTURE).parent.mkdir(parents=True, exist_ok=True)
-        titles = [group["title"] for group in GROUPS]
+        order = [group["title"] for group in GROUPS]
+        titled = [(group_of(each.case.name)["title"], each) for each in evidence.pairs]
+        titled.sort(key=lambda pair: order.index(pair[0]))
         rows = [
-            (
-                group_of(pair.case.name)["title"],
-                pair.against,
-                pair.predicted,
-                pair.reference,
-                pair.case.name,
-                pair.quantity,
-            )
-            for pair in sorted(
-                evidence.pairs, key=lambda pair: titles.index(group_of(pair.case.name)["title"])
-            )
+            (title, each.against, each.predicted, each.reference, each.case.name, each.quantity)
+            for title, each in titled
         ]
         save(agreement(rows), folder / PICTURE, long=sys.maxsize)
 
