@@ -3,7 +3,6 @@
 
 import numpy as np
 import pytest
-from growing_sphere_checks import NU, YOUNG
 
 from fem_reference.axisymmetric.misfit import PROFILES, MisfitSphere
 from fem_reference.axisymmetric.planner import plan
@@ -15,7 +14,7 @@ from sam.scene import Scene
 from verification.reference.mindlin_cheng import EigenstrainSphere
 from verification.reference.misfit_sphere import PROFILES as EXACT, GrowingSphere
 
-A = 1e-5  # radius in m
+A, YOUNG, NU = 1e-5, 210e9, 0.3  # radius in m, elastic constants
 LINEAR = {"law": "linear", "yield_stress": 1e9, "modulus": 10e9}
 
 

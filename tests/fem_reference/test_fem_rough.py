@@ -5,7 +5,6 @@ counter-body that moves, removal between the cycles, what is refused.
 
 from dataclasses import replace
 from functools import cache
-from importlib import resources
 
 import numpy as np
 import pytest
@@ -20,9 +19,9 @@ from fem_reference.common.schedule import Load
 from fem_reference.spatial import worn_cycles
 from fem_reference.spatial.rough import build, on_mesh
 from fem_reference.spatial.worn import Limits, columns_of_points, depth_above, moved_up, own_depth
-from sam.scene import COUNTER_HEIGHT, CounterSurface, FrictionMap, HeightMap, Scene
+from sam.scene import COUNTER_HEIGHT, CounterSurface, FrictionMap, HeightMap, Scene, load_scene
 from verification.compare.comparison import compare_scene
-from verification.scenes.asperities import CELLS, csv_text, height_map
+from verification.scenes.asperities import CELLS, height_map
 
 SIDE = 12e-6
 
@@ -235,8 +234,10 @@ def test_the_axisymmetric_model_refuses_them_too():
 
 
 def test_the_file_is_that_of_the_recipe():
-    path = resources.files("verification").joinpath("scenes", "rough-asperities.csv")
-    assert path.read_text(encoding="utf-8") == csv_text() and height_map(CELLS).cells == (48, 48)
+    """Heights to 1e-12 m, places to 1e-9 m, as the file has them."""
+    file, made = load_scene("verification/scenes/rough-asperities.toml").surface.measured, height_map(CELLS)
+    assert file.cells == made.cells == (48, 48) and file.extent == pytest.approx(made.extent, rel=1e-4)
+    assert np.abs(file.values - made.values).max() < 0.51e-12
 
 
 def test_compare_sees_a_wrong_load_and_a_missing_table():

@@ -6,6 +6,7 @@ the surface below it.
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from sam.contact.stress import elastic_strain, surface_strain
@@ -13,13 +14,19 @@ from sam.scene.friction import GROWTH_ROWS, Friction, growth_coefficient
 from sam.tribofilm import FilmLaw, FilmState
 from sam.tribofilm.law import Loads, Material, multiplier, printed_stress, radial_flow
 from verification.cases.film import film_law
-from verification.reference.bonded_film import in_plane_strain, overall_coefficient, printed_thinning
-from verification.reference.film_flow import Film, FlowPoint, deviator, mises
-from verification.reference.film_tables import growth_coefficients, mean_of, table
-from verification.reference.regime import thinning
+from verification.reference.bonded_film import (
+    in_plane_strain,
+    overall_coefficient,
+    printed_thinning,
+    thinning,
+)
+from verification.reference.film_flow import Film, FlowPoint
+from verification.reference.stress import deviator, von_mises
 
 LAW = FilmLaw(80e9, 0.3, 2e9 / 3.0, 0.1, 0.4, np.inf)
 STEEL = 210e9, 0.3
+TABLES = {n: pd.read_csv(f"verification/data/table-{n}.csv") for n in (2, 3)}
+"""Of Bosman & Schipper (2011): chemical films of other studies, and how fast they grow."""
 
 
 def cells(*values):
@@ -43,11 +50,13 @@ class TestClosedForms:
         ],
     )
     def test_numbers_computed_elsewhere(self, low, pressures, percent):
-        """By another code, with three and four digits behind the point."""
-        state = at_centre(replace(LAW, low=low), pressures)
+        """By another code, with three and four digits behind the point; and the closed form, to rounding."""
+        state, film = at_centre(replace(LAW, low=low), pressures), (LAW.young, LAW.poisson, LAW.yield_stress)
         assert 100.0 * state.thinning[:, 0] == pytest.approx(percent, abs=5.1e-4) and not state.failed.any()
+        exact = [thinning(p, low, in_plane_strain(p, *STEEL), film) for p in pressures]
+        assert state.thinning[:, 0] == pytest.approx(exact, rel=1e-12)
 
-    @pytest.mark.parametrize(("nu", "body_nu"), [(0.0, 0.3), (0.25, 0.49), (0.3, 0.0)])
+    @pytest.mark.parametrize(("nu", "body_nu"), [(0.0, 0.3), (0.25, 0.49), (0.3, 0.0), (0.3, 0.3)])
     def test_any_poisson_ratio(self, nu, body_nu):
         """Equal strains: exact in one step, at rounding; the excess over the yield stress loses two digits at
         most.
@@ -114,7 +123,7 @@ class TestReturnMap:
         sxx = (E * (xx + nu * yy) / (1.0 + nu) - nu * pressure) / (1.0 - nu)
         syy = (E * (yy + nu * xx) / (1.0 + nu) - nu * pressure) / (1.0 - nu)
         stress = np.stack([sxx, syy, -pressure, zero, -0.1 * pressure, E / (1.0 + nu) * xy])
-        q, flowed = np.array([mises(s) for s in stress.T]), np.abs(plastic).max(axis=0) > 0.0
+        q, flowed = von_mises(stress.T), np.abs(plastic).max(axis=0) > 0.0
         # sigma_y^2 - 3 tau^2 loses three digits at 99.8 % of the bearable shear, the elastic strain two
         assert q[flowed] == pytest.approx(LAW.yield_stress, rel=1e-10) and flowed.sum() > n / 2
         assert np.all(q[~flowed] <= LAW.yield_stress)
@@ -192,13 +201,19 @@ class TestScene:
         """nm, to the digits given; between its rows the coefficient is linear."""
         growth = [1e9 * film_law.friction_of(bath).growth for bath in (50.0, 100.0, 150.0, 200.0)]
         assert growth == pytest.approx([1.3731, 2.04145, 2.5882, 2.7541], abs=5.1e-5)
+        for bath, coefficient in TABLES[3].to_numpy():
+            exact, of_bath = coefficient * np.sqrt((314.15e-3 - 300e-6) / 1.0), film_law.friction_of(bath)
+            assert 1e9 * of_bath.growth == pytest.approx(exact, rel=1e-12)
+            assert 100.0 * of_bath.thinning_limit == pytest.approx(exact, rel=1e-12)
         assert growth_coefficient(398.15) == pytest.approx((3.644e-9 + 4.620e-9) / 2.0, rel=1e-14)
 
     def test_tables_of_the_paper(self):
-        of_code = [(bath + 273.15, 1e-9 * k) for bath, k in growth_coefficients().items()]
-        assert of_code == [pytest.approx(row, rel=1e-14) for row in GROWTH_ROWS]
-        assert mean_of(table(2), "young") == (pytest.approx(99.0, abs=0.05), 9)
-        assert mean_of(table(2), "thickness") == (pytest.approx(111.0, abs=0.5), 17)
+        """Of Table 2 the means over the studies that give a quantity, ranges at their middle."""
+        rows = TABLES[3].to_numpy() * [1.0, 1e-9] + [273.15, 0.0]
+        assert rows == pytest.approx(np.array(GROWTH_ROWS), rel=1e-14)
+        for name, mean, studies in (("young", 99.0, 9), ("thickness", 111.0, 17)):
+            middles = TABLES[2].filter(regex=f"{name}_(low|high)").mean(axis=1).dropna()
+            assert (middles.size, middles.mean()) == (studies, pytest.approx(mean, abs=0.5))
 
 
 def test_shares_of_the_load():
@@ -207,6 +222,11 @@ def test_shares_of_the_load():
     failed = np.array([[True, False], [True, True]])
     found = overall_coefficient(load, failed, 0.1, 0.4, cell_area=1e-12)
     assert found == pytest.approx(0.1 + 0.3 * 0.2333, rel=1e-12)
+    pressure, law = np.random.default_rng(3).uniform(0.0, 6e9, 1000), replace(LAW, limit=0.0204)
+    state = at_centre(law, pressure)
+    whole = (law.coefficient(state)[:, 0] * pressure).sum() / pressure.sum()
+    shares = overall_coefficient(pressure, state.failed[:, 0], 0.1, 0.4, cell_area=1e-12)
+    assert whole == pytest.approx(shares, rel=1e-12) and 0 < state.failed.sum() < 1000
     with pytest.raises(ValueError, match="load"):
         overall_coefficient(np.zeros(3), np.zeros(3, dtype=bool), 0.1, 0.4, cell_area=1.0)
 

@@ -22,11 +22,9 @@ from sam.scene.surface import (
     with_relief,
 )
 from sam.scene.surface.measured import fitted_form, harmonic, resampled
-from sam.scene.surface.readers import read_named
 from verification.robustness.fuzz import npz
 from verification.robustness.hostile import WAVES
 from verification.runs.store import identity
-from verification.scenes.pin import DATA, RECIPE, pin_heights, pin_table
 
 SIDE = 64e-6
 PATCH = (SIDE, SIDE)
@@ -369,11 +367,11 @@ def test_the_pin_is_what_its_recipe_makes():
     """Data to ten digits. Ra is that of the surface between the cells as well: sampling 64 x 64 changes it by
     some 1e-4.
     """
-    file = read_named("pin.csv", DATA.read_bytes())
-    _, _, made = pin_heights()
+    file = load_scene("verification/scenes/pin.toml").surface.measured
+    recipe = load_scene("verification/scenes/pin-recipe.toml")
+    made = on_grid(recipe.surface, 64)
     assert file.cells == (64, 64) and file.extent == pytest.approx(PATCH, rel=1e-9)
     assert np.abs(file.values - made).max() < 1e-9 * np.abs(made).max()
-    assert pin_table().count("\n") == 1 + 64 * 64 and DATA.stat().st_size < 300_000
     assert roughness_as_read(Surface(kind="file", path=file)).sa == pytest.approx(0.27e-6, rel=2e-3)
-    other = load_scene(RECIPE).surface.model_copy(update={"seed": 3})
+    other = recipe.surface.model_copy(update={"seed": 3})
     assert np.abs(on_grid(other, 64) - file.values).max() > 0.1e-6

@@ -10,7 +10,6 @@ from made_results import context
 from sam.scene import load_scene
 from verification.cases import LEVELS, all_cases
 from verification.cases.case import with_grid
-from verification.reference.convergence import fit_order
 from verification.rows import load_rows
 from verification.runs import models
 from verification.runs.sampling import plane_field_on, pressure_on, surface_pressure
@@ -53,27 +52,6 @@ def test_unconverged_solve_breaks_the_case_off(tmp_path, scene):
     with pytest.raises(RuntimeError, match="grid-edge"):
         case.solve(models.SAM, coarse, "sam")
     assert case.runs == ["runs/test/sam"]
-
-
-class TestOrder:
-    def test_power_law_is_recovered(self):
-        h = np.array([0.5, 0.2, 0.1, 0.03])
-        fit = fit_order(h, 3.0 * h**1.7)
-        assert fit.order == pytest.approx(1.7, abs=1e-12) and fit.factor == pytest.approx(3.0, rel=1e-12)
-        assert fit.scatter < 1e-12 and fit(0.1) == pytest.approx(3.0 * 0.1**1.7, rel=1e-12)
-
-    def test_scatter_is_seen(self):
-        h = np.array([0.4, 0.2, 0.1])
-        assert fit_order(h, h * [1.0, 1.2, 1.0]).scatter > 0.05
-
-    @pytest.mark.parametrize("error", [[1.0, 0.0, 0.1], [1.0, np.nan, 0.1], [1.0, -0.5, 0.1], [1.0, 0.5]])
-    def test_what_is_no_observation_is_refused(self, error):
-        with pytest.raises(ValueError):
-            fit_order([0.4, 0.2, 0.1], error)
-
-    def test_two_cell_sizes_are_no_order(self):
-        with pytest.raises(ValueError):
-            fit_order([0.4, 0.2, 0.2], [1.0, 0.5, 0.5])
 
 
 class TestSampling:

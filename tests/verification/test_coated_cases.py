@@ -11,11 +11,10 @@ from made_results import Made, square_mesh
 
 from sam.scene import Result, load_scene
 from verification.cases.case import with_keys
-from verification.cases.coated import films, layered
+from verification.cases.coated import films
 from verification.cases.recipes import RECIPES
 from verification.compare.measures import Plane, depths_compared
 from verification.figures.maps import compared_mises, in_body
-from verification.figures.specials import change_maps
 from verification.judging import error_of
 from verification.quantities import QUANTITIES
 from verification.references import coated_contact, contact_of
@@ -33,29 +32,6 @@ def varied(scene, **recipes):
     return scene
 
 
-# --- layered response -----------------------------------------------------------------------------------
-
-
-def test_an_overflow_of_short_waves_is_counted(monkeypatch):
-    class Overflowing(layered.Response):
-        def stress(self, depth):
-            in_plane, out = super().stress(depth)
-            return np.where(in_plane == 0, math.nan, in_plane), out
-
-    assert layered.short_waves()[0] == 0
-    monkeypatch.setattr(layered, "Response", Overflowing)
-    assert layered.short_waves()[0] > 0
-
-
-def test_the_cells_of_a_disc_have_its_area():
-    """Closed forms: rounding. Whole cells at the centre, none beyond the corner of the square around it."""
-    share = layered.covered(20)
-    times = np.where(np.arange(21) == 0, 1, 2)
-    assert np.sum(share * times[:, None] * times) == pytest.approx(math.pi * 400, rel=1e-13)
-    assert share[0, 0] == pytest.approx(1) and share[20, 20] == pytest.approx(0, abs=1e-12)
-    assert np.all((share >= -1e-12) & (share <= 1 + 1e-12)) and share == pytest.approx(share.T, abs=1e-12)
-
-
 # --- coated spheres -------------------------------------------------------------------------------------
 
 
@@ -70,12 +46,6 @@ def test_scenes_have_the_cells_the_radius_and_the_interface_that_are_asked_for()
         bare = contact_of(varied(SPHERE, film_under=(counterbody, 2e-6, 100e-9, 80 / 210)))
         assert bare.contact_radius == pytest.approx(2e-6, rel=1e-12)
         assert bare.peak_pressure == pytest.approx(6.5e9, rel=1e-12)
-    for share in (0.1, 0.2):
-        scene = varied(SLIDING, film_sliding=share)
-        depths, h = np.array(scene.grid.depths), scene.body.coating.thickness
-        inside, a = depths[depths < h], contact_of(SLIDING).contact_radius
-        assert h in depths and scene.grid.cells[0] % 2 == 1 and h - inside[-1] < 1e-5 * a
-        assert np.diff(inside).max() < 0.05 * a
 
 
 def test_a_result_without_changes_is_no_answer():
@@ -85,14 +55,6 @@ def test_a_result_without_changes_is_no_answer():
     for bad in (replace(good, converged=False), without):
         with pytest.raises(RuntimeError, match="sam ended"):
             films.changes_of(bad)
-
-
-def test_a_limit_that_the_thinnest_film_passes_is_no_number(monkeypatch):
-    def passed(*_, **_by_name):
-        raise ValueError("limit = 0.01 is passed at thickness/a0 = 0.002 already")
-
-    monkeypatch.setattr(films, "breaking_thickness", passed)
-    assert math.isnan(films.broken_at.__wrapped__(1e-3, "rigid", 0.01, "p"))
 
 
 def patch(n: int, peak: float = 16.0) -> Made:
@@ -214,12 +176,14 @@ def test_the_strain_on_either_side_of_a_jump_is_found_and_not_between_the_points
 # --- figures --------------------------------------------------------------------------------------------
 
 
-def test_maps_hold_their_numbers():
+def test_maps_hold_their_numbers_if_there_are_enough():
     h, e = np.geomspace(0.01, 2.0, 5), np.geomspace(0.1, 10.0, 4)
-    change = pd.DataFrame(np.outer(h, np.log(e)), h, e)
-    maps = change_maps({"one": change, "two": -change}, (80 / 210, {"1": 0.1}))
-    expected = 100 * np.concatenate([change.to_numpy().ravel(), -change.to_numpy().ravel()])
-    assert maps.data["change_percent"] == pytest.approx(expected) and len(maps.figure.axes) == 3
+    own = [{"thickness": x, "ratio": y, "p sam": x * y, "mises sam": -x * y} for x in h for y in e]
+    frame = pd.DataFrame(own).assign(sweep="map", counterbody="rigid")
+    expected = 100 * np.outer(h, e).ravel()
+    maps = films.changes_of_paper(None, frame).drawing
+    assert maps.data["change_percent"] == pytest.approx([*expected, *-expected])
+    assert films.changes_of_paper(None, frame[:12]) is None
 
 
 def test_planes_of_a_coated_body_leave_the_interface_blank():

@@ -30,10 +30,7 @@ from verification.reference.coated_traction import (
 from verification.reference.hamilton import sliding_stress
 from verification.reference.hertz import largest_von_mises, subsurface_stress
 from verification.reference.layered import ManyDigits
-from verification.reference.layered_axisymmetric import (
-    CoatedHalfSpace,
-    wave_pressure_ratio,
-)
+from verification.reference.layered_axisymmetric import CoatedHalfSpace
 from verification.reference.stress import von_mises
 
 PAPER = 80 / 210  # E1/E2 of Table 1 of Bosman & Schipper (2011)
@@ -72,11 +69,13 @@ def test_harmonics_equal_the_plane_wave_of_many_digits(young, nu, nu_body, kh):
 
 
 def test_waves_of_full_contact():
-    """p = z/c_zz(k), film of Table 1 (0.1 um), rigid and steel: values of another program."""
+    """p = z/c_zz(k) over that without film, film of Table 1 (0.1 um), rigid and steel: values of another
+    program.
+    """
     layers = CoatedHalfSpace(80e9, 0.3, 0.1e-6, 210e9, 0.3)
-    waves = np.array([1, 2, 5, 10, 20, 50]) * 1e-6
-    rigid = wave_pressure_ratio(layers, waves)
-    steel = wave_pressure_ratio(layers, waves, 210e9 / 0.91)
+    k = 2 * np.pi / (np.array([1, 2, 5, 10, 20, 50]) * 1e-6)
+    bare, coated = 2 / (layers.modulus_body * k), layers.compliance(k)
+    rigid, steel = bare / coated, 2 * bare / (coated + bare)
     np.testing.assert_allclose(rigid, [0.68791, 0.81461, 0.91480, 0.95492, 0.97676, 0.99052], atol=5.1e-6)
     np.testing.assert_allclose(steel, [0.81510, 0.89783, 0.95550, 0.97694, 0.98824, 0.99524], atol=5.1e-6)
 
@@ -191,20 +190,13 @@ def test_stresses_of_the_coated_contact(young, nu, h):
         assert abs(missing[1] - (missing[0] - missing[1]) / 7) < 0.3 * abs(missing[1]) + 1e-9
 
 
-def test_largest_von_mises_of_the_bare_contact():
-    """The search in the plane against Hertz on the axis, and at the interface of a thick film."""
-    contact = film_contact(0.1, PAPER)
-    found = largest_bare_mises(contact)
-    value, z = largest_von_mises(contact.bare.peak_pressure, contact.bare.contact_radius, 0.3)
-    assert (
-        found.value == pytest.approx(value, rel=1e-6)
-        and found.z == pytest.approx(z, abs=2e-3)
-        and found.r == 0
-    )
+def test_largest_von_mises_is_that_of_hertz_and_not_below_a_finer_scan():
+    """Bare on the axis, and at the interface of a thick film; of film and body."""
+    bare = film_contact(0.1, PAPER)
+    found = largest_bare_mises(bare)
+    value, z = largest_von_mises(bare.bare.peak_pressure, bare.bare.contact_radius, 0.3)
+    assert (found.value, found.r) == (pytest.approx(value, rel=1e-6), 0) and abs(found.z - z) < 2e-3
     assert largest_bare_mises(film_contact(1.0, PAPER)).z == 1.0
-
-
-def test_largest_von_mises_is_not_below_a_finer_scan():
     contact = film_contact(0.2, 10.0)
     found = largest_mises(contact)
     film = largest_mises(contact, film=True)
@@ -327,8 +319,7 @@ def test_waves_of_traction_have_many_digits(layers, k):
 
 
 def test_transform_of_the_hertz_pressure():
-    """Where the series ends and the closed form begins as well."""
-    for ka in (1e-3, 0.0999, 0.1001, 1.0, 7.0):
+    for ka in (1e-3, 0.1, 1.0, 7.0):
         exact = quad(lambda s, ka=ka: np.sqrt(1.0 - s * s) * j0(ka * s) * s, 0.0, 1.0, epsabs=1e-13)[0]
         assert hertz_transform(np.array([ka]))[0] == pytest.approx(exact, abs=1e-10)  # of the quadrature
 
@@ -362,7 +353,6 @@ def test_largest_is_not_below_a_finer_scan(film):
         (lambda: film_contact(0.5, 1.0).stress(0.0, 0.6, film=True), "z must be <= thickness = 0.5"),
         (lambda: disc_stress(LAYERS[0], 1.0, 0.0, 0.0), "z must be >= contact_radius/1000"),
         (lambda: thin_layer(LAYERS[1], 1.0, 1.0), "poisson = 0.5: an incompressible"),
-        (lambda: wave_pressure_ratio(LAYERS[0], 0.0), "wavelength"),
         (
             lambda: coated_sliding_stress(SOFT, 1.0, 1.0, 0.4, x=X, z=0.2, film=True),
             "z must be <= thickness = 0.1 m everywhere",

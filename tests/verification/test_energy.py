@@ -12,14 +12,7 @@ from builders import RADIUS, hertz_force, scene
 from sam.scene import CounterBody, Scene, plastic_work
 from sam.scene.yield_curve import Linear, Swift, Tabulated
 from tests.system.test_repeated_loading import MELAN, pressed
-from verification.cases.energy.energy import (
-    cycle,
-    flow,
-    of_cells,
-    of_steps,
-    pressing,
-    within,
-)
+from verification.cases.energy.energy import row
 from verification.cases.recipes import Resolution, resolved_at
 from verification.energy import of_fem, of_sam
 from verification.energy.balance import Balance, along_path
@@ -28,16 +21,11 @@ from verification.runs.models import FEM, FEM_3D, SAM, solve
 YIELD = 1e9
 
 
-def sphere(size=5, ratio=4.0, mu=None, law=None, loading=None) -> Scene:
-    """p0 of the elastic contact is `ratio` times the yield stress; size: cells or elements in its radius;
-    law: or elastic.
-    """
-    made = scene(
-        body={"plasticity": law},
-        loading={"force": hertz_force(ratio * YIELD), "steps": 4, "unload": True, **(loading or {})},
-        friction=mu and {"coefficient": mu, "direction": "alternating"},
-        solver={"tolerance": 1e-5},
-    )
+def sphere(size=5, mu=None, steps=4) -> Scene:
+    """Elastic, p0 four times YIELD, and unloaded; size: cells or elements in the radius of contact."""
+    loading = {"force": hertz_force(4 * YIELD), "steps": steps, "unload": True}
+    friction = mu and {"coefficient": mu, "direction": "alternating"}
+    made = scene(loading=loading, friction=friction, solver={"tolerance": 1e-5})
     return resolved_at(made, Resolution(size, size))
 
 
@@ -75,7 +63,7 @@ def test_the_work_along_a_path_is_exact_for_straight_parts():
 def test_an_elastic_body_gives_all_back(mu):
     """To rounding, also where pressure and traction each move the surface along the other."""
     found = of_sam.balance_of(sphere(mu=mu))
-    assert of_cells(found) < 1e-13 and abs(found.work[-1]) < 1e-13 * found.work[found.peak]
+    assert found.error_of_cells < 1e-13 and abs(found.work[-1]) < 1e-13 * found.work[found.peak]
     assert not found.dissipated.any() and not found.flowed.any()
 
 
@@ -91,8 +79,8 @@ def test_an_elastic_counter_body_is_refused():
 
 def test_a_sliding_body_in_space_balances_to_the_residual_of_its_forces():
     """Half of it is modelled; elastic, 4 elements in the radius."""
-    found = of_fem.balance_of(sphere(4, mu=0.3, loading={"steps": 1}), FEM_3D)
-    assert of_cells(found) < 1e-8
+    found = of_fem.balance_of(sphere(4, mu=0.3, steps=1), FEM_3D)
+    assert found.error_of_cells < 1e-8
 
 
 def by_hand() -> Balance:
@@ -113,10 +101,16 @@ def by_hand() -> Balance:
 def test_errors_of_a_balance_by_hand():
     one = by_hand()
     assert one.peak == 1 and one.pressing[1] == 2.0
-    assert of_cells(one) == pytest.approx(2.4 / 8.0)
-    assert of_steps(one) == pytest.approx(0.75 / 8.0) and within(one) == pytest.approx(0.4 / 8.0)
-    assert pressing(one) == pytest.approx(0.5)
-    assert cycle(one) == pytest.approx(4.0 / 2.0 - 1.0) and flow(one) == pytest.approx(2.5 / 2.0 - 1.0)
+    expected = {"work": 4.0, "dissipated": 4.0, "locked": 0.5, "error-of-cells": 2.4 / 8.0}
+    expected |= {"error-of-steps": 0.75 / 8.0, "within-cells": 0.4 / 8.0}
+    for contact, more in (
+        ("perfect", {"pressing": 0.5}),
+        ("alternating", {"cycle": 4.0 / 2.0 - 1.0, "flow": 2.5 / 2.0 - 1.0}),
+        ("sliding", {}),
+    ):
+        found = row(one, contact)
+        assert found.pop("balance") == [one]
+        assert found == pytest.approx(expected | more)
 
 
 # --- back-stresses ------------------------------------------------------------------------------------------
@@ -144,10 +138,10 @@ def test_a_cycle_of_a_body_with_back_stresses_dissipates_its_work(model):
     """The gap falls at least to half with halved steps; cycles.csv has the same energies."""
     (_, coarse), (given, fine) = (pressed_twice(steps, model) for steps in (2, 4))
     table = solve(given, model).tables["cycles"]
-    assert of_cells(fine) < (1e-8 if model == FEM else 1e-2)
+    assert fine.error_of_cells < (1e-8 if model == FEM else 1e-2)
     assert abs(of_second_cycle(fine)) < 0.1 and abs(of_second_cycle(fine)) < abs(of_second_cycle(coarse)) / 2
     ends = np.flatnonzero(fine.force == 0)
     assert table["dissipated_J"] == pytest.approx(np.diff(fine.dissipated[ends]), rel=1e-9)
     assert (np.diff(fine.dissipated) >= 0).all() and fine.back.max() > 0.1 * fine.dissipated[-1]
     without = replace(fine, back=0.0)
-    assert of_steps(without) > 3 * of_steps(fine)
+    assert without.error_of_steps > 3 * fine.error_of_steps

@@ -27,38 +27,32 @@ KE, JG = KogutEtsion(0.3), JacksonGreen(0.3, 0.0088)
 def test_below_yield_both_are_hertz(fit, share):
     """The same force through the closed form of Hertz: equal to rounding."""
     unit = onset(fit.factor, RADIUS, MODULUS, YIELD)
-    hertz = CircularContact(unit.load * fit.load(share), RADIUS, MODULUS)
+    hertz = CircularContact(unit.force * fit.load(share), RADIUS, MODULUS)
     assert hertz.approach == close(share * unit.approach, 1e-13)
-    assert math.pi * hertz.contact_radius**2 == close(fit.area(share) * unit.area, 1e-13)
+    assert hertz.area == close(fit.area(share) * unit.area, 1e-13)
 
 
 @pytest.mark.parametrize("fit", [KE, JG])
 def test_first_yield_is_that_of_hertz(fit):
     """max von Mises = Y at p0 = factor Y; the fits round their factors to about 0.2 %."""
-    hertz = CircularContact(onset(fit.factor, RADIUS, MODULUS, YIELD).load, RADIUS, MODULUS)
+    hertz = onset(fit.factor, RADIUS, MODULUS, YIELD)
     assert hertz.peak_pressure == pytest.approx(fit.factor * YIELD, rel=1e-13)
     mises, _ = largest_von_mises(hertz.peak_pressure, hertz.contact_radius, 0.3)
     assert mises == pytest.approx(YIELD, rel=2e-3)
 
 
-def test_values_of_jackson_and_green():
-    """Worked out with a calculator for Y/E* = 0.0088; digits as written."""
+def test_values_worked_out_with_a_calculator():
+    """Jackson and Green for Y/E* = 0.0088; digits as written. Kogut and Etsion: 1.03 3^1.425 = 4.9285, 0.93
+    3^1.136 = 3.2395, 1.40 110^1.263 = 530.16, 0.94 110^1.146 = 205.38; at w* = 6 the published jumps, 13.23
+    to 13.46 in load and 7.12 to 7.33 in area.
+    """
     assert JG.factor == pytest.approx(1.6150, abs=1e-4)
     assert JG.load(np.array([6.0, 20.0, 50.0, 110.0])) == pytest.approx([12.99, 63.5, 194.0, 466.0], rel=1e-3)
     # w = 20: B = 0.14 exp(0.2024) = 0.17141, (20/1.9)^B = 1.49716
     assert JG.area(20.0) == pytest.approx(29.943, rel=1e-4)
-
-
-def test_values_of_kogut_and_etsion():
-    """1.03 3^1.425 = 4.9285, 0.93 3^1.136 = 3.2395; 1.40 110^1.263 = 530.1, 0.94 110^1.146 = 205.4."""
-    assert KE.load(3.0) == pytest.approx(4.9285, rel=1e-4) and KE.area(3.0) == pytest.approx(3.2395, rel=1e-4)
-    assert KE.load(110.0) == pytest.approx(530.1, rel=1e-3) and KE.area(110.0) == pytest.approx(
-        205.4, rel=1e-3
-    )
-
-
-def test_jumps_of_kogut_and_etsion_are_the_published_ones():
-    """At w* = 6: 13.23 to 13.46 in load, 7.12 to 7.33 in area; nothing is smoothed away."""
+    w = np.array([3.0, 110.0])
+    assert KE.load(w) == pytest.approx([4.9285, 530.16], rel=1e-4)
+    assert KE.area(w) == pytest.approx([3.2395, 205.38], rel=1e-4)
     below, above = 6.0, np.nextafter(6.0, 7.0)
     assert KE.load(above) / KE.load(below) - 1.0 == pytest.approx(0.017, abs=1e-3)
     assert KE.area(above) / KE.area(below) - 1.0 == pytest.approx(0.029, abs=1e-3)
@@ -72,14 +66,6 @@ def test_mean_pressure_rises_from_first_yield():
     mean = 2.0 / 3.0 * fit.factor * fit.load(w) / fit.area(w)
     assert np.all(np.diff(mean) > 0.0) and mean[0] == pytest.approx(1.077, rel=1e-3)
     assert fit.load(1e7) / 1e7 == pytest.approx(4.0 * 2.84 / 1.6150, rel=1e-4)
-
-
-def test_the_two_fits_agree_where_both_are_used():
-    """Within 5 % to w* = 20, the tolerance of the verification case; 14 % apart at 110."""
-    w = np.linspace(2.0, 20.0, 50)
-    assert np.max(np.abs(KE.load(w) / JG.load(w) - 1.0)) < 0.05
-    assert np.max(np.abs(KE.area(w) / JG.area(w) - 1.0)) < 0.05
-    assert KE.load(110.0) / JG.load(110.0) - 1.0 == pytest.approx(0.14, abs=0.01)
 
 
 def test_bad_input_is_refused():
@@ -120,12 +106,7 @@ class TestHardening:
             none.perfect.area(w), rel=1e-6
         )
         # its hardness is another fit to the same results
-        assert none.load(d) * MODULUS / none.first.load == pytest.approx(none.perfect.load(w), rel=0.02)
-
-    def test_hardening_carries_more_on_less_area(self):
-        d = 20 * self.STEEL.first.approach
-        harder = Ghaednia(100e9 / 0.91, 200e9, 0.3, 750e6, 0.1)
-        assert harder.load(d) > self.STEEL.load(d) and harder.area_radius(d) < self.STEEL.area_radius(d)
+        assert none.load(d) * MODULUS / none.first.force == pytest.approx(none.perfect.load(w), rel=0.02)
 
 
 def test_first_yield_is_that_of_the_closed_form():
@@ -152,7 +133,7 @@ def test_indentation_counts_resolved_load_steps_within_the_fits_only():
     """
     scene, w = load_scene("verification/scenes/plastic-perfect.toml"), np.arange(1.0, 31.0)
     unit = published.jackson_green(scene)[1]
-    history = {"approach_m": w * unit.approach, "force_N": w * unit.load, "contact_area_m2": w * unit.area}
+    history = {"approach_m": w * unit.approach, "force_N": w * unit.force, "contact_area_m2": w * unit.area}
     found = published.points(scene, SimpleNamespace(tables={"history": history}))
     assert found["w"] == pytest.approx(np.arange(4.0, 22.0))  # sqrt(4/30) > 0.35
     assert found["load"] == pytest.approx(found["w"])

@@ -10,10 +10,10 @@ from scipy.integrate import solve_ivp
 from sam.scene import load_scene
 from verification.cases.running_in.study import BULK, HARDENING, NAMES, A, B, with_constant
 from verification.compare.running_in_measures import Limits
-from verification.reference.bonded_film import in_plane_strain, plastic_strain
-from verification.reference.regime import (
+from verification.reference.bonded_film import (
     Regime,
     film_pressure,
+    in_plane_strain,
     largest_pressure,
     regime,
     swift,
@@ -56,14 +56,6 @@ def onset_of_yield(mu: float) -> float:
 
 
 class TestRegime:
-    def test_thinning_without_friction_is_that_of_the_bonded_film(self):
-        """Another form of the same answer: rounding."""
-        for p in (1e9, 2e9, 4e9, 6.5e9):
-            e = in_plane_strain(p, *BODY)
-            assert thinning(p, 0.0, e, FILM) == pytest.approx(
-                plastic_strain(p, e, FILM), rel=1e-12, abs=1e-17
-            )
-
     @pytest.mark.parametrize("p", [2e9, 3e9, 3.8e9])
     def test_thinning_with_friction_is_that_of_the_rate_equations(self, p):
         """Integrated to 1e-11; 1e-8 leaves room for its steps. A friction of 0.11 is noticed."""

@@ -37,16 +37,10 @@ def test_heights_that_are_not_worn_and_strains_of_other_cycles_are_seen(worn):
     before, loaded, _end = study.last_cycle(records)
     assert len(loaded) == scene.loading.steps and before.tree()["wear"]["depth"].any()
     less = with_field(result, "cell_data", "worn_m", lambda depth: 0.99 * depth)
-    assert max(cell_checks.displaced(scene, study.lowered(less), loaded).values()) > 1e-3
-    assert max(film_checks.states(scene, loaded).values()) > 1e-3  # strains since the first load
+    assert cell_checks.displaced(scene, study.lowered(less), loaded) > 1e-3
+    assert film_checks.states(scene, loaded) > 1e-3  # strains since the first load
     through = contact_checks.flow(scene, records, choose_grid(scene).depths)  # also over the removal
-    assert through["direction"] > 1e-2
-
-
-def test_the_worst_of_all_cycles_counts_and_the_least_that_was_worn():
-    found = {2: {"load": 1.0, "worn": 2.0}, 5: {"load": 3.0, "worn": 4.0}}
-    values = study.CASES[0].measure(found)
-    assert values["load"].value == 3.0 and values["worn"].value == 2.0
+    assert through["flow"] > 1e-2
 
 
 def test_a_record_is_counted_from_another_one():

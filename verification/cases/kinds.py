@@ -340,7 +340,7 @@ def _orders(file: CaseFile, frame: DataFrame) -> Plot:
             for c in errors
         }
         panels[title] = curves
-        fits += [f"{title} {words} {order.order:.2f}" for words, (*_, order) in curves.items() if order]
+        fits += [f"{title} {words} {order.exponent:.2f}" for words, (*_, order) in curves.items() if order]
     said = f"Observed orders: {', '.join(fits)}."
     alt = f"Log-log plot of the errors against the cell size with fitted straight lines. {said}"
     caption = f"Lines: least-squares fits error ~ hᵐ. {said}"

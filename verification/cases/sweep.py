@@ -25,7 +25,7 @@ from verification.cases.recipes import beside, changed
 from verification.compare.comparison import compare_scene
 from verification.judging import Measured, error_of
 from verification.quantities import QUANTITIES, Quantity, Reference, Solved
-from verification.reference.convergence import Order, extrapolate, fit_order
+from verification.reference.convergence import Power, extrapolate, fit_power
 from verification.references import REFERENCES, hertz_sphere
 from verification.rows import CaseFile, Claim, SweepFile, Take
 from verification.runs.models import FEM, FEM_3D, SAM
@@ -155,7 +155,7 @@ def _single(rows: DataFrame, column: str) -> Measured:
 STATISTICS: Mapping[str, Callable[[DataFrame, str], float | Measured]] = {
     "value": _single,
     "pair": lambda rows, column: _single(rows, f"{column} pair").value,
-    "order": lambda rows, column: fit_order(rows["h"], rows[column]).order,
+    "order": lambda rows, column: fit_power(rows["h"], rows[column]).exponent,
     "limit": lambda rows, column: extrapolate(rows["h"], rows[column]).limit,
     "largest": lambda rows, column: float(np.max(rows[column].to_numpy())),
     "first": lambda rows, column: rows[column].iloc[0],
@@ -241,7 +241,7 @@ def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
         for model, own in rows.groupby("model", sort=False):
             orders = [fitted(file, own, column) for column in shown]
             if any(orders):
-                cells = (f"order {order.order:.2f}" if order else "" for order in orders)
+                cells = (f"order {order.exponent:.2f}" if order else "" for order in orders)
                 lines.append((*[""] * len(axes), model.upper(), *cells))
         heads = (re.sub(r"[._-]", " ", axis) for axis in axes)
         yield SmallTable(f"Points {name}" if sweep else name, (*heads, *modelled, *shown.values()), lines)
@@ -251,8 +251,8 @@ def _cell(value: Any) -> str:
     return value if isinstance(value, str) else number(None if value is None or value != value else value, 5)
 
 
-def fitted(file: CaseFile, rows: DataFrame, column: str) -> Order | None:
+def fitted(file: CaseFile, rows: DataFrame, column: str) -> Power | None:
     """The order that a row of the case takes of a column, in the rows of one model in a sweep."""
     takes = [claim.take[0] for claim in file.taken if claim.take[0][:2] == ("order", column)]
     fits = [own for take in takes if len(own := selected(file, rows, take))]
-    return fit_order(fits[0]["h"], fits[0][column]) if fits else None
+    return fit_power(fits[0]["h"], fits[0][column]) if fits else None

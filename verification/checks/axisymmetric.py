@@ -15,7 +15,7 @@ from skfem import LinearForm, asm
 from fem_reference import Model, Step, load_steps
 from sam.scene import Checkpoint, Scene
 from verification.checks.conditions import planes, tractions
-from verification.checks.material import back_stress, elastic_stress, flow_of_parts, limit_of, von_mises
+from verification.checks.material import back_stress, elastic_stress, flow_of, limit_of, von_mises
 
 DEEPEST = 3.0  # Hertz radii: down to there is the force through planes judged; below it elements are long
 
@@ -62,10 +62,10 @@ class Formed:
         return float((von_mises(self.effective()) / limit - 1.0).max())
 
     def flow(self, before: Formed) -> dict[str, float]:
-        """`flow_of_parts` in the step that ends here and began at `before`."""
+        """`flow_of` in the step that ends here and began at `before`."""
         strain = self.six((self.plastic - before.plastic) * self.unit)
         peeq = before.peeq * self.unit, self.peeq * self.unit
-        return flow_of_parts(self.scene, strain, *peeq, stress=self.effective(), z=self.depths)
+        return flow_of(self.scene, strain, *peeq, stress=self.effective(), z=self.depths)
 
 
 class Finite(Formed):
@@ -96,7 +96,8 @@ class Finite(Formed):
             )
 
         force, (x, z) = asm(internal, self.basis), self.basis.doflocs
-        along_z = np.isin(np.arange(force.size), self._numbers(1))
+        numbers = np.concatenate([self.basis.nodal_dofs[1], self.basis.facet_dofs[1]])
+        along_z = np.isin(np.arange(force.size), numbers)
         held = (x >= x.max() * (1 - 1e-9)) | (z >= z.max() * (1 - 1e-9)) | ((x == 0.0) & ~along_z)
         surface = np.flatnonzero((z == 0.0) & along_z)
         surface = surface[np.argsort(x[surface])][: self.state.active.size]
@@ -109,11 +110,7 @@ class Finite(Formed):
             "load": abs(float(force[in_contact].sum()) / total - 1.0),
         }
 
-    def _numbers(self, component: int) -> np.ndarray:
-        """Of the degrees of freedom along r (0) or z (1)."""
-        return np.concatenate([self.basis.nodal_dofs[component], self.basis.facet_dofs[component]])
-
-    def surface(self) -> dict[str, float]:
+    def surface(self) -> float:
         """Tractions in the elements at the surface against the nodal pressure, as `sam_surface`."""
         top = np.isclose(self.z.min(axis=1), self.z.min())
         z = self.z[top]

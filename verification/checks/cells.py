@@ -37,7 +37,7 @@ DEEP, COLUMNS = 2.0, 12
 TWICE = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
 
 
-def displaced(scene: Scene, result: Result, records: Sequence[Checkpoint]) -> dict[str, float]:
+def displaced(scene: Scene, result: Result, records: Sequence[Checkpoint]) -> float:
     """`conditions` of all cells, displaced by direct sums; records: after each load step, of plasticity."""
     x, y, p = surface_of(result)
     cell, q = result.discretisation["cell_m"], traction_of(scene, result)

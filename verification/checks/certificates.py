@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""What is checked of a solution in each model, as conditions with a value: see `verification.checks`."""
+"""What is checked of a solution in each model: condition -> value, see `verification.checks`."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from itertools import pairwise
+from itertools import groupby, pairwise
 
 import numpy as np
 
@@ -21,39 +20,6 @@ from verification.checks import (
 )
 from verification.runs import models
 
-NAMES = {
-    "load": "load: |sum of p - F|/F",
-    "complementarity": "contact: |gap| where p > 0, penetration elsewhere, over the approach",
-    "displacement": "the same on all cells, displacements summed directly over pressure, traction and "
-    "plastic strain",
-    "friction": "friction: |q - μp| over p_max; at nodes of FEM over F",
-    "equilibrium": "equilibrium: nodal forces on free degrees of freedom over F",
-    "yield": "yield: (σ_vM - σ_y)/σ_y",
-    "flow": "flow rule: 2G |Δεᵖ - 3/2 Δγ s/σ_vM| over σ_y0, Δεᵖ without volume, Δγ its length and never "
-    "negative",
-    "consistency": "consistency: |σ_vM - σ_y|/σ_y where Δγ > 0",
-    "surface": "surface: tractions at z = 0 or extrapolated to it less those returned, away from the edge of "
-    "contact, over p_max",
-    "stress": "stress below the surface of elastic SAM, summed directly over pressure and traction, over "
-    "p_max",
-    "fields": "stress and plastic strain of the returned elements less the means of their points, over the "
-    "largest",
-    "interface": "film: jumps of σ_zz, σ_xz, σ_yz over p_max, and of ε_xx, ε_yy, ε_xy over p_max/E",
-    "film": "chemical film where it is whole: its plastic strain, thinning and traction beyond their limits, "
-    "over the limits; cells that have healed",
-    "planes": "planes: force through z = const over the load, less 1",
-    "histories": "histories: steps that were accepted above the residual where they may stop",
-}
-"""Condition -> what it says, in words."""
-
-
-@dataclass
-class Conditions:
-    """Of a scene with one model: condition (of NAMES) -> value; curves: (load step, attempt)."""
-
-    values: dict[str, float] = field(default_factory=dict)
-    curves: list[tuple[str, Attempt]] = field(default_factory=list)
-
 
 def solved(scene: Scene, model: str) -> tuple[Result, list]:
     """The result of a model, and all that it handed out after its load steps."""
@@ -64,48 +30,43 @@ def solved(scene: Scene, model: str) -> tuple[Result, list]:
     return result, records
 
 
-def of_sam(scene: Scene, result: Result, records: list) -> Conditions:
+def of_sam(scene: Scene, result: Result, records: list) -> dict[str, float]:
     """All conditions of a result of SAM, smooth or rough, without film."""
     plastic, rough = scene.body.plasticity is not None, scene.surface is not None
-    values = common(scene, result) | {
-        "displacement": max(cell_checks.displaced(scene, result, records).values())
-    }
+    values = common(scene, result) | {"displacement": cell_checks.displaced(scene, result, records)}
     if scene.friction is not None:
         values["friction"] = contact_checks.slips(scene, result)
     elif not rough:
         values["planes"] = float(np.abs(contact_checks.sam_planes(scene, result)).max())
-    if not (
-        rough and plastic
-    ):  # layers of half a cell are too thick to extrapolate below spots of a few cells
-        values["surface"] = max(contact_checks.sam_surface(scene, result).values())
+    if not (rough and plastic):  # half a cell is too thick to extrapolate below spots of a few cells
+        values["surface"] = contact_checks.sam_surface(scene, result)
     if not plastic:
-        values["stress"] = cell_checks.stress(scene, result)
-        return Conditions(values, curves_of(result))
-    values = larger(values, by_rule(contact_checks.flow(scene, records, choose_grid(scene).depths)))
+        return values | {"stress": cell_checks.stress(scene, result)}
+    values = larger(values, contact_checks.flow(scene, records, choose_grid(scene).depths))
     values["yield"] = max(
         values["yield"], *(contact_checks.yields(scene, result, state) for state in ("peak", "unloaded"))
     )
     values["displacement"] = max(values["displacement"], cell_checks.left(scene, result, records))
     if scene.friction is not None and scene.friction.film:
-        values["film"] = max(film_checks.states(scene, records).values())
+        values["film"] = film_checks.states(scene, records)
     if not rough:  # the line y = 0 need not be where a rough body touches first
         values = larger(values, contact_checks.unloaded(scene, result))
-    return Conditions(values, curves_of(result))
+    return values
 
 
-def of_coated(scene: Scene, result: Result, _records: list) -> Conditions:
+def of_coated(scene: Scene, result: Result, _records: list) -> dict[str, float]:
     """All conditions of a result of SAM with an elastic film."""
     values = common(scene, result) | {
-        "surface": max(contact_checks.sam_surface(scene, result).values()),
-        "displacement": max(coated_checks.displaced(scene, result).values()),
-        "interface": max(coated_checks.interface(scene, result).values()),
+        "surface": contact_checks.sam_surface(scene, result),
+        "displacement": coated_checks.displaced(scene, result),
+        "interface": coated_checks.interface(scene, result),
     }
     if scene.friction is not None:
         values["friction"] = contact_checks.slips(scene, result)
-    return Conditions(values, curves_of(result))
+    return values
 
 
-def of_fem(scene: Scene, result: Result, records: list) -> Conditions:
+def of_fem(scene: Scene, result: Result, records: list) -> dict[str, float]:
     """All conditions of the axisymmetric FEM; an elastic body hands out no steps: they are taken again."""
     values = common(scene, result)
     model, steps = fem_checks.steps_of(scene, records)
@@ -115,31 +76,28 @@ def of_fem(scene: Scene, result: Result, records: list) -> Conditions:
     if scene.body.coating is None:
         depths, errors = last.planes()
         values["planes"] = float(np.abs(errors[depths < fem_checks.DEEPEST]).max())
-        values["surface"] = max(last.surface().values())
+        values["surface"] = last.surface()
     if scene.body.plasticity is not None:
         values = larger(
             values | {"yield": max(each.yields() for each in finite)}, contact_checks.unloaded(scene, result)
         )
         for before, now, step in zip(finite, finite[1:], steps[1:], strict=False):
             if not step.cuts:
-                values = larger(values, by_rule(now.flow(before)))
-    return Conditions(values, curves_of(result))
+                values = larger(values, now.flow(before))
+    return values
 
 
-def of_spatial(scene: Scene, result: Result, records: list) -> Conditions:
+def of_spatial(scene: Scene, result: Result, records: list) -> dict[str, float]:
     """All conditions of a result of the three-dimensional FEM, in every step."""
-    values, steps = (
-        spatial_checks.surface(scene, result) | late(result),
-        spatial_checks.steps_of(scene, records),
-    )
+    values, steps = spatial_checks.surface(scene, result), spatial_checks.steps_of(scene, records)
     for each in steps:
         values = larger(values, each.equilibrium())
-    values["fields"] = max(spatial_checks.fields(steps, result).values())
+    values |= late(result) | {"fields": spatial_checks.fields(steps, result)}
     if scene.body.plasticity is not None:
         values["yield"] = max(each.yields() for each in steps)
         for before, now in pairwise(steps):
-            values = larger(values, by_rule(now.flow(before)))
-    return Conditions(values, curves_of(result))
+            values = larger(values, now.flow(before))
+    return values
 
 
 OF_GROUP = {"sam": of_sam, "fem": of_fem, "coated": of_coated, "rough": of_sam, "fem-3d": of_spatial}
@@ -153,8 +111,8 @@ def larger(one: Mapping[str, float], other: Mapping[str, float]) -> dict[str, fl
 
 def common(scene: Scene, result: Result) -> dict[str, float]:
     """Conditions that are measured alike in SAM and the axisymmetric FEM."""
-    load, contact = contact_checks.load(scene, result), contact_checks.complementarity(scene, result)
-    return {"load": max(load.values()), "complementarity": max(contact.values())} | late(result)
+    contact = contact_checks.complementarity(scene, result)
+    return {"load": contact_checks.load(scene, result), "complementarity": contact} | late(result)
 
 
 def late(result: Result) -> dict[str, float]:
@@ -163,25 +121,11 @@ def late(result: Result) -> dict[str, float]:
     return {"histories": float(sum(each.accepted and each.residuals[-1] > each.goal for each in curves))}
 
 
-def by_rule(found: Mapping[str, float]) -> dict[str, float]:
-    """The values of `verification.checks.material.flow_of` in three."""
-    parts = ("direction", "length", "volume", "backwards")
-    return {
-        "flow": max(found[name] for name in parts),
-        "consistency": found["consistency"],
-        "yield": found["yield"],
-    }
-
-
 def curves_of(result: Result) -> list[tuple[str, Attempt]]:
     """The attempts in the residual histories of a result: (load step, attempt)."""
-    table = result.tables["residuals"]
-    keys = list(zip(table["cycle"], table["step"], table["attempt"], strict=True))
-    out: list[tuple[str, Attempt]] = []
-    for key in dict.fromkeys(keys):
-        rows = [k for k, each in enumerate(keys) if each == key]
-        residuals = tuple(table["residual"][k] for k in rows)
-        out.append(
-            (f"step {key[1]}", Attempt(bool(table["accepted"][rows[0]]), residuals, table["goal"][rows[0]]))
-        )
-    return out
+    columns = ("cycle", "step", "attempt", "accepted", "goal", "residual")
+    rows = zip(*(result.tables["residuals"][name] for name in columns), strict=True)
+    return [
+        (f"step {step}", Attempt(bool(accepted), tuple(row[-1] for row in same), goal))
+        for (_, step, _, accepted, goal), same in groupby(rows, key=lambda row: row[:5])
+    ]

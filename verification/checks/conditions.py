@@ -45,8 +45,8 @@ def plane_of(result: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return x, z, stress.reshape(x.size, z.size, 6).transpose(2, 0, 1)
 
 
-def load(scene: Scene, result: Result) -> dict[str, float]:
-    """Tension over the largest pressure, and what is given of the load: the sum of the pressure against
+def load(scene: Scene, result: Result) -> float:
+    """Tension over the largest pressure, or what is given of the load: the sum of the pressure against
     the force, of FEM over rings, and the approach.
     """
     force = force_of(scene, result)
@@ -58,8 +58,7 @@ def load(scene: Scene, result: Result) -> dict[str, float]:
         line = peak_rows(result, "line")
         r, p = line["x_m"], line["p_Pa"]
         total = (simpson_rings(r) * p)[1:].sum()
-    given = max(abs(float(total) / force - 1.0), missed_approach(scene, result))
-    return {"tension": max(0.0, -float(p.min() / p.max())), "load": given}
+    return max(abs(float(total) / force - 1.0), missed_approach(scene, result), -float(p.min() / p.max()))
 
 
 def force_of(scene: Scene, result: Result) -> float:
@@ -83,8 +82,9 @@ def simpson_rings(r: np.ndarray) -> np.ndarray:
     return weight
 
 
-def complementarity(scene: Scene, result: Result) -> dict[str, float]:
-    """p gap = 0, gap >= 0 on the line y = 0, the gap that of the shapes + uz - approach; over the approach.
+def complementarity(scene: Scene, result: Result) -> float:
+    """p gap = 0, gap >= 0 on the line y = 0, the gap that of the shapes + uz - approach and that returned;
+    over the approach.
 
     Of a rough body with the returned heights, on a grid with a row of cells on the line.
     """
@@ -94,13 +94,9 @@ def complementarity(scene: Scene, result: Result) -> dict[str, float]:
     else:
         table = peak_rows(result, "surface")
         shape = initial_gap(scene, table["x_m"], table["y_m"], both_heights(table))[table["y_m"] == 0.0]
-    gap = (shape + line["uz_m"] - approach) / approach
-    in_contact = line["p_Pa"] > 0.0
-    return {
-        "gap in contact": float(np.abs(gap[in_contact]).max()),
-        "penetration": max(0.0, -float(gap[~in_contact].min())),
-        "gap as returned": float(np.abs(gap - line["gap_m"] / approach).max()),
-    }
+    distance = shape + line["uz_m"]
+    returned = float(np.abs(distance - approach - line["gap_m"]).max()) / approach
+    return max(conditions(distance, line["p_Pa"], result), returned)
 
 
 def both_heights(table: Mapping[str, np.ndarray]) -> np.ndarray:
@@ -113,13 +109,10 @@ def opposite(table: Mapping[str, np.ndarray]) -> np.ndarray:
     return table.get(COUNTER_HEIGHT, np.zeros(table["height_m"].shape))
 
 
-def conditions(distance: np.ndarray, p: np.ndarray, result: Result) -> dict[str, float]:
-    """p gap = 0 and gap >= 0 of cells, gap = distance - approach in m; over the approach."""
+def conditions(distance: np.ndarray, p: np.ndarray, result: Result) -> float:
+    """p gap = 0 and gap >= 0, gap = distance - approach in m; over the approach."""
     gap = distance / result.quantities["approach_m"] - 1.0
-    return {
-        "gap in contact": float(np.abs(gap[p > 0]).max()),
-        "penetration": max(0.0, -float(gap[p == 0].min())),
-    }
+    return max(float(np.abs(gap[p > 0]).max()), -float(gap[p <= 0].min()))
 
 
 GAPS = {
@@ -205,20 +198,17 @@ def unloaded(scene: Scene, result: Result) -> dict[str, float]:
 
 def flow(scene: Scene, records: Sequence[Checkpoint], depths: np.ndarray) -> dict[str, float]:
     """The flow rule at the points of SAM's cells, over the steps of one box; depths: of layers in m."""
-    worst: dict[str, float] = {"steps": 0}
+    worst: dict[str, float] = {}
     trees = [record.tree() for record in records]
     for before, now in pairwise(trees):
         old, new, stress = before["state"]["points"], now["state"]["points"], now["last"]["stress"]
         a, b = old["strain"], new["strain"]  # at the points of the cells
         if a.shape != b.shape or before["extent"] != now["extent"] or not now["parts"]["count"] == 0:
             continue
-        strain, peeq = b - a, new["peeq"]
-        z = np.broadcast_to(depths[: peeq.shape[1], None, None], peeq.shape)
+        z = np.broadcast_to(depths[: a.shape[2], None, None], a.shape[1:])
         effective = at_points(scene, stress, b) - back_stress(scene, new.get("back"), z)
-        found = flow_of(scene, strain, peeq - old["peeq"], effective, limit=yield_stress(scene, peeq, z))
-        worst = {name: max(worst.get(name, 0.0), value) for name, value in found.items()} | {
-            "steps": worst["steps"] + 1
-        }
+        found = flow_of(scene, b - a, old["peeq"], new["peeq"], stress=effective, z=z)
+        worst = {name: max(worst.get(name, 0.0), value) for name, value in found.items()}
     return worst
 
 
@@ -256,7 +246,7 @@ def sam_planes(scene: Scene, result: Result) -> np.ndarray:
     return planes(np.abs(x[right]), z, stress[2][right], force_of(scene, result), spread=spread)
 
 
-def sam_surface(scene: Scene, result: Result) -> dict[str, float]:
+def sam_surface(_scene: Scene, result: Result) -> float:
     """Tractions below the surface against those on it, over the largest pressure; from the first
     two depths, linearly. Away from the edge of contact, see EDGE. With friction the shear stress
     against q = mu p.
@@ -269,10 +259,7 @@ def sam_surface(scene: Scene, result: Result) -> dict[str, float]:
     return tractions(np.abs(x) / a, normal, shear)
 
 
-def tractions(r: np.ndarray, normal: np.ndarray, shear: np.ndarray) -> dict[str, float]:
-    """The largest of both beside the contact and in it, r in contact radii, away from its edge, see EDGE."""
-    out, inside = r > 1 + EDGE, r < 1 - EDGE
-    return {
-        "free": float(max(normal[out].max(), shear[out].max())),
-        "inside contact": float(max(normal[inside].max(), shear[inside].max())),
-    }
+def tractions(r: np.ndarray, normal: np.ndarray, shear: np.ndarray) -> float:
+    """The largest of both, r in contact radii, away from the edge of contact, see EDGE."""
+    away = np.abs(r - 1) > EDGE
+    return float(max(normal[away].max(), shear[away].max()))

@@ -17,38 +17,33 @@ from verification.checks.material import in_plane
 from verification.reference.film_flow import Film, FlowPoint
 
 
-def states(scene: Scene, records: Sequence[Checkpoint]) -> dict[str, float]:
-    """Of the cells in contact whose film is whole, in every step of loading, the first one from a
-    film without strain. flow: plastic strain less that of a backward-Euler step, limit: thinning,
-    traction: beyond what the film bears, each over its limit; healed: cells that had failed before.
-    Why a cell failed cannot be seen here: more friction then changed its pressure.
+def states(scene: Scene, records: Sequence[Checkpoint]) -> float:
+    """The largest, of the cells in contact whose film is whole, in every step of loading, the first one from
+    a film without strain, of: plastic strain less that of a backward-Euler step, thinning and traction beyond
+    what the film bears, each over its limit; and the number of cells that had failed before. Why a cell
+    failed cannot be seen here: more friction then changed its pressure.
     """
-    law, film = (
-        scene.friction,
-        Film(scene.friction.film_young, scene.friction.film_poisson, scene.friction.film_yield),
-    )
+    law = scene.friction
+    film = Film(law.film_young, law.film_poisson, law.film_yield)
     trees, depths = [record.tree() for record in records], choose_grid(scene).depths
     before = {name: np.zeros_like(values) for name, values in trees[0]["tribofilm"]["film"].items()}
     limit, bears = law.thinning_limit, film.yield_stress / np.sqrt(3.0) / law.low
-    worst = dict.fromkeys(("flow", "limit", "traction", "healed"), 0.0)
+    worst, healed = 0.0, 0.0
     for now in [tree for tree in trees if tree["state"]["load"]["force"] > 0.0]:
-        pressure, strain, state = (
-            pressure_of(scene, now),
-            surface_strain(scene, now, depths),
-            now["tribofilm"]["film"],
-        )
+        pressure, strain = pressure_of(scene, now), surface_strain(scene, now, depths)
+        state = now["tribofilm"]["film"]
         failed = state["failed"]
-        worst["healed"] += float((before["failed"] & ~failed).sum())
-        worst["traction"] = max(worst["traction"], float(pressure[~failed].max(initial=0.0)) / bears - 1.0)
+        healed += float((before["failed"] & ~failed).sum())
+        worst = max(worst, float(pressure[~failed].max(initial=0.0)) / bears - 1.0)
         for i, j in np.argwhere((pressure > 0) & (pressure < bears) & ~failed):
             point = FlowPoint(
                 strain[:, i, j], pressure[i, j], -now["state"]["load"]["sign"] * law.low * pressure[i, j]
             )
             own = film.implicit_step(before["plastic"][:, i, j], point)
-            worst["flow"] = max(worst["flow"], float(np.abs(own - state["plastic"][:, i, j]).max()) / limit)
-            worst["limit"] = max(worst["limit"], -own[2] / limit - 1.0)
+            flow = float(np.abs(own - state["plastic"][:, i, j]).max()) / limit
+            worst = max(worst, flow, -own[2] / limit - 1.0)
         before = state
-    return worst
+    return max(worst, healed)
 
 
 def pressure_of(scene: Scene, tree: Mapping) -> np.ndarray:

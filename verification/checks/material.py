@@ -92,7 +92,13 @@ def limit_of(scene: Scene, peeq: np.ndarray, z: np.ndarray) -> np.ndarray:
     return limit
 
 
-def flow_of_parts(
+def von_mises(s: np.ndarray) -> np.ndarray:
+    """Of stresses (6, ...) in the order 11 22 33 23 13 12."""
+    a, b, c = s[0] - s[1], s[1] - s[2], s[2] - s[0]
+    return np.sqrt(0.5 * (a**2 + b**2 + c**2) + 3.0 * (s[3] ** 2 + s[4] ** 2 + s[5] ** 2))
+
+
+def flow_of(
     scene: Scene,
     strain: np.ndarray,
     before: np.ndarray,
@@ -101,50 +107,29 @@ def flow_of_parts(
     stress: np.ndarray,
     z: np.ndarray,
 ) -> dict[str, float]:
-    """The largest of `flow_of` in the film and below it; before, now: peeq, z: in m."""
-    found = [
-        flow_of(
-            part,
-            strain[:, where],
-            (now - before)[where],
-            stress[:, where],
-            limit=yield_stress(part, now[where], z[where]),
-        )
-        for where, part in materials(scene, z)
-        if part.body.plasticity is not None
-    ]
-    return {name: max(each[name] for each in found) for name in found[0]}
-
-
-def von_mises(s: np.ndarray) -> np.ndarray:
-    """Of stresses (6, ...) in the order 11 22 33 23 13 12."""
-    a, b, c = s[0] - s[1], s[1] - s[2], s[2] - s[0]
-    return np.sqrt(0.5 * (a**2 + b**2 + c**2) + 3.0 * (s[3] ** 2 + s[4] ** 2 + s[5] ** 2))
-
-
-def flow_of(
-    scene: Scene, strain: np.ndarray, length: np.ndarray, stress: np.ndarray, *, limit: np.ndarray
-) -> dict[str, float]:
-    """Increments of plastic strain (6, ...) and of its length, at the end of a step with the stress
-    (6, ...), in Pa. direction: 2 G |d eps - 3/2 dgamma s/q| over the initial yield stress; length:
-    |sqrt(2/3 d eps : d eps) - dgamma| likewise; volume: its trace likewise; consistency: |q -
-    sigma_y|/sigma_y where a cell strains; backwards: -dgamma likewise; yield: the largest (q -
-    sigma_y)/sigma_y.
+    """The largest of each in body and film: of increments of plastic strain (6, ...), its length before and
+    now, and the stress (6, ...) at the end of the step in Pa, at depths z in m. flow: of 2 G over the initial
+    yield stress times |d eps - 3/2 dgamma s/q|, |sqrt(2/3 d eps : d eps) - dgamma|, the trace of d eps, and
+    -dgamma; consistency: |q - sigma_y|/sigma_y where a cell strains; yield: (q - sigma_y)/sigma_y.
     """
-    unit = (
-        scene.body.young / (1 + scene.body.poisson) / float(yield_stress(scene, np.zeros(1), np.zeros(1))[0])
-    )
-    q = von_mises(stress)
-    s = stress.copy()
-    s[:3] -= stress[:3].mean(axis=0)
-    twice = np.array([1.0, 1, 1, 2, 2, 2]).reshape(6, *[1] * (strain.ndim - 1))
-    direction = strain - 1.5 * length * s / q
-    straining = length > 1e-3 * length.max()
-    return {
-        "direction": unit * float(np.sqrt((twice * direction**2).sum(axis=0).max())),
-        "length": unit * float(np.abs(np.sqrt(2 / 3 * (twice * strain**2).sum(axis=0)) - length).max()),
-        "volume": unit * float(np.abs(strain[:3].sum(axis=0)).max()),
-        "consistency": float(np.abs(q / limit - 1.0)[straining].max(initial=0.0)),
-        "backwards": unit * max(0.0, -float(length.min())),
-        "yield": float((q / limit - 1.0).max()),
-    }
+    twice = np.array([1.0, 1, 1, 2, 2, 2])[:, None]
+    found: dict[str, list[float]] = {"flow": [], "consistency": [], "yield": []}
+    for where, part in materials(scene, z):
+        if part.body.plasticity is None:
+            continue
+        first = yield_stress(part, np.zeros(1), np.zeros(1))[0]
+        unit = part.body.young / (1 + part.body.poisson) / float(first)
+        change, length, s = strain[:, where], (now - before)[where], stress[:, where]
+        excess = von_mises(s) / yield_stress(part, now[where], z[where]) - 1.0
+        direction = change - 1.5 * length * (s - np.where(twice == 1, s[:3].mean(axis=0), 0.0)) / von_mises(s)
+        rules = (
+            np.sqrt((twice * direction**2).sum(axis=0)),
+            np.abs(np.sqrt(2 / 3 * (twice * change**2).sum(axis=0)) - length),
+            np.abs(change[:3].sum(axis=0)),
+            -length,
+        )
+        straining = length > 1e-3 * length.max()
+        found["flow"].append(unit * max(float(each.max()) for each in rules))
+        found["consistency"].append(float(np.abs(excess)[straining].max(initial=0.0)))
+        found["yield"].append(float(excess.max()))
+    return {name: max(values) for name, values in found.items()}

@@ -10,7 +10,6 @@ One cycle, traction along +x.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 
 import numpy as np
 
@@ -20,6 +19,7 @@ from verification.checks.axisymmetric import Formed
 from verification.checks.conditions import (
     both_heights,
     coefficient_at,
+    conditions,
     force_of,
     initial_gap,
     missed_approach,
@@ -72,10 +72,6 @@ class Spatial(Formed):
         flat = (local * weight).reshape(3, -1)
         return np.stack([np.bincount(self.corners.ravel(), each, self.nodes.shape[1]) for each in flat])
 
-    def coefficient(self) -> np.ndarray:
-        """(n,) of friction at the nodes, by the scene: of the cell of a map whose centre is nearest."""
-        return coefficient_at(self.scene, *self.nodes[:2] * self.model.scales.length)
-
     def equilibrium(self) -> dict[str, float]:
         """Largest nodal force that nothing balances, largest |q - mu p| of a node in contact, sum
         of p less F; over F. Without force over the force of the whole loading.
@@ -94,7 +90,8 @@ class Spatial(Formed):
         held[:, far] = True
         held[2] |= in_contact
         force = self.forces.copy()
-        slip = np.where(in_contact, force[0] - self.coefficient() * force[2], 0.0)
+        coefficient = coefficient_at(self.scene, *self.nodes[:2] * model.scales.length)
+        slip = np.where(in_contact, force[0] - coefficient * force[2], 0.0)
         force[0] -= np.where(in_contact, force[0], 0.0)
         share = 0.5 if mirrored else 1.0
         return {
@@ -108,12 +105,6 @@ def steps_of(scene: Scene, records: Sequence[Checkpoint]) -> list[Spatial]:
     """The steps of a scene that were not halved, of the last record, taken again where there is none."""
     model, steps = load_steps(scene, records[-1] if records else None)
     return [Spatial(scene, model, step) for step in steps if not step.cuts]
-
-
-def flows(steps: Sequence[Spatial]) -> dict[str, float]:
-    """The largest values of `flow_of` over the steps."""
-    found = [now.flow(before) for before, now in pairwise(steps)]
-    return {name: max(each[name] for each in found) for name in found[0]}
 
 
 def surface(scene: Scene, result: Result) -> dict[str, float]:
@@ -130,12 +121,12 @@ def surface(scene: Scene, result: Result) -> dict[str, float]:
         line, numbers = np.unique(at, return_inverse=True)
         area *= (0.5 * (np.diff(line, prepend=line[0]) + np.diff(line, append=line[-1])))[numbers]
     height = 0.0 if scene.patch_surface is None else heights_at(result, x, y)
-    approach, line = result.quantities["approach_m"], peak_rows(result, "line")
-    gap = (initial_gap(scene, x, y, height) + uz - approach) / approach
+    line = peak_rows(result, "line")
     force = (2 if y.min() == 0.0 else 1) * float(p @ area)
     opened = 0.0
     if scene.loading.unload:
-        opened = -float(np.nanmin(peak_rows(result, "line", "unloaded")["gap_m"]))
+        gap = float(np.nanmin(peak_rows(result, "line", "unloaded")["gap_m"]))
+        opened = -gap / result.quantities["approach_m"]
     slip = line["qx_Pa"] - coefficient_at(scene, line["x_m"], np.zeros(line["x_m"].size)) * line["p_Pa"]
     return {
         "load": max(
@@ -143,22 +134,22 @@ def surface(scene: Scene, result: Result) -> dict[str, float]:
             missed_approach(scene, result),
             -float(p.min() / p.max()),
         ),
-        "complementarity": max(float(np.abs(gap[p > 0]).max()), -float(gap[p <= 0].min()), opened / approach),
+        "complementarity": max(conditions(initial_gap(scene, x, y, height) + uz, p, result), opened),
         "friction": float(np.abs(slip).max() / line["p_Pa"].max()),
     }
 
 
-def fields(steps: Sequence[Spatial], result: Result) -> dict[str, float]:
+def fields(steps: Sequence[Spatial], result: Result) -> float:
     """Fields of the returned elements at the peak less the means over their points, over the largest."""
     peak = max(steps, key=lambda each: each.state.force)
     own = {"stress_Pa": peak.stress * peak.model.scales.pressure}
     if "peeq" in result.fields.cell_data:
         own |= {"peeq": peak.peeq[None] * peak.unit, "plastic_strain": peak.plastic * peak.unit}
-    found = {}
+    worst = 0.0
     for name, field in own.items():
         returned = result.fields.cell_data[name].reshape(field.shape[1], -1).T
-        found[name] = float(np.abs(field.mean(axis=-1) - returned).max() / np.abs(returned).max())
-    return found
+        worst = max(worst, float(np.abs(field.mean(axis=-1) - returned).max() / np.abs(returned).max()))
+    return worst
 
 
 def heights_at(result: Result, x: np.ndarray, y: np.ndarray) -> np.ndarray:

@@ -13,8 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from sam.scene import Scene
-from verification.reference.bonded_film import overall_coefficient
-from verification.reference.regime import MICROSTRAIN, film_pressure, swift, tear_pressure
+from verification.reference.bonded_film import (
+    MICROSTRAIN,
+    film_pressure,
+    overall_coefficient,
+    swift,
+    tear_pressure,
+)
 from verification.runs.sampling import Tables, gridded, rows_of
 
 NAN = float("nan")

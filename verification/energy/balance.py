@@ -18,9 +18,13 @@ material, which backward Euler follows to first order in the steps.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
+
+from sam.scene import step_energies, stored_energy
 
 
 @dataclass(frozen=True)
@@ -51,17 +55,19 @@ class Balance:
         return along_path([self.force], [self.approach])
 
     @property
-    def error_of_cells(self) -> np.ndarray:
-        """W - E less the plastic work by the trapezoidal rule, but for `within`, over the largest W."""
+    def error_of_cells(self) -> float:
+        """The most that W - E is off the plastic work by the trapezoidal rule less `within`, over the largest
+        W.
+        """
         missing = self.work - self.elastic - self.beyond - self.flowed + self.within
-        return missing / np.abs(self.work).max()
+        return float(np.abs(missing).max() / np.abs(self.work).max())
 
     @property
-    def error_of_steps(self) -> np.ndarray:
-        """What the plastic work differs by from W_X + D, over the largest W; both errors together are
+    def error_of_steps(self) -> float:
+        """The most that the plastic work is off W_X + D, over the largest W; both errors together are
         W - E - W_X - D of the material.
         """
-        return (self.flowed - self.dissipated - self.back) / np.abs(self.work).max()
+        return float(np.abs(self.flowed - self.dissipated - self.back).max() / np.abs(self.work).max())
 
     @property
     def peak(self) -> int:
@@ -78,3 +84,15 @@ def along_path(forces, motions) -> np.ndarray:
         f, u = (np.asarray(each, dtype=float).reshape(len(each), -1) for each in (f, u))
         total = total + np.sum((f[1:] + f[:-1]) / 2 * np.diff(u, axis=0), axis=1)
     return np.concatenate([[0.0], np.cumsum(total)])
+
+
+def back_energies(moduli, recovery, fields: Sequence, weights) -> tuple[np.ndarray, np.ndarray]:
+    """(n + 1,) energies of the back-stresses in each state: stored, and dissipated up to it. fields: of each
+    state plastic strain, strains of the back-stresses and peeq at points with the weights in m3.
+    """
+    spent = [0.0]
+    for (old, back, before), (new, _, now) in pairwise(fields):
+        found = step_energies(moduli, recovery, back, new - old, length=now - before)
+        spent.append(float(np.sum(weights * found.dissipated)))
+    stored = [float(np.sum(weights * stored_energy(moduli, back))) for _, back, _ in fields]
+    return np.array(stored), np.cumsum(spent)

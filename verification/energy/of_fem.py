@@ -3,74 +3,53 @@
 
 Forces on the nodes in contact do the work; sums over the Gauss points give the energies. The outer boundary
 of the mesh moves as in the half-space, so that work also leaves the mesh there: it is stored in what lies
-beyond, which stays elastic.
+beyond, which stays elastic. In space a half is modelled where y = 0 is a plane of symmetry.
 """
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 
 import fem_reference
-from fem_reference import Equilibrium, Model, Step, spatial
-from sam.scene import Scene, plastic_work, step_energies, stored_energy
-from verification.energy.balance import Balance, along_path
+from fem_reference import Equilibrium, spatial
+from sam.scene import Scene, plastic_work
+from verification.energy.balance import Balance, along_path, back_energies
 
 
 def balance_of(scene: Scene, model: str) -> Balance:
     """Solve with "fem-axisymmetric" or "fem-3d" and balance the energy. RuntimeError when it does not
     converge.
     """
-    package, part = (spatial, _Spatial) if model == "fem-3d" else (fem_reference, _Axisymmetric)
-    built, steps = package.load_steps(scene)
-    return _of_steps(built, steps, part(built))
-
-
-class _Axisymmetric:
-    """Nodal forces and the body of the axisymmetric model. share: modelled part of every force."""
-
-    share = 1.0
-
-    def __init__(self, model: Model):
-        self.problem, self.body = model.problem, model.body
-        if len(model.problem.blocks) > 1:
-            raise ValueError("counterbody: elastic, the balance of energy is of a body below a rigid one")
-
-    def pressing(self, state: Equilibrium) -> np.ndarray:
-        """(size,) forces on the body in the contact."""
-        out = state.force * self.problem.prescribed * np.ones(self.problem.size)
-        out[self.problem.normal[0]] += state.multipliers
-        return out
-
-
-class _Spatial:
-    """As `_Axisymmetric`, of the model in space; a half of it where y = 0 is a plane of symmetry."""
-
-    def __init__(self, model: spatial.Model):
-        self.problem, self.body, self.share = model.problem, model.body, model.problem.share
-        if model.prescribed:
-            raise ValueError("loading.prescribed: the balance of energy in space is of a contact")
-
-    def pressing(self, state: Equilibrium) -> np.ndarray:
-        out = np.zeros(self.problem.size)
-        out[self.problem.normal] = state.multipliers
-        out[self.problem.along] = state.load.ratio * self.problem.weights * state.multipliers
-        return out
-
-
-def _of_steps(model: Model | spatial.Model, steps: list[Step], part: _Axisymmetric | _Spatial) -> Balance:
+    if scene.counterbody is not None and scene.counterbody.elastic:
+        raise ValueError("counterbody: elastic, the balance of energy is of a body below a rigid one")
+    in_space = model == "fem-3d"
+    if in_space and scene.loading.prescribed:
+        raise ValueError("loading.prescribed: the balance of energy in space is of a contact")
+    built, steps = (spatial if in_space else fem_reference).load_steps(scene)
     if not steps[-1].state.converged:
         raise RuntimeError("a load step did not converge")
-    states, weights, unit = [model.virgin(), *(step.state for step in steps)], part.body.weights, model.scales
+    problem, body, material, unit = built.problem, built.body, built.problem.material, built.scales
+
+    def pressing_of(state: Equilibrium) -> np.ndarray:
+        """(size,) forces on the body in the contact."""
+        out = np.zeros(problem.size)
+        if in_space:
+            out[problem.normal] = state.multipliers
+            out[problem.along] = state.load.ratio * problem.weights * state.multipliers
+        else:
+            out += state.force * problem.prescribed
+            out[problem.normal[0]] += state.multipliers
+        return out
+
+    states, weights = [built.virgin(), *(step.state for step in steps)], body.weights
     sides, pressing, stresses, plastic = [], [], [], []
     elastic, dissipated, back = (np.zeros(len(states)) for _ in range(3))
-    compliance, material = np.linalg.inv(part.body.stiffness_tensor), model.problem.material
+    compliance = np.linalg.inv(body.stiffness_tensor)
     for k, state in enumerate(states):
         strain = 0.0 if state.history is None else state.history.plastic_strain
-        stress = part.body.stress(state.u, strain)
-        sides.append(np.where(part.problem.fixed, part.body.internal_force(stress), 0.0))
-        pressing.append(part.pressing(state))
+        stress = body.stress(state.u, strain)
+        sides.append(np.where(problem.fixed, body.internal_force(stress), 0.0))
+        pressing.append(pressing_of(state))
         stresses.append(stress * weights)
         plastic.append(strain * np.ones_like(stress))
         elastic[k] = 0.5 * np.sum(np.einsum("st,seq,teq->eq", compliance, stress, stress) * weights)
@@ -78,35 +57,22 @@ def _of_steps(model: Model | spatial.Model, steps: list[Step], part: _Axisymmetr
             work = plastic_work(material.curve, state.history.peeq)
             dissipated[k] = np.sum(weights * material.factor * work)
     if material is not None and material.back_stresses:
-        back, recovered = _back_parts(material, [state.history for state in states], weights)
-        dissipated += np.cumsum(recovered)
+        found = [
+            (each.plastic_strain / material.engineering[:, None], each.back, each.peeq)
+            for each in (state.history for state in states)
+        ]
+        back, recovered = back_energies(material.back.modulus, material.back.recovery, found, weights)
+        dissipated += recovered
     motions = [state.u for state in states]
-    joule = unit.pressure * unit.length**2 * unit.displacement / part.share
-    to_newton = unit.pressure * unit.length**2
-    work, flowed = along_path([pressing], [motions]), along_path([stresses], [plastic])
-    beyond = -along_path([sides], [motions])
-    forces, approach = (
-        np.array([getattr(state, name) for state in states]) for name in ("force", "approach")
-    )
+    newton = unit.pressure * unit.length**2
+    joule = newton * unit.displacement / (problem.share if in_space else 1.0)
     return Balance(
-        forces * to_newton,
-        approach * unit.displacement,
-        work=joule * work,
+        np.array([state.force for state in states]) * newton,
+        np.array([state.approach for state in states]) * unit.displacement,
+        work=joule * along_path([pressing], [motions]),
         elastic=joule * elastic,
         dissipated=joule * dissipated,
-        flowed=joule * flowed,
-        beyond=joule * beyond,
+        flowed=joule * along_path([stresses], [plastic]),
+        beyond=-joule * along_path([sides], [motions]),
         back=joule * back,
     )
-
-
-def _back_parts(material, histories: list, weights: np.ndarray) -> tuple[np.ndarray, list[float]]:
-    """Energies of the back-stresses: stored in each state, dissipated in the step to it."""
-    modulus, recovery = material.back.modulus, material.back.recovery
-    recovered = [0.0]
-    for old, new in pairwise(histories):
-        strain = (new.plastic_strain - old.plastic_strain) / material.engineering[:, None]
-        found = step_energies(modulus, recovery, old.back, strain, length=new.peeq - old.peeq)
-        recovered.append(float(np.sum(weights * found.dissipated)))
-    stored = [float(np.sum(weights * stored_energy(modulus, each.back))) for each in histories]
-    return np.array(stored), recovered

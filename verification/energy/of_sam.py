@@ -8,7 +8,6 @@ last box of cells: what the solver carries along from step to step is not used.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -29,8 +28,8 @@ from sam.plasticity import (
     surface_displacement,
     surrounded,
 )
-from sam.scene import Checkpoint, Scene, plastic_work, step_energies, stored_energy
-from verification.energy.balance import Balance, along_path
+from sam.scene import Checkpoint, Scene, plastic_work
+from verification.energy.balance import Balance, along_path, back_energies
 
 
 @dataclass(frozen=True)
@@ -88,27 +87,25 @@ def _plastic_states(scene: Scene, grid: CellGrid) -> list[Committed]:
 
 
 def _balance(scene: Scene, grid: CellGrid, states: list[Committed]) -> Balance:
-    cell = grid.hx * grid.hy
-    tractions, moved = [], []
-    elastic = np.zeros(len(states))
-    for k, state in enumerate(states):
+    tractions, moved, zero = [], [], np.zeros(len(states))
+    for state in states:
         friction = state.load.sign * scene.coefficient * state.pressure
-        tractions.append(np.stack([state.pressure, friction]) * cell)
+        tractions.append(np.stack([state.pressure, friction]) * grid.hx * grid.hy)
         moved.append(_moved(scene, grid, state.pressure, friction))
-        elastic[k] = 0.5 * np.sum(tractions[-1] * moved[-1])
-    forces, approach = np.array([state.load.force for state in states]), np.zeros(len(states))
-    zero = np.zeros(len(states))
-    stored, back, dissipated, flowed, inside = zero, zero, zero, zero, zero
+    elastic = 0.5 * np.array([np.sum(f * u) for f, u in zip(tractions, moved, strict=True)])
+    parts = {"stored": zero, "dissipated": zero, "flowed": zero, "back": zero, "within": zero}
     if states[-1].extent is not None:
-        residuals, stored, back, dissipated, flowed, inside = _plastic_parts(scene, grid, states)
+        residuals, parts = _plastic_parts(scene, grid, states)
         moved = [u + residual for u, residual in zip(moved, residuals, strict=True)]
-    work = along_path([tractions], [moved])
+    approach = zero.copy()
     if scene.counterbody is not None:
         initial = sam.plan(scene).problem(Counters()).gap
         for k, (state, u) in enumerate(zip(states, moved, strict=True)):
             gap = initial(state.load) + u[0]
             approach[k] = gap[state.pressure > 0].mean() if state.load.force else gap.min()
-    return Balance(forces, approach, work, elastic + stored, dissipated, flowed, zero, stored, back, inside)
+    forces = np.array([state.load.force for state in states])
+    work = along_path([tractions], [moved])
+    return Balance(forces, approach, work=work, elastic=elastic + parts["stored"], beyond=zero, **parts)
 
 
 def _moved(scene: Scene, grid: CellGrid, pressure: np.ndarray, friction: np.ndarray) -> np.ndarray:
@@ -129,73 +126,51 @@ def _moved(scene: Scene, grid: CellGrid, pressure: np.ndarray, friction: np.ndar
 
 
 def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
-    """(displacements of the surface by the plastic strain, E stored, energy of the back-stresses, D of the
-    material, plastic work by the trapezoidal rule, that of stresses that vary within the cells).
-    """
+    """(displacements of the surface by the plastic strain, parts of the balance that the strain makes)."""
     extent = states[-1].extent
     plan = sam.plan(scene)
     model, window = model_of(plan, plan.problem(Counters())), extent.window
-    problem, faces = model.problem(extent), model.faces(extent)
-    volume = (grid.hx * grid.hy * np.diff(faces))[:, None, None]
-    factor, curve = problem.material.factor, problem.material.curve
-    back, recovered = _back_parts(problem.material, [_on(problem.material, extent, each) for each in states])
-    residuals, strains, stresses, means = [], [], [], []
+    problem = model.problem(extent)
+    material, m = problem.material, problem.stiffness
+    volume = (grid.hx * grid.hy * np.diff(model.faces(extent)))[:, None, None]
+    fields = [_on(material, extent, state) for state in states]
+    residuals, stresses, means = [], [], []
     stored, between, dissipated = np.zeros((3, len(states)))
-    for k, state in enumerate(states):
-        points = _on(problem.material, extent, state)
-        material = points.means()
-        residual = problem.residual_of(material)
-        sideways = np.zeros(window.shape)
-        if scene.coefficient:
-            source = Strained(material.strain, window, model.cuboids(extent))
-            sideways = surface_displacement(source, window, counters=Counters(), component=1)
+    for k, (state, points) in enumerate(zip(states, fields, strict=True)):
+        mean = points.means()
+        residual = problem.residual_of(mean)
         both = np.zeros((2, grid.nx, grid.ny))
-        both[:, *window.slices] = residual.displacement, sideways
-        loaded = problem.operator.whole(
-            problem.stress(state.pressure[window.slices] / problem.unit, state.load)
-        )
+        both[0, *window.slices] = residual.displacement
+        if scene.coefficient:
+            source = Strained(mean.strain, window, model.cuboids(extent))
+            both[1, *window.slices] = surface_displacement(source, window, counters=Counters(), component=1)
         residuals.append(both)
-        stress, m = loaded + residual.stress, problem.stiffness
+        pressed = problem.stress(state.pressure[window.slices] / problem.unit, state.load)
+        stress = problem.operator.whole(pressed) + residual.stress
         at_points = stress_at_points(stress, points.strain, m)
         apart = at_points - stress_at_points(stress, 0 * points.strain, m)  # from what is linear in a cell
-        strains.append(points.strain)
         stresses.append(at_points * volume / POINTS)
-        means.append((stress * volume, material.strain))
+        means.append((stress * volume, mean.strain))
         between[k] = np.sum(volume * contraction(apart, apart).mean(axis=0) / (4 * m))
-        stored[k] = between[k] - 0.5 * np.sum(volume * contraction(residual.stress, material.strain))
-        dissipated[k] = np.sum(volume * factor * plastic_work(curve, points.peeq).mean(axis=0))
-    flowed, of_means = _work(stresses, strains), _work(*zip(*means, strict=True))
-    back, recovered = (
-        [float(np.sum(volume * np.mean(each, axis=0))) for each in fields] for fields in (back, recovered)
-    )
-    return (
-        residuals,
-        stored,
-        np.array(back),
-        dissipated + np.cumsum(recovered),
-        flowed,
-        flowed + between - of_means,
-    )
+        stored[k] = between[k] - 0.5 * np.sum(volume * contraction(residual.stress, mean.strain))
+        work = plastic_work(material.curve, points.peeq).mean(axis=0)
+        dissipated[k] = np.sum(volume * material.factor * work)
+    back = np.zeros(len(states))
+    if material.hardens_back:
+        found = [(each.strain, each.back, each.peeq) for each in fields]
+        weights = volume / POINTS
+        back, recovered = back_energies(material.back.modulus, material.back.recovery, found, weights)
+        dissipated = dissipated + recovered
+    flowed = _work(stresses, [each.strain for each in fields])
+    within = flowed + between - _work(*zip(*means, strict=True))
+    parts = {"stored": stored, "dissipated": dissipated, "flowed": flowed, "back": back, "within": within}
+    return residuals, parts
 
 
 def _work(stresses, strains) -> np.ndarray:
     """Of stresses times volumes in the increments of strain by the trapezoidal rule, lists of (6, ...)."""
     twice = SHEAR.reshape(6, *[1] * (stresses[0].ndim - 1))  # each shear stands for two entries of the tensor
     return along_path([[twice * each for each in stresses]], [strains])
-
-
-def _back_parts(material, fields: list[MaterialFields]) -> tuple[list, list]:
-    """Energies per volume of the back-stresses: stored in each state, dissipated in the step to it."""
-    nothing = np.zeros((POINTS, 1, 1, 1))
-    if not material.hardens_back:
-        return [nothing] * len(fields), [nothing] * len(fields)
-    modulus, recovery = material.back.modulus, material.back.recovery
-    steps = [nothing]
-    for old, new in pairwise(fields):
-        length = new.peeq - old.peeq
-        found = step_energies(modulus, recovery, old.back, new.strain - old.strain, length=length)
-        steps.append(found.dissipated)
-    return [stored_energy(modulus, each.back) for each in fields], steps
 
 
 def _on(material, extent: Extent, state: Committed) -> MaterialFields:

@@ -17,7 +17,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from sam.scene import Attempt
 from verification.compare.measures import Plane
 from verification.figures.style import (
     BLACK,
@@ -33,9 +32,8 @@ from verification.figures.style import (
     Drawing,
     log_ticks,
     sheet,
-    zero_line,
 )
-from verification.reference.convergence import Limit, Order
+from verification.reference.convergence import Limit, Power
 
 MICRO, GIGA, PERCENT = 1e6, 1e-9, 1e2
 POINTS = {"SAM": SAM | {"marker": "o", "fillstyle": "none"}, "FEM": FEM | {"marker": "x"}}
@@ -239,16 +237,6 @@ def new_strains(found: Mapping[str, Sequence[float]], floors: Sequence[float] = 
     return curves({"": drawn}, "pass", "largest new plastic strain", **how)
 
 
-def errors_over_counts(panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray]]]) -> Drawing:
-    """Relative errors (n,) over the number (n,) of steps or cells in a radius of the contact,
-    logarithmic. panels: what is counted -> quantity -> line.
-    """
-    drawn = {of: {name: Curve(n, 1e2 * e) for name, (n, e) in own.items()} for of, own in panels.items()}
-    xlabels = {counted: f"{counted} in $a$" for counted in panels}
-    how = {"logarithmic": "xy", "ticks": "{:g}".format, "legend": "each"}
-    return curves(drawn, xlabels, "error against the limit [%]", **how)
-
-
 def of_passes(passes: Mapping[str, Sequence]) -> Drawing:
     """Coefficient of friction and wear of each pass, from passes.csv."""
     found = {"coefficient of friction": passes["friction_mean"]}
@@ -289,13 +277,13 @@ def of_programs(
     return curves({"": drawn}, xlabel, ylabel, looks=looks, **how)
 
 
-def convergence(panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Order | None]]]) -> Drawing:
+def convergence(panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Power | None]]]) -> Drawing:
     """log-log error against cell size; panels: title -> quantity -> (h/a, relative error, fitted
     order or None).
     """
     drawn = {
         title: {
-            name: Curve(h, error, order, f"order {order.order:.2f}")
+            name: Curve(h, error, order, f"order {order.exponent:.2f}")
             if order
             else Curve(h, error, look={"linestyle": "none"})
             for name, (h, error, order) in own.items()
@@ -361,15 +349,6 @@ LINE_ON_POINTS = {
     "SAM": SAM,
     "FEM": FEM | {"linestyle": "none", "marker": "o", "markersize": 4.0, "fillstyle": "none"},
 }
-
-
-def thinning_curves(pressure: np.ndarray, lines: Mapping[str, np.ndarray], limit: float) -> Drawing:
-    """pressure in GPa, (n,); lines: name -> thinning in %, (n,), NaN where there is none; limit in %."""
-    own = {name: Curve(pressure[k := np.isfinite(y)], y[k], look=PLAIN) for name, y in lines.items()}
-    marks = {f"growth of a cycle, {limit:.2f} %": ("y", limit)}
-    drawing = curves({"": own}, "pressure [GPa]", "thinning [%]", marks=marks)
-    zero_line(drawing.figure.axes[0])
-    return drawing
 
 
 def yield_profiles(cases: Mapping[str, Callable[[np.ndarray, float], np.ndarray]], deep: float) -> Drawing:
@@ -468,33 +447,3 @@ def _broken(title: str) -> str:
     """A long title, broken at its last comma."""
     begin, comma, rest = title.rpartition(", ") if len(title) > 20 else ("", "", title)
     return f"{begin}{comma.strip()}\n{rest}" if comma else title
-
-
-def histories(panels: Mapping[str, Sequence[tuple[str, Attempt]]]) -> Drawing:
-    """Residuals over the iterations, title -> (name, attempt) of all steps; the last ones are darker,
-    attempts that were given up are red. A residual of zero has no place on a logarithmic axis.
-    """
-    pale, goal = 0.25, {"color": BLACK, "linestyle": ":", "linewidth": 0.9}
-    drawn: dict[str, dict[str, Curve]] = {}
-    for title, attempts in panels.items():
-        panel = drawn[title] = {}
-        for k, (name, each) in enumerate(attempts):
-            shade = pale + (1.0 - pale) * k / max(1, len(attempts) - 1)
-            look = {"color": BLUE if each.accepted else VERMILION, "alpha": shade, "linewidth": 1.1}
-            at, residuals = np.arange(1, len(each.residuals) + 1), np.array(each.residuals, dtype=float)
-            shown = np.where(residuals > 0.0, residuals, np.nan)
-            words = f"{name}{'' if each.accepted else ', given up'}"
-            panel[f"{k}: {words}"] = Curve(at, shown, look=look)
-            panel[f"goal {each.goal:g}"] = Curve(at[[0, -1]], np.full(2, each.goal), look=goal)
-    entries = [
-        Line2D([], [], color=BLUE, alpha=pale, label="first load step"),
-        Line2D([], [], color=BLUE, label="last load step"),
-        Line2D([], [], color=VERMILION, label="attempt given up: its step is cut"),
-        Line2D([], [], **goal, label="goal"),
-    ]
-    looks = {name: {} for panel in drawn.values() for name in panel}
-    how = {"across": min(4, len(panels)), "size": (2.6, 2.4), "logarithmic": "y", "count": True}
-    drawing = curves(drawn, "iteration", "residual", looks=looks, legend=entries, **how)
-    for axis in drawing.figure.axes:
-        axis.title.set_fontsize(8.5)
-    return drawing

@@ -300,22 +300,6 @@ def rough_pressures(
     return pressure_maps(pair)
 
 
-def sections(
-    x: np.ndarray, z: np.ndarray, coated: np.ndarray, bare: np.ndarray, *, thickness: float
-) -> Drawing:
-    """Von Mises stress over (x, z), z down, (nx, nz) in Pa, around its largest; the interface as a line."""
-    middle = x[int(np.unravel_index(np.argmax(bare), bare.shape)[0])]
-    near, axes = np.abs(x - middle) <= 8e-6, ("$x$ [µm]", "$z$ [µm]")
-    labels = ("coated", "bare"), axes, "von Mises stress [GPa]", (0.0, 0.0)
-    pair = FieldPair(MICRO * x[near], MICRO * z, GIGA * coated[near], GIGA * bare[near], *labels)
-    with style():
-        figure, panels, _ = three_panels(pair)
-        panels[0].invert_yaxis()
-        mark_interface(panels, MICRO * thickness, across=True)
-        name_marks(figure, [INTERFACE])
-    return Drawing(figure, pair.data())
-
-
 def compared_mises(
     sam: Result, fem: Result, a: float, p0: float, *, film: float | None = None, element: float = 0.0
 ) -> Drawing:

@@ -55,3 +55,11 @@ def depth(name: str, value) -> np.ndarray:
     if np.any(array < 0):
         raise ValueError(f"{name} must be >= 0 everywhere, smallest value {array.min()!r}")
     return array
+
+
+class Checked:
+    """A record of numbers > 0; those called nu or poisson are Poisson's ratios."""
+
+    def __post_init__(self):
+        for name, value in vars(self).items():
+            (poisson if name.startswith(("nu", "poisson")) else positive)(name, value)

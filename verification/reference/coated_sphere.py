@@ -113,11 +113,8 @@ class CoatedContact:
 
     def transform(self, k) -> np.ndarray:
         """P(k) = integral_0^a p(r) r J0(k r) dr, N, of wave numbers k (n,) in 1/m."""
-        return (
-            self.scale
-            * self.contact_radius
-            * (self.coefficients @ _cosines(k * self.contact_radius, len(self.coefficients)))
-        )
+        a, c = self.contact_radius, self.coefficients
+        return self.scale * a * (c @ _cosines(k * a, len(c)))
 
     def residual(self, count: int = 33) -> float:
         """Largest error of the surface's shape in the contact, over a^2/(2 R), at radii and wave numbers of
@@ -132,13 +129,11 @@ class CoatedContact:
         angles = np.sin(math.pi / 2 * x)
         chi = sum(c * eval_legendre(2 * n, np.outer(r / a, angles)) for n, c in enumerate(self.coefficients))
         k, weight = wave_numbers(h, 4.0 * a, 1.25 * SHORTEST)
-        spread = j0(np.outer(r, k)) @ (
-            weight * _excess(self.layers, self.counter_modulus, k) * self.transform(k)
-        )
+        excess = _excess(self.layers, self.counter_modulus, k)
+        spread = j0(np.outer(r, k)) @ (weight * excess * self.transform(k))
         shape = 2.0 / self.modulus * (math.pi / 2 * self.scale * chi @ w + spread)
-        return float(
-            np.max(np.abs(shape - self.approach + r**2 / (2 * self.radius))) * 2 * self.radius / a**2
-        )
+        error = np.max(np.abs(shape - self.approach + r**2 / (2 * self.radius)))
+        return float(error * 2 * self.radius / a**2)
 
     def stress(self, r, z, film: bool | None = None) -> np.ndarray:
         """Stresses in the plane theta = 0 for every r (n,) and z (m,), in m: (n, m, 6) in Pa.

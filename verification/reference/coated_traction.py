@@ -20,7 +20,7 @@ and s_xy = s_yz = 0. Sources: Burmister, J. Appl. Phys. 16 (1945) 89; O'Sullivan
 from __future__ import annotations
 
 import numpy as np
-from scipy.special import j0, j1, jv
+from scipy.special import j0, j1, jv, spherical_jn
 
 from .checks import coordinate, depth, finite, positive
 from .coated_changes import LargestChange, search
@@ -86,11 +86,8 @@ def largest_von_mises(
 
 
 def hertz_transform(ka: np.ndarray) -> np.ndarray:
-    """Integral of sqrt(1 - s^2) J0(ka s) s ds over 0 <= s <= 1; its series below ka = 0.1."""
-    small = np.minimum(ka, 0.1) ** 2
-    series = 1.0 / 3.0 - small / 30.0 + small**2 / 840.0 - small**3 / 45360.0
-    large = np.maximum(ka, 0.1)
-    return np.where(ka < 0.1, series, (np.sin(large) - large * np.cos(large)) / large**3)
+    """Integral of sqrt(1 - s^2) J0(ka s) s ds over 0 <= s <= 1, ka > 0: the spherical j1(ka)/ka."""
+    return spherical_jn(1, ka) / ka
 
 
 def antiplane(layers: CoatedHalfSpace, k: np.ndarray, z: float, film: bool) -> np.ndarray:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Observed order of convergence."""
+"""Observed orders of convergence and growth."""
 
 from __future__ import annotations
 
@@ -8,37 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import minimize_scalar
-
-
-@dataclass(frozen=True)
-class Order:
-    """error ~ factor h^order by least squares in log-log; scatter: largest |error/fit - 1|."""
-
-    order: float
-    factor: float
-    scatter: float
-
-    def __call__(self, h: np.ndarray) -> np.ndarray:
-        return self.factor * np.asarray(h) ** self.order
-
-
-def fit_order(h: Sequence[float], error: Sequence[float]) -> Order:
-    """Fit error ~ factor h^order to all points.
-
-    h: (n,) cell sizes, n >= 3, all different; error: (n,), positive. ValueError otherwise: an order from two
-    points, or from an error that is exactly zero, is no observation.
-    """
-    h, error = np.asarray(h, dtype=float), np.asarray(error, dtype=float)
-    if h.shape != error.shape or h.ndim != 1 or np.unique(h).size < 3:
-        raise ValueError(
-            f"h and error: at least three different cell sizes with one error each, not {h} and {error}"
-        )
-    if not (np.all(np.isfinite(error)) and np.all(error > 0.0) and np.all(h > 0.0)):
-        raise ValueError(f"h and error: positive and finite, not {h} and {error}")
-    order, log_factor = np.polyfit(np.log(h), np.log(error), 1)
-    fit = np.exp(log_factor) * h**order
-    return Order(float(order), float(np.exp(log_factor)), float(np.max(np.abs(error / fit - 1.0))))
-
 
 ORDERS = (0.5, 4.0)
 """Between these an order is looked for; a fit that ends on one of them has observed none."""
@@ -101,7 +70,9 @@ def extrapolate(h: Sequence[float], values: Sequence[float]) -> Limit:
 
 @dataclass(frozen=True)
 class Power:
-    """y ~ factor x^exponent by least squares in log-log, first <= x <= last; error: of the exponent."""
+    """y ~ factor x^exponent by least squares in log-log, first <= x <= last; error: of the exponent. An error
+    over the sizes of cells has its order as exponent.
+    """
 
     exponent: float
     error: float
@@ -117,7 +88,9 @@ class Power:
 
 
 def fit_power(x: Sequence[float], y: Sequence[float], first: float = 0.0) -> Power:
-    """Fit y ~ factor x^exponent to x >= first, three or more of them, y > 0. ValueError otherwise."""
+    """Fit y ~ factor x^exponent to x >= first, three or more of them, y > 0. ValueError otherwise: two points
+    or a zero are no observation.
+    """
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     if x.shape != y.shape or x.ndim != 1 or np.unique(x[x >= first]).size < 3:
         raise ValueError(f"x and y: at least three different values with one y each, not {x} and {y}")

@@ -17,7 +17,7 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 from scipy.special import elliprd, elliprf
 
-from .checks import coordinate, depth, poisson, positive
+from .checks import Checked, coordinate, depth, poisson, positive
 from .stress import components, von_mises
 
 
@@ -39,7 +39,7 @@ def axis_ratio(radius_ratio: float) -> float:
 
 
 @dataclass(frozen=True)
-class EllipticContact:
+class EllipticContact(Checked):
     """Hertz contact from a force (N), radii of curvature R_x, R_y (m) and contact modulus E* (Pa).
 
     The profile is x^2/(2 R_x) + y^2/(2 R_y). The semi-axes a (along x) and b (along y) follow from
@@ -50,10 +50,6 @@ class EllipticContact:
     radius_x: float
     radius_y: float
     modulus: float
-
-    def __post_init__(self):
-        for name in ("force", "radius_x", "radius_y", "modulus"):
-            positive(name, getattr(self, name))
 
     @cached_property
     def semi_axes(self) -> tuple[float, float]:

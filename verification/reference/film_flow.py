@@ -19,7 +19,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import root
 
-from .checks import poisson, positive
+from .checks import Checked
+from .stress import deviator, von_mises
 
 PLANE, OFF = [0, 1, 5], [2, 3, 4]
 SHEAR = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # each shear component stands for two entries of the tensor
@@ -50,17 +51,12 @@ class FlowPoint:
 
 
 @dataclass(frozen=True)
-class Film:
+class Film(Checked):
     """young and yield_stress in Pa."""
 
     young: float
     poisson: float
     yield_stress: float
-
-    def __post_init__(self):
-        positive("young", self.young)
-        poisson("poisson", self.poisson)
-        positive("yield_stress", self.yield_stress)
 
     @property
     def stiffness(self) -> np.ndarray:
@@ -91,7 +87,7 @@ class Film:
         """Stress and plastic strain at a given total strain (Simo & Hughes 1998, box 3.1)."""
         trial = self.stiffness @ (strain - plastic)
         s = deviator(trial)
-        q = mises(trial)
+        q = von_mises(trial)
         share = max(0.0, 1.0 - self.yield_stress / q) if q > 0 else 0.0
         return trial - share * s, plastic + share * s * (1.0 + self.poisson) / self.young
 
@@ -103,7 +99,7 @@ class Film:
         which flow begins and ends.
         """
         stress, plastic = self._mixed(self.stiffness, path[0])[0], np.zeros(6)
-        if mises(stress) > self.yield_stress:
+        if von_mises(stress) > self.yield_stress:
             raise ValueError("path: the film must not yield at its first point")
         for start, end in pairwise(path):
             stress, plastic = self._segment(end - start, stress, plastic)
@@ -114,7 +110,9 @@ class Film:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Stress and plastic strain after a straight line, elastic and plastic parts in turn."""
         time = 0.0
-        flows = mises(stress) >= self.yield_stress * (1.0 - RESIDUAL) and self._rate(step, stress)[2] > 0.0
+        flows = (
+            von_mises(stress) >= self.yield_stress * (1.0 - RESIDUAL) and self._rate(step, stress)[2] > 0.0
+        )
         while time < 1.0:
             time, stress, plastic = self._part(step, time, stress, plastic, flows=flows)
             flows = not flows
@@ -131,7 +129,7 @@ class Film:
             return np.concatenate([stress_rate / Y, plastic_rate])
 
         def switch(_: float, state: np.ndarray) -> float:
-            return self._rate(step, Y * state[:6])[2] if flows else mises(state[:6]) - 1.0
+            return self._rate(step, Y * state[:6])[2] if flows else float(von_mises(state[:6])) - 1.0
 
         vars(switch).update(terminal=True, direction=-1.0 if flows else 1.0)
         state = np.concatenate([stress / Y, plastic])
@@ -155,17 +153,6 @@ class Film:
         right = step.off_plane - matrix[np.ix_(OFF, PLANE)] @ step.strain
         strain = _joined(step.strain, np.linalg.solve(matrix[np.ix_(OFF, OFF)], right))
         return matrix @ strain, strain
-
-
-def deviator(stress: np.ndarray) -> np.ndarray:
-    """Deviatoric part of (6,)."""
-    return stress - np.where(SHEAR == 1.0, stress[:3].mean(), 0.0)
-
-
-def mises(stress: np.ndarray) -> float:
-    """Von Mises stress of (6,)."""
-    s = deviator(stress)
-    return float(np.sqrt(1.5 * (s * SHEAR) @ s))
 
 
 def _joined(in_plane: np.ndarray, off_plane: np.ndarray) -> np.ndarray:

@@ -12,21 +12,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .checks import depth, poisson, positive
+from .checks import Checked, depth, poisson
 from .stress import components
 
 
 @dataclass(frozen=True)
-class FlatPunch:
+class FlatPunch(Checked):
     """Punch of radius a (m) under a force (N), modulus E* (Pa). Profiles take r, z >= 0 in m."""
 
     force: float
     contact_radius: float
     modulus: float
-
-    def __post_init__(self):
-        for name in ("force", "contact_radius", "modulus"):
-            positive(name, getattr(self, name))
 
     @property
     def approach(self) -> float:

@@ -26,7 +26,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 from scipy.special import elliprd
 
-from .checks import coordinate, depth, poisson, positive
+from .checks import Checked, coordinate, depth, poisson, positive
 from .stress import components, von_mises
 
 
@@ -102,7 +102,7 @@ def effective_modulus(E1: float, nu1: float, E2: float | None = None, nu2: float
 
 
 @dataclass(frozen=True)
-class CircularContact:
+class CircularContact(Checked):
     """Hertz contact from force F (N), relative radius of curvature R (m) and contact modulus E* (Pa).
 
     a^3 = 3 F R/(4 E*), p0 = 3 F/(2 pi a^2), approach = a^2/R (Johnson 4.22-4.24). Profiles take r >= 0 in m,
@@ -112,10 +112,6 @@ class CircularContact:
     force: float
     radius: float
     modulus: float
-
-    def __post_init__(self):
-        for name in ("force", "radius", "modulus"):
-            positive(name, getattr(self, name))
 
     @classmethod
     def from_peak_pressure(cls, peak_pressure: float, radius: float, modulus: float) -> CircularContact:
@@ -136,17 +132,32 @@ class CircularContact:
         return 1.5 * self.force / (math.pi * self.contact_radius**2)
 
     @property
+    def area(self) -> float:
+        """Contact area in m^2."""
+        return math.pi * self.contact_radius**2
+
+    @property
     def approach(self) -> float:
         """Displacement of distant points of the two bodies towards each other, m."""
         return self.contact_radius**2 / self.radius
 
     def pressure(self, r) -> np.ndarray:
-        """p(r), Pa, 0 outside."""
-        return pressure(r, self.peak_pressure, self.contact_radius)
+        """p0 sqrt(1 - r^2/a^2) for r < a, else 0, Pa (Johnson 3.39)."""
+        rho = depth("r", r) / self.contact_radius
+        return self.peak_pressure * np.sqrt(np.maximum((1.0 - rho) * (1.0 + rho), 0.0))
 
     def displacement(self, r) -> np.ndarray:
-        """u_z(r) of both surfaces together, m; of one body `surface_displacement` with its E/(1 - nu^2)."""
-        return surface_displacement(r, self.peak_pressure, self.contact_radius, self.modulus)
+        """u_z of both surfaces together, m; of one body alone times E* (1 - nu^2)/E.
+
+        Inside pi p0 (2 a^2 - r^2)/(4 a E*); outside, with xi^2 = r^2/a^2 - 1, a p0/(2 E*) [acot xi + xi (1 -
+        xi acot xi)] (Johnson 3.42, rearranged so that nothing cancels far away).
+        """
+        a, p0 = self.contact_radius, self.peak_pressure
+        rho = depth("r", r) / a
+        xi = _outside(rho)
+        outside = np.arctan2(1.0, xi) + xi * one_minus_xi_acot(xi)
+        shape = np.where(rho < 1.0, 0.5 * math.pi * (2.0 - rho**2), outside)
+        return p0 * a / (2.0 * self.modulus) * shape
 
     def gap(self, r) -> np.ndarray:
         """Gap r^2/(2R) - approach + u_z, m; exactly 0 inside.
@@ -157,28 +168,6 @@ class CircularContact:
         xi = _outside(depth("r", r) / self.contact_radius)
         excess = xi**3 / 3.0 * elliprd(1.0 + xi**2, 1.0 + xi**2, 1.0)  # xi - atan(xi)
         return self.approach / math.pi * (excess + xi**2 * np.arctan(xi))
-
-
-def pressure(r, peak_pressure: float, contact_radius: float) -> np.ndarray:
-    """p0 sqrt(1 - r^2/a^2) for r < a, else 0, Pa (Johnson 3.39)."""
-    rho = depth("r", r) / positive("contact_radius", contact_radius)
-    inside = np.maximum((1.0 - rho) * (1.0 + rho), 0.0)
-    return positive("peak_pressure", peak_pressure) * np.sqrt(inside)
-
-
-def surface_displacement(r, peak_pressure: float, contact_radius: float, modulus: float) -> np.ndarray:
-    """u_z of the surface under the Hertz pressure, m; modulus is E/(1 - nu^2) of one body, or E* for both
-    together.
-
-    Inside pi p0 (2 a^2 - r^2)/(4 a E'); outside, with xi^2 = r^2/a^2 - 1, a p0/(2 E') [acot xi + xi (1 - xi
-    acot xi)] (Johnson 3.42, rearranged so that nothing cancels far away).
-    """
-    a = positive("contact_radius", contact_radius)
-    rho = depth("r", r) / a
-    xi = _outside(rho)
-    outside = np.arctan2(1.0, xi) + xi * one_minus_xi_acot(xi)
-    shape = np.where(rho < 1.0, 0.5 * math.pi * (2.0 - rho**2), outside)
-    return positive("peak_pressure", peak_pressure) * a / (2.0 * positive("modulus", modulus)) * shape
 
 
 def _outside(rho: np.ndarray) -> np.ndarray:
@@ -213,11 +202,7 @@ def axis_stress(z, peak_pressure: float, contact_radius: float, nu: float) -> np
 
 def largest_von_mises(peak_pressure: float, contact_radius: float, nu: float) -> tuple[float, float]:
     """Largest von Mises stress (Pa) under the Hertz pressure and its depth (m), which is on the axis."""
-    a, p0, nu = (
-        positive("contact_radius", contact_radius),
-        positive("peak_pressure", peak_pressure),
-        poisson("nu", nu),
-    )
+    a, p0 = positive("contact_radius", contact_radius), positive("peak_pressure", peak_pressure)
     best = minimize_scalar(
         lambda zeta: -float(von_mises(axis_stress(zeta, 1.0, 1.0, nu))),
         bounds=(0.1, 1.5),

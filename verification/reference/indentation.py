@@ -19,29 +19,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .checks import depth, poisson, positive
+from .checks import Checked, depth, positive
+from .hertz import CircularContact
+
+
+def onset(factor: float, radius: float, modulus: float, yield_stress: float) -> CircularContact:
+    """First yield at the peak pressure factor * yield_stress, whose approach, force and area are the units of
+    w*, P* and A*; radius in m, E* and yield stress in Pa.
+    """
+    peak = positive("factor", factor) * positive("yield_stress", yield_stress)
+    return CircularContact.from_peak_pressure(peak, radius, modulus)
 
 
 @dataclass(frozen=True)
-class Onset:
-    """First yield under a sphere: approach (m), load (N) and area (m^2), the units of w*, P* and A*."""
-
-    approach: float
-    load: float
-    area: float
-
-
-def onset(factor: float, radius: float, modulus: float, yield_stress: float) -> Onset:
-    """First yield at the peak pressure factor * yield_stress; radius in m, E* and yield stress in Pa."""
-    ratio = positive("factor", factor) * positive("yield_stress", yield_stress) / positive("modulus", modulus)
-    approach = (math.pi * ratio / 2.0) ** 2 * positive("radius", radius)
-    return Onset(
-        approach, 4.0 / 3.0 * modulus * math.sqrt(radius) * approach**1.5, math.pi * radius * approach
-    )
-
-
-@dataclass(frozen=True)
-class KogutEtsion:
+class KogutEtsion(Checked):
     """Kogut & Etsion (2002), w* from 0 to 110: Hertz to 1, then two power laws that do not quite meet at 6.
 
     At 6 the second starts 1.7 % (load) and 2.9 % (area) above the end of the first.
@@ -50,9 +41,6 @@ class KogutEtsion:
     poisson: float
 
     largest = 110.0
-
-    def __post_init__(self):
-        poisson("poisson", self.poisson)
 
     @property
     def factor(self) -> float:
@@ -71,17 +59,13 @@ class KogutEtsion:
 
 
 @dataclass(frozen=True)
-class JacksonGreen:
+class JacksonGreen(Checked):
     """Jackson & Green (2005) for the yield strain Y/E*: Hertz to w* = 1.9, then one law."""
 
     poisson: float
     yield_strain: float
 
     elastic = 1.9
-
-    def __post_init__(self):
-        poisson("poisson", self.poisson)
-        positive("yield_strain", self.yield_strain)
 
     @property
     def factor(self) -> float:
@@ -120,7 +104,7 @@ def residual_share(w) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class Ghaednia:
+class Ghaednia(Checked):
     """Ghaednia et al. (2019), linear hardening, as its authors corrected it (their Eq. 26 has an exponent
     without its sign and without the approach at first yield). Lengths over the radius of the sphere.
 
@@ -134,18 +118,13 @@ class Ghaednia:
     yield_stress: float
     hardening: float
 
-    def __post_init__(self):
-        poisson("poisson", self.poisson)
-        for name in ("modulus", "young", "yield_stress", "hardening"):
-            positive(name, getattr(self, name))
-
     @property
     def perfect(self) -> JacksonGreen:
         """The body without hardening, whose area the fit begins with."""
         return JacksonGreen(self.poisson, self.yield_stress / self.modulus)
 
     @property
-    def first(self) -> Onset:
+    def first(self) -> CircularContact:
         """First yield under a sphere of radius 1 m."""
         return onset(self.perfect.factor, 1.0, self.modulus, self.yield_stress)
 
@@ -153,7 +132,7 @@ class Ghaednia:
         """a/R at an approach over R beyond 1.9 of that at first yield."""
         d = depth("approach", approach)
         elastic = np.sqrt(d)
-        plastic = np.sqrt(self.first.area * self.perfect.area(d / self.first.approach) / math.pi)
+        plastic = self.first.contact_radius * np.sqrt(self.perfect.area(d / self.first.approach))
         stiff, share = math.sqrt(self.young / self.yield_stress), self.hardening
         power = share ** (1.0 - (d - self.first.approach))
         bottom = (4.0 - 3.0 * math.exp(-2.0 * stiff * share)) * (1.0 - share)
@@ -166,7 +145,7 @@ class Ghaednia:
         hardness = 2.84 - 0.92 * (1.0 - np.cos(math.pi * a))
         plastic = np.exp(-(w ** (5.0 / 12.0)) / 4.0) * w**1.5
         plastic = plastic - 4.0 * hardness / factor * np.expm1(-(w ** (5.0 / 9.0)) / 25.0) * w
-        flat = first.load / self.modulus * plastic
+        flat = first.force / self.modulus * plastic
         return (flat - (4.0 / 3.0 * d**1.5 - flat) * np.expm1(-3.3 * self.hardening))[()]
 
 

@@ -34,6 +34,7 @@ from .stress import components
 Law = Callable[[np.ndarray], np.ndarray]
 PANELS = 200  # in a radius, for integrals over r: 3e-8 of the largest value, where a zone ends in a panel
 ENDS = 6.0  # radii: beyond it all profiles have the field of a point (gauss: 1e-15)
+GRID = np.arange(ENDS * PANELS + 1) / PANELS
 ITERATIONS = 60
 
 
@@ -136,15 +137,17 @@ class GrowingSphere:
     @cached_property
     def _outward(self) -> np.ndarray:
         """int_x^ENDS 2 D/s ds from each panel's inner end, (n + 1,) in Pa."""
-        ends = np.arange(ENDS * PANELS + 1) / PANELS
-        found = self._panel(ends[:-1], ends[1:])
+        found = self._panel(self._thrust, GRID[:-1], GRID[1:])
         return np.append(np.cumsum(found[::-1])[::-1], 0.0)
 
-    def _panel(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-        """int 2 D/s ds between two radii each, in units of the radius."""
+    def _panel(self, of: Callable, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """Integrals of a function of s between two radii each, in units of the radius."""
         t, w = np.polynomial.legendre.leggauss(5)
-        x = (low + high)[..., None] / 2 + (high - low)[..., None] / 2 * t
-        return (2 * self.fields(x * self.radius).deviator / x * w).sum(axis=-1) * (high - low) / 2
+        s = (low + high)[..., None] / 2 + (high - low)[..., None] / 2 * t
+        return (of(s) * w).sum(axis=-1) * (high - low) / 2
+
+    def _thrust(self, s: np.ndarray) -> np.ndarray:
+        return 2 * self.fields(s * self.radius).deviator / s
 
     def radial_stress(self, r) -> np.ndarray:
         """s_r in Pa at distances r from the centre in m."""
@@ -152,7 +155,7 @@ class GrowingSphere:
         last = -2 / 3 * float(self.fields(np.array(ENDS * self.radius)).deviator)
         inner = np.minimum(x, ENDS)
         panel = np.minimum(np.floor(inner * PANELS).astype(int) + 1, int(ENDS * PANELS))
-        total = self._outward[panel] + self._panel(inner, panel / PANELS)
+        total = self._outward[panel] + self._panel(self._thrust, inner, panel / PANELS)
         return np.where(x < ENDS, last - total, -2 / 3 * self.fields(x * self.radius).deviator)
 
     def stress(self, x, y, z) -> np.ndarray:
@@ -174,8 +177,5 @@ class GrowingSphere:
 
     def total(self) -> float:
         """The integral of peeq over the body in m^3."""
-        t, w = np.polynomial.legendre.leggauss(5)
-        ends = np.arange(ENDS * PANELS + 1) / PANELS
-        x = (ends[:-1] + ends[1:])[:, None] / 2 + np.diff(ends)[:, None] / 2 * t
-        peeq = self.fields(x * self.radius).peeq
-        return float(4 * np.pi * self.radius**3 * (peeq * x**2 * w * np.diff(ends)[:, None] / 2).sum())
+        found = self._panel(lambda s: self.fields(s * self.radius).peeq * s**2, GRID[:-1], GRID[1:])
+        return float(4 * np.pi * self.radius**3 * found.sum())

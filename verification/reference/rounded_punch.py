@@ -17,8 +17,9 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import brentq
 
-from .checks import depth, positive
+from .checks import Checked, depth
 from .flat_punch import FlatPunch
+from .quadrature import gauss
 
 POINTS = (
     200  # of Gauss, in the fourth root of the distance from a branch point: force of the pressure to 1e-9
@@ -26,17 +27,13 @@ POINTS = (
 
 
 @dataclass(frozen=True)
-class RoundedPunch:
+class RoundedPunch(Checked):
     """Flat end b and radius R of its edge (m), force (N), modulus E* (Pa). Profiles take r, z >= 0 in m."""
 
     force: float
     flat: float
     radius: float
     modulus: float
-
-    def __post_init__(self):
-        for name in ("force", "flat", "radius", "modulus"):
-            positive(name, getattr(self, name))
 
     @cached_property
     def contact_radius(self) -> float:
@@ -106,6 +103,5 @@ def _angle(share):
 
 def _fourth_powers() -> tuple[np.ndarray, np.ndarray]:
     """Points and weights on (0, 1), dense at 0."""
-    x, w = np.polynomial.legendre.leggauss(POINTS)
-    x, w = (x + 1.0) / 2.0, w / 2.0
+    x, w = gauss(POINTS)
     return x**4, 4.0 * x**3 * w

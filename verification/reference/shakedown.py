@@ -13,6 +13,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from .hamilton import sliding_stress
+from .stress import deviator
 
 FAR, POINTS = 5.0, 401  # contact radii before and behind, and places there
 SHEARS = np.sqrt([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
@@ -61,14 +62,7 @@ def pass_of(depth: float, *, nu: float, friction: float, alternates: bool = Fals
             for sign in signs
         ]
     )
-    return np.vstack([np.zeros(6), _deviator(stress)]) * SHEARS
-
-
-def _deviator(stress: np.ndarray) -> np.ndarray:
-    """Of stresses (..., 6)."""
-    found = stress.copy()
-    found[..., :3] -= found[..., :3].mean(axis=-1, keepdims=True)
-    return found
+    return np.vstack([np.zeros(6), deviator(stress)]) * SHEARS
 
 
 def travelling_limit(
@@ -91,7 +85,7 @@ def in_place_limit(friction: float, *, nu: float = 0.3) -> tuple[float, float]:
     """
     x, z = np.meshgrid(np.linspace(-0.6, 0.6, 121), np.linspace(0.2, 0.7, 201), indexing="ij")
     stress = sliding_stress(x, 0.0, z, 1.0, contact_radius=1.0, nu=nu, friction=friction)
-    size = np.linalg.norm(_deviator(stress) * SHEARS, axis=-1)
+    size = np.linalg.norm(deviator(stress) * SHEARS, axis=-1)
     worst = np.unravel_index(size.argmax(), size.shape)
     return float(np.sqrt(2) * 2 / size[worst]), float(z[worst])
 
@@ -108,7 +102,7 @@ def cell_limit(friction: float, h: float, stops: np.ndarray, *, nu: float = 0.3)
     def radius(centre: float, depth: float) -> float:
         places = [(centre - stop + x, y, depth + z) for stop in stops]
         means = [(weights * sliding_stress(*place, 1.0, **about)).sum(axis=(0, 1, 2)) for place in places]
-        return smallest_ball(np.vstack([np.zeros(6), _deviator(np.array(means))]) * SHEARS)[1]
+        return smallest_ball(np.vstack([np.zeros(6), deviator(np.array(means))]) * SHEARS)[1]
 
     centres = h * np.arange(-round(0.5 / h), round(0.5 / h) + 1)
     depths = h * (np.arange(int(0.2 / h), round(0.7 / h)) + 0.5)

@@ -23,3 +23,10 @@ def von_mises(stress) -> np.ndarray:
     xx, yy, zz, yz, xz, xy = np.moveaxis(stress, -1, 0)
     normal = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2)
     return np.sqrt(normal + 3.0 * (yz**2 + xz**2 + xy**2))
+
+
+def deviator(stress) -> np.ndarray:
+    """Deviatoric part, (..., 6) -> (..., 6), same unit."""
+    found = np.array(stress, dtype=float)
+    found[..., :3] -= found[..., :3].mean(axis=-1, keepdims=True)
+    return found

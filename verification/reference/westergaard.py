@@ -12,11 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .checks import coordinate, positive
+from .checks import Checked, coordinate
 
 
 @dataclass(frozen=True)
-class WavyContact:
+class WavyContact(Checked):
     """Contact of a wave (amplitude, wavelength, m) under a mean pressure (Pa), contact modulus E* (Pa), plane
     strain.
 
@@ -27,10 +27,6 @@ class WavyContact:
     wavelength: float
     modulus: float
     mean_pressure: float
-
-    def __post_init__(self):
-        for name in ("amplitude", "wavelength", "modulus", "mean_pressure"):
-            positive(name, getattr(self, name))
 
     @property
     def complete_pressure(self) -> float:

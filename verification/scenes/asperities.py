@@ -4,13 +4,10 @@ grid.
 
 Gaussian bumps with their tops on y = 0, so that the plane y = 0 passes through the middle of each spot;
 turned in the plane, so that nothing is symmetric. Their spectrum is below 1 % of its top at wavelengths of
-2.5 um, ten of the file's cells. `python -m verification.scenes.asperities` writes the file.
+2.5 um, ten of the file's cells.
 """
 
 from __future__ import annotations
-
-from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -25,29 +22,12 @@ BORDERS = (-1.9e-6, 2.0e-6)
 """x in m between the asperities."""
 
 
-@dataclass(frozen=True)
-class Bump:
-    """height exp(-u^2/(2 wide_u^2) - v^2/(2 wide_v^2)), all in m; u, v: about (x, 0), turned by `angle`
-    degrees.
-    """
-
-    x: float
-    height: float
-    wide_u: float
-    wide_v: float
-    angle: float
-
-    def __call__(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        c, s = np.cos(np.radians(self.angle)), np.sin(np.radians(self.angle))
-        u, v = (x - self.x) * c + y * s, y * c - (x - self.x) * s
-        return self.height * np.exp(-(u**2) / (2.0 * self.wide_u**2) - v**2 / (2.0 * self.wide_v**2))
-
-
 BUMPS = (
-    Bump(-3.8e-6, 130e-9, 1.35e-6, 2.0e-6, 20.0),
-    Bump(0.2e-6, 118e-9, 1.2e-6, 1.7e-6, 0.0),
-    Bump(3.9e-6, 113e-9, 1.3e-6, 1.8e-6, -15.0),
+    (-3.8e-6, 130e-9, 1.35e-6, 2.0e-6, 20.0),
+    (0.2e-6, 118e-9, 1.2e-6, 1.7e-6, 0.0),
+    (3.9e-6, 113e-9, 1.3e-6, 1.8e-6, -15.0),
 )
+"""Of each: x of its top, height and both widths in m, and by how many degrees it is turned."""
 
 
 def centres(cells: int) -> np.ndarray:
@@ -56,9 +36,14 @@ def centres(cells: int) -> np.ndarray:
 
 
 def height_map(cells: int) -> HeightMap:
-    """The asperities on cells x cells cells."""
+    """The asperities, height exp(-u^2/(2 wide_u^2) - v^2/(2 wide_v^2)), on cells x cells cells."""
     x, y = np.meshgrid(centres(cells), centres(cells), indexing="ij")
-    return HeightMap(sum(bump(x, y) for bump in BUMPS), (SIDE, SIDE))
+    heights = np.zeros_like(x)
+    for top, height, wide_u, wide_v, angle in BUMPS:
+        c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+        u, v = (x - top) * c + y * s, y * c - (x - top) * s
+        heights += height * np.exp(-(u**2) / (2.0 * wide_u**2) - v**2 / (2.0 * wide_v**2))
+    return HeightMap(heights, (SIDE, SIDE))
 
 
 def friction_map(cells: int) -> FrictionMap:
@@ -66,18 +51,3 @@ def friction_map(cells: int) -> FrictionMap:
     x, low, high = centres(cells), *BORDERS
     local = np.where((x > low) & (x < high), HIGH, LOW)
     return FrictionMap(np.repeat(local[:, None], cells, axis=1), (SIDE, SIDE))
-
-
-def csv_text() -> str:
-    """The content of the file: heights to 1e-5 of the largest."""
-    found, at = height_map(CELLS), centres(CELLS)
-    rows = [
-        f"{x * 1e6:.3f}e-6,{y * 1e6:.3f}e-6,{h * 1e9:.3f}e-9"
-        for x, line in zip(at, found.values, strict=True)
-        for y, h in zip(at, line, strict=True)
-    ]
-    return "\n".join(["x_m,y_m,height_m", *rows]) + "\n"
-
-
-if __name__ == "__main__":
-    Path(__file__).with_name("rough-asperities.csv").write_text(csv_text(), encoding="utf-8")

@@ -5,7 +5,8 @@ small scenes in groups, for each of which a row holds.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,28 +15,19 @@ from verification.cases.case import (
     FEM,
     FEM_3D,
     SAM,
-    Case,
     Context,
-    Measured,
-    Plot,
-    SmallTable,
-    number,
     with_body,
     with_grid,
     with_loading,
     with_mesh,
 )
 from verification.cases.recipes import Resolution, at_ratio, resolved_at
-from verification.checks.certificates import NAMES, OF_GROUP, Conditions, solved
-from verification.figures.lines import histories
+from verification.checks.certificates import OF_GROUP, solved
 
-TITLES = {
-    "sam": "SAM, sphere",
-    "fem": "axisymmetric FEM",
-    "coated": "SAM, film",
-    "rough": "SAM, rough",
-    "fem-3d": "FEM in three dimensions",
-}
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+__all__ = ["frame", "worst"]
 
 LEVEL = {"quick": Resolution(8, 10), "full": Resolution(12, 20)}
 STEPS, RATIO, PERFECT_RATIO, COEFFICIENT = 5, 4.0, 3.0, 0.2
@@ -61,43 +53,6 @@ FILM = {
 WAVES = {"cutoff_long": 16e-6, "cutoff_short": 8e-6, "hurst": 0.8, "seed": 4}
 
 
-def smooth(context: Context) -> dict[str, Scene]:
-    """Elastic, hardening and perfectly plastic; at rest, and one that slides."""
-    swift, perfect = context.scene("plastic-swift-rigid"), context.scene("plastic-perfect")
-    swift, perfect = (
-        with_loading(at_ratio(scene, ratio), steps=STEPS, unload=True)
-        for scene, ratio in ((swift, RATIO), (perfect, PERFECT_RATIO))
-    )
-    elastic = with_body(perfect, plasticity=None).model_copy(update={"solver": type(perfect.solver)()})
-    sliding = swift.model_copy(update={"friction": Friction(coefficient=COEFFICIENT)})
-    found = {"elastic": elastic, "Swift": swift, "perfect": perfect, "Swift, sliding": sliding}
-    return {name: resolved_at(scene, LEVEL[context.level]) for name, scene in found.items()}
-
-
-def coated(context: Context) -> dict[str, Scene]:
-    """Elastic: a soft thin film at rest, and one that slides."""
-    scenes = {"soft film": context.scene("coated-sphere"), "film, sliding": context.scene("coated-sliding")}
-    return {name: with_grid(scene, cells=(COATED_CELLS, COATED_CELLS)) for name, scene in scenes.items()}
-
-
-def yielding_film(context: Context) -> dict[str, Scene]:
-    """Film and body yield, of the axisymmetric FEM."""
-    scene = with_loading(at_ratio(context.scene("film-yield"), FILM_RATIO), steps=SPATIAL_STEPS, unload=True)
-    return {"film that yields": with_mesh(scene, FILM_MESH)}
-
-
-def sliding(context: Context) -> dict[str, Scene]:
-    """Of the three-dimensional FEM: a Swift body, and an elastic one under a film."""
-    swift = with_loading(
-        at_ratio(context.scene("plastic-swift-rigid"), RATIO), steps=SPATIAL_STEPS, unload=True
-    )
-    swift = swift.model_copy(update={"friction": Friction(coefficient=COEFFICIENT)})
-    scenes = {"Swift, sliding": swift}
-    if context.level == "full":
-        scenes["film, sliding"] = context.scene("coated-sliding")
-    return {name: with_mesh(scene, SPATIAL_MESH) for name, scene in scenes.items()}
-
-
 def rough(context: Context, model: str) -> dict[str, Scene]:
     """A self-affine patch whose border falls off, under a map of friction; of SAM also elastic, or with a
     film that fails.
@@ -111,7 +66,7 @@ def rough(context: Context, model: str) -> dict[str, Scene]:
     quarters = FrictionMap(np.where(side[:, None] == side, HIGH, LOW), (PATCH, PATCH))
     slides = scene.model_copy(update={"friction": Friction(law="map", path=quarters)})
     if model == FEM_3D:
-        return {"rough, Swift": slides} if context.level == "full" else {}
+        return {"rough, Swift": slides}
     elastic = with_body(slides, plasticity=None).model_copy(update={"grid": grid})
     chemical = scene.model_copy(
         update={"friction": Friction(law="chemical-film", low=LOW, high=HIGH, **FILM)}
@@ -119,77 +74,46 @@ def rough(context: Context, model: str) -> dict[str, Scene]:
     return {"rough, elastic": elastic, "rough, Swift": slides, "rough, film that fails": chemical}
 
 
-def groups(context: Context) -> list[tuple[str, str, str, Scene]]:
-    """(group, name, model, scene) of all that is solved."""
-    found = []
-    for name, scene in smooth(context).items():
-        found.append(("sam", name, SAM, scene))
-        if scene.friction is None:
-            found.append(("fem", name, FEM, scene))
+def groups(context: Context) -> Iterator[tuple[str, str, str, Scene]]:
+    """(group, name, model, scene) of all that is solved: spheres, at rest and sliding; elastic films, and one
+    that yields with its body; rough patches.
+    """
+    quick, friction = context.level == "quick", {"friction": Friction(coefficient=COEFFICIENT)}
+
+    def pressed(name: str, ratio: float, steps: int) -> Scene:
+        return with_loading(at_ratio(context.scene(name), ratio), steps=steps, unload=True)
+
+    swift, perfect = (
+        resolved_at(pressed(name, ratio, STEPS), LEVEL[context.level])
+        for name, ratio in (("plastic-swift-rigid", RATIO), ("plastic-perfect", PERFECT_RATIO))
+    )
+    elastic = with_body(perfect, plasticity=None).model_copy(update={"solver": type(perfect.solver)()})
+    at_rest = {"elastic": elastic, "Swift": swift, "perfect": perfect}
+    yields = with_mesh(pressed("film-yield", FILM_RATIO, SPATIAL_STEPS), FILM_MESH)
+    films = {"soft film": context.scene("coated-sphere"), "film, sliding": context.scene("coated-sliding")}
+    spatial = {
+        "Swift, sliding": pressed("plastic-swift-rigid", RATIO, SPATIAL_STEPS).model_copy(update=friction),
+        **({} if quick else {"film, sliding": films["film, sliding"]}),
+    }
+    spatial = {name: with_mesh(scene, SPATIAL_MESH) for name, scene in spatial.items()}
+    films = {name: with_grid(scene, cells=(COATED_CELLS,) * 2) for name, scene in films.items()}
     for group, model, scenes in (
-        ("fem", FEM, yielding_film(context)),
-        ("coated", SAM, coated(context)),
+        ("sam", SAM, at_rest | {"Swift, sliding": swift.model_copy(update=friction)}),
+        ("fem", FEM, at_rest | {"film that yields": yields}),
+        ("coated", SAM, films),
         ("rough", SAM, rough(context, SAM)),
-        ("fem-3d", FEM_3D, sliding(context) | rough(context, FEM_3D)),
+        ("fem-3d", FEM_3D, spatial if quick else spatial | rough(context, FEM_3D)),
     ):
-        found += [(group, name, model, scene) for name, scene in scenes.items()]
-    return found
+        yield from ((group, name, model, scene) for name, scene in scenes.items())
 
 
-Found = Mapping[str, Mapping[str, Conditions]]
-"""Group -> name of a scene -> what was measured of it."""
-
-
-class Certificates(Case):
+def frame(context: Context) -> Iterator[dict[str, Any]]:
     """Each scene solved with the models that apply, and all conditions measured; a row is GROUP-CONDITION."""
-
-    def solve(self, context: Context) -> Found:
-        found: dict[str, dict[str, Conditions]] = {group: {} for group in TITLES}
-        for group, name, model, scene in groups(context):
-            found[group][name] = OF_GROUP[group](scene, *solved(scene, model))
-        return found
-
-    def asked(self) -> Iterator[tuple[str, str]]:
-        """Group and condition of each row."""
-        for row in self.file.rows:
-            name = row.id.partition(".")[2]
-            group = max((each for each in TITLES if name.startswith(f"{each}-")), key=len)
-            yield group, name.removeprefix(f"{group}-")
-
-    def measure(self, found: Found) -> dict[str, Measured]:
-        """The largest value of each condition in each group. ValueError for one that no scene of the group
-        was measured for.
-        """
-        values = {}
-        for group, what in self.asked():
-            measured = [one.values[what] for one in found[group].values() if what in one.values]
-            if not measured:
-                raise ValueError(f"{group}: no scene has {what}")
-            values[f"{group}-{what}"] = Measured(max(measured), 0 if what == "histories" else None)
-        return values
-
-    def tables(self, found: Found) -> Iterator[SmallTable]:
-        for group, scenes in found.items():
-            rows = [
-                (NAMES[what], *(number(one.values.get(what), 2) for one in scenes.values()))
-                for of, what in self.asked()
-                if of == group
-            ]
-            caption = f"Conditions, measured on what was returned: {TITLES[group]}"
-            yield SmallTable(caption, ("condition", *scenes), rows)
-
-    def figures(self, found: Found) -> Iterator[Plot]:
-        curves = {
-            f"{name}, {TITLES[group].split(',')[0]}": one.curves
-            for group, scenes in found.items()
-            for name, one in scenes.items()
-        }
-        words = (
-            "Each curve is one attempt at a load step; the dotted line is where it may stop. Elastic SAM: "
-            "contact; plastic SAM: yield and flow rule, the contact inside; FEM: forces of Newton's method. "
-            "A residual of exactly zero, as after elastic unloading, has no place on this axis."
-        )
-        yield Plot(histories(curves), "residuals", "Residuals over the iterations", words, words)
+    for group, name, model, scene in groups(context):
+        values = OF_GROUP[group](scene, *solved(scene, model))
+        yield {"sweep": group, "scene": name, **values, "values": values}
 
 
-CASES = (Certificates("certificates"),)
+def worst(rows: DataFrame, column: str) -> float:
+    """The largest value of a condition over the scenes for which it is measured. ValueError for none."""
+    return float(np.max([one[column] for one in rows["values"] if column in one]))

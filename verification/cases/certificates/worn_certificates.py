@@ -8,7 +8,7 @@ are counted from the start of the last cycle, heights from the worn surface.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -17,20 +17,13 @@ import numpy as np
 
 from sam import choose_grid
 from sam.scene import Checkpoint, CounterBody, Result, Scene
-from verification.cases.case import (
-    SAM,
-    Case,
-    Context,
-    Measured,
-    SmallTable,
-    with_grid,
-    with_keys,
-    with_loading,
-)
+from verification.cases.case import SAM, Context, with_grid, with_keys, with_loading
 from verification.cases.running_in.running_in_converged import COARSEST, Member
 from verification.checks import cells as cell_checks, conditions as contact_checks, film as film_checks
-from verification.checks.certificates import NAMES, by_rule, larger, late, solved
+from verification.checks.certificates import late, solved
 from verification.checks.conditions import surface_of
+
+__all__ = ["frame"]
 
 CYCLES = (2, 5)
 SEED, TOLERANCE = 1, 1e-6
@@ -40,33 +33,13 @@ contact, and lets it yield deeper.
 DEEPER = 14e-6, 19e-6  # m: further faces of layers
 
 
-class WornCertificates(Case):
-    """One surface after more and more cycles, every condition of its last cycle measured."""
-
-    def solve(self, context: Context) -> dict[int, dict[str, float]]:
-        """Cycles -> condition -> value, and "worn": the volume in m3 before the last peak."""
-        base, found = context.scene("running-in-bulk"), {}
-        for cycles in CYCLES:
-            scene = scene_of(base, cycles)
-            result, records = solved(scene, SAM)
-            volume = float(result.tables["cycles"]["wear_volume_m3"][-2])
-            found[cycles] = conditions_of(scene, result, records) | {"worn": volume}
-        return found
-
-    def measure(self, found: Mapping[int, Mapping[str, float]]) -> dict[str, Measured]:
-        worst: dict[str, float] = {}
-        for each in found.values():
-            worst = larger(worst, each)
-        least = min(each["worn"] for each in found.values())
-        values = {name: Measured(value, 0 if name == "histories" else None) for name, value in worst.items()}
-        return values | {"worn": Measured(least, unit="m³")}
-
-    def tables(self, found: Mapping[int, Mapping[str, float]]) -> Iterator[SmallTable]:
-        names = NAMES | {"worn": "volume worn before that cycle [m³]"}
-        first = next(iter(found.values()))
-        rows = [(names[name], *(f"{each[name]:.1e}" for each in found.values())) for name in first]
-        columns = ("condition", *(f"of {cycles} cycles" for cycles in found))
-        yield SmallTable("Conditions, measured on what was returned of the last cycle", columns, rows)
+def frame(context: Context) -> Iterator[dict[str, float]]:
+    """Every condition of the last cycle after more and more; worn: the volume in m3 before its peak."""
+    for cycles in CYCLES:
+        scene = scene_of(context.scene("running-in-bulk"), cycles)
+        result, records = solved(scene, SAM)
+        volume = float(result.tables["cycles"]["wear_volume_m3"][-2])
+        yield {"cycles": cycles} | conditions_of(scene, result, records) | {"worn": volume}
 
 
 def scene_of(base: Scene, cycles: int) -> Scene:
@@ -82,16 +55,16 @@ def conditions_of(scene: Scene, result: Result, records: Sequence[Checkpoint]) -
     before, loaded, end = last_cycle(records)
     result = lowered(result)
     values = late(result) | {
-        "load": max(contact_checks.load(scene, result).values()),
+        "load": contact_checks.load(scene, result),
         "displacement": max(
-            *cell_checks.displaced(scene, result, loaded).values(), cell_checks.left(scene, result, [end])
+            cell_checks.displaced(scene, result, loaded), cell_checks.left(scene, result, [end])
         ),
         "friction": contact_checks.slips(scene, result),
     }
-    values |= by_rule(contact_checks.flow(scene, [before, *loaded], choose_grid(scene).depths))
+    values |= contact_checks.flow(scene, [before, *loaded], choose_grid(scene).depths)
     states = (contact_checks.yields(scene, result, state) for state in ("peak", "unloaded"))
     values["yield"] = max(values["yield"], *states)
-    values["film"] = max(film_checks.states(scene, [since(before, each) for each in loaded]).values())
+    values["film"] = film_checks.states(scene, [since(before, each) for each in loaded])
     return values
 
 
@@ -122,6 +95,3 @@ def since(before: Checkpoint, now: Checkpoint) -> Any:
     state = {**tree["state"], "points": points}
     last = {**tree["last"], "stress": tree["last"]["stress"] - start["last"]["stress"]}
     return SimpleNamespace(tree=lambda: {**tree, "state": state, "last": last})
-
-
-CASES = (WornCertificates("worn-certificates"),)

@@ -13,26 +13,20 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Body, Coating, CounterBody, Plasticity, Result, Scene
-from verification.cases.case import FEM, Context, Plot, with_body, with_loading, with_mesh
+from verification.cases.case import FEM, Context, with_body, with_loading, with_mesh
 from verification.cases.recipes import COUNTERBODIES
 from verification.compare.verdicts import LIMIT
-from verification.figures.film import changes, pressures
-from verification.reference.bonded_film import elastic_mises, flow_gradient, in_plane_strain, plastic_strain
+from verification.reference.bonded_film import elastic_mises, flow_gradient, in_plane_strain, thinning
 from verification.reference.hertz import effective_modulus
 from verification.references import changes_by_film
 from verification.runs.sampling import peak
 
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
-    from verification.rows import CaseFile
-
-__all__ = ["changed", "frame", "pressure"]
+__all__ = ["frame"]
 
 LEVEL = {"quick": (8, 5), "full": (12, 10)}
 """Elements in the contact radius, of which the film has two over its thickness whatever their number; load
@@ -111,7 +105,7 @@ def row_of(contact: FilmContact, scene: Scene, result: Result, bare: Result) -> 
     centre, changes = q["p_center_Pa"], (q["p_max_change"], q["mises_max_change"])
     strain, bare_strain = in_plane_strain(centre, body.young, body.poisson), bare.quantities["peeq_max"]
     if yields:
-        thin = plastic_strain(centre, strain, (film.young, film.poisson, film.yield_stress))
+        thin = thinning(centre, 0.0, strain, (film.young, film.poisson, film.yield_stress))
     else:
         thin = elastic_mises(centre, strain, film.young, film.poisson)
     found = {
@@ -136,7 +130,11 @@ def row_of(contact: FilmContact, scene: Scene, result: Result, bare: Result) -> 
         exact = changes_by_film(scene)
         apart = {f"{name}-off": abs(a - b) for name, a, b in zip(("p", "mises"), changes, exact, strict=True)}
         found |= apart | {"hertz": off(q["p_max_bare_Pa"], contact.p0)}
-    return vars(contact) | found | {"scene": scene, "result": result, "bare": bare}
+    words = {
+        "materials": f"body {contact.body}, film {contact.film}",
+        "contact": f"{contact.counterbody}, {1e-9 * contact.p0:g} GPa",
+    }
+    return vars(contact) | words | found
 
 
 def off(value: float, expected: float) -> float:
@@ -174,23 +172,19 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
     thin = [replace(elastic, radius=THIN_RADIUS, film=film) for film in ("elastic", "yields")]
     found = {contact: solved(contact) for contact in dict.fromkeys([*contacts, flowing, *thin])}
     for sweep, chosen in (("contacts", contacts), ("thin", thin)):
-        yield from ({"sweep": sweep} | found[contact] for contact in chosen)
+        for row in (found[contact] for contact in chosen):
+            drawn = sweep == "contacts" and row["known"] == "yes"
+            shown = {f"change-of-{name}-in-percent": 100 * row[f"{name}_change"] for name in ("p", "mises")}
+            yield {"sweep": sweep} | row | (shown if drawn else {})
     yield from (
         {"sweep": "flowing"} | found[each] for each in found if replace(each, body="elastic") == flowing
     )
     for contact in refined:
         before, now = found[contact], solved(contact, 2 * cells)
-        both = {"known": min(before["known"], now["known"])}  # "no" before "yes"
-        finer = {
-            f"finer-{name}": abs(before[f"{name}_change"] - now[f"{name}_change"]) for name in ("p", "mises")
-        }
-        yield (
-            {"sweep": "finer"}
-            | now
-            | both
-            | finer
-            | {"finer-strain": off(before["body_strain"], now["body_strain"])}
-        )
+        row = {"sweep": "finer", **now, "known": min(before["known"], now["known"])}  # "no" before "yes"
+        for name in ("p", "mises"):
+            row[f"finer-{name}"] = abs(before[f"{name}_change"] - now[f"{name}_change"])
+        yield row | {"finer-strain": off(before["body_strain"], now["body_strain"])}
     own = scene_of(base, FilmContact(BARE_RADIUS, PRESSURES[0], "rigid", "elastic", "yields"), cells)
     film = Coating(thickness=own.body.coating.thickness, **STEEL, yield_stress=PERFECT.yield_stress)
     own = own.model_copy(update={"body": Body(**STEEL, plasticity=PERFECT, coating=film)})
@@ -198,37 +192,5 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
         context.solve(FEM, scene, label).quantities
         for scene, label in ((own, "one-material"), (with_body(own, coating=None), "one-material-bare"))
     )
-    changes = {f"{name}-change": same[f"{name}_max_change"] for name in ("p", "mises")}
-    yield {
-        "sweep": "same",
-        "strain": same["peeq_max"],
-        "strain expected": alone["peeq_max"],
-    } | changes
-
-
-def _hardest(frame: DataFrame) -> DataFrame:
-    return frame[(frame["sweep"] == "contacts") & (frame["p0"] == PRESSURES[-1])]
-
-
-def changed(file: CaseFile, frame: DataFrame) -> Plot | None:
-    """The changes over the contact radius, where there are several."""
-    if (own := _hardest(frame))["radius"].nunique() < 2:
-        return None
-    words = (
-        "Changes of the largest pressure and of the largest von Mises stress of the body over the contact "
-        "radius, rigid sphere and steel, for every pair of materials; dashed: the film yields. Contacts that "
-        "squeeze their film too far for an answer are left out."
-    )
-    drawing = changes(own[own["known"] == "yes"], LIMIT)
-    return Plot(drawing, "changes", "Changes by the film over the contact radius, p₀ = 6.5 GPa", words, words)
-
-
-def pressure(file: CaseFile, frame: DataFrame) -> Plot:
-    """The pressure over the radius."""
-    words = (
-        "Pressure over radius for each contact radius: without film and with one that is elastic or yields. "
-        "Where a film that yields flows out, the pressure falls on a line, by about σ_y/(√3 h)."
-    )
-    own = _hardest(frame)
-    drawing = pressures(own[own["counterbody"] == "rigid"], BARE_RADIUS)
-    return Plot(drawing, "pressure", "Pressure under films, rigid sphere, p₀ = 6.5 GPa", words, words)
+    row = {f"{name}-change": same[f"{name}_max_change"] for name in ("p", "mises")}
+    yield {"sweep": "same", "strain": same["peeq_max"], "strain expected": alone["peeq_max"]} | row

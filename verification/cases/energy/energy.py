@@ -16,7 +16,7 @@ from verification.cases.recipes import Resolution, at_ratio, resolved_at
 from verification.energy import of_fem, of_sam
 from verification.energy.balance import Balance
 from verification.figures.specials import over_path
-from verification.reference.convergence import fit_order
+from verification.reference.convergence import fit_power
 from verification.references import contact_of
 
 if TYPE_CHECKING:
@@ -37,65 +37,24 @@ CONTACTS = {
     "sliding": ("Swift steel, μ = 0.2", "plastic-swift-rigid", 0.2),
 }
 """Title, file of the scene and coefficient of friction of a sphere that yields."""
-LADDERS = {
-    "energy": (("perfect", SAM), ("sliding", SAM)),
-    "energy-fem": (("perfect", FEM), ("steel", SAM), ("steel", FEM)),
+SOLVED = {
+    "energy": (
+        *(("perfect", SAM, True), ("sliding", SAM, True), ("perfect", FEM, False)),
+        *(("elastic-rest", SAM, False), ("elastic-fem", FEM, False)),
+    ),
+    "energy-fem": (
+        *(("perfect", FEM, True), ("steel", SAM, True), ("steel", FEM, True)),
+        *(("sliding", SAM, False), ("sliding", FEM_3D, False)),
+        *(("alternating", SAM, True), ("alternating", FEM, True)),
+    ),
 }
-"""Case -> contacts and models that take each number of steps, SAM on each number of cells too."""
-ONCE = {"energy": (("perfect", FEM),), "energy-fem": (("sliding", SAM), ("sliding", FEM_3D))}
-"""Those that take the fewest steps, SAM on the finest cells."""
-ELASTIC = {
-    "elastic-rest": ("perfect", SAM),
-    "elastic-sliding": ("sliding", SAM),
-    "elastic-fem": ("perfect", FEM),
-}
-"""Nothing is dissipated by elastic ones: sliding the couplings have to be reciprocal."""
+"""Case -> contacts and models, and whether they take each number of steps on the coarsest grid and the fewest
+steps on each of SAM, or the fewest on the finest.
+"""
 # Of a pressure in place, over the yield stress: 1.5 times Melan's limit for Prager's back-stress. Its modulus
 # in Pa: with a tenth of it the mean strain settles for longer.
 ALTERNATING, MODULUS, YIELD = 4.84, 150e9, 1e9
 IN_RADIUS = {SAM: 5, FEM: 3}  # cells or elements in the radius of that pressure
-
-
-def of_cells(one: Balance) -> float:
-    """The largest error of the cells over the states."""
-    return float(np.abs(one.error_of_cells).max())
-
-
-def of_steps(one: Balance) -> float:
-    """The largest error of the steps over the states."""
-    return float(np.abs(one.error_of_steps).max())
-
-
-def within(one: Balance) -> float:
-    """The largest plastic work of stresses that vary within the cells over the largest work; 0 in FEM."""
-    return float(np.abs(one.within).max() / np.abs(one.work).max())
-
-
-def pressing(one: Balance) -> float:
-    """What the work F delta of the counter-body differs by from that of the pressure, up to the peak; without
-    friction.
-    """
-    return abs(one.pressing[one.peak] / one.work[one.peak] - 1)
-
-
-def _in_last_cycle(one: Balance, energy: np.ndarray) -> float:
-    """What the last cycle, between two states without force, adds to an energy, over what it dissipates."""
-    before, end = np.flatnonzero(one.force == 0)[-2:]
-    return float((energy[end] - energy[before]) / (one.dissipated[end] - one.dissipated[before]))
-
-
-def cycle(one: Balance) -> float:
-    """The work of a last cycle less what is dissipated, over that; elastic energy and the energy of the
-    back-stresses are to come back.
-    """
-    return abs(_in_last_cycle(one, one.work - one.beyond) - 1)
-
-
-def flow(one: Balance) -> float:
-    """The plastic work of a last cycle less what is dissipated and stored by back-stresses, over the former
-    of the two.
-    """
-    return abs(_in_last_cycle(one, one.flowed - one.back) - 1)
 
 
 def scene_of(context: Context, contact: str, steps: int, size: int) -> Scene:
@@ -124,22 +83,17 @@ def alternating(steps: int, size: int, radius: float = 10e-6) -> Scene:
 
 def asked(context: Context) -> Iterator[tuple[str, str, int, Scene]]:
     """Contact, model, cells or elements in the radius, and scene of all that is solved by a case."""
-    cells = CELLS[context.level]
-    for contact, model in LADDERS[context.case]:
-        size = cells[0] if model == SAM else ELEMENTS[model]
-        yield from ((contact, model, size, scene_of(context, contact, n, size)) for n in STEPS)
-        for size in cells[1:] if model == SAM else ():
-            yield contact, model, size, scene_of(context, contact, STEPS[0], size)
-    for contact, model in ONCE[context.case]:
-        size = cells[-1] if model == SAM else ELEMENTS[model]
-        yield contact, model, size, scene_of(context, contact, STEPS[0], size)
-    if context.case == "energy":
-        for name, (contact, model) in ELASTIC.items():
-            size = cells[-1] if model == SAM else ELEMENTS[model]
-            yield name, model, size, with_body(scene_of(context, contact, STEPS[0], size), plasticity=None)
-    else:
-        for model, size in IN_RADIUS.items():
-            yield from (("alternating", model, size, alternating(n, size)) for n in STEPS)
+    for contact, model, ladder in SOLVED[context.case]:
+        sizes = CELLS[context.level] if model == SAM else (ELEMENTS[model],)
+        if contact == "alternating":
+            sizes = (IN_RADIUS[model],)
+        points = [(n, sizes[0]) for n in STEPS] + [(STEPS[0], size) for size in sizes[1:]]
+        for steps, size in points if ladder else [(STEPS[0], sizes[-1])]:
+            if contact == "alternating":
+                scene = alternating(steps, size)
+            else:
+                scene = scene_of(context, "perfect" if "elastic" in contact else contact, steps, size)
+            yield contact, model, size, with_body(scene, plasticity=None) if "elastic" in contact else scene
 
 
 def balances(context: Context) -> Iterator[dict[str, Any]]:
@@ -155,30 +109,41 @@ def balances(context: Context) -> Iterator[dict[str, Any]]:
 
 def row(one: Balance, contact: str) -> dict[str, Any]:
     """Energies in J: the work at the peak, dissipated and locked, stored as cold work, after unloading; the
-    errors of a balance, of one that alternates those of its last cycle.
+    largest errors of the cells and of the steps over the states.
+
+    within-cells: plastic work of stresses that vary within cells over the largest work, 0 in FEM. pressing:
+    what the work F delta of the counter-body differs by from that of the pressure, up to the peak. Of one
+    that alternates, in its last cycle, between two states without force, over what that dissipates: cycle,
+    the work less what is dissipated, as elastic energy and that of the back-stresses are to come back; flow,
+    the plastic work less what is dissipated and stored by back-stresses.
     """
     values = {
         "work": one.work[one.peak],
         "dissipated": one.dissipated[-1],
         "locked": one.elastic[-1],
-        "error-of-cells": of_cells(one),
-        "error-of-steps": of_steps(one),
-        "within": within(one),
+        "error-of-cells": one.error_of_cells,
+        "error-of-steps": one.error_of_steps,
+        "within-cells": np.abs(one.within).max() / np.abs(one.work).max(),
         "balance": [one],
     }
     if contact == "alternating":
-        return values | {"cycle": cycle(one), "flow": flow(one)}
-    return values | ({} if contact == "sliding" else {"pressing": pressing(one)})
+        before, end = np.flatnonzero(one.force == 0)[-2:]
+        for name, energy in (("cycle", one.work - one.beyond), ("flow", one.flowed - one.back)):
+            spent = one.dissipated[end] - one.dissipated[before]
+            values[name] = abs((energy[end] - energy[before]) / spent - 1)
+    elif contact != "sliding":
+        values["pressing"] = abs(one.pressing[one.peak] / one.work[one.peak] - 1)
+    return values
 
 
 def order_in_cells(rows: DataFrame, column: str) -> float:
     """Of an error in the size of the cells."""
-    return fit_order(1 / rows["size"], rows[column]).order
+    return fit_power(1 / rows["size"], rows[column]).exponent
 
 
 def order_in_steps(rows: DataFrame, column: str) -> float:
     """Of an error in the load step."""
-    return fit_order(1 / rows["steps"], rows[column]).order
+    return fit_power(1 / rows["steps"], rows[column]).exponent
 
 
 def path(file: CaseFile, frame: DataFrame) -> Plot:

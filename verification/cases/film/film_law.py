@@ -1,38 +1,23 @@
 # SPDX-License-Identifier: MIT
-"""The law of the chemical film against closed forms, a general solver and the rate equations, and its
-growth.
-"""
+"""The law of the chemical film along a path against its rate equations, where it fails, and its growth."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Friction
 from sam.tribofilm import FilmLaw, FilmState
-from verification.cases.case import Context, Plot
-from verification.figures.lines import thinning_curves
-from verification.reference.bonded_film import (
-    in_plane_strain,
-    normal_strain,
-    overall_coefficient,
-    printed_thinning,
-)
-from verification.reference.convergence import fit_order
+from verification.cases.case import Context
+from verification.reference.bonded_film import film_pressure, in_plane_strain, normal_strain
+from verification.reference.convergence import fit_power
 from verification.reference.film_flow import Film, FlowPoint
-from verification.reference.film_tables import growth_coefficients
-from verification.reference.regime import film_pressure, largest_pressure, thinning
 
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
-    from verification.rows import CaseFile
-
-__all__ = ["frame", "thinning_of_the_film"]
+__all__ = ["frame"]
 
 FILM, BODY = (80e9, 0.3, 2e9 / 3.0), (210e9, 0.3)
 """E in Pa and nu, of the film also its yield stress in Pa, a third of its hardness: Bosman & Schipper (2011),
@@ -40,8 +25,6 @@ section 4.
 """
 FRICTIONS, HIGH = (0.0, 0.1), 0.4
 TRACK, WIDTH, SPEED, THICKNESS = 314.15e-3, 300e-6, 1.0, 100e-9
-PRESSURES = np.array((1e9, 2e9, 3e9, 3.5e9, 3.8e9, 4e9, 5e9, 6.5e9))
-STATES = {"quick": 100, "full": 1000}
 SUBSTEPS = (16, 32, 64, 128)
 WINDING = [
     FlowPoint(np.array(strain), p, -FRICTIONS[1] * p)
@@ -77,33 +60,6 @@ def at_centre(law: FilmLaw, pressure: np.ndarray) -> FilmState:
     return law.step(fresh, strain, np.array(pressure)[:, None], bulk_normal=normal)
 
 
-def closed_form_error(mu: float) -> float:
-    """Largest relative error of the thinning at the PRESSURES that the film can bear; absolute where it is
-    0.
-    """
-    borne = PRESSURES[largest_pressure(FILM[2], mu) > PRESSURES]
-    pairs = zip(at_centre(law_of(mu), borne).thinning[:, 0], borne, strict=True)
-    exact = ((ours, thinning(p, mu, in_plane_strain(p, *BODY), FILM)) for ours, p in pairs)
-    return max(abs(ours - right) / (right or 1.0) for ours, right in exact)
-
-
-def general_error(count: int) -> float:
-    """Largest error of the plastic strain after a step at mu = 0.1 from random states, over its largest
-    component, against the radial return in six components inside a root search.
-    """
-    rng, law, film = np.random.default_rng(7), law_of(FRICTIONS[1]), Film(*FILM)
-    pressure = rng.uniform(0.0, 0.97 * law.bearable_pressure, count)
-    strain, plastic = rng.normal(scale=5e-3, size=(3, count)), rng.normal(scale=3e-3, size=(6, count))
-    plastic[2] = -plastic[0] - plastic[1]
-    state = FilmState(plastic[..., None], np.zeros((count, 1), dtype=bool))
-    found = law.step(state, strain[..., None], pressure[:, None]).plastic[..., 0]
-    right = [
-        film.implicit_step(plastic[:, k], FlowPoint(strain[:, k], p, -law.low * p))
-        for k, p in enumerate(pressure)
-    ]
-    return max(float(np.abs(found[:, k] - each).max() / np.abs(each).max()) for k, each in enumerate(right))
-
-
 def path_errors() -> tuple[np.ndarray, float]:
     """Error of the plastic strain after the winding path in each of SUBSTEPS a part, over its largest
     component, and that of the extrapolated one.
@@ -129,65 +85,21 @@ def failure_pressure(mu: float, limit: float) -> float:
     return high
 
 
-def wrong_equilibria() -> int:
-    """Verdicts that are wrong a little below and above the pressure that the film can bear, without a limit
-    of strain.
-    """
-    shares, mu = 1.0 + np.array([-1e-3, -1e-6, -1e-9, 1e-9, 1e-6, 1e-3, 1.0]), FRICTIONS[1]
-    failed = at_centre(law_of(mu), shares * largest_pressure(FILM[2], mu)).failed[:, 0]
-    return int(np.sum(failed != (shares > 1.0)))
-
-
-def overall_error() -> float:
-    """Sum of the traction over that of the pressure, against low + (high - low) W_high/W, over a thousand
-    spots.
-    """
-    pressure = np.random.default_rng(3).uniform(0.0, 6e9, 1000)
-    law = law_of(FRICTIONS[1], friction_of(100.0).thinning_limit)
-    state = at_centre(law, pressure)
-    q = law.coefficient(state)[:, 0] * pressure
-    right = overall_coefficient(pressure, state.failed[:, 0], law.low, law.high, cell_area=1e-12)
-    return float(abs(q.sum() / pressure.sum() / right - 1.0))
-
-
 def frame(context: Context) -> Iterator[dict[str, Any]]:
-    """The thinning and the pressure at which the film breaks down by friction; the growth by bath
-    temperature; and the law against solvers of its equations.
+    """The thinning and the pressure at which the film breaks down by friction, and the thinning by the
+    equations as printed; the growth in a cycle at the bath of the paper; and the law along a path against its
+    rate equations.
     """
     friction, (errors, extrapolated) = friction_of(100.0), path_errors()
-    for mu in FRICTIONS:
-        fails = failure_pressure(mu, friction.thinning_limit)
-        row = {"sweep": "pressure of breakdown", "friction": mu, "closed-form": closed_form_error(mu)}
-        yield row | {"fails": fails, "fails expected": film_pressure(friction.thinning_limit, mu, FILM, BODY)}
-    for bath, coefficient in growth_coefficients().items():
-        right, found = 1e-9 * coefficient * math.sqrt((TRACK - WIDTH) / SPEED), friction_of(bath)
-        row = {"sweep": "growth", "bath": bath, "growth": found.growth, "growth expected": right}
-        row |= {"limit": found.thinning_limit, "limit expected": right / THICKNESS}
-        yield row | {"off": abs(found.growth / right - 1.0)}
-    printed = np.array([printed_thinning(p, FRICTIONS[1], FILM, BODY) for p in PRESSURES])
-    ours = at_centre(law_of(FRICTIONS[1], printed=True), PRESSURES).thinning[:, 0]
-    yield {
-        "sweep": "law",
-        "general": general_error(STATES[context.level]),
-        "wrong": wrong_equilibria(),
-        "order": fit_order([1.0 / n for n in SUBSTEPS], errors).order,
-        "path": extrapolated,
-        "as-printed": float(np.abs(ours / printed - 1.0).max()),
-        "overall": overall_error(),
-    }
-
-
-def thinning_of_the_film(file: CaseFile, found: DataFrame) -> Plot:
-    """Thinning over the pressure."""
-    pressure = np.linspace(0.0, 6.5e9, 261)
-    laws = {f"μ = {mu:g}": law_of(mu) for mu in FRICTIONS}
-    laws["μ = 0.1, as printed"] = law_of(FRICTIONS[1], printed=True)
-    states = {name: at_centre(law, pressure) for name, law in laws.items()}
-    lines = {name: np.where(s.failed, np.nan, 100.0 * s.thinning)[:, 0] for name, s in states.items()}
-    words = (
-        "Thinning of the film against the pressure at the centre of a Hertz contact on elastic steel. The "
-        "line at μ = 0.1 ends where no equilibrium exists; as printed the film grows thicker. Dotted: the "
-        "growth of a cycle, within which the film lasts."
-    )
-    drawing = thinning_curves(pressure / 1e9, lines, 100.0 * friction_of(100.0).thinning_limit)
-    return Plot(drawing, "thinning", "Thinning of the film", words, words)
+    pressure, laws = np.linspace(0.0, 6.5e9, 27), {mu: law_of(mu) for mu in FRICTIONS}
+    for name, law in (laws | {"0.1, as printed": law_of(FRICTIONS[1], printed=True)}).items():
+        state = at_centre(law, pressure)
+        thinning = np.where(state.failed, np.nan, state.thinning)[:, 0]
+        row = {"sweep": "breakdown", "friction": name, "pressure": 1e-9 * pressure, "thinning": thinning}
+        if name in laws:
+            row["fails"] = failure_pressure(name, friction.thinning_limit)
+            row["fails expected"] = film_pressure(friction.thinning_limit, name, FILM, BODY)
+        yield row
+    yield {"sweep": "growth", "growth": friction.growth, "over the thickness": friction.thinning_limit}
+    order = fit_power([1.0 / n for n in SUBSTEPS], errors).exponent
+    yield {"sweep": "path", "order": order, "path": extrapolated}

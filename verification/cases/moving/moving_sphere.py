@@ -6,22 +6,16 @@ energy, and what it shows at the start.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Friction, Result, Scene
-from verification.cases.case import SAM, Context, Plot, with_body, with_grid
+from verification.cases.case import SAM, Context, with_body, with_grid
 from verification.cases.recipes import TRACK, on_track, radius_at
 from verification.energy.balance import Balance
 from verification.energy.of_sam import balance_of
-from verification.figures.lines import grooves
 from verification.references import hertz_sphere
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
-    from verification.rows import CaseFile
 
 ELASTIC = {"cells": 8, "length": 9 * 2.25 / 8, "per_radius": 8 / 2.25}  # 9 steps of 2 1/4 cells
 FINE = {"cells": 6, "per_radius": 8.0}
@@ -96,20 +90,20 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
     scenes |= {f"coarse-{name}": on_track(base, COARSE | keys) for name, keys in OTHERS.items()}
     results = {name: context.solve(SAM, scene, name) for name, scene in scenes.items()}
     sliding = balance_of(coarse.model_copy(update={"friction": Friction(coefficient=0.2)}))
-    yield {"run": "elastic"} | against_hertz(elastic, results["elastic"])
+    yield {"sweep": "elastic"} | against_hertz(elastic, results["elastic"])
     depth = results["coarse"].quantities["groove_depth_m"]
     for name in ("whole", "half"):
         shifted = results[f"coarse-{name}"].quantities["groove_depth_m"]
-        yield {"run": f"coarse-{name}", "shifted": abs(shifted / depth - 1)}
+        yield {"sweep": f"coarse-{name}", "shifted": abs(shifted / depth - 1)}
     turned = changed_by_turn(results["coarse"], results["coarse-back"])
-    yield {"run": "coarse", "friction-energy": np.abs(sliding.error_of_cells).max()} | turned
+    yield {"sweep": "coarse", "friction-energy": sliding.error_of_cells} | turned
     track, found, a = results["steel"].quantities, balance_of(steel), radius_at(steel)
     way, groove = groove_of(steel, results["steel"])
     steady = groove[np.asarray(results["steel"].tables["track"]["steady"]) == 1]
     yield {
-        "run": "steel",
+        "sweep": "steel",
         "steady": np.abs(steady / steady.mean() - 1).max(),
-        "energy": np.abs(found.error_of_cells).max(),
+        "energy": found.error_of_cells,
         "rolling-energy": rolling_energy(found, results["steel"]),
         "deepest-at-start": (track["groove_deepest_x_m"] - steel.loading.path.start[0]) / a,
         "shoulders": min(track["shoulder_start_m"], track["shoulder_end_m"]) / track["groove_depth_m"],
@@ -119,14 +113,3 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
         "way": way,
         "groove": groove,
     }
-
-
-def groove(file: CaseFile, frame: DataFrame) -> Plot:
-    """Along the path."""
-    last = frame.iloc[-1]
-    words = (
-        "Displacement of the surface by plastic strain over the distance from the start, after the pass; "
-        "the sphere was pressed on at 0."
-    )
-    drawing = grooves({"Swift steel": (last["way"], last["groove"])}, TRACK)
-    return Plot(drawing, "groove", "Groove along the path", words, words)

@@ -6,21 +6,13 @@ coarse runs extrapolate to the limit of fine ones, and the uncertainty of a sing
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from typing import Any
 
 from sam.scene import Result, Scene
-from verification.cases.case import SAM, Context, Plot
+from verification.cases.case import SAM, Context
 from verification.cases.recipes import on_track
-from verification.figures.lines import errors_over_counts
 from verification.quantities import refined
 from verification.uncertainty import solving as uncertainty
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
-    from verification.rows import CaseFile
 
 STEPS = (1, 2, 4, 8, 16, 32)  # in the radius; the strain has no order before the last three
 CELLS, AT = (6, 8, 12), 8  # in the radius; where the other is varied
@@ -35,11 +27,10 @@ def values_of(result: Result) -> dict[str, float]:
     return {key: float(result.quantities[name]) for key, name in NAMES.items()} | {"steady": float(steady)}
 
 
-def limit(by_steps: Mapping[int, Mapping[str, float]], key: str) -> tuple[float, float]:
-    """Limit of the three finest steps, and the ratio of the changes, two to the order."""
+def limit(by_steps: Mapping[int, Mapping[str, float]], key: str) -> float:
+    """Limit of the three finest steps, of the order that they have."""
     a, b, c = (by_steps[n][key] for n in STEPS[-3:])
-    ratio = (b - a) / (c - b)
-    return c + (c - b) / (ratio - 1), ratio
+    return c + (c - b) / ((b - a) / (c - b) - 1)
 
 
 def of_cells(by_cells: Mapping[int, Mapping[str, float]], key: str) -> float:
@@ -67,8 +58,8 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
         uncertainty.asked_of(on_track(base, SINGLE), "moving-sphere.toml"), SAM, solved
     )
     for sweep, found in (("steps", steps), ("cells", cells)):
-        yield from ({"sweep": sweep, "count": n} | values for n, values in found.items())
-    short = {key: limit(steps, key)[0] for key in steps[AT]}
+        yield from ({"sweep": sweep, "varied": sweep, "count": n} | values for n, values in found.items())
+    short = {key: limit(steps, key) for key in steps[AT]}
     fine = {key: of_cells(cells, key) for key in steps[AT]}
     exact = {key: short[key] + fine[key] for key in fine}
     limits = {
@@ -82,22 +73,3 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
         },
     }
     yield from ({"sweep": "limits", "model": name} | values for name, values in limits.items())
-
-
-def errors(file: CaseFile, frame: DataFrame) -> Plot:
-    """Of the steady part, over steps and cells."""
-    panels: dict[str, dict] = {"steps": {}, "cells": {}}
-    ends = frame.set_index("model")
-    for name, key, end in (
-        ("steps", "groove", "limit"),
-        ("steps", "steady", "limit"),
-        ("cells", "groove", "refined"),
-    ):
-        own = frame[frame["sweep"] == name]
-        panels[name][key] = own["count"].to_numpy(), np.abs(own[key].to_numpy() / ends[key][end] - 1)
-    words = (
-        "Relative errors of the steady part of the track over the number of steps and of cells in a "
-        f"radius, on cells of a/{AT} (left) and in steps of a/{AT} (right)."
-    )
-    title = "Error by the step along the path, and by the cells"
-    return Plot(errors_over_counts(panels), "errors", title, words, words)

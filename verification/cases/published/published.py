@@ -16,11 +16,11 @@ from verification.cases.recipes import initial_yield
 from verification.judging import Measured
 from verification.quantities import Reference
 from verification.reference.hamilton import largest_von_mises
+from verification.reference.hertz import CircularContact
 from verification.reference.indentation import (
     Ghaednia,
     JacksonGreen,
     KogutEtsion,
-    Onset,
     onset,
     residual_share,
 )
@@ -45,7 +45,7 @@ LARGEST = 20.0  # w*: beyond it the two correlations part, 14 % at 110
 RESOLVED = 0.35  # contact radius over that at the largest load from which a point counts
 
 
-def jackson_green(scene: Scene) -> tuple[JacksonGreen, Onset]:
+def jackson_green(scene: Scene) -> tuple[JacksonGreen, CircularContact]:
     """The fit for a scene, and the contact at first yield in it."""
     modulus, stress = modulus_of(scene), initial_yield(scene)
     fit = JacksonGreen(scene.body.poisson, stress / modulus)
@@ -55,7 +55,7 @@ def jackson_green(scene: Scene) -> tuple[JacksonGreen, Onset]:
 def w_star(scene: Scene, w: float) -> Scene:
     """Under the force of Jackson & Green at w*, the approach over that at first yield."""
     fit, first = jackson_green(scene)
-    return with_loading(scene, force=first.load * float(fit.load(w)))
+    return with_loading(scene, force=first.force * float(fit.load(w)))
 
 
 def share(scene: Scene, result: Result, reference: Reference | None) -> Measured:
@@ -112,7 +112,7 @@ def points(scene: Scene, result: Result) -> dict[str, np.ndarray]:
         np.asarray(history[name], dtype=float) / unit
         for name, unit in zip(
             ("approach_m", "force_N", "contact_area_m2"),
-            (first.approach, first.load, first.area),
+            (first.approach, first.force, first.area),
             strict=True,
         )
     )

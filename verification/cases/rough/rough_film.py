@@ -10,47 +10,33 @@ rough as the film is thick.
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator
 from itertools import product
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-import sam
-from sam.contact import stresses, von_mises
-from sam.grid import Window
 from sam.scene import Result, Scene
-from verification.cases.case import (
-    SAM,
-    Case,
-    Context,
-    Measured,
-    Plot,
-    SmallTable,
-    number,
-    with_body,
-    with_grid,
-    with_keys,
-)
+from verification.cases.case import SAM, Context, Plot, with_body, with_grid, with_keys
 from verification.compare.verdicts import LIMIT, breaking_radius
-from verification.figures.maps import rough_pressures, sections
+from verification.figures.maps import rough_pressures
 from verification.runs.sampling import pressure_map
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+    from verification.rows import CaseFile
+
+__all__ = ["frame", "pressure", "size", "spread"]
 
 SCENE = "rough-patch"
 GRIDS = {"quick": (64, 128), "full": (64, 128, 256, 512)}
 WHITE, WHITE_GRIDS = 2e-6, {"quick": (128,), "full": (128, 256)}  # cut-off in m; four cells in it and more
 SEEDS = (1, 2, 3, 4, 5)
-PAPER = {"p_max": 6.5e9, "change": -0.015}  # Fig. 3: 6.5 to 6.4 GPa, and 3.55 to 3.5 GPa of von Mises stress
 FILM_YIELD = 0.67e9  # a third of the hardness, Bosman & Schipper (2011), section 4
 SPREAD = tuple(product((80e9, 130e9), (60e-9, 100e-9, 160e-9)))  # Table 2
 CRYSTALLINE = tuple(product((0.95, 0.9), (0.5e-6, 1e-6)))  # of Young's modulus, Fig. 4
-SMOOTH, ROUGH = "smooth, steel", "rough, rigid"
-COLUMNS = (
-    *("surface, against", "cells", "p_max bare [GPa]", "coated [GPa]", "change", "von Mises bare [GPa]"),
-    *("change of the body's", "von Mises in the film [GPa]", "over its yield stress"),
-    *("radius of the summit [µm]", "claim"),
-)
+SMOOTH, ROUGH = "smooth-steel", "rough-rigid"
 
 
 def at(scene: Scene, n: int) -> Scene:
@@ -81,122 +67,68 @@ def patches(base: Scene, level: str) -> dict[str, list[Scene]]:
     found = {
         SMOOTH: [at(base, n) for n in GRIDS[level]],
         ROUGH: [at(rigid(rougher(base)), n) for n in WHITE_GRIDS[level]],
-        "smooth, rigid": [at(rigid(base), 128)],
-        "rough, steel": [at(rougher(base), 128)],
+        "smooth-rigid": [at(rigid(base), 128)],
+        "rough-steel": [at(rougher(base), 128)],
     }
     if level == "quick":
         return found
     for name, scene in ((SMOOTH, base), (ROUGH, rigid(rougher(base)))):
-        found |= {f"{name}, seed {k}": [at(with_keys(scene, "surface", seed=k), 128)] for k in SEEDS}
+        found |= {f"{name}-seed-{k}": [at(with_keys(scene, "surface", seed=k), 128)] for k in SEEDS}
     for young, thickness in SPREAD:
-        name = f"{SMOOTH}, film of {young / 1e9:g} GPa and {thickness * 1e9:g} nm"
+        name = f"{SMOOTH}-film-of-{young / 1e9:g}-GPa-{thickness * 1e9:g}-nm"
         found[name] = [at(with_film(base, thickness, young=young), 64)]
     for share, thickness in CRYSTALLINE:
         layer = {"young": share * base.body.young, "poisson": base.body.poisson}
-        name = f"{SMOOTH}, {thickness * 1e6:g} µm of nano-crystalline steel, E {share - 1:+.0%}"
+        name = f"{SMOOTH}-layer-of-{100 * share:g}-percent-of-E-{thickness * 1e9:g}-nm"
         found[name] = [at(with_film(base, thickness, **layer), 64)]
     return found
 
 
-@dataclass(frozen=True)
-class Patches:
-    """Of each patch the results on its grids. shown: the scene that is drawn, its coated and bare result."""
-
-    scenes: Mapping[str, Sequence[Scene]]
-    results: Mapping[str, Sequence[Result]]
-    shown: tuple[Scene, Result, Result]
-
-
-class RoughFilm(Case):
-    """The patch of the paper on finer and finer grids, a rougher one, other seeds, films and layers; maps and
-    sections.
+def frame(context: Context) -> Iterator[dict[str, Any]]:
+    """The patch of the paper on finer and finer grids, a rougher one, other seeds, films and layers: what the
+    film changes at equal force, and whether the claim holds; on the finest grids of the two the contact
+    radius at which the film changes a sphere by LIMIT, beside that of the summit with the largest pressure.
     """
-
-    def solve(self, context: Context) -> Patches:
-        scenes, results = patches(context.scene(SCENE), context.level), {}
-        for name, on_grids in scenes.items():
-            label = re.sub(r"[^a-z0-9-]+", "-", name.lower()).strip("-")
-            results[name] = [context.solve(SAM, s, f"{label}-{s.grid.cells[0]}") for s in on_grids]
-        shown = scenes[SMOOTH][1]
-        bare = context.solve(SAM, with_body(shown, coating=None), "steel-bare")
-        return Patches(scenes, results, (shown, results[SMOOTH][1], bare))
-
-    def measure(self, found: Patches) -> dict[str, Measured | float]:
-        smooth, last = found.results[SMOOTH], found.results[ROUGH][-1].quantities
-        bare = smooth[0].quantities["p_max_bare_Pa"]
-        values: dict[str, Measured | float] = {"p-max": Measured(bare, PAPER["p_max"], unit="Pa")}
-        for name, key in (("p", "p_max_change"), ("mises", "mises_max_change")):
-            changes = [result.quantities[key] for result in smooth]
-            values[f"{name}-change"] = Measured(changes[0], PAPER["change"])
-            values |= {f"{name}-refined": float(np.ptp(changes)), f"{name}-white": abs(last[key])}
-        return values
-
-    def tables(self, found: Patches) -> Iterator[SmallTable]:
-        rows = [row(name, result) for name, results in found.results.items() for result in results]
-        yield SmallTable("What the film changes, at equal force", COLUMNS, rows)
-
-    def notes(self, found: Patches) -> Iterator[str]:
-        for name, words in ((SMOOTH, "steel"), (ROUGH, "rigid")):
-            result, scene = found.results[name][-1], found.scenes[name][-1]
-            yield (
-                f"Against the {words} plane the largest pressure is curved like that of a sphere with a "
-                f"contact radius of {summit_radius(result) * 1e6:.2g} µm, and the film changes a sphere by "
-                f"{LIMIT:.0%} at one of {breaking_radius(scene) * 1e6:.2g} µm. The change here is "
-                f"{largest_change(result):.1%}: the claim {verdict(result)}."
-            )
-        yield from self.file.notes
-
-    def figures(self, found: Patches) -> Iterator[Plot]:
-        scene, coated, uncoated = found.shown
-        (x, y, p), (_, _, p_bare) = pressure_map(coated), pressure_map(uncoated)
-        yield Plot(
-            rough_pressures(x, y, {"coated": p, "bare": p_bare}),
-            "pressure",
-            "Pressure on the rough patch",
-            "Maps of the pressure with and without the film and their difference: the same spots, slightly "
-            "larger and softer.",
-            "The patch of the paper's Fig. 3a and c, on a surface like theirs. Coated first; difference: "
-            "coated less bare.",
-        )
-        j = int(np.unravel_index(np.argmax(p_bare), p_bare.shape)[1])
-        depths = np.array([z for z in scene.grid.depths if z <= 4e-6])
-        bodies = (scene, p), (with_body(scene, coating=None), p_bare)
-        fields = [section(each, p_of, j, depths) for each, p_of in bodies]
-        yield Plot(
-            sections(x, depths, *fields, thickness=scene.body.coating.thickness),
-            "mises",
-            "Von Mises stress under the rough patch",
-            "Sections of the von Mises stress under the largest pressure, coated and bare; they differ most "
-            "in the film.",
-            f"At y = {y[j] * 1e6:.1f} µm, where the pressure is largest (Fig. 3b and d). Sliding along +x.",
-        )
+    for name, scenes in patches(context.scene(SCENE), context.level).items():
+        for scene in scenes:
+            cells = scene.grid.cells[0]
+            result = context.solve(SAM, scene, f"{name}-{cells}")
+            q = result.quantities
+            changes = {"p": q["p_max_change"], "mises": q["mises_max_change"]}
+            row = {"surface": name, "cells": cells, "p-max": q["p_max_bare_Pa"]}
+            row |= {f"{of}-change": change for of, change in changes.items()}
+            row |= {"mises bare": q["mises_max_bare_Pa"], "mises of the film": q["mises_max_film_Pa"]}
+            row["over its yield stress"] = q["mises_max_film_Pa"] / FILM_YIELD
+            row["summit [µm]"] = 1e6 * summit_radius(result)
+            if name in (SMOOTH, ROUGH) and scene is scenes[-1]:
+                row["film matters at [µm]"] = 1e6 * breaking_radius(scene)
+            row["claim"] = "holds" if max(map(abs, changes.values())) <= LIMIT else "fails"
+            if name == SMOOTH and scene is scenes[1]:
+                bare = context.solve(SAM, with_body(scene, coating=None), "steel-bare")
+                row |= {"result": result, "bare": bare}
+            yield row
 
 
-def largest_change(result: Result) -> float:
-    """Of pressure and stress by the film, as a share."""
-    return max(abs(result.quantities[key]) for key in ("p_max_change", "mises_max_change"))
+def spread(rows: DataFrame, column: str) -> float:
+    """Range over the grids."""
+    return float(np.ptp(rows[column].to_numpy()))
 
 
-def verdict(result: Result) -> str:
-    """What becomes of the claim."""
-    return "holds" if largest_change(result) <= LIMIT else "FAILS"
+def size(rows: DataFrame, column: str) -> float:
+    """Without its sign, on the finest grid."""
+    return abs(rows[column].iloc[-1])
 
 
-def row(name: str, result: Result) -> tuple[str, ...]:
-    """One line of the table; the summit is that with the largest pressure."""
-    q, cells = result.quantities, result.discretisation["cells"]
-    return (
-        name,
-        f"{cells[0]} × {cells[1]}",
-        *(number(q[key] * 1e-9, 4) for key in ("p_max_bare_Pa", "p_max_Pa")),
-        f"{q['p_max_change']:+.2%}",
-        number(q["mises_max_bare_Pa"] * 1e-9, 4),
-        f"{q['mises_max_change']:+.2%}",
-        number(q["mises_max_film_Pa"] * 1e-9, 4),
-        f"{q['mises_max_film_Pa'] / FILM_YIELD:.1f}",
-        number(summit_radius(result) * 1e6, 3),
-        verdict(result),
+def pressure(file: CaseFile, frame: DataFrame) -> Plot:
+    """Of the coated and the bare patch."""
+    both = frame.dropna(subset="bare").iloc[0]
+    (x, y, p), (_, _, bare) = pressure_map(both["result"]), pressure_map(both["bare"])
+    words = (
+        "Maps of the pressure with and without the film and their difference: the same spots, a bit larger "
+        "and softer. The patch of the paper's Fig. 3a and c, on a surface like theirs; coated less bare."
     )
+    drawing = rough_pressures(x, y, {"coated": p, "bare": bare})
+    return Plot(drawing, "pressure", "Pressure on the rough patch", words, words)
 
 
 def summit_radius(result: Result) -> float:
@@ -211,17 +143,3 @@ def summit_radius(result: Result) -> float:
     along_x = (p[i - 1, j] - 2 * p[i, j] + p[i + 1, j]) / (x[1] - x[0]) ** 2
     along_y = (p[i, j - 1] - 2 * p[i, j] + p[i, j + 1]) / (y[1] - y[0]) ** 2
     return math.sqrt(-2 * p[i, j] / (along_x + along_y))
-
-
-def section(scene: Scene, pressure: np.ndarray, j: int, depths: np.ndarray) -> np.ndarray:
-    """Von Mises stress in the row j of cells, (nx, nz) in Pa, of the pressure (nx, ny) and its traction."""
-    (nx, ny), (lx, ly) = scene.grid.cells, scene.grid.extent
-    tractions = {3: pressure, 1: scene.coefficient * pressure}
-    layered = sam.plan(scene).coated.layered if scene.body.coating else None
-    stress = stresses(
-        tractions, (lx / nx, ly / ny), depths, Window(0, j, nx, 1), nu=scene.body.poisson, layered=layered
-    )
-    return von_mises(stress)[:, :, 0].T
-
-
-CASES = (RoughFilm("rough-film"),)

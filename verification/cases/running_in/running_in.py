@@ -36,7 +36,7 @@ from verification.cases.running_in.study import (
 from verification.compare.running_in_measures import Limits
 from verification.figures.lines import over_cycles, yield_profiles
 from verification.figures.running_in import six_panels
-from verification.reference.regime import regime
+from verification.reference.bonded_film import regime
 
 if TYPE_CHECKING:
     from pandas import DataFrame
