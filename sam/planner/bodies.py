@@ -15,7 +15,7 @@ from sam.contact.operators import CoatedPair
 from sam.elastic.misfit import PROFILES, MisfitSphere
 from sam.elastic.problem import Demand, GivenHertz
 from sam.grid.cells import CellGrid, Sides
-from sam.grid.gap import Paraboloid, Punch, RoundedPunch, Shape, Uniform, elliptic_contact
+from sam.grid.gap import Paraboloid, Punch, RoundedPunch, Shape, Uniform
 from sam.grid.rough import RoughDemand, RoughPatch
 from sam.grid.smooth import (
     DEFAULT_EXTENT,
@@ -26,6 +26,7 @@ from sam.grid.smooth import (
     MisfitDemand,
     PlasticDemand,
     contact_radius,
+    elliptic_contact,
     mean_compliance,
     point_load_reach,
     room_for_bare,

@@ -8,6 +8,7 @@ from math import ceil, inf
 
 import numpy as np
 
+from sam.arrays import ROUNDING
 from sam.elastic.problem import Places, Plan
 from sam.grid.cells import CellGrid, Room
 from sam.grid.smooth import EVEN_DEPTH, MOST_CELLS, MOST_LAYERS, PLASTIC_CELLS, GridDemand
@@ -242,9 +243,6 @@ def choose_grid(scene: Scene) -> CellGrid:
         zone that are to be expected.
     """
     return plan(scene).grid
-
-
-ROUNDING = 1e-9  # relative, of a size that is at its bound
 
 
 class UnsupportedScene(ValueError):  # noqa: N818 - the name that callers of both models know

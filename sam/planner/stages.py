@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import ceil
 
+from sam.arrays import ROUNDING
 from sam.elastic.problem import Plan
 from sam.scene import LeftOut, Path, Scene, Stage
 from sam.scene.result import NO_FORCE
@@ -26,7 +27,6 @@ LEFT_ORDER = (
 # (c, n) of errors in percent, c times the step in contact radii to the power n, of Swift steel at p0 = 4
 # sigma_y0: steps of a/2 to a/32 against the limit of short ones (case moving-steps).
 LEFT_OF_GROOVE, LEFT_OF_STRAIN = (9.0, 1.5), (23.0, 0.77)
-ROUNDING = 1e-9  # of a number of cells
 UNTOUCHED = "loading.misfit: nothing touches the surface"
 UNYIELDING = "the elastic stress at the peak yields nowhere"
 

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
-from sam.arrays import Array
+from sam.arrays import ROUNDING, Array
 from sam.contact.convolution import FEW_ROWS, Convolution, Counters, row_sums
 from sam.contact.normal import Contact, Solved, Units, around, measured, no_contact
 from sam.contact.stress import von_mises
@@ -40,8 +40,6 @@ from sam.scene.result import BACK_STRESS, unfinished
 from sam.scene.section import stated
 from sam.scene.verdict import last_period, loop_places
 from sam.schedule import Load, Target
-
-ROUNDING = 1e-9  # of a pressure: the transforms of another window round differently
 
 
 def problem_of(model: Model, record: Progressed) -> Problem:
@@ -83,6 +81,7 @@ def contact_on_grid(model: Model, record: Progressed, trial: Trial) -> Contact:
 
 def _contact(model: Model, source: PressureSource, load: Load, gap: Array, *, p: Array, u: Array) -> Contact:
     """The contact of p_hat and u_hat, on the box or on the grid."""
+    # the transforms of another window round differently
     grid, tolerance = model.grid, model.contact_tolerance + ROUNDING
     if not isinstance(source, ContactPressure):
         return stated(model.plan.given).contact(grid, load, p * model.unit, u * grid.hx)
@@ -226,11 +225,8 @@ def with_last_period(model: Model, record: Progressed, state: Snapshot) -> Snaps
         return state
     window, (layers, nx, ny) = record.extent.window, box.peeq.shape
     i, j = (
-        round(float(side[0] - lines[first]) / step + 0.5)
-        for side, lines, first, step in (
-            (box.x, model.grid.x, window.i0, model.grid.hx),
-            (box.y, model.grid.y, window.j0, model.grid.hy),
-        )
+        int(np.searchsorted(lines, side[0])) - first
+        for side, lines, first in ((box.x, model.grid.x, window.i0), (box.y, model.grid.y, window.j0))
     )
     cells = {name: values[:layers, i : i + nx, j : j + ny] for name, values in fields.items()}
     plane = {

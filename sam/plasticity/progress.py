@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from sam.arrays import Array
+from sam.arrays import ROUNDING, Array
 from sam.contact.convolution import Counters
 from sam.grid.cells import Room
 from sam.plasticity.model import Model
@@ -124,9 +124,6 @@ def floor(model: Model, extent: Extent) -> Array:
     if model.plan.judging is None:
         raise ValueError("the scene is not judged")
     return model.plan.judging.floor * _yield_strain(model, extent)
-
-
-ROUNDING = 1e-9  # of a ratio of equal load steps
 
 
 @dataclass(frozen=True)

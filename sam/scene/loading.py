@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
+from sam.arrays import ROUNDING
 from sam.scene.inputs import list_of
 from sam.scene.section import Conflict, Given, Section, broken, stated
 from sam.scene.units import COUNT, Coordinate, Count, Force, Length, Misfit, PerRadius, Pressure
@@ -19,7 +20,6 @@ from sam.scene.units import COUNT, Coordinate, Count, Force, Length, Misfit, Per
 Place = Annotated[tuple[Coordinate, Coordinate], list_of(2, 2)]
 """(x, y) on the surface in m."""
 TO_AND_FRO = "to-and-fro"
-ROUNDING = 1e-9  # of a number of steps: a path of exactly so many takes no further one
 HERTZ, MISFIT_SPHERE = "hertz", "misfit-sphere"
 
 

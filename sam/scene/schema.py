@@ -16,10 +16,11 @@ from collections.abc import Iterator, Mapping
 from math import ceil, inf, isclose, sqrt
 from typing import Any
 
+from sam.arrays import ROUNDING
 from sam.scene.body import Body
 from sam.scene.counterbody import CounterBody
 from sam.scene.friction import Friction
-from sam.scene.loading import MISFIT_SPHERE, ROUNDING, TO_AND_FRO, Loading, Strokes
+from sam.scene.loading import MISFIT_SPHERE, TO_AND_FRO, Loading, Strokes
 from sam.scene.numerics import Compare, Fem, Grid, Solver, Wear
 from sam.scene.section import NOT_YET, Conflict, Given, Section, broken, stated
 from sam.scene.surface import CounterSurface, FrictionMap, Strip, Surface, leading, patch_of

@@ -23,11 +23,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sam.arrays import Array, Mask
+from sam.arrays import ROUNDING, Array, Mask
 from sam.tribofilm.law import FilmLaw, FilmState
-
-ROUNDING = 1e-9  # of a way that is as long as a bin, and of a pass: a clock that stands still
-
 
 BINS = 40  # of the way between two visits, each sqrt(2) times as long as the one before
 

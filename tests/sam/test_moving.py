@@ -6,6 +6,7 @@ film and wear on its way.
 import itertools
 from dataclasses import replace
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -23,11 +24,13 @@ from pydantic import ValidationError
 
 import sam
 from sam.grid.cells import CellGrid, Window
-from sam.moving import Track
+from sam.moving import Track, _cross as cross_table, _track as track_table
 from sam.planner.make import schedule_of
 from sam.results.quantities import refined_peak
+from sam.results.snapshots import Box
 from sam.scene import HeightMap, Path, Scene, Status, Strokes, resolved
 from sam.scene.groove import Groove
+from sam.scene.result import UNLOADED
 from sam.scene.surface import CounterSurface, Strip, heights, with_relief
 from sam.schedule import Load
 from sam.tribofilm.law import FilmLaw, FilmState
@@ -147,6 +150,24 @@ class TestTrack:
         found = Groove.of(way, uz, way > 5, 1.0, across=np.zeros(3), peak=refined_peak(way, uz))
         assert np.isnan([found.depth, found.middle, found.transient]).all()
         assert found.deepest == pytest.approx(1.0)
+
+    def test_tables_of_a_made_track(self):
+        """Cells of 1 in a box of 4 x 3 x 2 cells: stresses are means over both rows that touch the path."""
+        made = np.random.Generator(np.random.PCG64(5)).normal
+        x, y, z = np.arange(-2.0, 3.0), np.arange(-2.0, 2.0), np.array([0, 0.4, 1.2])
+        box = Box(x, y, z, *made(size=(2, 6, 2, 4, 3)), np.arange(24.0).reshape(2, 4, 3))
+        last = SimpleNamespace(box=box, state=UNLOADED, worn=None, residual_displacement=made(size=(8, 6)))
+        track = Track((-2.0, 0.0), (2.0, 0.0), 0.25, None)
+        along, across = track_table(track, self.GRID, last), cross_table(track, self.GRID, last)
+        stress = box.stress[..., 1:].mean(axis=-1)
+        for place, layer, depth in (("top", 0, 0.2), ("deep", 1, 0.8)):
+            np.testing.assert_allclose(along[f"{place}_z_m"], depth, rtol=1e-12)
+            for k, name in ((0, "sxx"), (1, "syy"), (4, "sxz")):
+                np.testing.assert_array_equal(along[f"{place}_{name}_Pa"][2:6], stress[k, layer])
+        np.testing.assert_array_equal(along["peeq_max"], [0, 0, 14, 17, 20, 23, 0, 0])
+        np.testing.assert_allclose(across["y_m"], np.repeat([-1.5, -0.5, 0.5], 2), rtol=1e-12)
+        np.testing.assert_allclose(across["z_m"], np.tile([0.2, 0.8], 3), rtol=1e-12)
+        np.testing.assert_array_equal(across["syy_Pa"], box.stress[1, :, 2].T.ravel())
 
     @pytest.mark.parametrize("share, warned", [(0.5, False), (0.5004, True)])
     def test_half_a_radius_is_not_warned_of(self, share, warned):

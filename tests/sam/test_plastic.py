@@ -60,6 +60,15 @@ def test_converged_in_every_cell(swift4):
     assert certificate["load_error"] < 1e-12
 
 
+def test_the_fields_of_the_body_lie_on_the_faces_of_cells_of_the_grid():
+    small = yielding(4, loading={"steps": 1}, grid=SMALL)
+    body, grid = sam.solve(small).grids["peak"]["body"], choose_grid(small)
+    for faces, centres, h in ((body.x, grid.x, grid.hx), (body.y, grid.y, grid.hy)):
+        first = np.abs(centres - h / 2 - faces[0]).argmin()
+        np.testing.assert_allclose(faces[1:] - h / 2, centres[first : first + len(faces) - 1], atol=1e-12 * h)
+    np.testing.assert_allclose(body.z, grid.layer_faces[: len(body.z)], rtol=1e-12)
+
+
 def test_stress_is_on_the_yield_surface_where_it_strained(swift4):
     """Table against the law: where the axis yielded and does so at the peak, each point of a cell has its
     yield stress; the mean of their stresses is within that of their mean strain, by less than 0.2 %.

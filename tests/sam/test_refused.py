@@ -414,6 +414,7 @@ IN, BACK = "body.plasticity.layer", "body.plasticity.kinematic"
 SWIFT = builders.SWIFT
 THICK = SWIFT | {"layer_thickness": 1e-6}
 SOFT = {"law": "perfect", "yield_stress": 355e6}
+RISING = {"law": "linear", "yield_stress": 1e6, "modulus": 549.79e6}  # at 0.002 2.09958 MPa
 MPA = {"law": "table", "file": ((0.0, 355.0), (0.01, 450.0))}  # in MPa, under a column in Pa
 COATING = {"thickness": 1e-6, "young": 300e9, "poisson": 0.25, "yield_stress": 4e3}
 FILMED = {"law": "chemical-film", "low": 0.1, "high": 0.4, "film_thickness": 1e-7, "film_young": 70e9}
@@ -451,6 +452,8 @@ IN_PYTHON = [
     (back() | {"solver": {"method": "paper"}}, "solver.method", "paper", "knows no back-stress"),
     (plastic(MPA), f"{AT}file", "", "at a plastic strain of 0.002: it is 374 Pa: are values in MPa"),
     (plastic(SWIFT, B=945.0), f"{AT}B", "", "at least 2.1e+06 Pa"),
+    (plastic(SOFT, yield_stress=2.099e6), f"{AT}yield_stress", "", "at least 2.1e+06 Pa"),
+    (plastic(RISING), f"{AT}yield_stress", "", "at least 2.1e+06 Pa"),
     (plastic(SOFT, profile=((0.0, 1.0), (1e-5, 1e-3))), f"{AT}profile", "", "factors from 0.001"),
     (plastic(THICK, layer=SOFT | {"yield_stress": 1.0}), f"{IN}.yield_stress", "", "it is 1 Pa"),
     ({"body": {"coating": COATING}}, "body.coating.yield_stress", "", "least 3e+06 Pa"),
@@ -467,6 +470,7 @@ USUAL = [
     {"young": 1141e9, "plasticity": SOFT | {"yield_stress": 80e9}},  # diamond
     {"plasticity": SWIFT | {"C": 1e-15, "n": 0.5}},  # rises from nearly 0
     {"plasticity": SOFT | {"yield_stress": 1e12}},  # never yields
+    {"plasticity": SOFT | {"yield_stress": 1e9, "kinematic": {"modulus": (1e9,) * 8}}},  # as many as may be
 ]
 
 

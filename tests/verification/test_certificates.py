@@ -34,7 +34,6 @@ from verification.checks import (
 from verification.checks.certificates import OF_GROUP, common, curves_of, solved
 from verification.checks.material import yield_stress
 from verification.reference.hertz import CircularContact
-from verification.reference.layered_axisymmetric import CoatedHalfSpace
 from verification.reference.point_loads import cerruti_displacement
 from verification.rows import load_rows
 from verification.runs import models
@@ -370,18 +369,6 @@ def test_a_film_that_yields(solve):
     before, now = (fem_checks.Finite(softer, model, step) for step in steps[:2])
     assert now.yields() > LIMITS["fem-yield"]
     assert now.flow(before)["consistency"] > LIMITS["fem-consistency"]
-
-
-def test_compliance(solve):
-    """Of the dense system with many digits: by Love's function, k from long to short waves."""
-    scene = solve("coated", "soft film")[0]
-    film, body = scene.body.coating, scene.body
-    k = np.geomspace(1e-3, 20.0, 40) / film.thickness
-    layers = CoatedHalfSpace(film.young, film.poisson, film.thickness, body.young, body.poisson)
-    mu = film.young / (2 * (1 + film.poisson))
-    excess = layers.compliance(k) * mu * k - (1 - film.poisson)
-    own = coated_checks.compliance(film.young / body.young, film.poisson, body.poisson, 0)
-    assert own(np.log(k * film.thickness)) == pytest.approx(excess, abs=1e-10)
 
 
 def test_a_wrong_state_of_a_chemical_film_is_seen(solve):

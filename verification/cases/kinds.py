@@ -408,7 +408,7 @@ def _at(file: CaseFile, frame: DataFrame, kind: str, *where: str) -> Plot:
     return replace(plot, name=name, title=f"{plot.title}, {said}")
 
 
-SWEPT: Mapping[str, Callable[..., Plot]] = {
+SWEPT: Mapping[str, Callable[..., Plot | None]] = {
     "orders": _orders,
     "limits": _limits,
     "lines": _lines,

@@ -151,15 +151,17 @@ BOX = 6.0  # elastic contact radii: the far field of the point forces is prescri
 def sliding_scene(base: Scene, ratio: float, friction: float, resolution: Resolution) -> Scene:
     """Loading to p0 = ratio times the initial yield stress with friction, on these grids."""
     scene = resolved_at(with_loading(at_ratio(base, ratio), unload=False), resolution)
-    scene = with_keys(scene, "fem", box=BOX)
-    return rubbed(scene, {"coefficient": friction}) if friction else scene
+    return rubbed(with_keys(scene, "fem", box=BOX), friction)
 
 
 def rubbed(scene: Scene, friction: Mapping[str, Any] | float | str) -> Scene:
-    """The scene with friction: its keys, its coefficient, or "map": high on the asperity in the middle."""
+    """The scene with friction: its keys, its coefficient, 0 for none, or "map": high on the asperity in the
+    middle.
+    """
+    law = None
     if friction == "map":
         law = Friction(law="map", path=asperities.friction_map(asperities.CELLS))
-    else:
+    elif friction:
         law = Friction(**friction) if isinstance(friction, Mapping) else Friction(coefficient=friction)
     return scene.model_copy(update={"friction": law})
 

@@ -96,7 +96,8 @@ class Finite(Formed):
             )
 
         force, (x, z) = asm(internal, self.basis), self.basis.doflocs
-        along_z = np.isin(np.arange(force.size), self._numbers(1))
+        numbers = np.concatenate([self.basis.nodal_dofs[1], self.basis.facet_dofs[1]])
+        along_z = np.isin(np.arange(force.size), numbers)
         held = (x >= x.max() * (1 - 1e-9)) | (z >= z.max() * (1 - 1e-9)) | ((x == 0.0) & ~along_z)
         surface = np.flatnonzero((z == 0.0) & along_z)
         surface = surface[np.argsort(x[surface])][: self.state.active.size]
@@ -108,10 +109,6 @@ class Finite(Formed):
             "equilibrium": float(np.abs(force[free]).max()) / total,
             "load": abs(float(force[in_contact].sum()) / total - 1.0),
         }
-
-    def _numbers(self, component: int) -> np.ndarray:
-        """Of the degrees of freedom along r (0) or z (1)."""
-        return np.concatenate([self.basis.nodal_dofs[component], self.basis.facet_dofs[component]])
 
     def surface(self) -> float:
         """Tractions in the elements at the surface against the nodal pressure, as `sam_surface`."""

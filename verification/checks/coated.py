@@ -3,16 +3,13 @@
 `conditions`.
 
 Its surface moves as that of a half-space of the film's material (closed forms, cell by cell) and by what the
-body below adds, Hankel integrals of the compliances of `ManyDigits` less those of short waves. These are
+body below adds, Hankel integrals of the compliances of `CoatedHalfSpace` less those of short waves. These are
 smooth over the film's thickness: a few points in each cell do.
 """
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
-from numpy.polynomial.chebyshev import Chebyshev
 from scipy.interpolate import CubicSpline
 from scipy.special import j0, j1
 
@@ -20,12 +17,9 @@ from sam.scene import Result, Scene
 from verification.checks.cells import half_space
 from verification.checks.conditions import conditions, initial_gap, plane_of, surface_of, traction_of
 from verification.checks.material import in_plane
-from verification.reference.layered_axisymmetric import wave_numbers
+from verification.reference.layered_axisymmetric import CoatedHalfSpace, wave_numbers
 
-LONGEST, SHORTEST = 1e-6, 24.0
-"""Wave numbers times thickness; between them compliances are taken with many digits, ORDER of them. Below
-they are constant."""
-ORDER = 110
+SHORTEST = 24.0  # wave number times thickness
 RADII, POINTS = 3000, 6
 """Of the splines of the Hankel integrals; Gauss points of a cell each way, none in its middle."""
 
@@ -45,20 +39,6 @@ def displaced(scene: Scene, result: Result) -> float:
     return conditions(initial_gap(scene, x[:, None], y[None, :], 0.0) + u, p, result)
 
 
-@cache
-def compliance(ratio: float, nu: float, nu_body: float, load: int) -> Chebyshev:
-    """mu_1 k c_zz (load 0) or c_zL (1) of the film on its body less that of short waves, of ln(k h)."""
-    from verification.reference.layered import ManyDigits  # noqa: PLC0415 - loads mpmath, of an extra
-
-    short, ends = (1 - nu, -(1 - 2 * nu) / 2)[load], np.log([LONGEST, SHORTEST])
-
-    def of(logarithms: np.ndarray) -> np.ndarray:
-        exact = (ManyDigits(float(np.exp(t)), ratio, nu, nu_body).surface() for t in logarithms)
-        return np.array([float(surface[load]) - short for surface in exact])
-
-    return Chebyshev.interpolate(of, ORDER, ends)
-
-
 def cell_means(
     scene: Scene, reach: float, load: int, shape: tuple[int, int], *, cell: tuple[float, float]
 ) -> np.ndarray:
@@ -66,11 +46,11 @@ def cell_means(
     force along z or x. With c cos(k x) under p = cos(k x) or q = sin(k x): (1/2 pi) times the
     integral of c J0(k r) k dk, and -cos(theta)/2 pi times that of c J1(k r) k dk.
     """
-    film = scene.body.coating
-    mu, h = film.young / (2 * (1 + film.poisson)), film.thickness
-    k, weight = wave_numbers(h, reach, SHORTEST)
-    of_logarithm = compliance(film.young / scene.body.young, film.poisson, scene.body.poisson, load)
-    c = of_logarithm(np.log(np.clip(k * h, LONGEST, SHORTEST))) / mu
+    film, body = scene.body.coating, scene.body
+    layers = CoatedHalfSpace(film.young, film.poisson, film.thickness, body.young, body.poisson)
+    k, weight = wave_numbers(film.thickness, reach, SHORTEST)
+    short = (1 - film.poisson, -(1 - 2 * film.poisson) / 2)[load] * 2 * (1 + film.poisson) / film.young
+    c = k * layers.compliance(k, layers.amplitudes(k, shear=load == 1)) - short
     r = np.linspace(0.0, reach, RADII)
     bessel = j0(np.outer(r, k)) if load == 0 else -j1(np.outer(r, k))
     radial = CubicSpline(r, bessel @ (weight * c) / (2 * np.pi))

@@ -72,10 +72,6 @@ class Spatial(Formed):
         flat = (local * weight).reshape(3, -1)
         return np.stack([np.bincount(self.corners.ravel(), each, self.nodes.shape[1]) for each in flat])
 
-    def coefficient(self) -> np.ndarray:
-        """(n,) of friction at the nodes, by the scene: of the cell of a map whose centre is nearest."""
-        return coefficient_at(self.scene, *self.nodes[:2] * self.model.scales.length)
-
     def equilibrium(self) -> dict[str, float]:
         """Largest nodal force that nothing balances, largest |q - mu p| of a node in contact, sum
         of p less F; over F. Without force over the force of the whole loading.
@@ -94,7 +90,8 @@ class Spatial(Formed):
         held[:, far] = True
         held[2] |= in_contact
         force = self.forces.copy()
-        slip = np.where(in_contact, force[0] - self.coefficient() * force[2], 0.0)
+        coefficient = coefficient_at(self.scene, *self.nodes[:2] * model.scales.length)
+        slip = np.where(in_contact, force[0] - coefficient * force[2], 0.0)
         force[0] -= np.where(in_contact, force[0], 0.0)
         share = 0.5 if mirrored else 1.0
         return {

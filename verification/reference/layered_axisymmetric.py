@@ -157,17 +157,3 @@ def hankel_stress(k, weight, profiles: np.ndarray, r) -> np.ndarray:
     zz, rz, rr, tt, slope = np.swapaxes(profiles * weight, 1, 2)
     hoop = over @ slope
     return components(zero @ rr - hoop, zero @ tt + hoop, zero @ zz, xz=one @ rz)
-
-
-def wave_pressure_ratio(layers: CoatedHalfSpace, wavelength, counter_modulus: float = math.inf) -> np.ndarray:
-    """Pressure that flattens a small sinusoid of a coated body, over that of the bare body: c_bare/c_coated.
-
-    Full contact: p_k = z_k/c_zz(k). wavelength in m (> 0); counter_modulus E/(1 - nu^2) in Pa of a
-    counter-body, which adds 2/(counter_modulus k) to both compliances; infinite: rigid.
-    """
-    wavelength = np.atleast_1d(depth("wavelength", wavelength))
-    if not np.all(wavelength > 0) or not counter_modulus > 0:
-        raise ValueError("wavelength and counter_modulus must be > 0")
-    k = 2.0 * math.pi / wavelength
-    counter = 2.0 / (counter_modulus * k)
-    return (2.0 / (layers.modulus_body * k) + counter) / (layers.compliance(k) + counter)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import brentq
 
-from sam.scene import Friction, Result, Scene
+from sam.scene import Result, Scene
 from verification.cases.case import with_grid, with_keys, with_loading
 from verification.cases.recipes import initial_yield
 from verification.judging import Measured
@@ -33,7 +33,6 @@ __all__ = [
     "area_jackson",
     "area_kogut",
     "farthest",
-    "full_slip",
     "load_jackson",
     "load_kogut",
     "sixty_depths",
@@ -92,11 +91,6 @@ def ghaednia(scene: Scene) -> Reference:
     depth = brentq(lambda d: float(fit.load(d)) - force, 1e-3, 2e-2, xtol=1e-18, rtol=1e-15)
     area_radius = float(fit.area_radius(depth)) * radius
     return Reference({"approach": depth * radius, "radius": area_radius}, {"a": area_radius})
-
-
-def full_slip(scene: Scene, coefficient: float) -> Scene:
-    """With the traction of full slip, where there is any."""
-    return scene.model_copy(update={"friction": Friction(coefficient=coefficient) if coefficient else None})
 
 
 def sixty_depths(scene: Scene, step: float) -> Scene:
