@@ -150,7 +150,7 @@ def solve(
     progress: Progress | None,
     checkpoint: Keep | None,
     start: Checkpoint | None,
-    plan: P | None,
+    plan: P | None = None,
 ) -> Result:
     """Solve a scene with the method of a geometry; parameters as of `fem_reference.solve`."""
     plan = method.plan(scene) if plan is None else plan
