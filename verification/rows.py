@@ -162,8 +162,7 @@ class CaseFile(BaseModel):
     values: quantity -> the number that it is held against; reference: an independent answer, a name in
     `verification.references`; figures: kinds of `verification.cases.kinds`; claims: its rows; sweeps: its
     points beside the scene itself; setting: (name, number with unit) for the reader; notes: sentences below
-    the tables; views: pictures in space; needs: package of the extra `reference` without which it does not
-    run.
+    the tables; views: pictures in space.
 
     frame: function beside the file that returns the points instead of sweeps; of such functions, tables:
     that return one of the frame; data: that hands numbers of it to the pages; cannot: that says why the
@@ -205,7 +204,6 @@ class CaseFile(BaseModel):
     cannot: str = ""
     notes: tuple[str, ...] = ()
     setting: tuple[tuple[str, str], ...] = ()
-    needs: str = ""
 
     @property
     def rows(self) -> tuple[Row, ...]:

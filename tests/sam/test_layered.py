@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from builders import RADIUS, scene as small_scene
 from made_results import column
+from many_digits import ManyDigits
 from rounding import close, of_sum
 
 import sam
@@ -32,7 +33,6 @@ from sam.layered.response import Layers, Response, normal_compliance
 from sam.planner.bodies import Bodies
 from sam.scene import Scene, Status
 from sam.schedule import Load
-from verification.reference.layered import ManyDigits
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
 
 THICKNESS = 1e-7

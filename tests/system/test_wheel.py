@@ -3,7 +3,6 @@
 
 import fnmatch
 import json
-import sys
 import tomllib
 from pathlib import Path
 
@@ -11,7 +10,6 @@ import pytest
 from fake_case import FakeCase
 from setuptools import find_namespace_packages
 
-from verification.cases import all_cases
 from verification.suite import verify
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -39,18 +37,6 @@ def test_the_wheel_has_every_file_of_the_packages_but_the_mutation_check():
     assert project["license"] == "MIT" and project["license-files"] == ["LICENSE"]
     assert (ROOT / "LICENSE").read_text(encoding="utf-8").startswith("MIT License")
     assert (ROOT / project["readme"]).is_file()
-
-
-def test_a_case_without_its_extra_is_not_run_and_says_what_to_install(tmp_path, monkeypatch, capsys):
-    assert all_cases()["certificates"].needs() == ""
-    monkeypatch.setitem(sys.modules, "mpmath", None)
-    assert verify.main(["certificates"], "quick", tmp_path / "out") == 0
-    assert (
-        capsys.readouterr().out == 'certificates: not run: install mpmath: pip install "samfem[reference]"\n'
-    )
-    assert list(tmp_path.iterdir()) == []
-    extras = PROJECT["project"]["optional-dependencies"]
-    assert any(name.startswith("mpmath") for name in extras["reference"])
 
 
 def test_a_case_that_is_not_run_does_not_stop_the_others(tmp_path, monkeypatch, capsys):

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from many_digits import ManyDigits
 from scipy.integrate import quad
 from scipy.special import j0, j1
 
@@ -29,7 +30,6 @@ from verification.reference.coated_traction import (
 )
 from verification.reference.hamilton import sliding_stress
 from verification.reference.hertz import largest_von_mises, subsurface_stress
-from verification.reference.layered import ManyDigits
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
 from verification.reference.stress import von_mises
 

@@ -15,7 +15,6 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 from importlib import import_module
-from importlib.util import find_spec
 from typing import Any
 
 from sam.scene import Problem, SceneError, spelling
@@ -38,10 +37,7 @@ def case_of(file: CaseFile) -> Case:
     said: dict[str, Any] = {key: getattr(file, key) for key in ("title", "question", "equations", "levels")}
     if file.own:
         _check(file)
-    missing = f'install {file.needs}: pip install "samfem[reference]"'
-    if file.needs:
-        said["needs"] = lambda: "" if find_spec(file.needs) else missing
-    elif file.cannot:
+    if file.cannot:
         said["needs"] = lambda: beside(file, file.cannot, {})()
     if file.scene or file.frame:
         return Compared(file.name, **said, alone=file.own or file.alone, file=file)

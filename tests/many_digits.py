@@ -19,7 +19,7 @@ from itertools import product
 
 import mpmath as mp
 
-from .checks import poisson, positive
+from verification.reference.checks import poisson, positive
 
 STATE = ("u_L", "u_z", "zz", "LL", "TT", "zL")
 DIGITS = 60
