@@ -129,7 +129,7 @@ class RunningInPhysics(Readings):
             {"figure": each.figure, "statement": each.words, "verdicts": list(verdicts)}
             for each, verdicts in zip(STATEMENTS, zip(*said.values(), strict=True), strict=True)
         ]
-        return {"physics": physics, "statements": statements, "wear_goes_on": wear_goes_on(found)}
+        return {"physics": physics, "statements": statements}
 
     def tables(self, found: DataFrame) -> Iterator[SmallTable]:
         yield from study.together(readings_of(found))
