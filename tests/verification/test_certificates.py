@@ -457,7 +457,7 @@ LAYER = PERFECT | {"kinematic": {"modulus": (9e9,), "recovery": (0.0,)}}
 
 
 class TestBackStresses:
-    """By hand: in the layer of 1 um 2/3 9 GPa a_1, below it 2/3 (3 GPa a_1 + 6 GPa a_2); twice above 1.5 um."""
+    """By hand: 2/3 9 GPa a_1 in the layer of 1 um, else 2/3 (3 GPa a_1 + 6 GPa a_2); twice above 1.5 um."""
 
     depths = np.array([0.5e-6, 1.2e-6, 2e-6])
     strains = np.stack([0.1 * DEVIATOR * np.ones(3), 0.2 * DEVIATOR * np.ones(3)])
