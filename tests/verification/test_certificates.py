@@ -472,6 +472,8 @@ class TestBackStresses:
     def test_add_up_over_the_terms_of_their_material(self):
         found = back_stress(self.scene, self.strains, self.depths)
         assert found == pytest.approx(self.size * DEVIATOR, rel=1e-14)
+        one = small_scene(body={"plasticity": KINEMATIC})
+        assert back_stress(one, self.strains, self.depths) == pytest.approx(1e9 * DEVIATOR * np.ones(3))
         assert back_stress(small_scene(), self.strains, self.depths) == 0.0
         assert back_stress(self.scene, None, self.depths) == 0.0
 
