@@ -450,6 +450,7 @@ IN_PYTHON = [
     (back(recovery=(True, 0.0)), f"{BACK}.recovery.0", "True", RECOVERY),
     (back() | {"solver": {"verdict": 1}}, "solver.verdict", "1", "true or false"),
     (back() | {"solver": {"method": "paper"}}, "solver.method", "paper", "knows no back-stress"),
+    ({"body": {"poisson": 0.5, "plasticity": SWIFT}}, "body.poisson", "0.5", "less than 0.5 with plasticity"),
     (plastic(MPA), f"{AT}file", "", "at a plastic strain of 0.002: it is 374 Pa: are values in MPa"),
     (plastic(SWIFT, B=945.0), f"{AT}B", "", "at least 2.1e+06 Pa"),
     (plastic(SOFT, yield_stress=2.099e6), f"{AT}yield_stress", "", "at least 2.1e+06 Pa"),
