@@ -337,6 +337,17 @@ def test_a_contact_on_a_quarter_is_that_of_the_box():
     assert "_quarter" not in vars(aside)
 
 
+def test_passes_with_a_traction_end_at_their_limit(monkeypatch):
+    """Short of the tolerance, with the displacement of the last pressure and its traction."""
+    monkeypatch.setattr("sam.contact.box.PASSES", 2)
+    x, grid = np.arange(9) - 4.0, SurfaceOperators((9, 9), 1.0, Counters(), coupling=0.4)
+    contact, gap = BoxContact(grid, grid.whole), (x[:, None] ** 2 + x**2) / 600
+    p, u, _ = contact.solve(gap, ForceControl(1.0), np.full((9, 9), 1 / 81), tolerance=1e-12, limit=1000)
+    assert len(contact.residuals) == 2 and contact.residuals[-1] > 1e-12
+    moved = contact._whole.displacement(p) + grid.tangential(grid.whole, grid.whole)(p)
+    assert np.abs(u - moved).max() < 1e-12 * u.max() and p.sum() == pytest.approx(1.0, rel=1e-12)
+
+
 def summed(kept: np.ndarray, half: int, odd: bool, between: bool) -> np.ndarray:
     """The 2 half values written out from the kept ones (..., n), their discrete Fourier sum, times i^odd and
     real.

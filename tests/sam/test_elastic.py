@@ -12,6 +12,8 @@ import sam
 from sam import choose_grid
 from sam.contact.convolution import Counters
 from sam.contact.normal import solve_contact
+from sam.elastic.stress import stresses_of
+from sam.kernels.patches import STRESS
 from sam.planner.bodies import Bodies, coarse, halved, hertz_semi_axes
 from sam.results.quantities import extrapolated
 from sam.scene import Status
@@ -89,6 +91,18 @@ def test_status_of_a_solve(tables, status, words):
     if not result.quantities["force_N"]:
         names = ("approach_m", "p_max_Pa", "contact_area_m2")
         assert {result.quantities[name] for name in names} == {0.0}
+
+
+def test_stress_in_a_row_beside_the_contact_is_that_of_the_column():
+    """Below a sphere x and y may change places; the row of the axis is the plane."""
+    problem, load = sam.plan(scene(grid={"cells": (9, 9)})).problem(Counters()), Load(0.65)
+    state = problem.state(load, problem.contact(load))
+    plane = stresses_of(state).plane[..., 0]
+    turned = plane[[STRESS.index(name) for name in ("22", "11", "33", "13", "23", "12")]]
+    for row in (6, 0):
+        found = stresses_of(state, row).in_row[..., 4]
+        assert np.abs(found - turned[..., row]).max() < 1e-9 * np.abs(plane).max()
+    assert np.array_equal(stresses_of(state, 4).in_row, plane)
 
 
 def test_beside_a_punch_there_is_no_gap():

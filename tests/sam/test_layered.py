@@ -31,6 +31,8 @@ from sam.layered.patches import (
 )
 from sam.layered.response import Layers, Response, normal_compliance
 from sam.planner.bodies import Bodies
+from sam.results.quantities import coated_quantities
+from sam.results.snapshots import Coated, Comparison
 from sam.scene import Scene, Status
 from sam.schedule import Load
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
@@ -452,6 +454,18 @@ def test_the_gap_closes_and_the_displacement_is_the_bodys_own():
     assert q["mises_max_Pa"] == max(q["mises_max_film_Pa"], q["mises_max_substrate_Pa"])
 
 
+@pytest.mark.parametrize("deep, film, body", [(False, 4.0, None), (True, None, 4.0)])
+def test_depths_on_one_side_of_the_interface_say_nothing_of_the_other(deep, film, body):
+    depths, mises = np.arange(3.0) + 5 * deep, np.array([[1.0], [4.0], [1.0]])
+    coating = Coated(4.0, np.zeros((1, 1)), Comparison(p_max=2.0, mises=mises / 2))
+    found = coated_quantities(depths, mises, 3.0, coating)
+    assert (found["mises_max_film_Pa"], found["mises_max_substrate_Pa"]) == (film, body)
+    assert (found["mises_max_Pa"], found["mises_max_depth_m"]) == (4.0, depths[1])
+    assert (found["p_max_bare_Pa"], found["p_max_change"]) == (2.0, 0.5)
+    assert found.get("mises_max_bare_Pa") == (2.0 if deep else None)
+    assert found.get("mises_max_change") == (1.0 if deep else None)
+
+
 def test_traction_moves_the_coated_body_and_the_counter_body_apart():
     """Both parts by direct sums over all cells, with signs; a coefficient of friction of its own in each
     cell.
@@ -469,6 +483,7 @@ def test_traction_moves_the_coated_body_and_the_counter_body_apart():
     grid = SurfaceOperators((n, n), 1.0, Counters(), coupling=mu, bodies=bodies)
     found = grid.tangential(grid.whole, grid.whole)(2 * p / modulus) * h
     assert np.abs(found - expected).max() <= 1e-12 * np.abs(expected).max()
+    assert bodies.coarser() is bodies.coarser() and bodies.coarser().hx == 2 * h
     part = grid.tangential(Window(0, 0, n, n), Window(2, 3, 3, 2))(2 * p / modulus) * h
     assert np.abs(part - expected[2:5, 3:5]).max() <= 1e-12 * np.abs(expected).max()
 

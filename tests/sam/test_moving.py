@@ -50,10 +50,14 @@ def test_a_scene_with_a_path_is_read_and_written():
 
 
 def test_steps_are_counted_in_radii_of_hertz():
-    """a = (3 F R/(4 E*))^(1/3) = 6.053 um for this sphere: 18 um in steps of a/4 are 11.89, so 12."""
+    """a = (3 F R/(4 E*))^(1/3) = 6.053 um for this sphere: 18 um in steps of a/4 are 11.89, so 12.
+    Of a punch it is the radius, of a rounded one that of the flat end.
+    """
     path = PATH.replace("steps = 4", "step_per_radius = 4")
     assert parsed(add=path).strokes.count == 12
     assert parsed(('force = "0.65 N"', 'approach = "0.349 um"'), add=path).strokes.count == 12  # a^2/R
+    for punch in ('punch"\nradius = "6 um"', 'rounded-punch"\nradius = "50 um"\nflat_radius = "6 um"'):
+        assert parsed(('sphere"\nradius = "105 um"', punch), add=path).strokes.count == 12
 
 
 @given(steps=st.integers(1, 40), cycles=st.integers(1, 6), back=st.booleans(), unload=st.booleans())
@@ -128,6 +132,9 @@ class TestTrack:
         track, cell = Track((0.0, -1.0), (0.0, 1.0), 0.5, (0.1, 0.2)), Window(4, 3, 1, 1)  # x = y = 0.5
         found = track.moved(self.GRID, Load(1.0), np.ones((1, 1)), window=cell, traction=0.0)
         assert (found.way, found.offset) == (1.0, 0.5) and found.force == pytest.approx(0.2 * 0.5)
+        flat = replace(self.TRACK, curvatures=None)  # a punch: its slope is not known
+        found = flat.moved(self.GRID, load, pressure, window=window, traction=0.3)
+        assert (found.way, found.offset) == (3.0, 1.5) and np.isnan(found.force) and not found.at_edge
 
     def test_measures_of_a_made_groove(self):
         """1 + exp(-s) in the steady part 3 <= s <= 8.5 of a length of 10; shoulders of 0.1, 0.3 and 0.2."""
@@ -150,6 +157,15 @@ class TestTrack:
         found = Groove.of(way, uz, way > 5, 1.0, across=np.zeros(3), peak=refined_peak(way, uz))
         assert np.isnan([found.depth, found.middle, found.transient]).all()
         assert found.deepest == pytest.approx(1.0)
+
+    @pytest.mark.parametrize(
+        "uz, transient", [((0, 1, 1, 1), 0.98), ((0, 1, 1, 0.9), np.nan), ((0, -1, -1, -1), np.nan)]
+    )
+    def test_a_groove_that_is_not_deep_and_even_at_its_end_has_no_transient(self, uz, transient):
+        way, uz = np.arange(4.0), np.array(uz)
+        found = Groove.of(way, uz, way > 0, 3.0, across=uz, peak=(1.0, 1.0))
+        assert found.depth == pytest.approx(uz[1:].mean()) and found.middle == uz[2]
+        np.testing.assert_allclose(found.transient, transient)
 
     def test_tables_of_a_made_track(self):
         """Cells of 1 in a box of 4 x 3 x 2 cells: stresses are means over both rows that touch the path."""
@@ -341,6 +357,11 @@ class TestStrip:
         assert bool(list(over.excesses(1))) is refused
 
 
+def test_a_wave_is_drawn_from_no_seed():
+    assert CounterSurface(**of_wave(8), renew=True).seeds(3) == ()
+    assert CounterSurface(**COUNTER, renew=True).seeds(3) == (7, 8, 9)
+
+
 def of_wave(cells: float) -> dict:
     return {"kind": "sinusoid", "amplitude": 20e-9, "wavelength_x": cells * CELL}
 
@@ -467,6 +488,15 @@ def test_a_failure_lasts_for_the_visit_and_unloading_in_place_ends_none():
     np.testing.assert_array_equal(back.reference[:, 0], 1.0)  # strain counts from there and then
     np.testing.assert_array_equal(back.film.plastic[:, 0], 0.0)
     assert film_of.entered(back, 0.75).film.failed is back.film.failed  # nothing is solved anew
+
+
+def test_a_given_limit_is_that_of_every_visit():
+    film_of = FilmOnCells(LAW, (1, 1), VisitLaw(None, 1.0))
+    film = film_of.fresh(np.zeros((4, 1, 1)))
+    for clock, p in ((0.0, 1.0), (0.1, 0.0), (0.2, 1.0)):
+        before = film_of.entered(film, clock)
+        film = film_of.tested(before, before, np.zeros((4, 1, 1)), pressure=np.full((1, 1), p), sign=1.0)
+    assert film.visits.limit[0, 0] == LIMIT and film.visits.counts.sum() == 1
 
 
 def test_a_limit_of_each_cell_takes_the_place_of_that_of_the_law():

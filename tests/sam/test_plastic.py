@@ -166,11 +166,18 @@ def test_unloading_in_steps_takes_equal_parts_of_the_force():
 
 @pytest.mark.parametrize("stop", ["stress", "strain"])
 def test_the_papers_loops_meet_yield_but_not_the_flow_rule(stop):
-    """One load step leaves the stress inside the yield surface, and a flow-rule residual of percents."""
+    """One load step leaves the stress inside the yield surface, and a flow-rule residual of percents. Below
+    yield, at p0 = Y, the loops end at once without a strain.
+    """
     solver = {"method": "paper", "stop": stop, "tolerance": 1e-4}
-    wrong = sam.solve(yielding(4, loading={"unload": False}, grid=SMALL, solver=solver))
+    given = yielding(4, loading={"unload": False}, grid=SMALL, solver=solver)
+    wrong = sam.solve(given)
     assert wrong.certificate["yield_excess"] < 1e-3 and wrong.certificate["flow_residual"] > 1e-2
     assert any("flow-rule residual" in text for text in wrong.warnings)
+    model, now = begin(given)
+    trial = model.problem(now.extent).step(now.state, Load(given.loading.force / 4**3))
+    assert trial.converged and trial.history == (0.0,) and trial.pressure.any()
+    assert not trial.points.strain.any() and not trial.points.peeq.any()
 
 
 # steps that do not converge

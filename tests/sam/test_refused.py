@@ -49,6 +49,9 @@ SWIFT SPHERE body.plasticity.: law = 'swift'; B = '945 MPa'; C = 20; n = 0.121
 LINEAR SPHERE body.plasticity.: law = 'linear'; yield_stress = '1 GPa'; modulus = '10.5 GPa'
 PERFECT SPHERE body.plasticity.: law = 'perfect'; yield_stress = '1 GPa'
 KINEMATIC PERFECT body.plasticity.kinematic.: modulus = ['1 GPa', '2 GPa']; recovery = [300, 0]
+BATH SPHERE friction.: law = 'chemical-film'; low = 0.1; high = 0.4; film_thickness = '100 nm'; \
+    film_young = '80 GPa'; film_poisson = 0.3; film_yield = '667 MPa'; bath_temperature = '373.15 K'; \
+    track = '314 mm'; contact_width = '300 um'; speed = '1 m/s'
 LAYER SWIFT body.plasticity.: layer_thickness = '1 um'; layer.law = 'swift'; layer.B = '945 MPa'; \
     layer.C = 20; layer.n = 0.121
 PATH SPHERE loading.path.: start = ['-9 um', '0 um']; end = ['9 um', '0 um']; steps = 4
@@ -159,6 +162,9 @@ coefficient = -0.1 | inf -> = & from 0 to 10
 coefficient = 0.1; coupling = 0 -> = & true or false
 coefficient = 0.1; direction = 'x' -> = & "constant" or "alternating"
 law = 'viscous' -> = & "constant", "map" or "chemical-film"
+## BATH friction.
+film_poisson = 0.5 -> = & less than 0.5
+contact_width = '314 mm' -> = & less than track, 0.314 m
 ## SPHERE grid.
 border = 'relief' -> = & only together with [surface]
 cells = [65] | 65 -> = & a list of 2
@@ -305,6 +311,8 @@ counterbody.surface = {kind = 'file', path = 'map.csv'} -> counterbody.surface.p
     2.4e-05 m, the patch and the way of the counter-body over it; it has 8e-06
 counterbody.surface = {kind = 'file', path = 'map.csv', resample = 'fourier'} \
     -> counterbody.surface.resample & remove it
+counterbody.surface = {kind = 'file', path = 'map.csv'}; grid.extent = ['48 um', '24 um'] \
+    -> counterbody.surface.path & cells of 2e-06 m x 1e-06 m, as those of the body; it has 1e-06 m x 1e-06 m
 counterbody.surface.cutoff_short = '1.5 um' -> grid.cells & in the shortest wavelength
 ## KINEMATIC body.plasticity.kinematic.
 modulus = [] | '1 GPa' -> = & $LIST
@@ -434,6 +442,11 @@ def rows_of(*rows) -> dict:
     return {"body": {"plasticity": {"law": "table", "file": list(rows)}}}
 
 
+def described(**keys) -> dict:
+    path = {"sha256": "00" * 32, "cells": (8, 8), "extent": (1e-6, 1e-6)} | keys
+    return {"surface": {"kind": "file", "path": path}}
+
+
 # tables of a scene: key that is named, pieces of its value and of what is said of it
 IN_PYTHON = [
     (plastic(SWIFT, layer=SOFT), f"{IN}_thickness", "", "the thickness of the layer"),
@@ -450,6 +463,7 @@ IN_PYTHON = [
     (back(recovery=(True, 0.0)), f"{BACK}.recovery.0", "True", RECOVERY),
     (back() | {"solver": {"verdict": 1}}, "solver.verdict", "1", "true or false"),
     (back() | {"solver": {"method": "paper"}}, "solver.method", "paper", "knows no back-stress"),
+    ({"body": {"poisson": 0.5, "plasticity": SWIFT}}, "body.poisson", "0.5", "less than 0.5 with plasticity"),
     (plastic(MPA), f"{AT}file", "", "at a plastic strain of 0.002: it is 374 Pa: are values in MPa"),
     (plastic(SWIFT, B=945.0), f"{AT}B", "", "at least 2.1e+06 Pa"),
     (plastic(SOFT, yield_stress=2.099e6), f"{AT}yield_stress", "", "at least 2.1e+06 Pa"),
@@ -464,6 +478,8 @@ IN_PYTHON = [
     (rows_of((0.0, 1e9), (0.1, 1e9, 2)), f"{AT}file", "", "row 2: "),
     (rows_of((0.0, np.nan)), f"{AT}file", "", "row 1: yield_stress_Pa = NaN"),
     ({"surface": {"kind": "file", "path": np.zeros((5, 5))}}, "surface.path", "", "a HeightMap"),
+    (described(sha256="00" * 31), "surface.path", "0000", "or sha256, cells and extent of one"),
+    (described(cells=(2, 8)), "surface.path", "(2, 8)", "or sha256, cells and extent of one"),
 ]
 USUAL = [
     {"young": 11e9, "plasticity": SOFT | {"yield_stress": 1e6}},  # annealed indium

@@ -120,6 +120,11 @@ def test_a_turned_surface_is_marks_and_a_self_affine_part_by_the_roots_of_the_sh
     assert of_marks / of_rest == pytest.approx(np.sqrt(share / (1 - share)), rel=1e-9)
 
 
+def test_a_turned_surface_without_marks_is_its_self_affine_part():
+    found = on_grid(Surface(**TURNED | {"feed_share": 0.0}), 48)
+    assert np.abs(found - on_grid(Surface(**SELF_AFFINE), 48)).max() < 1e-12 * SELF_AFFINE["ra"]
+
+
 def test_sinusoid_and_its_roughness():
     """Sa = 2 A/pi, Sq = A/sqrt 2, slope A q/sqrt 2; the product of two waves has (2/pi)^2 A and A/2."""
     amplitude, n = 1e-7, 512

@@ -251,6 +251,8 @@ def test_other_numbers_and_orders_of_an_array_are_read():
     assert np.array_equal(whole.values, np.arange(120.0).reshape(12, 10))
     with pytest.raises(InputError, match=r'npz with \["x_m.npy"\]: x_m, y_m and height_m'):
         read_named("map", npz({"x_m": np.arange(3.0)}))
+    with pytest.raises(InputError, match="no npz file, or a damaged one"):
+        read_named("map", npz(good)[:-9])
 
 
 def test_nothing_is_unpickled_and_nothing_large_is_unpacked(folder):

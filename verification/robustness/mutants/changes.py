@@ -100,6 +100,9 @@ class Number:
     def __float__(self):
         return float(self.perturbed())
 
+    def __format__(self, form: str):
+        return format(self.value, form)  # in a name
+
     def __neg__(self):
         return Number(-self.value, self.factor)
 

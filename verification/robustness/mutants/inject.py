@@ -101,6 +101,10 @@ def _transplant(module: ModuleType, compiled: CodeType, numbers: dict[str, Numbe
             continue
         if isinstance(value, type):
             _transplant_class(old, value)
+            vars(anew)[name] = old  # for the functions in tables
+            for thing in gc.get_referrers(value):  # what was made of it is of the class that others know
+                if type(thing) is value:
+                    object.__setattr__(thing, "__class__", old)
         elif isinstance(value, FunctionType):
             _with_defaults(old, value)
         elif not callable(value) or not hasattr(value, "cache_clear"):

@@ -246,7 +246,8 @@ def observe(
 
 def askable(mutant: Mutant, seen: Mapping[str, Seen], loaded: Collection[Mutant]) -> list[str]:
     """Tests in which the integer meets a float; those that run the function of any other mutant, or
-    any of the module if it is outside of one. The fastest first.
+    any of the module if it is outside of one, first those that run a function that names the constant. The
+    fastest first.
     """
     file = import_module(mutant.module).__file__
     if mutant.integer and mutant not in loaded:
@@ -255,7 +256,10 @@ def askable(mutant: Mutant, seen: Mapping[str, Seen], loaded: Collection[Mutant]
         chosen = [name for name, test in seen.items() if (file, mutant.code) in test.called]
     else:
         chosen = [name for name, test in seen.items() if any(where == file for where, _ in test.called)]
-    chosen = sorted(chosen, key=lambda name: seen[name].seconds)
+    constant = "" if mutant.code else mutant.text.partition(" = ")[0]
+    codes = (function.__code__ for function in inject.living(FunctionType))
+    naming = {(code.co_filename, code.co_firstlineno) for code in codes if constant in code.co_names}
+    chosen = sorted(chosen, key=lambda name: (not naming & seen[name].called, seen[name].seconds))
     return chosen[: int(np.searchsorted(np.cumsum([seen[name].seconds for name in chosen]), ASKED)) + 1]
 
 
