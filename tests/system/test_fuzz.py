@@ -6,10 +6,12 @@ something is wrong.
 import json
 import os
 import random
+import re
 import sys
 import time
 from collections import Counter
 from pathlib import Path
+from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -34,6 +36,8 @@ from verification.robustness.fuzz import (
     good_meshes,
     lay,
     mutated,
+    odd_array,
+    replaced,
     with_mapping,
     with_pickle,
 )
@@ -58,6 +62,27 @@ def test_inputs_are_the_same_for_the_same_seed():
     assert inputs == [bad_input(3, number) for number in numbers]
     assert inputs != [bad_input(4, number) for number in numbers]
     assert [entry.kind for entry in inputs] == 3 * list(KINDS)
+
+
+@pytest.mark.parametrize(
+    ("values", "turn", "expected"),
+    [
+        ([1.0, 2.0], 0, [np.nan, 2.0]),
+        ([1.0, 2.0], 1, [1.0 + 1e-12, 2.0]),
+        ([1.0, 2.0], 2, [0.0, 0.0]),
+        ([1.1, 2.0], 3, np.array([1.1, 2.0], dtype="f4")),
+        ([1.0, 2.0], 4, [1.0]),
+        *(([1, 2], turn, [1]) for turn in range(5)),
+    ],
+)
+def test_an_array_becomes_odd_in_its_values_or_its_shape(values, turn, expected):
+    """Always the first of what may be chosen; only numbers have other values."""
+    rng = SimpleNamespace(randrange=lambda count: turn if count == 5 else 0, choice=lambda some: some[0])
+    np.testing.assert_array_equal(odd_array(rng, np.array(values)), np.array(expected), strict=True)
+
+
+def test_a_text_without_what_is_replaced_stays():
+    assert replaced(random.Random(1), "abc", re.compile("z"), lambda _: "x") == "abc"
 
 
 def test_some_inputs_are_valid_and_most_are_not(tmp_path, monkeypatch):

@@ -4,6 +4,7 @@ its gates turn red.
 """
 
 import json
+import os
 import sys
 from dataclasses import replace
 
@@ -109,6 +110,13 @@ def test_a_mutant_is_put_where_it_is_used(toy, text, function, ask, expected):
     task = ("it", lambda: (inject.put([mutant]), ask(toy))[1])
     found = dict(forked([task], 10.0))["it"]
     assert found == (pytest.approx(expected, rel=1e-14) if isinstance(expected, float) else expected)
+
+
+def test_a_task_that_dies_has_no_answer():
+    assert dict(forked([("dies", lambda: os._exit(1)), ("ends", lambda: 3)], 10.0)) == {
+        "dies": None,
+        "ends": 3,
+    }
 
 
 def test_integer_is_a_number_beside_floats_alone():

@@ -138,6 +138,16 @@ def test_what_more_cells_cannot_help_is_said():
     assert result.discretisation["accuracy"]["reached"] and result.uncertainty["p_max_Pa"]["u_box"] > 0.0
 
 
+def test_no_uncertainty_is_no_accuracy():
+    """Steps that were cut on some cells and not on others."""
+
+    def solver(scene):
+        return Result(**vars(made(scene, 1.0, 0.0)) | {"cost": {"step_cuts": choose_grid(scene).nx}})
+
+    result, labels = searched(asked(0.05), solver)
+    assert "has no uncertainty: load steps were cut" in missed(result) and len(labels) < 10
+
+
 def test_load_steps_that_are_cut_differently_are_made_more():
     """With 3 of them one is cut."""
 

@@ -34,7 +34,7 @@ from verification.cost.advice import (
     read_rows,
     table_text,
 )
-from verification.cost.plan import plan_lines
+from verification.cost.plan import plan, plan_lines
 from verification.cost.precision import TARGETS
 from verification.runs.models import FEM, FEM_3D, MODELS, SAM
 from verification.text.console import table_lines
@@ -164,3 +164,10 @@ def test_plan_begins_with_the_advice_as_a_table(capsys):
     first = next(k for k, line in enumerate(lines) if line.startswith("sam: about "))
     assert first == 4 + len(content["advice"]["table"]["rows"]) + 1
     assert lines[4].split()[:3] == ["5", "%", "sam"] and " s " in lines[4]
+
+
+def test_plan_has_no_table_where_no_error_was_measured(capsys):
+    file = str(SCENES / "flat-punch.toml")
+    assert main(["plan", file]) == 0
+    content = plan(load_scene(SCENES / "flat-punch.toml"))
+    assert capsys.readouterr().out.splitlines() == plan_lines(content) and not content["advice"]["rows"]

@@ -10,7 +10,8 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
-from made_results import last_released, with_column, with_field
+from builders import PERFECT, scene as small_scene
+from made_results import Made, last_released, with_column, with_field
 
 import fem_reference.common.contact
 import fem_reference.spatial
@@ -31,8 +32,8 @@ from verification.checks import (
     film as film_checks,
     spatial as spatial_checks,
 )
-from verification.checks.certificates import OF_GROUP, common, curves_of, solved
-from verification.checks.material import yield_stress
+from verification.checks.certificates import OF_GROUP, common, curves_of, of_sam, solved
+from verification.checks.material import back_stress, flow_of, yield_stress
 from verification.reference.hertz import CircularContact
 from verification.reference.point_loads import cerruti_displacement
 from verification.rows import load_rows
@@ -82,6 +83,11 @@ def limit(group, name, what):
 def test_all_conditions_hold(solve, group, name):
     for what, value in OF_GROUP[group](*solve(group, name)).items():
         assert value <= limit(group, name, what), what
+
+
+def test_planes_of_a_rough_patch_are_no_condition(solve):
+    scene, *rest = solve("rough", ROUGH[0])
+    assert "planes" not in of_sam(scene.model_copy(update={"friction": None}), *rest)
 
 
 def test_the_worst_scene_counts_and_a_condition_without_one_is_no_success():
@@ -442,6 +448,79 @@ class TestFormulas:
 
     def test_an_elastic_body_never_yields(self, solve):
         assert np.isinf(yield_stress(solve(*ELASTIC)[0], np.zeros(3), np.zeros(3))).all()
+
+
+UNIAXIAL = np.array([1.0, 0, 0, 0, 0, 0])[:, None]
+DEVIATOR = UNIAXIAL - np.array([1.0, 1, 1, 0, 0, 0])[:, None] / 3
+KINEMATIC = PERFECT | {"kinematic": {"modulus": (3e9, 6e9), "recovery": (0.0, 10.0)}}
+LAYER = PERFECT | {"kinematic": {"modulus": (9e9,), "recovery": (0.0,)}}
+
+
+class TestBackStresses:
+    """By hand: 2/3 9 GPa a_1 in the layer of 1 um, else 2/3 (3 GPa a_1 + 6 GPa a_2); twice above 1.5 um."""
+
+    depths = np.array([0.5e-6, 1.2e-6, 2e-6])
+    strains = np.stack([0.1 * DEVIATOR * np.ones(3), 0.2 * DEVIATOR * np.ones(3)])
+    size = np.array([1.2e9, 2.0e9, 1.0e9])
+    scene = small_scene(
+        body={
+            "plasticity": KINEMATIC
+            | {"layer": LAYER, "layer_thickness": 1e-6, "profile": ((0.0, 2.0), (1.5e-6, 2.0), (1.6e-6, 1.0))}
+        }
+    )
+
+    def test_add_up_over_the_terms_of_their_material(self):
+        found = back_stress(self.scene, self.strains, self.depths)
+        assert found == pytest.approx(self.size * DEVIATOR, rel=1e-14)
+        one = small_scene(body={"plasticity": KINEMATIC})
+        assert back_stress(one, self.strains, self.depths) == pytest.approx(1e9 * DEVIATOR * np.ones(3))
+        assert back_stress(small_scene(), self.strains, self.depths) == 0.0
+        assert back_stress(self.scene, None, self.depths) == 0.0
+
+    def test_are_taken_off_the_stress_that_yields(self):
+        """1.5 GPa beyond a back-stress with the limit 2, 2 and 1 GPa, in a plane of SAM and in elements."""
+        stress = (self.size + 1.5e9) * UNIAXIAL
+        back = back_stress(self.scene, self.strains, self.depths)
+        plane = {"state": ["peak"] * 3, "mises_Pa": stress[0], "peeq": np.zeros(3), "z_m": self.depths}
+        fields = SimpleNamespace(point_data={"stress_Pa": stress, "back_stress_Pa": back})
+        of_sam = Made(tables={"plane": plane}, grids={"peak": {"plane": fields}})
+        assert contact_checks.yields(self.scene, of_sam) == pytest.approx(0.5)
+        assert contact_checks.yields(self.scene, replace(of_sam, grids={})) == pytest.approx(1.5)
+        scales = SimpleNamespace(length=1e-6, displacement=1e-8, pressure=1e8, modulus=1e10)
+        history = SimpleNamespace(back=100 * self.strains)
+        step = SimpleNamespace(state=SimpleNamespace(history=history))
+        formed = fem_checks.Formed(self.scene, SimpleNamespace(scales=scales), step, self.depths / 1e-6)
+        formed.stress, formed.peeq = stress / 1e8, np.zeros(3)
+        assert formed.yields() == pytest.approx(0.5)
+        history.back = None
+        assert formed.yields() == pytest.approx(1.5)
+
+
+def test_only_what_has_a_yield_stress_is_held_to_the_flow_rule():
+    """Of a film at its yield stress on an elastic body the film alone; of both the body, twice as high."""
+    strain, length, z = 1e-3 * 1.5 * DEVIATOR * np.ones(2), 1e-3 * np.ones(2), np.array([0.5e-6, 2e-6])
+    stress, film = np.array([1e9, 2e9]) * UNIAXIAL, {"thickness": 1e-6, "young": 400e9, "poisson": 0.3}
+    film["yield_stress"] = 1e9
+    for body, excess in ({}, 0.0), ({"plasticity": PERFECT}, 1.0):
+        made = small_scene(body={"coating": film} | body)
+        found = flow_of(made, strain, 0 * length, length, stress=stress, z=z)
+        assert found == pytest.approx({"flow": 0.0, "consistency": excess, "yield": excess}, abs=1e-12)
+
+
+def test_a_step_in_which_the_box_moves_is_not_held_to_the_flow_rule():
+    def tree(peeq, extent):
+        points = {"strain": 1.5 * peeq * DEVIATOR[..., None, None, None] * np.ones((6, 4, 1, 2, 2))}
+        points["peeq"] = np.full((4, 1, 2, 2), peeq)
+        made = {"extent": extent, "state": {"points": points}, "parts": {"count": 0}}
+        made["last"] = {"stress": 1e9 * UNIAXIAL[..., None, None] * np.ones((6, 1, 2, 2))}
+        return SimpleNamespace(tree=lambda: made)
+
+    def flow(extent):
+        steps = [tree(0.0, (0, 0)), tree(1e-3, extent)]
+        return contact_checks.flow(small_scene(body={"plasticity": PERFECT}), steps, np.array([1e-6]))
+
+    assert flow((0, 0)) == pytest.approx({"flow": 0.0, "consistency": 0.0, "yield": 0.0}, abs=1e-12)
+    assert flow((0, 1)) == {}
 
 
 class TestHistories:

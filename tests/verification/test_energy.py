@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from builders import RADIUS, hertz_force, scene
+from builders import PERFECT, RADIUS, hertz_force, scene
 
 from sam.scene import CounterBody, Scene, plastic_work
 from sam.scene.yield_curve import Linear, Swift, Tabulated
@@ -21,11 +21,12 @@ from verification.runs.models import FEM, FEM_3D, SAM, solve
 YIELD = 1e9
 
 
-def sphere(size=5, mu=None, steps=4) -> Scene:
-    """Elastic, p0 four times YIELD, and unloaded; size: cells or elements in the radius of contact."""
+def sphere(size=5, mu=None, steps=4, law=None) -> Scene:
+    """p0 four times YIELD, and unloaded; size: cells or elements in the radius of contact."""
     loading = {"force": hertz_force(4 * YIELD), "steps": steps, "unload": True}
     friction = mu and {"coefficient": mu, "direction": "alternating"}
-    made = scene(loading=loading, friction=friction, solver={"tolerance": 1e-5})
+    body = law and {"plasticity": law}
+    made = scene(body=body or {}, loading=loading, friction=friction, solver={"tolerance": 1e-5})
     return resolved_at(made, Resolution(size, size))
 
 
@@ -67,6 +68,13 @@ def test_an_elastic_body_gives_all_back(mu):
     assert not found.dissipated.any() and not found.flowed.any()
 
 
+@pytest.mark.parametrize("mu", [None, 0.4])
+def test_a_yielding_body_closes_its_balance(mu):
+    """To 4e-3 of the work at 5 cells in the radius."""
+    found = of_sam.balance_of(sphere(mu=mu, steps=2, law=PERFECT))
+    assert found.error_of_cells < 4e-3 and not found.back.any() and found.dissipated[-1] > 0
+
+
 # --- FEM ----------------------------------------------------------------------------------------------------
 
 
@@ -75,6 +83,12 @@ def test_an_elastic_counter_body_is_refused():
     for balance in (of_sam.balance_of, lambda one: of_fem.balance_of(one, FEM)):
         with pytest.raises(ValueError, match="counterbody"):
             balance(sphere(6).model_copy(update={"counterbody": other}))
+
+
+def test_a_given_pressure_in_space_is_refused():
+    given = scene(loading={"prescribed": "hertz", "p0": YIELD, "radius": 1e-6})
+    with pytest.raises(ValueError, match=r"loading\.prescribed"):
+        of_fem.balance_of(given, FEM_3D)
 
 
 def test_a_sliding_body_in_space_balances_to_the_residual_of_its_forces():

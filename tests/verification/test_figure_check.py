@@ -9,6 +9,7 @@ from matplotlib.text import Text
 from matplotlib.ticker import FixedLocator
 from PIL import Image
 
+from samfem.publishing import report
 from verification.cases.case import Outcome, Plot
 from verification.figures.check import findings
 from verification.figures.maps import FieldPair, MapPeak, plane_maps
@@ -122,14 +123,15 @@ def test_a_figure_that_cannot_be_read_fails_its_case_in_every_record(
     own = FakeCase("own", "Own", "Is it read?", does=does)
     monkeypatch.setattr(verify, "all_cases", lambda: {"own": own})
     assert verify.main(["own"], "quick", tmp_path / "out") == code
-    (drawn,) = verify.draw_pdf(tmp_path / "out", print, None)
-    assert drawn == tmp_path / "out" / "figures" / "own-curve.pdf" and drawn.read_bytes()[:5] == b"%PDF-"
+    drawn = tmp_path / "out" / "figures" / "own-curve.pdf"
+    assert report(tmp_path / "out", pdf=True) == 0 and drawn.read_bytes()[:5] == b"%PDF-"
     case = json.loads((tmp_path / "out" / "results.json").read_text())["cases"][0]
     assert case["status"] == ("failed" if code else "passed") and bool(
         case["figures"][0]["findings"]
     ) == bool(code)
     line = "figures/own-curve.png: the texts 'the first' and 'the second' collide"
-    assert (line in capsys.readouterr().out) == bool(code)
+    said = capsys.readouterr().out
+    assert (line in said) == bool(code) and str(drawn) in said.splitlines()
     pages = "".join(page.read_text() for page in (tmp_path / "out").glob("*.html"))
     assert ("cannot be read" in pages) == bool(code)
     assert ("figures" in (tmp_path / "out" / "junit.xml").read_text()) == bool(code)

@@ -56,6 +56,8 @@ def test_the_pressure_in_a_ball_is_that_of_an_expanding_cavity():
     pressure = 2e9 / 3 + 2e9 * np.log(zone)
     assert -ball.radial_stress(np.array([0.0, 0.5, 0.99])) == pytest.approx([pressure] * 3, rel=1e-7)
     assert float(ball.fields(1.0).peeq) == pytest.approx(1 / 30, rel=1e-12)
+    # the integral of 2 (1 - nu) Y/E (c^3/r^3 - 1) from the ball to c, c^3 = 6
+    assert ball.total() == pytest.approx(8 * np.pi / 300 * (6 * np.log(zone) - 5 / 3), rel=1e-4)
 
 
 @pytest.mark.parametrize("profile", ["smooth", "ball", "gauss"])

@@ -8,7 +8,7 @@ import os
 import numpy as np
 import pandas as pd
 import pytest
-from builders import RUN_IN_STEEL, SWIFT, running_in, scene
+from builders import PERFECT, RUN_IN_STEEL, SWIFT, running_in, scene
 from made_results import of_frame, red
 
 import sam
@@ -91,6 +91,22 @@ def test_a_yielding_body_without_a_load_has_an_estimate(model):
     none = scene(body={"plasticity": SWIFT}, loading={"force": 0.0})
     assert estimates.load_ratio(none, np.zeros(1))[0] == 0.0
     assert np.isfinite(estimates.estimate(none, model).time_s)
+
+
+def test_back_stresses_count_by_what_they_add_at_one_per_cent():
+    """0.01 C_1 + C_2 (1 - exp(-0.01 g))/g over the yield stress, and nothing without any."""
+    kinematic = {"modulus": (50e9, 100e9), "recovery": (0.0, 300.0)}
+    added = 0.01 * 50 + 100 * (1 - np.exp(-3.0)) / 300
+    for law, expected in ((PERFECT, 0.0), (PERFECT | {"kinematic": kinematic}, added)):
+        found = estimates._back_hardening(scene(body={"plasticity": law}), np.array([1e-6, 2e-6]))
+        assert found == pytest.approx(expected, rel=1e-13)
+
+
+@pytest.mark.parametrize("film", [None, {"thickness": 1e-6, "young": 400e9, "poisson": 0.3}])
+def test_newton_iterates_more_under_more_load_only_where_hertz_says_how_much_yields(film):
+    body = {"plasticity": PERFECT, "coating": film}
+    some, more = (estimates.newton_iterations(scene(body=body, loading={"force": f})) for f in (0.1, 0.8))
+    assert more == some if film else more > some
 
 
 def test_factors_are_found_from_counts():

@@ -93,6 +93,10 @@ def test_the_answer_counts_what_the_data_hold_and_the_index_and_the_page_say_it(
     assert "(a soft layer) 16 and 16" in found.answer
     assert "first on deviation of the layer, factor (" in found.depends
     assert "of 24 ways to harden and to load it, 15 hold together at best" in found.depends
+    inputs, physics = studies
+    none = {**inputs, "data": inputs["data"] | {"best": []}}
+    without = headline_of(read_stored(stored(readings, none, physics))).depends
+    assert "At the best of the points" in found.depends and "At the best of the points" not in without
     write_report(results, tmp_path)
     names = "running-in.html", "index.html"
     page, index = (PageReader((tmp_path / name).read_text(encoding="utf-8")) for name in names)

@@ -82,6 +82,15 @@ def test_other_shapes_count_by_their_larger_ratio_and_by_their_slope(other, rati
     assert range_lines(model_range(scene(other=other, loading={"force": 0.2 * most})))
 
 
+@pytest.mark.parametrize("ratio", [0.5, 2.0])
+def test_a_rounded_punch_that_yields_counts_by_its_fully_plastic_contact(ratio):
+    """Three times the yield stress at 0.2 (a - b)/R on its area."""
+    stress = 945e6 * (20 + 1e6 * 0.2 * ratio) ** 0.121
+    force = 3 * stress * pi * (PUNCH["flat_radius"] + ratio * PUNCH["radius"]) ** 2
+    stated = model_range(scene(YIELDING, PUNCH, loading={"force": force}))
+    assert stated["a_over_R"] == pytest.approx(ratio, rel=1e-6)
+
+
 @pytest.mark.parametrize(
     ("body", "tables", "key", "most"),
     [

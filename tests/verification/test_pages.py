@@ -4,6 +4,7 @@
 import copy
 import json
 import re
+from dataclasses import replace
 from fnmatch import fnmatch
 from pathlib import Path
 from types import SimpleNamespace
@@ -18,13 +19,17 @@ from verification.suite.pages import write_report
 from verification.suite.pages.answers import (
     PARTS,
     RESULT,
+    UNGATED,
     Evidence,
+    Pair,
     answers_of,
     cell,
     kind_of,
     pairs_of,
+    percent,
     sentence,
     times,
+    value,
 )
 from verification.suite.pages.mathml import formula, with_scripts
 from verification.suite.pages.site import works
@@ -156,6 +161,25 @@ def test_failed_gates_are_told_apart_by_what_they_are_about(results):
     words = "1 failed (none about a result; 1 about a cost)"
     assert words in said(changed(held, "peers.step-16", status="failed"))
     assert "1 failed (1 about a result)" in said(changed(held, "peers.same-solution", status="failed"))
+
+
+@pytest.mark.parametrize(("case", "quantity", "why"), [*PAGES["pairs"]["beyond"], ("hertz-*", "p_max", None)])
+def test_a_number_without_a_gate_is_told_why_it_is_far_off_where_that_is_known(case, quantity, why):
+    pair = Pair(SimpleNamespace(name=case.replace("*", "x")), f"{quantity} [Pa]", "FEM", 1.1, 1.0)
+    assert pair.why == (f"no gate; {why}" if why else UNGATED)
+    gated = replace(pair, gate={"tolerance": 0.2, "reason": "half a cell"})
+    assert gated.why == "its gate allows 20 %: half a cell"
+
+
+def test_a_share_has_two_digits_or_is_rounding_or_nothing():
+    expected = ["\N{MINUS SIGN}1.2\N{NO-BREAK SPACE}%", "rounding", "0\N{NO-BREAK SPACE}%"]
+    assert [percent(share) for share in (-0.01234, 1e-9, 0.0)] == expected
+
+
+def test_a_gate_without_a_number_is_no_finding(results):
+    gate = "peers.same-solution"
+    assert list(value(evidence_of(results), "", gate))
+    assert not list(value(evidence_of(changed(results, gate, value=None, error=None)), "", gate))
 
 
 TIMES = {"one": {"SAM": (0.5, False), "FEM, 3D": (3.11, False), "FEM, axisymmetric": (1.5, True)}}

@@ -14,7 +14,7 @@ from verification.cases.recipes import layer_faces
 from verification.judging import error_of
 from verification.quantities import QUANTITIES, Solved
 from verification.reference.convergence import extrapolate
-from verification.runs.sampling import means_of_line, ring_edges
+from verification.runs.sampling import means_of_cells, means_of_line, ring_edges
 
 
 def cone(cells: int, top: float) -> Made:
@@ -68,6 +68,14 @@ class TestRings:
         found = means_of_line(r, np.maximum(1.0 - r, 0.0), self.edges)
         exact = 1.0 - 2.0 / 3.0 * np.diff(self.edges**3) / np.diff(self.edges**2)
         assert found == pytest.approx(exact, rel=1e-13)
+
+    def test_cells_count_by_their_area_in_a_ring(self):
+        """Four squares around the axis with sides of 1 m, and four beyond them in x."""
+        p = np.array([[9.0, 9.0], [1.0, 2.0], [3.0, 4.0], [7.0, 7.0]])
+        x, y = np.arange(4) - 1.5, np.arange(2) - 0.5
+        inner, outer, last = means_of_cells(x, y, p, np.array([0.0, 1.0, 1.5, 2.3]))
+        assert inner == pytest.approx(2.5, rel=1e-14) and 2.5 < outer < 8.0
+        assert last == pytest.approx(8.0, rel=1e-14)
 
 
 class TestResolution:

@@ -5,10 +5,11 @@ from functools import partial
 
 import numpy as np
 import pytest
-from builders import MODULUS, scene
+from builders import MODULUS, PERFECT, scene
 
 import fem_reference
 import sam
+from fem_reference.common.hertz import force_of_approach, scales
 from sam.grid.gap import RoundedPunch as SamPunch
 from sam.planner.make import UnsupportedScene
 from verification.reference.rounded_punch import RoundedPunch
@@ -53,6 +54,19 @@ def test_the_mesh_has_lines_at_the_flat_end_and_the_edge():
     for place in (FLAT, EXACT.contact_radius):
         assert np.abs(r / place - 1).min() < 1e-12
     assert np.sum((r > FLAT * (1 + 1e-9)) & (r <= EXACT.contact_radius * (1 + 1e-9))) == 8
+
+
+def test_the_mesh_has_lines_at_depths_where_the_yield_stress_changes():
+    """In its fine part, and not nearer to the surface than an eighth of an element."""
+    for thickness, line in ((1e-9, False), (0.5e-6, True), (20e-6, False)):
+        layer = {"layer": PERFECT | {"yield_stress": 2e9}, "layer_thickness": thickness}
+        made = pressed(body={"plasticity": PERFECT | layer})
+        z = fem_reference.axisymmetric.planner.plan(made).z * scales(made).length
+        assert (np.abs(z / thickness - 1).min() < 1e-12) == line
+
+
+def test_the_estimated_force_of_an_approach_is_the_exact_one():
+    assert force_of_approach(pressed(), EXACT.approach) == pytest.approx(FORCE, rel=1e-9)
 
 
 class TestTheClosedFormOfSam:

@@ -3,15 +3,20 @@
 
 import warnings
 from dataclasses import replace
+from math import pi
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from builders import MODULUS, RADIUS, scene
 from made_results import red
 
 from sam.scene import Status
 from verification.cases.robustness.stability import CASES, Matrix
-from verification.robustness.matrix.checks import Bench, check_of
+from verification.reference.coated_sphere import thin_layer
+from verification.reference.hertz import CircularContact
+from verification.references import layers_of
+from verification.robustness.matrix.checks import Bench, Trial, check_of
 from verification.robustness.matrix.rows import (
     ABSENT,
     ERROR,
@@ -23,6 +28,16 @@ from verification.robustness.matrix.rows import (
     judge,
     table,
     topics,
+)
+from verification.robustness.matrix.scenes import (
+    HERTZ,
+    PATCH,
+    RADIUS as SPHERE,
+    SIDE,
+    heights,
+    other,
+    scene_with,
+    wide,
 )
 from verification.runs import models
 from verification.runs.models import FEM, FEM_3D, SAM
@@ -139,6 +154,147 @@ def test_a_value_is_compared_within_the_refinement_uncertainty_of_both(monkeypat
     assert cell.kind == kind, cell.text
     uncertainties = 2 * 0.04 * (33 / 23 - 1) + 2 * 0.04 * (24 / 16 - 1) * (1 + apart)
     assert cell.deviations[0].error == pytest.approx(apart * 1.04 / uncertainties)
+
+
+# --- checks, of made results ---
+
+SLIDES, SQUARE = scene(friction=0.3), 0.65 / (2 * 1.012 * MODULUS * SIDE / pi**0.5)
+ELASTIC = SimpleNamespace(
+    body=SimpleNamespace(young=210e9, poisson=0.3), loading=SimpleNamespace(misfit=0.01)
+)
+HELD, SOFT = CircularContact(0.65, RADIUS, MODULUS), 4e9 / (1 - 0.2**2)
+FILM = {"thickness": 1e-3, "young": 4e9, "poisson": 0.2}
+BY_APPROACH = scene(loading={"force": None, "approach": 1e-6})
+
+
+def cycles(*signs):
+    return {
+        "tables": {"cycles": {"cycle": [1, 2], "friction_coefficient": [0.3, 0.3], "friction_sign": signs}}
+    }
+
+
+def uncertain(**entries):
+    """Of quantities with their values over the exact ones less 1, and their relative uncertainties."""
+    exact = {"p_max_Pa": HELD.peak_pressure, "approach_m": HELD.approach}
+    return {
+        "quantities": {name: value * (1 + entries[name][0]) for name, value in exact.items()},
+        "uncertainty": {name: {"u_num": value * entries[name][1]} for name, value in exact.items()},
+    }
+
+
+def flagged(u, flag):
+    return {"uncertainty": {"mises_max_Pa": {"u_num": u, "flag": flag}}}
+
+
+def accuracy(relative):
+    return {"discretisation": {"accuracy": {"relative": relative, "asked": 0.02}}}
+
+
+def of(**quantities):
+    return {"quantities": quantities}
+
+
+MADE = [
+    ("carries", SLIDES, of(friction_coefficient=0.3), of(friction_coefficient=0.300001)),
+    ("signs", SLIDES, cycles(1, -1), cycles(1, 1)),
+    ("stays-elastic", ELASTIC, *(of(mises_max_Pa=mises, peeq_max=0.0) for mises in (0.84e9, 0.9e9))),
+    ("stays-elastic", ELASTIC, *(of(mises_max_Pa=0.84e9, peeq_max=peeq) for peeq in (0.0, 1e-9))),
+    ("square-punch", scene(), of(approach_m=SQUARE), of(approach_m=1.01 * SQUARE)),
+    ("warned", scene(), {"warnings": ("contact at the border",)}, {"warnings": ()}),
+    ("covers", scene(), *(uncertain(p_max_Pa=(0.01, u), approach_m=(-0.01, 0.02)) for u in (0.02, 0.005))),
+    ("covers", scene(), *(uncertain(p_max_Pa=(0.01, 0.02), approach_m=(-0.01, u)) for u in (0.02, 0.005))),
+    ("zero", scene(), flagged(None, ""), flagged(1e-12, "")),
+    ("reached", scene(), accuracy(0.019), accuracy(0.021)),
+    *(
+        (["without", "mises_max_Pa", "moves"], scene(), flagged(None, "it moves"), wrong)
+        for wrong in (flagged(1.0, "it moves"), flagged(None, "no"))
+    ),
+    (["Hertz, given approach", {"force_N": 1e-9}], BY_APPROACH,
+     *(of(force_N=more * 4 / 3 * MODULUS * RADIUS**0.5 * 1e-9) for more in (1, 1.001))),
+    (["limit of a thick film", {"p_max_Pa": 1e-9}], scene_with({"body.coating": FILM, "grid": "none"}),
+     *(of(p_max_Pa=more * (6 * 0.17 * SOFT**2 / pi**3 / 1e-8) ** (1 / 3)) for more in (1, 1.001))),
+]  # fmt: skip
+
+
+def worst(said, given, result, twin=None):
+    """The largest error over its bound. twin: what stands for another scene."""
+    bench = SimpleNamespace(converged=lambda scene, model: SimpleNamespace(**twin(scene, model)))
+    return max(each.share for each in check_of(said)(Trial(given, SAM, SimpleNamespace(**result), bench)))
+
+
+@pytest.mark.parametrize(("said", "given", "right", "wrong"), MADE)
+def test_a_check_tells_right_from_wrong(said, given, right, wrong):
+    assert (
+        worst(said, given, {"quantities": {}} | right) <= 1 < worst(said, given, {"quantities": {}} | wrong)
+    )
+
+
+def test_a_thin_film_is_squeezed_as_its_closed_form():
+    """The contact radius at which its force is that of the scene."""
+    thin = scene_with({"body.coating": {"thickness": 1e-8, "young": 1e6, "poisson": 0.2}, "grid": "none"})
+    largest, force = thin_layer(layers_of(thin), SPHERE, 2e-6)
+    thin = other(thin, {"loading.force": force})
+    said = ["thin film", {"p_center_Pa": 1e-9, "approach_m": 1e-9}]
+    assert worst(said, thin, of(p_center_Pa=largest, approach_m=2e-12 / SPHERE)) <= 1
+    assert worst(said, thin, of(p_center_Pa=largest, approach_m=2.001e-12 / SPHERE)) > 1
+
+
+@pytest.mark.parametrize("power", [1, 2])
+def test_a_linear_problem_has_equal_increments(power):
+    def twin(scene, _):
+        return of(approach_m=scene.loading.force**power)
+
+    def result(apart):
+        return {"discretisation": {"contact_cells": PATCH**2 - apart}} | of(approach_m=0.65**power)
+
+    assert (worst("all-touch", scene(), result(0), twin) <= 1) == (power == 1)
+    assert worst("all-touch", scene(), result(1), twin) > 1
+
+
+@pytest.mark.parametrize(("target", "model", "force"), [({"loading.force": 2.0}, SAM, 2.0), (FEM, FEM, 0.65)])
+def test_another_scene_or_model_is_asked_for(target, model, force):
+    asked = []
+
+    def twin(scene, model):
+        asked.append((model, scene.loading.force))
+        return of(p_max_Pa=2.0)
+
+    found = [worst([target, {"p_max_Pa": 0.1}], scene(), of(p_max_Pa=p), twin) for p in (2.1, 2.3)]
+    assert asked == 2 * [(model, force)] and found == pytest.approx([0.5, 1.5])
+
+
+ROUGH = scene_with(
+    {"counterbody": {"shape": "flat"}, "grid": "none", "surface": {"kind": "file", "path": "wave"}}
+)
+
+
+@pytest.mark.parametrize(
+    ("said", "twin"),
+    [
+        ("mirrored", heights("wave").values[::-1]),
+        (["patch", "strip"], heights("strip").values),
+        (["sum", "half"], heights("half").values),
+    ],
+)
+def test_a_twin_has_the_same_contact(said, twin):
+    def pressed(scene, _=None, more=0.0):
+        fields = SimpleNamespace(cell_data={"p_Pa": np.array([0.0, 1.0 + more, np.nan])})
+        return of(approach_m=1.0) | {"fields": fields}
+
+    def same(scene, _):
+        np.testing.assert_array_equal(scene.surface.path.values, twin)
+        return pressed(scene)
+
+    assert (
+        worst(said, ROUGH, pressed(ROUGH), same) == 0
+        and worst(said, ROUGH, pressed(ROUGH, more=1e-5), same) > 1
+    )
+
+
+def test_layers_grow_below_the_first():
+    found = wide(4.0, 8, 2.0, even=2)
+    assert found["cells"] == (8, 8) and found["extent"] == (4 * HERTZ, 4 * HERTZ)
+    assert np.divide(found["depths"], HERTZ / 2) == pytest.approx([0, 1, 2, 3.2, 4.64])
 
 
 def test_a_check_that_compares_nothing_is_wrong():

@@ -25,10 +25,11 @@ import worker_functions as functions
 from builders import scene_text
 from optional_packages import dask_distributed
 
+from sam.scene import SceneError
 from samfem import executors, sweeping
 from samfem.cli import main
 from samfem.executors import WORKER_DIED, Cluster, Failure, Processes, run
-from verification.runs import threads
+from verification.runs import models, threads
 from verification.runs.files import read_run
 from verification.runs.store import FOLDER
 from verification.runs.study import read_study
@@ -274,9 +275,12 @@ def test_a_scene_whose_solver_raises_is_a_row(folder, no_figure, monkeypatch):
     assert table("out")[2]["reason"] == "ZeroDivisionError: on purpose"
 
 
-def test_a_worker_of_another_version_computes_nothing(folder):
-    outcome = sweeping.solve_scene(read_study("study.toml").points[0].scene, "sam", "another")
+def test_a_worker_computes_with_its_own_version_only(folder):
+    scene = read_study("study.toml").points[0].scene
+    outcome = sweeping.solve_scene(scene, "sam", "another")
     assert isinstance(outcome, Failure) and "another version" in outcome.reason
+    result, _ = sweeping.solve_scene(scene, "sam", sweeping.code_version("sam"))
+    assert result.quantities == models.solve(scene, "sam").quantities
 
 
 # workers
@@ -293,6 +297,10 @@ def test_tasks_run_in_processes_with_one_thread_each_and_leave_ours_alone(monkey
         found = outcomes(workers, functions.environment, {0: ()})[0]
     assert [found[name] for name in threads.EVERY_LIBRARY] == ["1"] * len(threads.EVERY_LIBRARY)
     assert os.environ["OMP_NUM_THREADS"] == "7" and "MKL_NUM_THREADS" not in os.environ
+
+
+def test_a_task_that_raises_is_a_failure_with_its_words(pool):
+    assert outcomes(pool, functions.fail, {0: (1.0,)}) == {0: Failure("ZeroDivisionError: on purpose")}
 
 
 def test_a_worker_that_is_killed_while_idle_is_replaced():
@@ -452,3 +460,31 @@ def test_a_task_whose_worker_dies_just_after_its_result_is_no_failure():
     workers = SimpleNamespace(_killed=BrokenProcessPool)
     assert Cluster.died(workers, cascaded("lost", Failure("any value")))
     assert not Cluster.died(workers, cascaded("error", raised(TypeError("of the task"))))
+
+
+def test_a_cluster_without_workers_is_waited_for_and_said_once(capsys):
+    workers = SimpleNamespace(lost=0, _workers=set(), _told=False)
+    for threads_of, slots, lost, said in (
+        ({"a": 2, "b": 1}, 6, 0, 0),
+        ({"a": 2}, 4, 1, 0),
+        ({}, 1, 2, 1),
+        ({}, 1, 2, 0),
+        ({"c": 1}, 2, 2, 0),
+        ({}, 1, 3, 1),
+    ):
+        workers._client = SimpleNamespace(nthreads=lambda found=threads_of: found)
+        assert (Cluster.slots(workers), workers.lost) == (slots, lost)
+        assert capsys.readouterr().err.count("no workers now") == said
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [(ImportError("no such symbol"), "no such symbol.*--workers"), (ModuleNotFoundError(), "pip install")],
+)
+def test_a_package_that_cannot_be_loaded_is_said(monkeypatch, error, words):
+    def cluster(_):
+        raise error
+
+    monkeypatch.setattr(sweeping, "Cluster", cluster)
+    with pytest.raises(SceneError, match=f"needs the package distributed.*{words}"):
+        sweeping._executor("tcp://localhost:8786", None)

@@ -86,6 +86,8 @@ def test_the_mesh_and_the_box_of_the_finite_elements():
     assert [member.scene.fem.box for member in found.box] == [10.0, pytest.approx(10 / 1.5)]
     assert {member.scene.fem.cells_per_radius for member in (*found.steps, *found.box)} == {5}
     assert not family(Scene(**ELASTIC), FEM).steps
+    for box, boxes in ((4.5, 2), (4.4, 0)):  # none of less than three radii
+        assert len(family(Scene(**ELASTIC | {"fem": {"box": box}}), FEM).box) == boxes
     for count, counts in ((9, [9, 6, 4]), (12, [12, 8, 5]), (32, [32, 16, 8])):
         scene = Scene(**ELASTIC | {"fem": {"cells_per_radius": count}})
         assert [member.number for member in family(scene, FEM).cells] == counts
