@@ -16,7 +16,7 @@ from sam.scene import Scene, SceneError, resolved
 from samfem.compared import NOT_COMPARED, asked
 from samfem.refusals import SeveralError
 from verification.compare.comparison import CENTRE
-from verification.compare.own_data import FARTHEST, _expected, read_data
+from verification.compare.own_data import _expected, read_data
 from verification.runs import models
 from verification.runs.files import write_run
 from verification.runs.store import Store
@@ -271,7 +271,7 @@ PUNCH = Scene(**resolved(SCENE) | {"counterbody": {"shape": "punch", "radius": 1
 @pytest.mark.parametrize("over", [True, False])
 def test_values_up_to_a_hundred_times_the_expected_are_of_the_unit(tmp_path, scene, over):
     size, path = _expected(scene)[1]["p_max_Pa"], tmp_path / "own.csv"
-    last = size * FARTHEST if over else size / FARTHEST
+    last = size * 100.0 if over else size / 100.0
     path.write_text(f"p_max_Pa\n{last!r}\n")
     assert read_data(path, scene).quantities == {"p_max_Pa": last}
     path.write_text(f"p_max_Pa\n{last * (1.0005 if over else 0.9995)!r}\n")
