@@ -316,7 +316,7 @@ def _claims(content: Mapping[str, Any], table: str, key: str, cells: list) -> It
     names, points = _braces(key), bool(content.get("sweeps") or content.get("frame"))
     takes = _braces(more.pop()) if len(more) == 2 or (points and not model and more) else []
     words = _braces(more[0]) if more else []
-    if len(more) > 2 or any(len(each) not in (0, len(names)) for each in (takes, words)):
+    if len(more) > 1 or any(len(each) not in (0, len(names)) for each in (takes, words)):
         raise ValueError(ROW)
     quantities = words if words and all(each in QUANTITIES for each in words) else names
     said = {"case": content["name"], "metric": metric, "tolerance": tolerance, "reason": reason}

@@ -364,6 +364,8 @@ def test_the_paper_s_loop_relaxes_a_cell(beyond):
     assert trial.converged and length == pytest.approx(beyond * 1e9 / (3 * 80e9), rel=1e-9)
     assert trial.increment.strain == pytest.approx(1.5 * length * AXIAL, rel=1e-9)
     assert von_mises(trial.stress) == pytest.approx(1e9, rel=1e-12)
+    trial = step_of_the_paper(1e9 * (1 + 5e-4) * AXIAL, 2 * 80e9, 1e-3)  # inside the tolerance at once
+    assert trial.converged and not trial.increment.peeq.any()
     trial = step_of_the_paper(1.2e9 * AXIAL, 0.0, 1e-6)
     assert trial.yield_excess == pytest.approx(0.2, rel=1e-12)
     assert not trial.converged and trial.rise == 2.0

@@ -161,14 +161,19 @@ def test_asperities_are_where_they_are_asked_for():
     assert scene.grid.depths[-1] == 3.6e-6 and scene.body.plasticity.layer.law == "linear"
 
 
-def test_the_strain_on_either_side_of_a_jump_is_found_and_not_between_the_points_beside_it():
-    x, z, jump = np.linspace(-1.0, 1.0, 5), np.arange(0.05, 2.0, 0.1), 0.9
+@pytest.mark.parametrize("jump, above, under", [(0.9, 0.85, 0.95), (0.85, 0.75, 0.85)])
+def test_the_strain_on_either_side_of_a_jump_is_found_and_not_between_the_points_beside_it(
+    jump, above, under
+):
+    x, z = np.linspace(-1.0, 1.0, 5), np.arange(5, 200, 10) / 100
     strain = np.where(z < jump, 1.0 + z, 0.5 - 0.1 * z)
     depths = Plane(x, z, strain * np.ones((5, 1)), jump)
-    at_z = np.array([0.1, 0.84, 0.96, 1.5])
-    np.testing.assert_allclose(depths.below(0.0, at_z), [1.1, 1.84, 0.404, 0.35], rtol=1e-9)
+    at_z = np.array([0.1, above - 0.01, under + 0.01, 1.5])
+    expected = [1.1, 0.99 + above, 0.499 - 0.1 * under, 0.35]
+    np.testing.assert_allclose(depths.below(0.0, at_z), expected, rtol=1e-9)
     compared = depths_compared(depths, 0.0, 0.5)
-    assert not ((compared > 0.85 + 1e-9) & (compared < 0.95 - 1e-9)).any() and compared[-1] > 1.5
+    between = (compared > above + 1e-9) & (compared < under - 1e-9)
+    assert not between.any() and ((compared > under) & (compared < under + 0.1)).any() and compared[-1] > 1.5
     even = Plane(x, z, (1.0 + z) * np.ones((5, 1)))
     np.testing.assert_allclose(even.below(0.0, at_z), 1.0 + at_z, rtol=1e-9)
 

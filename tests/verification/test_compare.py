@@ -92,6 +92,8 @@ def test_both_models_find_the_strain_that_a_twentieth_of_the_plastic_volume_exce
     box = Box(np.array([0, size]), np.array([0, size]), z, none, none, strain[:, None, None])
     found = peaks.exceeded_strain(box), recovery.exceeded_strain(strain, heights)
     assert found == pytest.approx((0.02 * (1 - 0.05 * 0.99),) * 2, rel=5e-4)
+    two = recovery.exceeded_strain(np.array([2.0, 1.0]), size * np.array([1.0, 19.0]))  # at 0.475 and 0.975
+    assert two == pytest.approx(1.95, rel=1e-12)
     empty = replace(box, peeq=np.zeros((150, 1, 1)))
     assert peaks.exceeded_strain(empty) is recovery.exceeded_strain(0 * strain, heights) is None
 

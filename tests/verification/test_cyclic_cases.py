@@ -164,6 +164,7 @@ def test_the_exact_solution_of_a_period_is_that_of_the_closed_form():
     loading = scene.loading.model_copy(update={"profile": "gauss", "cycles": 2})
     scene = scene.model_copy(update={"loading": loading})
     r = misfit_cycles.REACHES * loading.radius
+    assert growing_sphere(scene).shares == (1.0,)  # it is put on alone
     _, once, _, twice = growing_sphere(scene, (1.0, 0.0) * 2).history(r)
     exact = misfit_cycles.cycled_sphere(scene).values
     assert exact["peeq"] == pytest.approx([(twice.peeq - once.peeq).max()], rel=1e-12)

@@ -11,10 +11,12 @@ from builders import parsed
 from stored import BOTH
 from vtkmodules.vtkIOExodus import vtkExodusIIWriter
 
+from sam import hertz_semi_axes
 from sam.scene import Scene, SceneError, resolved
 from samfem.compared import NOT_COMPARED, asked
 from samfem.refusals import SeveralError
 from verification.compare.comparison import CENTRE
+from verification.compare.own_data import _expected, read_data
 from verification.runs import models
 from verification.runs.files import write_run
 from verification.runs.store import Store
@@ -194,7 +196,7 @@ def test_a_mesh_of_several_steps_is_read_at_its_last_or_a_named_one(results, bes
 
 def refused(name, folder, scene=SCENE) -> str:
     with pytest.raises(SceneError) as caught:
-        asked(scene, data=[folder / name])
+        read_data(folder / name, scene)
     return str(caught.value)
 
 
@@ -207,6 +209,7 @@ WRONG_MAPPINGS = {
     "missing unit": ([('length_unit = "mm"\n', "")], "length_unit is missing: required"),
     "upside down": ([('"-y"', '"y"')], 'axes.z = "y": the contact is at the origin'),
     "place": ([("axes", "origin = [1, 0.0, 0.0]\naxes")], "they do not overlap"),
+    "step": ([("axes", "step = 0\naxes")], "a whole number from 1"),
     "origin": ([("axes", "origin = [1.0, 0.0]\naxes")], "three numbers in length_unit"),
     "one axis": ([('"-y"', '"x"')], "another axis of the mesh than x, which is x"),
     "array": ([('"CPRESS"', '"CPRES"')], "unknown array 'CPRES' (did you mean CPRESS?): the mesh has CPRESS"),
@@ -259,6 +262,41 @@ def test_a_wrong_table_is_refused_by_name(tmp_path, text, words):
     (tmp_path / "own.csv").write_bytes(text.encode("latin-1"))
     said = refused("own.csv", tmp_path)
     assert words in said and "own.csv" in said
+
+
+PUNCH = Scene(**resolved(SCENE) | {"counterbody": {"shape": "punch", "radius": 1e-5}})
+
+
+@pytest.mark.parametrize("scene", [SCENE, PUNCH], ids=["sphere", "punch"])
+@pytest.mark.parametrize("over", [True, False])
+def test_values_up_to_a_hundred_times_the_expected_are_of_the_unit(tmp_path, scene, over):
+    size, path = _expected(scene)[1]["p_max_Pa"], tmp_path / "own.csv"
+    last = size * 100.0 if over else size / 100.0
+    path.write_text(f"p_max_Pa\n{last!r}\n")
+    assert read_data(path, scene).quantities == {"p_max_Pa": last}
+    path.write_text(f"p_max_Pa\n{last * (1.0005 if over else 0.9995)!r}\n")
+    assert "the unit is another" in refused("own.csv", tmp_path, scene)
+
+
+@pytest.mark.parametrize("of_cells", [False, True])
+def test_a_coarse_mesh_is_read_at_eight_nodes_or_between_nodes(tmp_path, of_cells):
+    """Linear fields, eight nodes on the line, none on the axis; what is of cells counts below the surface."""
+    a = max(hertz_semi_axes(SCENE))
+    mesh = pyvista.ImageData(dimensions=(8, 3, 9), spacing=(a, a, a / 2), origin=(-3.5 * a, -a, 0.0))
+    x, _, z = mesh.points.T / a
+    mesh.point_data["p"] = mesh.point_data["q"] = 1e9 * (1.0 + x / 10 + z / 10)
+    data, count = (mesh.cell_data, mesh.n_cells) if of_cells else (mesh.point_data, mesh.n_points)
+    data["e"] = np.full(count, 0.01)
+    mesh.cast_to_unstructured_grid().save(tmp_path / "own.vtu")
+    units = 'file = "own.vtu"\nlength_unit = "m"\nstress_unit = "Pa"\naxes = { z = "z" }\n'
+    (tmp_path / "own.toml").write_text(units + 'pressure = "p"\nmises = "q"\npeeq = "e"\n')
+    line, axis, plane = map(read_data(tmp_path / "own.toml", SCENE).tables.get, ("line", "axis", "plane"))
+    assert line["x_m"] / a == pytest.approx(np.arange(-3.5, 4.0))
+    assert axis["z_m"] / a == pytest.approx(np.linspace(0.0, 4.0, 401)[of_cells:])
+    assert len(plane["x_m"]) == 8 * (8 if of_cells else 9)
+    assert line["p_Pa"] == pytest.approx(1e9 * (1.0 + line["x_m"] / a / 10))
+    assert axis["mises_Pa"] == pytest.approx(1e9 * (1.0 + axis["z_m"] / a / 10))
+    assert plane["peeq"] == pytest.approx(0.01)
 
 
 def test_what_is_no_data_is_refused_by_name(tmp_path):

@@ -9,7 +9,7 @@ from fake_case import row
 
 from sam.scene import SceneError
 from verification.judging import Measured, Row, RowStatus, error_of, evaluate, judge
-from verification.rows import load_rows, read_cases
+from verification.rows import Take, load_rows, read_cases
 
 GATES = load_rows()
 
@@ -141,6 +141,13 @@ def test_a_file_holds_several_cases_which_override_and_rows_in_braces(tmp_path):
     assert cases["first"].rows[0].reason == "why it is so" and cases["second"].levels == ("full",)
 
 
+def test_a_take_says_in_words_what_it_is():
+    take, held = Take.of_row("order p-max of sam coarse at grid-cells = 3, z < 2 | of fem")
+    assert take.words == "largest pressure, SAM, coarse, grid cells 3, z < 2, order"
+    assert held.words == "largest pressure, FEM, grid cells 3, z < 2, order"
+    assert Take.parse("own-column").words == "own column"
+
+
 def test_braces_in_the_name_of_a_case_stand_for_several(tmp_path):
     text = '[cases."c-{2,3}"]\ntitle = "p = {2,3}"\nscene = "s"\nvary = {p = "{2,3}", law = "{a,b,c}"}\n'
     cases = cases_in(text + '[cases.c-3]\nlevels = ["full"]\n', tmp_path)
@@ -172,6 +179,11 @@ def test_rows_of_models_take_their_words_from_the_vocabulary(tmp_path):
         ('"@known"', '"@unknown"', "rows.exact.a"),
         ('"quantity a"]', '"quantity a", "value a", "more"]', "rows.exact.a"),
         ('"quantity a"]', '"quantity a", "value a"]', "takes of sweeps"),
+        (
+            'question = "q"',
+            'frame = "f"\nrows.limit.c = ["at_most", 1, "known", "c", "", "c"]',
+            "rows.limit.c",
+        ),
         ("[rows.exact]", "[rows.roughly]", "kind"),
         ("{SAM,FEM}", "{SAM}", "rows.exact.{sam,fem}-b"),
         ('"{sam,fem}-b"', '"{a,fem-b}"', "occurs twice"),

@@ -2,6 +2,7 @@
 """The uncertainty of quantities: the rule against powers of h, the scenes it is taken from, the command."""
 
 import json
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -146,6 +147,14 @@ def test_cells_and_steps_are_added_up():
         "u_num": None,
         "flag": "the place of a maximum moves by whole points",
     }
+
+    def outlined(each, _):
+        area = {"contact_area_m2": np.pi * 1e-8 * (1 + 400 / each.grid.cells[0] ** 2)}
+        return replace(made(each), quantities=made(each).quantities | area)
+
+    found, edge = entries(scene, outlined), np.pi * 1e-8 * 400 / 65**2
+    assert found["contact_area_m2"]["u_cells"] == pytest.approx(2 * edge, rel=1e-9)
+    assert found["peeq_max"]["u_cells"] == entry["u_cells"]
     least = entries(scene, lambda *_: result)["peeq_max"]  # without any change
     assert least["u_num"] == scene.solver.tolerance * least["values"][0] and least["relative"] == 1e-6
 

@@ -489,10 +489,9 @@ def _along(
     """
     on, reach = ON * radius, REACH * radius
     x, y, z = np.asarray(mesh.points).T
-    use = (np.abs(y) <= on) & (np.abs(x) <= reach) & (z >= -on) & (z <= reach)
+    least = on if inside else -on
+    use = (np.abs(y) <= on) & (np.abs(x) <= reach) & (z > least) & (z <= reach)
     use &= {"line": np.abs(z) <= on, "axis": np.abs(x) <= on, "plane": True}[name]
-    if inside:
-        use &= z > on
     found, places = mesh, np.stack([x, y, np.maximum(z, 0.0)], axis=1)
     if use.sum() < LEAST_NODES:
         from pyvista import PolyData
@@ -502,7 +501,7 @@ def _along(
         zs = np.linspace(0.0, reach, nz)
         places = np.stack([each.ravel() for each in np.meshgrid(xs, 0.0, zs, indexing="ij")], axis=1)
         found = PolyData(places).sample(mesh, tolerance=on)
-        use = np.asarray(found["vtkValidPointMask"], dtype=bool) & (places[:, 2] > (on if inside else -1.0))
+        use = np.asarray(found["vtkValidPointMask"], dtype=bool) & (places[:, 2] > least)
     values = {column: np.asarray(found.point_data[column]) for column in columns}
     use &= np.isfinite(np.stack(list(values.values()))).all(axis=0)  # a pressure may be on the surface only
     table = {column: places[use, "xyz".index(column[0])] for column in PLACES[name]}

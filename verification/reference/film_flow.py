@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from math import isclose
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -110,9 +111,8 @@ class Film(Checked):
     ) -> tuple[np.ndarray, np.ndarray]:
         """Stress and plastic strain after a straight line, elastic and plastic parts in turn."""
         time = 0.0
-        flows = (
-            von_mises(stress) >= self.yield_stress * (1.0 - RESIDUAL) and self._rate(step, stress)[2] > 0.0
-        )
+        on_surface = isclose(von_mises(stress), self.yield_stress, rel_tol=RESIDUAL)
+        flows = on_surface and self._rate(step, stress)[2] > 0.0
         while time < 1.0:
             time, stress, plastic = self._part(step, time, stress, plastic, flows=flows)
             flows = not flows

@@ -24,6 +24,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from _pytest.tmpdir import tmppath_result_key  # noqa: PLC2701 - what a report sets
 
 from verification.robustness.mutants import inject
 from verification.robustness.mutants.changes import Mutant
@@ -154,6 +155,7 @@ def run(item: pytest.Item, following: pytest.Item | None = None) -> tuple[bool, 
     Without pytest's reports: to show why a test failed takes it longer than most of the tests do.
     """
     state, error, start = item.session._setupstate, "", time.process_time()
+    item.stash[tmppath_result_key] = {}  # without it tmp_path ends in an error
     item._initrequest()
     try:
         try:
