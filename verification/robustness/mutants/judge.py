@@ -180,10 +180,13 @@ def few(items: Iterable[pytest.Item]) -> dict[str, pytest.Item]:
 
 
 def uses(test: ModuleType, modules: Collection[str], tests: tuple[str, ...] = ()) -> bool:
-    """Whether a module of tests, or a helper that it imports, imports one of the modules or a name of one."""
+    """Whether a module of tests, or a helper that it imports, imports one of the modules, or a name of one or of
+    the package, below the first, that it is in.
+    """
+    packages = {name.rpartition(".")[0] for name in modules if name.count(".") > 1}
     for value in list(vars(test).values()):
         owner = value.__name__ if isinstance(value, ModuleType) else getattr(value, "__module__", None)
-        if owner in modules:
+        if owner in modules or (isinstance(owner, str) and owner.rpartition(".")[0] in packages):
             return True
         helper = sys.modules.get(owner) if isinstance(owner, str) and owner not in tests else None
         if (getattr(helper, "__file__", None) or "").startswith(f"{inject.ROOT}/tests/"):
