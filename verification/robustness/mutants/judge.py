@@ -180,8 +180,8 @@ def few(items: Iterable[pytest.Item]) -> dict[str, pytest.Item]:
 
 
 def uses(test: ModuleType, modules: Collection[str], tests: tuple[str, ...] = ()) -> bool:
-    """Whether a module of tests, or a helper that it imports, imports one of the modules, or a name of one or of
-    the package, below the first, that it is in.
+    """Whether a module of tests, or a helper that it imports, imports one of the modules, or a name of
+    it or of its package, `sam.scene`, say.
     """
     packages = {name.rpartition(".")[0] for name in modules if name.count(".") > 1}
     for value in list(vars(test).values()):
