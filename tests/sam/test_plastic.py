@@ -60,9 +60,11 @@ def test_converged_in_every_cell(swift4):
     assert certificate["load_error"] < 1e-12
 
 
-def test_the_fields_of_the_body_lie_on_the_faces_of_cells_of_the_grid():
+def test_the_force_is_that_of_the_scene_and_the_body_is_of_cells_of_the_grid():
     small = yielding(4, loading={"steps": 1}, grid=SMALL)
-    body, grid = sam.solve(small).grids["peak"]["body"], choose_grid(small)
+    found, grid = sam.solve(small), choose_grid(small)
+    assert found.quantities["force_N"] == pytest.approx(small.loading.force, rel=1e-9)
+    body = found.grids["peak"]["body"]
     for faces, centres, h in ((body.x, grid.x, grid.hx), (body.y, grid.y, grid.hy)):
         first = np.abs(centres - h / 2 - faces[0]).argmin()
         np.testing.assert_allclose(faces[1:] - h / 2, centres[first : first + len(faces) - 1], atol=1e-12 * h)
