@@ -3,6 +3,8 @@
 linear solves share changes no result.
 """
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -15,7 +17,7 @@ from fem_reference.axisymmetric import problem as plane
 from fem_reference.axisymmetric.elements import surface_weights
 from fem_reference.axisymmetric.model import axis_pressure, build, edge_radius
 from fem_reference.axisymmetric.planner import plan
-from fem_reference.axisymmetric.problem import ContactProblem
+from fem_reference.axisymmetric.problem import ContactProblem, refined
 from fem_reference.common.contact import ActiveSet, equilibrium
 from fem_reference.common.linear import nested_dissection
 from fem_reference.spatial import problem
@@ -216,6 +218,16 @@ def test_what_is_kept_changes_no_result(monkeypatch, model, keys, new_each_time,
     assert new.cost[count] == new.cost["newton_iterations"] > kept.cost[count]
     for name in ("p_max_Pa", "peeq_max", "approach_m", "mises_max_Pa", also):
         assert kept.quantities[name] == pytest.approx(new.quantities[name], rel=within)
+
+
+def test_a_kept_inverse_serves_until_few_iterations_do_not_do():
+    """Of a diagonal of 200 numbers: the exact inverse takes one, none at all far more than a few."""
+    diagonal, right = np.arange(1.0, 201.0), np.ones(200)
+    for solve, expected in ((lambda r: r / diagonal, 1 / diagonal), (lambda r: r, None)):
+        kept = SimpleNamespace(solve=solve, target=1e-12, linear=0)
+        found = refined(lambda u: diagonal * u, right, kept)
+        assert (found is None) == (expected is None) and kept.linear > 0
+        assert found is None or found == pytest.approx(expected, rel=1e-12)
 
 
 def test_a_hierarchy_that_no_longer_does_is_made_anew(monkeypatch):
