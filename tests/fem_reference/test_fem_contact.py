@@ -223,8 +223,8 @@ def test_what_is_kept_changes_no_result(monkeypatch, model, keys, new_each_time,
 def test_a_kept_inverse_serves_until_few_iterations_do_not_do():
     """Of a diagonal of 200 numbers: the exact inverse takes one, none at all far more than a few."""
     diagonal, right = np.arange(1.0, 201.0), np.ones(200)
-    for solve, expected in ((lambda r: r / diagonal, 1 / diagonal), (lambda r: r, None)):
-        kept = SimpleNamespace(solve=solve, target=1e-12, linear=0)
+    for inverse, expected in ((lambda r: r / diagonal, 1 / diagonal), (lambda r: r, None)):
+        kept = SimpleNamespace(solve=inverse, target=1e-12, linear=0)
         found = refined(lambda u: diagonal * u, right, kept)
         assert (found is None) == (expected is None) and kept.linear > 0
         assert found is None or found == pytest.approx(expected, rel=1e-12)
