@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Names of the array types that annotations use, and what rounding may add up to."""
+"""Names of the array types that annotations use, and the tolerance for rounding."""
 
 from __future__ import annotations
 
@@ -11,4 +11,4 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 """True or false for each cell."""
 ROUNDING = 1e-9
-"""Relative: above what rounding adds up to, below what matters, where a number is whole, or at its bound."""
+"""Relative tolerance within which a number counts as whole or as at its bound: rounding stays below it."""
