@@ -45,6 +45,11 @@ html_math_renderer = "mathml"
 html_theme = "pydata_sphinx_theme"
 html_title = "samfem"
 html_show_sourcelink = False
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_sidebars = {"*": []}  # pages without others below them
+html_theme_options = {"header_links_before_dropdown": 6, "show_toc_level": 2}
+copybutton_selector = "div:not(.output):not(.sphx-glr-script-out) > div.highlight > pre"
 
 sphinx_gallery_conf = {
     "examples_dirs": "gallery",
@@ -102,7 +107,7 @@ def inline_formula(translator, node) -> None:
 
 def displayed_formula(translator, node) -> None:
     """A formula on a line of its own."""
-    translator.body.append(f'<div class="math">{tex2mathml(node.astext(), as_block=True)}</div>')
+    translator.body.append(f'<div class="formula" tabindex="0">{tex2mathml(node.astext(), as_block=True)}</div>')
     raise SkipNode
 
 

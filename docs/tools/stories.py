@@ -8,11 +8,10 @@ terminal is shown below it. `<!-- picture: PATH ALT -->` shows a picture that th
 import os
 import pty
 import re
-import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -21,8 +20,10 @@ from sphinx.errors import ExtensionError
 
 ROOT = Path(__file__).resolve().parents[2]
 KEPT = ROOT / "docs" / "_build" / "stories"
-BLOCK = re.compile(r"^```sh run\n(.*?)^```\n", re.MULTILINE | re.DOTALL)
-PICTURE = re.compile(r"<!-- picture: (\S+) (.*?) -->", re.DOTALL)
+PART = re.compile(
+    r"^```sh run\n(?P<commands>.*?)^```\n|<!-- picture: (?P<path>\S+) (?P<alt>.*?) -->",
+    re.MULTILINE | re.DOTALL,
+)
 COLUMNS, HEAD, TAIL = 110, 24, 6
 LONGEST_S = 120  # what a reader of a story is promised
 END = "\x1e"  # between the outputs of two blocks
@@ -30,32 +31,36 @@ END = "\x1e"  # between the outputs of two blocks
 
 def run(name: str, text: str) -> str:
     """The text of a page, with the output of each of its blocks and the paths of its pictures."""
+    (kept := KEPT / name).mkdir(parents=True, exist_ok=True)
     with TemporaryDirectory() as work:
-        (folder := Path(work, "empty")).mkdir()
-        outputs = iter(printed(BLOCK.findall(text), folder, Path(work)))
-        (kept := KEPT / name).mkdir(parents=True, exist_ok=True)
-        for path, _ in PICTURE.findall(text):
-            shutil.copy(folder / path, kept / path.replace("/", "-"))
-    text = BLOCK.sub(lambda block: f"```sh\n{block[1]}```\n{shown(next(outputs))}", text)
-    up = "../" * name.count("/")
-    return PICTURE.sub(
-        lambda found: f"![{found[2]}]({up}_build/stories/{name}/{found[1].replace('/', '-')})", text
-    )
+        script = "".join(
+            f"{part['commands']}printf '{END}'\n" if part["commands"] else f"cp {part['path']} {kept}\n"
+            for part in PART.finditer(text)
+        )
+        outputs = iter(printed(script, Path(work)).split(END))
+
+    def told(part: re.Match) -> str:
+        if part["commands"]:
+            return f"```sh\n{part['commands']}```\n{shown(next(outputs))}"
+        up = "../" * name.count("/")
+        return f"![{part['alt']}]({up}_build/stories/{name}/{Path(part['path']).name})"
+
+    return PART.sub(told, text)
 
 
-def printed(blocks: list[str], folder: Path, work: Path) -> Iterator[str]:
-    """What each block prints on a terminal. Raises ExtensionError for one that fails."""
-    (programs := work / "bin").mkdir()
+def printed(script: str, work: Path) -> str:
+    """What a script prints on a terminal, in an empty folder. Raises ExtensionError if a command fails."""
     for program, words in (("samfem", " -m samfem.cli"), ("python", "")):
-        (programs / program).write_text(f'#!/bin/sh\nexec "{sys.executable}"{words} "$@"\n')
-        (programs / program).chmod(0o755)
+        (work / program).write_text(f'#!/bin/sh\nexec "{sys.executable}"{words} "$@"\n')
+        (work / program).chmod(0o755)
+    (folder := work / "empty").mkdir()
     ours, theirs = pty.openpty()
     program = subprocess.Popen(
-        ["bash", "-c", "set -euo pipefail\n" + f"printf '{END}'\n".join(blocks)],
+        ["bash", "-c", f"set -euo pipefail\n{script}"],
         cwd=folder,
         env={
             **os.environ,
-            "PATH": os.pathsep.join([str(programs), os.environ["PATH"]]),
+            "PATH": os.pathsep.join([str(work), os.environ["PATH"]]),
             "PYTHONPATH": str(ROOT),
             "SAMFEM_STORE": str(work / "store"),
             "TERM": "dumb",
@@ -68,14 +73,12 @@ def printed(blocks: list[str], folder: Path, work: Path) -> Iterator[str]:
         stderr=theirs,
     )
     os.close(theirs)
-    found = b""
-    while part := read(ours):
-        found += part
+    found = b"".join(iter(partial(read, ours), b""))
     os.close(ours)
     text = found.decode().replace("\r\n", "\n")
     if program.wait(LONGEST_S) != 0:
         raise ExtensionError(f"a command failed in {folder}:\n{text[-2000:]}")
-    return iter(text.split(END))
+    return text
 
 
 def read(terminal: int) -> bytes:
@@ -100,7 +103,7 @@ def setup(app: Sphinx) -> None:
 
     def tell(app: Sphinx, env: object, names: list[str]) -> None:
         texts = {name: Path(app.env.doc2path(name)).read_text(encoding="utf-8") for name in names}
-        stories = {name: text for name, text in texts.items() if BLOCK.search(text)}
+        stories = {name: text for name, text in texts.items() if PART.search(text)}
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             told.update(zip(stories, pool.map(run, stories, stories.values()), strict=True))
 
