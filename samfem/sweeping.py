@@ -15,7 +15,7 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -176,7 +176,7 @@ def solve_study(
     content: Points,
     folder: Path,
     progress: Told,
-    executor: Processes | Cluster,
+    executor: AbstractContextManager[Processes | Cluster],
     *,
     runs: bool,
     use_store: bool = True,
@@ -186,13 +186,13 @@ def solve_study(
     began = time.monotonic()
     known = default_store() if use_store else None
     store = None if known is None else KeepsAll(known.folder)
-    with locked(folder), executor:
+    with locked(folder), executor as solvers:
         seeds = [] if content.study.seed is None else [content.study.seed]
         state = Sweep(content, folder, store, runs, collect(content.inputs, seeds))
         folder.mkdir(parents=True, exist_ok=True)
         _clear(state)
         try:
-            _fill(state, executor, anyway, progress)
+            _fill(state, solvers, anyway, progress)
         except KeyboardInterrupt:
             state.write(always=True)
             kept = f"{len(state.rows)} of {len(content.points)} scenes are finished"
@@ -204,8 +204,8 @@ def solve_study(
         found = index_rows(state)
         write_atomically(folder / SENSITIVITY, csv_text(INDEX_COLUMNS, found).encode())
         sensitivity_figure(_named(INDEX_COLUMNS, found), folder / "sensitivity")
-    kind = "dask" if isinstance(executor, Cluster) else "processes"
-    workers = {"kind": kind, "lost": executor.lost}
+    kind = "dask" if isinstance(solvers, Cluster) else "processes"
+    workers = {"kind": kind, "lost": solvers.lost}
     record = _record(state) | {"workers": workers, "elapsed_s": time.monotonic() - began}
     write_atomically(folder / RECORD, json_text(record).encode())
     return state

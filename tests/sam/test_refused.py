@@ -457,7 +457,7 @@ IN_PYTHON = [
     (back(modulus=1e9), f"{BACK}.modulus", "1000000000.0", LIST),
     (back(modulus=(0.0,)), f"{BACK}.modulus[0]", "0.0", MODULUS),
     (back(modulus=(True,)), f"{BACK}.modulus[0]", "true", MODULUS),
-    (back(recovery=(1.0,) * 3), f"{BACK}.recovery", "1[0]", "as many numbers as modulus has: 2"),
+    (back(recovery=(1.0,) * 3), f"{BACK}.recovery", "1.0", "as many numbers as modulus has: 2"),
     (back(recovery=(0.0, 2e7)), f"{BACK}.recovery[1]", "20000000.0", RECOVERY),
     (back(recovery=(True, 0.0)), f"{BACK}.recovery[0]", "true", RECOVERY),
     (back() | {"solver": {"verdict": 1}}, "solver.verdict", "1", "true or false"),
