@@ -40,6 +40,7 @@ from samfem.refusals import SeveralError as SeveralError  # noqa: E402
 from verification import figures  # noqa: E402
 from verification.compare.own_data import OwnData  # noqa: E402
 from verification.cost.accuracy import solve as solve_family  # noqa: E402
+from verification.cost.plan import Plan, plan as plan_of  # noqa: E402
 from verification.runs import files, models  # noqa: E402
 from verification.runs.files import FolderError  # noqa: E402
 from verification.runs.model_range import off_in_words  # noqa: E402
@@ -191,14 +192,15 @@ def load(path: str | Path) -> Scene:
     return load_scene(path)
 
 
-def plan(scene: Scene | str | Path, model: str = SAM) -> Any:
-    """What a model will compute of a scene: grid or mesh, stages with their sizes, what is left out and why.
+def plan(scene: Scene | str | Path, model: str = SAM) -> Plan:
+    """What the models will compute of a scene, what is left out and why, the error that the grid leaves, time
+    and memory; its attributes are those of `model`. Solves nothing.
 
     Raises ModelError where the model cannot represent the scene.
     """
     scene = _scene(scene)
     models.check(scene, model)
-    return models.plan(scene, model)
+    return plan_of(scene, model)
 
 
 def solve(scene: Scene | str | Path, model: str = SAM, out: str | Path | None = None) -> Run:
