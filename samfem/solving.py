@@ -302,7 +302,8 @@ def quantity_rows(result: Result | Run, terminal: bool) -> list[tuple[str, str]]
 def uncertain_table(result: Result | Run, terminal: bool) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
     """Heads and rows: name, value, uncertainty, and shares of cells, load steps and box in percent."""
     parts = {name: f"u_{name}" for name in ("cells", "steps", "box")}
-    found, rows = result.uncertainty or {}, []
+    found: Mapping[str, Any] = result.uncertainty or {}
+    rows = []
     shown = {name for name in parts if any(entry.get(parts[name]) for entry in found.values())}
     for words, value in zip(_known(result), quantity_rows(result, terminal), strict=True):
         entry = found.get(words, {})

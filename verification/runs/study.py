@@ -420,16 +420,18 @@ def read_study(path: str | Path) -> Points:
     return Points(study, points, {path.name: content, name: base, **inputs})
 
 
-def study_of(table: Mapping[str, Any], scene: Scene | Mapping[str, Any] | str | Path) -> Points:
-    """The study that Python gives, without its scene, and the scenes. Values of a key may be a list alone,
-    numbers are SI numbers or strings with units. Raises SceneError as `read_study`.
+def study_of(given: Mapping[str, Any]) -> Points:
+    """The study that Python gives, with its scenes. The scene may be a Scene, its tables or a path, values of
+    a key a list alone, and numbers are SI numbers or strings with units. Raises SceneError as `read_study`.
     """
+    table, scene, place = dict(given), given.get("scene"), Path("scene")
     if isinstance(scene, str | Path):
         place = Path(scene)
         base = parse_toml(read_scene(place)[1][place.name], str(place))
-    else:
-        base, place = tables_of(scene if isinstance(scene, Scene) else Scene(**scene)), Path("scene")
-    table = {**table, "scene": place.name}
+    elif isinstance(scene, Scene | Mapping):
+        base = tables_of(scene if isinstance(scene, Scene) else Scene(**scene))
+    if scene is not None:
+        table["scene"] = place.name
     if isinstance(vary := table.get("vary"), Mapping):
         axes = {key: axis if isinstance(axis, Mapping) else {"list": axis} for key, axis in vary.items()}
         table["vary"] = {
