@@ -54,7 +54,6 @@ from sam.scene import (
 from sam.scene.body import LAWS
 from sam.scene.yield_curve import DepthProfile, Linear, Swift, Tabulated
 
-
 SHIPPED = sorted((FilePath(verification.__file__).parent / "scenes").rglob("*.toml"))
 
 
@@ -249,7 +248,7 @@ def test_resolved_is_complete_and_reads_back():
 
 
 def test_a_shipped_scene_is_written_as_a_file_that_gives_it_again(tmp_path):
-    """Also of a map of heights and rows that the scene names, and of infinity; without what is at its default."""
+    """Also of a map of heights and rows that it names, and of infinity; without what is at its default."""
     for path in SHIPPED:
         scene = load_scene(path)
         written, inputs = scene.to_toml(), Inputs(path.parent)

@@ -288,7 +288,7 @@ def test_a_notebook_shows_one_bar_that_moves(monkeypatch, capsys):
     shown = []
     handle = SimpleNamespace(update=lambda data, raw: shown.append(data["text/plain"]))
 
-    def display(data, raw, display_id):
+    def display(data, raw, **_):
         handle.update(data, raw)
         return handle
 

@@ -96,7 +96,8 @@ def test_a_run_is_shown_short_and_as_html(run):
 
 def test_figures_are_named_and_an_unknown_one_is_refused(run, comparison):
     assert {"history", "pressure"} <= set(samfem.plot(run))
-    assert samfem.plot(run, "pressure").axes and run.plot().axes and comparison.plot("history").axes
+    assert samfem.plot(run, "pressure").axes and comparison.plot("history").axes
+    assert run.plot()._repr_png_()[0].startswith(b"\x89PNG")  # what a notebook shows
     assert {"line", "axis", "history"} <= set(samfem.plot(comparison))
     with pytest.raises(KeyError, match="this result has the figures history"):
         samfem.plot(run, "colour")

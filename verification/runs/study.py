@@ -39,7 +39,6 @@ from sam.scene import (
     parse_toml,
     problems,
     read_limited,
-    read_scene,
     scene_of,
     spelling,
     tables_of,
@@ -425,12 +424,17 @@ def study_of(given: Mapping[str, Any]) -> Points:
     a key a list alone, and numbers are SI numbers or strings with units. Raises SceneError as `read_study`.
     """
     table, scene, place = dict(given), given.get("scene"), Path("scene")
+    base, read = dict[str, Any](), dict[str, bytes]()
     if isinstance(scene, str | Path):
         place = Path(scene)
-        base = parse_toml(read_scene(place)[1][place.name], str(place))
+        try:
+            read[place.name] = read_limited(place)
+        except InputError as error:
+            raise SceneError([Problem("scene", spelling(str(scene)), str(error))], "study") from None
+        base = parse_toml(read[place.name], str(place))
     elif isinstance(scene, Scene | Mapping):
         base = tables_of(scene if isinstance(scene, Scene) else Scene(**scene))
-    if scene is not None:
+    if base:
         table["scene"] = place.name
     if isinstance(vary := table.get("vary"), Mapping):
         axes = {key: axis if isinstance(axis, Mapping) else {"list": axis} for key, axis in vary.items()}
@@ -446,7 +450,7 @@ def study_of(given: Mapping[str, Any]) -> Points:
     except ValidationError as error:
         raise SceneError(problems(error), "study") from None
     points, inputs = _points(study, base, place, "study")
-    return Points(study, points, inputs)
+    return Points(study, points, read | inputs)
 
 
 def _from_python(values: Any, unit: str) -> Any:
