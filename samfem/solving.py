@@ -326,7 +326,8 @@ def _hertz_columns(scene: Scene, found: Mapping[str, float], readable: bool) -> 
 
 def _uncertain_columns(result: Result | Run, found: Mapping[str, float], readable: bool) -> list[Column]:
     """Uncertainty, its shares of cells, load steps and box in percent, order and whether it converges."""
-    known = {name: entry for name, entry in (result.uncertainty or {}).items() if name in found}
+    entries: Mapping[str, Mapping[str, Any]] = result.uncertainty or {}
+    known = {name: entry for name, entry in entries.items() if name in found}
     parts = [
         part for part in ("cells", "steps", "box") if any(entry.get(f"u_{part}") for entry in known.values())
     ]

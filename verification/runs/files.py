@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 from shutil import rmtree
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Required, TypedDict
 
 import numpy as np
 
@@ -59,6 +59,22 @@ class FolderError(ValueError):
     """A folder that is no result, or that must not be written to; the message says which and what to do."""
 
 
+class Uncertainty(TypedDict, total=False):
+    """What is known of the numerical error of a quantity, in its unit; see `docs/guide/accuracy.md`."""
+
+    u_num: Required[float | None]
+    flag: Required[str]
+    relative: float | None
+    u_cells: float
+    u_steps: float
+    u_box: float
+    order_seen: float | None
+    values: list[float]
+    cells: list[float]
+    values_of_steps: list[float]
+    steps: list[float]
+
+
 @dataclass(frozen=True)
 class Run:
     """A result read back. summary: as in summary.json; tables: name -> table of floats (NaN: empty) and
@@ -98,7 +114,7 @@ class Run:
         return self.summary.get("verdict")
 
     @property
-    def uncertainty(self) -> Mapping[str, Mapping[str, Any]] | None:
+    def uncertainty(self) -> Mapping[str, Uncertainty] | None:
         return self.summary.get("uncertainty")
 
     @property

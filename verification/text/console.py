@@ -115,7 +115,7 @@ class Progress:
             return
         if stage != self._stage:
             self._stage, self._began = stage, (now, done)
-        if now >= self._next:
+        if now >= self._next or (self._notebook and self._bar is not None and done == total):
             line = f"{stage}: {done} of {total}{self._left(done, total, now)}"
             if self._notebook:
                 self._display(line, done, total)
