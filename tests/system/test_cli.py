@@ -98,6 +98,21 @@ def test_a_wrong_command_line_is_refused_and_nothing_is_created(refused, argumen
     assert fragment in refused(*arguments)
 
 
+@pytest.mark.parametrize(
+    "command, file, words",
+    [
+        ("plan", "study.toml", "study: samfem sweep"),
+        ("compare", "case.toml", "verification case: samfem verify"),
+        ("sweep", "sphere.toml", "scene: samfem solve"),
+        ("verify", "study.toml", "study: samfem sweep"),
+    ],
+)
+def test_a_file_of_another_kind_is_named_with_the_command_that_takes_it(folder, samfem, command, file, words):
+    (folder / "study.toml").write_text('scene = "sphere.toml"\n[vary]\n"body.poisson" = { list = [0.2] }\n')
+    (folder / "case.toml").write_text('scene = "sphere.toml"\n[rows.bound]\n')
+    assert samfem(command, file, code=2).err == f"samfem: error: {file}: this is a {words} {file}\n"
+
+
 ELLIPSOID = '"ellipsoid"\nradius_x = "1 mm"\nradius_y = "2 mm"'
 BEYOND = {
     "body.poisson = 0.5": ("poisson = 0.3", "poisson = 0.5"),
