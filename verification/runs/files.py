@@ -87,7 +87,7 @@ class Run:
 
     @property
     def quantities(self) -> Mapping[str, float | None]:
-        return self.summary["quantities"]
+        return dict.fromkeys(QUANTITIES) | self.summary["quantities"]  # older runs have fewer
 
     @property
     def model(self) -> str:
