@@ -30,7 +30,8 @@ lint: $(INSTALLED)
 	$(BIN)/mypy
 	$(BIN)/vulture
 
-# The wheel, installed without extras in an environment of its own, runs these cases; CASES=quick: all of the quick level.
+# The wheel, in an environment of its own: without extras it solves, with `report` it runs these cases; CASES=quick: all of the
+# quick level.
 CASES ?= hertz-ellipse hertz-sphere certificates mutation
 wheel: $(INSTALLED)
 	PYTHON=$(PYTHON) .ci/wheel $(CASES)
@@ -83,7 +84,7 @@ $(PEERS)/.installed: requirements-peers.lock requirements-aspher.lock
 # Rewrite the pins after a change of the dependencies (needs uv).
 lock:
 	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \
-		--extra test --extra build --extra lint pyproject.toml -o requirements.lock
+		--extra report --group dev pyproject.toml -o requirements.lock
 	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \
 		requirements-peers.in -o requirements-peers.lock
 	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \

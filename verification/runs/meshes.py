@@ -9,13 +9,15 @@ VTK itself, which takes a quarter of the time to load that pyvista takes, and lo
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from sam.scene import UNLOADED, FieldMesh, GridFields, InputError, Result, open_file, read_apart
+from sam.scene import UNLOADED, FieldMesh, GridFields, InputError, LeftOut, Result, open_file, read_apart
+from verification import need
 from verification.runs.model_range import OUTSIDE
 
 FIELDS, SURFACE, PARTS, STEPS = "fields.vtu", "surface.vtr", ("surface", "body"), "run.pvd"
@@ -51,12 +53,37 @@ def is_mesh(name: str) -> bool:
 
 
 def mesh_files(result: Result, cycles: int, outside: float | None = None) -> dict[str, bytes]:
-    """Name of a file -> its content: the parts of each state, and their list over cycles, from 0.
+    """Name of a file -> its content: the parts of each state, and their list over cycles, from 0; none
+    without VTK.
 
     outside: a/R of a contact outside of the model, which each mesh says.
     """
     files: dict[str, bytes] = {}
     entries = []
+    for state, part, name, fields in _parts(result) if _has_vtk() else ():
+        files[name] = mesh_file(fields, outside)
+        ended, number = name != _named(part, ""), ("fields", *PARTS).index(part)
+        time = float(state.removeprefix(CYCLE)) if state.startswith(CYCLE) else cycles - 0.5 * (not ended)
+        entries.append(f'  <DataSet timestep="{time!r}" part="{number}" name="{part}" file="{name}"/>')
+    if entries:
+        lines = ['<VTKFile type="Collection" version="0.1">', " <Collection>", *entries, " </Collection>"]
+        files[STEPS] = "\n".join([*lines, "</VTKFile>", ""]).encode()
+    return files
+
+
+def not_written(result: Result) -> list[LeftOut]:
+    """Where VTK is not installed: the files that are left out, and how to install it."""
+    names = [] if _has_vtk() else [name for _, _, name, _ in _parts(result)]
+    words = f"{', '.join([*names, STEPS])} (vtk is not installed: pip install 'samfem[report]')"
+    return [LeftOut("meshes", words)] if names else []
+
+
+def _has_vtk() -> bool:
+    return find_spec("vtk") is not None
+
+
+def _parts(result: Result) -> Iterator[tuple[str, str, str, FieldMesh | GridFields]]:
+    """State, part, name of its file and fields."""
     for state in dict.fromkeys((*result.grids, *result.bodies)):
         parts: dict[str, FieldMesh | GridFields] = {**result.grids.get(state, {})}
         if "plane" in parts:
@@ -64,15 +91,8 @@ def mesh_files(result: Result, cycles: int, outside: float | None = None) -> dic
         if state in result.bodies:
             parts["fields"] = result.bodies[state]
         ended = state == UNLOADED or state.startswith(CYCLE)
-        time = float(state.removeprefix(CYCLE)) if state.startswith(CYCLE) else cycles - 0.5 * (not ended)
         for part, fields in parts.items():
-            name, number = _named(part, state if ended else ""), ("fields", *PARTS).index(part)
-            files[name] = mesh_file(fields, outside)
-            entries.append(f'  <DataSet timestep="{time!r}" part="{number}" name="{part}" file="{name}"/>')
-    if entries:
-        lines = ['<VTKFile type="Collection" version="0.1">', " <Collection>", *entries, " </Collection>"]
-        files[STEPS] = "\n".join([*lines, "</VTKFile>", ""]).encode()
-    return files
+            yield state, part, _named(part, state if ended else ""), fields
 
 
 def mesh_file(fields: FieldMesh | GridFields, outside: float | None = None) -> bytes:
@@ -95,6 +115,7 @@ def read_mesh(path: Path, step: int = 0) -> tuple[int, Any]:
     """The number of load steps in a file, and the mesh at one of them, from 1, else the last, as pyvista
     holds it: a rectilinear grid, or else an unstructured one. Raises InputError.
     """
+    need("reading a mesh")
     if path.suffix.lower() not in READABLE:
         raise InputError(f"its name ends in none of {', '.join(READABLE)}")
     try:
