@@ -24,7 +24,7 @@ from verification.runs.meshes import not_written
 from verification.runs.model_range import refusal
 from verification.runs.provenance import collect
 from verification.runs.store import Reuse, Store, default_store, solve_or_reuse
-from verification.text.console import Progress, print_table
+from verification.text.console import Progress, print_table, table_lines
 from verification.text.readable import in_working_unit, with_prefix, with_time
 from verification.uncertainty import asked_of as with_uncertainty
 
@@ -242,6 +242,14 @@ def status_line(result: Result | Run) -> str:
     cost = result.cost
     seconds = sum(cost.get(name) or 0.0 for name in ("setup_s", "solve_s"))
     return f"{result.status} in {with_time(seconds)}: {_cells(result.discretisation)}"
+
+
+def result_lines(result: Result | Run) -> list[str]:
+    """What is said of a result: how it ended, and its quantities."""
+    heads = filter(None, (status_line(result), undecided_line(result), load_line(result)))
+    if result.uncertainty:
+        return [*heads, *table_lines(*uncertain_table(result, True)), *uncertain_lines(result)]
+    return [*heads, *table_lines(("quantity", result.model), quantity_rows(result, True))]
 
 
 def load_line(result: Result | Run) -> str:

@@ -6,12 +6,11 @@ and each other; borders, spots, and what is recorded.
 import numpy as np
 import pytest
 from builders import LINEAR, MODULUS, STEEL, running_in, scene
-from pydantic import ValidationError
 
 from sam import UnsupportedScene, choose_grid, left_out, plan, solve
 from sam.contact.convolution import Counters
 from sam.results.rough import too_few_cells
-from sam.scene import COUNTER_HEIGHT, CounterSurface, HeightMap, Scene, Status, resolved
+from sam.scene import COUNTER_HEIGHT, CounterSurface, HeightMap, Scene, SceneError, Status, resolved
 from sam.scene.surface import heights
 from verification.cost.plan import plan as cost_plan, plan_lines
 from verification.runs import models
@@ -252,7 +251,7 @@ def test_maps_of_both_bodies_have_one_grid():
     small, own = (
         {"kind": "file", "path": HeightMap(np.eye(n) * 1e-7, (s, s))} for n, s in ((8, 8e-6), (32, SIDE))
     )
-    with pytest.raises(ValidationError, match=r"\[32, 32\] heights on 2e-05 m x 2e-05 m"):
+    with pytest.raises(SceneError, match=r"\[32, 32\] heights on 2e-05 m x 2e-05 m"):
         scene(counterbody={**FLAT, "surface": small}, surface=own)
 
 

@@ -6,10 +6,9 @@ import json
 import pytest
 from builders import PERFECT, SPHERE, STEEL, scene_text
 from made_results import context
-from pydantic import ValidationError
 
 from sam import choose_grid
-from sam.scene import Result, Scene, Status
+from sam.scene import Result, Scene, SceneError, Status
 from verification.cases.case import with_keys
 from verification.cases.cost import accuracy as case
 from verification.cost import accuracy
@@ -173,7 +172,7 @@ def test_load_steps_that_are_cut_differently_are_made_more():
     ],
 )
 def test_wrong_keys_are_refused(tables, words):
-    with pytest.raises(ValidationError, match=words):
+    with pytest.raises(SceneError, match=words):
         Scene(**YIELDING | {"solver": {"accuracy": 0.01}} | tables)
 
 
