@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from pyvista import DataSet
 
     from verification.compare.own_data import OwnData
+    from verification.cost.plan import Plan
 
 _others = import_module("verification")
 _file = getattr(_others, "__file__", None)
@@ -258,14 +259,17 @@ def load(path: str | Path) -> Scene:
     return load_scene(path)
 
 
-def plan(scene: Scene | str | Path, model: str = SAM) -> Any:
-    """What a model will compute of a scene: grid or mesh, stages with their sizes, what is left out and why.
+def plan(scene: Scene | str | Path, model: str = SAM) -> Plan:
+    """What the models will compute of a scene, what is left out and why, the error that the grid leaves, time
+    and memory; its attributes are those of `model`. Solves nothing.
 
     Raises ModelError where the model cannot represent the scene.
     """
+    from verification.cost.plan import plan as plan_of  # noqa: PLC0415 - loads the solvers
+
     scene = _scene(scene)
     models.check(scene, model)
-    return models.plan(scene, model)
+    return plan_of(scene, model)
 
 
 def solve(

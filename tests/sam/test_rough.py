@@ -12,7 +12,7 @@ from sam.contact.convolution import Counters
 from sam.results.rough import too_few_cells
 from sam.scene import COUNTER_HEIGHT, CounterSurface, HeightMap, Scene, SceneError, Status, resolved
 from sam.scene.surface import heights
-from verification.cost.plan import plan as cost_plan, plan_lines
+from verification.cost.plan import plan as cost_plan
 from verification.runs import models
 from verification.runs.files import read_run, write_run
 from verification.runs.models import FEM, FEM_3D, ModelError
@@ -165,7 +165,7 @@ def test_depths_are_fine_near_the_surface_and_reach_an_eighth_of_the_side():
     steps = np.diff(depths)
     assert depths[0] == 0 and np.allclose(steps[:8], 0.25e-6) and (np.diff(steps) > -1e-12).all()
     assert 8e-6 <= depths[-1] < 1.2 * 8e-6
-    text = "\n".join(plan_lines(cost_plan(patch(64))))
+    text = "\n".join(cost_plan(patch(64)).lines(verbose=True))
     assert "stress lies anywhere below the patch" in text and "left out  stress outside the plane" not in text
 
 

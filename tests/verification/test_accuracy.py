@@ -189,7 +189,7 @@ def test_what_was_not_measured_is_refused(change, more, words):
 
 
 def test_the_plan_announces_it():
-    content = plan(asked(0.02))["models"][0]
+    content = plan(asked(0.02)).content["models"][0]
     (stage,) = (each for each in content["stages"] if each["stage"] == "accuracy")
     assert (
         "2 % of peeq_max: begins with 8.23 cells" in stage["reason"] and "advice expects" in stage["reason"]
