@@ -23,10 +23,11 @@ report: $(INSTALLED)
 test: $(INSTALLED)
 	$(BIN)/python -m pytest $(PARALLEL)
 
-# Formatter, linter, who imports whom, types, dead code; pyproject.toml has the settings of each. About half a minute, with caches less.
+# Formatter, linter, spelling, who imports whom, types, dead code; pyproject.toml has the settings of each. About half a minute, with caches less.
 lint: $(INSTALLED)
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
+	$(BIN)/codespell
 	$(BIN)/lint-imports --no-logo
 	$(BIN)/mypy
 	$(BIN)/vulture
