@@ -23,15 +23,17 @@ report: $(INSTALLED)
 test: $(INSTALLED)
 	$(BIN)/python -m pytest $(PARALLEL)
 
-# Formatter, linter, who imports whom, types, dead code; pyproject.toml has the settings of each. About half a minute, with caches less.
+# Formatter, linter, spelling, who imports whom, types, dead code; pyproject.toml has the settings of each. About half a minute, with caches less.
 lint: $(INSTALLED)
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
+	$(BIN)/codespell
 	$(BIN)/lint-imports --no-logo
 	$(BIN)/mypy
 	$(BIN)/vulture
 
-# The wheel, installed without extras in an environment of its own, runs these cases; CASES=quick: all of the quick level.
+# The wheel, in an environment of its own: without extras it solves, with `report` it runs these cases; CASES=quick: all of the
+# quick level.
 CASES ?= hertz-ellipse hertz-sphere certificates mutation
 wheel: $(INSTALLED)
 	PYTHON=$(PYTHON) .ci/wheel $(CASES)
@@ -89,7 +91,7 @@ $(PEERS)/.installed: requirements-peers.lock requirements-aspher.lock
 # Rewrite the pins after a change of the dependencies (needs uv).
 lock:
 	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \
-		--extra test --extra build --extra lint pyproject.toml -o requirements.lock
+		--extra report --group dev pyproject.toml -o requirements.lock
 	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \
 		-c requirements.lock requirements-docs.in -o requirements-docs.lock
 	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \
