@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Sphinx's settings for `make docs`: the pages of this folder, the API, the gallery and the verification pages."""
+"""The site of `make docs`: the pages of this folder, the API, the gallery and the verification pages."""
 
 import hashlib
 import re
@@ -89,7 +89,7 @@ def link_in_site(match: re.Match) -> str:
 
 
 def as_page(app, name: str, source: list[str]) -> None:
-    """A page as Sphinx reads it: with the files of the root that it includes, and links that work in the site."""
+    """A page with the files of the root that it includes, and with links that work in the site."""
 
     def included(match: re.Match) -> str:
         app.env.note_dependency(str(ROOT / match[1]))
@@ -99,8 +99,9 @@ def as_page(app, name: str, source: list[str]) -> None:
     source[0] = LINK.sub(link_in_site, INCLUDED.sub(included, source[0]))
 
 
-def as_written(app, what: str, name: str, thing: object, options: object, lines: list[str]) -> None:
-    """A docstring in which |x| is an absolute value, and of an attribute `a: b` no type and its description."""
+def as_written(app, what: str, *others: object) -> None:
+    """A docstring in which |x| is an absolute value, and `a: b` of an attribute no type and description."""
+    lines = others[-1]
     lines[:] = [line.replace("|", "\\|") for line in lines]
     if what in ("attribute", "data", "property"):
         lines.insert(0, "")

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The half-space, its axes, and a sphere that is pressed on: Hertz's solution, drawn to scale but for the heights."""
+"""The half-space, its axes, and a sphere that is pressed on: the solution of Hertz."""
 
 import matplotlib.pyplot as plt
 import numpy as np
-
 
 x = np.linspace(-2.4, 2.4, 401)  # in contact radii a; displacements in a^2/R, pressures in p0
 r = np.abs(x)
