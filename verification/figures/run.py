@@ -15,6 +15,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
+from sam.scene import Progress
 from verification.compare.running_in_measures import History, Scar
 from verification.figures import repeated
 from verification.figures.lines import Curve, curves
@@ -41,7 +42,7 @@ friction.
 """
 
 
-def draw_run(folder: Path, *, pdf: bool = False) -> list[Path]:
+def draw_run(folder: Path, *, pdf: bool = False, progress: Progress = lambda *_: None) -> list[Path]:
     """Write the figures of a run into its folder `figures`; returns the paths (PNG and CSV of each, or PDF).
 
     Raises FolderError (a ValueError) when the folder holds no result. A run without load has only its history
@@ -49,9 +50,11 @@ def draw_run(folder: Path, *, pdf: bool = False) -> list[Path]:
     """
     drawings = drawings_of(read_run(folder))
     (folder / FIGURES).mkdir(exist_ok=True)
-    return [
-        path for name, drawing in drawings.items() for path in save(drawing, folder / FIGURES / name, pdf=pdf)
-    ]
+    paths = []
+    for k, (name, drawing) in enumerate(drawings.items()):
+        progress("drawing figures", k, len(drawings))
+        paths += save(drawing, folder / FIGURES / name, pdf=pdf, small=False)
+    return paths
 
 
 def drawings_of(run: Run) -> dict[str, Drawing]:
