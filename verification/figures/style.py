@@ -189,8 +189,8 @@ def save(
 
 
 def encoded(figure: Figure, *, pdf: bool = False, small: bool = True) -> bytes:
-    """A figure as PDF, or as PNG; small: with a palette of 256 colours, the most frequent ones where a map has
-    many, else such that each line keeps its colour.
+    """A figure as PDF, or as PNG; small: with a palette of 256 colours, the most frequent ones where a map
+    has many, else such that each line keeps its colour.
     """
     buffer, smaller = io.BytesIO(), io.BytesIO()
     with style():

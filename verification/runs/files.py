@@ -124,8 +124,8 @@ class Run:
 
 
 def write_run(result: Result, scene: Scene, folder: str | Path, provenance: Mapping | None = None) -> Path:
-    """Write a result into `folder` (made if need be) in place of an older one, whose figures stay if it is the
-    same; the path of summary.json. provenance: as `collect` returns it. Raises FolderError if the folder
+    """Write a result into `folder` (made if need be) in place of an older one, whose figures stay if it is
+    the same; the path of summary.json. provenance: as `collect` returns it. Raises FolderError if the folder
     holds anything but a run, OSError if it cannot be written.
     """
     folder = Path(folder)
