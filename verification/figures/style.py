@@ -170,13 +170,19 @@ def new_figure(width: float, height: float, layout: str = "constrained") -> Figu
 
 
 def save(
-    drawing: Drawing, stem: Path, data: bool = True, *, pdf: bool = False, long: int = LONG
+    drawing: Drawing,
+    stem: Path,
+    data: bool = True,
+    *,
+    pdf: bool = False,
+    long: int = LONG,
+    small: bool = True,
 ) -> list[Path]:
     """Write stem.png and, if `data`, stem.csv (beyond `long` bytes compressed, stem.csv.gz), or
     stem.pdf alone; equal drawings give equal bytes, without a date. Returns what it wrote.
     """
     paths = [stem.with_name(f"{stem.name}.{'pdf' if pdf else 'png'}")]
-    write_atomically(paths[0], encoded(drawing.figure, pdf=pdf))
+    write_atomically(paths[0], encoded(drawing.figure, pdf=pdf, small=small))
     if data and not pdf:
         # five digits are more than a figure shows; the runs keep every digit
         columns = [
@@ -190,16 +196,16 @@ def save(
     return paths
 
 
-def encoded(figure: Figure, *, pdf: bool = False) -> bytes:
-    """A figure as PDF, or as PNG with a palette of 256 colours, which makes it small: the most frequent ones
-    where a map has many, else such that each line keeps its colour.
+def encoded(figure: Figure, *, pdf: bool = False, small: bool = True) -> bytes:
+    """A figure as PDF, or as PNG; small: with a palette of 256 colours, the most frequent ones where a map
+    has many, else such that each line keeps its colour.
     """
     buffer, smaller = io.BytesIO(), io.BytesIO()
     with style():
         figure.savefig(
             buffer, format="pdf" if pdf else "png", dpi=DPI, metadata={"CreationDate": None} if pdf else {}
         )
-    if pdf:
+    if pdf or not small:
         return buffer.getvalue()
     maps = any(map(fields_of, figure.axes))
     method = Image.Quantize.MEDIANCUT if maps else Image.Quantize.MAXCOVERAGE
