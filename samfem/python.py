@@ -71,7 +71,7 @@ class Run(files.Run):
     tables
         Name ("history", "axis", "line", "plane", "surface", ...) -> DataFrame, columns with SI unit.
     model_range
-        By how much small strains of a flat half-space are off, see `docs/guide/accuracy.md`; or None.
+        By how much small strains of a flat half-space are off, see `docs/guide/limits.md`; or None.
     cost
         Times in s, memory in bytes and counters.
     summary

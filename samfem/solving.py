@@ -22,6 +22,7 @@ from verification.runs import checkpoints, models
 from verification.runs.archive import ArchiveError
 from verification.runs.files import CHECKPOINT, MEMBERS, Run, check_target, json_text, read_run, write_run
 from verification.runs.lock import locked
+from verification.runs.meshes import not_written
 from verification.runs.model_range import refusal
 from verification.runs.provenance import collect
 from verification.runs.store import Reuse, Store, default_store, solve_or_reuse
@@ -193,8 +194,9 @@ def _start(scene: Scene, folder: Path, who: dict[str, object]) -> Checkpoint | N
 def write_solved(
     scene: Scene, folder: Path, result: Result, *, source: Reuse, inputs: dict[str, bytes]
 ) -> None:
-    """Write a result to `folder`, and say on stderr where it is from and what it warns of."""
-    for text in (source.text, *result.warnings):
+    """Write a result to `folder`; on stderr: where it is from, what it warns of, which files are left out."""
+    lacking = [f"left out: {entry.reason}" for entry in not_written(result)]
+    for text in (source.text, *result.warnings, *lacking):
         if text:
             print(f"samfem: {result.model}: {text}", file=sys.stderr)
     write_run(result, scene, folder, collect(inputs, scene.seeds) | source.provenance)

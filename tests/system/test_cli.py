@@ -98,6 +98,21 @@ def test_a_wrong_command_line_is_refused_and_nothing_is_created(refused, argumen
     assert fragment in refused(*arguments)
 
 
+@pytest.mark.parametrize(
+    "command, file, words",
+    [
+        ("plan", "study.toml", "study: samfem sweep"),
+        ("compare", "case.toml", "verification case: samfem verify"),
+        ("sweep", "sphere.toml", "scene: samfem solve"),
+        ("verify", "study.toml", "study: samfem sweep"),
+    ],
+)
+def test_a_file_of_another_kind_is_named_with_the_command_that_takes_it(folder, samfem, command, file, words):
+    (folder / "study.toml").write_text('scene = "sphere.toml"\n[vary]\n"body.poisson" = { list = [0.2] }\n')
+    (folder / "case.toml").write_text('scene = "sphere.toml"\n[rows.bound]\n')
+    assert samfem(command, file, code=2).err == f"samfem: error: {file}: this is a {words} {file}\n"
+
+
 ELLIPSOID = '"ellipsoid"\nradius_x = "1 mm"\nradius_y = "2 mm"'
 BEYOND = {
     "body.poisson = 0.5": ("poisson = 0.3", "poisson = 0.5"),
@@ -335,11 +350,11 @@ def test_a_scene_whose_name_and_title_are_not_ascii_is_solved_in_the_c_locale(fo
     text = (folder / "coarse.toml").read_text(encoding="utf-8").replace("title = ", 'title = "\u00b5" # ')
     (folder / f"{name}.toml").write_text(text, encoding="utf-8")
     language = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
-    for words in (["plan"], ["solve", "--out", "out"]):
+    for words in (["plan", "--verbose"], ["solve", "--out", "out"]):
         command = [sys.executable, "-m", "samfem.cli", *words, f"{name}.toml"]
         done = subprocess.run(command, capture_output=True, env=os.environ | language, check=False)
-        said = [] if words == ["plan"] else [True]  # by how much the model is off, and nothing else
+        said = [] if words[0] == "plan" else [True]  # by how much the model is off, and nothing else
         assert [b"small strains" in line for line in done.stderr.splitlines()] == said, done.stderr
         assert done.returncode == 0
-        assert words != ["plan"] or b"?" in done.stdout
+        assert words[0] != "plan" or b"?" in done.stdout
     assert set(read_run(folder / "out").summary["provenance"]["input_sha256"]) == {"n\u00f6.toml"}

@@ -35,7 +35,7 @@ from sam.scene import (
     open_file,
     resolved,
 )
-from verification.runs.meshes import STEPS, is_mesh, mesh_files, mesh_names, read_mesh
+from verification.runs.meshes import STEPS, is_mesh, mesh_files, mesh_names, not_written, read_mesh
 from verification.runs.model_range import OUTSIDE, outside_of_model, range_lines
 from verification.runs.provenance import collect
 from verification.runs.tables import columns_text, frame_of, read_table
@@ -87,7 +87,7 @@ class Run:
 
     @property
     def quantities(self) -> Mapping[str, float | None]:
-        return self.summary["quantities"]
+        return dict.fromkeys(QUANTITIES) | self.summary["quantities"]  # older runs have fewer
 
     @property
     def model(self) -> str:
@@ -150,7 +150,8 @@ def write_run(result: Result, scene: Scene, folder: str | Path, provenance: Mapp
         provenance = collect()
     outside = outside_of_model(result)
     tables = {name: _table_text(name, table, outside) for name, table in result.tables.items()}
-    summary = json_text(_summary(result, scene, provenance))
+    said = replace(result, left_out=(*result.left_out, *not_written(result)))
+    summary = json_text(_summary(said, scene, provenance))
     folder.mkdir(parents=True, exist_ok=True)
     clear_run(folder)
     for name, text in tables.items():

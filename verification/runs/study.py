@@ -34,6 +34,7 @@ from sam.scene import (
     SceneError,
     Section,
     below,
+    check_kind,
     in_unit,
     number_and_unit,
     parse_toml,
@@ -401,6 +402,7 @@ def read_study(path: str | Path) -> Points:
     except InputError as error:
         raise SceneError([Problem("", "", str(error))], str(path)) from None
     table = parse_toml(content, str(path))
+    check_kind(table, "study", str(path))
     study, found = None, []
     try:
         study = Study.model_validate(table, context={"spelling": "file"})

@@ -35,7 +35,7 @@ def _bytes_or_marks(error: UnicodeEncodeError) -> tuple[bytes, int]:
     marks.
     """
     text = error.object[error.start : error.end]
-    if isinstance(error, UnicodeEncodeError) and all("\udc80" <= letter <= "\udcff" for letter in text):
+    if all("\udc80" <= letter <= "\udcff" for letter in text):
         return text.encode("ascii", "surrogateescape"), error.end
     return b"?" * len(text), error.end
 
