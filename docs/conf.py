@@ -30,7 +30,7 @@ default_role = "code"
 nitpicky = True
 nitpick_ignore_regex = [  # of other libraries, or of no use to a reader of the API
     ("py:.*", r"(collections|numpy|pathlib|pandas|matplotlib|pydantic)\..*"),
-    ("py:class", r"DataFrame|Figure|Path|Mapping\[str|OwnData|Result|sam\.scene\..*"),
+    ("py:class", r"DataFrame|DataSet|Figure|Path|Mapping\[str|OwnData|Result|sam\.scene\..*"),
 ]
 autodoc_member_order = "bysource"
 
