@@ -61,7 +61,7 @@ class Published:
                 raise RuntimeError("no")
             p = result.quantities["p_max_Pa"]
             outcome = Outcome({f"{name}.one": Measured(p * 1.01, p)})
-            outcome.figures = [context.save(Plot(sketch(), "curve", "A curve", "Two curves", "Caption"))]
+            outcome.figures = [context.save(Plot(sketch(), "curve", "A curve", "Caption"))]
             return outcome
 
         return FakeCase(name, name, "Does it hold?", alone=name == "timed", does=does)
@@ -238,7 +238,7 @@ class Undrawn(Case):
         return {"one": Measured(1.0, 1.0)}
 
     def figures(self, found):
-        yield Plot(sketch(), "curve", "A curve", "Two curves", "Caption")
+        yield Plot(sketch(), "curve", "A curve", "Caption")
         raise ValueError("no place for a label")
 
 

@@ -47,7 +47,7 @@ def good(context):
     outcome = Outcome({"good.one": Measured(1.0, 1.0, unit="Pa"), "good.two": Measured(2.1, 2.0)})
     outcome.setup = [("Force", "1 N")]
     outcome.tables = [SmallTable("Small", ["a", "b"], [["1", "2"]])]
-    outcome.figures = [context.save(Plot(sketch(), "curve", "A curve", "Two curves & more", "Caption"))]
+    outcome.figures = [context.save(Plot(sketch(), "curve", "A curve", "Caption"))]
     return outcome
 
 
@@ -185,7 +185,7 @@ def test_pages_need_no_script_and_what_they_link_is_there(tmp_path):
 
 def in_space(context):
     outcome = good(context)
-    figures, outcome.notes = context.look([View("sam", "worn", "space", "In space", "A surface", "Caption")])
+    figures, outcome.notes = context.look([View("sam", "worn", "space", "In space", "Caption")])
     outcome.figures += figures
     return outcome
 

@@ -95,7 +95,7 @@ class Small:
             raise RuntimeError(self.problem)
         p = result.quantities["p_max_Pa"]
         outcome = Outcome({"small.one": Measured(np.float64(p * 1.01), p)})
-        outcome.figures = [context.save(Plot(sketch(), "curve", "A curve", "Two curves", "Caption"))]
+        outcome.figures = [context.save(Plot(sketch(), "curve", "A curve", "Caption"))]
         outcome.setup = [("Force", "1 N")]
         return outcome
 
