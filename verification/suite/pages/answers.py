@@ -241,8 +241,9 @@ def times(evidence: Evidence, _: str) -> Iterator[Finding]:
     if both := sorted((each for each in costs if each.ratio > 0.0), key=lambda each: each.ratio):
         bounds = sum(each.sam[1] or each.fem[1] for each in both)
         words = (
-            f"the processor time of SAM is needed by the faster FEM model for an error of 1 %, in {len(both)} of "
-            f"{len(costs)} contacts{f' ({bounds} of them as bounds)' * bool(bounds)}; the other ratios are unknown"
+            "the processor time of SAM is needed by the faster FEM model for an error of 1 %, in "
+            f"{len(both)} of {len(costs)} contacts{f' ({bounds} of them as bounds)' * bool(bounds)}; the "
+            "other ratios are unknown"
         )
         ran = (evidence.stored.ran["work-precision"],)
         yield Finding(words, f"{both[0].shown} to {both[-1].shown} times", ran)
