@@ -374,7 +374,7 @@ SLIDING: Mapping[str, Quantity] = {
         whole=_decoupled(lambda sam, fem, a: relative_l2(*nodal_pressures(sam, fem))),
     ),
     "decoupled-hats": Quantity(
-        "deviation of the pressure from FEM (mean over 0.2 a), normal displacement by shear neglected over kept",
+        "deviation of the pressure from FEM (over 0.2 a), normal displacement by shear neglected over kept",
         whole=_decoupled(lambda sam, fem, a: measures.patch_distance(sam, fem, PATCH * a)),
     ),
     **{

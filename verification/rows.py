@@ -10,7 +10,8 @@ equation "name" in equations.toml.
 
 Where a case has tables `[sweeps.NAME]`, the last entry of a row of a kind alone says what it takes of their
 points, see `Take`: `"order p-max of sam"`, `"share of fem at depth = 3"`, `"limit peeq-max of sam | of fem"`
-with what it is held against; without words that says what it is. Points that need more than axes are what a
+with what it is held against; without words that says what it is, in those of
+`[words]`. Points that need more than axes are what a
 function returns, `frame = "NAME"`.
 """
 
