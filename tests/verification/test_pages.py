@@ -130,7 +130,7 @@ def test_every_question_asks_for_gates_and_cases_that_there_are():
         elif kind == "cell":
             assert part[0] in cases and set(part[5:]) <= set(gates)
     assert all(there(name, gates) for names in PAGES["kinds"].values() for name in names)
-    assert all(there(case, cases) for case, *_ in PAGES["pairs"]["beyond"])
+    assert all(there(case, cases) for key in ("beyond", "singular") for case, *_ in PAGES["pairs"][key])
     assert {group_of(case)["name"] for case in all_cases()} == pages - {"other"}
     assert group_of("none")["name"] == "other"
     named = "\n".join(text for case in all_cases().values() for row in case.equations for text in row)

@@ -58,10 +58,12 @@ class Pair:
         """Why it is as far off as it is, as far as that is known."""
         if self.gate:
             return f"the gate allows {100 * self.gate['tolerance']:g} %: {self.gate['reason']}"
-        for case, quantity, why in PAGES["pairs"]["beyond"]:
-            if fnmatch(self.case.name, case) and self.quantity.startswith(quantity):
-                return f"no gate; {why}"
-        return UNGATED
+        why = next((why for *of, why in PAGES["pairs"]["beyond"] if self.is_of([of])), "")
+        return f"{UNGATED}; {why}" if why else UNGATED
+
+    def is_of(self, named: Iterable[Sequence[str]]) -> bool:
+        """Whether it is of one of some (cases, begin of a quantity)."""
+        return any(fnmatch(self.case.name, case) and self.quantity.startswith(begin) for case, begin in named)
 
 
 def pairs_of(stored: Stored) -> list[Pair]:
@@ -80,7 +82,7 @@ def pairs_of(stored: Stored) -> list[Pair]:
         said = pairs_in(each.case) if "data" not in each.case else each.case["data"].get("pairs", ())
         beside = (Pair(each, words, FEM, sam, fem) for words, sam, fem in said)
         found += gated + [pair for pair in beside if round(pair.error, 4) not in known]
-    return found
+    return [pair for pair in found if not pair.is_of(PAGES["pairs"]["singular"])]
 
 
 def far(pairs: Iterable[Pair]) -> list[list[Pair]]:
@@ -167,11 +169,7 @@ def largest(evidence: Evidence, words: str, *of: str) -> Iterator[Finding]:
         for each, gate in evidence.gates(*of)
         if gate["error"] is not None and NORMALISED not in gate["quantity"]
     ]
-    found += [
-        (abs(pair.error), pair.case, pair.gate)
-        for pair in evidence.pairs
-        if any(fnmatch(pair.case.name, case) and pair.quantity.startswith(q) for case, q in begins)
-    ]
+    found += [(abs(pair.error), pair.case, pair.gate) for pair in evidence.pairs if pair.is_of(begins)]
     if found:
         error, worst, by = max(found, key=lambda each: each[0])
         within = f" ({len(found)} comparisons, half of them within {percent(median(e for e, *_ in found))})"
