@@ -82,7 +82,7 @@ class Take(NamedTuple):
 
     def words(self, own: Mapping[str, str] = MappingProxyType({})) -> str:
         """For the reader, of a row that says no more. own: the words of the case."""
-        known = {name: quantity.words for name, quantity in QUANTITIES.items()} | WORDS | own
+        known = {**{name: quantity.words for name, quantity in QUANTITIES.items()}, **WORDS, **own}
         at = [
             known.get(f"{axis} {point}") or known.get(axis, axis.replace("-", " ") + " {}").format(point)
             for axis, sign, value in self.at
