@@ -171,11 +171,12 @@ def test_pages_need_no_script_and_what_they_link_is_there(tmp_path):
     out = tmp_path / "out"
     run(out)
     pages = {name: page_of(out, name) for name in ("index.html", "other.html")}
-    assert "Good case" in pages["other.html"].text and "Good case" not in pages["index.html"].text
+    assert "Bad case" in pages["other.html"].text and "Bad case" not in pages["index.html"].text
+    pictures = [image["src"] for page in pages.values() for image in page.all("img")]
+    assert pictures == ["figures/good-curve.png"] * 2  # the only figure is the picture of a contact too
     assert [faults_of(page) for page in pages.values()] == [[], []]
     written = {name: page_of(out, name) for name in ("README.md", "gates.csv", "results.json")}
     assert broken_links(pages | {name: PageReader("") for name in written}, out) == []
-    assert [image["src"] for image in pages["other.html"].all("img")] == ["figures/good-curve.png"]
     assert 'url=index.html"' in (out / "report.html").read_text(encoding="utf-8")
     assert main(["report", str(out), "--single-file"]) == 0
     page = page_of(out, "report.html")

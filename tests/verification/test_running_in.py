@@ -278,7 +278,7 @@ class TestReadings:
         coarse, fine = CELLS.data(found)["statements"].values()
         failed = [each["statement"] for each in fine if each["by_median"] == FAILED]
         changed, _ = CELLS.notes(found)
-        assert changed.count(": held, then failed") == len(failed) > 0
+        assert changed.count(" (held, then failed)") == len(failed) > 0
         assert "bulk: hardly any wear later" in failed and all(each["holds_on"] == 1 for each in coarse)
         assert all(len(row) == len(table.columns) for table in CELLS.tables(found) for row in table.rows)
         assert red_rows(CELLS.name, CELLS.measure(found[found["material"] != BULK])) == {"missing"}

@@ -50,7 +50,7 @@ def share_of_limit(scene: Scene, share: float) -> Scene:
 
 
 def limit_of_cells(scene: Scene, result: Result, _: Reference | None) -> float:
-    """Limit of the cells over that of the body, less 1."""
+    """Relative deviation of the limit of the cells from that of the body."""
     radius, ways = scene.loading.radius, scene.loading.path
     cells = round(radius * scene.grid.cells[0] / scene.grid.extent[0])
     stops = np.linspace(ways.start[0] / radius, ways.end[0] / radius, ways.steps + 1)

@@ -341,12 +341,13 @@ class RunningInCells(Readings):
 
     def notes(self, found: DataFrame) -> Iterator[str]:
         changed = [
-            f"{one['statement']}: {one['by_median']}, then {other['by_median']}"
+            f"{one['statement']} ({one['by_median']}, then {other['by_median']})"
             for one, other in zip(*readings_of(found).values(), strict=True)
             if one["by_median"] != other["by_median"]
         ]
-        yield f"Verdicts by the median that finer cells change: {'; '.join(changed) or 'none'}."
-        yield "One surface of a quarter of the printed area: this shows what cells do, no probability."
+        count = f"{len(changed) or 'no'} verdict{'s change' if len(changed) > 1 else ' changes'}"
+        yield f"On finer cells {count}{': ' * bool(changed)}{'; '.join(changed)}."
+        yield "One surface of a quarter of the printed area was solved: this shows the effect of the cells."
 
 
 CASES = (RunningIn("running-in"), RunningInCells("running-in-cells"))
