@@ -6,13 +6,14 @@ BIN := .venv/bin
 PEERS := .venv-peers
 PEERS_OUT ?= reports/latest-peers
 INSTALLED := .venv/.installed
+DOCS_INSTALLED := .venv/.installed-docs
 PARALLEL := -n auto --dist loadfile --no-loadscope-reorder
 
 # Python keeps what it compiles, also where the environment says otherwise: the tests start hundreds of processes, and each
 # would compile all libraries anew, which takes longer than most of what they do.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: report test api environments lint wheel publish readme peers lock clean
+.PHONY: report test docs environments lint wheel publish readme peers lock clean
 
 # CASES="hertz-sphere hertz-ellipse": these alone.
 report: $(INSTALLED)
@@ -36,10 +37,11 @@ wheel: CASES ?= hertz-ellipse hertz-sphere certificates mutation
 wheel: $(INSTALLED)
 	PYTHON=$(PYTHON) .ci/wheel $(CASES)
 
-# The page of the Python module, from its docstrings; without the links within it, as other sites name headings otherwise.
-api: $(INSTALLED)
-	$(BIN)/griffe2md samfem | sed -E 's/\[([^][]*)\]\(#[^)]*\)/\1/g' > docs/api.md
-	$(BIN)/ruff format --quiet docs/api.md
+# The site in docs/_build/html: without a warning of Sphinx, without a broken link; each notebook of the gallery runs.
+docs: $(DOCS_INSTALLED)
+	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going docs docs/_build/html
+	$(BIN)/python docs/check_links.py docs/_build/html
+	find docs/auto_gallery -name '*.ipynb' -print0 | xargs -0 -n 1 -P 2 $(BIN)/jupyter-execute --timeout 120
 
 # The tests again for each of the processors, languages, users, ... of other machines: ENVIRONMENTS="no-home ascii" for some,
 # TESTS=tests/sam/test_wear.py for some of the tests.
@@ -68,6 +70,10 @@ $(INSTALLED): requirements.lock pyproject.toml
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
 	touch $@
 
+$(DOCS_INSTALLED): $(INSTALLED) requirements-docs.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-docs.lock
+	touch $@
+
 # SAM beside Tamaas, ContactMechanics and aspher, which have an environment of their own and are no dependency. aspher is
 # compiled (a C++17 compiler; Eigen's headers: apt-get install libeigen3-dev); where that fails the page says so.
 peers: $(INSTALLED) $(PEERS)/.installed
@@ -86,9 +92,11 @@ lock:
 	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \
 		--extra test --extra build --extra lint pyproject.toml -o requirements.lock
 	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \
+		-c requirements.lock requirements-docs.in -o requirements-docs.lock
+	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \
 		requirements-peers.in -o requirements-peers.lock
 	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \
 		-c requirements-peers.lock requirements-aspher.in -o requirements-aspher.lock
 
 clean:
-	rm -rf .venv $(PEERS) reports/latest $(PEERS_OUT)
+	rm -rf .venv $(PEERS) reports/latest $(PEERS_OUT) docs/_build docs/auto_gallery

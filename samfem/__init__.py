@@ -22,12 +22,12 @@ Examples
 (1, 2)
 """
 
-from importlib import import_module
+from importlib import import_module, metadata
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from sam.scene import HeightMap, Scene, SceneError
-    from samfem.python import Comparison, Run, Sweep, compare, load, plan, plot, read, solve, sweep
+    from samfem.python import Comparison, Run, Study, Sweep, compare, load, plan, plot, read, solve, sweep
     from samfem.refusals import SeveralError
     from verification.runs.files import FolderError
     from verification.runs.models import MODELS, ModelError
@@ -42,7 +42,9 @@ __all__ = [
     "Scene",
     "SceneError",
     "SeveralError",
+    "Study",
     "Sweep",
+    "__version__",
     "compare",
     "load",
     "plan",
@@ -53,11 +55,17 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    """A name of `__all__`, once it is asked for: the command loads only what it needs."""
-    if name in __all__:
-        return getattr(import_module("samfem.python"), name)
-    raise AttributeError(f"module 'samfem' has no attribute {name!r}")
+if TYPE_CHECKING:
+    __version__: str
+else:
+
+    def __getattr__(name: str) -> Any:
+        """A name of `__all__`, once it is asked for: the command loads only what it needs."""
+        if name == "__version__":
+            return metadata.version("samfem")
+        if name in __all__:
+            return getattr(import_module("samfem.python"), name)
+        raise AttributeError(f"module 'samfem' has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:

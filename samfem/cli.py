@@ -195,9 +195,12 @@ def _of_scenes(command: Command) -> None:
     add("--anyway", **ON, help=ANYWAY)
 
     nothing = "say what will be computed and what is left out; solves nothing"
-    add = command("plan", nothing).add_argument
-    add("path", **SCENE)
-    add("--json", dest="as_json", **ON, help="as JSON")
+    made = command("plan", nothing)
+    made.add_argument("path", **SCENE)
+    add = made.add_mutually_exclusive_group().add_argument
+    every = "also every stage of every model with its reason, and how fine a grid an error takes"
+    add("--verbose", **ON, help=every)
+    add("--json", dest="as_json", **ON, help="all of it as JSON")
 
     sweep = command("sweep", "solve the scenes of a study and write one table of them")
     add = sweep.add_argument

@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 
 NOT_COMPARED = "not compared"
 """What stands in a table for a row that data do not have."""
-COMPANION = "compare.json"
-"""Beside compare.csv: verdict and cost."""
 Solved = Callable[[str, Result, Reuse], None]
 """Told of the result of a model as soon as it is there, and whether it is from the store."""
 

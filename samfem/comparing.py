@@ -15,7 +15,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from sam.scene import Problem, Result, Scene, SceneError, either, finer_cells, finer_mesh, read_scene
-from samfem.compared import COMPANION, NOT_COMPARED, Compared, Question, agreement, asked, seconds
+from samfem.compared import NOT_COMPARED, Compared, Question, agreement, asked, seconds
 from samfem.refusals import Refusals, check_folder
 from samfem.solving import unconverged, write_solved
 from verification.compare.verdicts import CLAIM, NOT_JUDGED
@@ -23,6 +23,7 @@ from verification.figures import compare_figures
 from verification.judging import Verdict
 from verification.runs import models
 from verification.runs.files import (
+    COMPANION,
     FIGURES,
     FolderError,
     Run,

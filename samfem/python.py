@@ -5,18 +5,24 @@ from __future__ import annotations
 
 import html
 import json
+import pickle
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from subprocess import PIPE
+from tempfile import TemporaryDirectory, TemporaryFile
+from typing import TYPE_CHECKING, Any, Literal, NotRequired, TypedDict, overload
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from pandas import DataFrame
+    from pyvista import DataSet
+
+    from verification.compare.own_data import OwnData
+    from verification.cost.plan import Plan
 
 _others = import_module("verification")
 _file = getattr(_others, "__file__", None)
@@ -35,20 +41,18 @@ from sam.scene import (  # noqa: E402 - only once they are ours
     SceneError as SceneError,
     load_scene,
 )
-from samfem.compared import COMPANION, asked  # noqa: E402
 from samfem.refusals import SeveralError as SeveralError  # noqa: E402
 from verification import figures  # noqa: E402
-from verification.compare.own_data import OwnData  # noqa: E402
-from verification.cost.accuracy import solve as solve_family  # noqa: E402
-from verification.runs import files, models  # noqa: E402
-from verification.runs.files import FolderError  # noqa: E402
+from verification.runs import files, meshes, models  # noqa: E402
+from verification.runs.files import COMPANION, FolderError  # noqa: E402
 from verification.runs.model_range import off_in_words  # noqa: E402
 from verification.runs.models import MODELS, SAM, ModelError  # noqa: E402
-from verification.runs.store import default_store  # noqa: E402
-from verification.runs.study import read_study  # noqa: E402
 from verification.runs.tables import read_any_table  # noqa: E402
+from verification.text.console import followed  # noqa: E402
 from verification.text.readable import in_working_unit  # noqa: E402
 
+Told = Callable[[str, int, int], None]
+"""What is told of a stage: its name, how much of it is done, and of how much."""
 SHOWN = ("p_max_Pa", "contact_radius_m", "approach_m", "peeq_max", "friction_coefficient", "wear_volume_m3")
 """Quantities of the short representation, those of them that are not zero."""
 
@@ -87,6 +91,44 @@ class Run(files.Run):
             raise FolderError(f"the run is in {self.folder}: copy that folder")
         files.write_run(self.result, self.scene, folder)
         return _run_in(Path(folder))
+
+    def mesh(self, part: Literal["body", "surface"] = "body", *, unloaded: bool = False) -> DataSet:
+        """The fields of a part as pyvista holds them, at the peak load or unloaded; z points up, in m.
+
+        Parameters
+        ----------
+        part
+            "body": stresses and strains, of SAM in the box of a yielding body and else in the plane y = 0;
+            "surface": pressure and displacements.
+        unloaded
+            After the last cycle, in place of the peak load.
+
+        Raises
+        ------
+        FolderError
+            For a part that the run does not have, with those that it has.
+        """
+        there: Mapping[str, Any] = files.meshes_in(self.folder) if self.folder else {}
+        if self.result is not None:
+            there = meshes.fields_of(self.result)
+        for name in ("body", "fields") if part == "body" else (part,):
+            found = there.get(f"{name}-unloaded" if unloaded else name)
+            if found is not None:
+                in_file = isinstance(found, Path)
+                mesh: DataSet = (
+                    files.mesh_of(found.parent, found.name) if in_file else meshes.as_pyvista(found)
+                )
+                return mesh
+        raise FolderError(f"{part} is not one of the meshes of this run: {', '.join(there) or 'none'}")
+
+    def plot(self, name: str | None = None) -> Figure:
+        """The figure of that name, see `samfem.plot`; the pressure, or else the profiles, without a name."""
+        return _figure(self, name, "pressure", "line")
+
+    def __str__(self) -> str:
+        from samfem.solving import result_lines  # noqa: PLC0415 - loads the solvers
+
+        return "\n".join(result_lines(self))
 
     def __repr__(self) -> str:
         values = self.last_fitting or self.quantities
@@ -147,6 +189,10 @@ class Comparison:
         if not self.passed:
             raise AssertionError(f"{self.line}\n{self.failed.to_string(index=False)}")
 
+    def plot(self, name: str | None = None) -> Figure:
+        """The figure of that name, see `samfem.plot`; the profiles along the surface without a name."""
+        return _figure(self, name, "line")
+
     def __repr__(self) -> str:
         return f"<samfem.Comparison {self.line}{_off(self.sam)}>"
 
@@ -164,17 +210,23 @@ class Sweep:
     frame
         A row for each scene: the varied values in SI units, status, reason, quantities and counters.
     folder
-        Where it is; record: what sweep.json holds.
+        Where it is; None where it was not written. record: what sweep.json holds.
     """
 
     frame: DataFrame
-    folder: Path
+    folder: Path | None
     record: Mapping[str, Any]
 
     def run(self, index: int) -> Run:
         """The run of a row, by its index. Raises FolderError where the sweep kept none."""
+        if self.folder is None:
+            raise FolderError('this sweep kept no runs: samfem.sweep(study, out="folder") does')
         width = len(str(self.record["points"] - 1))
         return _run_in(self.folder / "runs" / f"{index:0{width}}")
+
+    def plot(self, name: str | None = None) -> Figure:
+        """The main quantities over each of the varied keys; name: only "sweep"."""
+        return _figure(self, name, "sweep")
 
     def __repr__(self) -> str:
         counts = ", ".join(
@@ -186,22 +238,47 @@ class Sweep:
         return f"<p><b>{html.escape(repr(self))}</b></p>{self.frame.to_html(index=False, max_rows=20)}"
 
 
+class Study(TypedDict):
+    """What `sweep` takes in place of a file; the keys are those of a study file.
+
+    scene: a `Scene`, its tables, or the path of a file. vary: dotted key of the scene -> its values, a list
+    or array of SI numbers, strings with units or texts; or such as {"range": ["0.1 N", "0.5 N"], "count": 5}.
+    """
+
+    scene: Scene | Mapping[str, Any] | str | Path
+    vary: Mapping[str, Any]
+    title: NotRequired[str]
+    model: NotRequired[str]
+    mode: NotRequired[Literal["grid", "zip", "morris", "sobol", "uniform"]]
+    samples: NotRequired[int]
+    seed: NotRequired[int]
+
+
 def load(path: str | Path) -> Scene:
     """The scene in a TOML file. Raises SceneError with every problem of the file."""
     return load_scene(path)
 
 
-def plan(scene: Scene | str | Path, model: str = SAM) -> Any:
-    """What a model will compute of a scene: grid or mesh, stages with their sizes, what is left out and why.
+def plan(scene: Scene | str | Path, model: str = SAM) -> Plan:
+    """What the models will compute of a scene, what is left out and why, the error that the grid leaves, time
+    and memory; its attributes are those of `model`. Solves nothing.
 
     Raises ModelError where the model cannot represent the scene.
     """
+    from verification.cost.plan import plan as plan_of  # noqa: PLC0415 - loads the solvers
+
     scene = _scene(scene)
     models.check(scene, model)
-    return models.plan(scene, model)
+    return plan_of(scene, model)
 
 
-def solve(scene: Scene | str | Path, model: str = SAM, out: str | Path | None = None) -> Run:
+def solve(
+    scene: Scene | str | Path,
+    model: str = SAM,
+    out: str | Path | None = None,
+    *,
+    progress: bool | Told | None = None,
+) -> Run:
     """The result of a scene.
 
     Parameters
@@ -212,18 +289,31 @@ def solve(scene: Scene | str | Path, model: str = SAM, out: str | Path | None = 
         One of `MODELS`: "sam", "fem-axisymmetric", "fem-3d".
     out
         Folder to write the run to; nothing is written without it.
+    progress
+        None shows a bar at a terminal and in a notebook, True plain lines elsewhere too, False nothing; a
+        function is told (stage, done, total).
 
     Raises
     ------
     SceneError, ModelError, FolderError
         For a wrong file, a scene that the model cannot represent, a folder that holds something else.
     """
+    from verification.cost.accuracy import solve as solve_family  # noqa: PLC0415 - loads the solvers
+
     scene = _scene(scene)
     if model not in MODELS:
         raise ModelError(f"model = {model!r}, allowed: {', '.join(MODELS)}")
     if out is not None:
         files.check_target(Path(out))
-    run = _run_of(solve_family(scene, model), scene)
+    with followed(progress) as told:
+
+        def one(each: Scene, label: str) -> Result:
+            def of_stage(stage: str, done: int, total: int) -> None:
+                told(f"{model}{', ' * bool(label)}{label}: {stage}", done, total)
+
+            return models.solve(each, model, of_stage)
+
+        run = _run_of(solve_family(scene, model, one), scene)
     return run if out is None else run.save(out)
 
 
@@ -234,6 +324,7 @@ def compare(
     data: Sequence[str | Path] = (),
     tolerances: Mapping[str, Any] | None = None,
     claim: str | None = None,
+    progress: bool | Told | None = None,
 ) -> Comparison:
     """SAM and a finite-element model on one scene, row by row with tolerances; from the store what it holds.
 
@@ -249,6 +340,8 @@ def compare(
         Name of a row -> number or text such as "2 %", in place of those of the scene and the defaults.
     claim
         "negligible-film": judged too.
+    progress
+        As of `solve`.
 
     Raises
     ------
@@ -257,37 +350,80 @@ def compare(
     SeveralError
         For more than one of these; a ValueError too.
     """
+    from samfem.compared import asked  # noqa: PLC0415 - loads the solvers
+    from verification.runs.store import default_store  # noqa: PLC0415 - only here
+
     question = asked(_scene(scene), model=model, data=data, tolerances=tolerances, claim=claim)
-    found = question.answer(store=default_store())
+    with followed(progress) as told:
+        found = question.answer(store=default_store(), progress=told)
     sam, fem = (_run_of(result, found.scene) for result in found.results)
     return Comparison(found.frame, sam, fem, found.line, {data.name: data for data in found.data})
 
 
-def sweep(study: str | Path, out: str | Path | None = None, workers: int | None = None) -> Sweep:
-    """The scenes of a study file, solved on this machine into a folder, as `samfem sweep` does.
+def sweep(
+    study: Study | str | Path,
+    out: str | Path | None = None,
+    workers: int | None = None,
+    *,
+    progress: bool | Told | None = None,
+) -> Sweep:
+    """The scenes of a study, solved on this machine as `samfem sweep` does; from the store what it holds.
 
     Parameters
     ----------
     study
-        Path of the study.
+        Path of the study, or its content, see `Study`.
     out
-        The folder; by default that of the command, NAME-sweep.
+        Folder to write the table and the runs to; without it they are not kept.
     workers
         Processes; one for each core by default.
+    progress
+        As of `solve`.
 
     Raises
     ------
     SceneError, FolderError
         For a wrong study or a folder that holds something else.
+
+    Examples
+    --------
+    >>> scene = {
+    ...     "body": {"young": "210 GPa", "poisson": 0.3},
+    ...     "counterbody": {"shape": "sphere", "radius": "105 um"},
+    ...     "loading": {"force": "0.1 N"},
+    ... }
+    >>> found = samfem.sweep({"scene": scene, "vary": {"loading.force": [0.1, 0.8]}}, workers=1)
+    >>> found.frame["approach_m"][1] / found.frame["approach_m"][0]  # Hertz: 8^(2/3)
+    4.0
     """
-    read_study(Path(study))
-    folder = Path(out or f"{Path(study).stem}-sweep")
-    words = [str(study), "--anyway", "--out", str(folder), *(["--workers", str(workers)] if workers else [])]
+    from samfem.sweeping import answer, check  # noqa: PLC0415 - loads the solvers
+    from verification.runs.study import read_study, study_of  # noqa: PLC0415 - loads scipy.stats
+
+    if isinstance(study, str | Path):
+        points = read_study(study)
+    else:
+        points = study_of({key: value for key, value in study.items() if key != "scene"}, study["scene"])
+    if out is not None:
+        check(Path(out))
     # a process of its own, as its workers would run the script of the user again
-    ended = subprocess.run([sys.executable, "-m", "samfem.cli", "sweep", *words], capture_output=True)
-    if ended.returncode == 2 or not (folder / "sweep.json").exists():
-        raise FolderError(ended.stderr.decode(errors="replace").strip())
-    return _sweep_in(folder)
+    program = f"from {answer.__module__} import answer; answer()"
+    with TemporaryDirectory() as temporary, TemporaryFile() as said, followed(progress) as told:
+        folder = Path(out or Path(temporary, "sweep")).absolute()
+        child = subprocess.Popen([sys.executable, "-c", program], stdin=PIPE, stdout=PIPE, stderr=said)
+        assert child.stdin is not None and child.stdout is not None
+        with child:
+            try:
+                child.stdin.write(pickle.dumps((points, folder, workers, out is not None)))
+                child.stdin.close()
+                for line in child.stdout:
+                    told(*json.loads(line))
+            except BaseException:
+                child.kill()
+                raise
+        if child.returncode:
+            said.seek(0)
+            raise FolderError(said.read().decode(errors="replace").strip())
+        return _sweep_in(folder, keep=out is not None)
 
 
 def read(folder: str | Path) -> Run | Comparison | Sweep:
@@ -299,15 +435,27 @@ def read(folder: str | Path) -> Run | Comparison | Sweep:
     return _run_in(folder)
 
 
+@overload
+def plot(result: Run | Comparison | Sweep, name: None = None) -> dict[str, Figure]: ...
+@overload
+def plot(result: Run | Comparison | Sweep, name: str) -> Figure: ...
 def plot(result: Run | Comparison | Sweep, name: str | None = None) -> dict[str, Figure] | Figure:
     """The figures of a result by name, or the one of that name, as matplotlib figures.
 
     Raises KeyError, with the names that there are, for another one.
     """
-    figures = {key: drawing.figure for key, drawing in _drawings(result).items()}
-    if name is not None and name not in figures:
-        raise KeyError(f"{name!r}: this result has the figures {', '.join(figures)}")
-    return figures if name is None else figures[name]
+    if name is not None:
+        return _figure(result, name)
+    return {key: drawing.figure for key, drawing in _drawings(result).items()}
+
+
+def _figure(result: Run | Comparison | Sweep, name: str | None, *usual: str) -> Figure:
+    """The figure of that name, or without one the first of the usual ones that there is."""
+    found = plot(result)
+    shown = name or next(key for key in (*usual, *found) if key in found)
+    if shown not in found:
+        raise KeyError(f"{name!r}: this result has the figures {', '.join(found)}")
+    return found[shown]
 
 
 def _drawings(result: Run | Comparison | Sweep) -> Mapping[str, Any]:
@@ -350,8 +498,9 @@ def _comparison_in(folder: Path) -> Comparison:
     return Comparison(frame, sam, fem, line)
 
 
-def _sweep_in(folder: Path) -> Sweep:
-    return Sweep(_frame_in(folder / "sweep.csv"), folder, json.loads((folder / "sweep.json").read_bytes()))
+def _sweep_in(folder: Path, *, keep: bool = True) -> Sweep:
+    record = json.loads((folder / "sweep.json").read_bytes())
+    return Sweep(_frame_in(folder / "sweep.csv"), folder if keep else None, record)
 
 
 def _frame_in(path: Path) -> DataFrame:

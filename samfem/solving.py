@@ -11,11 +11,13 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from shutil import rmtree
-from typing import Any
+from typing import Any, cast
 
 from sam.scene import Checkpoint, Result, Scene, Status, read_scene
 from verification.cost import plan as plans
 from verification.cost.accuracy import chosen_scene, first_choice, missed, solve as solve_family
+from verification.cost.contact import hertz_of
+from verification.cost.estimates import flows
 from verification.runs import checkpoints, models
 from verification.runs.archive import ArchiveError
 from verification.runs.files import CHECKPOINT, MEMBERS, Run, check_target, json_text, read_run, write_run
@@ -23,7 +25,7 @@ from verification.runs.lock import locked
 from verification.runs.model_range import refusal
 from verification.runs.provenance import collect
 from verification.runs.store import Reuse, Store, default_store, solve_or_reuse
-from verification.text.console import Progress, print_table
+from verification.text.console import Progress, table_lines
 from verification.text.readable import in_working_unit, with_prefix, with_time
 from verification.uncertainty import asked_of as with_uncertainty
 
@@ -31,20 +33,13 @@ ROUNDING = 1e-12
 """Of the contact radius: a length below it is shown as 0 to a person."""
 
 
-def plan(path: Path, as_json: bool) -> int:
+def plan(path: Path, *, as_json: bool, verbose: bool) -> int:
     """Print what the scene will compute. Raises ModelError for a contact beyond the range of every model."""
     scene, _ = read_scene(path)
     if reason := refusal(scene):
         raise models.ModelError(reason)
-    content = plans.plan(scene)
-    if as_json:
-        print(json_text(content).rstrip())
-        return 0
-    print("\n".join(plans.advice_lines(content)))
-    table = content["advice"]["table"]
-    if table["rows"]:
-        print_table(table["columns"], table["rows"])
-    print("\n".join(plans.model_lines(content)))
+    found = plans.plan(scene)
+    print(json_text(found.content).rstrip() if as_json else "\n".join(found.lines(verbose=verbose)))
     return 0
 
 
@@ -89,13 +84,7 @@ def _solve(
         print(f"samfem: {folder} is already finished: nothing is solved", file=sys.stderr)
     else:
         result = _solved(scene, model, folder, inputs, made=made, resume=resume)
-    heads = status_line(result), undecided_line(result), load_line(result)
-    print(*filter(None, heads), sep="\n")
-    if result.uncertainty:
-        print_table(*uncertain_table(result, sys.stdout.isatty()))
-        print(*uncertain_lines(result), sep="\n")
-    else:
-        print_table(("quantity", model), quantity_rows(result, sys.stdout.isatty()))
+    print(*result_lines(result, scene, readable=sys.stdout.isatty()), sep="\n")
     print(folder / "summary.json")
     if figures:
         from verification.figures import solve_figures  # noqa: PLC0415 - not needed without
@@ -273,51 +262,109 @@ def _cells(found: Mapping[str, Any]) -> str:
     return f"{found['elements']} elements, the smallest {smallest}, {found['dofs']} unknowns"
 
 
-def _known(result: Result | Run) -> dict[str, float]:
-    """The quantities that apply; where the peak load was not reached, those of `load_line`."""
-    values = result.last_fitting or result.quantities
-    return {name: value for name, value in values.items() if value is not None}
+def result_lines(result: Result | Run, scene: Scene | None = None, *, readable: bool = True) -> list[str]:
+    """Status, time and cells, and a table of the quantities that the scene has; of a smooth contact beside
+    those of Hertz, and with the uncertainty that the scene asks for.
 
-
-def quantity_rows(result: Result | Run, terminal: bool) -> list[tuple[str, str]]:
-    """Name and value of each quantity that applies: for a terminal in GPa, um and N, else in SI as
-    summary.json has them.
+    scene: that of the result, which a Run has itself; readable: in GPa, um and N, else in SI.
     """
-    found = _known(result)
-    if terminal:
-        least = ROUNDING * (found.get("contact_radius_m") or 0.0)
-        noise = {name for name, value in found.items() if name.endswith("_m") and abs(value) < least}
-        return [in_working_unit(name, 0.0 if name in noise else value) for name, value in found.items()]
-    return [(name, f"{value:.6g}") for name, value in found.items()]
+    scene = cast(Run, result).scene if scene is None else scene
+    found = _shown(result, scene)
+    columns = [(result.model, _texts(found, found, readable))]
+    if not result.last_fitting and found:
+        columns += _hertz_columns(scene, found, readable)
+    if result.uncertainty:
+        columns += _uncertain_columns(result, found, readable)
+    names = [in_working_unit(name, 0.0)[0] if readable else name for name in found]
+    rows = [
+        (words, *(cells.get(name, "") for _, cells in columns))
+        for words, name in zip(names, found, strict=True)
+    ]
+    heads = status_line(result), undecided_line(result), load_line(result)
+    table = table_lines(("quantity", *(head for head, _ in columns)), rows)
+    return [*filter(None, heads), *table, *_uncertain_lines(result, found)]
 
 
-def uncertain_table(result: Result | Run, terminal: bool) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-    """Heads and rows: name, value, uncertainty, and shares of cells, load steps and box in percent."""
-    parts = {name: f"u_{name}" for name in ("cells", "steps", "box")}
-    found, rows = result.uncertainty or {}, []
-    shown = {name for name in parts if any(entry.get(parts[name]) for entry in found.values())}
-    for words, value in zip(_known(result), quantity_rows(result, terminal), strict=True):
-        entry = found.get(words, {})
-        total, size = entry.get("u_num"), abs(result.quantities[words] or 0.0)
-        of_parts = [_percent(entry.get(key), size) for name, key in parts.items() if name in shown]
-        around = ""
-        if total is not None:
-            around = in_working_unit(words, total, digits=2)[1] if terminal else f"{total:.2g}"
-        order = "" if entry.get("order_seen") is None else f"{entry['order_seen']:.2g}"
-        short = "not converging" if total is not None and entry["flag"] else ""
-        rows.append((*value, around, _percent(total, size), *of_parts, order, short))
-    heads = ("quantity", result.model, "+-", "%", *(name for name in parts if name in shown))
-    return (*heads, "order seen", ""), rows
+def _shown(result: Result | Run, scene: Scene) -> dict[str, float]:
+    """The quantities that say something of the scene; where the peak load was not reached, those of
+    `load_line`.
+    """
+    beside = set()
+    if not flows(scene):
+        beside |= {"peeq_max", "peeq_max_depth_m", "residual_uz_center_m", "residual_mises_max_Pa"}
+    if scene.friction is None:
+        beside |= {"friction_coefficient", *(() if scene.moves else ("pressure_centroid_x_m",))}
+    if scene.wear is None:
+        beside.add("wear_volume_m3")
+    if scene.patch_surface is not None:
+        beside |= {"contact_radius_m", "pressure_centroid_x_m"}
+    values = result.last_fitting or result.quantities
+    return {name: value for name, value in values.items() if value is not None and name not in beside}
 
 
-def uncertain_lines(result: Result | Run) -> list[str]:
+Column = tuple[str, dict[str, str]]
+"""Head of a column of a table, and the cells by quantity."""
+
+
+def _texts(values: Mapping[str, float], found: Mapping[str, float], readable: bool) -> dict[str, str]:
+    """Values of quantities as text; lengths that are rounding beside the contact radius as 0."""
+    if not readable:
+        return {name: f"{value:.6g}" for name, value in values.items()}
+    least = ROUNDING * (found.get("contact_radius_m") or 0.0)
+    noise = {name for name, value in values.items() if name.endswith("_m") and abs(value) < least}
+    return {name: in_working_unit(name, value * (name not in noise))[1] for name, value in values.items()}
+
+
+def _hertz_columns(scene: Scene, found: Mapping[str, float], readable: bool) -> list[Column]:
+    """What Hertz gives, and of an elastic body the deviation from that."""
+    hertz = hertz_of(scene)
+    if not hertz:
+        return []
+    off = {name: f"{100 * (found[name] / exact - 1):+.2g} %" for name, exact in hertz.items()}
+    return [("Hertz", _texts(hertz, hertz, readable)), *([] if flows(scene) else [("deviation", off)])]
+
+
+def _uncertain_columns(result: Result | Run, found: Mapping[str, float], readable: bool) -> list[Column]:
+    """Uncertainty, its shares of cells, load steps and box in percent, order and whether it converges."""
+    known = {name: entry for name, entry in (result.uncertainty or {}).items() if name in found}
+    parts = [
+        part for part in ("cells", "steps", "box") if any(entry.get(f"u_{part}") for entry in known.values())
+    ]
+
+    def percent(key: str) -> dict[str, str]:
+        return {name: _percent(entry.get(key), abs(found[name])) for name, entry in known.items()}
+
+    around = {name: entry["u_num"] for name, entry in known.items() if entry["u_num"] is not None}
+    return [
+        (
+            "+-",
+            {
+                name: in_working_unit(name, each, digits=2)[1] if readable else f"{each:.2g}"
+                for name, each in around.items()
+            },
+        ),
+        ("%", percent("u_num")),
+        *((part, percent(f"u_{part}")) for part in parts),
+        (
+            "order seen",
+            {
+                name: f"{order:.2g}"
+                for name, entry in known.items()
+                if (order := entry.get("order_seen")) is not None
+            },
+        ),
+        ("", {name: "not converging" for name in around if known[name]["flag"]}),
+    ]
+
+
+def _uncertain_lines(result: Result | Run, found: Mapping[str, float]) -> list[str]:
     """What the uncertainty is taken from, and which quantities have none, with the reason."""
     lines: list[str] = []
     without: dict[str, list[str]] = {}
     for name, entry in (result.uncertainty or {}).items():
-        if entry["u_num"] is None:
+        if entry["u_num"] is None and name in found:
             without.setdefault(entry["flag"], []).append(name)
-        elif not lines:
+        elif entry["u_num"] is not None and not lines:
             cells = ", ".join(f"{number:g}" for number in entry["cells"])
             steps = ", ".join(f"{number:g}" for number in entry["steps"])
             what = "cells" if "cells" in result.discretisation else "elements in the radius"

@@ -8,12 +8,14 @@ gives the same bytes wherever it was solved.
 
 from __future__ import annotations
 
+import json
 import os
+import pickle
 import sys
 import time
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -21,9 +23,9 @@ from typing import Any
 
 import numpy as np
 
-from sam.scene import QUANTITIES, Problem, Result, Scene, SceneError, resolved, spelling
+from sam.scene import QUANTITIES, Problem, Progress as Told, Result, Scene, SceneError, resolved, spelling
 from samfem.executors import Cluster, Failure, Processes, run
-from samfem.refusals import check_folder
+from samfem.refusals import REFUSALS, check_folder
 from verification.cost.plan import check_needs
 from verification.figures import sensitivity_figure, sweep_figure
 from verification.runs import models
@@ -158,19 +160,39 @@ def sweep(
     there what is solved; anyway: also scenes that take longer than a command begins unasked. Raises
     SceneError or FolderError before anything is made, KeyboardInterrupt that says what is kept.
     """
-    began = time.monotonic()
-    content = read_study(path)
-    folder = out or Path(f"{path.stem}-sweep")
+    content, folder = read_study(path), out or Path(f"{path.stem}-sweep")
+    check(folder)
+    with Progress(remaining=True) as progress:
+        how = {"runs": runs, "use_store": use_store, "anyway": anyway}
+        return _judge(solve_study(content, folder, progress, _executor(scheduler, workers), **how))
+
+
+def check(folder: Path) -> None:
+    """Raise FolderError unless a sweep may be written to the folder."""
     check_folder(folder, (*FILES, *OF_DESIGN, RUNS), "sweep")
+
+
+def solve_study(
+    content: Points,
+    folder: Path,
+    progress: Told,
+    executor: AbstractContextManager[Processes | Cluster],
+    *,
+    runs: bool,
+    use_store: bool = True,
+    anyway: bool = True,
+) -> Sweep:
+    """As `sweep`, of a study that is read; nothing is printed of what became of it."""
+    began = time.monotonic()
     known = default_store() if use_store else None
     store = None if known is None else KeepsAll(known.folder)
-    with locked(folder), _executor(scheduler, workers) as executor:
+    with locked(folder), executor as solvers:
         seeds = [] if content.study.seed is None else [content.study.seed]
         state = Sweep(content, folder, store, runs, collect(content.inputs, seeds))
         folder.mkdir(parents=True, exist_ok=True)
         _clear(state)
         try:
-            _fill(state, executor, anyway)
+            _fill(state, solvers, anyway, progress)
         except KeyboardInterrupt:
             state.write(always=True)
             kept = f"{len(state.rows)} of {len(content.points)} scenes are finished"
@@ -182,10 +204,11 @@ def sweep(
         found = index_rows(state)
         write_atomically(folder / SENSITIVITY, csv_text(INDEX_COLUMNS, found).encode())
         sensitivity_figure(_named(INDEX_COLUMNS, found), folder / "sensitivity")
-    described = {"kind": "dask" if scheduler else "processes", "lost": executor.lost}
-    record = _record(state) | {"workers": described, "elapsed_s": time.monotonic() - began}
+    kind = "dask" if isinstance(solvers, Cluster) else "processes"
+    workers = {"kind": kind, "lost": solvers.lost}
+    record = _record(state) | {"workers": workers, "elapsed_s": time.monotonic() - began}
     write_atomically(folder / RECORD, json_text(record).encode())
-    return _judge(state)
+    return state
 
 
 def _executor(scheduler: str | None, count: int | None) -> Processes | Cluster:
@@ -240,28 +263,27 @@ def _is_run_of(place: Path, point: StudyPoint | None, state: Sweep) -> bool:
     )
 
 
-def _fill(state: Sweep, workers: Processes | Cluster, anyway: bool) -> None:
+def _fill(state: Sweep, workers: Processes | Cluster, anyway: bool, progress: Told) -> None:
     """A row for each point: refused, from the store, or solved."""
     points, model = state.content.points, state.content.study.model
-    with Progress(remaining=True) as progress:
-        missing = {point.index: point for point in _look_up(state, progress)}
-        if state.rows:
-            state.write(always=True)
-        equal: dict[str, list[int]] = {}
-        for index, point in missing.items():
-            equal.setdefault(json_text(identity(_scene_of(point), model)), []).append(index)
-        same = {indices[0]: indices for indices in equal.values()}
-        tasks = {index: (points[index].scene, model, code_version(model), anyway) for index in same}
-        progress("sweep", 0, len(tasks))
-        for done, (index, outcome, repeats) in enumerate(run(workers, solve_scene, tasks), start=1):
-            state.repeats = repeats
-            for each in same[index]:
-                _take(state, points[each], outcome)
-            state.write()
-            progress("sweep", done, len(tasks))
+    missing = {point.index: point for point in _look_up(state, progress)}
+    if state.rows:
+        state.write(always=True)
+    equal: dict[str, list[int]] = {}
+    for index, point in missing.items():
+        equal.setdefault(json_text(identity(_scene_of(point), model)), []).append(index)
+    same = {indices[0]: indices for indices in equal.values()}
+    tasks = {index: (points[index].scene, model, code_version(model), anyway) for index in same}
+    progress("sweep", 0, len(tasks))
+    for done, (index, outcome, repeats) in enumerate(run(workers, solve_scene, tasks), start=1):
+        state.repeats = repeats
+        for each in same[index]:
+            _take(state, points[each], outcome)
+        state.write()
+        progress("sweep", done, len(tasks))
 
 
-def _look_up(state: Sweep, progress: Progress) -> Iterator[StudyPoint]:
+def _look_up(state: Sweep, progress: Told) -> Iterator[StudyPoint]:
     """The points that have to be solved; the others become rows."""
     points, model = state.content.points, state.content.study.model
     for done, point in enumerate(points, start=1):
@@ -374,3 +396,18 @@ def _judge(state: Sweep) -> int:
     if len(bad) > MOST_SAID:
         print(f"samfem: sweep: and {len(bad) - MOST_SAID} more, see {state.folder / TABLE}", file=sys.stderr)
     return 1 if bad else 0
+
+
+def answer() -> None:
+    """In a process of its own, for Python: solve the study that is pickled on stdin. Each line on stdout is
+    what progress is told, as JSON.
+    """
+    content, folder, workers, runs = pickle.load(sys.stdin.buffer)
+
+    def told(*state: str | int) -> None:
+        print(json.dumps(state), flush=True)
+
+    try:
+        solve_study(content, folder, told, Processes(workers or _cores()), runs=runs)
+    except REFUSALS as error:
+        sys.exit(str(error))

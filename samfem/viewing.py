@@ -17,9 +17,8 @@ from typing import Any
 import numpy as np
 
 from verification.figures.space import CannotDrawError, draw, draw_run
-from verification.runs.files import FolderError, mesh_of, read_summary, replacing, write_atomically
+from verification.runs.files import FolderError, mesh_of, meshes_in, read_summary, replacing, write_atomically
 from verification.runs.lock import locked
-from verification.runs.meshes import mesh_names
 
 OF_PAGES = ("trame_pyvista", "nest_asyncio2")
 """Packages that write a page."""
@@ -108,12 +107,10 @@ def export(folder: Path, *, file_format: str, part: str, state: str, out: Path |
 def _source(folder: Path, part: str, state: str) -> Path:
     """The file of a part of a run in a state, "unloaded" or the first one."""
     stem = f"{part}-{state}" if state == "unloaded" else part
-    there = [name for name in mesh_names() if (folder / name).is_file() and not name.endswith(".pvd")]
-    for name in there:
-        if Path(name).stem == stem:
-            return folder / name
-    have = ", ".join(Path(name).stem for name in there) or "no mesh"
-    raise FolderError(f"{folder} has no {stem}: it has {have}")
+    there = meshes_in(folder)
+    if stem not in there:
+        raise FolderError(f"{folder} has no {stem}: it has {', '.join(there) or 'no mesh'}")
+    return there[stem]
 
 
 def _whole(fields: Mapping[Any, Any]) -> dict[Any, Any]:

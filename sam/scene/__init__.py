@@ -13,7 +13,7 @@ from sam.scene.body import LAWS, Body, Coating, Hardening, Plasticity
 from sam.scene.counterbody import SHAPES, CounterBody
 from sam.scene.friction import Friction
 from sam.scene.inputs import InputError, Inputs, below, open_file, read_apart, read_limited
-from sam.scene.load import load_scene, parse_scene, parse_toml, problems, read_scene, scene_of
+from sam.scene.load import load_scene, parse_scene, parse_toml, read_scene, scene_of
 from sam.scene.loading import Loading, Pass, Path, Strokes
 from sam.scene.numerics import Compare, Fem, Grid, Solver, Wear
 from sam.scene.remedies import either, finer_cells, finer_mesh
@@ -39,9 +39,10 @@ from sam.scene.result import (
     Table,
 )
 from sam.scene.schema import Scene, resolved, solved_part
-from sam.scene.section import Conflict, Problem, SceneError, Section, printable, spelling
+from sam.scene.section import Conflict, Problem, SceneError, Section, printable, problems, spelling
 from sam.scene.surface import CounterSurface, FrictionMap, HeightMap, Surface
 from sam.scene.units import Number, in_unit, number_and_unit
+from sam.scene.writing import tables_of, unit_of_key, with_units
 from sam.scene.yield_curve import YieldCurve, plastic_work, step_energies, stored_energy
 
 __all__ = [
@@ -121,6 +122,9 @@ __all__ = [
     "spelling",
     "step_energies",
     "stored_energy",
+    "tables_of",
+    "unit_of_key",
+    "with_units",
 ]
 
 

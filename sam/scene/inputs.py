@@ -17,10 +17,11 @@ import os
 import stat
 import subprocess
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, BinaryIO
 
 import numpy as np
@@ -36,7 +37,15 @@ MOST_ROWS = 10_000  # of a table
 SECONDS = 120.0  # by the clock, for a start of 2 s on a busy machine and the largest file
 CHILD = Path(__file__).with_name("apart_child.py")
 _MOST_FAULTS = 4  # of a table, named in one message
-Rows = tuple[tuple[float, float], ...]
+
+
+class Rows(tuple[tuple[float, float], ...]):
+    """The rows of a small table; of_file: the key with the name of the file that they are of, if any."""
+
+    of_file: Mapping[str, Any] = MappingProxyType({})
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} rows>"
 
 
 class InputError(ValueError):
@@ -159,6 +168,8 @@ class TwoColumns:
 
     def check(self, value: object, info: ValidationInfo) -> Rows:
         """The rows of a named file, or given in Python; an error "allowed" for others."""
+        if isinstance(value, Rows):
+            return value
         if file := in_file(info):
             content = content_of(value, info, f"a CSV file: {self.allowed}")
             try:
@@ -180,7 +191,9 @@ class TwoColumns:
             words += f"; and {len(faults) - _MOST_FAULTS} more" if len(faults) > _MOST_FAULTS else ""
             noisy = file and all(self.falling and self.falling in fault for fault in faults)
             raise refused(words + (self._rising(str(value)) if noisy else ""))
-        return tuple((float(first), float(second)) for first, second in rows)
+        found = Rows((float(first), float(second)) for first, second in rows)
+        found.of_file = {str(info.field_name): value} if file else {}
+        return found
 
     def _rising(self, name: str) -> str:
         """The line of Python that takes the noise of a measurement off a curve that falls nowhere else."""

@@ -13,7 +13,7 @@ from pydantic import ValidationError
 
 from sam.scene.inputs import InputError, Inputs, read_limited
 from sam.scene.schema import Scene
-from sam.scene.section import MISSING, MISSING_INPUT, Problem, SceneError, spelling
+from sam.scene.section import Problem, SceneError, problems
 from sam.scene.units import IN_FILE
 
 _BETWEEN = re.compile(rb"([\n,={}\[\]#])")
@@ -81,16 +81,6 @@ def scene_of(table: Mapping[str, Any], source: str, inputs: Inputs | None = None
         return Scene.model_validate(table, context={**IN_FILE, "inputs": inputs})
     except ValidationError as error:
         raise SceneError(problems(error), source) from None
-
-
-def problems(error: ValidationError) -> list[Problem]:
-    """Every problem of the validation error of a `Section`, in the order of the file's keys."""
-    listed = []
-    for item in error.errors(include_url=False):
-        key = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in item["loc"])
-        value = MISSING if item["input"] is MISSING_INPUT else spelling(item["input"])
-        listed.append(Problem(key.removeprefix("."), value, item["ctx"]["allowed"]))
-    return listed
 
 
 def _whole_file(message: str, source: str | Path) -> SceneError:

@@ -14,7 +14,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from math import ceil, inf, isclose, sqrt
-from typing import Any
+from typing import Any, Required, TypedDict, Unpack
+
+from pydantic import BaseModel, ValidationError
 
 from sam.arrays import ROUNDING
 from sam.scene.body import Body
@@ -22,14 +24,55 @@ from sam.scene.counterbody import CounterBody
 from sam.scene.friction import Friction
 from sam.scene.loading import MISFIT_SPHERE, TO_AND_FRO, Loading, Strokes
 from sam.scene.numerics import Compare, Fem, Grid, Solver, Wear
-from sam.scene.section import NOT_YET, Conflict, Given, Section, broken, stated
+from sam.scene.section import NOT_YET, Conflict, Given, SceneError, Section, broken, problems, stated
 from sam.scene.surface import CounterSurface, FrictionMap, Strip, Surface, leading, patch_of
 from sam.scene.surface.section import GENERATED, grid_excesses, patch_excesses
 from sam.scene.units import COUNT, STRAIN
+from sam.scene.writing import nameless, tables_of, toml
+
+Keys = Mapping[str, Any]
+
+
+class Tables(TypedDict, total=False):
+    """The tables of a scene as Python gives them."""
+
+    title: str
+    body: Required[Body | Keys]
+    counterbody: CounterBody | Keys | None
+    surface: Surface | Keys | None
+    loading: Required[Loading | Keys]
+    friction: Friction | Keys | None
+    wear: Wear | Keys | None
+    grid: Grid | Keys | None
+    solver: Solver | Keys
+    fem: Fem | Keys
+    compare: Compare | Keys | None
 
 
 class Scene(Section):
-    """One contact. There is no counter-body where the load is given in its place (loading.prescribed)."""
+    """One contact, with the tables of a scene file; each is a mapping of its keys, numbers in SI units or
+    strings with units. There is no counter-body where the load is given in its place (loading.prescribed).
+
+    Raises
+    ------
+    SceneError
+        With every error: key, value and what is allowed.
+
+    Examples
+    --------
+    >>> ball = {"shape": "sphere", "radius": "105 um"}
+    >>> print(Scene(body={"young": 210e9, "poisson": 0.3}, counterbody=ball, loading={"force": 0.65}))
+    [body]
+    young = "210 GPa"
+    poisson = 0.3
+    <BLANKLINE>
+    [counterbody]
+    shape = "sphere"
+    radius = "105 um"
+    <BLANKLINE>
+    [loading]
+    force = "650 mN"
+    """
 
     title: str = ""
     body: Body
@@ -42,6 +85,31 @@ class Scene(Section):
     solver: Solver = Solver()
     fem: Fem = Fem()
     compare: Compare | None = None
+
+    def __init__(self, **tables: Unpack[Tables]):
+        try:
+            BaseModel.__init__(self, **tables)
+        except ValidationError as error:
+            raise SceneError(problems(error), "scene") from None
+
+    # to pydantic it is its own, so that what is validated in another way, as a file is, does not come here
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+    def __repr__(self) -> str:
+        return "\n".join(toml(tables_of(self))).lstrip("\n")
+
+    __str__ = __repr__
+
+    def to_toml(self) -> str:
+        """The scene as the text of a scene file, without what is at its default; read back it is equal.
+
+        A file that the scene was read with (of heights, friction, yield stresses or a profile) is named: it
+        belongs beside the text. Raises SceneError for such values that were given in Python.
+        """
+        tables = tables_of(self)
+        if found := list(nameless(tables)):
+            raise SceneError(found, "scene")
+        return "\n".join(toml(tables)).lstrip("\n") + "\n"
 
     @classmethod
     def conflicts(cls, given: Given) -> Iterator[Conflict]:
@@ -124,7 +192,7 @@ class Scene(Section):
 
     @property
     def seeds(self) -> tuple[int, ...]:
-        """The seeds of what is drawn at random: of the surface, and of the counter-body's in each cycle."""
+        """The seeds of what is drawn at random, of the surface and of the counter-body's in each cycle."""
         seed = self.surface.seed if self.surface is not None else None
         counter = self.counter_surface
         opposite = () if counter is None else counter.seeds(self.loading.cycles)

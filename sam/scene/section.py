@@ -102,6 +102,16 @@ class SceneError(ValueError):
         return "\n  ".join([f"{source}: {len(self.problems)} errors", *shown])
 
 
+def problems(error: ValidationError) -> list[Problem]:
+    """Every problem of the validation error of a `Section`, in the order of the file's keys."""
+    listed = []
+    for item in error.errors(include_url=False):
+        key = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in item["loc"])
+        value = MISSING if item["input"] is MISSING_INPUT else spelling(item["input"])
+        listed.append(Problem(key.removeprefix("."), value, item["ctx"]["allowed"]))
+    return listed
+
+
 def spelling(value: object) -> str:
     """A value as a scene file spells it, on one line of at most 60 characters; what JSON cannot hold is named
     by its type.

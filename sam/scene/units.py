@@ -182,6 +182,19 @@ def _factor(text: str, unit: str) -> Decimal | None:
     return factor
 
 
+def spelled(number: float, unit: str) -> str:
+    """An SI number as a string with a unit that is read as the same float.
+
+    >>> spelled(2.1e11, "Pa"), spelled(0.6, "m/s")
+    ('210 GPa', '0.6 m/s')
+    """
+    exact = Decimal(repr(float(number)))
+    powers = {power: name for name, power in PREFIXES.items() if name.isascii()} if unit in PLAIN else {0: ""}
+    power = max((each for each in powers if each <= exact.adjusted()), default=min(powers)) if exact else 0
+    value = exact.scaleb(-power).normalize()
+    return f"{value:{'f' if abs(value.adjusted()) < 9 else 'E'}} {powers[power]}{unit}"
+
+
 PRESSURE = Number("a pressure", 1e-30, 1e30, "Pa", "210 GPa")
 LENGTH = Number("a length", 1e-30, 1e30, "m", "10 um")
 DEPTH = Number("a depth", 1e-30, 1e30, "m", "0.5 um", zero=True)

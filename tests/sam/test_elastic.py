@@ -227,5 +227,5 @@ def test_the_coarser_scene_keeps_extent_and_depth():
     assert not other.solver.extrapolate and (less.nx, less.ny) == (17, 17)
     assert less.nx * less.hx == pytest.approx(fine.nx * fine.hx)
     assert len(less.depths) == 6 and less.faces[-1] == pytest.approx(fine.faces[-1])
-    sizes = {stage["stage"]: stage["size"] for stage in plan(both)["models"][0]["stages"]}
+    sizes = {stage["stage"]: stage["size"] for stage in plan(both).content["models"][0]["stages"]}
     assert sizes["coarser grid"] == {"cells": [17, 17]}

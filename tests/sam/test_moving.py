@@ -20,7 +20,6 @@ from builders import (
     scene,
 )
 from hypothesis import given, strategies as st
-from pydantic import ValidationError
 
 import sam
 from sam.grid.cells import CellGrid, Window
@@ -28,7 +27,7 @@ from sam.moving import Track, _cross as cross_table, _track as track_table
 from sam.planner.make import schedule_of
 from sam.results.quantities import refined_peak
 from sam.results.snapshots import Box
-from sam.scene import HeightMap, Path, Scene, Status, Strokes, resolved
+from sam.scene import HeightMap, Path, Scene, SceneError, Status, Strokes, resolved
 from sam.scene.groove import Groove
 from sam.scene.result import UNLOADED
 from sam.scene.surface import CounterSurface, Strip, heights, with_relief
@@ -408,7 +407,7 @@ def test_a_map_alone_asks_for_a_grid():
     values = np.random.Generator(np.random.PCG64(1)).normal(scale=1e-8, size=(36, 24))
     found = sliding({"kind": "file", "path": HeightMap(values, (36 * CELL, 24 * CELL))})
     assert found.counter_strip.whole == (36, 24) and found.patch[0] == (CELLS, CELLS)
-    with pytest.raises(ValidationError, match="longer than the patch"):
+    with pytest.raises(SceneError, match="longer than the patch"):
         Scene(**{**dict(found), "grid": None})
 
 

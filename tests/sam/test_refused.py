@@ -15,9 +15,8 @@ from collections.abc import Iterator
 import builders
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
-from sam.scene import Scene, parse_scene
+from sam.scene import Scene, SceneError, parse_scene
 
 
 def keys(edits: str, table: str = "") -> dict[str, str | None]:
@@ -450,17 +449,17 @@ def described(**keys) -> dict:
 # tables of a scene: key that is named, pieces of its value and of what is said of it
 IN_PYTHON = [
     (plastic(SWIFT, layer=SOFT), f"{IN}_thickness", "", "the thickness of the layer"),
-    (plastic(THICK, layer_thickness=float("nan"), layer=SOFT), f"{IN}_thickness", "nan", "a length from"),
+    (plastic(THICK, layer_thickness=float("nan"), layer=SOFT), f"{IN}_thickness", "NaN", "a length from"),
     (plastic(THICK, layer=[SOFT]), IN, "perfect", "a table"),
     (plastic(THICK, layer=SWIFT | {"B": "945 um"}), f"{IN}.B", "945 um", MODULUS),
-    (plastic(THICK, layer=SWIFT | {"kinematic": {"modulus": ()}}), f"{IN}.kinematic.modulus", "()", LIST),
+    (plastic(THICK, layer=SWIFT | {"kinematic": {"modulus": ()}}), f"{IN}.kinematic.modulus", "[]", LIST),
     (plastic(SWIFT, kinematic=3), BACK, "3", "a table"),
     (back(modulus=1e9), f"{BACK}.modulus", "1000000000.0", LIST),
-    (back(modulus=(0.0,)), f"{BACK}.modulus.0", "0.0", MODULUS),
-    (back(modulus=(True,)), f"{BACK}.modulus.0", "True", MODULUS),
+    (back(modulus=(0.0,)), f"{BACK}.modulus[0]", "0.0", MODULUS),
+    (back(modulus=(True,)), f"{BACK}.modulus[0]", "true", MODULUS),
     (back(recovery=(1.0,) * 3), f"{BACK}.recovery", "1.0", "as many numbers as modulus has: 2"),
-    (back(recovery=(0.0, 2e7)), f"{BACK}.recovery.1", "20000000.0", RECOVERY),
-    (back(recovery=(True, 0.0)), f"{BACK}.recovery.0", "True", RECOVERY),
+    (back(recovery=(0.0, 2e7)), f"{BACK}.recovery[1]", "20000000.0", RECOVERY),
+    (back(recovery=(True, 0.0)), f"{BACK}.recovery[0]", "true", RECOVERY),
     (back() | {"solver": {"verdict": 1}}, "solver.verdict", "1", "true or false"),
     (back() | {"solver": {"method": "paper"}}, "solver.method", "paper", "knows no back-stress"),
     ({"body": {"poisson": 0.5, "plasticity": SWIFT}}, "body.poisson", "0.5", "less than 0.5 with plasticity"),
@@ -479,7 +478,7 @@ IN_PYTHON = [
     (rows_of((0.0, np.nan)), f"{AT}file", "", "row 1: yield_stress_Pa = NaN"),
     ({"surface": {"kind": "file", "path": np.zeros((5, 5))}}, "surface.path", "", "a HeightMap"),
     (described(sha256="00" * 31), "surface.path", "0000", "or sha256, cells and extent of one"),
-    (described(cells=(2, 8)), "surface.path", "(2, 8)", "or sha256, cells and extent of one"),
+    (described(cells=(2, 8)), "surface.path", "sha256", "or sha256, cells and extent of one"),
 ]
 USUAL = [
     {"young": 11e9, "plasticity": SOFT | {"yield_stress": 1e6}},  # annealed indium
@@ -493,9 +492,9 @@ USUAL = [
 @pytest.mark.parametrize("tables, key, value, allowed", IN_PYTHON)
 def test_a_malformed_scene_is_refused_by_name_in_python(tables, key, value, allowed):
     tables = {"counterbody": builders.SPHERE, "loading": {"force": 1.0}} | tables
-    with pytest.raises(ValidationError) as caught:
+    with pytest.raises(SceneError) as caught:
         Scene(**tables | {"body": builders.STEEL | tables.get("body", {})})
-    found = [(".".join(map(str, e["loc"])), str(e["input"]), e["msg"]) for e in caught.value.errors()]
+    found = [(each.key, each.value, each.allowed) for each in caught.value.problems]
     assert any(place == key and value in given and allowed in said for place, given, said in found), found
 
 

@@ -6,14 +6,13 @@ and each other; borders, spots, and what is recorded.
 import numpy as np
 import pytest
 from builders import LINEAR, MODULUS, STEEL, running_in, scene
-from pydantic import ValidationError
 
 from sam import UnsupportedScene, choose_grid, left_out, plan, solve
 from sam.contact.convolution import Counters
 from sam.results.rough import too_few_cells
-from sam.scene import COUNTER_HEIGHT, CounterSurface, HeightMap, Scene, Status, resolved
+from sam.scene import COUNTER_HEIGHT, CounterSurface, HeightMap, Scene, SceneError, Status, resolved
 from sam.scene.surface import heights
-from verification.cost.plan import plan as cost_plan, plan_lines
+from verification.cost.plan import plan as cost_plan
 from verification.runs import models
 from verification.runs.files import read_run, write_run
 from verification.runs.models import FEM, FEM_3D, ModelError
@@ -166,7 +165,7 @@ def test_depths_are_fine_near_the_surface_and_reach_an_eighth_of_the_side():
     steps = np.diff(depths)
     assert depths[0] == 0 and np.allclose(steps[:8], 0.25e-6) and (np.diff(steps) > -1e-12).all()
     assert 8e-6 <= depths[-1] < 1.2 * 8e-6
-    text = "\n".join(plan_lines(cost_plan(patch(64))))
+    text = "\n".join(cost_plan(patch(64)).lines(verbose=True))
     assert "stress lies anywhere below the patch" in text and "left out  stress outside the plane" not in text
 
 
@@ -252,7 +251,7 @@ def test_maps_of_both_bodies_have_one_grid():
     small, own = (
         {"kind": "file", "path": HeightMap(np.eye(n) * 1e-7, (s, s))} for n, s in ((8, 8e-6), (32, SIDE))
     )
-    with pytest.raises(ValidationError, match=r"\[32, 32\] heights on 2e-05 m x 2e-05 m"):
+    with pytest.raises(SceneError, match=r"\[32, 32\] heights on 2e-05 m x 2e-05 m"):
         scene(counterbody={**FLAT, "surface": small}, surface=own)
 
 

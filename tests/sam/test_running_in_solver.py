@@ -34,7 +34,7 @@ def surface(result, state: str, name: str) -> np.ndarray:
 
 def stages(scene) -> dict[str, bool]:
     """Stage -> whether it runs."""
-    return {entry["stage"]: entry["runs"] for entry in plan(scene)["models"][0]["stages"]}
+    return {entry["stage"]: entry["runs"] for entry in plan(scene).content["models"][0]["stages"]}
 
 
 def test_a_small_patch_runs_in():

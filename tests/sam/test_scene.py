@@ -336,7 +336,7 @@ def test_contradictions_are_seen_between_sections_made_in_python():
     others = {"counterbody": CounterBody(shape="sphere", radius=1e-4), "loading": Loading(force=0.1)}
     layers = Grid(depths=(0.0, 1e-6))
     assert Scene(body=body, grid=layers, solver=Solver(method="paper"), **others).solver.stop == "stress"
-    with pytest.raises(ValidationError, match="faces of the layers"):
+    with pytest.raises(SceneError, match="faces of the layers"):
         Scene(body=body, grid=Grid(depths=(1e-6, 2e-6)), **others)
     with pytest.raises(ValidationError, match=r"less than 0\.5 with yield_stress"):
         Coating(thickness=1e-7, young=80e9, poisson=0.5, yield_stress=1e9)

@@ -24,7 +24,7 @@ from sam.scene.inputs import open_file
 from sam.scene.load import parse_toml, scene_of
 from verification.cases.case import Outcome, SmallTable
 from verification.cases.robustness import bad_input as case
-from verification.cost.plan import check_needs, plan, plan_lines
+from verification.cost.plan import check_needs, plan
 from verification.judging import Measured, Row
 from verification.robustness.fuzz import (
     KINDS,
@@ -120,7 +120,7 @@ def test_any_value_at_any_key_is_a_scene_or_a_scene_error(value, keys):
     section, _, key = keys.rpartition(".")
     (table[section] if section else table)[key] = value
     try:
-        plan_lines(plan(scene_of(table, "scene.toml")))
+        plan(scene_of(table, "scene.toml")).lines(verbose=True)
     except SceneError as error:
         assert keys.partition(".")[0] in str(error)
 
@@ -178,7 +178,7 @@ def test_what_takes_too_many_layers_or_too_wide_a_box_or_more_memory_than_there_
     scene = plastic('extent = ["1e-15 m", "1e-15 m"]')
     with pytest.raises(models.ModelError, match=r"grid.extent = 1e-15 m and 1e-15 m: .* layers"):
         models.check(scene, models.SAM)
-    assert [entry["available"] for entry in plan(scene)["models"]] == [False, True, True]
+    assert [entry["available"] for entry in plan(scene).content["models"]] == [False, True, True]
     models.check(plastic('extent = ["1e-15 m", "1e-15 m"]\nlayers = 3\ndepth = "1 um"'), models.SAM)
     soft = plastic("", 'law = "perfect"\nyield_stress = "3 MPa"')
     with pytest.raises(models.ModelError, match=r"fem.box = 10.0: more than .* Hertz radii"):
@@ -193,7 +193,7 @@ def test_what_takes_too_many_layers_or_too_wide_a_box_or_more_memory_than_there_
 
 
 def test_control_characters_of_a_title_do_not_reach_the_terminal():
-    lines = plan_lines(plan(parse_scene(SMALL.replace("Small", "\\u001b[31m\\u0007x").encode(), "s")))
+    lines = plan(parse_scene(SMALL.replace("Small", "\\u001b[31m\\u0007x").encode(), "s")).lines(verbose=True)
     assert lines[0] == "?[31m?x"
 
 

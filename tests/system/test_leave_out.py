@@ -268,7 +268,9 @@ def test_the_plan_the_printed_plan_and_the_result_say_what_is_left_out(model, ru
     assert all(stage.reason for stage in stages)
     unsized = {"tangential traction", "eigenstrain kernels"}  # of the latter `samfem plan` predicts the size
     assert all(stage.size for stage in stages if stage.runs and stage.stage not in unsized)
-    entry = next(each for each in printed_plan(ladder.scene(rung))["models"] if each["model"] == model)
+    entry = next(
+        each for each in printed_plan(ladder.scene(rung)).content["models"] if each["model"] == model
+    )
     assert entry["available"], entry["reason"]
     printed = {(stage["stage"], stage["reason"], stage["runs"]) for stage in entry["stages"]}
     assert printed == {(stage.stage, stage.reason, stage.runs) for stage in stages}

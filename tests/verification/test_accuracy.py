@@ -6,10 +6,9 @@ import json
 import pytest
 from builders import PERFECT, SPHERE, STEEL, scene_text
 from made_results import context
-from pydantic import ValidationError
 
 from sam import choose_grid
-from sam.scene import Result, Scene, Status
+from sam.scene import Result, Scene, SceneError, Status
 from verification.cases.case import with_keys
 from verification.cases.cost import accuracy as case
 from verification.cost import accuracy
@@ -173,7 +172,7 @@ def test_load_steps_that_are_cut_differently_are_made_more():
     ],
 )
 def test_wrong_keys_are_refused(tables, words):
-    with pytest.raises(ValidationError, match=words):
+    with pytest.raises(SceneError, match=words):
         Scene(**YIELDING | {"solver": {"accuracy": 0.01}} | tables)
 
 
@@ -190,7 +189,7 @@ def test_what_was_not_measured_is_refused(change, more, words):
 
 
 def test_the_plan_announces_it():
-    content = plan(asked(0.02))["models"][0]
+    content = plan(asked(0.02)).content["models"][0]
     (stage,) = (each for each in content["stages"] if each["stage"] == "accuracy")
     assert (
         "2 % of peeq_max: begins with 8.23 cells" in stage["reason"] and "advice expects" in stage["reason"]

@@ -34,7 +34,7 @@ from verification.cost.advice import (
     read_rows,
     table_text,
 )
-from verification.cost.plan import plan, plan_lines
+from verification.cost.plan import plan
 from verification.cost.precision import TARGETS
 from verification.runs.models import FEM, FEM_3D, MODELS, SAM
 from verification.text.console import table_lines
@@ -151,23 +151,22 @@ def test_a_report_gives_the_table(tmp_path, monkeypatch, capsys, packed):
     assert "6 rows" in capsys.readouterr().out
 
 
-def test_plan_begins_with_the_advice_as_a_table(capsys):
-    """Then the models; as JSON the same content."""
+def test_plan_is_five_short_lines_and_more_with_verbose(capsys):
+    """Before them the title; then the advice as a table and the models; as JSON the same content."""
     file = str(SCENES / "plastic-swift-rigid.toml")
+    found = plan(load_scene(Path(file)))
     assert main(["plan", file, "--json"]) == 0
-    content = json.loads(capsys.readouterr().out)
-    assert content["advice"]["kind"] == YIELDING and main(["plan", file]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert lines == plan_lines(content) and lines[0] == content["title"]
-    assert lines[2].startswith("advice: what an error of the largest plastic strain")
-    assert lines[3].split()[:2] == ["error", "method"]
-    first = next(k for k, line in enumerate(lines) if line.startswith("sam: about "))
-    assert first == 4 + len(content["advice"]["table"]["rows"]) + 1
-    assert lines[4].split()[:3] == ["5", "%", "sam"] and " s " in lines[4]
-
-
-def test_plan_has_no_table_where_no_error_was_measured(capsys):
-    file = str(SCENES / "flat-punch.toml")
+    assert json.loads(capsys.readouterr().out) == json.loads(json.dumps(found.content))
     assert main(["plan", file]) == 0
-    content = plan(load_scene(SCENES / "flat-punch.toml"))
-    assert capsys.readouterr().out.splitlines() == plan_lines(content) and not content["advice"]["rows"]
+    short = capsys.readouterr().out.splitlines()
+    assert short == str(found).splitlines() and len(short) == 5 + len(found.warnings)
+    assert max(map(len, short)) <= 112 and f"sam {found.cells_in_radius:.3g}, 0.3 %" in short[1]
+    assert found.error == 0.003 and found.contact["over_yield"] == pytest.approx(4.0, rel=1e-3)
+    assert main(["plan", file, "--verbose"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines == found.lines(verbose=True) and lines[0] == found.content["title"]
+    assert lines[2 : 2 + len(short)] == short
+    table = next(k for k, line in enumerate(lines) if line.startswith("advice: what an error of the largest"))
+    assert lines[table + 1].split()[:2] == ["error", "method"] and " s " in lines[table + 2]
+    first = next(k for k, line in enumerate(lines) if line.startswith("sam: about "))
+    assert first == table + 2 + len(found.content["advice"]["table"]["rows"]) + 1

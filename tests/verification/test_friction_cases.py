@@ -21,7 +21,7 @@ from verification.compare.measures import (
     patch_pressures,
     profile_difference,
 )
-from verification.cost.plan import plan, plan_lines
+from verification.cost.plan import plan
 from verification.quantities import QUANTITIES
 from verification.reference.hamilton import sliding_stress
 from verification.reference.shakedown import upper_bound
@@ -235,6 +235,6 @@ def test_cheapest_reference_of_a_scene():
 
 def test_plan_of_a_given_pressure_that_travels_with_friction():
     lines = GIVEN + PATH + "[friction]\ncoefficient = 0.2\n"
-    text = "\n".join(plan_lines(plan(parse_scene(given_pressure(lines).encode(), ""))))
+    text = "\n".join(plan(parse_scene(given_pressure(lines).encode(), "")).lines(verbose=True))
     words = 'loading.prescribed = "hertz", and travels', "steps 5", "loading.path", "tangential kernels"
     assert all(word in text for word in (*words, "friction.coefficient = 0.2", "fem-3d: about"))

@@ -264,7 +264,7 @@ def test_depths_without_a_maximum_are_left_out_of_the_others_and_change_nothing(
 
 def test_the_plan_says_what_is_solved_besides():
     asked, plain = (Scene(**ELASTIC | {"solver": {"uncertainty": each}}) for each in (True, False))
-    with_it, without = (plan(scene)["models"][0] for scene in (asked, plain))
+    with_it, without = (plan(scene).content["models"][0] for scene in (asked, plain))
     (stage,) = (each for each in with_it["stages"] if each["stage"] == "uncertainty")
     assert stage["size"] == {"solves": 2} and "23 cells" in stage["reason"]
     assert with_it["estimate"]["time_s"] > without["estimate"]["time_s"]

@@ -6,15 +6,19 @@ The stages are those of the plans of the models, the estimates those of `verific
 
 from __future__ import annotations
 
-from dataclasses import asdict, replace
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from math import prod, sqrt
 from typing import Any
 
 from sam.scene import NO_FORCE, Scene, Stage, printable
 from verification.cost import estimates
 from verification.cost.accuracy import chosen_scene, expected, first_choice, quantities_of
-from verification.cost.advice import advice_of
+from verification.cost.advice import LOAD_STEPS, ON_TWO_GRIDS, advice_of, kind_of, table
+from verification.cost.contact import expected_contact
 from verification.runs import models
-from verification.runs.model_range import model_range, range_lines
+from verification.runs.model_range import model_range, off_in_words, outside_in_words, range_lines
 from verification.runs.provenance import memory_bytes
 from verification.text.console import table_lines
 from verification.text.readable import with_prefix, with_time
@@ -23,16 +27,229 @@ from verification.uncertainty.solving import NoFamilyError, family
 UNCERTAINTY = "uncertainty"
 LONGEST = 86400.0  # predicted processor seconds that a command begins unasked
 NOTE = "memory and time are estimates from the numbers of cells, not measurements"
+COARSEST = 4.0  # cells in the contact radius: below it a grid is called coarse
+BRIEF = {
+    "surface heights": "roughness",
+    "counter-surface heights": "rough counter-body",
+    "layered coefficients": "coating",
+    "film elements": "coating",
+    "mesh of the counter-body": "elastic counter-body",
+    "coarser grid": "a coarser grid to extrapolate from",
+    "contact search": "contact| in {steps} load steps",
+    "given pressure": "given pressure| in {steps} load steps",
+    "misfit strain": "misfit strain| in {steps} steps",
+    "moving counter-body": "moving counter-body|, {passes} x {steps} steps",
+    "tangential kernels": "friction",
+    "tangential traction": "friction",
+    "coupling": "coupling of friction and gap",
+    "plastic loop": "plastic strain",
+    "return mapping and plastic history": "plastic strain",
+    "back-stresses": "back-stresses",
+    "cycles after the first": "cycles| ({cycles})",
+    "verdict on repeated loading": "verdict on repeated loading",
+    "chemical film": "chemical film",
+    "worn geometry": "wear",
+    "unloading": "unloading",
+    "stresses at the output depths": "stresses below the surface",
+    "stresses at the Gauss points": "stresses below the surface",
+    "stresses in the elements": "stresses below the surface",
+    "bare comparison": "the body without coating",
+    "bare body": "the body without coating",
+    UNCERTAINTY: "uncertainty| from {solves} more solves",
+}
+"""Stage -> what it computes, for the short lines, and after a bar its size; others prepare or follow one."""
+SELDOM = ("counter-surface heights", "back-stresses", "chemical film")  # told only where they run
 
 
-def plan(scene: Scene) -> dict:
-    """The plan of every model as a mapping that JSON can hold: stages, estimate, or why the model cannot be
-    used; advice; by how much small strains of a flat half-space are off.
+@dataclass(frozen=True)
+class Plan:
+    """What the models will compute of a scene; `print` shows it in five lines and one for each warning.
+
+    content: all of it as a mapping that JSON can hold: stages, estimate and resolution of every model, or why
+    it cannot be used; contact; advice; by how much small strains of a flat half-space are off. model: the one
+    that the attributes are about.
+    """
+
+    content: Mapping[str, Any]
+    model: str
+
+    def __str__(self) -> str:
+        return "\n".join(self.lines())
+
+    @property
+    def _entry(self) -> Mapping[str, Any]:
+        return next(each for each in self.content["models"] if each["model"] == self.model)
+
+    @property
+    def time_s(self) -> float:
+        """Predicted processor time in s."""
+        return self._entry["estimate"]["time_s"]
+
+    @property
+    def memory_bytes(self) -> int:
+        """Predicted largest memory of the process."""
+        return self._entry["estimate"]["memory_bytes"]
+
+    @property
+    def cells(self) -> int:
+        """Cells of the surface, or elements."""
+        size = next(each["size"] for each in self._entry["stages"] if each["stage"] in ("grid", "mesh"))
+        return size["elements"] if "elements" in size else size["cells"][0] * size["cells"][1]
+
+    @property
+    def cells_in_radius(self) -> float | None:
+        """Cells in the estimated contact radius; None of a rough body."""
+        return self._entry["resolution"]["cells_in_radius"]
+
+    @property
+    def error(self) -> float | None:
+        """The largest relative error that was measured with so many cells and load steps, by the advice; None
+        where none was.
+        """
+        return self._entry["resolution"]["error"]
+
+    @property
+    def contact(self) -> Mapping[str, Any]:
+        """The estimated elastic contact in SI: p0_Pa, a_m, b_m, a_over_R, p0_over_yield and the like."""
+        return self.content["contact"]
+
+    @property
+    def left_out(self) -> dict[str, str]:
+        """Stages that the scene does not need, and why."""
+        return {each["stage"]: each["reason"] for each in self._entry["stages"] if not each["runs"]}
+
+    @property
+    def warnings(self) -> list[str]:
+        """What a user should know before a solve, a line each."""
+        return self.content["warnings"]
+
+    def lines(self, verbose: bool = False) -> list[str]:
+        """The short lines; verbose: also the advice, and every stage of every model with its reason."""
+        content, entries = self.content, [each for each in self.content["models"] if each["available"]]
+        short = [content["contact"]["words"]]
+        if entries:
+            short += [_resolved(entries[:2])]
+        short += ["time and memory (estimated): " + "; ".join(map(_needed, content["models"]))]
+        if self._entry["available"]:
+            stages = self._entry["stages"]
+            short += [f"computed: {_brief(stages, runs=True)}", f"left out: {_brief(stages, runs=False)}"]
+        short += [f"warning: {words}" for words in self.warnings]
+        if not verbose:
+            return short
+        title, advised = printable(content["title"]), content["advice"]["table"]
+        shown = table_lines(**advised) if advised["rows"] else []
+        heads = [*([title, ""] if title else []), *short, "", f"advice: {content['advice']['words']}"]
+        return [*heads, *shown, *_model_lines(content)]
+
+
+def plan(scene: Scene, model: str | None = None) -> Plan:
+    """The plan of every model; model: the one that the attributes are about, by default the first that can
+    represent the scene.
     """
     entries = [_model(scene, name) for name in models.MODELS]
-    advice = advice_of(scene, [entry["model"] for entry in entries if entry["available"]])
-    of_model = model_range(scene)
-    return {"title": scene.title, "note": NOTE, "models": entries, "advice": advice, "model_range": of_model}
+    usable = [entry["model"] for entry in entries if entry["available"]]
+    advice, of_model = advice_of(scene, usable), model_range(scene)
+    content = {
+        "title": scene.title,
+        "note": NOTE,
+        "contact": expected_contact(scene),
+        "models": entries,
+        "advice": advice,
+        "model_range": of_model,
+        "warnings": [*_off(of_model), *_warnings(entries)],
+    }
+    return Plan(content, model or (usable or list(models.MODELS))[0])
+
+
+def _resolution(scene: Scene, model: str, made: Any) -> dict[str, Any]:
+    """Cells in the estimated contact radius, and the smallest error of the table of advice that so many, and
+    the load steps of the scene, leave: None where none is so large or none was measured.
+    """
+    found = dict.fromkeys(("cells_in_radius", "quantity", "error", "steps_error"))
+    if scene.patch_surface is not None or scene.loading.misfit_sphere:
+        return found
+    cells: float = scene.fem.cells_per_radius
+    if model == models.SAM:
+        from sam import hertz_semi_axes
+
+        cells = sqrt(prod(hertz_semi_axes(scene)) / (made.grid.hx * made.grid.hy))
+    method = ON_TWO_GRIDS if model == models.SAM and scene.solver.extrapolate else model
+    of_kind = [row for row in table() if row.kind == kind_of(scene)]
+
+    def left(by: str, count: float) -> float | None:
+        reached = [row.error for row in of_kind if row.method == by and row.resolution <= count + 0.01]
+        return min(reached, default=None)
+
+    named = {row.method: row.quantity for row in of_kind}
+    own = {"error": left(method, cells), "steps_error": left(LOAD_STEPS, scene.loading.steps)}
+    return (
+        found | {"cells_in_radius": cells} | ({"quantity": named[method], **own} if method in named else {})
+    )
+
+
+def _resolved(entries: Sequence[Mapping[str, Any]]) -> str:
+    """Cells in the contact radius of some models, and the error that they leave, in words."""
+    parts, about = [], ""
+    for entry in entries:
+        found, model = entry["resolution"], entry["model"]
+        if found["cells_in_radius"] is None:
+            size = next(each["size"] for each in entry["stages"] if each["stage"] in ("grid", "mesh"))
+            number = size.get("elements") or " x ".join(map(str, size["cells"]))
+            parts.append(f"{model} {number} {'elements' if 'elements' in size else 'cells'}")
+            continue
+        words, error, steps = f"{model} {found['cells_in_radius']:.3g}", found["error"], found["steps_error"]
+        if found["quantity"] is not None:
+            about = f" and error of the {found['quantity']} (at most about)"
+            words += ", more than 5 %" if error is None else f", {100 * max(error, steps or 0):g} %"
+            words += " by the load steps" * (error is not None and (steps or 0) > error)
+        parts.append(words)
+    head = "cells in a" if any(entry["resolution"]["cells_in_radius"] for entry in entries) else "grid"
+    return f"{head}{about}: {'; '.join(parts)}"
+
+
+def _needed(entry: Mapping[str, Any]) -> str:
+    """Time and memory of a model, or the keys for which it cannot be used."""
+    if not entry["available"]:
+        keys = re.findall(r"([a-z_]+(?:\.[a-z_]+)+) = ", entry["reason"]) or [entry["reason"]]
+        first, *more = dict.fromkeys(keys)
+        return f"{entry['model']} cannot ({first}{f' and {len(more)} more' * bool(more)})"
+    memory, time = with_prefix(entry["estimate"]["memory_bytes"], "B"), with_time(entry["estimate"]["time_s"])
+    return f"{entry['model']} {time}, {memory}"
+
+
+def _brief(stages: Sequence[Mapping[str, Any]], *, runs: bool) -> str:
+    """The stages that run, or those that do not, in words, each once."""
+    told, sizes = {}, {each["stage"]: each["size"] for each in stages if each["runs"] == runs}
+    for stage in BRIEF:
+        if stage in sizes and (runs or stage not in SELDOM):
+            words, _, size = BRIEF[stage].partition("|")
+            sized = size.format_map(sizes[stage]) if runs else ""
+            told[words] = sized.replace("in 1 load steps", "in one load step")
+    return ", ".join(words + size for words, size in told.items()) or "nothing"
+
+
+def _off(found: Mapping[str, Any] | None) -> list[str]:
+    """That the contact is outside of the model, and by how much that is off, short."""
+    if found is None:
+        return []
+    outside = [outside_in_words(found["a_over_R"])] if found["outside"] else []
+    like = f"{'as of a sphere at ' * bool(found['like'])}a/R = {found['a_over_R']:.2g}"
+    off = off_in_words(found)
+    return [*outside, *([f"small strains of a flat half-space are off: {off} ({like})"] if off else [])]
+
+
+def _warnings(entries: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Coarse grids, and what a machine or a command would not begin."""
+    found = []
+    for entry in (each for each in entries if each["available"]):
+        cells, needs, model = entry["resolution"]["cells_in_radius"], entry["estimate"], entry["model"]
+        if cells is not None and cells < COARSEST:
+            found.append(f"{model}: only {cells:.2g} cells in the contact radius")
+        if (most := memory_bytes()) and needs["memory_bytes"] > most:
+            found.append(f"{model}: this machine has {with_prefix(most, 'B')} of memory")
+        if needs["time_s"] > LONGEST:
+            found.append(f"{model}: more than a day, begun with --anyway only")
+    return found
 
 
 def _model(scene: Scene, model: str) -> dict:
@@ -45,7 +262,8 @@ def _model(scene: Scene, model: str) -> dict:
             words = f"{asked}: begins with {choice}; the table of advice expects {later}"
             chosen, scene = [Stage("accuracy", True, words)], chosen_scene(scene, model, later)
     except models.ModelError as reason:
-        return {"model": model, "available": False, "reason": str(reason), "stages": [], "estimate": None}
+        nothing: dict[str, Any] = {"stages": [], "estimate": None, "resolution": None}
+        return {"model": model, "available": False, "reason": str(reason), **nothing}
     made = models.plan(scene, model)
     stages, estimate = _stages(scene, made), estimates.estimate(scene, model, made)
     if scene.solver.uncertainty:
@@ -57,6 +275,7 @@ def _model(scene: Scene, model: str) -> dict:
         "reason": "",
         "stages": [asdict(stage) for stage in stages],
         "estimate": asdict(estimate),
+        "resolution": _resolution(scene, model, made),
     }
 
 
@@ -136,22 +355,9 @@ def _smaller(scene: Scene, model: str) -> str:
     return f"lower grid.cells = [{grid.nx}, {grid.ny}]{layers}"
 
 
-def plan_lines(content: dict) -> list[str]:
-    """A plan as lines of plain text for the reader: the advice first, then what each model computes."""
-    table = content["advice"]["table"]
-    shown = table_lines(table["columns"], table["rows"]) if table["rows"] else []
-    return [*advice_lines(content), *shown, *model_lines(content)]
-
-
-def advice_lines(content: dict) -> list[str]:
-    """What stands above the table of the advice: the title of the scene, and what the table is about."""
-    title = printable(content["title"])
-    return [*([title, ""] if title else []), f"advice: {content['advice']['words']}"]
-
-
-def model_lines(content: dict) -> list[str]:
-    """What each model computes and leaves out, with its estimate; by how much all of them are off."""
-    of_model, lines = content["model_range"], []
+def _model_lines(content: Mapping[str, Any]) -> list[str]:
+    """What each model computes and leaves out, with its estimate."""
+    lines: list[str] = []
     for entry in content["models"]:
         if not entry["available"]:
             lines += ["", f"{entry['model']}: cannot be used: {entry['reason']}"]
@@ -163,7 +369,7 @@ def model_lines(content: dict) -> list[str]:
             size = ", ".join(_sized(name, value) for name, value in stage["size"].items())
             mark = "computed" if stage["runs"] else "left out"
             lines.append(f"  {mark}  {stage['stage']}: {stage['reason']}" + (f" ({size})" if size else ""))
-    off = [] if of_model is None else range_lines(of_model)
+    off = [] if content["model_range"] is None else range_lines(content["model_range"])
     return [*lines, "", *off, content["note"]]
 
 

@@ -36,7 +36,7 @@ from sam.scene import (
     open_file,
     resolved,
 )
-from verification.runs.meshes import is_mesh, mesh_files, read_mesh
+from verification.runs.meshes import STEPS, is_mesh, mesh_files, mesh_names, read_mesh
 from verification.runs.model_range import OUTSIDE, outside_of_model, range_lines
 from verification.runs.provenance import collect
 from verification.runs.tables import columns_text, frame_of, read_table
@@ -46,6 +46,8 @@ if TYPE_CHECKING:
 
 SUMMARY = "summary.json"
 CHECKPOINT = "checkpoint.npz"
+COMPANION = "compare.json"
+"""Beside the table of a comparison: its verdict and cost."""
 MEMBERS = "members"
 """Folder in that of a run with what is solved for its uncertainty, until all of it is."""
 FORMAT = "samfem run 1"
@@ -156,6 +158,12 @@ def read_run(folder: str | Path) -> Run:
         name: _read_table(folder / f"{name}.csv") for name in COLUMNS if (folder / f"{name}.csv").exists()
     }
     return Run(folder, summary, tables)
+
+
+def meshes_in(folder: Path) -> dict[str, Path]:
+    """The meshes of a run by the name of their file without its ending."""
+    there = [folder / name for name in mesh_names() if (folder / name).is_file()]
+    return {path.stem: path for path in there if path.name != STEPS}
 
 
 def mesh_of(folder: Path, name: str) -> Any:

@@ -9,7 +9,7 @@ VTK itself, which takes a quarter of the time to load that pyvista takes, and lo
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -57,22 +57,45 @@ def mesh_files(result: Result, cycles: int, outside: float | None = None) -> dic
     """
     files: dict[str, bytes] = {}
     entries = []
+    for state, part, fields in _parts(result):
+        name, number = _named(part, state), ("fields", *PARTS).index(part)
+        time = cycles - 0.5 * (not _ended(state))
+        if state.startswith(CYCLE):
+            time = float(state.removeprefix(CYCLE))
+        files[name] = mesh_file(fields, outside)
+        entries.append(f'  <DataSet timestep="{time!r}" part="{number}" name="{part}" file="{name}"/>')
+    if entries:
+        lines = ['<VTKFile type="Collection" version="0.1">', " <Collection>", *entries, " </Collection>"]
+        files[STEPS] = "\n".join([*lines, "</VTKFile>", ""]).encode()
+    return files
+
+
+def fields_of(result: Result) -> dict[str, FieldMesh | GridFields]:
+    """The fields of a result by the name that their file would have, without its ending."""
+    return {Path(_named(part, state)).stem: fields for state, part, fields in _parts(result)}
+
+
+def _parts(result: Result) -> Iterator[tuple[str, str, FieldMesh | GridFields]]:
+    """State, part and fields of each mesh."""
     for state in dict.fromkeys((*result.grids, *result.bodies)):
         parts: dict[str, FieldMesh | GridFields] = {**result.grids.get(state, {})}
         if "plane" in parts:
             parts["fields"] = _as_mesh(parts.pop("plane"))
         if state in result.bodies:
             parts["fields"] = result.bodies[state]
-        ended = state == UNLOADED or state.startswith(CYCLE)
-        time = float(state.removeprefix(CYCLE)) if state.startswith(CYCLE) else cycles - 0.5 * (not ended)
-        for part, fields in parts.items():
-            name, number = _named(part, state if ended else ""), ("fields", *PARTS).index(part)
-            files[name] = mesh_file(fields, outside)
-            entries.append(f'  <DataSet timestep="{time!r}" part="{number}" name="{part}" file="{name}"/>')
-    if entries:
-        lines = ['<VTKFile type="Collection" version="0.1">', " <Collection>", *entries, " </Collection>"]
-        files[STEPS] = "\n".join([*lines, "</VTKFile>", ""]).encode()
-    return files
+        yield from ((state, part, fields) for part, fields in parts.items())
+
+
+def _ended(state: str) -> bool:
+    """Whether it is one at the end of a cycle."""
+    return state == UNLOADED or state.startswith(CYCLE)
+
+
+def as_pyvista(fields: FieldMesh | GridFields) -> Any:
+    """What `read_mesh` gives of the file of a part, without the file."""
+    import pyvista
+
+    return pyvista.wrap(_rectilinear(fields) if isinstance(fields, GridFields) else _unstructured(fields))
 
 
 def mesh_file(fields: FieldMesh | GridFields, outside: float | None = None) -> bytes:
@@ -147,8 +170,9 @@ def _size(kind: int) -> int:
 
 
 def _named(part: str, state: str) -> str:
+    """The name of the file of a part."""
     ending = "vtu" if part == "fields" else "vtr"
-    return f"{part}-{state}.{ending}" if state else f"{part}.{ending}"
+    return f"{part}-{state}.{ending}" if _ended(state) else f"{part}.{ending}"
 
 
 def _as_mesh(plane: GridFields) -> FieldMesh:

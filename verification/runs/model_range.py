@@ -234,7 +234,7 @@ def _likes(
         ratio = _ratio_of(scene, radius) if smooth and radius is not None else _ratio(scene, load)
         yield ratio, {"ellipsoid": LARGER, "rounded-punch": "slope at the edge"}.get(_shape(scene), "")
     if scene.patch_surface is not None:
-        slope = _slope(scene) if result is None else _slope_in_contact(result)
+        slope = rms_slope(scene) if result is None else _slope_in_contact(result)
         if slope:
             edge = slope / RMS_OF_SLOPE
             yield edge / sqrt(1.0 + edge**2), f"rms slope {slope:.2g}"
@@ -249,7 +249,7 @@ def _ratio(scene: Scene, load: float) -> float:
     end b and the radius R of its edge, and under a given pressure that of the sphere which makes it.
     """
     plasticity, loading, other = scene.body.plasticity, scene.loading, scene.counterbody
-    modulus = _modulus(scene)
+    modulus = contact_modulus(scene)
     if load == 0.0:
         return 0.0
     if other is None:
@@ -275,7 +275,7 @@ def _ratio_of_edge(scene: Scene, load: float) -> float:
     """The same of a punch with a rounded edge: the integrals of Sneddon, Int. J. Eng. Sci. 3 (1965) 47, with
     cos t = b/a.
     """
-    other, plasticity, modulus = scene.counterbody, scene.body.plasticity, _modulus(scene)
+    other, plasticity, modulus = scene.counterbody, scene.body.plasticity, contact_modulus(scene)
     flat, edge, by_force = other.flat_radius, other.radius, scene.loading.approach is None
 
     def excess(ratio: float) -> float:
@@ -309,7 +309,7 @@ def _ratio_of(scene: Scene, radius: float, *, elastic: bool = False) -> float:
     return radius / sqrt(a * b) * max(a / rx, b / ry)
 
 
-def _modulus(scene: Scene) -> float:
+def contact_modulus(scene: Scene) -> float:
     """E* in Pa of the body without its coating and of the counter-body."""
     body, other = scene.body, scene.counterbody
     compliance = (1.0 - body.poisson**2) / body.young
@@ -391,7 +391,7 @@ def _hardening(plasticity: Plasticity) -> str:
     return SWIFT if _flow(plasticity, deep, 0.05) > HARDENS * _flow(plasticity, deep, 0.0) else PERFECT
 
 
-def _slope(scene: Scene) -> float:
+def rms_slope(scene: Scene) -> float:
     """rms slope of the patch, of both surfaces together, before a solve; of a counter-body that moves that of
     the body alone. 0 where only the digest of a file is at hand.
     """

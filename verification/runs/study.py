@@ -39,8 +39,12 @@ from sam.scene import (
     parse_toml,
     problems,
     read_limited,
+    read_scene,
     scene_of,
     spelling,
+    tables_of,
+    unit_of_key,
+    with_units,
 )
 from verification.runs import models
 from verification.sensitivity import METHODS, design, size
@@ -414,6 +418,41 @@ def read_study(path: str | Path) -> Points:
     place = path.parent / name
     points, inputs = _points(study, parse_toml(base, str(place)), place, str(path))
     return Points(study, points, {path.name: content, name: base, **inputs})
+
+
+def study_of(table: Mapping[str, Any], scene: Scene | Mapping[str, Any] | str | Path) -> Points:
+    """The study that Python gives, without its scene, and the scenes. Values of a key may be a list alone,
+    numbers are SI numbers or strings with units. Raises SceneError as `read_study`.
+    """
+    if isinstance(scene, str | Path):
+        place = Path(scene)
+        base = parse_toml(read_scene(place)[1][place.name], str(place))
+    else:
+        base, place = tables_of(scene if isinstance(scene, Scene) else Scene(**scene)), Path("scene")
+    table = {**table, "scene": place.name}
+    if isinstance(vary := table.get("vary"), Mapping):
+        axes = {key: axis if isinstance(axis, Mapping) else {"list": axis} for key, axis in vary.items()}
+        table["vary"] = {
+            key: {
+                name: _from_python(value, unit_of_key(Scene, key) if name in KINDS else "")
+                for name, value in axis.items()
+            }
+            for key, axis in axes.items()
+        }
+    try:
+        study = Study.model_validate(table, context={"spelling": "file"})
+    except ValidationError as error:
+        raise SceneError(problems(error), "study") from None
+    points, inputs = _points(study, base, place, "study")
+    return Points(study, points, inputs)
+
+
+def _from_python(values: Any, unit: str) -> Any:
+    """Values of an axis as a study file spells them, of an array or a tuple too."""
+    listed = values.tolist() if isinstance(values, np.ndarray | np.generic) else values
+    if isinstance(listed, list | tuple):
+        return [_from_python(value, unit) for value in listed]
+    return with_units(listed, unit)
 
 
 def _points(

@@ -7,7 +7,9 @@ import codecs
 import difflib
 import sys
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from html import escape as in_html
 from typing import Any, TextIO
 
 from verification.text.readable import with_time
@@ -16,6 +18,8 @@ QUIET_S = 1.0
 """A command that is done by then shows no progress."""
 LINE_EVERY_S = 5.0
 """Time between plain lines of one stage."""
+NOTEBOOK_EVERY_S = 0.2
+"""Time between two states of the bar in a notebook."""
 
 
 def print_anything(stream: TextIO) -> None:
@@ -63,8 +67,28 @@ def _console(stream: TextIO, **how: bool) -> Any:
     return Console(file=getattr(stream, "uncleaned", stream), **how)
 
 
+def followed(
+    progress: Callable[[str, int, int], None] | bool | None,
+) -> AbstractContextManager[Callable[[str, int, int], None]]:
+    """What solvers tell their progress: the callable itself; None: a bar for whoever is at a terminal or in a
+    notebook; True: also plain lines elsewhere; False: nothing.
+    """
+    if callable(progress):
+        return nullcontext(progress)
+    if progress or (progress is None and (sys.stderr.isatty() or in_notebook())):
+        return Progress(remaining=True)
+    return nullcontext(lambda *_: None)
+
+
+def in_notebook() -> bool:
+    """Whether the kernel of a notebook runs this."""
+    shell = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)()
+    return getattr(shell, "kernel", None) is not None
+
+
 class Progress:
-    """The `progress` callable of the solvers: a bar on a terminal, plain lines elsewhere. A context manager.
+    """The `progress` callable of the solvers: a bar on a terminal and in a notebook, plain lines elsewhere. A
+    context manager.
 
     remaining: plain lines too say how long the stage will take.
     """
@@ -74,13 +98,14 @@ class Progress:
         self._task: Any = None
         self._stage, self._next = "", time.monotonic() + QUIET_S
         self._remaining, self._began = remaining, (0.0, 0)
-        self._terminal = sys.stderr.isatty()
+        self._notebook = in_notebook()
+        self._terminal = not self._notebook and sys.stderr.isatty()
 
     def __enter__(self) -> Progress:
         return self
 
     def __exit__(self, *_exception) -> None:
-        if self._bar is not None:
+        if self._terminal and self._bar is not None:
             self._bar.stop()
 
     def __call__(self, stage: str, done: int, total: int, left: str = "") -> None:
@@ -93,8 +118,21 @@ class Progress:
             self._stage, self._began = stage, (now, done)
         if now >= self._next:
             count = f": {done} of {total}" if total else ""
-            print(f"{stage}{count}{left or self._left(done, total, now)}", file=sys.stderr, flush=True)
-            self._next = now + LINE_EVERY_S
+            line = f"{stage}{count}{left or self._left(done, total, now)}"
+            if self._notebook:
+                self._display(line, done, total)
+            else:
+                print(line, file=sys.stderr, flush=True)
+            self._next = now + (NOTEBOOK_EVERY_S if self._notebook else LINE_EVERY_S)
+
+    def _display(self, line: str, done: int, total: int) -> None:
+        """Show a state in place of the last one."""
+        shown = {"text/plain": line}
+        shown["text/html"] = f'<progress max="{total}" value="{done}"></progress> {in_html(line)}'
+        if self._bar is None:
+            self._bar = sys.modules["IPython"].display.display(shown, raw=True, display_id=True)
+        else:
+            self._bar.update(shown, raw=True)
 
     def _left(self, done: int, total: int, now: float) -> str:
         """The time that is left at the mean pace so far."""

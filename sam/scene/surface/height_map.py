@@ -25,10 +25,11 @@ class HeightMap:
 
     extent: (Lx, Ly) in m, nx cells of Lx/nx each; sha256: of extent and heights, by which two maps are equal.
     values: read-only, nan where one is missing; None if only the digest is at hand, as in the scene of a
-    summary.json: such a map cannot be solved.
+    summary.json: such a map cannot be solved. of_file: the keys of a scene file that name the file of the
+    map, and say what it does not; empty of one that was made in Python.
     """
 
-    __slots__ = ("cells", "extent", "sha256", "values")
+    __slots__ = ("cells", "extent", "of_file", "sha256", "values")
     column: ClassVar[str] = "height_m"
 
     @classmethod
@@ -58,12 +59,14 @@ class HeightMap:
         content.update(heights.tobytes())
         self.sha256 = content.hexdigest()
         self.values: Array | None = heights
+        self.of_file: dict[str, Any] = {}
 
     @classmethod
     def known_by(cls, sha256: str, cells: tuple[int, int], extent: tuple[float, float]) -> HeightMap:
         """A map of which only the digest is at hand."""
         known = object.__new__(cls)
         known.values, known.sha256, known.cells, known.extent = None, sha256, cells, extent
+        known.of_file = {}
         return known
 
     @property
@@ -84,7 +87,7 @@ class HeightMap:
     def __reduce__(self) -> tuple[Any, ...]:
         if self.values is None:
             return type(self).known_by, (self.sha256, self.cells, self.extent)
-        return type(self), (self.values, self.extent)
+        return type(self), (self.values, self.extent), (None, {"of_file": self.of_file})
 
     def __eq__(self, other: object) -> bool:
         return type(other) is type(self) and self.sha256 == other.sha256

@@ -40,7 +40,7 @@ from sam.arrays import Array
 from sam.scene.inputs import InputError, content_of, read_apart
 from sam.scene.section import printable, spelling, stated
 from sam.scene.surface.height_map import HIGHEST, PLACES, FrictionMap, HeightMap, from_python
-from sam.scene.units import CELLS, in_file, metres_in, refused
+from sam.scene.units import CELLS, in_file, metres_in, refused, spelled
 
 LARGEST_FILE = 1 << 28  # bytes: 4097 x 4097 heights with 16 characters each
 STEEPEST = 1.0  # heights differ by more than the map is long: no surface of a half-space
@@ -89,7 +89,7 @@ class MapField:
         if heights and not {"extent", "unit"} <= set(info.data):
             raise refused("read only once extent and unit are right")
         told = Told(info.data.get("extent"), info.data.get("unit"))
-        if not in_file(info):
+        if not in_file(info) or isinstance(value, self.kind):
             if told != NOTHING:
                 raise refused(f"the name of a file with extent and unit; a {self.kind.__name__} is in m")
             return from_python(value, self.kind)
@@ -107,6 +107,9 @@ class MapField:
                 f"heights from {low} to {high} on a map of {' x '.join(sides)}: is a unit wrong, or one of "
                 "them the mark of a missing height? That is to be empty or nan"
             )
+        sides = [spelled(side, "m") for side in told.extent or ()]
+        keys = {"extent": sides, "unit": told.unit, "path": value}
+        map_.of_file = {key: entry for key, entry in keys.items() if entry}
         return map_
 
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> core_schema.CoreSchema:

@@ -28,7 +28,7 @@ from typing import Any
 from sam.scene import Scene, SceneError, parse_scene, read_scene, resolved
 from verification.cases.case import FEM, SAM, Case, Context, Measured, SmallTable
 from verification.compare.own_data import read_data
-from verification.cost.plan import plan, plan_lines
+from verification.cost.plan import plan
 from verification.robustness.fuzz import (
     ARCHIVE,
     KINDS,
@@ -93,8 +93,9 @@ def read_all(path: Path, bad: BadInput) -> str:
             read_run(path)
         else:
             scene, _ = read_scene(path)
-            lines = plan_lines(content := plan(scene))
-            json_text(content)
+            found = plan(scene)
+            lines = found.lines(verbose=True)
+            json_text(found.content)
             if not all(character.isprintable() for line in lines for character in line):
                 raise ValueError("the plan holds control characters")
             if Scene(**resolved(scene)) != scene:

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: MIT
+"""Sphinx's settings for `make docs`: the pages of this folder, the API, the gallery and the verification pages."""
+
+import re
+import shutil
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+project = "samfem"
+author = "the samfem authors"
+copyright = author
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.githubpages",
+    "sphinx.ext.napoleon",
+    "sphinx_copybutton",
+    "sphinx_gallery.gen_gallery",
+]
+exclude_patterns = ["_build", "examples", "gallery"]
+default_role = "code"
+nitpicky = True
+nitpick_ignore_regex = [  # of other libraries, or of no use to a reader of the API
+    ("py:.*", r"(collections|numpy|pathlib|pandas|matplotlib|pydantic)\..*"),
+    ("py:class", r"DataFrame|Figure|Path|Mapping\[str|OwnData|Result|sam\.scene\..*"),
+]
+autodoc_member_order = "bysource"
+
+myst_enable_extensions = ["colon_fence", "dollarmath"]
+myst_heading_anchors = 3
+
+html_theme = "pydata_sphinx_theme"
+html_title = "samfem"
+html_show_sourcelink = False
+
+sphinx_gallery_conf = {
+    "examples_dirs": "gallery",
+    "gallery_dirs": "auto_gallery",
+    "filename_pattern": "/",  # all scripts run, whatever their name
+    "abort_on_example_error": True,
+    "show_memory": False,
+    "min_reported_time": 5,
+}
+
+LINK = re.compile(r"(!?\[(?:[^][]|\[[^]]*\])*\]\()([^)\s:]+)\)")
+INCLUDED = re.compile(r"^```\{include\} \.\./(\S+)\n```$", re.MULTILINE)
+
+
+def link_in_site(match: re.Match) -> str:
+    """A link between files of the repository as one between pages of the site."""
+    start, target = match.groups()
+    to_root, _, path = target.rpartition("../")
+    if path.startswith("reports/") and not start.startswith("!"):
+        page = path.removeprefix("reports/").replace("README.md", "index.html")
+        return f'<a href="{to_root}verification/{page}">{start[1:-2]}</a>'
+    inside = {"CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md", "README.md": "index.md"}
+    if path in inside:
+        return f"{start}{to_root}{inside[path]})"
+    script = re.fullmatch(r"((?:\.\./)?)(?:docs/)?gallery/(\w+)\.py", target)
+    return f"{start}{script[1]}auto_gallery/{script[2]}.rst)" if script else match.group()
+
+
+def as_page(app, name: str, source: list[str]) -> None:
+    """A page as Sphinx reads it: with the files of the root that it includes, and links that work in the site."""
+
+    def included(match: re.Match) -> str:
+        app.env.note_dependency(str(ROOT / match[1]))
+        text = (ROOT / match[1]).read_text(encoding="utf-8")
+        return LINK.sub(lambda link: f"{link[1]}{f'../{link[2]}'.removeprefix('../docs/')})", text)
+
+    source[0] = LINK.sub(link_in_site, INCLUDED.sub(included, source[0]))
+
+
+def copy_reports(app, failed: Exception | None) -> None:
+    """Put the published verification pages into the site, and the scenes that they name."""
+    site = Path(app.outdir) / "verification"
+    if not failed:
+        shutil.copytree(
+            ROOT / "reports", site, ignore=shutil.ignore_patterns("latest*", "*.md"), dirs_exist_ok=True
+        )
+        shutil.copytree(ROOT / "verification" / "scenes", site / "scenes", dirs_exist_ok=True)
+
+
+def setup(app) -> None:
+    """Called by Sphinx."""
+    app.connect("source-read", as_page)
+    app.connect("build-finished", copy_reports)
