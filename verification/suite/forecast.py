@@ -78,7 +78,8 @@ class Forecast:
             report, store = (with_prefix(1e6 * size, "B", 2) for size in (whole.report_MB, whole.store_MB))
             text += f", {with_time(whole.processor_s)} of processor time; disk: {report} in the report, "
             text += f"{store} in the store"
-        return f"{text}{f'; {self.stored} of the cases are in the store already' * bool(self.stored)}."
+        of = f"{self.stored} of {len(self.needs)} cases"
+        return f"{text}{f'; already in the store: {of}' * bool(self.stored)}."
 
 
 def forecast(chosen: Sequence[Case], level: str, store: Store | None) -> Forecast:
