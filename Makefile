@@ -24,15 +24,17 @@ report: $(INSTALLED)
 test: $(INSTALLED)
 	$(BIN)/python -m pytest $(PARALLEL)
 
-# Formatter, linter, who imports whom, types, dead code; pyproject.toml has the settings of each. About half a minute, with caches less.
+# Formatter, linter, spelling, who imports whom, types, dead code; pyproject.toml has the settings of each. About half a minute, with caches less.
 lint: $(INSTALLED)
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
+	$(BIN)/codespell
 	$(BIN)/lint-imports --no-logo
 	$(BIN)/mypy
 	$(BIN)/vulture
 
-# The wheel, installed without extras in an environment of its own, runs these cases; CASES=quick: all of the quick level.
+# The wheel, in an environment of its own: without extras it solves, with `report` it runs these cases; CASES=quick: all of the
+# quick level.
 wheel: CASES ?= hertz-ellipse hertz-sphere certificates mutation
 wheel: $(INSTALLED)
 	PYTHON=$(PYTHON) .ci/wheel $(CASES)
@@ -40,7 +42,7 @@ wheel: $(INSTALLED)
 # The site in docs/_build/html: without a warning of Sphinx, without a broken link; each notebook of the gallery runs.
 docs: $(DOCS_INSTALLED)
 	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going docs docs/_build/html
-	$(BIN)/python docs/check_links.py docs/_build/html
+	$(BIN)/python docs/tools/check_links.py docs/_build/html
 	find docs/auto_gallery -name '*.ipynb' -print0 | xargs -0 -n 1 -P 2 $(BIN)/jupyter-execute --timeout 120
 
 # The tests again for each of the processors, languages, users, ... of other machines: ENVIRONMENTS="no-home ascii" for some,
@@ -58,9 +60,9 @@ publish: $(INSTALLED)
 	SAMFEM_PEERS=$${SAMFEM_PEERS:-$$(ls $(PEERS)/bin/python 2>/dev/null)} $(BIN)/samfem publish $(PUBLISH) --level $(LEVEL) --out $(PAGES) --store $(KEPT)
 publish: LEVEL = full
 
-# The numbers and the failed gates of README.md, from the published pages.
+# The numbers of README.md, with its failed gates, and of the guide, from the published pages.
 readme: $(INSTALLED)
-	$(BIN)/python -m verification.suite.readme $(PAGES) README.md
+	$(BIN)/python -m verification.suite.readme $(PAGES) README.md docs/guide/which-model.md
 
 # Python compiles a module when it is first used: to compile all of them here would take another half a minute.
 $(INSTALLED): requirements.lock pyproject.toml
@@ -90,7 +92,7 @@ $(PEERS)/.installed: requirements-peers.lock requirements-aspher.lock
 # Rewrite the pins after a change of the dependencies (needs uv).
 lock:
 	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \
-		--extra test --extra build --extra lint pyproject.toml -o requirements.lock
+		--extra report --group dev pyproject.toml -o requirements.lock
 	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \
 		-c requirements.lock requirements-docs.in -o requirements-docs.lock
 	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-emit-index-url \

@@ -6,8 +6,11 @@ import shutil
 import sys
 from pathlib import Path
 
+from docutils.nodes import SkipNode
+from docutils.utils.math.latex2mathml import tex2mathml
+
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))
+sys.path[:0] = [str(ROOT), str(ROOT / "docs" / "tools")]
 
 project = "samfem"
 author = "the samfem authors"
@@ -19,8 +22,10 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx_copybutton",
     "sphinx_gallery.gen_gallery",
+    "stories",
+    "matplotlib.sphinxext.plot_directive",
 ]
-exclude_patterns = ["_build", "examples", "gallery"]
+exclude_patterns = ["_build", "examples", "gallery", "theory", "tools"]
 default_role = "code"
 nitpicky = True
 nitpick_ignore_regex = [  # of other libraries, or of no use to a reader of the API
@@ -32,9 +37,19 @@ autodoc_member_order = "bysource"
 myst_enable_extensions = ["colon_fence", "dollarmath"]
 myst_heading_anchors = 3
 
+plot_formats = [("png", 120)]
+plot_html_show_formats = False
+plot_html_show_source_link = False
+
+html_math_renderer = "mathml"
 html_theme = "pydata_sphinx_theme"
 html_title = "samfem"
 html_show_sourcelink = False
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_sidebars = {"*": []}  # pages without others below them
+html_theme_options = {"header_links_before_dropdown": 6, "show_toc_level": 2}
+copybutton_selector = "div:not(.output):not(.sphx-glr-script-out) > div.highlight > pre"
 
 sphinx_gallery_conf = {
     "examples_dirs": "gallery",
@@ -84,7 +99,20 @@ def copy_reports(app, failed: Exception | None) -> None:
         shutil.copytree(ROOT / "verification" / "scenes", site / "scenes", dirs_exist_ok=True)
 
 
+def inline_formula(translator, node) -> None:
+    """A formula as MathML, which needs no script and no network."""
+    translator.body.append(tex2mathml(node.astext()))
+    raise SkipNode
+
+
+def displayed_formula(translator, node) -> None:
+    """A formula on a line of its own."""
+    translator.body.append(f'<div class="formula" tabindex="0">{tex2mathml(node.astext(), as_block=True)}</div>')
+    raise SkipNode
+
+
 def setup(app) -> None:
     """Called by Sphinx."""
+    app.add_html_math_renderer("mathml", (inline_formula, None), (displayed_formula, None))
     app.connect("source-read", as_page)
     app.connect("build-finished", copy_reports)

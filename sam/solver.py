@@ -220,6 +220,7 @@ def _result(
         kinks=EVEN if plan.plasticity is None or record is None else plan.plasticity.strength().kinks,
         centred=rough is None,
     )
+    values |= {} if rough is None else rough.quantities(grid, peak.contact)
     tables = _tables(plan, history, verdicts)
     if plan.track is not None:
         at_edge = status is Status.CONTACT_AT_GRID_EDGE

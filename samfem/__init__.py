@@ -22,13 +22,14 @@ Examples
 (1, 2)
 """
 
-from importlib import import_module, metadata
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from sam.scene import HeightMap, Scene, SceneError
-    from samfem.python import Comparison, Run, Study, Sweep, compare, load, plan, plot, read, solve, sweep
+    from samfem.python import Comparison, Run, Sweep, compare, load, plan, plot, read, solve, sweep
     from samfem.refusals import SeveralError
+    from verification.cost.plan import Plan
     from verification.runs.files import FolderError
     from verification.runs.models import MODELS, ModelError
 
@@ -38,11 +39,11 @@ __all__ = [
     "FolderError",
     "HeightMap",
     "ModelError",
+    "Plan",
     "Run",
     "Scene",
     "SceneError",
     "SeveralError",
-    "Study",
     "Sweep",
     "__version__",
     "compare",
@@ -61,11 +62,12 @@ else:
 
     def __getattr__(name: str) -> Any:
         """A name of `__all__`, once it is asked for: the command loads only what it needs."""
+        if name not in __all__:
+            raise AttributeError(f"module 'samfem' has no attribute {name!r}")
         if name == "__version__":
-            return metadata.version("samfem")
-        if name in __all__:
-            return getattr(import_module("samfem.python"), name)
-        raise AttributeError(f"module 'samfem' has no attribute {name!r}")
+            return import_module("importlib.metadata").version("samfem")
+        module = import_module("samfem.python")  # first: it knows whether the packages are ours
+        return getattr(import_module("verification.cost.plan") if name == "Plan" else module, name)
 
 
 def __dir__() -> list[str]:

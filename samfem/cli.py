@@ -17,7 +17,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from verification import foreign_package
+from verification import foreign_package, need
 from verification.runs.models import MODELS, SAM
 from verification.text.console import Cleaned, print_anything, unknown
 
@@ -53,6 +53,9 @@ COMMANDS = {
     "completion": "samfem.starting",
 }
 """Command -> module that runs it, by a function of its name with the options as keywords."""
+OF_REPORT = ("samfem.publishing", "samfem.viewing")
+"""Those of the modules that need the extra of that name, as do these options of the others:"""
+DRAWN = ("figures", "report", "junit")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -101,6 +104,11 @@ def _run(options: argparse.Namespace) -> int:
     command = words.pop("command")
     refusals = import_module("samfem.refusals").REFUSALS
     try:
+        if COMMANDS[command] in OF_REPORT:
+            need(f"samfem {command}")
+        for option in DRAWN:
+            if words.get(option):
+                need(f"--{option}")
         code: int = getattr(import_module(COMMANDS[command]), command)(**words)
     except refusals as error:
         return _fail(str(error), WRONG_INPUT)

@@ -14,7 +14,7 @@ from importlib import import_module
 from pathlib import Path
 from subprocess import PIPE
 from tempfile import TemporaryDirectory, TemporaryFile
-from typing import TYPE_CHECKING, Any, Literal, NotRequired, TypedDict, overload
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -72,7 +72,7 @@ class Run(files.Run):
     tables
         Name ("history", "axis", "line", "plane", "surface", ...) -> DataFrame, columns with SI unit.
     model_range
-        By how much small strains of a flat half-space are off, see `docs/guide/accuracy.md`; or None.
+        By how much small strains of a flat half-space are off, see `docs/guide/limits.md`; or None.
     cost
         Times in s, memory in bytes and counters.
     summary
@@ -111,15 +111,16 @@ class Run(files.Run):
         there: Mapping[str, Any] = files.meshes_in(self.folder) if self.folder else {}
         if self.result is not None:
             there = meshes.fields_of(self.result)
+        state = "-unloaded" * unloaded
         for name in ("body", "fields") if part == "body" else (part,):
-            found = there.get(f"{name}-unloaded" if unloaded else name)
+            found = there.get(f"{name}{state}")
             if found is not None:
                 in_file = isinstance(found, Path)
                 mesh: DataSet = (
                     files.mesh_of(found.parent, found.name) if in_file else meshes.as_pyvista(found)
                 )
                 return mesh
-        raise FolderError(f"{part} is not one of the meshes of this run: {', '.join(there) or 'none'}")
+        raise FolderError(f"this run has no mesh {part}{state}: it has {', '.join(there) or 'none'}")
 
     def plot(self, name: str | None = None) -> Figure:
         """The figure of that name, see `samfem.plot`; the pressure, or else the profiles, without a name."""
@@ -238,22 +239,6 @@ class Sweep:
         return f"<p><b>{html.escape(repr(self))}</b></p>{self.frame.to_html(index=False, max_rows=20)}"
 
 
-class Study(TypedDict):
-    """What `sweep` takes in place of a file; the keys are those of a study file.
-
-    scene: a `Scene`, its tables, or the path of a file. vary: dotted key of the scene -> its values, a list
-    or array of SI numbers, strings with units or texts; or such as {"range": ["0.1 N", "0.5 N"], "count": 5}.
-    """
-
-    scene: Scene | Mapping[str, Any] | str | Path
-    vary: Mapping[str, Any]
-    title: NotRequired[str]
-    model: NotRequired[str]
-    mode: NotRequired[Literal["grid", "zip", "morris", "sobol", "uniform"]]
-    samples: NotRequired[int]
-    seed: NotRequired[int]
-
-
 def load(path: str | Path) -> Scene:
     """The scene in a TOML file. Raises SceneError with every problem of the file."""
     return load_scene(path)
@@ -361,7 +346,7 @@ def compare(
 
 
 def sweep(
-    study: Study | str | Path,
+    study: Mapping[str, object] | str | Path,
     out: str | Path | None = None,
     workers: int | None = None,
     *,
@@ -372,7 +357,10 @@ def sweep(
     Parameters
     ----------
     study
-        Path of the study, or its content, see `Study`.
+        Path of the study, or a mapping with the keys of its file: "scene", a `Scene`, its tables or the path
+        of its file; "vary", dotted key of the scene -> its values, a list or array of SI numbers, strings
+        with units or texts, or such as ``{"range": ["0.1 N", "0.5 N"], "count": 5}``; "model", "mode" and the
+        others where they are wanted.
     out
         Folder to write the table and the runs to; without it they are not kept.
     workers
@@ -387,22 +375,13 @@ def sweep(
 
     Examples
     --------
-    >>> scene = {
-    ...     "body": {"young": "210 GPa", "poisson": 0.3},
-    ...     "counterbody": {"shape": "sphere", "radius": "105 um"},
-    ...     "loading": {"force": "0.1 N"},
-    ... }
-    >>> found = samfem.sweep({"scene": scene, "vary": {"loading.force": [0.1, 0.8]}}, workers=1)
-    >>> found.frame["approach_m"][1] / found.frame["approach_m"][0]  # Hertz: 8^(2/3)
-    4.0
+    >>> study = {"scene": "sphere.toml", "vary": {"loading.force": [0.1, 0.2, 0.4]}}
+    >>> samfem.sweep(study).frame[["loading.force", "approach_m"]]  # doctest: +SKIP
     """
     from samfem.sweeping import answer, check  # noqa: PLC0415 - loads the solvers
     from verification.runs.study import read_study, study_of  # noqa: PLC0415 - loads scipy.stats
 
-    if isinstance(study, str | Path):
-        points = read_study(study)
-    else:
-        points = study_of({key: value for key, value in study.items() if key != "scene"}, study["scene"])
+    points = read_study(study) if isinstance(study, str | Path) else study_of(study)
     if out is not None:
         check(Path(out))
     # a process of its own, as its workers would run the script of the user again

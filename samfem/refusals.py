@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from sam.scene import SceneError
+from verification import ExtraError
 from verification.runs.files import SUMMARY, FolderError, check_target
 from verification.runs.models import ModelError
 
@@ -16,7 +17,7 @@ class SeveralError(ValueError):
     """More than one refusal; the message has each on lines of its own."""
 
 
-REFUSALS = (SceneError, FolderError, ModelError, SeveralError)
+REFUSALS = (SceneError, FolderError, ModelError, SeveralError, ExtraError)
 
 
 def check_folder(folder: Path, also: Sequence[str], what: str) -> None:

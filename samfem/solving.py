@@ -22,6 +22,7 @@ from verification.runs import checkpoints, models
 from verification.runs.archive import ArchiveError
 from verification.runs.files import CHECKPOINT, MEMBERS, Run, check_target, json_text, read_run, write_run
 from verification.runs.lock import locked
+from verification.runs.meshes import not_written
 from verification.runs.model_range import refusal
 from verification.runs.provenance import collect
 from verification.runs.store import Reuse, Store, default_store, solve_or_reuse
@@ -193,8 +194,9 @@ def _start(scene: Scene, folder: Path, who: dict[str, object]) -> Checkpoint | N
 def write_solved(
     scene: Scene, folder: Path, result: Result, *, source: Reuse, inputs: dict[str, bytes]
 ) -> None:
-    """Write a result to `folder`, and say on stderr where it is from and what it warns of."""
-    for text in (source.text, *result.warnings):
+    """Write a result to `folder`; on stderr: where it is from, what it warns of, which files are left out."""
+    lacking = [f"left out: {entry.reason}" for entry in not_written(result)]
+    for text in (source.text, *result.warnings, *lacking):
         if text:
             print(f"samfem: {result.model}: {text}", file=sys.stderr)
     write_run(result, scene, folder, collect(inputs, scene.seeds) | source.provenance)
@@ -326,7 +328,8 @@ def _hertz_columns(scene: Scene, found: Mapping[str, float], readable: bool) -> 
 
 def _uncertain_columns(result: Result | Run, found: Mapping[str, float], readable: bool) -> list[Column]:
     """Uncertainty, its shares of cells, load steps and box in percent, order and whether it converges."""
-    known = {name: entry for name, entry in (result.uncertainty or {}).items() if name in found}
+    entries: Mapping[str, Mapping[str, Any]] = result.uncertainty or {}
+    known = {name: entry for name, entry in entries.items() if name in found}
     parts = [
         part for part in ("cells", "steps", "box") if any(entry.get(f"u_{part}") for entry in known.values())
     ]

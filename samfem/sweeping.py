@@ -26,6 +26,7 @@ import numpy as np
 from sam.scene import QUANTITIES, Problem, Progress as Told, Result, Scene, SceneError, resolved, spelling
 from samfem.executors import Cluster, Failure, Processes, run
 from samfem.refusals import REFUSALS, check_folder
+from verification import ExtraError
 from verification.cost.plan import check_needs
 from verification.figures import sensitivity_figure, sweep_figure
 from verification.runs import models
@@ -199,11 +200,14 @@ def solve_study(
             again = "the same command goes on from there" if store else "without a store all are solved again"
             raise KeyboardInterrupt(f"interrupted: {kept}; {again}") from None
     state.write(always=True)
-    sweep_figure(content.study, _named(state.columns, state.ordered), folder / "sweep")
+    found = index_rows(state) if content.study.design else []
     if content.study.design:
-        found = index_rows(state)
         write_atomically(folder / SENSITIVITY, csv_text(INDEX_COLUMNS, found).encode())
+    try:
+        sweep_figure(content.study, _named(state.columns, state.ordered), folder / "sweep")
         sensitivity_figure(_named(INDEX_COLUMNS, found), folder / "sensitivity")
+    except ExtraError as error:
+        print(f"samfem: sweep: no figure and no mesh is written: {error}", file=sys.stderr)
     kind = "dask" if isinstance(solvers, Cluster) else "processes"
     workers = {"kind": kind, "lost": solvers.lost}
     record = _record(state) | {"workers": workers, "elapsed_s": time.monotonic() - began}

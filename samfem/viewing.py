@@ -10,18 +10,16 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Mapping
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from verification import need
 from verification.figures.space import CannotDrawError, draw, draw_run
 from verification.runs.files import FolderError, mesh_of, meshes_in, read_summary, replacing, write_atomically
 from verification.runs.lock import locked
 
-OF_PAGES = ("trame_pyvista", "nest_asyncio2")
-"""Packages that write a page."""
 XDMF = {"file_format": "xdmf", "data_format": "XML"}  # all in one file
 WRITERS = {"inp": {"file_format": "abaqus"}, "msh": {"file_format": "gmsh"}, "xdmf": XDMF}
 """Format -> what meshio is told."""
@@ -38,9 +36,8 @@ def view(folder: Path, *, name: str | None, out: Path | None, page: Path | None)
     target = page or out
     if target is not None:
         _check_file(target, ".html" if page else ".png")
-    missing = [package for package in OF_PAGES if page and find_spec(package) is None]
-    if missing:
-        raise FolderError(f"--html needs {' and '.join(missing)}: pip install 'samfem[html]'")
+    if page:
+        need("--html", "html")
     try:
         print(*_drawn(folder, name, target, as_page=page is not None), sep="\n")
     except CannotDrawError as error:

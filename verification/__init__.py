@@ -5,6 +5,22 @@ from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 
+EXTRAS = {
+    "report": ("jinja2", "matplotlib", "meshio", "pyvista", "vtk"),
+    "html": ("trame_pyvista", "nest_asyncio2"),
+}
+"""Extra of the distribution -> the packages that its commands load."""
+
+
+class ExtraError(ImportError):
+    """Packages of an extra are not installed; the message says what needs them and how to install them."""
+
+
+def need(what: str, extra: str = "report") -> None:
+    """Raise ExtraError where a package of the extra is not installed; what: a command or an option."""
+    if missing := [name for name in EXTRAS[extra] if find_spec(name) is None]:
+        raise ExtraError(f"{what} needs {', '.join(missing)}: pip install 'samfem[{extra}]'")
+
 
 def foreign_package() -> str:
     """What to do about a package of another distribution where one of ours should be: before it on the path,

@@ -26,7 +26,7 @@ from typing import Any, Literal, NamedTuple
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from sam.scene import Problem, SceneError, spelling
+from sam.scene import Problem, SceneError, check_kind, spelling
 from verification.judging import Row
 from verification.quantities import QUANTITIES
 
@@ -240,6 +240,7 @@ def read_cases(path: Path) -> list[CaseFile]:
         content = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise SceneError([Problem("case file", path.name, str(error))], str(path)) from error
+    check_kind(content, "verification case", str(path))
     own, reasons = content.pop("cases", {}), content.pop("reasons", {})
     common = {"name": path.stem.replace("_", "-"), "family": path.parent.name, "path": path}
     named: dict[str, dict[str, Any]] = {}

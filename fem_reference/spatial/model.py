@@ -181,6 +181,10 @@ class Model(ContactModel):
         (x, y), (a, b) = self.places, self.plan.axes
         return np.hypot((x - self.place[0]) / a, (y - self.place[1]) / b) <= radius
 
+    def quantities_of_patch(self, _state: Equilibrium) -> dict[str, float]:
+        """What only a rough body has."""
+        return {}
+
     def tables_of_patch(self, states: Mapping[str, Equilibrium]) -> dict[str, Table]:
         """The tables that smooth bodies do not have: none."""
         return {}

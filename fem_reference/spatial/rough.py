@@ -102,6 +102,17 @@ class RoughModel(Model):
         radius, volume = overlap(self.initial_gap, self.lines.areas, approach - self.first_touch(previous))
         return volume / (OVERLAP_LENGTH * radius)
 
+    def quantities_of_patch(self, state: Equilibrium) -> dict[str, float]:
+        """Contact spots, which join along the lines of the mesh and may be cut by the edge of the patch; the
+        share of the patch in contact; the mean of the gap over its nodes.
+        """
+        gap = self.on_surface(state.gap)[np.isfinite(self.initial_gap)]
+        return {
+            "contact_spots": float(ndimage.label(self.nodal_pressure(state) > 0.0)[1]),
+            "contact_share": self.contact_area(state) / float(np.prod(of_rough(self.plan).sides)),
+            "mean_gap_m": float(gap.mean()) * self.scales.displacement,
+        }
+
     def tables_of_patch(self, states: Mapping[str, Equilibrium]) -> dict[str, Table]:
         """The table of the surface in every state."""
         return {"surface": stacked([surface_table(name, self, state) for name, state in states.items()])}

@@ -220,6 +220,7 @@ def _contact_quantities(model: Model, peak: Equilibrium) -> Quantities:
         "contact_radius_m": float(np.sqrt(area / np.pi)),
         "p_center_Pa": centre if model.plan.kind == "smooth" else None,
         "pressure_centroid_x_m": model.centroid(peak) * unit.length,
+        **model.quantities_of_patch(peak),
     }
     if model.plan.sliding.coefficient > 0.0:
         quantities["tangential_displacement_center_m"] = _centre(model, peak, 0)

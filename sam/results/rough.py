@@ -16,6 +16,7 @@ from sam.contact.normal import FEWEST_IN_SPOT, Contact
 from sam.grid.cells import CellGrid
 from sam.grid.gap import Place
 from sam.grid.rough import RoughPatch
+from sam.results.history import contact_area
 from sam.results.snapshots import Snapshot
 from sam.results.tables import Remedies
 from sam.scene.remedies import either
@@ -76,6 +77,19 @@ class RoughRecord:
                 [self.opposite(each.stretch, each.place).ravel() for each in snapshots]
             )
         return table | {"state": table["state"].tolist()}
+
+    def quantities(self, grid: CellGrid, contact: Contact) -> dict[str, float | None]:
+        """Contact spots, which join at the sides of cells and may be cut by the edge of the patch; the share
+        of the patch in contact; the mean of the gap over the patch.
+        """
+        from scipy import ndimage  # noqa: PLC0415 - for rough scenes alone
+
+        mean = float(contact.gap.mean())
+        return {
+            "contact_spots": float(ndimage.label(contact.pressure > 0)[1]),
+            "contact_share": contact_area(contact, grid) / (grid.nx * grid.hx * grid.ny * grid.hy),
+            "mean_gap_m": mean if np.isfinite(mean) else None,
+        }
 
     def warnings(self, grid: CellGrid, contact: Contact) -> tuple[str, ...]:
         """What a user should know about the peak, in words."""

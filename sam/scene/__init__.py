@@ -13,7 +13,7 @@ from sam.scene.body import LAWS, Body, Coating, Hardening, Plasticity
 from sam.scene.counterbody import SHAPES, CounterBody
 from sam.scene.friction import Friction
 from sam.scene.inputs import InputError, Inputs, below, open_file, read_apart, read_limited
-from sam.scene.load import load_scene, parse_scene, parse_toml, read_scene, scene_of
+from sam.scene.load import check_kind, load_scene, parse_scene, parse_toml, read_scene, scene_of
 from sam.scene.loading import Loading, Pass, Path, Strokes
 from sam.scene.numerics import Compare, Fem, Grid, Solver, Wear
 from sam.scene.remedies import either, finer_cells, finer_mesh
@@ -99,6 +99,7 @@ __all__ = [
     "Wear",
     "YieldCurve",
     "below",
+    "check_kind",
     "decode",
     "either",
     "encode",

@@ -19,6 +19,14 @@ from sam.scene.units import IN_FILE
 _BETWEEN = re.compile(rb"([\n,={}\[\]#])")
 _MOST_DOTS = 32  # in one key
 
+KINDS = {
+    "rows": ("verification case", "verify"),
+    "cases": ("verification case", "verify"),
+    "vary": ("study", "sweep"),
+    "body": ("scene", "solve"),
+}
+"""Table that a file has -> its kind, and the command that takes it."""
+
 
 def load_scene(path: str | Path) -> Scene:
     """The scene in a TOML file.
@@ -53,6 +61,7 @@ def parse_scene(content: bytes, source: str, inputs: Inputs | None = None) -> Sc
     table = parse_toml(content, source)
     if not table:
         raise _whole_file("empty: a scene needs the tables [body], [counterbody] and [loading]", source)
+    check_kind(table, "scene", source)
     return scene_of(table, source, inputs)
 
 
@@ -73,6 +82,13 @@ def parse_toml(content: bytes, source: str) -> dict[str, Any]:
         raise _whole_file("nested too deeply", source) from None
     except ValueError as error:  # TOMLDecodeError, and a number of thousands of digits
         raise _whole_file(f"not TOML: {error}", source) from None
+
+
+def check_kind(table: Mapping[str, Any], own: str, source: str) -> None:
+    """Raise SceneError for a file of another kind than its own, with the command that takes it."""
+    kind, command = next((kind for key, kind in KINDS.items() if key in table), (own, ""))
+    if kind != own and not any(key in table for key, (other, _) in KINDS.items() if other == own):
+        raise _whole_file(f"this is a {kind}: samfem {command} {source}", source)
 
 
 def scene_of(table: Mapping[str, Any], source: str, inputs: Inputs | None = None) -> Scene:

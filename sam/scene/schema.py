@@ -30,7 +30,7 @@ from sam.scene.surface.section import GENERATED, grid_excesses, patch_excesses
 from sam.scene.units import COUNT, STRAIN
 from sam.scene.writing import nameless, tables_of, toml
 
-Keys = Mapping[str, Any]
+Keys = Mapping[str, object]
 
 
 class Tables(TypedDict, total=False):

@@ -92,6 +92,18 @@ def test_the_cut_goes_through_the_largest_pressure():
     assert not result.quantities["friction_coefficient"] and np.nanmax(surface["friction"]) == 0.0
 
 
+def test_spots_share_and_mean_gap_by_hand():
+    """The gap of the heights and of the displacements of the surface."""
+    model, state = at_peak()
+    found, x = model.quantities_of_patch(state), centres(12)
+    depth = two_tops(x[:, None], x).max() - two_tops(x[:, None], x)
+    uz = state.u[model.body.basis.nodal_dofs[2, model.surface]][np.isfinite(model.initial_gap)]
+    moved = (uz.mean() - state.approach) * model.scales.displacement
+    assert found["mean_gap_m"] == close(depth.mean() + moved, 1e-9)
+    assert found["contact_spots"] == 2
+    assert found["contact_share"] == close(model.contact_area(state) / SIDE**2, 1e-12)
+
+
 def test_conditions_on_the_returned_field():
     """Balance, slip with the local coefficient, signs, reactions far away: from displacements and stiffness
     alone (1e-9). The whole coefficient is that of the loads, also far away.

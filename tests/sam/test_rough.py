@@ -93,6 +93,18 @@ def test_a_pit_below_a_punch_carries_nothing():
     assert result.converged and p[20, 20] == 0 and p[20, 31] > 0 and not p[0].any()
 
 
+def test_spots_share_and_mean_gap_by_hand():
+    """Six cells that stand out by 1 um under next to no load: an L cut by the edge, two that meet at a
+    corner, one alone.
+    """
+    tall = np.zeros((8, 8))
+    tall[[0, 0, 1, 3, 4, 6], [4, 5, 5, 1, 2, 6]] = 1e-6
+    found = solve(of_heights(lambda x, y: tall, 8, 8e-6, force=1e-6)).quantities
+    assert found["contact_spots"] == 4
+    assert found["mean_gap_m"] == pytest.approx(58 / 64 * 1e-6, rel=1e-5)
+    assert found["contact_share"] == found["contact_area_m2"] / (8e-6) ** 2
+
+
 def test_blocks_of_depths_change_nothing(monkeypatch):
     whole = solve(patch(32))
     monkeypatch.setattr("sam.elastic.problem.BYTES_AT_ONCE", 1)

@@ -7,6 +7,7 @@ import difflib
 import hashlib
 import json
 import os
+import pickle
 import subprocess
 import sys
 from decimal import Decimal
@@ -29,12 +30,14 @@ from builders import (
 from hypothesis import given, strategies as st
 from pydantic import ValidationError
 
+import verification
 from sam.scene import (
     Body,
     Coating,
     CounterBody,
     Friction,
     Grid,
+    Inputs,
     Loading,
     Path,
     Plasticity,
@@ -45,10 +48,13 @@ from sam.scene import (
     parse_scene,
     read_scene,
     resolved,
+    scene_of,
     units,
 )
 from sam.scene.body import LAWS
 from sam.scene.yield_curve import DepthProfile, Linear, Swift, Tabulated
+
+SHIPPED = sorted((FilePath(verification.__file__).parent / "scenes").rglob("*.toml"))
 
 
 def young(value: str) -> str:
@@ -239,6 +245,34 @@ def test_resolved_is_complete_and_reads_back():
     assert given.counterbody is None and (given.loading.p0, given.loading.radius) == (4e9, 6e-6)
     assert given.loading.path == Path(start=(-9e-6, 0.0), end=(9e-6, 0.0), steps=4)
     assert Scene(**resolved(given)) == given
+
+
+def test_a_shipped_scene_is_written_as_a_file_that_gives_it_again(tmp_path):
+    """Also of a map of heights and rows that it names, and of infinity; without what is at its default."""
+    for path in SHIPPED:
+        scene = load_scene(path)
+        written, inputs = scene.to_toml(), Inputs(path.parent)
+        again = parse_scene(written.encode(), path.name, inputs)
+        assert again == scene and resolved(again) == resolved(scene), path
+        assert repr(scene) == written.rstrip() and "None" not in written
+    assert len(SHIPPED) > 30
+
+
+def test_a_matrix_of_heights_and_its_size_are_written_again(tmp_path):
+    np.savetxt(tmp_path / 'a "b".txt', np.outer(np.arange(4.0), [1, 2, 0, 5]))
+    rough = {"kind": "file", "path": 'a "b".txt', "extent": ["4 um", "1e-6 m"], "unit": "nm"}
+    tables = {"title": "\x7f \\u00b5", "body": {"young": "0.1 MPa", "poisson": 0.3}, "surface": rough}
+    tables |= {"counterbody": {"shape": "flat"}, "loading": {"force": "1e-25 N"}}
+    scene = scene_of(tables, "s", Inputs(tmp_path))
+    assert parse_scene(scene.to_toml().encode(), "s", Inputs(tmp_path)) == scene
+    assert pickle.loads(pickle.dumps(scene)).to_toml() == scene.to_toml()
+    with pytest.raises(SceneError, match=r"surface\.path = HeightMap.*names the file that it is in"):
+        Scene(**resolved(scene)).to_toml()
+
+
+@given(st.floats(1e-30, 1e30), st.sampled_from(["m", "N", "Pa", "s", "m/s", "K"]))
+def test_a_spelled_number_is_read_as_the_same_float(number, unit):
+    assert float(units.in_unit(units.spelled(number, unit), unit)) == number
 
 
 def test_defaults():

@@ -27,7 +27,7 @@ from samfem.cli import main
 from verification.cost.plan import plan
 from verification.runs import models
 from verification.runs.files import read_run
-from verification.text.console import Progress, digits, print_anything, print_table
+from verification.text.console import Progress, digits, followed, print_anything, print_table
 
 
 @pytest.fixture
@@ -96,6 +96,21 @@ REFUSED = {
 @pytest.mark.parametrize("arguments, fragment", REFUSED.values(), ids=REFUSED.keys())
 def test_a_wrong_command_line_is_refused_and_nothing_is_created(refused, arguments, fragment):
     assert fragment in refused(*arguments)
+
+
+@pytest.mark.parametrize(
+    "command, file, words",
+    [
+        ("plan", "study.toml", "study: samfem sweep"),
+        ("compare", "case.toml", "verification case: samfem verify"),
+        ("sweep", "sphere.toml", "scene: samfem solve"),
+        ("verify", "study.toml", "study: samfem sweep"),
+    ],
+)
+def test_a_file_of_another_kind_is_named_with_the_command_that_takes_it(folder, samfem, command, file, words):
+    (folder / "study.toml").write_text('scene = "sphere.toml"\n[vary]\n"body.poisson" = { list = [0.2] }\n')
+    (folder / "case.toml").write_text('scene = "sphere.toml"\n[rows.bound]\n')
+    assert samfem(command, file, code=2).err == f"samfem: error: {file}: this is a {words} {file}\n"
 
 
 ELLIPSOID = '"ellipsoid"\nradius_x = "1 mm"\nradius_y = "2 mm"'
@@ -287,6 +302,29 @@ def test_progress_is_quiet_at_first_and_then_says_where_it_is(capsys, monkeypatc
     assert capsys.readouterr().err == said
 
 
+def test_a_notebook_shows_one_bar_that_moves(monkeypatch, capsys):
+    shown = []
+    handle = SimpleNamespace(update=lambda data, raw: shown.append(data["text/plain"]))
+
+    def display(data, raw, **_):
+        handle.update(data, raw)
+        return handle
+
+    shell = SimpleNamespace(kernel=object())
+    notebook = SimpleNamespace(get_ipython=lambda: shell, display=SimpleNamespace(display=display))
+    monkeypatch.setitem(sys.modules, "IPython", notebook)
+    clock = SimpleNamespace(now=0.0)
+    monkeypatch.setattr(time, "monotonic", lambda: clock.now)
+    with followed(None) as progress:
+        for clock.now, done in ((0.5, 1), (1.5, 2), (1.6, 3), (1.65, 4)):
+            progress("contact", done, 4)
+    assert shown == ["contact: 2 of 4, about 2 s left", "contact: 4 of 4"] and not capsys.readouterr().err
+    shell.kernel = None
+    with followed(None) as progress:
+        progress("contact", 1, 4)
+    assert len(shown) == 2 and not isinstance(progress, Progress)
+
+
 def test_tables_are_aligned_and_keep_brackets(capsys):
     print_table(("quantity", "sam"), [("[red]x", digits(1 / 3)), ("y", digits(None))])
     assert capsys.readouterr().out == "quantity  sam\n[red]x    0.333333\ny         -\n"
@@ -315,11 +353,11 @@ def test_a_scene_whose_name_and_title_are_not_ascii_is_solved_in_the_c_locale(fo
     text = (folder / "coarse.toml").read_text(encoding="utf-8").replace("title = ", 'title = "\u00b5" # ')
     (folder / f"{name}.toml").write_text(text, encoding="utf-8")
     language = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
-    for words in (["plan"], ["solve", "--out", "out"]):
+    for words in (["plan", "--verbose"], ["solve", "--out", "out"]):
         command = [sys.executable, "-m", "samfem.cli", *words, f"{name}.toml"]
         done = subprocess.run(command, capture_output=True, env=os.environ | language, check=False)
-        said = [] if words == ["plan"] else [True]  # by how much the model is off, and nothing else
+        said = [] if words[0] == "plan" else [True]  # by how much the model is off, and nothing else
         assert [b"small strains" in line for line in done.stderr.splitlines()] == said, done.stderr
         assert done.returncode == 0
-        assert words != ["plan"] or b"?" in done.stdout
+        assert words[0] != "plan" or b"?" in done.stdout
     assert set(read_run(folder / "out").summary["provenance"]["input_sha256"]) == {"n\u00f6.toml"}

@@ -121,7 +121,8 @@ PYTHON = {
     "import sam\nsam.solve": PICTURES
     | {"rich", "jinja2", "verification", "samfem", "fem_reference", "scipy.optimize"},
     "import fem_reference\nfem_reference.solve": PICTURES | {"rich", "verification", "sam.solver"},
-    "import samfem": {"numpy", "pandas", "sam", "verification"},
+    "import samfem\nsamfem.__version__": {"numpy", "pandas", "sam", "verification"},
+    "import samfem\nsamfem.Scene, samfem.solve": FEW | SOLVERS | {"pandas", "scipy", "pint", "rich", "skfem"},
 }
 """Programs, and what they must not load."""
 CASES = {

@@ -56,18 +56,34 @@ def test_a_scene_takes_si_numbers_and_strings_with_units():
         )
     ]
     assert scenes[0] == scenes[1]
-    with pytest.raises(ValueError, match="a pressure from 1e-30 to 1e\\+30 Pa"):
-        samfem.Scene(body={**STEEL, "young": "210 m"}, counterbody=BALL, loading={"force": 0.65})
+    with pytest.raises(samfem.SceneError) as caught:
+        samfem.Scene(body={**STEEL, "young": "210 m"}, counterbody=BALL, loading={"force": -1})
+    words = str(caught.value).splitlines()
+    assert words[:2] == [
+        "scene: 2 errors",
+        '  body.young = "210 m": a pressure from 1e-30 to 1e+30 Pa (a float in SI, or a string with a unit)',
+    ]
+    assert words[2].startswith("  loading.force = -1: a force from")
 
 
 @pytest.mark.parametrize("model", ["sam", "fem-axisymmetric"])
 def test_a_run_in_memory_is_the_run_that_is_written_and_read(tmp_path, model):
-    solved = samfem.solve(parsed(), model)
+    scene = parsed(add="unload = true\n")
+    solved = samfem.solve(scene, model)
     written = solved.save(tmp_path / "run")
     assert solved.folder is None and written.folder == tmp_path / "run"
-    assert solved.quantities == written.quantities and solved.scene == written.scene == parsed()
+    assert solved.quantities == written.quantities and solved.scene == written.scene == scene
     for name, table in samfem.read(tmp_path / "run").tables.items():
         assert_frame_equal(table, solved.tables[name])
+    for part in ("body", "surface"):
+        for unloaded in (False, True):
+            mesh, read = (each.mesh(part, unloaded=unloaded) for each in (solved, written))
+            assert np.array_equal(mesh.points, read.points) and mesh.n_cells == read.n_cells
+            for fields, others in ((mesh.point_data, read.point_data), (mesh.cell_data, read.cell_data)):
+                assert sorted(fields) == sorted(others)
+                assert all(np.array_equal(fields[name], others[name], equal_nan=True) for name in fields)
+    with pytest.raises(samfem.FolderError, match="no mesh edge-unloaded: it has surface, fields,"):
+        solved.mesh("edge", unloaded=True)
 
 
 def test_a_run_is_shown_short_and_as_html(run):
@@ -80,7 +96,8 @@ def test_a_run_is_shown_short_and_as_html(run):
 
 def test_figures_are_named_and_an_unknown_one_is_refused(run, comparison):
     assert {"history", "pressure"} <= set(samfem.plot(run))
-    assert samfem.plot(run, "pressure").axes
+    assert samfem.plot(run, "pressure").axes and comparison.plot("history").axes
+    assert run.plot()._repr_png_()[0].startswith(b"\x89PNG")  # what a notebook shows
     assert {"line", "axis", "history"} <= set(samfem.plot(comparison))
     with pytest.raises(KeyError, match="this result has the figures history"):
         samfem.plot(run, "colour")
@@ -111,6 +128,28 @@ def test_a_sweep_returns_its_table_and_runs(tmp_path):
     ratio = found.frame["approach_m"][1] / found.frame["approach_m"][0]
     assert ratio == pytest.approx(2 ** (2 / 3), rel=2e-3)  # Hertz
     assert "2 scenes" in repr(found) and "sweep" in samfem.plot(samfem.read(tmp_path / "sweep"))
+
+
+def test_a_sweep_of_a_mapping_leaves_nothing(folder):
+    told = []
+    vary = {"loading.force": np.array([0.1, 0.2]), "body.young": ["70 GPa", 210e9]}
+    study = {"scene": parsed(), "vary": vary, "mode": "zip"}
+    found = samfem.sweep(study, workers=1, progress=lambda *state: told.append(state))
+    assert list(found.frame["loading.force"]) == [0.1, 0.2] and found.record["units"]["loading.force"] == "N"
+    assert list(found.frame["body.young"]) == [70e9, 210e9] and found.plot().axes
+    assert told[-1] == ("sweep", 2, 2) and list(folder.iterdir()) == []
+    with pytest.raises(samfem.FolderError, match='out="folder"'):
+        found.run(0)
+    with pytest.raises(samfem.SceneError, match=r"vary\.loading\.force\.list = "):
+        samfem.sweep(study | {"vary": {"loading.force": []}})
+    with pytest.raises(samfem.SceneError, match="scene is missing"):
+        samfem.sweep({"vary": vary})
+
+
+def test_progress_is_told_and_else_silent(capsys):
+    told = []
+    samfem.solve(parsed(), progress=lambda *state: told.append(state))
+    assert ("sam: stress", 1, 1) in told and capsys.readouterr() == ("", "")
 
 
 def test_wrong_input_is_refused_by_name(tmp_path):

@@ -13,11 +13,12 @@ from typing import get_args
 
 import numpy as np
 import pytest
-from builders import CHEMICAL_FILM, HARDENING, parsed, scene_text
+from builders import CHEMICAL_FILM, HARDENING, MODULUS, RADIUS, parsed, scene_text
 
 import sam
 from fem_reference.common.refusals import advice_of, message_of
 from sam.planner.make import remedies_of
+from sam.half_space import circular_contact_radius
 from sam.results.tables import advice as words_of
 from sam.scene import Compare, HeightMap, Scene, SceneError, Status, resolved
 from sam.scene.section import OTHER_NAMES, Section, places_of
@@ -212,15 +213,21 @@ class TestPrintedResult:
         assert not re.search(r"_Pa|_m\b|e[-+]\d", shown) and "residual" not in shown
 
     def test_elsewhere_in_si_under_the_names_of_the_summary(self, scene_file, samfem):
-        """Nulls are left out: the numbers are those of summary.json, to six digits."""
+        """Without nulls and what the scene has not; the numbers are those of summary.json, to six digits."""
         status, columns, *rows, path = samfem("solve", scene_file(add=self.coarse)).out.splitlines()
-        assert status.startswith("converged in ") and columns.split() == ["quantity", "sam"]
+        assert status.startswith("converged in ")
+        assert columns.split() == ["quantity", "sam", "Hertz", "deviation"]
         quantities = json.loads(Path(path).read_text())["quantities"]
-        assert None in quantities.values()
-        shown = {name: float(value) for name, value in map(str.split, rows)}
-        assert shown == pytest.approx(
-            {name: value for name, value in quantities.items() if value is not None}, rel=1e-5
+        shown = {name: [float(value) for value in values[:2]] for name, *values in map(str.split, rows)}
+        assert {name: own for name, (own, *_) in shown.items()} == pytest.approx(
+            {name: quantities[name] for name in shown}, rel=1e-5
         )
+        absent = {"peeq_max", "friction_coefficient", "pressure_centroid_x_m", "wear_volume_m3"}
+        given = {name for name, value in quantities.items() if value is not None}
+        assert given - set(shown) == absent
+        a = circular_contact_radius(0.65, RADIUS, MODULUS)
+        assert shown["p_max_Pa"][1] == pytest.approx(1.5 * 0.65 / (np.pi * a**2), rel=1e-5)
+        assert shown["contact_radius_m"][1] == pytest.approx(a, rel=1e-5)
 
 
 def with_changes(scene, **sections):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""README.md has the numbers of the published pages, and gets those of others by one command."""
+"""README.md and the guide have the numbers of the published pages, and get those of others by one command."""
 
 import copy
 import json
@@ -28,9 +28,11 @@ def changed(results, **gates):
     return new
 
 
-def test_the_readme_is_that_of_the_published_pages(published):
+@pytest.mark.parametrize("page", ["README.md", "docs/guide/which-model.md"])
+def test_the_numbers_are_those_of_the_published_pages(published, page):
     """Of a report of an older version all but the answer about running-in: its cases have no data."""
-    texts = [renewed(README, published), README]
+    text = (ROOT / page).read_text(encoding="utf-8")
+    texts = [renewed(text, published), text]
     if not any("data" in case for case in published["cases"]):
         texts = [re.sub(r"\n- \[Does the model of running-in.*?(?=\n<!--)", "", t, flags=re.S) for t in texts]
     assert texts[0] == texts[1]
@@ -70,6 +72,6 @@ def test_a_gate_that_did_not_pass_and_lost_marks_are_refused(published, tmp_path
         with pytest.raises(ValueError, match="must hold once"):
             renewed(text, published)
     file = tmp_path / "README.md"
-    file.write_text("no marks", encoding="utf-8")
-    assert main(ROOT / "reports", file) == 2 and file.read_text(encoding="utf-8") == "no marks"
+    file.write_text(END, encoding="utf-8")
+    assert main(ROOT / "reports", file) == 2 and file.read_text(encoding="utf-8") == END
     assert main(tmp_path, file) == 2 and "no finished verification report" in capsys.readouterr().err

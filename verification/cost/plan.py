@@ -61,7 +61,7 @@ BRIEF = {
 SELDOM = ("counter-surface heights", "back-stresses", "chemical film")  # told only where they run
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Plan:
     """What the models will compute of a scene; `print` shows it in five lines and one for each warning.
 
@@ -73,7 +73,7 @@ class Plan:
     content: Mapping[str, Any]
     model: str
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         return "\n".join(self.lines())
 
     @property

@@ -17,10 +17,17 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
+from verification import need
+
 
 def _late(module: str, function: str) -> Callable[..., Any]:
-    """A function of a module here, which loads matplotlib when it is called."""
-    return lambda *given, **how: getattr(import_module(f"{__name__}.{module}"), function)(*given, **how)
+    """A function of a module here, which loads matplotlib when it is called; ExtraError without it."""
+
+    def call(*given: Any, **how: Any) -> Any:
+        need("a figure")
+        return getattr(import_module(f"{__name__}.{module}"), function)(*given, **how)
+
+    return call
 
 
 compare_figures = _late("compared", "compare_figures")

@@ -154,9 +154,17 @@ def sheet(
             yield figure, axes if isinstance(panels, tuple) else axes[0]
 
 
+class NotebookFigure(Figure):
+    """A figure that a notebook shows, at half the size of its pixels, without pyplot."""
+
+    def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
+        width, height = (round(DPI / 2 * side) for side in self.get_size_inches())
+        return encoded(self), {"width": width, "height": height}
+
+
 def new_figure(width: float, height: float, layout: str = "constrained") -> Figure:
     """An empty figure (inches) on the Agg canvas, without pyplot's global state; "compressed" is for maps."""
-    figure = Figure(figsize=(width, height), layout=layout, dpi=DPI)
+    figure = NotebookFigure(figsize=(width, height), layout=layout, dpi=DPI)
     FigureCanvasAgg(figure)
     return figure
 

@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 from shutil import rmtree
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Required, TypedDict
 
 import numpy as np
 
@@ -36,7 +36,7 @@ from sam.scene import (
     open_file,
     resolved,
 )
-from verification.runs.meshes import STEPS, is_mesh, mesh_files, mesh_names, read_mesh
+from verification.runs.meshes import STEPS, is_mesh, mesh_files, mesh_names, not_written, read_mesh
 from verification.runs.model_range import OUTSIDE, outside_of_model, range_lines
 from verification.runs.provenance import collect
 from verification.runs.tables import columns_text, frame_of, read_table
@@ -62,6 +62,22 @@ class FolderError(ValueError):
     """A folder that is no result, or that must not be written to; the message says which and what to do."""
 
 
+class Uncertainty(TypedDict, total=False):
+    """What is known of the numerical error of a quantity, in its unit; see `docs/guide/accuracy.md`."""
+
+    u_num: Required[float | None]
+    flag: Required[str]
+    relative: float | None
+    u_cells: float
+    u_steps: float
+    u_box: float
+    order_seen: float | None
+    values: list[float]
+    cells: list[float]
+    values_of_steps: list[float]
+    steps: list[float]
+
+
 @dataclass(frozen=True)
 class Run:
     """A result read back. summary: as in summary.json; tables: name -> table of floats (NaN: empty) and
@@ -74,7 +90,7 @@ class Run:
 
     @property
     def quantities(self) -> Mapping[str, float | None]:
-        return self.summary["quantities"]
+        return dict.fromkeys(QUANTITIES) | self.summary["quantities"]  # older runs have fewer
 
     @property
     def model(self) -> str:
@@ -101,7 +117,7 @@ class Run:
         return self.summary.get("verdict")
 
     @property
-    def uncertainty(self) -> Mapping[str, Mapping[str, Any]] | None:
+    def uncertainty(self) -> Mapping[str, Uncertainty] | None:
         return self.summary.get("uncertainty")
 
     @property
@@ -137,7 +153,8 @@ def write_run(result: Result, scene: Scene, folder: str | Path, provenance: Mapp
         provenance = collect()
     outside = outside_of_model(result)
     tables = {name: _table_text(name, table, outside) for name, table in result.tables.items()}
-    summary = json_text(_summary(result, scene, provenance))
+    said = replace(result, left_out=(*result.left_out, *not_written(result)))
+    summary = json_text(_summary(said, scene, provenance))
     folder.mkdir(parents=True, exist_ok=True)
     clear_run(folder)
     for name, text in tables.items():

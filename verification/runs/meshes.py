@@ -10,12 +10,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from sam.scene import UNLOADED, FieldMesh, GridFields, InputError, Result, open_file, read_apart
+from sam.scene import UNLOADED, FieldMesh, GridFields, InputError, LeftOut, Result, open_file, read_apart
+from verification import need
 from verification.runs.model_range import OUTSIDE
 
 FIELDS, SURFACE, PARTS, STEPS = "fields.vtu", "surface.vtr", ("surface", "body"), "run.pvd"
@@ -51,13 +53,14 @@ def is_mesh(name: str) -> bool:
 
 
 def mesh_files(result: Result, cycles: int, outside: float | None = None) -> dict[str, bytes]:
-    """Name of a file -> its content: the parts of each state, and their list over cycles, from 0.
+    """Name of a file -> its content: the parts of each state, and their list over cycles, from 0; none
+    without VTK.
 
     outside: a/R of a contact outside of the model, which each mesh says.
     """
     files: dict[str, bytes] = {}
     entries = []
-    for state, part, fields in _parts(result):
+    for state, part, fields in _parts(result) if _has_vtk() else ():
         name, number = _named(part, state), ("fields", *PARTS).index(part)
         time = cycles - 0.5 * (not _ended(state))
         if state.startswith(CYCLE):
@@ -68,6 +71,17 @@ def mesh_files(result: Result, cycles: int, outside: float | None = None) -> dic
         lines = ['<VTKFile type="Collection" version="0.1">', " <Collection>", *entries, " </Collection>"]
         files[STEPS] = "\n".join([*lines, "</VTKFile>", ""]).encode()
     return files
+
+
+def not_written(result: Result) -> list[LeftOut]:
+    """Where VTK is not installed: the files that are left out, and how to install it."""
+    names = [] if _has_vtk() else [_named(part, state) for state, part, _ in _parts(result)]
+    words = f"{', '.join([*names, STEPS])} (vtk is not installed: pip install 'samfem[report]')"
+    return [LeftOut("meshes", words)] if names else []
+
+
+def _has_vtk() -> bool:
+    return find_spec("vtk") is not None
 
 
 def fields_of(result: Result) -> dict[str, FieldMesh | GridFields]:
@@ -93,6 +107,7 @@ def _ended(state: str) -> bool:
 
 def as_pyvista(fields: FieldMesh | GridFields) -> Any:
     """What `read_mesh` gives of the file of a part, without the file."""
+    need("a mesh")
     import pyvista
 
     return pyvista.wrap(_rectilinear(fields) if isinstance(fields, GridFields) else _unstructured(fields))
@@ -118,6 +133,7 @@ def read_mesh(path: Path, step: int = 0) -> tuple[int, Any]:
     """The number of load steps in a file, and the mesh at one of them, from 1, else the last, as pyvista
     holds it: a rectilinear grid, or else an unstructured one. Raises InputError.
     """
+    need("reading a mesh")
     if path.suffix.lower() not in READABLE:
         raise InputError(f"its name ends in none of {', '.join(READABLE)}")
     try:

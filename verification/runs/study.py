@@ -34,12 +34,12 @@ from sam.scene import (
     SceneError,
     Section,
     below,
+    check_kind,
     in_unit,
     number_and_unit,
     parse_toml,
     problems,
     read_limited,
-    read_scene,
     scene_of,
     spelling,
     tables_of,
@@ -402,6 +402,7 @@ def read_study(path: str | Path) -> Points:
     except InputError as error:
         raise SceneError([Problem("", "", str(error))], str(path)) from None
     table = parse_toml(content, str(path))
+    check_kind(table, "study", str(path))
     study, found = None, []
     try:
         study = Study.model_validate(table, context={"spelling": "file"})
@@ -420,16 +421,23 @@ def read_study(path: str | Path) -> Points:
     return Points(study, points, {path.name: content, name: base, **inputs})
 
 
-def study_of(table: Mapping[str, Any], scene: Scene | Mapping[str, Any] | str | Path) -> Points:
-    """The study that Python gives, without its scene, and the scenes. Values of a key may be a list alone,
-    numbers are SI numbers or strings with units. Raises SceneError as `read_study`.
+def study_of(given: Mapping[str, Any]) -> Points:
+    """The study that Python gives, with its scenes. The scene may be a Scene, its tables or a path, values of
+    a key a list alone, and numbers are SI numbers or strings with units. Raises SceneError as `read_study`.
     """
+    table, scene, place = dict(given), given.get("scene"), Path("scene")
+    base, read = dict[str, Any](), dict[str, bytes]()
     if isinstance(scene, str | Path):
         place = Path(scene)
-        base = parse_toml(read_scene(place)[1][place.name], str(place))
-    else:
-        base, place = tables_of(scene if isinstance(scene, Scene) else Scene(**scene)), Path("scene")
-    table = {**table, "scene": place.name}
+        try:
+            read[place.name] = read_limited(place)
+        except InputError as error:
+            raise SceneError([Problem("scene", spelling(str(scene)), str(error))], "study") from None
+        base = parse_toml(read[place.name], str(place))
+    elif isinstance(scene, Scene | Mapping):
+        base = tables_of(scene if isinstance(scene, Scene) else Scene(**scene))
+    if base:
+        table["scene"] = place.name
     if isinstance(vary := table.get("vary"), Mapping):
         axes = {key: axis if isinstance(axis, Mapping) else {"list": axis} for key, axis in vary.items()}
         table["vary"] = {
@@ -444,7 +452,7 @@ def study_of(table: Mapping[str, Any], scene: Scene | Mapping[str, Any] | str | 
     except ValidationError as error:
         raise SceneError(problems(error), "study") from None
     points, inputs = _points(study, base, place, "study")
-    return Points(study, points, inputs)
+    return Points(study, points, read | inputs)
 
 
 def _from_python(values: Any, unit: str) -> Any:

@@ -32,7 +32,7 @@ def csv_text(columns: Sequence[str], rows: Iterable[Sequence]) -> str:
     return text.getvalue()
 
 
-def columns_text(table: Mapping[str, Sequence[Any]]) -> str:
+def columns_text(table: Mapping[str, Sequence[Any] | np.ndarray]) -> str:
     """The same of a mapping from column name to values. Raises ValueError for columns of unequal length."""
     columns = [values.tolist() if isinstance(values, np.ndarray) else values for values in table.values()]
     return csv_text(list(table), zip(*columns, strict=True))

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The numbers of README.md, from the published results: `python -m verification.suite.readme` (make readme).
+"""The numbers of README.md and of pages of the guide, from the published results: `python -m
+verification.suite.readme` (make readme).
 
-A row of its table that names a gate gets the value of that gate, with as many digits as before; what stands
-between the two marks is written anew: the gates that failed, and the answer about running-in.
+A row of a table that names a gate gets the value of that gate, with as many digits as before; what stands between the
+two marks, where a file has them, is written anew: the gates that failed, and the answer about running-in.
 """
 
 from __future__ import annotations
@@ -29,10 +30,11 @@ WIDTH = 118
 
 def renewed(text: str, results: Mapping) -> str:
     """The text with the numbers of the results. Raises ValueError for a gate that did not pass, and
-    for a text without the two marks.
+    for a text with a mark too many or too few.
     """
     gates = {gate["id"]: gate for gate in results["gates"]}
-    if text.count(BEGIN) != 1 or text.count(END) != 1:
+    marks = text.count(BEGIN), text.count(END)
+    if marks not in ((0, 0), (1, 1)):
         raise ValueError(f"the text must hold once each: {BEGIN} and {END}")
 
     def row(match: re.Match) -> str:
@@ -44,7 +46,10 @@ def renewed(text: str, results: Mapping) -> str:
         value = gate["error"] * (100 if unit == "%" else 1)
         return f"| {_like(printed, value)} {unit} | `{name}` |"
 
-    before, rest = ROW.sub(row, text).split(BEGIN)
+    text = ROW.sub(row, text)
+    if marks == (0, 0):
+        return text
+    before, rest = text.split(BEGIN)
     return f"{before}{BEGIN}\n{_written(results)}\n{END}{rest.split(END)[1]}"
 
 
@@ -80,16 +85,18 @@ def _failed(results: Mapping) -> str:
     return f"{count} gate{'s fail' if len(red) > 1 else ' fails'} on the published pages: {named}."
 
 
-def main(reports: Path, readme: Path) -> int:
-    """Write the file anew; 2 where it or the results are not as they must be."""
+def main(reports: Path, *pages: Path) -> int:
+    """Write the files anew; 2 where one of them or the results are not as they must be."""
     try:
-        text = renewed(readme.read_text(encoding="utf-8"), finished(reports))
+        results = finished(reports)
+        texts = {page: renewed(page.read_text(encoding="utf-8"), results) for page in pages}
     except (FolderError, OSError, ValueError) as problem:
-        print(f"samfem: error: {readme}: {problem}", file=sys.stderr)
+        print(f"samfem: error: {problem}", file=sys.stderr)
         return 2
-    write_atomically(readme, text.encode())
+    for page, text in texts.items():
+        write_atomically(page, text.encode())
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(*map(Path, sys.argv[1:] or ("reports", "README.md"))))
+    sys.exit(main(*map(Path, sys.argv[1:])))

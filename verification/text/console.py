@@ -35,7 +35,7 @@ def _bytes_or_marks(error: UnicodeEncodeError) -> tuple[bytes, int]:
     marks.
     """
     text = error.object[error.start : error.end]
-    if isinstance(error, UnicodeEncodeError) and all("\udc80" <= letter <= "\udcff" for letter in text):
+    if all("\udc80" <= letter <= "\udcff" for letter in text):
         return text.encode("ascii", "surrogateescape"), error.end
     return b"?" * len(text), error.end
 
@@ -116,7 +116,7 @@ class Progress:
             return
         if stage != self._stage:
             self._stage, self._began = stage, (now, done)
-        if now >= self._next:
+        if now >= self._next or (self._notebook and self._bar is not None and done == total):
             count = f": {done} of {total}" if total else ""
             line = f"{stage}{count}{left or self._left(done, total, now)}"
             if self._notebook:

@@ -30,7 +30,7 @@ ORDERS = dict.fromkeys(
         *("p_max_Pa", "p_center_Pa", "mises_max_Pa", "peeq_max", "peeq_p95", "residual_uz_center_m"),
         *("p_max_bare_Pa", "mises_max_bare_Pa", "mises_max_substrate_Pa", "mises_max_film_Pa"),
         *("p_max_change", "mises_max_change", "tangential_displacement_center_m", "residual_ux_center_m"),
-        *("plastic_shear_center_m", "groove_depth_m", "groove_deepest_m"),
+        *("plastic_shear_center_m", "groove_depth_m", "groove_deepest_m", "contact_share"),
     ),
     2.0,
 ) | {"wear_volume_m3": 1.0}
@@ -49,7 +49,10 @@ largest pressure and strain of Hertz's and of a yielding contact were seen to se
 residual displacement with 1.2.
 """
 
-BALANCED = ("force_N", "approach_m", "contact_area_m2", "contact_radius_m", "friction_coefficient")
+BALANCED = (
+    *("force_N", "approach_m", "contact_area_m2", "contact_radius_m", "contact_share"),
+    *("friction_coefficient", "wear_volume_m3"),
+)
 """What the balance of forces over many spots decides; a maximum below a rough body is that of one spot."""
 OF_EDGE = (
     *("p_max_Pa", "mises_max_Pa", "p_max_bare_Pa", "mises_max_bare_Pa", "p_max_change", "mises_max_change"),
@@ -90,7 +93,7 @@ def why_not(name: str, scene: Scene) -> str:
     other = scene.counterbody
     if other is not None and other.shape == "punch" and name in (*OF_EDGE, *EDGES):
         return SINGULAR if name in OF_EDGE else WHOLE_RINGS
-    if scene.patch_surface is not None and name not in (*BALANCED, "wear_volume_m3"):
+    if scene.patch_surface is not None and name in ORDERS and name not in BALANCED:
         return ONE_SPOT
     return WHY_NOT.get(name, "" if name in ORDERS else UNKNOWN)
 
