@@ -8,6 +8,7 @@ CSV and null in JSON.
 
 from __future__ import annotations
 
+import errno
 import json
 import math
 import os
@@ -53,6 +54,8 @@ FORMAT = "samfem run 1"
 RUN_FILES = (SUMMARY, CHECKPOINT, *(f"{name}.csv" for name in COLUMNS))
 FIGURES, FIGURE_KINDS = "figures", (".png", ".pdf", ".svg", ".csv")
 _TEMPORARY = ".part"
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""Numbers of errors that say that there is no space."""
 
 
 class FolderError(ValueError):
