@@ -48,7 +48,7 @@ html_show_sourcelink = False
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_sidebars = {"*": [], "api/*": []}  # pages without others below them
-html_theme_options = {"header_links_before_dropdown": 6, "show_toc_level": 2}
+html_theme_options = {"header_links_before_dropdown": 6, "show_toc_level": 2, "collapse_navigation": True}
 copybutton_selector = "div:not(.output):not(.sphx-glr-script-out) > div.highlight > pre"
 
 sphinx_gallery_conf = {
@@ -118,13 +118,18 @@ def last_figure(block, block_vars: dict, gallery_conf: dict) -> str:
 
 
 def finish(app, failed: Exception | None) -> None:
-    """Put the published verification pages into the site, and the scenes that they name."""
+    """Put the published verification pages into the site, whose home is their home, and the scenes that they
+    name.
+    """
     site = Path(app.outdir) / "verification"
     if not failed:
         SEEN.write_text(CODE, encoding="utf-8")
         shutil.copytree(
             ROOT / "reports", site, ignore=shutil.ignore_patterns("latest*", "*.md"), dirs_exist_ok=True
         )
+        for page in site.glob("*.html"):
+            text = page.read_text(encoding="utf-8").replace('href="../README.md"', 'href="../index.html"')
+            page.write_text(text, encoding="utf-8")
         shutil.copytree(ROOT / "verification" / "scenes", site / "scenes", dirs_exist_ok=True)
 
 
