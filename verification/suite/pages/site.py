@@ -78,7 +78,7 @@ _NUMBER = re.compile(r"[<>≤≥]? ?[+−-]?[0-9][^ ]*( [^ ]{1,4})?$")
 
 @dataclass(frozen=True)
 class Look:
-    """How pages are written. folder: where; embed: figures inside the page; place: where the folder will stand."""
+    """How pages are written. folder: where; place: where it will stand; embed: figures inside the page."""
 
     folder: Path
     embed: bool = False
