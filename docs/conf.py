@@ -30,7 +30,7 @@ default_role = "code"
 nitpicky = True
 nitpick_ignore_regex = [  # of other libraries, or of no use to a reader of the API
     ("py:.*", r"(collections|numpy|pathlib|pandas|matplotlib|pydantic)\..*"),
-    ("py:class", r"DataFrame|Figure|Path|Mapping\[str|OwnData|Result|sam\.scene\..*"),
+    ("py:class", r"DataFrame|DataSet|Figure|Path|Mapping\[str|OwnData|Result|sam\.scene\..*"),
 ]
 autodoc_member_order = "bysource"
 
@@ -112,7 +112,9 @@ def inline_formula(translator, node) -> None:
 
 def displayed_formula(translator, node) -> None:
     """A formula on a line of its own."""
-    translator.body.append(f'<div class="formula" tabindex="0">{tex2mathml(node.astext(), as_block=True)}</div>')
+    translator.body.append(
+        f'<div class="formula" tabindex="0">{tex2mathml(node.astext(), as_block=True)}</div>'
+    )
     raise SkipNode
 
 

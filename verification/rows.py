@@ -185,7 +185,8 @@ class CaseFile(BaseModel):
     values: quantity -> the number that it is held against; reference: an independent answer, a name in
     `verification.references`; figures: kinds of `verification.cases.kinds`; claims: its rows; sweeps: its
     points beside the scene itself; setting: (name, number with unit) for the reader; notes: sentences below
-    the tables; views: pictures in space.
+    the tables; views: pictures in space; labels: what figures say of a column, with the unit in which it is
+    drawn, of an axis ("{}": its value) or of a single value; captions: of figures, by their names.
 
     frame: function beside the file that returns the points instead of sweeps; of such functions, tables:
     that return one of the frame; data: that hands numbers of it to the pages; cannot: that says why the
@@ -217,6 +218,8 @@ class CaseFile(BaseModel):
     coarser: tuple[int, ...] = ()
     allowance: tuple[str, ...] = ()
     figures: tuple[str, ...] = ()
+    labels: dict[str, str] = {}
+    captions: dict[str, str] = {}
     views: tuple[str, ...] = ()
     claims: tuple[Claim, ...]
     sweeps: dict[str, SweepFile] = {}

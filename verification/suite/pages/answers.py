@@ -310,7 +310,9 @@ def _answer(question: Mapping, evidence: Evidence) -> Answer:
     behind = {each.name: each for finding in findings for each in finding.cases}
     gated = [finding.red for finding in findings if finding.gates]
     if not findings:
-        status = str(RowStatus.NOT_RUN) if question["parts"] else OPEN
+        status = (
+            ("full level" if evidence.stored.quick else str(RowStatus.NOT_RUN)) if question["parts"] else OPEN
+        )
     else:
         status = str(RowStatus.FAILED if any(gated) else RowStatus.PASSED) if gated else REPORTED
     seconds = [each.case["seconds"] or 0.0 for each in behind.values()]

@@ -220,27 +220,32 @@ _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]")  # not allowed i
 
 
 def write_report(
-    results: Mapping, folder: Path, *, single_file: bool = False, stale: Mapping[str, str] | None = None
+    results: Mapping,
+    folder: Path,
+    *,
+    single_file: bool = False,
+    stale: Mapping[str, str] | None = None,
+    place: Path | None = None,
 ) -> Path:
     """Write the pages of results into the folder of their figures; returns the one to open.
 
     single_file: also report.html with everything inside, which is all there is of a comparison;
-    stale: name -> why a case is older than the code, which is marked.
+    stale: name -> why a case is older than the code, which is marked; place: where the folder will stand.
     """
     alone = results.get("kind") == "comparison"
     if not alone:
-        _write_pages(read_stored(results, stale), folder)
+        look = Look(folder, scenes=_scenes_from(place or folder))
+        _write_pages(read_stored(results, stale), look)
     if alone or single_file:
         write_atomically(folder / ONE_FILE, _one_file(results, folder).encode())
     return folder / (ONE_FILE if alone or single_file else INDEX)
 
 
-def _write_pages(stored: Stored, folder: Path) -> None:
+def _write_pages(stored: Stored, look: Look) -> None:
     """Write index.html, README.md and a page for each group of which a case ran, in place of older pages.
 
     report.html leads to the index, for those who look for that.
     """
-    look = Look(folder)
     evidence = Evidence(stored, pairs_of(stored))
     answers = answers_of(evidence)
     pages = {
@@ -253,10 +258,10 @@ def _write_pages(stored: Stored, folder: Path) -> None:
         (ONE_FILE, "moved.html.j2"),
     ):
         pages[name] = _index(template, evidence, answers, look)
-    remove_pages(folder)
-    _draw(evidence, folder)
+    remove_pages(look.folder)
+    _draw(evidence, look.folder)
     for name, text in pages.items():
-        write_atomically(folder / name, text.encode())
+        write_atomically(look.folder / name, text.encode())
 
 
 def remove_pages(folder: Path) -> None:
