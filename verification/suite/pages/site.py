@@ -78,20 +78,18 @@ _NUMBER = re.compile(r"[<>≤≥]? ?[+−-]?[0-9][^ ]*( [^ ]{1,4})?$")
 
 @dataclass(frozen=True)
 class Look:
-    """How pages are written. folder: where; embed: figures inside the page; place: where the folder will be
-    put.
-    """
+    """How pages are written. folder: where; place: where it will stand; embed: figures inside the page."""
 
     folder: Path
     embed: bool = False
     place: Path | None = None
 
-    def to(self, file: str) -> str:
+    def to(self, place: str) -> str:
         """A file of the repository as the pages link it; empty where they are elsewhere: a link would name a
         place of the machine.
         """
-        start = (self.place or self.folder).resolve()
-        return Path(os.path.relpath(ROOT / file, start)).as_posix() if start.is_relative_to(ROOT) else ""
+        here = (self.place or self.folder).resolve()
+        return Path(os.path.relpath(ROOT / place, here)).as_posix() if here.is_relative_to(ROOT) else ""
 
 
 def case_view(each: ShownCase, look: Look) -> dict:
