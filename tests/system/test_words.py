@@ -17,8 +17,8 @@ from builders import CHEMICAL_FILM, HARDENING, MODULUS, RADIUS, parsed, scene_te
 
 import sam
 from fem_reference.common.refusals import advice_of, message_of
-from sam.planner.make import remedies_of
 from sam.half_space import circular_contact_radius
+from sam.planner.make import remedies_of
 from sam.results.tables import advice as words_of
 from sam.scene import Compare, HeightMap, Scene, SceneError, Status, resolved
 from sam.scene.section import OTHER_NAMES, Section, places_of
