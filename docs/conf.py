@@ -107,7 +107,9 @@ def inline_formula(translator, node) -> None:
 
 def displayed_formula(translator, node) -> None:
     """A formula on a line of its own."""
-    translator.body.append(f'<div class="formula" tabindex="0">{tex2mathml(node.astext(), as_block=True)}</div>')
+    translator.body.append(
+        f'<div class="formula" tabindex="0">{tex2mathml(node.astext(), as_block=True)}</div>'
+    )
     raise SkipNode
 
 

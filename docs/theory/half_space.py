@@ -4,7 +4,6 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-
 x = np.linspace(-2.4, 2.4, 401)  # in contact radii a; displacements in a^2/R, pressures in p0
 r = np.abs(x)
 inside = np.minimum(r, 1.0)
