@@ -15,8 +15,9 @@ unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: report test docs environments lint wheel publish readme peers lock clean
 
+# CASES="hertz-sphere hertz-ellipse": these alone.
 report: $(INSTALLED)
-	$(BIN)/samfem verify --level $(LEVEL) --out $(OUT)
+	$(BIN)/samfem verify $(CASES) --level $(LEVEL) --out $(OUT)
 
 # A process for each core, each with one thread; the tests of a file share what they have solved. The files in their order:
 # by the number of their tests, as by default, the slowest would come last, on one core.
@@ -34,7 +35,7 @@ lint: $(INSTALLED)
 
 # The wheel, in an environment of its own: without extras it solves, with `report` it runs these cases; CASES=quick: all of the
 # quick level.
-CASES ?= hertz-ellipse hertz-sphere certificates mutation
+wheel: CASES ?= hertz-ellipse hertz-sphere certificates mutation
 wheel: $(INSTALLED)
 	PYTHON=$(PYTHON) .ci/wheel $(CASES)
 

@@ -30,7 +30,7 @@ default_role = "code"
 nitpicky = True
 nitpick_ignore_regex = [  # of other libraries, or of no use to a reader of the API
     ("py:.*", r"(collections|numpy|pathlib|pandas|matplotlib|pydantic)\..*"),
-    ("py:class", r"DataFrame|Figure|Path|Mapping\[str|OwnData|Result|sam\.scene\..*"),
+    ("py:class", r"DataFrame|DataSet|Figure|Path|Mapping\[str|OwnData|Result|sam\.scene\..*"),
 ]
 autodoc_member_order = "bysource"
 
@@ -90,12 +90,17 @@ def as_page(app, name: str, source: list[str]) -> None:
 
 
 def copy_reports(app, failed: Exception | None) -> None:
-    """Put the published verification pages into the site, and the scenes that they name."""
+    """Put the published verification pages into the site, whose home is their home, and the scenes that they
+    name.
+    """
     site = Path(app.outdir) / "verification"
     if not failed:
         shutil.copytree(
             ROOT / "reports", site, ignore=shutil.ignore_patterns("latest*", "*.md"), dirs_exist_ok=True
         )
+        for page in site.glob("*.html"):
+            text = page.read_text(encoding="utf-8").replace('href="../README.md"', 'href="../index.html"')
+            page.write_text(text, encoding="utf-8")
         shutil.copytree(ROOT / "verification" / "scenes", site / "scenes", dirs_exist_ok=True)
 
 

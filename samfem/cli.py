@@ -8,7 +8,6 @@ runs.
 from __future__ import annotations
 
 import argparse
-import errno
 import os
 import sys
 from collections.abc import Callable, Sequence
@@ -30,7 +29,6 @@ except ImportError:
     raise
 
 NOT_MET, WRONG_INPUT, INTERRUPTED = 1, 2, 130
-FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 NO_MEMORY = ("failed to map segment", "annot allocate memory", "can't start new thread")
 """In the errors of libraries and threads that are started without memory for them."""
 DEBUG = "SAMFEM_DEBUG"
@@ -94,8 +92,8 @@ def _ended(arguments: Sequence[str]) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return NOT_MET
     except OSError as error:
-        full = "; free some space there, or give another --out" if error.errno in FULL else ""
-        return _fail(f"{error}{full}", NOT_MET)
+        full = error.errno in import_module("verification.runs.files").FULL
+        return _fail(f"{error}{'; free some space there, or give another --out' * full}", NOT_MET)
     except Exception as error:
         if isinstance(error, MemoryError) or any(words in str(error) for words in NO_MEMORY):
             lower = "lower grid.cells, grid.layers or fem.cells_per_radius, or raise the limit (ulimit -v)"

@@ -52,8 +52,7 @@ def verify(
     """
     if show:
         return suite.show(show, case)
-    with Progress(remaining=True) as progress:
-        return suite.main(list(case), level, out, progress, store=default_store() if use_store else None)
+    return suite.main(list(case), level, out, store=default_store() if use_store else None)
 
 
 def report(
@@ -115,15 +114,19 @@ def publish(case: Sequence[str], *, level: str, out: Path, store: Path, workers:
     if not chosen:
         return 0
     with locked(store), locked(out):
-        kept = KeepsAll(store)
+        folder, before, kept = suite.begin(out), suite.before(out), KeepsAll(store)
         took = _seconds(REPORTS) | _seconds(out)
         stays = earlier(before, known, [each.name for each in chosen]) if before else suite.NOTHING
         missing = [each for each in chosen if each.name not in stays.cases]
         longest = sorted(missing, key=lambda each: -took.get(each.name, UNKNOWN))
         failures = _fill(kept, longest, level=level, workers=workers)
-        suite.start(out, stays)
+        for name in stays.files:
+            if (out / name).is_file():
+                (folder / name).parent.mkdir(exist_ok=True)
+                shutil.copy(out / name, folder / name)
         ran = {
-            each.name: _ran(each, kept, failures.get(each.name, ""), level=level, out=out) for each in missing
+            each.name: _ran(each, kept, failures.get(each.name, ""), level=level, out=folder)
+            for each in missing
         }
         words = " ".join(["samfem publish", *case, "--level", level])
         return suite.finish(ran, known, level=level, out=out, command=words, unmet=unmet, stays=stays)

@@ -8,7 +8,7 @@ import json
 import pickle
 import subprocess
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from subprocess import PIPE
@@ -30,6 +30,7 @@ if _words := foreign_package():
 
 from sam.scene import (
     HeightMap as HeightMap,
+    Progress,
     Result,
     Scene,
     SceneError as SceneError,
@@ -45,8 +46,6 @@ from verification.runs.tables import read_any_table
 from verification.text.console import followed
 from verification.text.readable import in_working_unit
 
-Told = Callable[[str, int, int], None]
-"""What is told of a stage: its name, how much of it is done, and of how much."""
 SHOWN = ("p_max_Pa", "contact_radius_m", "approach_m", "peeq_max", "friction_coefficient", "wear_volume_m3")
 """Quantities of the short representation, those of them that are not zero."""
 
@@ -234,15 +233,36 @@ class Sweep:
 
 
 def load(path: str | Path) -> Scene:
-    """The scene in a TOML file. Raises SceneError with every problem of the file."""
+    """The scene in a TOML file.
+
+    Parameters
+    ----------
+    path
+        Of the file; files that it names are read from its folder.
+
+    Raises
+    ------
+    SceneError
+        With every problem of the file: key, value and what is allowed.
+    """
     return load_scene(path)
 
 
 def plan(scene: Scene | str | Path, model: str = SAM) -> Plan:
     """What the models will compute of a scene, what is left out and why, the error that the grid leaves, time
-    and memory; its attributes are those of `model`. Solves nothing.
+    and memory. Solves nothing.
 
-    Raises ModelError where the model cannot represent the scene.
+    Parameters
+    ----------
+    scene
+        A scene, or the path of its file.
+    model
+        The one of `MODELS` that the attributes of the plan are about.
+
+    Raises
+    ------
+    SceneError, ModelError
+        For a wrong file, a scene that the model cannot represent.
     """
     from verification.cost.plan import plan as plan_of  # noqa: PLC0415 - loads the solvers
 
@@ -256,7 +276,7 @@ def solve(
     model: str = SAM,
     out: str | Path | None = None,
     *,
-    progress: bool | Told | None = None,
+    progress: bool | Progress | None = None,
 ) -> Run:
     """The result of a scene.
 
@@ -303,7 +323,7 @@ def compare(
     data: Sequence[str | Path] = (),
     tolerances: Mapping[str, Any] | None = None,
     claim: str | None = None,
-    progress: bool | Told | None = None,
+    progress: bool | Progress | None = None,
 ) -> Comparison:
     """SAM and a finite-element model on one scene, row by row with tolerances; from the store what it holds.
 
@@ -344,7 +364,7 @@ def sweep(
     out: str | Path | None = None,
     workers: int | None = None,
     *,
-    progress: bool | Told | None = None,
+    progress: bool | Progress | None = None,
 ) -> Sweep:
     """The scenes of a study, solved on this machine as `samfem sweep` does; from the store what it holds.
 
@@ -400,7 +420,13 @@ def sweep(
 
 
 def read(folder: str | Path) -> Run | Comparison | Sweep:
-    """What a command wrote to a folder: a run, a comparison or a sweep. Raises FolderError for others."""
+    """What a command wrote to a folder: a run, a comparison or a sweep.
+
+    Raises
+    ------
+    FolderError
+        For a folder that is none of them.
+    """
     folder = Path(folder)
     for name, reader in (("sweep.json", _sweep_in), ("compare.csv", _comparison_in)):
         if (folder / name).exists():
@@ -415,7 +441,10 @@ def plot(result: Run | Comparison | Sweep, name: str) -> Figure: ...
 def plot(result: Run | Comparison | Sweep, name: str | None = None) -> dict[str, Figure] | Figure:
     """The figures of a result by name, or the one of that name, as matplotlib figures.
 
-    Raises KeyError, with the names that there are, for another one.
+    Raises
+    ------
+    KeyError
+        For another name, with those that there are.
     """
     if name is not None:
         return _figure(result, name)

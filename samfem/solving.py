@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor, wait
 from pathlib import Path
 from shutil import rmtree
 from typing import Any, cast
@@ -20,7 +21,16 @@ from verification.cost.contact import hertz_of
 from verification.cost.estimates import flows
 from verification.runs import checkpoints, models
 from verification.runs.archive import ArchiveError
-from verification.runs.files import CHECKPOINT, MEMBERS, Run, check_target, json_text, read_run, write_run
+from verification.runs.files import (
+    CHECKPOINT,
+    MEMBERS,
+    Run,
+    check_target,
+    figures_of,
+    json_text,
+    read_run,
+    write_run,
+)
 from verification.runs.lock import locked
 from verification.runs.meshes import not_written
 from verification.runs.model_range import refusal
@@ -84,19 +94,33 @@ def _solve(
         result: Result | Run = read_run(folder)
         print(f"samfem: {folder} is already finished: nothing is solved", file=sys.stderr)
     else:
+        drawn = figures_of(folder)
         result = _solved(scene, model, folder, inputs, made=made, resume=resume)
+        if drawn and not figures and not figures_of(folder):
+            _say(f"the figures in {folder} were of another result and are removed: --figures draws new ones")
     print(*result_lines(result, scene, readable=sys.stdout.isatty()), sep="\n")
     print(folder / "summary.json")
     if figures:
-        from verification.figures import solve_figures  # noqa: PLC0415 - not needed without
-        from verification.figures.space import CannotDrawError, draw_run  # noqa: PLC0415
-
-        print(*solve_figures(folder), sep="\n")
-        try:
-            print(*draw_run(folder), sep="\n")
-        except CannotDrawError as error:
-            print(f"samfem: {error}", file=sys.stderr)
+        _draw(folder)
     return unconverged([result])
+
+
+def _draw(folder: Path) -> None:
+    """Draw the figures of a run, those in space in a process beside the others, and print their files."""
+    from verification.figures import solve_figures  # noqa: PLC0415 - not needed without
+    from verification.figures.space import CannotDrawError, draw_run  # noqa: PLC0415
+
+    with ThreadPoolExecutor(1) as beside:
+        in_space = beside.submit(draw_run, folder)
+        with Progress() as progress:
+            drawn = solve_figures(folder, progress=progress)
+            progress("drawing in space", 0, 1)
+            wait([in_space])
+    print(*drawn, sep="\n")
+    try:
+        print(*in_space.result(), sep="\n")
+    except CannotDrawError as error:
+        _say(str(error))
 
 
 def _solved(

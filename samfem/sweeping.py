@@ -89,12 +89,16 @@ class Sweep:
     folder: Path
     store: Store | None
     runs: bool
-    provenance: Mapping[str, Any]
+    provenance: Mapping[str, Any] = field(init=False)
     rows: dict[int, Cells] = field(default_factory=dict)
     counts: Counter[str] = field(default_factory=Counter)
     notes: list[str] = field(default_factory=list)
     repeats: int = 0
     _rest_until: float = 0.0
+
+    def __post_init__(self) -> None:
+        seed = self.content.study.seed
+        self.provenance = collect(self.content.inputs, [] if seed is None else [seed])
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -163,9 +167,16 @@ def sweep(
     """
     content, folder = read_study(path), out or Path(f"{path.stem}-sweep")
     check(folder)
+    state = Sweep(content, folder, store() if use_store else None, runs)
     with Progress(remaining=True) as progress:
-        how = {"runs": runs, "use_store": use_store, "anyway": anyway}
-        return _judge(solve_study(content, folder, progress, _executor(scheduler, workers), **how))
+        solve_study(state, _executor(scheduler, workers), progress, anyway=anyway)
+    return _judge(state)
+
+
+def store() -> KeepsAll | None:
+    """The store of a sweep, if there is one."""
+    known = default_store()
+    return None if known is None else KeepsAll(known.folder)
 
 
 def check(folder: Path) -> None:
@@ -174,22 +185,16 @@ def check(folder: Path) -> None:
 
 
 def solve_study(
-    content: Points,
-    folder: Path,
-    progress: Told,
+    state: Sweep,
     executor: AbstractContextManager[Processes | Cluster],
+    progress: Told,
     *,
-    runs: bool,
-    use_store: bool = True,
     anyway: bool = True,
-) -> Sweep:
-    """As `sweep`, of a study that is read; nothing is printed of what became of it."""
-    began = time.monotonic()
-    known = default_store() if use_store else None
-    store = None if known is None else KeepsAll(known.folder)
+    draw: bool = True,
+) -> None:
+    """Solve the scenes of a study, and write its tables and, if asked to draw, its figures."""
+    began, content, folder = time.monotonic(), state.content, state.folder
     with locked(folder), executor as solvers:
-        seeds = [] if content.study.seed is None else [content.study.seed]
-        state = Sweep(content, folder, store, runs, collect(content.inputs, seeds))
         folder.mkdir(parents=True, exist_ok=True)
         _clear(state)
         try:
@@ -197,22 +202,26 @@ def solve_study(
         except KeyboardInterrupt:
             state.write(always=True)
             kept = f"{len(state.rows)} of {len(content.points)} scenes are finished"
-            again = "the same command goes on from there" if store else "without a store all are solved again"
+            again = (
+                "the same command goes on from there"
+                if state.store
+                else "without a store all are solved again"
+            )
             raise KeyboardInterrupt(f"interrupted: {kept}; {again}") from None
     state.write(always=True)
     found = index_rows(state) if content.study.design else []
     if content.study.design:
         write_atomically(folder / SENSITIVITY, csv_text(INDEX_COLUMNS, found).encode())
     try:
-        sweep_figure(content.study, _named(state.columns, state.ordered), folder / "sweep")
-        sensitivity_figure(_named(INDEX_COLUMNS, found), folder / "sensitivity")
+        if draw:
+            sweep_figure(content.study, _named(state.columns, state.ordered), folder / "sweep")
+            sensitivity_figure(_named(INDEX_COLUMNS, found), folder / "sensitivity")
     except ExtraError as error:
         print(f"samfem: sweep: no figure and no mesh is written: {error}", file=sys.stderr)
     kind = "dask" if isinstance(solvers, Cluster) else "processes"
     workers = {"kind": kind, "lost": solvers.lost}
     record = _record(state) | {"workers": workers, "elapsed_s": time.monotonic() - began}
     write_atomically(folder / RECORD, json_text(record).encode())
-    return state
 
 
 def _executor(scheduler: str | None, count: int | None) -> Processes | Cluster:
@@ -406,12 +415,13 @@ def answer() -> None:
     """In a process of its own, for Python: solve the study that is pickled on stdin. Each line on stdout is
     what progress is told, as JSON.
     """
-    content, folder, workers, runs = pickle.load(sys.stdin.buffer)
+    content, folder, workers, keep = pickle.load(sys.stdin.buffer)
 
     def told(*state: str | int) -> None:
         print(json.dumps(state), flush=True)
 
     try:
-        solve_study(content, folder, told, Processes(workers or _cores()), runs=runs)
+        state = Sweep(content, folder, store(), runs=keep)
+        solve_study(state, Processes(workers or _cores()), told, draw=keep)
     except REFUSALS as error:
         sys.exit(str(error))

@@ -2,8 +2,13 @@
 """What a user writes, in 30 lines: `make lint` holds its types, and it runs as it is, also in a notebook."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING, assert_type
 
 import samfem
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from pyvista import DataSet
 
 sphere = samfem.Scene(
     title="Sphere on steel that yields",
@@ -38,3 +43,11 @@ comparison.plot().savefig("compared.png")
 swept = samfem.sweep({"scene": scene, "vary": {"loading.force": [0.05, 0.1]}}, out="sweep")
 print(swept.frame["peeq_max"].max(), swept.run(0).quantities["force_N"])
 swept.plot().savefig("sweep.png")
+
+if TYPE_CHECKING:  # nothing that a user gets is of any type, but tables: pandas has no types of its own
+    assert_type(samfem.plan(scene), samfem.Plan)
+    assert_type(run.quantities["p_max_Pa"], float | None)
+    assert_type((run.mesh(), run.plot()), tuple[DataSet, Figure])
+    assert_type(samfem.plot(run), dict[str, Figure])
+    assert_type((comparison, comparison.passed), tuple[samfem.Comparison, bool])
+    assert_type(swept.run(0), samfem.Run)

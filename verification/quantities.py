@@ -370,11 +370,11 @@ SLIDING: Mapping[str, Quantity] = {
         for extent in ("depth", "length")
     },
     "decoupled": Quantity(
-        "pressure of the decoupled form off FEM over that of the coupled one, L2 at the nodes of FEM",
+        "deviation of the pressure from FEM (L2 at nodes), normal displacement by shear neglected over kept",
         whole=_decoupled(lambda sam, fem, a: relative_l2(*nodal_pressures(sam, fem))),
     ),
     "decoupled-hats": Quantity(
-        "the same over hats of 0.2 a, which take both sides of the contact's edge together",
+        "deviation of the pressure from FEM (over 0.2 a), normal displacement by shear neglected over kept",
         whole=_decoupled(lambda sam, fem, a: measures.patch_distance(sam, fem, PATCH * a)),
     ),
     **{
@@ -554,7 +554,9 @@ QUANTITIES: Mapping[str, Quantity] = {
         between=_below_film,
     ),
     "mises-below-film-max": Quantity(
-        "largest von Mises stress of the body there", "Pa", between=_largest(_below_film)
+        "largest von Mises stress of the body in y = 0, same points in both models",
+        "Pa",
+        between=_largest(_below_film),
     ),
     "area": _scalar("contact_area_m2", "contact area", "m²"),
     "friction": _scalar("friction_coefficient", "coefficient of friction of the whole contact"),

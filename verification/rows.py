@@ -10,7 +10,8 @@ equation "name" in equations.toml.
 
 Where a case has tables `[sweeps.NAME]`, the last entry of a row of a kind alone says what it takes of their
 points, see `Take`: `"order p-max of sam"`, `"share of fem at depth = 3"`, `"limit peeq-max of sam | of fem"`
-with what it is held against; without words that says what it is. Points that need more than axes are what a
+with what it is held against; without words that says what it is, in those of
+`[words]`. Points that need more than axes are what a
 function returns, `frame = "NAME"`.
 """
 
@@ -22,6 +23,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Literal, NamedTuple
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
@@ -39,6 +41,25 @@ FAMILIES = (
 )
 """Folders of cases, in the order of the report."""
 ROW = "a row is [metric, tolerance, reason, words, take]; without words its name is a quantity"
+WORDS = {
+    "sam": "SAM",
+    "fem": "FEM",
+    "value": "",
+    "order": "observed order of convergence",
+    "largest": "largest deviation of all points",
+    "last": "finest grid",
+    "pair": "SAM against FEM",
+    "law linear": "linear hardening",
+    "law swift": "Swift's law",
+    "law perfect": "perfect plasticity",
+    "law prager": "Prager's law",
+    "elements": "{} elements in the radius",
+    "friction": "μ = {}",
+    "steps": "{} load steps",
+}
+"""What rows say of a model, a statistic, the value of an axis or an axis ("{}": its value); a case has more
+under `words`.
+"""
 _TAKE = re.compile(
     r"(?:([a-z-]+) )??([a-z0-9-]+)(?: of ([a-z0-9/ -]+?))?(?: at (.+))?|([-+.0-9e]+)", re.ASCII
 )
@@ -59,14 +80,16 @@ class Take(NamedTuple):
     at: tuple[tuple[str, str, str], ...] = ()
     number: float | None = None
 
-    @property
-    def words(self) -> str:
-        """For the reader, of a row that says no more."""
-        quantity = QUANTITIES.get(self.column)
-        of = [name.upper() if name.startswith(("sam", "fem")) else name for name in self.of]
-        at = [f"{axis.replace('-', ' ')} {sign} {value}".replace("= ", "") for axis, sign, value in self.at]
-        how = [] if self.statistic == "value" else [self.statistic.replace("-", " ")]
-        return ", ".join([quantity.words if quantity else self.column.replace("-", " "), *of, *at, *how])
+    def words(self, own: Mapping[str, str] = MappingProxyType({})) -> str:
+        """For the reader, of a row that says no more. own: the words of the case."""
+        known = {**{name: quantity.words for name, quantity in QUANTITIES.items()}, **WORDS, **own}
+        at = [
+            known.get(f"{axis} {point}") or known.get(axis, axis.replace("-", " ") + " {}").format(point)
+            for axis, sign, value in self.at
+            for point in [value if sign == "=" else f"{sign} {value}"]
+        ]
+        column, how = (known.get(name, name.replace("-", " ")) for name in (self.column, self.statistic))
+        return ", ".join(filter(None, [column, *(known.get(name, name) for name in self.of), *at, how]))
 
     @classmethod
     def of_row(cls, text: str) -> tuple[Take, ...]:
@@ -162,7 +185,8 @@ class CaseFile(BaseModel):
     values: quantity -> the number that it is held against; reference: an independent answer, a name in
     `verification.references`; figures: kinds of `verification.cases.kinds`; claims: its rows; sweeps: its
     points beside the scene itself; setting: (name, number with unit) for the reader; notes: sentences below
-    the tables; views: pictures in space.
+    the tables; views: pictures in space; labels: what figures say of a column, with the unit in which it is
+    drawn, of an axis ("{}": its value) or of a single value; captions: of figures, by their names.
 
     frame: function beside the file that returns the points instead of sweeps; of such functions, tables:
     that return one of the frame; data: that hands numbers of it to the pages; cannot: that says why the
@@ -194,6 +218,8 @@ class CaseFile(BaseModel):
     coarser: tuple[int, ...] = ()
     allowance: tuple[str, ...] = ()
     figures: tuple[str, ...] = ()
+    labels: dict[str, str] = {}
+    captions: dict[str, str] = {}
     views: tuple[str, ...] = ()
     claims: tuple[Claim, ...]
     sweeps: dict[str, SweepFile] = {}
@@ -241,7 +267,7 @@ def read_cases(path: Path) -> list[CaseFile]:
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise SceneError([Problem("case file", path.name, str(error))], str(path)) from error
     check_kind(content, "verification case", str(path))
-    own, reasons = content.pop("cases", {}), content.pop("reasons", {})
+    own, reasons, words = (content.pop(key, {}) for key in ("cases", "reasons", "words"))
     common = {"name": path.stem.replace("_", "-"), "family": path.parent.name, "path": path}
     named: dict[str, dict[str, Any]] = {}
     for heads, case in own.items():
@@ -251,7 +277,7 @@ def read_cases(path: Path) -> list[CaseFile]:
             }
             named[name] = merged(named.get(name, {}), one)
     cases = [merged(content, case | {"name": name}) for name, case in named.items()] if own else [content]
-    return [_case(common | case, reasons) for case in cases]
+    return [_case(common | case, reasons, words) for case in cases]
 
 
 def _chosen(value: Any, k: int, count: int) -> Any:
@@ -269,7 +295,7 @@ def merged(first: Mapping, second: Mapping) -> dict:
     return {**first, **both}
 
 
-def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
+def _case(content: dict[str, Any], reasons: Mapping[str, str], own: Mapping[str, str]) -> CaseFile:
     """One case of a file. Raises SceneError with every fault of it."""
     faults: list[Problem] = []
     tables: dict[str, dict[str, Any]] = {}
@@ -280,7 +306,7 @@ def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     for table, named in tables.items():
         for key, cells in named.items():
             try:
-                claims += _claims(content, table, key, [_full(cell, reasons) for cell in cells])
+                claims += _claims(content, table, key, [_full(cell, reasons) for cell in cells], own=own)
             except ValidationError as error:
                 faults += _faults(error, f"rows.{table}.{key}")
             except (KeyError, TypeError, ValueError, AttributeError):
@@ -302,10 +328,12 @@ def _case(content: dict[str, Any], reasons: Mapping[str, str]) -> CaseFile:
     return case
 
 
-def _claims(content: Mapping[str, Any], table: str, key: str, cells: list) -> Iterator[Claim]:
+def _claims(
+    content: Mapping[str, Any], table: str, key: str, cells: list, *, own: Mapping[str, str]
+) -> Iterator[Claim]:
     """What an entry of a table stands for. The table is of a kind, `exact`, or, where two models are held
     against each other or one against something, `sam/fem`, `sam/exact`, after the name of a variant of the
-    scene if there are.
+    scene if there are; own: words of the case.
     """
     metric, tolerance, reason, *more = cells
     first, _, rest = table.partition("/")
@@ -327,7 +355,7 @@ def _claims(content: Mapping[str, Any], table: str, key: str, cells: list) -> It
         if quantities is words or not (words or take):
             quantity = f"{QUANTITIES[quantities[k]].words}{of}"
         else:
-            quantity = words[k] if words else take[0].words
+            quantity = words[k] if words else take[0].words(own)
         row = Row(id=f"{content['name']}.{lead}{name}", quantity=quantity, **said)
         yield Claim(row, variant, model, against, quantities[k], take)
 

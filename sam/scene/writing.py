@@ -62,9 +62,7 @@ def nameless(tables: Mapping[str, Any], above: str = "") -> Iterator[Problem]:
         if isinstance(value, Mapping):
             yield from nameless(value, f"{above}{name}.")
         elif not getattr(value, "of_file", True):
-            words = (
-                "a scene file names the file that it is in: write it to one, and load a scene that names it"
-            )
+            words = "a file of its own, which a scene file names: write it, and load a scene that names it"
             yield Problem(f"{above}{name}", repr(value), words)
 
 
@@ -73,7 +71,7 @@ def toml(tables: Mapping[str, Any], above: str = "") -> Iterator[str]:
     inner = {name: value for name, value in tables.items() if isinstance(value, Mapping)}
     for name, value in tables.items():
         if name not in inner:
-            for key, entry in getattr(value, "of_file", {name: value}).items():
+            for key, entry in (getattr(value, "of_file", None) or {name: value}).items():
                 yield f"{_key(key)} = {_value(entry)}"
     for name, table in inner.items():
         yield from ("", f"[{above}{_key(name)}]")

@@ -296,7 +296,10 @@ def test_progress_is_quiet_at_first_and_then_says_where_it_is(capsys, monkeypatc
     with Progress() as progress:
         for clock.now, done in ((0.5, 1), (1.5, 2), (2.0, 3), (7.0, 4)):
             progress("contact", done, 4)
-    assert capsys.readouterr().err == "contact: 2 of 4\ncontact: 4 of 4\n"
+        clock.now = 12.0
+        progress("case 2 of 3: contact", 0, 0, ", about 9 s left")
+    said = "contact: 2 of 4\ncontact: 4 of 4\ncase 2 of 3: contact, about 9 s left\n"
+    assert capsys.readouterr().err == said
 
 
 def test_a_notebook_shows_one_bar_that_moves(monkeypatch, capsys):

@@ -117,7 +117,7 @@ def test_table_names_method_cells_time_and_origin():
 def test_a_kind_without_rows_says_so():
     """Nothing measured; and of a path no row, but where to look instead."""
     found = advice_of(scene("hertz-sphere"), (SAM,), ())
-    assert found["words"] == "no error against run time was measured for this kind of scene"
+    assert found["words"] == "the cost of an error was not measured for this kind of scene"
     assert found["table"] == {"columns": [], "rows": []}
     moving = advice_of(scene("moving-sphere"), (SAM, FEM_3D))
     assert not moving["rows"] and not moving["table"]["rows"]
@@ -166,7 +166,7 @@ def test_plan_is_five_short_lines_and_more_with_verbose(capsys):
     lines = capsys.readouterr().out.splitlines()
     assert lines == found.lines(verbose=True) and lines[0] == found.content["title"]
     assert lines[2 : 2 + len(short)] == short
-    table = next(k for k, line in enumerate(lines) if line.startswith("advice: what an error of the largest"))
+    table = next(k for k, line in enumerate(lines) if line.startswith("advice: cost of an error in the"))
     assert lines[table + 1].split()[:2] == ["error", "method"] and " s " in lines[table + 2]
     first = next(k for k, line in enumerate(lines) if line.startswith("sam: about "))
     assert first == table + 2 + len(found.content["advice"]["table"]["rows"]) + 1

@@ -2,6 +2,7 @@
 """Sweeps of case files, on made results whose errors are powers of the size of a cell."""
 
 from dataclasses import replace
+from itertools import product
 from types import SimpleNamespace
 
 import numpy as np
@@ -15,6 +16,7 @@ from verification.cases.kinds import KINDS, OVER_VARIANTS, SWEPT
 from verification.cases.plastic.plastic_convergence import growth_of_norms, limit_of_both
 from verification.cases.recipes import RECIPES, beside
 from verification.cases.sweep import STATISTICS, evaluated, words_of
+from verification.figures.check import findings
 from verification.judging import evaluate
 from verification.references import contact_of
 from verification.rows import Take, case_files, read_cases
@@ -140,3 +142,27 @@ def test_every_name_of_a_file_with_points_is_known(file):
         assert file.frame or take.column in {c for sweep in file.sweeps.values() for c in sweep.columns}
     known = KINDS | SWEPT | OVER_VARIANTS
     assert all(beside(file, figure.split()[0], known) for figure in file.figures)
+
+
+@pytest.mark.parametrize(
+    ("file", "figure"),
+    [(file, each) for file in case_files().values() for each in file.figures if each.startswith("lines")],
+    ids=lambda each: getattr(each, "name", None),
+)
+def test_lines_of_every_file_can_be_read(file, figure):
+    """On made columns, for all values of the axes: labels say of what, and have room."""
+    _, ys, *words = figure.split()
+    said = {"in": "sweep", "by": "model"} | dict(zip(words[::2], words[1::2], strict=True))
+    columns, axes = [*ys.split(","), said["over"]], [*said["in"].split(","), *said["by"].split(",")]
+    values = [name for name in file.labels if name not in (*columns, *axes, "limit", "expected")]
+    known = dict.fromkeys(axes, values or ["one", "two"]) | {"sweep": [""]} if file.frame else {}
+    for sweep in (each for each in file.sweeps.values() if columns[0] in each.columns):
+        known |= {"model": sweep.models, **{axis: list(own) for axis, own in sweep.axes.items()}}
+    made = {column: np.array([1.0, 2.0, 3.0]) for column in (*columns, f"{columns[0]} expected")}
+    rows = [
+        dict(zip(axes, each, strict=True)) | made
+        for each in product(*(known.get(axis, [""]) for axis in axes))
+    ]
+    plot = SWEPT["lines"](file, pd.DataFrame(rows), ys, *words)
+    assert findings(plot.drawing.figure) == []
+    assert plot.name in file.captions

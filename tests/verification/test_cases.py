@@ -13,6 +13,7 @@ from verification.cases.case import with_grid
 from verification.rows import load_rows
 from verification.runs import models
 from verification.runs.sampling import plane_field_on, pressure_on, surface_pressure
+from verification.suite.forecast import costs_at
 from verification.suite.verify import main
 
 CASES = all_cases()
@@ -22,6 +23,7 @@ def test_gates_and_cases_belong_together():
     assert {gate.case for gate in load_rows()} == set(CASES)
     assert all(set(case.levels) <= set(LEVELS) for case in CASES.values())
     assert [name for name, case in CASES.items() if not case.levels] == ["peers"]  # needs other programs
+    assert set(costs_at("quick")) == {name for name, case in CASES.items() if "quick" in case.levels}
 
 
 def test_one_case_from_end_to_end(tmp_path):

@@ -117,7 +117,7 @@ def test_a_figure_that_cannot_be_read_fails_its_case_in_every_record(
         with sheet(4.0, 3.0) as (figure, axis):
             good(figure, axis)
             draw(figure, axis)
-        plot = Plot(Drawing(figure, {"x": [1.0]}), "curve", "A curve", "Two lines", "Caption")
+        plot = Plot(Drawing(figure, {"x": [1.0]}), "curve", "A curve", "Caption")
         return Outcome(figures=[context.save(plot)])
 
     own = FakeCase("own", "Own", "Is it read?", does=does)

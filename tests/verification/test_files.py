@@ -196,7 +196,9 @@ def test_an_older_run_is_replaced_and_nothing_else(tmp_path):
     (tmp_path / "figures").mkdir()
     for name in ("figures/old.png", "figures/mine.txt", "notes.txt", "cycles.csv"):
         (tmp_path / name).write_text("x")
-    write_run(replace(a_result(), bodies={}), SCENE, tmp_path)
+    write_run(replace(a_result(), cost={"solve_s": 3.0}), SCENE, tmp_path)
+    assert (tmp_path / "figures" / "old.png").exists()  # of an equal result
+    write_run(replace(a_result(), bodies={}, message="other"), SCENE, tmp_path)
     kept = {entry.relative_to(tmp_path).as_posix() for entry in tmp_path.rglob("*")}
     assert {"figures/mine.txt", "notes.txt"} <= kept
     assert kept.isdisjoint({"figures/old.png", "cycles.csv", "fields.vtu"})

@@ -13,7 +13,7 @@ from verification.runs.code_version import version_of_cases
 from verification.runs.files import json_text
 from verification.runs.store import Reuse
 from verification.suite import freshness, outcomes
-from verification.suite.verify import RanCase, finish
+from verification.suite.verify import RanCase, begin, finish
 
 CASE, SCENE = "hertz-sphere", "hertz-sphere.toml"
 OTHERS = len([case for case in all_cases().values() if case.published_at("full") and not case.needs()]) - 1
@@ -24,6 +24,7 @@ def report(folder, capsys):
     """A report of one case without values, as published: the current folder."""
     context = Context(CASE, folder, "full", lambda *_: None, inputs={SCENE: outcomes.present(SCENE)})
     ran = {CASE: RanCase(context, Outcome(), "", 1.0, Reuse(False))}
+    begin(folder)
     finish(ran, all_cases(), level="full", out=folder, command="", unmet={})
     return json.loads((folder / "results.json").read_text(encoding="utf-8"))
 

@@ -103,7 +103,7 @@ def test_the_answer_counts_what_the_data_hold_and_the_index_and_the_page_say_it(
     assert faults_of(page) == faults_of(index) == []
     assert found.answer[:80] in index.text and MEANING[:40] not in index.text
     places = [page.text.index(words[:40]) for words in (found.answer, found.depends, MEANING)]
-    assert sorted(places) == places and places[-1] < page.text.index("Closest to its limit")
+    assert sorted(places) == places and places[-1] < page.text.index("Gate closest to its tolerance")
 
 
 def test_what_finer_cells_refute_is_said(readings):

@@ -101,7 +101,7 @@ def test_what_is_not_there_has_no_ratio():
     tables = [table(made).rows for table in (peers.hertz_times, peers.rough_times, peers.step_times)]
     assert [len(each) for each in tables] == [1, 1, 0] and tables[0][0][3] == tables[1][0][4] == "1"
     plot = peers.over_time(None, made, "hertz")
-    assert "SAM" in plot.alt and plot.drawing.data
+    assert "processor time" in plot.caption and plot.drawing.data
 
 
 def script(path: Path, text: str) -> Path:

@@ -2,7 +2,11 @@
 """What `samfem verify` and `samfem report` write, with small cases that solve nothing."""
 
 import csv
+import errno
 import json
+import time
+from dataclasses import replace
+from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -21,7 +25,8 @@ from verification.figures.style import Drawing, new_figure, save
 from verification.judging import Measured
 from verification.references import contact_of
 from verification.runs.files import FolderError
-from verification.suite import verify
+from verification.suite import forecast, verify
+from verification.suite.forecast import Cost
 
 ROWS = [
     row(f"{case}.{name}", quantity=f"quantity {name}, FEM", reason=f"because of {name}")
@@ -47,7 +52,7 @@ def good(context):
     outcome = Outcome({"good.one": Measured(1.0, 1.0, unit="Pa"), "good.two": Measured(2.1, 2.0)})
     outcome.setup = [("Force", "1 N")]
     outcome.tables = [SmallTable("Small", ["a", "b"], [["1", "2"]])]
-    outcome.figures = [context.save(Plot(sketch(), "curve", "A curve", "Two curves & more", "Caption"))]
+    outcome.figures = [context.save(Plot(sketch(), "curve", "A curve", "Caption"))]
     return outcome
 
 
@@ -136,9 +141,106 @@ def test_folder_with_other_files_is_left_alone(tmp_path):
 def test_earlier_report_is_replaced(tmp_path):
     out = tmp_path / "out"
     run(out, "good")
+    (out / "notes.txt").write_text("mine")
     assert (out / "figures" / "good-curve.png").exists()
     run(out, "bad")
     assert not (out / "figures").exists() and "good.one" in {gate["id"] for gate in results(out)["gates"]}
+    assert (out / "notes.txt").exists() and not (out / verify.UNFINISHED).exists()
+
+
+def files_in(out) -> dict[str, bytes]:
+    return {str(path.relative_to(out)): path.read_bytes() for path in out.rglob("*") if path.is_file()}
+
+
+def stopped(*_, **_keys):
+    raise KeyboardInterrupt
+
+
+def test_pages_of_what_has_ended_can_be_opened_and_the_earlier_report_stays(tmp_path, monkeypatch, capsys):
+    out, new = tmp_path / "out", tmp_path / "out" / verify.UNFINISHED
+    run(out, "bad")
+    earlier = files_in(out)
+    with monkeypatch.context() as patch:
+        patch.setitem(CASES, "bad", replace(CASES["bad"], does=stopped))
+        assert main(["verify", "--no-store", "--out", str(out)]) == 130
+    said = capsys.readouterr().err
+    assert f"interrupted: 1 of 3 cases have ended, pages in {new / 'index.html'}; the same command" in said
+    assert earlier.items() <= files_in(out).items() and not results(new)["complete"]
+    pages = {name: page_of(new, name) for name in ("index.html", "other.html")}
+    assert "Running: 1 of 3 cases finished." in pages["index.html"].text
+    assert "(samfem verify bad): still to run" in pages["other.html"].text
+    assert [faults_of(page) for page in pages.values()] == [[], []]
+    data = dict.fromkeys(("gates.csv", "results.json", "README.md"), PageReader(""))
+    assert broken_links(pages | data, new) == []
+    assert main(["report", str(new)]) == 2
+    assert run(out) == 1 and not new.exists() and results(out)["complete"]
+
+
+def test_a_report_that_was_killed_on_its_way_into_place_is_put_there_by_the_next_start(tmp_path, monkeypatch):
+    out, whole = tmp_path / "out", tmp_path / "whole"
+    run(whole, "good")
+    for name in ("remove_pages", "shutil.rmtree", "Path.replace"):
+        run(out, "bad")
+        with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+            patch.setattr(verify, "_take_over", stopped)
+            run(out, "good")
+        with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+            patch.setattr(f"verification.suite.verify.{name}", stopped)
+            verify.begin(out)
+        assert verify.problem_of([], CASES, out) == ""
+        verify.begin(out)
+        names = files_in(out).keys() - {f"{verify.UNFINISHED}/results.json"}
+        assert names == files_in(whole).keys() and results(out)["complete"]
+
+
+def test_a_full_disk_ends_the_report_in_one_error(tmp_path, monkeypatch, capsys):
+    def full(context):
+        raise OSError(errno.ENOSPC, "No space left on device", "runs/good/line.csv")
+
+    monkeypatch.setitem(CASES, "good", replace(CASES["good"], does=full))
+    assert main(["verify", "--no-store", "--out", str(tmp_path / "out")]) == 1
+    (said,) = capsys.readouterr().err.splitlines()
+    assert "line.csv" in said and "free some space" in said
+    (tmp_path / "file").touch()
+    assert main(["verify", "--out", str(tmp_path / "file")]) == 2
+    assert "no folder that can be written to" in capsys.readouterr().err
+
+
+def test_what_it_takes_is_said_before_and_what_a_case_found_as_it_ends(tmp_path, monkeypatch, capsys):
+    costs = {
+        "good": Cost(60.0, 70.0, 3.0, 4.0),
+        "bad": Cost(30.0, 50.0, 1.0, 0.0),
+        "broken": Cost(*4 * [0.0]),
+    }
+    monkeypatch.setattr(forecast, "costs_at", lambda level: costs)
+    run(out := tmp_path / "out")
+    said = capsys.readouterr().out.splitlines()
+    assert said[:4] == [
+        "3 cases with 4 of the 5 gates, quick level.",
+        "Estimate: 90 s in one process, 2 min of processor time; "
+        "disk: 4 MB in the report, 4 MB in the store.",
+        f"Pages of the cases that have ended: {out / 'unfinished/index.html'}; "
+        f"the whole report: {out / 'index.html'}",
+        "To run less, name cases: make report CASES=hertz-sphere, or samfem verify hertz-sphere",
+    ]
+    ended = [line.rpartition(", ")[0] for line in said[4:7]]
+    assert ended[:2] == ["1 of 3: good: 2 gates passed", "2 of 3: bad: 0 gates passed, 1 failed"]
+    assert ended[2].startswith("3 of 3: broken: 0 gates passed, 1 failed, broke off: RuntimeError: <b>no</b>")
+
+
+def test_the_time_that_is_left_is_at_the_pace_of_the_cases_that_ended(monkeypatch):
+    clock = SimpleNamespace(now=0.0)
+    monkeypatch.setattr(time, "monotonic", lambda: clock.now)
+    ahead = forecast.Forecast({"one": Cost(30.0), "two": Cost(100.0), "three": Cost(10.0)}, began=0.0)
+    assert ahead.left == ", about 2.3 min left"
+    clock.now = 90.0  # at half the pace, as (30 + 90) / (30 + 30)
+    ahead.ended("one")
+    clock.now += 50.0
+    assert ahead.left == ", about 2.8 min left"
+    clock.now += 500.0  # longer than predicted
+    assert ahead.left == ", about 20 s left"
+    unknown = forecast.Forecast({"one": Cost()})
+    assert (unknown.left, unknown.words) == ("", "Time and disk: not known.")
 
 
 def test_list_has_one_line_a_case_and_gates_the_rest(tmp_path, monkeypatch, capsys):
@@ -171,11 +273,12 @@ def test_pages_need_no_script_and_what_they_link_is_there(tmp_path):
     out = tmp_path / "out"
     run(out)
     pages = {name: page_of(out, name) for name in ("index.html", "other.html")}
-    assert "Good case" in pages["other.html"].text and "Good case" not in pages["index.html"].text
+    assert "Bad case" in pages["other.html"].text and "Bad case" not in pages["index.html"].text
+    pictures = [image["src"] for page in pages.values() for image in page.all("img")]
+    assert pictures == ["figures/good-curve.png"] * 2  # the only figure is the picture of a contact too
     assert [faults_of(page) for page in pages.values()] == [[], []]
     written = {name: page_of(out, name) for name in ("README.md", "gates.csv", "results.json")}
     assert broken_links(pages | {name: PageReader("") for name in written}, out) == []
-    assert [image["src"] for image in pages["other.html"].all("img")] == ["figures/good-curve.png"]
     assert 'url=index.html"' in (out / "report.html").read_text(encoding="utf-8")
     assert main(["report", str(out), "--single-file"]) == 0
     page = page_of(out, "report.html")
@@ -185,7 +288,7 @@ def test_pages_need_no_script_and_what_they_link_is_there(tmp_path):
 
 def in_space(context):
     outcome = good(context)
-    figures, outcome.notes = context.look([View("sam", "worn", "space", "In space", "A surface", "Caption")])
+    figures, outcome.notes = context.look([View("sam", "worn", "space", "In space", "Caption")])
     outcome.figures += figures
     return outcome
 
@@ -196,7 +299,7 @@ def test_a_picture_in_space_is_on_the_page_or_why_the_machine_cannot_draw_it(tmp
     out = tmp_path / "out"
 
     def draw(folder, name):
-        assert (folder, name) == (out / "runs" / "good" / "sam", "worn")
+        assert (folder, name) == (out / "unfinished" / "runs" / "good" / "sam", "worn")
         return {name: (tmp_path / "picture.png").read_bytes()}
 
     def cannot(folder, name):
@@ -215,7 +318,8 @@ def test_a_picture_in_space_is_on_the_page_or_why_the_machine_cannot_draw_it(tmp
 def test_page_says_what_held_and_why(tmp_path):
     run(tmp_path / "out")
     index = page_of(tmp_path / "out", "index.html").text
-    assert "2 of 4 gates hold, 2 failed" in index and "1 further case: 1 of the full level." in index
+    assert "2 of 4 gates hold, 2 failed" in index
+    assert "Quick level: 4 of the 5 gates; 1 further case: 1 of the full level." in index
     text = page_of(tmp_path / "out").text
     assert "2 of 3 cases failed." in text and "Not in this report" in text
     places = [text.index(f"{each} case") for each in ("Bad", "Good", "Slow")]

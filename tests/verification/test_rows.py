@@ -143,9 +143,9 @@ def test_a_file_holds_several_cases_which_override_and_rows_in_braces(tmp_path):
 
 def test_a_take_says_in_words_what_it_is():
     take, held = Take.of_row("order p-max of sam coarse at grid-cells = 3, z < 2 | of fem")
-    assert take.words == "largest pressure, SAM, coarse, grid cells 3, z < 2, order"
-    assert held.words == "largest pressure, FEM, grid cells 3, z < 2, order"
-    assert Take.parse("own-column").words == "own column"
+    assert take.words() == "largest pressure, SAM, coarse, grid cells 3, z < 2, observed order of convergence"
+    assert held.words({"order": "", "z < 2": "near"}) == "largest pressure, FEM, grid cells 3, near"
+    assert Take.parse("own-column").words() == "own column"
 
 
 def test_braces_in_the_name_of_a_case_stand_for_several(tmp_path):

@@ -7,16 +7,19 @@ here, on few cells.
 """
 
 import re
+from dataclasses import replace
 from functools import cache
 from tempfile import TemporaryDirectory
 
 import numpy as np
+import pandas as pd
 import pytest
 from builders import running_in
 from matplotlib.collections import QuadMesh
 
 from sam.scene import FrictionMap, Scene
-from verification.figures.run import drawings_of
+from verification.cost.contact import hertz_of
+from verification.figures.run import drawings_of, history
 from verification.runs import models
 from verification.runs.files import Run, read_run, write_run
 
@@ -123,6 +126,23 @@ def cross_of(panel) -> tuple[float, float]:
     """Where the largest value is marked."""
     (line,) = (each for each in panel.lines if each.get_marker() == "x")
     return float(line.get_xdata()[0]), float(line.get_ydata()[0])
+
+
+def test_the_history_distinguishes_loading_and_unloading_and_has_hertz():
+    """Of a made history on the curve of Hertz; the lines begin at the first touch, and where loading ended."""
+    run = run_of("sphere")
+    force = np.array([0.02, 0.05, 0.03, 0.0])
+    x = 1e6 * hertz_of(run.scene)["approach_m"] * (force / 0.05) ** (2 / 3)
+    table = {"approach_m": 1e-6 * x, "force_N": force, "note": [""] * 4}
+    made = replace(run, tables={**run.tables, "history": pd.DataFrame(table)})
+    (panel,) = history(made).figure.axes
+    hertz, up, down = panel.lines
+    assert [line.get_label() for line in panel.lines] == ["Hertz (elastic)", "loading", "unloading"]
+    assert np.interp(x[0], *hertz.get_data()) == pytest.approx(0.02, rel=1e-3)
+    assert np.allclose(up.get_xydata().T, [[0, *x[:2]], [0, 0.02, 0.05]])
+    assert np.allclose(down.get_xydata().T, [x[1:], force[1:]])
+    once = replace(made, tables={"history": pd.DataFrame(table).iloc[[0, 1, 3]].assign(note="in one step")})
+    assert {line.get_linestyle() for line in history(once).figure.axes[0].lines[1:]} == {"None"}
 
 
 ALL = ["ellipse", "cut off", "travelling", "worn"]

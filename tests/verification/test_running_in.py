@@ -255,7 +255,7 @@ class TestReadings:
         assert "bulk, surface 7, renewed: plastic-zone-at-grid-edge after 25 cycles." in notes
 
     def test_runs_that_are_lost_are_named_counted_left_out_and_not_drawn(self, solved, monkeypatch):
-        for drawing in ("over_cycles", "six_panels", "yield_profiles"):
+        for drawing in ("curves", "six_panels", "yield_profiles"):
             monkeypatch.setattr(running_in, drawing, lambda *_, **__: None)
         lost = {f"renewed-{DUCTILE}-seed-2", *(f"renewed-{BULK}-seed-{seed}" for seed in TEN)}
         found, _ = solved(lost=lost)
@@ -278,7 +278,7 @@ class TestReadings:
         coarse, fine = CELLS.data(found)["statements"].values()
         failed = [each["statement"] for each in fine if each["by_median"] == FAILED]
         changed, _ = CELLS.notes(found)
-        assert changed.count(": held, then failed") == len(failed) > 0
+        assert changed.count(" (held, then failed)") == len(failed) > 0
         assert "bulk: hardly any wear later" in failed and all(each["holds_on"] == 1 for each in coarse)
         assert all(len(row) == len(table.columns) for table in CELLS.tables(found) for row in table.rows)
         assert red_rows(CELLS.name, CELLS.measure(found[found["material"] != BULK])) == {"missing"}

@@ -298,14 +298,12 @@ class TestWay:
         rows[0] |= {"resumed": 0, "growth": 0.0, "unconverged": int(changed.get("lost", 0))}
         return [*rows, {"run": "at-rest"} | way.cost(results[1]) | {"unconverged": 0}]
 
-    def test_right_numbers_hold_wrong_ones_turn_red_and_the_passes_can_be_read(self):
+    def test_right_numbers_hold_and_wrong_ones_turn_red(self):
         assert wrong(self.NAME, self.rows(rest=20)) == set()
         worse = {"moving": 61, "lost": 1, "friction_mean": [0.2, 0.41, 0.2]}
         worse |= {"protected_mean": [0.1, np.nan, 0.1], "wear_of_pass_m3": [3.0, 2.0, 1.1]}
         found = wrong(self.NAME, self.rows(**worse))
         assert found == {"unconverged", "increments", "missing", "volume", "friction-range"}
-        plot = way.passes(None, pd.DataFrame(self.rows()))
-        assert list(findings(plot.drawing.figure)) == []
 
 
 class TestWear:
@@ -369,7 +367,7 @@ class TestFem:
             rows[-1]["pressure"] == pytest.approx(3.0 / np.sqrt(16 + 36 + 4)) and rows[-1]["residual"] < 1e-12
         )
         assert rows[-1]["strain"] == pytest.approx(0.1 / 1.1) and rows[-1]["volume"] == pytest.approx(0.25)
-        assert list(findings(fem.lowered(None, pd.DataFrame(rows)).drawing.figure)) == []
+        assert sum("lowered" in row for row in rows) == 1
 
     def test_means_over_squares_count_each_cell_by_its_shares(self):
         """Cells of 2/3 of a square: the second lies in two."""

@@ -95,7 +95,7 @@ class Small:
             raise RuntimeError(self.problem)
         p = result.quantities["p_max_Pa"]
         outcome = Outcome({"small.one": Measured(np.float64(p * 1.01), p)})
-        outcome.figures = [context.save(Plot(sketch(), "curve", "A curve", "Two curves", "Caption"))]
+        outcome.figures = [context.save(Plot(sketch(), "curve", "A curve", "Caption"))]
         outcome.setup = [("Force", "1 N")]
         return outcome
 
@@ -140,10 +140,9 @@ def test_a_case_runs_once_and_its_files_come_back_byte_for_byte(tmp_path, small,
     }
     pages = [(tmp_path / name / "index.html").read_text(encoding="utf-8") for name in ("out", "again")]
     assert "1 solved, 0 taken" in pages[0] and "0 solved, 1 taken from the store" in pages[1]
-    assert (
-        "0 solved, 1 taken from the store; cases not run again, code and scenes unchanged: 1"
-        in capsys.readouterr().out
-    )
+    said = capsys.readouterr().out
+    assert "0 solved, 1 taken from the store; cases not run again, code and scenes unchanged: 1" in said
+    assert "1 of 1: small: 1 gate passed, from the store\n" in said
     assert report_of(tmp_path, level="full")["solves"]["cases"] == 0  # another level is another outcome
     assert small.runs == 2 and counted == [models.SAM]
 
@@ -159,6 +158,8 @@ def test_a_case_of_other_code_or_scene_runs_again_on_stored_results(
     tmp_path, small, counted, monkeypatch, capsys, why
 ):
     report_of(tmp_path)
+    asked = Store(tmp_path / "store"), verify.all_cases()["small"], "quick"
+    assert outcomes.is_kept(*asked)
     if why == "damaged":
         (entry,) = [entry for entry in Store(tmp_path / "store").entries() if entry.kind == "outcome"]
         assert entry.what == "small, quick" and entry.state == "current"
@@ -166,6 +167,7 @@ def test_a_case_of_other_code_or_scene_runs_again_on_stored_results(
     with monkeypatch.context() as patched:
         if why == "other code":
             patched.setattr(outcomes, "version_of_cases", lambda: "f" * 64)
+            assert not outcomes.is_kept(*asked)
         elif why == "another scene":
             patched.setattr(outcomes, "present", lambda name: b"title")
         solves = report_of(tmp_path)["solves"]

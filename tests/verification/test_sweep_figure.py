@@ -18,6 +18,31 @@ scene = "sphere.toml"
 """
 
 
+def test_a_grid_of_two_numbers_is_a_map(tmp_path):
+    """Each cell has the value of its point, about which it lies; the point that failed is a cross."""
+    (tmp_path / "sphere.toml").write_text(scene_text())
+    (tmp_path / "study.toml").write_text(STUDY.replace('"title"', '#"title"'))
+    content = read_study(tmp_path / "study.toml")
+    rows = [
+        dict(zip(content.study.vary, point.shown, strict=True)) | {"status": "converged"}
+        for point in content.points
+    ]
+    for k, row in enumerate(rows):
+        row |= {"p_max_Pa": 1e9 * k, "contact_radius_m": 1e-6, "approach_m": 1e-7, "peeq_max": 0.0}
+    rows[-1] |= {"status": "failed", "p_max_Pa": None}
+    figure = summary(content.study, rows).figure
+    panel, *_ = figure.axes
+    (drawn,) = panel.collections
+    found = np.ma.filled(drawn.get_array(), np.nan).T.ravel()
+    assert np.array_equal(found, [*range(len(rows) - 1), np.nan], equal_nan=True)
+    edges = drawn.get_coordinates()[:, 0, 1]
+    assert np.allclose(np.log10(edges), [0.5, 1.5, 2.5, 3.5])
+    assert (panel.get_xlabel(), panel.get_yscale()) == ("normal force [N]", "log")
+    (cross,) = panel.lines
+    assert np.allclose(cross.get_xydata(), [0.4, 1000.0])
+    figure.draw_without_rendering()
+
+
 def test_the_figure_marks_what_failed_and_has_the_scales_of_the_study(tmp_path):
     """Of a made result of which the last point has none; plastic strain has a row of panels if there is
     any.
@@ -33,7 +58,7 @@ def test_the_figure_marks_what_failed_and_has_the_scales_of_the_study(tmp_path):
     figure = summary(content.study, rows).figure
     panels = np.array(figure.axes).reshape(3, 3)
     assert [panel.get_xscale() for panel in panels[-1]] == ["linear", "log", "linear"]
-    assert panels[-1, 1].get_xlabel() == "counterbody.radius [um]"
+    assert panels[-1, 1].get_xlabel() == "radius of the counter-body [\u00b5m]"
     crosses = [line for line in panels[0, 1].lines if line.get_marker() == "x" and line.get_xdata().size]
     assert len(crosses) == 1 and crosses[0].get_xdata() == pytest.approx([1000.0])
     points = [line for line in panels[0, 1].lines if line.get_marker() == "o"]

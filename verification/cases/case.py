@@ -33,7 +33,6 @@ class Plot:
     drawing: Drawing
     name: str
     title: str
-    alt: str
     caption: str
 
 
@@ -49,13 +48,13 @@ class View:
     picture: str
     name: str
     title: str
-    alt: str
     caption: str
 
 
 @dataclass(frozen=True)
 class Figure:
-    """A drawn figure; paths relative to the report's folder, a picture in space has no csv.
+    """A drawn figure; paths relative to the report's folder, a picture in space has no csv. alt: what stands
+    in place of the picture; the caption describes it.
 
     findings: what cannot be read in it, see `verification.figures.check`: the case has failed then.
     """
@@ -276,7 +275,7 @@ class Context:
         folder.mkdir(parents=True, exist_ok=True)
         picture, *data = (f"figures/{path.name}" for path in save(plot.drawing, stem, pdf=self.pdf))
         unread = tuple(findings(plot.drawing.figure))
-        return Figure(plot.title, plot.alt, plot.caption, picture, "".join(data), unread)
+        return Figure(plot.title, plot.title, plot.caption, picture, "".join(data), unread)
 
     def look(self, views: Iterable[View]) -> tuple[list[Figure], list[str]]:
         """Write pictures in space as figures/<case>-<name>.png; a line says why others are missing."""
@@ -291,7 +290,7 @@ class Context:
             for picture in pictures.values():
                 (self.out / path).parent.mkdir(parents=True, exist_ok=True)
                 write_atomically(self.out / path, picture)
-                seen.append(Figure(view.title, view.alt, view.caption, path.as_posix()))
+                seen.append(Figure(view.title, view.title, view.caption, path.as_posix()))
         return seen, []
 
 

@@ -156,7 +156,7 @@ class Compared(Case):
         handed = beside(self.file, self.file.data, {})(found[""].frame) if self.file.data else {}
         for name, solved in found.items():
             if {"sam", "fem"} <= set(solved.results):
-                said = f" ({self.file.variants[name]['words'].replace('mu = ', 'μ = ')})" if name else ""
+                said = f" ({self.file.variants[name]['words']})" if name else ""
                 for words, values in _in_words([solved.results[run] for run in ("sam", "fem")]):
                     where = words.startswith("depth of")  # a place, which the mesh decides
                     if all(values) and (words.startswith("largest ") or not (name or where)):
@@ -164,22 +164,22 @@ class Compared(Case):
         return {"pairs": pairs} | handed
 
     def figures(self, found: Mapping[str, Solved]) -> Iterator[Plot]:
-        from verification.cases.kinds import KINDS, OVER_VARIANTS, SWEPT  # noqa: PLC0415 - loads matplotlib
+        from verification.cases.kinds import KINDS, OVER_VARIANTS, SWEPT, of_kind  # noqa: PLC0415 - loads matplotlib
 
         words = {name: each["words"] for name, each in self.file.variants.items()}
         for kind in self.file.figures:
             if kind in OVER_VARIANTS:
-                yield from OVER_VARIANTS[kind](found, words)
+                yield from OVER_VARIANTS[kind](self.file, found)
                 continue
             first, *more = kind.split()
             draw = beside(self.file, first, KINDS | SWEPT)
             for name, solved in found.items():
-                plot = draw(solved) if first in KINDS else draw(self.file, solved.frame, *more)
+                plot = of_kind(first, solved) if first in KINDS else draw(self.file, solved.frame, *more)
                 if plot is None:  # too few points at this level
                     continue
                 if name:
                     plot = replace(plot, name=f"{plot.name}-{name}", title=f"{plot.title}, {words[name]}")
-                yield plot
+                yield replace(plot, caption=self.file.captions.get(plot.name, plot.caption))
 
     def views(self, found: Mapping[str, Solved]) -> Iterator[View]:
         from verification.cases.kinds import VIEWS  # noqa: PLC0415 - loads matplotlib

@@ -5,34 +5,32 @@ both models (`verification.quantities.Solved`). Titles and captions follow from 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from itertools import cycle
-from textwrap import fill
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sam.scene import UNLOADED
 from verification.cases.case import Plot, View
-from verification.cases.sweep import BOTH, fitted, spelt, words_of
+from verification.cases.sweep import BOTH, LABELS, UNITS as SI, fitted, label_of, spelt, words_of
 from verification.compare.measures import SHALLOWEST, Plane, patch_pressure, spots
+from verification.figures.check import COUNTS
 from verification.figures.lines import (
     CYCLES,
+    LINE_ON_POINTS,
     LOOKS,
     PERCENT,
+    PLAIN,
     Curve,
     below_spots,
     convergence,
     curves,
-    grooves,
-    new_strains,
     profile_of,
     refinement,
-    residual,
 )
 from verification.figures.maps import (
+    PRESSURE,
     SURFACE_AXES,
     VON_MISES,
     FieldPair,
@@ -45,7 +43,7 @@ from verification.figures.maps import (
     sliding_sections,
 )
 from verification.figures.profiles import Profile, axis_profiles, profiles, residual_surface
-from verification.figures.style import Drawing
+from verification.figures.style import BLACK, Drawing
 from verification.quantities import Solved, ladders, of_passes, planes, strain_below
 from verification.reference.convergence import extrapolate
 from verification.references import REFERENCES, coated_contact, contact_of
@@ -56,7 +54,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 COLUMNS = {
-    ("line", "p_Pa"): ("Pressure", "$p/p_0$", "p0"),
+    ("line", "p_Pa"): ("Pressure", PRESSURE, "p0"),
     ("line", "uz_m"): ("Displacement of the body", r"$u_z/\delta$", "approach"),
     ("line", "gap_m"): ("Gap", r"gap$/\delta$", "approach"),
     ("axis", "szz_Pa"): ("Normal stress", r"$\sigma_{zz}/p_0$", "p0"),
@@ -65,12 +63,14 @@ COLUMNS = {
 }
 """Table and column -> title, label, unit of the reference that it is divided by."""
 UNITS = {"p0": "$p_0$", "approach": r"$\delta$"}
+MANY = 30
+"""Points: a curve of more has no marks."""
 
 
 def _maps(what: str, name: str, draw: Callable[[Solved], Drawing]) -> Callable[[Solved], Plot]:
     """Maps of SAM and FEM, and their difference."""
-    alt = f"Three maps of the {what}: SAM, FEM and their difference."
-    return lambda found: Plot(draw(found), name, what[0].upper() + what[1:], alt, alt)
+    words = f"The maps compare the {what} by SAM and by FEM; the right one shows the difference."
+    return lambda found: Plot(draw(found), name, what[0].upper() + what[1:], words)
 
 
 def _along(
@@ -86,7 +86,7 @@ def _along(
 
         def panel(table: str, column: str) -> Profile:
             words, label, unit = COLUMNS[table, column]
-            place, axis = ("x_m", "$x/a$") if table == "line" else ("z_m", "$z/a$")
+            place, axis = ("x_m", "$x/a$") if table == "line" else ("z_m", "depth $z/a$")
             read = {
                 run.upper(): peak(each.tables[table], place, column) for run, each in found.results.items()
             }
@@ -101,10 +101,10 @@ def _along(
 
         shown = [each for each in columns if each in curves]
         names = ", ".join(COLUMNS[each][0].lower() for each in shown)
-        words = f"Curves of {names} of the models on those of the reference, with the errors underneath."
+        words = f"The curves compare {names} with the reference; the errors are shown underneath."
         film = found.scene.body.coating if columns[0][0] == "axis" else None
         drawn = profiles([panel(*each) for each in shown], interface=film.thickness / a if film else None)
-        return Plot(drawn, name, title, words, words)
+        return Plot(drawn, name, title, words)
 
     return plot
 
@@ -118,9 +118,9 @@ def _exact_maps(found: Solved) -> Plot:
     x, y, p = pressure_map(found.results["sam"])
     x, y, p = x[near := np.abs(x) <= 1.2 * a], y[close := np.abs(y) <= 1.2 * a], p[np.ix_(near, close)]
     fields = p / p0, exact(x[:, None], y[None, :]) / p0
-    pair = FieldPair(x / a, y / a, *fields, ("SAM", "closed form"), SURFACE_AXES, "$p/p_0$", (1.0, b / a))
-    words = "Three maps of the pressure: SAM, closed form and difference; dashed: the exact contact."
-    return Plot(pressure_maps(pair), "pressure-maps", "Contact pressure", words, words)
+    pair = FieldPair(x / a, y / a, *fields, ("SAM", "closed form"), SURFACE_AXES, PRESSURE, (1.0, b / a))
+    words = "The maps compare the pressure of SAM with the closed form, whose contact is dashed."
+    return Plot(pressure_maps(pair), "pressure-maps", "Contact pressure", words)
 
 
 def _peeq_maps(found: Solved) -> Drawing:
@@ -129,21 +129,20 @@ def _peeq_maps(found: Solved) -> Drawing:
 
 def _plastic_axis(found: Solved) -> Plot:
     drawing = axis_profiles(*found.results.values(), contact_of(found.scene).contact_radius)
-    alt = (
-        "Curves over depth of the plastic strain and von Mises stress at the peak, and of the von Mises and "
-        "lateral stress after unloading; SAM on the curves of FEM, with the differences underneath."
+    words = (
+        "The curves compare SAM with FEM on the axis: plastic strain and von Mises stress at the peak, von "
+        "Mises and lateral stress after unloading; the differences are shown underneath."
     )
-    caption = "On the axis r = 0. Underneath: SAM minus FEM in % of the largest value of FEM."
-    return Plot(drawing, "axis", "Under the centre, at the peak and unloaded", alt, caption)
+    return Plot(drawing, "axis", "Under the centre, at the peak and unloaded", words)
 
 
 def _residual_surface(found: Solved) -> Plot:
     drawing = residual_surface(*found.results.values(), contact_of(found.scene))
     words = (
-        "Left: the surface after unloading along y = 0, SAM on the curve of FEM, with the difference. Right: "
-        "force over approach at every load step of both models beside the elastic curve of Hertz."
+        "The left panel compares the surface after unloading along y = 0 in SAM and FEM, the right one the "
+        "force over the approach at every load step with the elastic curve of Hertz."
     )
-    return Plot(drawing, "surface", "Residual surface, load and approach", words, words)
+    return Plot(drawing, "surface", "Residual surface, load and approach", words)
 
 
 def _pressure_maps(found: Solved) -> Drawing:
@@ -166,12 +165,11 @@ def _mises_maps(found: Solved) -> Drawing:
 
 def _spot_pressures(found: Solved) -> Plot:
     (x, y, own), (*_, fem) = (patch_pressure(each.tables) for each in found.results.values())
-    words = "Maps of the pressure by SAM and FEM at peak load, and their difference."
+    words = "The maps compare the pressure of the spots at peak load by SAM and by FEM."
     return Plot(
         rough_pressures(x, y, {"SAM": own, "FEM": fem}, reach=3.2e-6),
         "pressure",
         "Pressure of the spots",
-        words,
         words,
     )
 
@@ -185,32 +183,37 @@ def _spot_strains(found: Solved) -> Plot:
         first = strain_below(found.scene, sam, fem, spot)[0][0]
         curves_of = [(z, each.below(spot.x, z)) for z, each in zip(depths, both, strict=True)]
         panels[f"x = {spot.x * 1e6:.2f} µm"] = (*curves_of, first)
-    words = "Plastic strain over depth below each spot, in y = 0 at peak load: SAM on the points of FEM."
-    caption = f"{words} Grey: too near the surface to be compared."
-    return Plot(below_spots(panels), "strain", "Plastic strain below the spots", words, caption)
+    words = (
+        "The curves compare the plastic strain below each spot in y = 0 at peak load by SAM and by FEM; in "
+        "the grey range, too near the surface, nothing is compared."
+    )
+    return Plot(below_spots(panels), "strain", "Plastic strain below the spots", words)
 
 
 def _residual_line(found: Solved) -> Plot:
-    lines = (rows_of(each.tables["line"], UNLOADED, "x_m", "uz_m") for each in found.results.values())
-    side = found.scene.patch_surface.path.extent[0]
-    near = ((x[use := np.abs(x) <= side / 2], uz[use]) for x, uz in lines)
-    words = "Change of the heights along y = 0 after unloading, by SAM and FEM."
-    return Plot(residual(*near), "residual", "Residual heights", words, words)
+    side, drawn = found.scene.patch_surface.path.extent[0], {}
+    for run, each in found.results.items():
+        x, uz = rows_of(each.tables["line"], UNLOADED, "x_m", "uz_m")
+        use = np.abs(x) <= side / 2
+        drawn[run.upper()] = Curve(1e6 * x[use], -1e9 * uz[use])
+    how = {"looks": LINE_ON_POINTS, "size": (6.0, 3.0)}
+    words = "The curves compare by how much the heights along y = 0 have changed after unloading."
+    drawing = curves({"": drawn}, "$x$ [µm]", "change of the height [nm]", **how)
+    return Plot(drawing, "residual", "Residual heights", words)
 
 
 def _mises_below_film(found: Solved) -> Plot:
     hertz, thickness = contact_of(found.scene), found.scene.body.coating.thickness
     units = hertz.contact_radius, hertz.peak_pressure
-    words = "Three maps of the von Mises stress of the body below its film: SAM, FEM and their difference."
-    caption = (
-        "From the lower face of the film on; the cross marks the largest value. FEM is linear between its "
-        "lower face and the centres of the elements below."
+    words = (
+        "The maps compare the von Mises stress of the body from the lower face of its film on, by SAM and by "
+        "FEM, which is linear between that face and the centres of the elements below."
     )
     drawn = sliding_sections(*found.results.values(), units, thickness)
-    return Plot(drawn, "mises", "Von Mises stress in the plane y = 0", words, caption)
+    return Plot(drawn, "mises", "Von Mises stress in the plane y = 0", words)
 
 
-TOO_NEAR = "too near the surface to be compared, where the strain depends on the mesh."
+TOO_NEAR = "Near the surface, where the strain depends on the mesh, nothing is compared"
 
 
 def _strain_planes(found: Solved) -> Plot:
@@ -219,15 +222,17 @@ def _strain_planes(found: Solved) -> Plot:
     a, fem = found.reference.units["a"], found.results["fem"]
     edge = fem.quantities["contact_radius_m"] / a if found.scene.counterbody else 1.0
     drawing = compared_planes(both["sam"], both["fem"], ("SAM", "FEM"), edge, strip=SHALLOWEST)
-    alt = "Three maps of the plastic strain over x/a and z/a: SAM, FEM and their difference."
-    caption = f"{alt} Iso-lines in %. The body is pulled along +x. Hatched: {TOO_NEAR}"
-    return Plot(drawing, "plane", "Plastic strain in the plane y = 0", alt, caption)
+    words = (
+        "The maps compare the plastic strain in y = 0 by SAM and by FEM; the body is pulled along +x. "
+        f"{TOO_NEAR} (hatched)."
+    )
+    return Plot(drawing, "plane", "Plastic strain in the plane y = 0", words)
 
 
 DEEP = 1.4  # radii to which profiles are drawn
 
 
-def _strain_profiles(found: Mapping[str, Solved], words: Mapping[str, str]) -> Iterator[Plot]:
+def _strain_profiles(file: CaseFile, found: Mapping[str, Solved]) -> Iterator[Plot]:
     """Plastic strain over depth of every run, a panel a variant."""
     fields = {name: planes(each) for name, each in found.items()}
     for name, place in (("axis", "on the axis"), ("column", "where it is largest")):
@@ -235,58 +240,68 @@ def _strain_profiles(found: Mapping[str, Solved], words: Mapping[str, str]) -> I
         for variant, runs in fields.items():
             x = runs["fem"].place_of_maximum() if name == "column" else 0.0
             order = ("fem", *(run for run in runs if run != "fem"))
-            panels[f"{words[variant]}, x = {x:.2f} a"] = {
+            panels[f"{file.variants[variant]['words']}, x = {x:.2f} a"] = {
                 run.upper() if run in ("sam", "fem") else f"SAM, {run}": profile_of(runs[run], x, DEEP)
                 for run in order
                 if run in ("sam", "fem") or f"SAM, {run}" in LOOKS
             }
-        drawing = curves(panels, "$z/a$", "plastic strain [%]", (0.0, SHALLOWEST))
-        alt = "Curves of the plastic strain over depth: FEM, SAM on it, other forms of SAM beside it."
-        caption = f"In y = 0 at the peak. Grey: {TOO_NEAR}"
-        yield Plot(drawing, name, f"Plastic strain over depth {place}", alt, caption)
+        drawing = curves(panels, "depth $z/a$", "plastic strain [%]", (0.0, SHALLOWEST))
+        text = (
+            "The curves compare the plastic strain in y = 0 at the peak by FEM, SAM and other forms of SAM. "
+            f"{TOO_NEAR} (grey)."
+        )
+        yield Plot(drawing, name, f"Plastic strain over depth {place}", text)
 
 
-def _strain_of_cycles(found: Mapping[str, Solved], words: Mapping[str, str]) -> Iterator[Plot]:
+def _strain_of_cycles(file: CaseFile, found: Mapping[str, Solved]) -> Iterator[Plot]:
     """The largest plastic strain over the cycles, of the runs with most of them, a panel a variant."""
     panels = {}
     for name, solved in found.items():
         strains = {run: np.asarray(each.tables["cycles"]["peeq_max"]) for run, each in solved.results.items()}
         most = max(map(len, strains.values()))
-        panels[words[name]] = {
-            run: Curve(np.arange(1, most + 1), PERCENT * each)
+        panels[file.variants[name]["words"]] = {
+            label_of(file, "run", run): Curve(np.arange(1, most + 1), PERCENT * each)
             for run, each in strains.items()
             if len(each) == most
         }
-    series = dict.fromkeys(run for panel in panels.values() for run in panel)
-    looks = dict(zip(series, CYCLES, strict=False))
-    alt = "Curves of the largest plastic strain over the cycles of every run."
-    drawing = curves(panels, "cycle", "largest plastic strain [%]", looks=looks, count=True)
-    yield Plot(drawing, "strain", "Plastic strain over the cycles", alt, alt)
+    words = "The figure shows the largest plastic strain after each cycle."
+    drawing = curves(panels, "cycle", "largest plastic strain [%]", count=True)
+    yield Plot(drawing, "strain", "Plastic strain over the cycles", words)
 
 
 def _grooves(found: Solved) -> Plot:
     """The groove along the track of the finest runs that are compared."""
     a, path = found.reference.units["a"], found.scene.loading.path
     length, lines = (path.end[0] - path.start[0]) / a, {}
-    for runs in ladders(found):
+    for model, runs in zip(("SAM, cells", "FEM, elements"), ladders(found), strict=True):
         n = max(runs)
         x, depth = (np.asarray(runs[n].tables["track"][column]) / a for column in ("x_m", "uz_m"))
         near = np.abs(x) <= length / 2 + 2.0
-        lines[f"{runs[n].model}, {n} in a"] = x[near] + length / 2, depth[near]
-    words = "Depth of the unloaded surface over the distance from the start, both models; a: radius of Hertz."
-    return Plot(grooves(lines, length), "groove", "Groove of one pass in both models", words, words)
+        lines[f"{model} of $a$/{n}"] = Curve(x[near] + length / 2, PERCENT * depth[near], look=PLAIN)
+    axes = "distance from the start of the track, $s/a$", "depth of the groove over $a$ [%]"
+    ends = {"ends of the track": ("x", 0.0, length)}
+    drawing = curves({"": lines}, *axes, marks=ends, size=(6.2, 3.2))
+    drawing.figure.axes[0].invert_yaxis()
+    words = "The curves compare the depth of the unloaded surface along the track in both models."
+    return Plot(drawing, "groove", "Groove of one pass in both models", words)
 
 
-def _new_strains(found: Mapping[str, Solved], words: Mapping[str, str]) -> Iterator[Plot]:
+def _new_strains(file: CaseFile, found: Mapping[str, Solved]) -> Iterator[Plot]:
     """What each pass adds, a figure a variant."""
     for variant, solved in found.items():
-        runs = {name: of_passes(each, "strain") for name, each in solved.results.items()}
+        strains = {
+            label_of(file, "run", name): of_passes(each, "strain") for name, each in solved.results.items()
+        }
+        drawn = {name: Curve(np.arange(1, own.size + 1), own) for name, own in strains.items()}
         floors = sorted({float(each.verdict["floor"]) for each in solved.results.values()})
+        how = {"marks": {"floor of the verdict": ("y", *floors)}, "size": (6.6, 3.2)}
+        label = "largest plastic strain that a pass adds"
+        drawing = curves({"": drawn}, "pass", label, logarithmic="y", count=True, **how)
         text = (
-            f"Largest plastic strain that a pass adds to a cell or element of the steady part of the track, "
-            f"{words[variant]}; below its floor the verdict counts none."
+            "The figure shows the largest plastic strain that each pass adds to a cell of the steady part of "
+            f"the track, {file.variants[variant]['words']}; below a floor the verdict counts none."
         )
-        yield Plot(new_strains(runs, floors), f"new-strain-{variant}", "What each pass adds", text, text)
+        yield Plot(drawing, f"new-strain-{variant}", "What each pass adds", text)
 
 
 _PUNCH = (("line", "p_Pa"), ("line", "uz_m"), ("axis", "mises_Pa"))
@@ -329,22 +344,32 @@ KINDS: Mapping[str, Callable[[Solved], Plot]] = {
 """Name in a case file -> how it is drawn."""
 
 
+def of_kind(kind: str, found: Solved) -> Plot:
+    """A figure of KINDS; its caption ends with the units that the reference has."""
+    plot, units = KINDS[kind](found), found.reference.units if found.reference else {}
+    scales = {"a": ("a", 1e6, "µm"), "p0": ("p₀", 1e-9, "GPa"), "approach": ("δ", 1e6, "µm")}
+    said = [
+        f"{sign} = {f * units[name]:.3g} {unit}" for name, (sign, f, unit) in scales.items() if name in units
+    ]
+    return replace(plot, caption=f"{plot.caption} Here {', '.join(said)}.") if said else plot
+
+
 def _orders(file: CaseFile, frame: DataFrame) -> Plot:
     """The errors of each sweep over the size of the cells, with the orders that rows take of them."""
-    panels, fits = {}, []
+    panels: dict[str, dict[str, tuple]] = {}
+    fits: list[str] = []
     for (name, model), rows in frame[frame["model"] != BOTH].groupby(["sweep", "model"], sort=False):
-        sweep, title = file.sweeps[name], model.upper() if name == model else f"{model.upper()}, {name}"
+        sweep, title = file.sweeps[name], LABELS[model]
         errors = [column for column, how in sweep.columns.items() if how not in ("value", "between")]
         curves = {
             words_of(file, c): (rows["h"].to_numpy(), rows[c].to_numpy(), fitted(file, rows, c))
             for c in errors
         }
-        panels[title] = curves
+        panels[title] = panels.get(title, {}) | curves
         fits += [f"{title} {words} {order.exponent:.2f}" for words, (*_, order) in curves.items() if order]
     said = f"Observed orders: {', '.join(fits)}."
-    alt = f"Log-log plot of the errors against the cell size with fitted straight lines. {said}"
-    caption = f"Lines: least-squares fits error ~ hᵐ. {said}"
-    return Plot(convergence(panels), "orders", "Error against cell size", alt, caption)
+    text = f"The figure shows the errors over the cell size h; the lines are fits error ~ hᵐ. {said}"
+    return Plot(convergence(panels), "orders", "Error against cell size", text)
 
 
 def _limits(file: CaseFile, frame: DataFrame, column: str) -> Plot:
@@ -352,46 +377,73 @@ def _limits(file: CaseFile, frame: DataFrame, column: str) -> Plot:
     panels, labels, off = {}, {}, []
     for name, rows in frame[frame["model"] != BOTH].groupby("sweep", sort=False):
         models = rows.groupby("model", sort=False)
-        points = {model.upper(): (own["h"].to_numpy(), own[column].to_numpy()) for model, own in models}
+        points = {LABELS[model]: (own["h"].to_numpy(), own[column].to_numpy()) for model, own in models}
         panels[name] = {model: (h, v, extrapolate(h, v)) for model, (h, v) in points.items()}
         labels[name] = "1 / load steps" if file.sweeps[name].size == "step" else "cell or element size / a"
-        sam, fem = (limit.limit for *_, limit in panels[name].values())
-        off.append(f"{name} {1e2 * (sam / fem - 1.0):+.2f} %")
-    words, said = words_of(file, column), f"SAM minus FEM, extrapolated: {', '.join(off)}."
-    alt = f"The {words} of SAM and FEM under refinement with fitted power laws that meet at zero. {said}"
-    caption = f"Lines: limit + c hᵐ fitted to all points. {said}"
+        sam, fem = (limit for *_, limit in panels[name].values())
+        if sam.observed and fem.observed:
+            off.append(f"{1e2 * (sam.limit / fem.limit - 1.0):+.2f} % ({name})")
+    words, said = words_of(file, column), f" The limit of SAM is off that of FEM by {', '.join(off)}."
+    text = f"The figure shows the {words} of both models under refinement; the lines are fits limit + c hᵐ"
+    text += ", drawn where an order is observed." + said * bool(off)
     title = f"{words[0].upper()}{words[1:]} under refinement"
-    return Plot(refinement(panels, labels, f"{words} [%]"), "refinement", title, alt, caption)
+    return Plot(refinement(panels, labels, f"{words} [%]"), "refinement", title, text)
 
 
-def _lines(file: CaseFile, frame: DataFrame, y: str, *words: str) -> Plot | None:
-    """`lines Y over X by SERIES in PANEL`: a column over an axis or a column, each a number or an array; what
-    is expected is dotted. Series and panels are told by one axis or by several, "model,size". None where no
-    line has two points.
+def _lines(file: CaseFile, frame: DataFrame, ys: str, *words: str) -> Plot | None:
+    """`lines Y,Y over X by SERIES in PANEL on AXES at LEVELS`: columns over an axis or a column, each a
+    number or an array; what is expected is a line below the marks of what is found. Series and panels are
+    told by one axis or by several, "model,size", and by the column where there are several. on: logarithmic
+    axes; at: levels that are marked. None where no line has two points.
     """
     said = dict(zip(words[::2], words[1::2], strict=True))
     x, by, panel = said["over"], said.get("by", "model").split(","), said.get("in", "sweep").split(",")
-    panels: dict[str, dict[str, Curve]] = {}
-    for keys, rows in frame.dropna(subset=[y]).groupby([*panel, *by], sort=False):
-        told = [
-            spelt(each).upper() if of == "model" else spelt(each)
-            for of, each in zip([*panel, *by], keys, strict=True)
-        ]
-        title, name = (", ".join(part) for part in (told[: len(panel)], told[len(panel) :]))
-        for column, series in ((y, name), (f"{y} expected", f"{name}, expected")):
-            if rows[column].notna().all() if column in rows else False:
-                values = (np.concatenate([np.atleast_1d(each) for each in rows[c]]) for c in (x, column))
-                panels.setdefault(title, {})[series] = Curve(*values)
-    if all(len(curve.x) < 2 for series in panels.values() for curve in series.values()):
+    labels = {column: label_of(file, column) for column in (*ys.split(","), x)}
+    *shown, at = labels.values()
+    expected, known = (
+        file.labels.get("expected", "{}, expected"),
+        frame.dropna(subset=ys.split(","), how="all"),
+    )
+    panel = [of for of in panel if known[of].map(spelt).nunique() > 1]
+    panels: dict[tuple[str, str], dict[str, Curve]] = {}
+    looks: dict[str, Mapping[str, Any]] = {}
+
+    def named(axes: list[str], rows: DataFrame) -> str:
+        return ", ".join(filter(None, (label_of(file, of, rows[of].iloc[0]) for of in axes)))
+
+    def values(rows: DataFrame, column: str, label: str) -> np.ndarray:
+        return np.hstack(rows[column].tolist()) * SI.get(label.rpartition("[")[2].rstrip("]"), 1)
+
+    for y, label in zip(labels, shown, strict=False):
+        for _, rows in known.dropna(subset=[y]).groupby([*panel, *by], sort=False):
+            series, name = panels.setdefault((label, named(panel, rows)), {}), named(by, rows)
+            one = Curve(values(rows, x, at), values(rows, y, label))
+            look = looks.setdefault(name, CYCLES[len(looks) % len(CYCLES)])
+            if (of := f"{y} expected") in rows and rows[of].notna().all():
+                whole, color = expected.format(name), look["color"] if "{}" in expected else BLACK
+                points = np.stack([one.x, values(rows, of, label)])
+                if before := series.pop(whole, None):
+                    points = np.hstack([points, [before.x, before.y]])
+                line = {"color": color, "marker": "", "linestyle": ":"}
+                series |= {name: replace(one, look={**look, "linestyle": "none"})}
+                series |= {whole: Curve(*points[:, np.argsort(points[0])], look=line)}
+            else:
+                series[name] = replace(one, look={**look, **PLAIN} if one.x.size > MANY else look)
+    if all(curve.x.size < 2 for series in panels.values() for curve in series.values()):
         return None
-    names = dict.fromkeys(name for series in panels.values() for name in series)
-    plain, dashed = ([n for n in names if n.endswith(", expected") is ends] for ends in (False, True))
-    looks = dict(zip(plain, cycle(CYCLES)))
-    looks |= {n: {"color": looks[n.removesuffix(", expected")]["color"], "linestyle": ":"} for n in dashed}
-    what = words_of(file, y) if file.sweeps else y.replace("-", " ")
-    title, at = f"{what[0].upper()}{what[1:]}", re.sub("[.-]", " ", x)
-    text = f"Curves of the {what} over {at}, by {' and '.join(by)}; dotted: what is expected."
-    return Plot(curves(panels, at, fill(what, 40), looks=looks), y, title, text, text)
+    levels = [float(level) for level in said.get("at", "").split(",") if level]
+    marks = {file.labels.get("limit", "limit"): ("y", *levels)} if levels else {}
+    how = {"logarithmic": said.get("on", ""), "marks": marks, "count": bool(COUNTS.match(at))}
+    if len({title for _, title in panels}) == 1:
+        drawing = curves({label: own for (label, _), own in panels.items()}, at, None, **how)
+    elif len(shown) == 1:
+        drawing = curves({title: own for (_, title), own in panels.items()}, at, shown[0], **how)
+    else:
+        drawing = curves(panels, at, **how)
+    of = " and ".join(label.partition(" [")[0] for label in shown)
+    title = f"{of[0].upper()}{of[1:]}" if len(shown) == 1 else file.title
+    text = f"The figure shows the {of} over the {at.partition(' [')[0]}."
+    return Plot(drawing, next(iter(labels)).replace("_", "-"), title, text)
 
 
 def _at(file: CaseFile, frame: DataFrame, kind: str, *where: str) -> Plot:
@@ -402,9 +454,9 @@ def _at(file: CaseFile, frame: DataFrame, kind: str, *where: str) -> Plot:
         rows = rows[[spelt(each) == value for each in rows[axis]]]
     scene, models = rows["scene"].iloc[0], (model.partition("-")[0] for model in rows["model"])
     reference = REFERENCES[file.reference](scene) if file.reference else None
-    plot = KINDS[kind](Solved(scene, reference, dict(zip(models, rows["result"], strict=True))))
+    plot = of_kind(kind, Solved(scene, reference, dict(zip(models, rows["result"], strict=True))))
     name = "-".join((plot.name, *at.values())).replace(".", "-")
-    said = ", ".join(f"{axis.replace('-', ' ')} {value.replace('-', ', ')}" for axis, value in at.items())
+    said = ", ".join(label_of(file, axis, value) for axis, value in at.items())
     return replace(plot, name=name, title=f"{plot.title}, {said}")
 
 
@@ -418,15 +470,14 @@ SWEPT: Mapping[str, Callable[..., Plot | None]] = {
 VIEWS: Mapping[str, View] = {
     "plastic-zone": View(
         *("sam", "plastic-zone", "zone", "The plastic zone in space"),
-        "The plastic zone of SAM below the sphere, cut open at y = 0: a bowl that is strained most below the "
-        "centre of the contact.",
-        "Plastic strain of SAM at the peak load on the cut and, where the zone reaches it, on the surface.",
+        "The picture shows the plastic strain of SAM at the peak load on the cut y = 0 and, where the zone "
+        "reaches it, on the surface.",
     ),
 }
 """Name in a case file -> the picture in space."""
-OVER_VARIANTS: Mapping[str, Callable[[Mapping[str, Solved], Mapping[str, str]], Iterator[Plot]]] = {
+OVER_VARIANTS: Mapping[str, Callable[[CaseFile, Mapping[str, Solved]], Iterator[Plot]]] = {
     "strain-profiles": _strain_profiles,
     "strain-of-cycles": _strain_of_cycles,
     "new-strains": _new_strains,
 }
-"""The same of all variants of a scene, with the words of each."""
+"""The same of all variants of a scene."""

@@ -46,6 +46,21 @@ ERRORS = {
     "absolute": ", error",
     "relative_l2": ", relative error in L2",
 }
+LABELS = {
+    "sam": "SAM",
+    "fem": "FEM",
+    "fem-3d": "FEM, 3D",
+    "swift": "Swift's law",
+    "linear": "linear hardening",
+    "perfect": "perfect plasticity",
+    "prager": "one back-stress (Prager)",
+    "chaboche": "three back-stresses (Chaboche)",
+    "friction": "μ = {}",
+    "loading.steps": "{} load steps",
+}
+"""What every figure says of a value, or of the values of an axis."""
+UNITS = {"%": 1e2, "nm": 1e9, "µm": 1e6, "µm³": 1e18, "GPa": 1e-9}
+"""Unit at the end of a label -> factor of a column in SI."""
 
 
 def points(sweep: SweepFile, level: str) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
@@ -210,6 +225,15 @@ def words_of(file: CaseFile, column: str) -> str:
     of = beside(file, column, QUANTITIES)
     said = of.words if isinstance(of, Quantity) else of.__doc__.strip().splitlines()[0].rstrip(".")
     return said[0].lower() + said[1:]
+
+
+def label_of(file: CaseFile, name: str, value: Any = None) -> str:
+    """A column for the reader of a figure, or a value of an axis."""
+    labels = LABELS | file.labels
+    if value is not None:
+        return labels.get(spelt(value), labels.get(name, "{}").format(spelt(value)))
+    known = any(name in sweep.columns for sweep in file.sweeps.values())
+    return labels.get(name) or (words_of(file, name) if known else re.sub("[._-]", " ", name))
 
 
 def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:

@@ -40,7 +40,7 @@ YIELDS = 1.6
 MOVING = "moving"
 """Kind of a scene with a path, which has no rows: a press says nothing of the steps along it."""
 OF_MOVING = (
-    "none, as no error against run time was measured for a load that moves; below a sphere at p0 = 4 yield "
+    "none, as the cost of an error was not measured for a load that moves; below a sphere at p0 = 4 yield "
     "stresses of Swift steel steps of a quarter of the contact radius leave 1 % of error in the depth of the "
     "groove and 8 % in the largest plastic strain, by case moving-steps; solver.uncertainty = true says what "
     "the cells and steps of this scene leave"
@@ -176,10 +176,10 @@ def _words(kind: str | None, rows: Sequence[AdviceRow]) -> str:
     if kind == MOVING:
         return OF_MOVING
     if kind is None or not rows:
-        return "no error against run time was measured for this kind of scene"
+        return "the cost of an error was not measured for this kind of scene"
     steps = ", load steps" * any(row.method == LOAD_STEPS for row in rows)
-    what = f"{rows[0].unit}{steps}, processor time (about) and that over the least"
-    return f"what an error of the {rows[0].quantity} takes in scenes that are {kind}: {what}; by {ORIGIN}"
+    what = f"{rows[0].unit}{steps}, processor time (about), ratio to the cheapest"
+    return f"cost of an error in the {rows[0].quantity} of {kind} scenes: {what}; by {ORIGIN}"
 
 
 def _table(rows: Sequence[AdviceRow], scene: Scene) -> dict[str, list]:

@@ -110,7 +110,7 @@ class Plan:
 
     @property
     def contact(self) -> Mapping[str, Any]:
-        """The estimated elastic contact in SI: p0_Pa, a_m, b_m, a_over_R, p0_over_yield and the like."""
+        """p0_Pa, a_m, b_m, a_over_R, p0_over_yield and the like of the estimated elastic contact, in SI."""
         return self.content["contact"]
 
     @property

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """What a reader cannot read in a figure: the rules of the published figures, measured on what is drawn.
 
-Texts keep apart and stay on the sheet; an axis has at least two numbers, whole ones where it counts; every
-look of a line is in a legend or beside a text of its colour; a colour bar stands beside the panel that it is
-of; no name of a variable of the code is written.
+Texts keep apart and stay on the sheet; no title or entry of a legend is a bare number; an axis has at least
+two numbers, whole ones where it counts; every look of a line is in a legend or beside a text of its colour; a
+colour bar stands beside the panel that it is of; no name of a variable of the code is written.
 """
 
 from __future__ import annotations
@@ -31,7 +31,8 @@ TOUCH = 0.2
 FEW = 8
 """Colours of a map that a legend may name instead of a colour bar."""
 _RAW = re.compile(r"[^\W\d_]+_\w")
-_COUNTS = re.compile(r"(cycle|iteration|load step|pass\b|passes)", re.IGNORECASE)
+COUNTS = re.compile(r"(cycle|iteration|load step|pass\b|passes|period)", re.IGNORECASE)
+"""Begins the label of an axis of whole numbers."""
 _NUMBER = re.compile(r"[-+\N{MINUS SIGN}]?[\d.]+")
 _NO_LINE = ("None", "none", " ", "", None)
 
@@ -98,13 +99,16 @@ def _of_texts(figure: Figure, panels: list[Axes]) -> Iterator[str]:
     along = np.minimum.outer(y1, y1) - np.maximum.outer(y0, y0) > TOUCH * height
     for i, k in zip(*np.nonzero(np.triu(across & along, 1)), strict=True):
         yield f"the texts '{words[i]}' and '{words[k]}' collide"
+    titles = [panel.get_title() for panel in panels]
     for legend in _legends(figure, panels):
+        titles += [text.get_text() for text in legend.get_texts()]
         own, box = {id(text) for text in legend.findobj(Text)}, legend.get_window_extent().extents
         over = np.minimum(y1, box[3]) - np.maximum(y0, box[1]) > TOUCH * sizes
         inside = over & (x1 > box[0]) & (x0 < box[2])
         for k in np.flatnonzero(inside):
             if id(texts[k]) not in own:
                 yield f"a legend covers '{words[k]}'"
+    yield from (f"'{title}' does not say of what" for title in titles if _NUMBER.fullmatch(title.strip()))
 
 
 def _plain(text: str) -> str:
@@ -126,7 +130,7 @@ def _of_ticks(panel: Axes) -> Iterator[str]:
         title = panel.get_title() or axis.get_label_text() or "a colour bar"
         if len(words) < 2 and not hidden and not any(map(_is_name, words)):
             yield f"the {name} axis of '{title}' has fewer than two numbers"
-        if _COUNTS.match(axis.get_label_text()) and any("." in word for word in words):
+        if COUNTS.match(axis.get_label_text()) and any("." in word for word in words):
             yield f"the {name} axis of '{title}' counts and has broken numbers"
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import cycle
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -40,17 +41,31 @@ POINTS = {"SAM": SAM | {"marker": "o", "fillstyle": "none"}, "FEM": FEM | {"mark
 LOOKS = {
     "FEM": {"color": BLACK, "linewidth": 2.0},
     "SAM": {"color": BLUE, "marker": "o", "markersize": 3.5, "fillstyle": "none", "linestyle": "none"},
-    "SAM, decoupled": {"color": VERMILION, "linewidth": 1.3, "linestyle": "--"},
-    "SAM, paper": {"color": ORANGE, "linewidth": 1.5, "linestyle": ":"},
+    "SAM, decoupled": {
+        "color": VERMILION,
+        "linewidth": 1.3,
+        "linestyle": "--",
+        "label": "SAM, normal displacement by shear neglected",
+    },
+    "SAM, paper": {"color": ORANGE, "linewidth": 1.5, "linestyle": ":", "label": "SAM, loop of the paper"},
 }
 """The look of FEM and of each form of SAM, where FEM is the reference."""
 CYCLES = tuple(
-    {"color": color, "marker": marker, "markersize": 4, "linewidth": 1.2, "linestyle": line}
+    {
+        "color": color,
+        "marker": marker,
+        "markersize": 4,
+        "fillstyle": "none",
+        "linewidth": 1.2,
+        "linestyle": line,
+    }
     for color, marker, line in zip(
         (BLUE, VERMILION, GREEN, ORANGE, PURPLE, BLACK), "os^Dvx", cycle(("-", "--")), strict=False
     )
 )
-"""Looks of series that have none of their own, in order."""
+"""Looks of series that have none of their own, in order: hollow, so that one behind another is seen."""
+LETTERS = 10.5
+"""Of a title or a label in an inch."""
 BAND = {"color": GREEN, "alpha": 0.15, "linewidth": 0.0}
 UNKNOWN = {"color": "#bbbbbb", "alpha": 0.45, "linewidth": 0.0}
 
@@ -76,16 +91,15 @@ class Curve:
 class How:
     """How panels are drawn.
 
-    looks: of the series that have one of their own; across: panels in a row, 0: all; size: of one, in inches;
-    logarithmic: axes, "x", "y" or "xy"; count: x are whole numbers, and y begins at zero, so that a small
-    change looks small; ticks: words of the x of the points, which alone have a number; shade: range of x that
-    is not compared, floor: y below which nothing is claimed, each of all panels or of each; band: of
-    tolerance on both sides of zero; marks: words -> ("x" or "y", places of guide lines); legend: "below"
-    all panels or in "each", its entries, below all, or none.
+    looks: of the series that have one of their own; size: of a panel, in inches; logarithmic: axes, "x", "y"
+    or "xy"; count: x are whole numbers, and y begins at zero, so that a small change looks small; ticks:
+    words of the x of the points, which alone have a number; shade: range of x that is not compared, floor: y
+    below which nothing is claimed, each of all panels or of each; band: of tolerance on both sides of zero;
+    marks: words -> ("x" or "y", places of guide lines); legend: "below" all panels or in "each", its entries,
+    below all, or none.
     """
 
     looks: Mapping[str, Mapping] = field(default_factory=lambda: LOOKS)
-    across: int = 0
     size: tuple[float, float] = (3.4, 3.3)
     logarithmic: str = ""
     count: bool = False
@@ -104,13 +118,14 @@ def curves(
     shade: tuple[float, float] | None = None,
     **how: Any,
 ) -> Drawing:
-    """Panels of series: title -> name -> curve, side by side; or (label of y, title) -> name -> curve, a row
-    of panels for each label. One label of y for all: one scale for all in a row; None: the title of a panel
-    is its label of y. how: see `How`.
+    """Panels of series: title -> name -> curve, at most three side by side; or (label of y, title) -> name ->
+    curve, a row of panels for each label. One label of y for all: one scale for all in a row; None: the
+    title of a panel is its label of y. how: see `How`.
     """
     way = How(**{"shade": shade} | how)
     rows = list(dict.fromkeys(key[0] for key in panels)) if isinstance(next(iter(panels)), tuple) else []
-    across = len(panels) // len(rows) if rows else way.across or len(panels)
+    few = 2 if len(panels) == 4 else min(len(panels), 3)
+    across = len(panels) // len(rows) if rows else few
     shape = -(-len(panels) // across), across
     every = [each for series in panels.values() for each in series.items()]
     others, shared = cycle(CYCLES), bool(rows) or isinstance(ylabel, str)
@@ -130,11 +145,12 @@ def curves(
                 data.add(panel, name, curve.x, curve.y, *([fit] if fitted else []))
                 _draw(axis, curve, name, {**looks[name], **curve.look})
             _finish(axis, title, series.values(), way)
-            axis.set(title=title if ylabel is not None and (not rows or k < across) else "")
+            if ylabel is not None and (not rows or k < across):
+                axis.set_title(fill(title, int(LETTERS * way.size[0]), break_on_hyphens=False))
             if not rows or label == rows[-1]:
                 axis.set_xlabel(_of(key, xlabel))
             if not shared or k % across == 0:
-                axis.set_ylabel(label)
+                axis.set_ylabel(fill(label, int(LETTERS * way.size[1])))
         if way.count and "y" not in way.logarithmic:
             top = max(np.max(curve.y) for _, curve in every)
             for axis in grid.ravel():
@@ -176,7 +192,7 @@ def _finish(axis: Axes, title: str, series: Collection[Curve], way: How) -> None
     if way.count:
         axis.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=2))
     for scale in way.logarithmic:
-        axis.set(**{f"{scale}scale": "log"})
+        getattr(axis, f"set_{scale}scale")("log", nonpositive="mask")
     if grey := way.shade[title] if isinstance(way.shade, Mapping) else way.shade:
         axis.axvspan(*grey, color="#eeeeee", zorder=0)
     if way.band:
@@ -204,46 +220,16 @@ def _name(figure: Figure, axes: Sequence[Axes], way: How) -> None:
     drawn = [axis.get_legend_handles_labels() for axis in axes]
     named = {label: handle for pair in drawn for handle, label in zip(*pair, strict=True)}
     handles = list(named.values()) if isinstance(way.legend, str) else list(way.legend)
+    if not handles:
+        return
     letters = max(len(handle.get_label()) for handle in handles)
     wide = min(len(handles), max(1, int(14 * figure.get_figwidth() / (letters + 6))))
+    figure.set_figheight(figure.get_figheight() + 0.17 * (-(-len(handles) // wide) - 1))  # of more rows
     figure.legend(handles=handles, loc="outside lower center", ncols=wide)
 
 
 PLAIN = {"marker": "", "linestyle": "-", "linewidth": 1.4}
 """Of a curve of many points."""
-
-
-def grooves(found: Mapping[str, tuple[np.ndarray, np.ndarray]], length: float) -> Drawing:
-    """Depths (n,) over distances from the start (n,), both in radii of the contact; length of the path."""
-    drawn = {name: Curve(way, 1e3 * depth, look=PLAIN) for name, (way, depth) in found.items()}
-    ends = {"ends of the path": ("x", 0.0, length)}
-    drawing = curves(
-        {"": drawn}, "distance from the start, $s/a$", r"$10^3\, u_z/a$", marks=ends, size=(6.2, 3.2)
-    )
-    drawing.figure.axes[0].invert_yaxis()
-    return drawing
-
-
-def new_strains(found: Mapping[str, Sequence[float]], floors: Sequence[float] = ()) -> Drawing:
-    """The largest plastic strain that each pass adds to a cell of the steady part; no mark where it
-    is 0. floors: strains below which a verdict counts none.
-    """
-    drawn = {
-        name: Curve(np.arange(1, len(own) + 1), np.where(np.array(own) > 0.0, own, np.nan))
-        for name, own in found.items()
-    }
-    marks = {"floor of the verdict": ("y", *floors)} if len(floors) else {}
-    how = {"logarithmic": "y", "count": True, "marks": marks, "size": (6.6, 3.2)}
-    return curves({"": drawn}, "pass", "largest new plastic strain", **how)
-
-
-def of_passes(passes: Mapping[str, Sequence]) -> Drawing:
-    """Coefficient of friction and wear of each pass, from passes.csv."""
-    found = {"coefficient of friction": passes["friction_mean"]}
-    found["wear [µm³]"] = 1e18 * np.asarray(passes["wear_of_pass_m3"], dtype=float)
-    at = np.asarray(passes["pass"])
-    drawn = {words: {"SAM": Curve(at, np.asarray(y, float), look=PLAIN)} for words, y in found.items()}
-    return curves(drawn, "pass", None, count=True)
 
 
 PROGRAMS = {
@@ -299,16 +285,18 @@ def refinement(
     xlabels: Mapping[str, str],
     ylabel: str,
 ) -> Drawing:
-    """Strains in % over h, down to their limits at h = 0; panels: title -> "SAM" or "FEM" -> (h,
-    strain, limit).
+    """Strains in % over h, down to their limits at h = 0 where an order is observed; panels: title -> "SAM"
+    or "FEM" -> (h, strain, limit).
     """
     drawn: dict[str, dict[str, Curve]] = {}
     for title, own in panels.items():
         panel = drawn[title.capitalize()] = {}
         for name, (h, strain, limit) in own.items():
-            order = f"order {limit.order:.2f}" if limit.observed else "no order observed"
+            if not limit.observed:
+                panel[name] = Curve(h, PERCENT * strain, note="no order observed", look={"linestyle": "none"})
+                continue
             fit = lambda at, limit=limit: PERCENT * limit(at)  # noqa: E731
-            panel[name] = Curve(h, PERCENT * strain, fit, order, (0.0, h.max()))
+            panel[name] = Curve(h, PERCENT * strain, fit, f"order {limit.order:.2f}", (0.0, h.max()))
             look = POINTS[name] | {"marker": "D", "markersize": 5, "linestyle": "none", "clip_on": False}
             panel[f"{name}, limit"] = Curve(np.zeros(1), np.array([PERCENT * limit.limit]), look=look)
     words = {title.capitalize(): label for title, label in xlabels.items()}
@@ -333,16 +321,7 @@ def below_spots(spots: Mapping[str, tuple]) -> Drawing:
         named = zip(("SAM", "FEM"), models, strict=True)
         panels[title] = {name: Curve(MICRO * z, PERCENT * strain) for name, (z, strain) in named}
         shade[title] = (0.0, MICRO * compared)
-    return curves(panels, "$z$ [µm]", "plastic strain [%]", shade, looks=LINE_ON_POINTS)
-
-
-def residual(sam: tuple[np.ndarray, np.ndarray], fem: tuple[np.ndarray, np.ndarray]) -> Drawing:
-    """What the heights along y = 0 have lost after unloading: (x, displacement into the body) of
-    each model, in m.
-    """
-    drawn = {name: Curve(MICRO * x, -1e9 * uz) for name, (x, uz) in (("SAM", sam), ("FEM", fem))}
-    how = {"looks": LINE_ON_POINTS, "size": (6.0, 3.0)}
-    return curves({"": drawn}, "$x$ [µm]", "change of the height [nm]", **how)
+    return curves(panels, "depth $z$ [µm]", "plastic strain [%]", shade, looks=LINE_ON_POINTS)
 
 
 LINE_ON_POINTS = {
@@ -398,52 +377,32 @@ def coverage(panels: Mapping[str, Sequence[tuple[str, str, float, float]]]) -> D
         ends = np.array([errors.min(), bounds.max()])
         even = {"color": BLACK, "linewidth": 1.0}
         drawn[title] = {
-            "a value": Curve(errors, bounds, look={"linestyle": "none", "markersize": 3.0}),
+            "a quantity of a problem": Curve(errors, bounds, look={"linestyle": "none", "markersize": 3.0}),
             "uncertainty = error": Curve(ends, ends, look=PLAIN | even),
         }
     how = {"logarithmic": "xy", "legend": "each", "size": (4.0, 3.8)}
-    return Drawing(curves(drawn, "error [%]", "uncertainty [%]", **how).figure, data)
+    return Drawing(curves(drawn, "true error [%]", "stated uncertainty [%]", **how).figure, data)
 
 
 def over_cycles(
-    panels: Mapping[tuple[str, str], Mapping[tuple[str, str], np.ndarray]],
-    names: Sequence[str],
-    *,
-    first: int = 0,
-    thick: str = "",
+    panels: Mapping[tuple[str, str], Mapping[tuple[str, str], np.ndarray]], names: Sequence[str]
 ) -> Drawing:
-    """A row of panels for each quantity, a column for each title, lines over the cycles from the `first` on;
-    colours by the first of the two `names` of a line, dashes by the second, unless one of these is drawn
-    `thick`, the others thin. panels: (quantity, title) -> two names of a line -> (n,) its values.
+    """A row of panels for each quantity, a column for each title, lines over the cycles from 0 on; colours by
+    the first of the two `names` of a line, dashes by the second. panels: (quantity, title) -> two names of a
+    line -> (n,) its values.
     """
     firsts, seconds = ({key[k]: None for own in panels.values() for key in own} for k in (0, 1))
     colors = dict(zip(firsts, (BLUE, VERMILION, GREEN), strict=False))
-    dashes = dict(zip(firsts if thick else seconds, ("-", "--"), strict=False))
-    looks = {}
-    for one in firsts:
-        for two in seconds:
-            width = (2.0 if two == thick else 0.5) if thick else 1.3
-            look = {"color": colors[one], "linestyle": dashes[one if thick else two], "linewidth": width}
-            looks[f"{one}, {two}"] = look | ({"alpha": 0.4} if width < 1.0 else {})
+    dashes = dict(zip(seconds, ("-", "--"), strict=False))
     drawn: dict[tuple[str, str], dict[str, Curve]] = {}
     data = Columns("quantity", "panel", *names, "cycle", "value")
     for (quantity, title), own in panels.items():
-        panel = drawn[quantity, _broken(title)] = {}
-        for key, values in own.items():
-            cycles = np.arange(first, first + len(values))
-            panel[", ".join(key)] = Curve(cycles, values)
-            data.add(quantity, title, *key, cycles, values)
-    entries = [
-        Line2D([], [], color=color, linestyle=dashes.get(name, "-"), label=name)
-        for name, color in colors.items()
-    ]
-    if not thick:
-        entries += [Line2D([], [], color=BLACK, linestyle=line, label=name) for name, line in dashes.items()]
+        panel = drawn[quantity, title] = {}
+        for (one, two), values in own.items():
+            cycles, look = np.arange(len(values)), {"color": colors[one], "linestyle": dashes[two]}
+            panel[f"{one}, {two}"] = Curve(cycles, values, look=look | {"marker": "", "linewidth": 1.3})
+            data.add(quantity, title, one, two, cycles, values)
+    entries = [Line2D([], [], color=color, label=name) for name, color in colors.items()]
+    entries += [Line2D([], [], color=BLACK, linestyle=line, label=name) for name, line in dashes.items()]
     how = {"count": True, "legend": entries, "size": (2.2, 1.9)}
-    return Drawing(curves(drawn, "cycle", looks=looks, **how).figure, data)
-
-
-def _broken(title: str) -> str:
-    """A long title, broken at its last comma."""
-    begin, comma, rest = title.rpartition(", ") if len(title) > 20 else ("", "", title)
-    return f"{begin}{comma.strip()}\n{rest}" if comma else title
+    return Drawing(curves(drawn, "cycle", **how).figure, data)

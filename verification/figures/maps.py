@@ -82,9 +82,9 @@ class MapPeak:
     value: float
     words: str = ""
 
-    def said(self, depth: str) -> MapPeak:
+    def said(self, depth: str, unit: str) -> MapPeak:
         """With its value and its depth in words; depth: label of the axis."""
-        return replace(self, words=f"max {self.value:#.4g} at {depth} = {self.v:.3f}")
+        return replace(self, words=f"max {self.value:#.4g}{unit} at {depth} = {self.v:.3f}")
 
 
 def _plain(label: str) -> str:
@@ -136,9 +136,10 @@ def plane_maps(
         axes[0].invert_yaxis()  # shared by all panels
         for panel in axes:
             mark_contact(panel, pair.semi_axes[0])
+        unit = " %" * pair.quantity.endswith("[%]")
         for panel, field, peak in zip(axes[:2], (pair.first, pair.second), peaks, strict=True):
             iso_lines(panel, (pair.u, pair.v), field, levels)
-            mark_largest(panel, peak if peak.words else peak.said(pair.axes[1]))
+            mark_largest(panel, peak if peak.words else peak.said(pair.axes[1], unit))
         names = [BAR, CROSS]
         if interface is not None:
             mark_interface(axes, interface, across=True)
@@ -268,7 +269,8 @@ def mark_interface(axes: Sequence[Axes], depth: float, across: bool = False) -> 
         (axis.axhline if across else axis.axvline)(depth, **_INTERFACE)
 
 
-VON_MISES, STRAIN = r"$\sigma_\mathrm{vM}/p_0$", "plastic strain [%]"
+PRESSURE, STRAIN = "contact pressure $p/p_0$", "plastic strain [%]"
+VON_MISES = r"von Mises stress $\sigma_\mathrm{vM}/p_0$"
 SURFACE_AXES, PLANE_AXES = ("$x/a$", "$y/a$"), ("$x/a$", "$z/a$")
 PERCENT, MICRO, GIGA = 1e2, 1e6, 1e-9
 LINE = 0.2  # %: the proof strain of tensile tests
@@ -287,7 +289,7 @@ def compared_pressure(
     x, y, p = x[use_x], y[use_y], p[np.ix_(use_x, use_y)]
     fields = (p / p0, pressure_on(x, y, fem, power) / p0)
     names, axes = ("SAM", "FEM"), SURFACE_AXES
-    return pressure_maps(FieldPair(x / a, y / a, *fields, names, axes, "$p/p_0$", (edge, edge)))
+    return pressure_maps(FieldPair(x / a, y / a, *fields, names, axes, PRESSURE, (edge, edge)))
 
 
 def rough_pressures(

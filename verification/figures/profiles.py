@@ -117,7 +117,7 @@ def axis_profiles(sam: Result, fem: Result, a: float, deep: float = 2.0) -> Draw
     for title, label, state, column, unit in wanted:
         read = (rows_of(r.tables["axis"], state, "z_m", column) for r in (sam, fem))
         panels.append(
-            _against_fem((title, "$z/a$", label), *((z / a, unit * v) for z, v in read), (0.0, deep))
+            _against_fem((title, "depth $z/a$", label), *((z / a, unit * v) for z, v in read), (0.0, deep))
         )
     return profiles(panels, reference="FEM")
 
@@ -132,7 +132,7 @@ def _against_fem(
     x, y = fem
     limits = (max(limits[0], x.min()), min(limits[1], x.max()))
     scale = np.max(np.abs(y[(x >= limits[0]) & (x <= limits[1])]))
-    return Profile(*labels, lambda at: np.interp(at, x, y), {"SAM": sam}, scale, "max", limits)
+    return Profile(*labels, lambda at: np.interp(at, x, y), {"SAM": sam}, scale, "the largest", limits)
 
 
 def residual_surface(sam: Result, fem: Result, hertz: CircularContact, reach: float = 2.0) -> Drawing:

@@ -22,7 +22,6 @@ from verification.figures.style import (
     PURPLE,
     VERMILION,
     Drawing,
-    log_ticks,
     sheet,
 )
 from verification.runs.files import Run, mesh_of
@@ -77,7 +76,6 @@ def strain_per_period(run: Run) -> Drawing:
     how = {"marks": marks, "logarithmic": "y", "count": True, "legend": None, "size": (5.0, 3.6)}
     drawing = curves({"": drawn}, "period", "largest plastic strain of a period", **how)
     (panel,) = drawing.figure.axes
-    log_ticks(panel.yaxis, "{:.0e}".format)
     lines = [line for line in panel.lines if line.get_label() in (*looks, *marks)]
     look = {"color": BLACK, "linestyle": "none", "fillstyle": "none"}
     lines += [Line2D([], [], **look, marker=CLASSES[each][1], label=each) for each in classes]

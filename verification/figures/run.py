@@ -8,14 +8,17 @@ Lengths are in contact radii below a circular contact around the origin, else in
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from itertools import groupby
 from pathlib import Path
 
 import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
+from sam.scene import Progress
 from verification.compare.running_in_measures import History, Scar
+from verification.cost.contact import hertz_of
 from verification.figures import repeated
 from verification.figures.lines import Curve, curves
 from verification.figures.maps import INTERFACE, mark_interface
@@ -30,18 +33,20 @@ from verification.figures.places import (
 )
 from verification.figures.run_maps import contact_map, plane_map, worn
 from verification.figures.running_in import six_panels
-from verification.figures.style import FEM, SAM, Drawing, marked, save
+from verification.figures.style import EXACT, FEM, SAM, Drawing, marked, save, sheet
 from verification.runs.files import FIGURES, Run, of_last_load, read_run
 from verification.runs.sampling import peak
 
 MICRO, GIGA = 1e6, 1e-9
+PARTS = {"loading": "-o", "unloading": "--s", "constant force": ":^", "unloaded in one step": "s"}
+"""Parts of a history -> their line and marker."""
 NOTHING = 1e-9
 """Of the approach: a gap that is smaller everywhere is rounding, as opposite a punch. So is such a change of
 friction.
 """
 
 
-def draw_run(folder: Path, *, pdf: bool = False) -> list[Path]:
+def draw_run(folder: Path, *, pdf: bool = False, progress: Progress = lambda *_: None) -> list[Path]:
     """Write the figures of a run into its folder `figures`; returns the paths (PNG and CSV of each, or PDF).
 
     Raises FolderError (a ValueError) when the folder holds no result. A run without load has only its history
@@ -49,9 +54,11 @@ def draw_run(folder: Path, *, pdf: bool = False) -> list[Path]:
     """
     drawings = drawings_of(read_run(folder))
     (folder / FIGURES).mkdir(exist_ok=True)
-    return [
-        path for name, drawing in drawings.items() for path in save(drawing, folder / FIGURES / name, pdf=pdf)
-    ]
+    paths = []
+    for k, (name, drawing) in enumerate(drawings.items()):
+        progress("drawing figures", k, len(drawings))
+        paths += save(drawing, folder / FIGURES / name, pdf=pdf, small=False)
+    return paths
 
 
 def drawings_of(run: Run) -> dict[str, Drawing]:
@@ -168,18 +175,42 @@ def axis(run: Run, section: Section) -> Drawing:
 
 
 def history(run: Run) -> Drawing:
-    """Force over approach, every row of the history; points only, as elastic unloading is one step.
+    """Force over approach, a line through the rows of each part of the history that has several, beside the
+    elastic contact of Hertz where it applies; elastic unloading in one step is a point alone.
 
     Where the pressure is given there is no approach: over the number of the row.
     """
-    approach, force = (run.tables["history"][name].to_numpy() for name in ("approach_m", "force_N"))
+    table = run.tables["history"]
+    approach, force = (table[name].to_numpy() for name in ("approach_m", "force_N"))
     given = not np.isfinite(approach).any()
     x = np.arange(1, force.size + 1) if given else approach * MICRO
-    label = "load step, of all cycles" if given else "approach [$\\mu$m]"
-    points = {"marker": "o", "linestyle": "none"}
-    drawing = _drawn(run, label, {"force [N]": (x, force)}, size=(4.6, 3.2))
-    (panel,) = drawing.figure.axes
-    panel.lines[0].set(**points)
-    if given:
-        panel.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=2))
-    return Drawing(drawing.figure, {"load_step" if given else "approach_um": x, "force_N": force})
+    look = {"color": (SAM if run.model == "sam" else FEM)["color"], "markersize": 4.0, "fillstyle": "none"}
+    hertz = {} if given or run.last_fitting else {"force_N": run.quantities["force_N"]} | hertz_of(run.scene)
+    with sheet(4.6, 3.2) as (figure, panel):
+        if "p_max_Pa" in hertz:
+            end = MICRO * hertz.get("approach_m", run.quantities["approach_m"])
+            dense = np.linspace(0.0, end, 100)
+            panel.plot(dense, hertz["force_N"] * (dense / end) ** 1.5, **EXACT, label="Hertz (elastic)")
+        xs, ys, named = np.append(0.0, x), np.append(0.0, force), set()
+        for part, rows in groupby(range(force.size), key=_parts(force, table["note"]).__getitem__):
+            first, *more = rows
+            shown = slice(first, more[-1] + 2) if more else slice(first + 1, first + 2)
+            label = "" if part in named else part
+            panel.plot(xs[shown], ys[shown], PARTS[part] if more else PARTS[part][-1], **look, label=label)
+            named.add(part)
+        panel.set(xlabel="load step, of all cycles" if given else "approach [$\\mu$m]", ylabel="force [N]")
+        panel.legend()
+        if given:
+            panel.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=2))
+    return Drawing(figure, {"load_step" if given else "approach_um": x, "force_N": force})
+
+
+def _parts(force: np.ndarray, notes: Sequence) -> list[str]:
+    """What each row of a history is part of."""
+    change = np.diff(force, prepend=0.0)
+    same = np.abs(change) <= 1e-9 * np.abs(force).max()
+    parts = np.where(same, "constant force", np.where(change > 0.0, "loading", "unloading"))
+    return [
+        "unloaded in one step" if "in one step" in str(note) else part
+        for part, note in zip(parts, notes, strict=True)
+    ]

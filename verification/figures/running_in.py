@@ -92,7 +92,7 @@ def _relief(panel: Axes, scar: Scar) -> None:
 def _local_friction(panel: Axes, scar: Scar, friction: tuple[float, float]) -> None:
     """Where there is no contact, and where friction is low or high."""
     low, high = friction
-    looks = {"no contact": GREY, f"{low:g}, film whole": BLUE, f"{high:g}, film failed": ORANGE}
+    looks = {"no contact": GREY, f"μ = {low:g}, film whole": BLUE, f"μ = {high:g}, film failed": ORANGE}
     state = np.where(scar.in_contact, np.where(scar.unprotected(*friction), 2, 1), 0)
     how = {"cmap": ListedColormap(list(looks.values())), "norm": BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3)}
     draw_field(panel, MICRO * scar.x, MICRO * scar.y, state, **how)

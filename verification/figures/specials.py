@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 
 def agreement(pairs: Sequence[tuple[str, str, float, float, str, str]]) -> Drawing:
-    """SAM over its reference, less one, a row for each group of cases. pairs: (group, kind of the
+    """Relative deviation of SAM from its reference, a row for each group of cases. pairs: (group, kind of the
     reference, predicted, reference, case, quantity).
     """
     groups = list(dict.fromkeys(pair[0] for pair in pairs))
@@ -65,7 +65,7 @@ def agreement(pairs: Sequence[tuple[str, str, float, float, str, str]]) -> Drawi
         axes.set(xlim=(-farthest, farthest), ylim=(len(groups) - 0.5, -0.5))
         axes.set_yticks(np.arange(len(groups)), groups)
         axes.grid(visible=False, axis="y")
-        axes.set_xlabel("SAM over its reference, less one")
+        axes.set_xlabel("relative deviation of SAM from its reference (symmetric logarithmic scale)")
         figure.legend(loc="outside upper center", ncols=4)
     return Drawing(figure, data)
 
@@ -158,7 +158,9 @@ def over_path(panels: Mapping[str, tuple[Balance, Balance | None]]) -> Drawing:
             if fem is not None:
                 axis.plot(fem.work / scale, "x", color=BLACK, label="FEM: work")
                 axis.plot(fem.dissipated / scale, "+", color=BLACK, label="FEM: dissipated")
-            axis.set(title=title, xlabel="load step, then unloaded", xlim=(0, states[-1]), ylim=(0.0, 1.1))
+            axis.set(
+                title=title, xlabel="load step, the last one unloaded", xlim=(0, states[-1]), ylim=(0.0, 1.1)
+            )
             axis.xaxis.set_major_locator(MaxNLocator(integer=True))
             axis.legend(loc="upper left")
             for model, one in (("SAM", sam), ("FEM", fem)):
@@ -194,13 +196,13 @@ def change_maps(maps: Mapping[str, DataFrame], paper: tuple[float, Mapping[str, 
             axis.grid(False)
             log_ticks(axis.xaxis)
             log_ticks(axis.yaxis)
-            axis.set(title=title, xlabel="$h/a_0$, thickness over bare contact radius")
+            axis.set(title=title, xlabel="$h/a_0$, thickness over contact radius without film")
             modulus, places = paper
             axis.plot(list(places.values()), [modulus] * len(places), **look)
             for label, place in places.items():
                 axis.annotate(label, (place, modulus), xytext=(0, -5), **words)
             rows.add(title, *(side.ravel() for side in np.meshgrid(*sides, indexing="ij")), percent.ravel())
-        axes[0].set_ylabel("$E_1/E_2$, film over body")
+        axes[0].set_ylabel("$E_1/E_2$, modulus of the film over that of the body")
         bar = figure.colorbar(mesh, ax=axes, label="change by the film [%]", fraction=0.04, pad=0.02)
         above = [t for t in (1, 2, 5, 10, 20, 50, 100) if t <= largest]
         ticks = [*(-t for t in above[::-1]), 0, *above]

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import gzip
 import io
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -67,6 +67,8 @@ GREY = "#d9d9d9"
 GUIDE = "guide"
 """`gid` of a line that a reader knows without a word: zero, or the diagonal of two equal axes."""
 MANY_DECADES = 2.0
+PLAIN_NUMBERS = (5e-4, 2e4)
+"""Ends of a logarithmic axis within which its numbers are written out."""
 
 
 @dataclass(frozen=True)
@@ -111,9 +113,9 @@ def zero_line(axis: Axes) -> None:
     axis.axhline(0.0, color=BLACK, linewidth=0.6, gid=GUIDE)
 
 
-def log_ticks(axis: Axis, words: Callable[[float], str] = "{:g}".format) -> None:
+def log_ticks(axis: Axis) -> None:
     """Numbers on a logarithmic axis: powers of ten, steps between them where there are few of those, and even
-    ones where its ends are less than a factor of two apart.
+    ones where its ends are less than a factor of two apart; all in one notation.
     """
     low, high = axis.get_view_interval()
     decades = np.log10(high / low)
@@ -121,8 +123,15 @@ def log_ticks(axis: Axis, words: Callable[[float], str] = "{:g}".format) -> None
     steps = (1.0,) if decades > MANY_DECADES else between
     several = LogLocator(subs=steps, numticks=20 if decades < 8.0 else 7)
     axis.set_major_locator(several if high > 2.0 * low else MaxNLocator(4))
+    words = "{:g}".format if PLAIN_NUMBERS[0] <= low and high <= PLAIN_NUMBERS[1] else _scientific
     axis.set_major_formatter(lambda value, _: words(value))
     axis.set_minor_formatter(NullFormatter())
+
+
+def _scientific(value: float) -> str:
+    """A number as a multiple of a power of ten."""
+    digits, power = f"{value:e}".split("e")
+    return "$" + rf"{float(digits):g} \times ".removeprefix(r"1 \times ") + f"10^{{{int(power)}}}$"
 
 
 def style():
@@ -170,13 +179,19 @@ def new_figure(width: float, height: float, layout: str = "constrained") -> Figu
 
 
 def save(
-    drawing: Drawing, stem: Path, data: bool = True, *, pdf: bool = False, long: int = LONG
+    drawing: Drawing,
+    stem: Path,
+    data: bool = True,
+    *,
+    pdf: bool = False,
+    long: int = LONG,
+    small: bool = True,
 ) -> list[Path]:
     """Write stem.png and, if `data`, stem.csv (beyond `long` bytes compressed, stem.csv.gz), or
     stem.pdf alone; equal drawings give equal bytes, without a date. Returns what it wrote.
     """
     paths = [stem.with_name(f"{stem.name}.{'pdf' if pdf else 'png'}")]
-    write_atomically(paths[0], encoded(drawing.figure, pdf=pdf))
+    write_atomically(paths[0], encoded(drawing.figure, pdf=pdf, small=small))
     if data and not pdf:
         # five digits are more than a figure shows; the runs keep every digit
         columns = [
@@ -190,16 +205,16 @@ def save(
     return paths
 
 
-def encoded(figure: Figure, *, pdf: bool = False) -> bytes:
-    """A figure as PDF, or as PNG with a palette of 256 colours, which makes it small: the most frequent ones
-    where a map has many, else such that each line keeps its colour.
+def encoded(figure: Figure, *, pdf: bool = False, small: bool = True) -> bytes:
+    """A figure as PDF, or as PNG; small: with a palette of 256 colours, the most frequent ones where a map
+    has many, else such that each line keeps its colour.
     """
     buffer, smaller = io.BytesIO(), io.BytesIO()
     with style():
         figure.savefig(
             buffer, format="pdf" if pdf else "png", dpi=DPI, metadata={"CreationDate": None} if pdf else {}
         )
-    if pdf:
+    if pdf or not small:
         return buffer.getvalue()
     maps = any(map(fields_of, figure.axes))
     method = Image.Quantize.MEDIANCUT if maps else Image.Quantize.MAXCOVERAGE

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
@@ -34,10 +35,33 @@ if TYPE_CHECKING:
 QUANTITIES = {
     "p_max_Pa": ("largest pressure [GPa]", 1e-9),
     "contact_radius_m": ("contact radius [$\\mu$m]", 1e6),
+    "contact_share": ("share of the patch in contact [%]", 1e2),
     "approach_m": ("approach [$\\mu$m]", 1e6),
     "peeq_max": ("largest plastic strain [%]", 1e2),
 }
 """Column -> label and factor of its unit."""
+KEYS = {
+    "body.young": "Young's modulus of the body",
+    "body.poisson": "Poisson's ratio of the body",
+    "body.plasticity.yield_stress": "yield stress",
+    "body.plasticity.modulus": "hardening modulus",
+    "body.coating.thickness": "thickness of the coating",
+    "body.coating.young": "Young's modulus of the coating",
+    "counterbody.radius": "radius of the counter-body",
+    "counterbody.young": "Young's modulus of the counter-body",
+    "friction.coefficient": "coefficient of friction",
+    "loading.approach": "approach",
+    "loading.cycles": "load cycles",
+    "loading.force": "normal force",
+    "loading.p0": "largest given pressure",
+    "loading.steps": "load steps",
+    "surface.ra": "roughness Ra",
+    "surface.sq": "roughness Sq",
+    "surface.seed": "seed of the surface",
+}
+"""Keys of a scene in words, those that are often varied."""
+NOT_CONVERGED = "no converged result"
+FEWEST_IN_MAP = 3  # values of each of two keys
 MOST_KEYS = 8
 MOST_TICKS = 8
 MANY = 2000  # points from which a panel is a picture in a PDF
@@ -61,46 +85,99 @@ def sweep_figure(study: Study, rows: Sequence[Mapping], path: Path) -> None:
 
 
 def summary(study: Study, rows: Sequence[Mapping]) -> Drawing:
-    """Panels: quantities down, varied keys across. rows: column of the table -> value, a mapping a point.
-
-    Points of a grid that differ in one key only are joined. A point that did not converge is a cross at its
-    value, or at the foot of the panel if it has none.
+    """Of a grid of two varied numbers a map for each quantity, else panels: quantities down, varied keys
+    across. rows: column of the table -> value, a mapping a point.
     """
     shown = {
-        name: look
-        for name, look in QUANTITIES.items()
-        if name != "peeq_max" or any(row["peeq_max"] for row in rows)
-    }
+        name: look for name, look in QUANTITIES.items() if any(row.get(name) for row in rows)
+    } or QUANTITIES
+    if any(row.get("contact_share") for row in rows):  # of rough bodies
+        shown = {name: look for name, look in shown.items() if name != "contact_radius_m"}
+    with style():
+        drawn = _maps(study, rows, shown) or _lines_over(study, rows, shown)
+        drawn.suptitle(study.title[:120] or f"{study.scene}, {study.model}", parse_math=False)
+    return Drawing(drawn, {})
+
+
+def _maps(study: Study, rows: Sequence[Mapping], shown: Mapping[str, tuple[str, float]]) -> Figure | None:
+    """A map for each quantity over two varied numbers; what did not converge is a cross. None where lines say
+    it better.
+    """
+    if study.mode != "grid" or len(study.vary) != 2:
+        return None
+    (kx, ax), (ky, ay) = study.vary.items()
+    (x, words), (y, others) = (_places(axis, [row[key] for row in rows]) for key, axis in study.vary.items())
+    (columns, i), (lines, j) = (np.unique(values, return_inverse=True) for values in (x, y))
+    if (
+        words
+        or others
+        or min(columns.size, lines.size) < FEWEST_IN_MAP
+        or columns.size * lines.size != x.size
+    ):
+        return None
+    bad = np.array([row["status"] != "converged" for row in rows], dtype=bool)
+    if bad.all():
+        return None
+    figure = new_figure(0.6 + 3.6 * len(shown), 3.4)
+    for k, (panel, (name, (label, factor))) in enumerate(
+        zip(figure.subplots(1, len(shown), squeeze=False)[0], shown.items(), strict=True)
+    ):
+        values = np.full((columns.size, lines.size), np.nan)
+        values[i, j] = [np.nan if row[name] is None else factor * row[name] for row in rows]
+        drawn = panel.pcolormesh(_edges(columns, ax), _edges(lines, ay), values.T, cmap="viridis")
+        figure.colorbar(drawn, ax=panel, label=label)
+        panel.plot(x[bad], y[bad], **_BAD)
+        panel.grid(visible=False)
+        _label(panel, ax, kx, [])
+        _label(panel, ay, ky, [], along="y")
+        if k:
+            panel.set_ylabel("")
+    if bad.any():
+        figure.legend(handles=[Line2D([], [], **_BAD, label=NOT_CONVERGED)], loc="outside lower center")
+    return figure
+
+
+def _edges(centres: np.ndarray, axis: Axis) -> np.ndarray:
+    """Edges of cells about these places, halfway between them on their scale."""
+    places = np.log(centres) if axis.logarithmic else centres
+    middle = (places[1:] + places[:-1]) / 2
+    edges = np.concatenate([[2 * places[0] - middle[0]], middle, [2 * places[-1] - middle[-1]]])
+    return np.exp(edges) if axis.logarithmic else edges
+
+
+def _lines_over(study: Study, rows: Sequence[Mapping], shown: Mapping[str, tuple[str, float]]) -> Figure:
+    """Panels: quantities down, varied keys across. Points of a grid that differ in one key only are joined. A
+    point that did not converge is a cross at its value, or at the foot of the panel if it has none.
+    """
     keys = list(study.vary)[:MOST_KEYS]
     converged = np.array([row["status"] == "converged" for row in rows], dtype=bool)
-    with style():
-        figure = new_figure(0.6 + 2.9 * max(len(keys), 2), 0.6 + 2.0 * len(shown))
-        panels = figure.subplots(len(shown), len(keys), sharex="col", sharey="row", squeeze=False)
-        for column, key in enumerate(keys):
-            x, ticks = _places(study.vary[key], [row[key] for row in rows])
-            joined = not ticks and study.mode != "zip"
-            lines = _lines(rows, [other for other in study.vary if other != key]) if joined else {}
-            for panel, (name, (_, factor)) in zip(panels[:, column], shown.items(), strict=True):
-                y = np.array([np.nan if row[name] is None else factor * row[name] for row in rows])
-                _join(panel, lines, x, np.where(converged, y, np.nan))
-                there, bitmap = np.isfinite(y), {"rasterized": x.size > MANY}
-                for marked, look in ((there & converged, _GOOD), (there & ~converged, _BAD)):
-                    panel.plot(x[marked], y[marked], **look, **bitmap)
-                if not there.all():  # matplotlib cannot lay out an empty line that is not clipped
-                    at_foot = {"transform": panel.get_xaxis_transform(), "clip_on": False, "zorder": 3}
-                    panel.plot(x[~there], np.zeros(np.sum(~there)), **_BAD, **at_foot, **bitmap)
-            _label(panels[-1, column], study.vary[key], key, ticks)
-        for panel, (label, _) in zip(panels[:, 0], shown.values(), strict=True):
-            panel.set_ylabel(label)
-        figure.suptitle(study.title[:120] or f"{study.scene}, {study.model}", parse_math=False)
-        names = [Line2D([], [], **_GOOD, label="converged")]
-        if any(panel.lines[0].get_color() == _SAME["color"] for panel in panels[0] if len(panel.lines) > 2):
-            names.append(Line2D([], [], **_SAME, label="points that differ in the value of the axis only"))
-        if not converged.all():
-            names.append(Line2D([], [], **_BAD, label="no converged result"))
-        figure.legend(handles=names, loc="outside lower center", ncols=len(names))
-        figure.align_ylabels()
-    return Drawing(figure, {})
+    figure = new_figure(0.6 + 2.9 * max(len(keys), 2), 0.6 + 2.0 * len(shown))
+    panels = figure.subplots(len(shown), len(keys), sharex="col", sharey="row", squeeze=False)
+    for column, key in enumerate(keys):
+        x, ticks = _places(study.vary[key], [row[key] for row in rows])
+        joined = not ticks and study.mode != "zip"
+        lines = (
+            _lines(rows, {other: axis for other, axis in study.vary.items() if other != key})
+            if joined
+            else {}
+        )
+        for panel, (name, (_, factor)) in zip(panels[:, column], shown.items(), strict=True):
+            y = np.array([np.nan if row[name] is None else factor * row[name] for row in rows])
+            _join(panel, lines, x, np.where(converged, y, np.nan))
+            there, bitmap = np.isfinite(y), {"rasterized": x.size > MANY}
+            for marked, look in ((there & converged, _GOOD), (there & ~converged, _BAD)):
+                panel.plot(x[marked], y[marked], **look, **bitmap)
+            if not there.all():  # matplotlib cannot lay out an empty line that is not clipped
+                at_foot = {"transform": panel.get_xaxis_transform(), "clip_on": False, "zorder": 3}
+                panel.plot(x[~there], np.zeros(np.sum(~there)), **_BAD, **at_foot, **bitmap)
+        _label(panels[-1, column], study.vary[key], key, ticks)
+    for panel, (label, _) in zip(panels[:, 0], shown.values(), strict=True):
+        panel.set_ylabel(label)
+    if not converged.all():
+        names = [Line2D([], [], **_GOOD, label="converged"), Line2D([], [], **_BAD, label=NOT_CONVERGED)]
+        figure.legend(handles=names, loc="outside lower center", ncols=2)
+    figure.align_ylabels()
+    return figure
 
 
 def _places(axis: Axis, values: Sequence) -> tuple[np.ndarray, list[str]]:
@@ -114,7 +191,7 @@ def _places(axis: Axis, values: Sequence) -> tuple[np.ndarray, list[str]]:
     return np.array([known.index(str(value)) for value in values], dtype=float), known
 
 
-def _lines(rows: Sequence[Mapping], others: Sequence[str]) -> dict[str, np.ndarray]:
+def _lines(rows: Sequence[Mapping], others: Mapping[str, Axis]) -> dict[str, np.ndarray]:
     """Numbers of the rows that agree in the other keys, (n,) each, by what they agree in; none if
     there are too many lines to tell apart.
     """
@@ -124,13 +201,24 @@ def _lines(rows: Sequence[Mapping], others: Sequence[str]) -> dict[str, np.ndarr
     if len(groups) > MOST_LINES:
         return {}
     return {
-        ", ".join(f"{o} = {_short(v)}" for o, v in zip(others, values, strict=True)): np.array(group)
+        ", ".join(
+            _said(key, others[key], value) for key, value in zip(others, values, strict=True)
+        ): np.array(group)
         for values, group in groups.items()
     }
 
 
-def _short(value: object) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value)[:20]
+def _said(key: str, axis: Axis, value: object) -> str:
+    """A varied value in the unit of the study."""
+    if not isinstance(value, float):
+        return f"{KEYS.get(key, key)} = {str(value)[:20]}"
+    scale = in_si(f"1 {axis.unit}") if axis.unit else 1.0
+    return f"{KEYS.get(key, key)} = {value / scale:.4g} {_unit(axis)}".rstrip()
+
+
+def _unit(axis: Axis) -> str:
+    """The unit of a varied key as other axes spell it."""
+    return axis.unit.replace("um", "\N{MICRO SIGN}m")
 
 
 def _join(panel: Axes, lines: Mapping[str, np.ndarray], x: np.ndarray, y: np.ndarray) -> None:
@@ -145,13 +233,15 @@ def _join(panel: Axes, lines: Mapping[str, np.ndarray], x: np.ndarray, y: np.nda
             text.set_parse_math(False)
 
 
-def _label(panel: Axes, axis: Axis, key: str, ticks: Sequence[str]) -> None:
-    panel.set_xlabel(f"{key} [{axis.unit}]" if axis.unit else key, parse_math=False)
+def _label(panel: Axes, axis: Axis, key: str, ticks: Sequence[str], *, along: str = "x") -> None:
+    """Words, unit and scale of a varied key along an axis of a panel."""
+    words, drawn = KEYS.get(key, key), getattr(panel, f"{along}axis")
+    drawn.set_label_text(f"{words} [{_unit(axis)}]" if axis.unit else words, parse_math=False)
     if axis.logarithmic:
-        panel.set_xscale("log")
-        log_ticks(panel.xaxis)
+        panel.set(**{f"{along}scale": "log"})
+        log_ticks(drawn)
     elif not ticks:
-        panel.xaxis.set_major_locator(MaxNLocator(5, min_n_ticks=2))
+        drawn.set_major_locator(MaxNLocator(5, min_n_ticks=2))
     if ticks:
         every = -(-len(ticks) // MOST_TICKS)
         panel.set_xticks(

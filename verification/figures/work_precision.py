@@ -43,7 +43,7 @@ def curves(solves: DataFrame, ylabel: str) -> Drawing:
             rows.add(refined, name, resolution, seconds, error, floor)
             if (use := np.isfinite(error) & np.isfinite(seconds)).any():
                 error = np.maximum(error[use], max(LOWEST, DEEPEST * floor))
-                panel[name] = Curve(seconds[use], PERCENT * error, look={"fillstyle": "none"})
+                panel[name] = Curve(seconds[use], PERCENT * error)
     marks = {"an error whose times are stated": ("y", *(PERCENT * target for target in TARGETS))}
     how = {"looks": LOOKS, "logarithmic": "xy", "floor": floors, "marks": marks}
     return Drawing(drawn(shown, "processor time [s]", f"{ylabel} [%]", size=(4.9, 4.4), **how).figure, rows)
@@ -55,13 +55,13 @@ def overview(times: Mapping[str, Mapping[str, Reached]], error: str) -> Drawing:
     there = dict.fromkeys(name for found in times.values() for name in found)
     with sheet(8.4, max(0.9 + 0.42 * len(times), 2.6)) as (figure, axis):
         for name in there:
-            axis.plot([], [], **LOOKS[name] | {"linestyle": "none"}, label=name)
+            axis.plot([], [], **LOOKS[name] | {"linestyle": "none", "fillstyle": "full"}, label=name)
         for k, (kind, found) in enumerate(times.items()):
             for name, reached in found.items():
                 rows.add(kind, name, reached.value, reached.coarsest)
-                look = LOOKS[name] | {"linestyle": "none", "markersize": 6.5}
-                fill = {"fillstyle": "none"} if reached.coarsest else {}
-                axis.plot([np.nan if reached.value is None else reached.value], [k], **look, **fill)
+                fill = "none" if reached.coarsest else "full"
+                look = LOOKS[name] | {"linestyle": "none", "markersize": 6.5, "fillstyle": fill}
+                axis.plot([np.nan if reached.value is None else reached.value], [k], **look)
         axis.set_yticks(range(len(times)), list(times))
         words = f"processor time to an error of {error} [s]"
         axis.set(xscale="log", ylim=(len(times) - 0.5, -0.5), xlabel=words)

@@ -64,6 +64,16 @@ def read_archive(path: Path) -> tuple[dict[str, np.ndarray], dict]:
     return arrays, values
 
 
+def read_values(path: Path) -> dict:
+    """The values of an archive, without its arrays and unchecked. Raises ArchiveError."""
+    try:
+        with np.load(path, allow_pickle=False) as content:
+            values: dict = json.loads(content[VALUES].tobytes())
+    except Exception as error:
+        raise ArchiveError(f"{path} is no archive, or a damaged one ({error})") from None
+    return values
+
+
 def digest_of(members: Mapping[str, np.ndarray]) -> np.ndarray:
     """SHA-256 of names, types, shapes and content, as bytes in an array."""
     found = hashlib.sha256()

@@ -8,6 +8,7 @@ CSV and null in JSON.
 
 from __future__ import annotations
 
+import errno
 import json
 import math
 import os
@@ -53,6 +54,8 @@ FORMAT = "samfem run 1"
 RUN_FILES = (SUMMARY, CHECKPOINT, *(f"{name}.csv" for name in COLUMNS))
 FIGURES, FIGURE_KINDS = "figures", (".png", ".pdf", ".svg", ".csv")
 _TEMPORARY = ".part"
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""Numbers of errors that say that there is no space."""
 
 
 class FolderError(ValueError):
@@ -140,9 +143,9 @@ class Run:
 
 
 def write_run(result: Result, scene: Scene, folder: str | Path, provenance: Mapping | None = None) -> Path:
-    """Write a result into `folder` (made if need be) in place of an older one; the path of summary.json.
-    provenance: as `collect` returns it. Raises FolderError if the folder holds anything but a run, OSError if
-    it cannot be written.
+    """Write a result into `folder` (made if need be) in place of an older one, whose figures stay if it is
+    the same; the path of summary.json. provenance: as `collect` returns it. Raises FolderError if the folder
+    holds anything but a run, OSError if it cannot be written.
     """
     folder = Path(folder)
     check_target(folder)
@@ -151,14 +154,14 @@ def write_run(result: Result, scene: Scene, folder: str | Path, provenance: Mapp
     outside = outside_of_model(result)
     tables = {name: _table_text(name, table, outside) for name, table in result.tables.items()}
     said = replace(result, left_out=(*result.left_out, *not_written(result)))
-    summary = json_text(_summary(said, scene, provenance))
+    summary = plain(_summary(said, scene, provenance))
     folder.mkdir(parents=True, exist_ok=True)
-    clear_run(folder)
+    clear_run(folder, figures=not _holds(folder, summary))
     for name, text in tables.items():
         write_atomically(folder / f"{name}.csv", text.encode())
     for name, content in mesh_files(result, scene.loading.cycles, outside).items():
         write_atomically(folder / name, content)
-    write_atomically(folder / SUMMARY, summary.encode())
+    write_atomically(folder / SUMMARY, json_text(summary).encode())
     (folder / CHECKPOINT).unlink(missing_ok=True)  # only now: until here the solve could be continued from it
     rmtree(folder / MEMBERS, ignore_errors=True)
     return folder / SUMMARY
@@ -263,14 +266,28 @@ def check_place(folder: Path) -> None:
         )
 
 
-def clear_run(folder: Path) -> None:
+def _holds(folder: Path, summary: Mapping) -> bool:
+    """Whether the run in a folder has this summary, but for its cost and provenance."""
+    try:
+        older = read_summary(folder)
+    except FolderError:
+        return False
+    return all(older.get(key) == summary[key] for key in summary if key not in ("cost", "provenance"))
+
+
+def figures_of(folder: Path) -> list[Path]:
+    """The files of figures of a run."""
+    return [entry for entry in (folder / FIGURES).glob("*") if entry.suffix in FIGURE_KINDS]
+
+
+def clear_run(folder: Path, *, figures: bool = True) -> None:
     """Remove the files of an older run, summary.json first, and its figures; a checkpoint and other files
     stay.
     """
     (folder / SUMMARY).unlink(missing_ok=True)
-    figures = [entry for entry in (folder / FIGURES).glob("*") if entry.suffix in FIGURE_KINDS]
-    for entry in [*folder.iterdir(), *figures]:
-        if entry in figures or (entry.is_file() and _of_a_run(entry.name) and entry.name != CHECKPOINT):
+    drawn = figures_of(folder) if figures else []
+    for entry in [*folder.iterdir(), *drawn]:
+        if entry in drawn or (entry.is_file() and _of_a_run(entry.name) and entry.name != CHECKPOINT):
             entry.unlink()
 
 

@@ -25,7 +25,7 @@ from typing import Any
 
 from sam.scene import CodecError, Progress, Result, Scene, decode, encode, resolved, solved_part
 from verification.runs import models
-from verification.runs.archive import ArchiveError, read_archive, write_archive
+from verification.runs.archive import ArchiveError, read_archive, read_values, write_archive
 from verification.runs.code_version import code_version, unchanged, version_of_cases
 from verification.runs.provenance import collect
 
@@ -143,6 +143,13 @@ class Store:
             return Lookup(decode(values.get("content"), arrays, wanted), "", **made)
         except (OSError, ArchiveError, CodecError) as error:
             return Lookup(None, f"damaged: {error}")
+
+    def holds(self, who: dict, version: str) -> bool:
+        """Whether a record of this version is kept for an identity; that it is whole is not looked at."""
+        try:
+            return not _is_stale(read_values(self._path(who)), version)
+        except (ArchiveError, LookupError, TypeError):
+            return False
 
     def put(self, who: dict, version: str, record: Any, title: str) -> None:
         """Keep a record under an identity, in place of an older one; a warning if that fails."""

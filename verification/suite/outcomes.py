@@ -46,6 +46,11 @@ def find(store: Store, case: Case, context: Context) -> Lookup:
     return found
 
 
+def is_kept(store: Store, case: Case, level: str) -> bool:
+    """Whether `find` would find an outcome, unless it is damaged or its scenes have changed."""
+    return store.holds(_identity(case, level), version_of_cases())
+
+
 def put_back(kept: Kept, context: Context, *, with_runs: bool = True) -> Outcome:
     """Write the files of a case into the folder of the report again, a run's summary last, or only
     its figures, and fill the context.

@@ -3,8 +3,9 @@
 draw the figures of a report as PDF.
 
 The folder holds the pages (index.html and one for each group of cases), results.json, gates.csv,
-junit.xml, figures/ and runs/ (every solve). results.json says "complete": false while the cases
-run, so that a broken run is never read as a result.
+junit.xml, figures/ and runs/ (every solve). While the cases run all of this stands in unfinished/ in it, with
+pages of the cases that ended and "complete": false in results.json; it takes the place of an earlier report
+when it is whole.
 """
 
 from __future__ import annotations
@@ -18,31 +19,36 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from textwrap import fill
+from typing import Any
 
-from sam.scene import Progress
+from sam.scene import Progress as Told, printable
 from verification.cases import Case, all_cases, case_of
 from verification.cases.case import Context, NotDrawnError, Outcome
 from verification.judging import Row, RowStatus, Verdict, evaluate
 from verification.rows import load_rows, read_cases
 from verification.runs import provenance
 from verification.runs.code_version import version_of_cases
-from verification.runs.files import FolderError, plain, write_atomically
+from verification.runs.files import FULL, FolderError, check_place, plain, write_atomically
 from verification.runs.lock import locked
 from verification.runs.store import Lookup, Reuse, Store
 from verification.suite import outcomes
+from verification.suite.forecast import forecast
 from verification.suite.freshness import Earlier, older
 from verification.suite.pages import INDEX, remove_pages, write_report
-from verification.suite.pages.stored import ASKED, ELSEWHERE, NAMED
+from verification.suite.pages.stored import ASKED, ELSEWHERE, NAMED, WAITS
 from verification.suite.records import gates_csv, junit_xml, origin, results_json, text_rows, unreadable
-from verification.text.console import print_table, table_lines, unknown
+from verification.text.console import Progress, print_table, table_lines, unknown
+from verification.text.readable import with_time
 
 FORMAT = "samfem-verification"
 RESULTS = "results.json"
 NOTHING = Earlier()
 WIDTH = 100
 """Characters of a line of a reason."""
-BEFORE = "before"
-"""Key of results.json while a report is in the making: that of the report whose cases stay."""
+UNFINISHED = "unfinished"
+"""Folder in that of a report: the next one, while it is made."""
+SHARE = 0.02
+"""Of the time, at most, for pages that the last ones replace."""
 
 
 @dataclass(frozen=True)
@@ -58,21 +64,14 @@ class RanCase:
     source: Reuse
 
 
-def main(
-    cases: list[str],
-    level: str,
-    out: Path,
-    progress: Progress | None = None,
-    *,
-    store: Store | None = None,
-) -> int:
+def main(cases: list[str], level: str, out: Path, *, store: Store | None = None) -> int:
     """Run the named cases (none: all of the level), or take them from the store, and write the report into
     `out`. A name that ends with .toml is a file of own cases, which then are all that there are.
 
     Returns 0 when every gate of every case that ran held and its figures can be read, 1 when not, 2 for an
     unknown case or a folder that holds something else (nothing is written then). An earlier report
-    in `out` is replaced. A case that needs what is not there is not run, with the reason; if that is so for
-    all, nothing is written.
+    in `out` is replaced when the new one is whole. A case that needs what is not there is not run, with the
+    reason; if that is so for all, nothing is written.
     """
     files = [each for name in cases if name.endswith(".toml") for each in read_cases(Path(name))]
     known = {file.name: case_of(file) for file in files} or all_cases()
@@ -86,12 +85,12 @@ def main(
     )
     if not chosen:
         return 0
+    words = " ".join(["samfem verify", *cases, "--level", level])  # where to is the reader's
+    asked = {"level": level, "command": words, "unmet": unmet}
     with locked(out):
-        start(out)
-        told = progress or (lambda stage, done, total: None)
-        ran = _run(chosen, level=level, out=out, progress=told, store=store)
-        words = " ".join(["samfem verify", *cases, "--level", level])  # where to is the reader's
-        return finish(ran, known, level=level, out=out, command=words, unmet=unmet)
+        begin(out)
+        ran = _run(chosen, known, out=out, store=store, **asked)
+        return finish(ran, known, out=out, **asked)
 
 
 def finish(
@@ -104,19 +103,15 @@ def finish(
     unmet: Mapping[str, str],
     stays: Earlier = NOTHING,
 ) -> int:
-    """Judge the cases that ran, write the report into `out` and say what is red.
+    """Judge the cases that ran, whose files are in UNFINISHED, put the report of them into the place of the
+    earlier one and say what is red.
 
-    known: all cases by name; unmet: name -> why a case could not run here; stays: of an earlier
-    report. Of the other cases that did not run results.json says under `unmet` where they belong.
-    Returns 0 when every gate of every case that ran held, else 1.
+    known: all cases by name; unmet: name -> why a case could not run here; stays: of the earlier
+    report. Returns 0 when every gate of every case that ran held, else 1.
     """
-    results = _judged(ran, known, level=level, stays=stays) | {"command": command}
-    for record in results["cases"]:
-        record["unmet"] = unmet.get(record["name"], "")
-        if record["status"] == RowStatus.NOT_RUN and not record["unmet"]:
-            levels = known[record["name"]].levels
-            record["unmet"] = ELSEWHERE[ASKED if level in levels else next(iter(levels), NAMED)]
-    _write(results, out, older(results) if stays.cases else {})
+    results = _judged(ran, known, level=level, command=command, unmet=unmet, stays=stays)
+    _write(results, out / UNFINISHED, older(results) if stays.cases else {}, place=out)
+    _take_over(out)
     rows, failing = text_rows(results["gates"])
     print_table(("case", "gate", "error", "tolerance", "status"), rows, failing)
     broken = [case for case in results["cases"] if case["failure"]]
@@ -151,12 +146,16 @@ def rebuild(folder: Path, *, single_file: bool = False) -> int:
 
 
 def problem_of(names: Sequence[str], known: dict[str, Case], out: Path) -> str:
-    """What is wrong with the request, or an empty text."""
+    """What is wrong with the request, or an empty text. Raises FolderError for a place without a folder."""
     if unknown := unknown_cases(names, known):
         return unknown
-    if out.exists() and not out.is_dir():
-        return f"{out} is not a folder: choose another with --out"
-    if out.is_dir() and any(out.iterdir()) and stored(out) is None:
+    check_place(out)
+    new = out / UNFINISHED
+    if new.is_dir() and any(new.iterdir()):
+        ours = stored(new) is not None
+    else:
+        ours = stored(out) is not None or not out.is_dir() or {*out.iterdir()} <= {new}
+    if not ours:
         return f"{out} holds files that are no verification report: choose an empty or new folder with --out"
     return ""
 
@@ -180,50 +179,125 @@ def stored(folder: Path) -> dict | None:
     return results if isinstance(results, dict) and results.get("format") == FORMAT else None
 
 
-def start(out: Path, stays: Earlier = NOTHING) -> None:
-    """Mark the folder as a report in the making and clear an earlier one, but for the figures of
-    what `stays` of it, which results.json goes on to hold.
+def begin(out: Path) -> Path:
+    """UNFINISHED in `out`, for a report in the making. What a killed run left there is removed; where that is
+    a whole report, it first takes its place.
     """
-    out.mkdir(parents=True, exist_ok=True)
-    _write_results({"format": FORMAT, "complete": False, BEFORE: before(out) if stays.cases else {}}, out)
-    remove_pages(out)
-    for name in ("gates.csv", "junit.xml"):
-        (out / name).unlink(missing_ok=True)
-    shutil.rmtree(out / "runs", ignore_errors=True)
-    if not stays.files:
-        shutil.rmtree(out / "figures", ignore_errors=True)
-    for path in (out / "figures").glob("*"):
-        if f"figures/{path.name}" not in stays.files:
-            path.unlink()
+    new = out / UNFINISHED
+    if (stored(new) or {}).get("complete"):
+        _take_over(out)
+    shutil.rmtree(new, ignore_errors=True)
+    new.mkdir(parents=True)
+    _write_results({"format": FORMAT, "complete": False}, new)
+    return new
+
+
+def _take_over(out: Path) -> None:
+    """Put the whole report in UNFINISHED into the place of an earlier one, results.json last. Broken off, it
+    goes on when it is called again.
+    """
+    if (out / RESULTS).exists():
+        remove_pages(out)
+        for name in ("runs", "figures"):
+            shutil.rmtree(out / name, ignore_errors=True)
+        for name in ("gates.csv", "junit.xml", RESULTS):
+            (out / name).unlink(missing_ok=True)
+    for path in sorted((out / UNFINISHED).iterdir(), key=lambda path: path.name == RESULTS):
+        path.replace(out / path.name)
+    (out / UNFINISHED).rmdir()
 
 
 def before(folder: Path) -> dict:
-    """results.json of the finished report in a folder, or of the one that another is about to
-    replace; empty without one.
-    """
+    """results.json of the finished report in a folder; empty without one."""
     results = stored(folder) or {}
-    return results if results.get("complete") else results.get(BEFORE, {})
+    return results if results.get("complete") else {}
 
 
 def _run(
-    chosen: Sequence[Case], *, level: str, out: Path, progress: Progress, store: Store | None
+    chosen: Sequence[Case], known: Mapping[str, Case], *, out: Path, store: Store | None, **asked: Any
 ) -> dict[str, RanCase]:
-    """Run the cases one after the other; a case that breaks off does not stop the others."""
+    """Run the cases one after the other, with a line of each as it ends and pages of those that have ended; a
+    case that breaks off does not stop the others. asked: as for `_judged`.
+    """
     ran: dict[str, RanCase] = {}
-    for number, case in enumerate(chosen, start=1):
-        progress(f"case {case.name}", number, len(chosen))
-        ran[case.name] = _run_or_reuse(case, Context(case.name, out, level, progress, store=store))
+    new, count, rows, due = out / UNFINISHED, len(chosen), _rows(known), 0.0
+    ahead = forecast(chosen, asked["level"], store)
+    own = sum(row.case in ahead.needs for row in rows)
+    print(f"{count} case{'s' * (count > 1)} with {own} of the {len(rows)} gates, {asked['level']} level.")
+    print(ahead.words)
+    print(f"Pages of the cases that have ended: {new / INDEX}; the whole report: {out / INDEX}")
+    if count > 1:
+        print("To run less, name cases: make report CASES=hertz-sphere, or samfem verify hertz-sphere")
+    sys.stdout.flush()
+    try:
+        with Progress() as progress:
+            for number, case in enumerate(chosen, start=1):
+
+                def told(stage: str, done: int, total: int, place: str = f"case {number} of {count}") -> None:
+                    progress(f"{place}: {stage}", done, total, ahead.left)
+
+                told(case.name, 0, 0)
+                context = Context(case.name, new, asked["level"], told, store=store)
+                ran[case.name] = _run_or_reuse(case, context)
+                ahead.ended(case.name)
+                print(f"{number} of {count}: {_line(ran[case.name], rows)}", flush=True)
+                began = time.monotonic()
+                if number < count and began >= due:
+                    unmet = asked["unmet"] | {each.name: WAITS for each in chosen[number:]}
+                    results = _judged(ran, known, **asked | {"unmet": unmet})
+                    running = {"complete": False, "running": f"{number} of {count} cases finished"}
+                    _write(results | running, new)
+                    due = began + (time.monotonic() - began) / SHARE
+    except KeyboardInterrupt:
+        pages = f", pages in {new / INDEX}" if (new / INDEX).exists() else ""
+        goes_on = "goes on" if store else "begins anew, without a store"
+        raise KeyboardInterrupt(
+            f"interrupted: {len(ran)} of {count} cases have ended{pages}; the same command {goes_on}"
+        ) from None
     return ran
 
 
-def _judged(ran: Mapping[str, RanCase], known: Mapping[str, Case], *, level: str, stays: Earlier) -> dict:
-    """results.json, but for how it was asked for."""
+def _line(ran: RanCase, rows: Sequence[Row]) -> str:
+    """What a case found, in a line."""
+    name = ran.context.case
+    own = [row for row in rows if row.case == name]
+    verdicts = evaluate(own, {name: ran.outcome.values}, {name: ran.failure})
+    red = sum(verdict.status.red for verdict in verdicts)
+    held = len(verdicts) - red
+    found = f"{held} gate{'s' * (held != 1)} passed{f', {red} failed' * bool(red)}"
+    unread = ", a figure cannot be read" * any(figure.findings for figure in ran.outcome.figures)
+    broke = f", broke off: {ran.failure}" * bool(ran.failure)
+    took = "from the store" if ran.source.reused else with_time(ran.seconds)
+    return printable(f"{name}: {found}{unread}{broke}, {took}")
+
+
+def _rows(known: Mapping[str, Case]) -> Sequence[Row]:
+    """The rows of own cases, or the table of all."""
+    return [row for case in known.values() if case.file for row in case.file.rows] or load_rows()
+
+
+def _judged(
+    ran: Mapping[str, RanCase],
+    known: Mapping[str, Case],
+    *,
+    level: str,
+    command: str,
+    unmet: Mapping[str, str],
+    stays: Earlier = NOTHING,
+) -> dict:
+    """results.json. Of the cases that did not run it says under `unmet` where they belong."""
     failures = {name: each.failure for name, each in ran.items()}
-    asked = [row for case in known.values() if case.file for row in case.file.rows] or load_rows()
-    verdicts = evaluate(asked, {name: each.outcome.values for name, each in ran.items()}, failures)
+    verdicts = evaluate(_rows(known), {name: each.outcome.values for name, each in ran.items()}, failures)
     inputs = {name: content for each in ran.values() for name, content in each.context.inputs.items()}
     gates = stays.among(_gate_record(verdict) for verdict in verdicts)
     collected = provenance.collect(inputs)
+    cases = []
+    for case in known.values():
+        record = stays.cases.get(case.name) or _case_record(case, ran.get(case.name), verdicts)
+        why = unmet.get(case.name, "")
+        if record["status"] == RowStatus.NOT_RUN and not why:
+            why = ELSEWHERE[ASKED if level in case.levels else next(iter(case.levels), NAMED)]
+        cases.append({**record, "unmet": why})
     return {
         "format": FORMAT,
         "complete": True,
@@ -231,11 +305,9 @@ def _judged(ran: Mapping[str, RanCase], known: Mapping[str, Case], *, level: str
         "provenance": collected | {"input_sha256": stays.inputs | collected["input_sha256"]},
         "summary": {status: sum(gate["status"] == status for gate in gates) for status in RowStatus},
         "solves": _solves(list(ran.values())),
-        "cases": [
-            stays.cases.get(case.name) or _case_record(case, ran.get(case.name), verdicts)
-            for case in known.values()
-        ],
+        "cases": cases,
         "gates": gates,
+        "command": command,
     }
 
 
@@ -275,13 +347,15 @@ def _solves(ran: Sequence[RanCase]) -> dict[str, int]:
 
 def attempt(case: Case, context: Context) -> tuple[Outcome, str]:
     """The outcome and, when the case broke off, why; any error of a case is its own and is reported
-    with it. What was found before a figure failed counts.
+    with it, but for a full disk. What was found before a figure failed counts.
     """
     try:
         return case.run(context), ""
     except NotDrawnError as lost:
         return lost.outcome, ""
     except Exception as problem:
+        if isinstance(problem, OSError) and problem.errno in FULL:
+            raise
         return Outcome(), context.told(problem)
 
 
@@ -323,12 +397,14 @@ def _gate_record(verdict: Verdict) -> dict:
     return plain(record)
 
 
-def _write(results: dict, out: Path, stale: Mapping[str, str]) -> None:
-    """results.json last: it is what makes the folder a finished report."""
-    write_atomically(out / "gates.csv", gates_csv(results["gates"]).encode())
-    write_atomically(out / "junit.xml", junit_xml(results["cases"], results["gates"]))
-    write_report(results, out, stale=stale)
-    _write_results(results, out)
+def _write(
+    results: dict, folder: Path, stale: Mapping[str, str] | None = None, place: Path | None = None
+) -> None:
+    """results.json last: it is what makes the folder a finished report. place: where it will stand."""
+    write_atomically(folder / "gates.csv", gates_csv(results["gates"]).encode())
+    write_atomically(folder / "junit.xml", junit_xml(results["cases"], results["gates"]))
+    write_report(results, folder, stale=stale, place=place)
+    _write_results(results, folder)
 
 
 def _write_results(results: dict, out: Path) -> None:
@@ -374,7 +450,7 @@ def _limit(gate: Row) -> str:
             return f"{words} at most {gate.tolerance:g}"
 
 
-def draw_pdf(folder: Path, progress: Progress, store: Store | None) -> list[Path]:
+def draw_pdf(folder: Path, progress: Told, store: Store | None) -> list[Path]:
     """Write figures/<case>-<name>.pdf of every case of a report that has figures, and return the paths.
 
     A result that is not in the store is solved again. Raises FolderError when the folder holds no finished

@@ -108,15 +108,17 @@ class Progress:
         if self._terminal and self._bar is not None:
             self._bar.stop()
 
-    def __call__(self, stage: str, done: int, total: int) -> None:
+    def __call__(self, stage: str, done: int, total: int, left: str = "") -> None:
+        """Say how much of a stage is done (total 0: not known). left: what is said of all that is ahead."""
         now = time.monotonic()
         if self._terminal:
-            self._draw(stage, done, total, now)
+            self._draw(stage, done, total, left, now=now)
             return
         if stage != self._stage:
             self._stage, self._began = stage, (now, done)
         if now >= self._next or (self._notebook and self._bar is not None and done == total):
-            line = f"{stage}: {done} of {total}{self._left(done, total, now)}"
+            count = f": {done} of {total}" if total else ""
+            line = f"{stage}{count}{left or self._left(done, total, now)}"
             if self._notebook:
                 self._display(line, done, total)
             else:
@@ -139,21 +141,22 @@ class Progress:
             return ""
         return f", about {with_time((now - began) * (total - done) / (done - before))} left"
 
-    def _draw(self, stage: str, done: int, total: int, now: float) -> None:
+    def _draw(self, stage: str, done: int, total: int, left: str, *, now: float) -> None:
+        from rich.markup import escape
+
         if self._bar is None and now < self._next:
             return
         if self._bar is None:
             from rich.progress import Progress as Bar
 
-            self._bar = Bar(console=_console(sys.stderr), transient=True)
+            shared = sys.stdout.isatty()  # lines on stdout stand above the bar
+            self._bar = Bar(console=_console(sys.stderr), transient=True, redirect_stdout=shared)
             self._bar.start()
             self._task = self._bar.add_task("")
         if stage != self._stage:
-            from rich.markup import escape
-
             self._stage = stage
-            self._bar.reset(self._task, description=escape(stage))
-        self._bar.update(self._task, completed=done, total=total)
+            self._bar.reset(self._task)
+        self._bar.update(self._task, completed=done, total=total or None, description=escape(stage + left))
 
 
 def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], red: Sequence[bool] = ()) -> None:

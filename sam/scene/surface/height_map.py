@@ -20,13 +20,29 @@ KEYS = ("sha256", "cells", "extent")
 
 
 class HeightMap:
-    """Heights at the centres of nx x ny equal cells, (nx, ny) in m, positive out of the body; the origin in
-    the middle.
+    """Heights at the centres of nx x ny equal cells, positive out of the body; the origin in the middle.
 
-    extent: (Lx, Ly) in m, nx cells of Lx/nx each; sha256: of extent and heights, by which two maps are equal.
-    values: read-only, nan where one is missing; None if only the digest is at hand, as in the scene of a
-    summary.json: such a map cannot be solved. of_file: the keys of a scene file that name the file of the
-    map, and say what it does not; empty of one that was made in Python.
+    Parameters
+    ----------
+    values
+        Heights (nx, ny) in m, x first; nan where one is missing.
+    extent
+        (Lx, Ly) in m: nx cells of Lx/nx each.
+
+    Attributes
+    ----------
+    sha256
+        Of extent and heights, by which two maps are equal.
+    values
+        Read-only; None if only the digest is at hand, as in the scene of a summary.json: such a map cannot be
+        solved.
+    of_file
+        The keys of a scene file that name the file of the map; empty of one that was made in Python.
+
+    Raises
+    ------
+    ValueError
+        For too few or too many cells, or heights out of range.
     """
 
     __slots__ = ("cells", "extent", "of_file", "sha256", "values")
@@ -43,7 +59,6 @@ class HeightMap:
         return f"x_m, y_m and {cls.column} on a regular grid"
 
     def __init__(self, values: Array, extent: tuple[float, float]):
-        """Raises InputError for too few or many cells, or what is not finite."""
         heights: Array = np.array(values, dtype="<f8", order="C")
         if heights.ndim != 2:
             raise InputError(f"heights of shape {heights.shape}: two dimensions are needed")

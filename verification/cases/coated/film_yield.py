@@ -130,9 +130,10 @@ def row_of(contact: FilmContact, scene: Scene, result: Result, bare: Result) -> 
         exact = changes_by_film(scene)
         apart = {f"{name}-off": abs(a - b) for name, a, b in zip(("p", "mises"), changes, exact, strict=True)}
         found |= apart | {"hertz": off(q["p_max_bare_Pa"], contact.p0)}
+    material = contact.body.replace("B ", "Swift, B = ") + " MPa" * contact.body.startswith("B")
     words = {
-        "materials": f"body {contact.body}, film {contact.film}",
-        "contact": f"{contact.counterbody}, {1e-9 * contact.p0:g} GPa",
+        "materials": f"body {material}, film {contact.film}",
+        "contact": f"{contact.counterbody} sphere, p₀ = {1e-9 * contact.p0:g} GPa",
     }
     return vars(contact) | words | found
 
@@ -174,7 +175,7 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
     for sweep, chosen in (("contacts", contacts), ("thin", thin)):
         for row in (found[contact] for contact in chosen):
             drawn = sweep == "contacts" and row["known"] == "yes"
-            shown = {f"change-of-{name}-in-percent": 100 * row[f"{name}_change"] for name in ("p", "mises")}
+            shown = {f"change-of-{name}": row[f"{name}_change"] for name in ("p", "mises")}
             yield {"sweep": sweep} | row | (shown if drawn else {})
     yield from (
         {"sweep": "flowing"} | found[each] for each in found if replace(each, body="elastic") == flowing

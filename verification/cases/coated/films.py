@@ -124,12 +124,12 @@ def changes_of_paper(file: CaseFile, frame: DataFrame) -> Plot | None:
         WORDS[name]: own.pivot(index="thickness", columns="ratio", values=f"{name} sam") for name in CHANGES
     }
     words = (
-        "Change of the largest pressure and of the largest von Mises stress of the body over thickness and "
-        "modulus ratio of the film, SAM, at equal force, rigid counter-body. Lines: 1 % (dashed) and 5 % "
-        "(solid). Green: the film of the paper, 100 nm and 80 GPa on steel, at contact radii of 0.5 to 5 µm."
+        "The maps show by how much a film changes the largest pressure and the largest von Mises stress of "
+        "the body by SAM, at equal force under a rigid sphere. The film of the paper, 100 nm of 80 GPa on "
+        "steel, is green at contact radii of 0.5 to 5 µm."
     )
     drawing = change_maps(panels, (PAPER_RATIO, {f"{1e6 * a:g} µm": PAPER_FILM / a for a in RADII}))
-    return Plot(drawing, "rigid", "What a film changes, rigid counter-body", words, words)
+    return Plot(drawing, "rigid", "What a film changes, rigid counter-body", words)
 
 
 # --- limits ---------------------------------------------------------------------------------------------

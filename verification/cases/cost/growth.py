@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,9 +27,9 @@ EXPONENTS = {
     "elastic contact, whole solve, in cells": ("contact", "cpu-s", 257**2),
     "elastic stresses at all depths, in cells": ("stresses", "further-s", 0),
     "residual-stress operator, an application, in cells of the box": ("operator-cells", "cpu-s", 0),
-    "the same, more cells in the plane": ("operator-plane", "cpu-s", 0),
-    "the same, more layers": ("operator-depth", "cpu-s", 0),
-    "its set-up, in cells of the box": ("operator-cells", "set-up-s", 0),
+    "residual-stress operator, more cells in the plane, in cells of the box": ("operator-plane", "cpu-s", 0),
+    "residual-stress operator, more layers, in cells of the box": ("operator-depth", "cpu-s", 0),
+    "residual-stress operator, set-up, in cells of the box": ("operator-cells", "set-up-s", 0),
     "running-in, whole solve, in cycles": ("cycles", "cpu-s", 2),
     "axisymmetric finite elements, elastic, in unknowns": ("axisymmetric", "cpu-s", 0),
     "finite elements in 3D, elastic, in unknowns": ("spatial", "cpu-s", 0),
@@ -93,15 +92,16 @@ def exponents(frame: DataFrame) -> SmallTable:
 
 def times(file: CaseFile, frame: DataFrame) -> Plot:
     """Over the size, a panel for each exponent."""
-    panels = {}
+    panels, sizes = {}, {}
     for what, power in powers(frame).items():
-        ladder, column, _ = EXPONENTS[what]
+        (ladder, column, _), (title, _, sizes[title]) = EXPONENTS[what], what.rpartition(", in ")
         own = frame[frame["sweep"] == ladder]
         values, ends = own[column].to_numpy(dtype=float), (power.first, power.last)
-        panels[fill(what, 36)] = {str(power): Curve(own["size"].to_numpy(), values, power, span=ends)}
-    labels = dict.fromkeys(panels, "processor time [s]")
-    how = {"across": 3, "logarithmic": "xy", "legend": "each", "size": (4.6, 3.2)}
-    drawing = curves(panels, "size", labels, **how)
-    alt = "Log-log plots of processor time over cells, cycles and unknowns."
-    caption = "Lines: least squares through the points they cover; numbers: exponents ± standard error."
-    return Plot(drawing, "time", "Time over size", alt, caption)
+        panels[title] = {f"exponent {power}": Curve(own["size"].to_numpy(), values, power, span=ends)}
+    how = {"logarithmic": "xy", "legend": "each", "size": (3.2, 2.7)}
+    drawing = curves(panels, sizes, dict.fromkeys(panels, "processor time [s]"), **how)
+    caption = (
+        "The figure shows the processor time over the size of the problem; the lines are least-squares fits "
+        "through the points that they cover, with their exponents and standard errors."
+    )
+    return Plot(drawing, "time", "Time over size", caption)

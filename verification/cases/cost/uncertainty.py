@@ -333,6 +333,6 @@ def coverage(file: CaseFile, frame: DataFrame) -> Plot:
         lines.coverage(panels),
         "coverage",
         "Uncertainty over error",
-        "Uncertainty of each value over its error, by two rules; above the line it is covered.",
-        "Each point is a quantity of a problem. Below the line the uncertainty is too small.",
+        "The figure compares the stated uncertainty of each quantity with its true error, for two rules; "
+        "below the line the uncertainty is too small.",
     )

@@ -313,10 +313,10 @@ def beside_elements(frame: DataFrame) -> SmallTable:
                 cells = (f"{100.0 * error:.2g} %", f"{100.0 * max(rows['floor']):.2g} %", number(ratio, 3))
                 lines.append((problem.title, other, *cells))
     return SmallTable(
-        "How many times the time of SAM finite elements take at the smallest error that both reach, and that "
-        f"is {KNOWN:g} times the uncertainty of the reference. A sphere at rest is a problem in two "
-        "dimensions for the axisymmetric model and in three for SAM",
-        "problem|beside|error|uncertainty of the reference|times".split("|"),
+        "How many times the processor time of SAM the finite elements need, at the smallest error that both "
+        f"reach and that is at least {KNOWN:g} times the uncertainty of the reference. A sphere at rest is a "
+        "problem in two dimensions for the axisymmetric model and in three for SAM",
+        "problem|method|error|uncertainty of the reference|times".split("|"),
         lines,
     )
 
@@ -343,9 +343,9 @@ def advice(file: CaseFile, frame: DataFrame) -> Plot:
         Drawing(overview(to_1_percent, "1 %").figure, data),
         "advice",
         "Processor time to 1 %",
-        "Marks on a logarithmic axis of processor time, one row a kind of scene and one mark a method.",
-        "Hollow: even the coarsest point is better, the time is an upper bound. What never reaches 1 % "
-        "has no mark. The data are the advice of samfem plan.",
+        "The figure compares the processor time that each method needs for an error of 1 %. A hollow mark "
+        "is an upper bound, as even the coarsest grid is better; a method without a mark does not reach 1 "
+        "%. The data are the advice of samfem plan.",
     )
 
 
@@ -357,7 +357,6 @@ def errors(file: CaseFile, frame: DataFrame, name: str) -> Plot:
         curves(frame[frame["sweep"] == name], f"error of the {words}"),
         name,
         problem.title,
-        f"Log-log plot of the error of the {words} over processor time, a falling curve for each method.",
-        "Shaded: uncertainty of the reference, below which nothing is claimed. Along a curve the grid is "
-        "refined, or the load steps.",
+        f"The figure compares the error of the {words} of each method over its processor time, as the grid "
+        "or the load steps are refined. In the shade, the uncertainty of the reference, nothing is claimed.",
     )

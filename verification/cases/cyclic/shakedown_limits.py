@@ -18,11 +18,7 @@ from verification.cases.case import with_body, with_loading
 from verification.quantities import Reference
 from verification.reference.shakedown import cell_limit, in_place_limit, travelling_limit
 
-__all__ = [
-    "limit_of_cells",
-    "share_of_limit",
-    "strain_over_first",
-]
+__all__ = ["limit_of_cells", "share_of_limit"]
 
 
 def back_stress(scene: Scene, modulus: float) -> Scene:
@@ -54,7 +50,7 @@ def share_of_limit(scene: Scene, share: float) -> Scene:
 
 
 def limit_of_cells(scene: Scene, result: Result, _: Reference | None) -> float:
-    """Limit of the cells over that of the body, less 1."""
+    """Relative deviation of the limit of the cells from that of the body."""
     radius, ways = scene.loading.radius, scene.loading.path
     cells = round(radius * scene.grid.cells[0] / scene.grid.extent[0])
     stops = np.linspace(ways.start[0] / radius, ways.end[0] / radius, ways.steps + 1)
@@ -75,13 +71,3 @@ def steady(scene: Scene, result: Result, _: Reference | None) -> float:
     """Strain of the last cycle over that of the one before."""
     *_, before, last = strains(result)
     return float(last / before) if before else 0.0
-
-
-def strain_over_first(scene: Scene, result: Result, _: Reference | None) -> np.ndarray:
-    """Strain that each cycle adds over that of the first."""
-    return strains(result) / strains(result)[0]
-
-
-def cycle(scene: Scene, result: Result, _: Reference | None) -> np.ndarray:
-    """Number of the cycle."""
-    return np.arange(1, strains(result).size + 1)

@@ -155,7 +155,7 @@ def path(file: CaseFile, frame: DataFrame) -> Plot:
         if one := found.pop("sam", None):
             panels[title] = one[0], next((other for (other,) in found.values()), None)
     words = (
-        "Work of the tractions (line) and where it is (areas), SAM on its finest grid; crosses: FEM. "
-        "After unloading the work that was not given back is dissipated or stored by residual stress."
+        "The figure shows the work of the tractions (line) and where it goes (areas) by SAM on its finest "
+        "grid, and by FEM (crosses). After unloading the rest is dissipated or stored by residual stress."
     )
-    return Plot(over_path(panels), "path", "Energy over the load path", words, words)
+    return Plot(over_path(panels), "path", "Energy over the load path", words)

@@ -95,7 +95,7 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
     for name, law in (laws | {"0.1, as printed": law_of(FRICTIONS[1], printed=True)}).items():
         state = at_centre(law, pressure)
         thinning = np.where(state.failed, np.nan, state.thinning)[:, 0]
-        row = {"sweep": "breakdown", "friction": name, "pressure": 1e-9 * pressure, "thinning": thinning}
+        row = {"sweep": "breakdown", "friction": name, "pressure": pressure, "thinning": thinning}
         if name in laws:
             row["fails"] = failure_pressure(name, friction.thinning_limit)
             row["fails expected"] = film_pressure(friction.thinning_limit, name, FILM, BODY)

@@ -7,19 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Friction, Plasticity, Scene
-from verification.cases.case import SAM, Context, Plot, with_body, with_keys
+from verification.cases.case import SAM, Context, with_body, with_keys
 from verification.cases.recipes import initial_yield, on_track
-from verification.figures.lines import new_strains
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
-    from verification.rows import CaseFile
 
 CELLS = {"quick": 4, "full": 8}  # in the radius
 STEEL = {
@@ -61,7 +55,8 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
             np.asarray(result.tables["passes"][each], dtype=float)
             for each in ("new_strain_max", "groove_m", "rolling")
         )
-        row = {"run": name, "groove": groove[-1], "last": strain[-1], "before": strain[-2], "strains": strain}
+        row = {"run": name, "groove": groove[-1], "last": strain[-1], "before": strain[-2]}
+        row |= {"new-strain": strain, "pass": np.arange(1, strain.size + 1)}
         row["conservative"] = float((rolling[-1] - rolling[-2]) / 2 / rolling[0])
         row["steady"] = result.quantities["passes_to_steady"]
         if name in PERFECT:
@@ -71,13 +66,3 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
             row |= {"pressure": history["p_max_Pa"][loaded], "verdict": str(verdict["class"])}
             row["right"] = float(verdict["class"] == PERFECT[name][1])
         yield row
-
-
-def new_strain(file: CaseFile, frame: DataFrame) -> Plot:
-    """What each pass adds."""
-    words = (
-        "Largest plastic strain that a pass adds to a cell of the steady part of the track, over the "
-        "number of the pass; no mark where it adds none."
-    )
-    drawing = new_strains(dict(zip(frame["run"], frame["strains"], strict=True)))
-    return Plot(drawing, "new-strain", "What each pass adds", words, words)

@@ -57,8 +57,6 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
     single = uncertainty.solve(
         uncertainty.asked_of(on_track(base, SINGLE), "moving-sphere.toml"), SAM, solved
     )
-    for sweep, found in (("steps", steps), ("cells", cells)):
-        yield from ({"sweep": sweep, "varied": sweep, "count": n} | values for n, values in found.items())
     short = {key: limit(steps, key) for key in steps[AT]}
     fine = {key: of_cells(cells, key) for key in steps[AT]}
     exact = {key: short[key] + fine[key] for key in fine}
@@ -72,4 +70,8 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
             for key, name in NAMES.items()
         },
     }
+    for sweep, found, of in (("steps", steps, "limit"), ("cells", cells, "refined")):
+        for n, values in found.items():
+            errors = {f"{key}-error": abs(values[key] / limits[of][key] - 1) for key in ("groove", "steady")}
+            yield {"sweep": sweep, "varied": sweep, "count": n} | values | errors
     yield from ({"sweep": "limits", "model": name} | values for name, values in limits.items())

@@ -6,6 +6,7 @@ machine.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -224,14 +225,18 @@ def over_time(file: CaseFile, frame: DataFrame, problem: str) -> Plot:
         problems.STEP: ("Elastic-plastic step", "error of the plastic strain below the apex, L2"),
     }[problem]
     series = {
-        curve: (NAMES[program], own["seconds"].to_numpy(), own["error"].to_numpy())
+        re.sub(r"1e-(\d)", r"tolerance $10^{-\1}$", curve): (
+            NAMES[program],
+            own["seconds"].to_numpy(),
+            own["error"].to_numpy(),
+        )
         for (program, curve), own in rows.groupby(["model", "curve"], sort=False)
     }
     floor = rows["floor"].max() if problem == problems.STEP else 0.0
     target = elastic.HERTZ_ERROR if problem == problems.HERTZ else None
     drawing = of_programs(series, "processor time [s]", of, target=target, floor=floor)
-    words = f"{title}: {of} over processor time for {', '.join(series)}."
-    shade = "Shaded: the uncertainty of the references." if floor else "Dotted: where times are compared."
-    return Plot(
-        drawing, problem, f"{title}: error over time", words, f"A marker a grid, coarse to fine. {shade}"
+    text = f"The figure compares the {of} of each program over its processor time; each marker is one grid."
+    shade = (
+        "The uncertainty of the references is shaded." if floor else "Times are compared at the dotted error."
     )
+    return Plot(drawing, problem, f"{title}: error over time", f"{text} {shade}")

@@ -60,7 +60,7 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
                     "flow-rule residual": said["flow_residual"],
                     "stated": max(0.0, seen - said["yield_excess"]),
                     "applications": result.cost["operator_applications"],
-                    "depth-in-um": 1e6 * z[near],
+                    "depth": z[near],
                     "plastic-strain": below[near] if steps == STEPS[context.level][0] else None,
                 }
 

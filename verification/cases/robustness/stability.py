@@ -54,10 +54,10 @@ class Stability(Case):
         counts = Counter(cell.kind for *_, cell in found.cells)
         seconds = sum(cell.seconds for *_, cell in found.cells)
         cells = f"{sum(counts.values())} cells; {seconds:.0f} s of processor time"
-        yield "Matrix", f"{len(found.rows)} extremes, {cells}"
+        yield "Matrix", f"{len(found.rows)} extreme inputs, {cells}"
         yield "Cells", ", ".join(f"{counts[kind]} {kind}" for kind in KINDS)
-        wrong = "a cell that does otherwise is wrong"
-        yield "Beforehand", f"each row says what must become of it in each model, and why; {wrong}"
+        wrong = "a cell that deviates from it is wrong"
+        yield "Fixed beforehand", f"each row states the expected result in each model and its reason; {wrong}"
         yield "Always wrong", "another exception, a warning of numpy, a quantity that is not finite"
 
     def tables(self, found: Matrix) -> Iterator[SmallTable]:
@@ -66,22 +66,38 @@ class Stability(Case):
             for row in found.rows
             if (cells := found.judged[row.name]) is not None
         ]
-        columns = ("row", "what", "expected, and why", "SAM", "FEM, axisymmetric", "FEM, 3D")
+        columns = (
+            "row",
+            "extreme input",
+            "expected result and its reason",
+            "SAM",
+            "FEM, axisymmetric",
+            "FEM, 3D",
+        )
         yield SmallTable("The matrix", columns, rows)
+        what = {row.name: row.what for row in found.rows}
         rows = [
-            (name, model, str(len(cell.deviations)), w.what, f"{w.error:.2g}", f"{w.bound:g}", w.reason)
+            (what[name], model, str(len(cell.deviations)), w.what, f"{w.error:.2g}", f"{w.bound:g}", w.reason)
             for name, model, cell in found.cells
             if cell.kind == RIGHT and (w := cell.worst)
         ]
-        columns = ("row", "model", "comparisons", "nearest to its bound", "error", "bound", "why this bound")
-        yield SmallTable("Right cells", columns, rows)
+        columns = (
+            "extreme input",
+            "model",
+            "comparisons",
+            "closest to its bound",
+            "error",
+            "bound",
+            "reason",
+        )
+        yield SmallTable("Right answers", columns, rows)
         expected = {row.name: row.expected for row in found.rows}
         rows = [
-            (name, model, cell.text, expected[name][model][1])
+            (what[name], model, cell.text, expected[name][model][1])
             for name, model, cell in found.cells
             if cell.kind == ERROR
         ]
-        yield SmallTable("Errors", ("row", "model", "message", "why it is right"), rows)
+        yield SmallTable("Expected errors", ("extreme input", "model", "message", "reason"), rows)
 
     def notes(self, found: Matrix) -> list[str]:
         wrong = [each for each in found.cells if each[-1].kind == WRONG]

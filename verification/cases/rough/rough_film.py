@@ -128,7 +128,7 @@ def pressure(file: CaseFile, frame: DataFrame) -> Plot:
         "and softer. The patch of the paper's Fig. 3a and c, on a surface like theirs; coated less bare."
     )
     drawing = rough_pressures(x, y, {"coated": p, "bare": bare})
-    return Plot(drawing, "pressure", "Pressure on the rough patch", words, words)
+    return Plot(drawing, "pressure", "Pressure on the rough patch", words)
 
 
 def summit_radius(result: Result) -> float:

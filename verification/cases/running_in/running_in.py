@@ -34,7 +34,7 @@ from verification.cases.running_in.study import (
     readings_of,
 )
 from verification.compare.running_in_measures import Limits
-from verification.figures.lines import over_cycles, yield_profiles
+from verification.figures.lines import Curve, curves, yield_profiles
 from verification.figures.running_in import six_panels
 from verification.reference.bonded_film import regime
 
@@ -205,19 +205,17 @@ class RunningIn(Readings):
             yield_profiles({name: each.stress for name, each in scenes.items()}, DEEP),
             "yield",
             f"Yield stress over depth, {WORDS[PRINTED]}",
-            "Curves of the yield stress over depth, one for each case, before and after a strain of 1 %.",
-            "After the paper's Fig. 9, which has no numbers: the shape of the profiles is from it, their "
-            "size is assumed. The line of a case may lie on that of another.",
+            "The figure compares the yield stress of the materials over depth. The shape of the profiles is "
+            "from the paper's Fig. 9, which has no numbers; their size is assumed.",
         )
         for reading, case, one in shown_of(good):
             yield Plot(
                 six_panels(one.scar, one.history, one.friction),
                 led(reading, case),
                 f"Running-in, {NAMES[case]}, {WORDS[reading]}",
-                f"Six panels of {NAMES[case]}: worn depth, worn surface, volume and friction over "
-                "cycles, local friction, pressure.",
-                f"As the paper's Fig. {FIGURES[case]}, on our surface {one.scene.surface.seed} alone. (a) "
-                "and (b) after the last cycle, (e) and (f) at its peak; grey: not worn, or no contact.",
+                f"The panels show what the paper's Fig. {FIGURES[case]} does, on our surface "
+                f"{one.scene.surface.seed} alone: (a) and (b) after the last cycle, (e) and (f) at its peak. "
+                "What is not worn or not in contact is grey.",
             )
 
     def views(self, found: DataFrame) -> Iterator[View]:
@@ -227,9 +225,8 @@ class RunningIn(Readings):
                 "worn",
                 f"{led(reading, case)}-worn",
                 f"Worn surface over the original, {NAMES[case]}, {WORDS[reading]}",
-                f"The rough surface of {NAMES[case]} in space, coloured by the depth worn; the original "
-                "surface above it is transparent.",
-                f"As the paper's Fig. {FIGURES[case]}b, on our surface, after the last cycle.",
+                f"The picture shows what the paper's Fig. {FIGURES[case]}b does, on our surface, after the "
+                "last cycle.",
             )
 
 
@@ -286,26 +283,24 @@ def regimes_table(found: DataFrame) -> SmallTable:
 
 
 def readings_plot(good: DataFrame) -> Plot:
-    """Both readings over the cycles."""
-    panels: dict[tuple[str, str], dict[tuple[str, str], np.ndarray]] = {}
+    """Each material over the cycles in both readings, the medians of the surfaces."""
+    panels: dict[tuple[str, str], dict[str, Curve]] = {}
     for row, name, scale in (
         ("wear volume [µm³]", "volume", CUBIC),
         ("coefficient of friction", "friction", 1.0),
-        ("Sa [nm]", "sa", 1e9),
+        ("roughness Sa [nm]", "sa", 1e9),
     ):
         for reading, words in WORDS.items():
             for case, runs in runs_of(good, reading):
-                lines = [scale * getattr(one.history, name) for one in runs]
-                named = {str(k): line for k, line in enumerate(lines, start=1)}
-                panel = panels.setdefault((row, NAMES[case]), {})
-                panel |= {(words, k): line for k, line in named.items()}
-                panel[words, "median"] = np.median(lines, axis=0)
+                median = np.median([scale * getattr(one.history, name) for one in runs], axis=0)
+                panel = panels.setdefault((row, words), {})
+                panel[NAMES[case]] = Curve(np.arange(1, len(median) + 1), median, look={"markersize": 3})
     return Plot(
-        over_cycles(panels, ("reading", "surface"), thick="median", first=1),
+        curves(panels, "cycle", count=True, size=(4.4, 2.6)),
         "readings",
         "Both readings of the paper over the cycles",
-        "Volume, friction and roughness over the cycles, a column for each case, a line for each reading.",
-        "Thick: median of the surfaces; thin: each surface. Sa of the unloaded surface after each cycle.",
+        "The figure compares the materials in both readings of the paper: medians of the surfaces, whose "
+        "ranges are in the tables. Sa is that of the unloaded surface after each cycle.",
     )
 
 
@@ -346,12 +341,13 @@ class RunningInCells(Readings):
 
     def notes(self, found: DataFrame) -> Iterator[str]:
         changed = [
-            f"{one['statement']}: {one['by_median']}, then {other['by_median']}"
+            f"{one['statement']} ({one['by_median']}, then {other['by_median']})"
             for one, other in zip(*readings_of(found).values(), strict=True)
             if one["by_median"] != other["by_median"]
         ]
-        yield f"Verdicts by the median that finer cells change: {'; '.join(changed) or 'none'}."
-        yield "One surface of a quarter of the printed area: this shows what cells do, no probability."
+        count = f"{len(changed) or 'no'} verdict{'s change' if len(changed) > 1 else ' changes'}"
+        yield f"On finer cells {count}{': ' * bool(changed)}{'; '.join(changed)}."
+        yield "One surface of a quarter of the printed area was solved: this shows the effect of the cells."
 
 
 CASES = (RunningIn("running-in"), RunningInCells("running-in-cells"))

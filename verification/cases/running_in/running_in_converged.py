@@ -200,7 +200,6 @@ def cells(file: CaseFile, frame: DataFrame) -> Plot:
         over_cells(volumes, per_wave(DEFAULT)),
         "cells",
         f"Worn volume after {CYCLES} cycles on finer cells",
-        "Worn volume over the number of cells in the shortest wave, a line for each surface with the "
-        "range of its shifts.",
-        "Bars: the surface shifted by 0, 1/3 and 2/3 of a cell. Dotted: what is recommended.",
+        f"The figure shows the volume worn after {CYCLES} cycles over the cells in the shortest wave; the "
+        "bars are the range of each surface shifted by 0, 1/3 and 2/3 of a cell.",
     )

@@ -157,10 +157,9 @@ class RunningInPhysics(Readings):
             over_cycles(panels, ("hardening", "friction")),
             "volume",
             "Worn volume over the cycles under each physics",
-            "Worn volume over the cycles: a row of panels for each material, a column for each counter-body, "
-            "a line for each hardening and sign of friction.",
-            "Colours: how the body hardens. Linear wear would be a straight line; a line that ends flat has "
-            "come to rest. Runs that did not converge have no line.",
+            "The figure compares the worn volume by how the body hardens, by the counter-body and by the "
+            "sign of friction. Linear wear would be a straight line; a line that ends flat has come to "
+            "rest. Runs that did not converge have no line.",
         )
 
 

@@ -337,8 +337,8 @@ class RunningInSensitivity(Readings):
             ),
             "probabilities",
             "Probability that a statement of the paper holds",
-            "A bar with its bounds for each of the 17 statements, and at how many points it holds.",
-            "Right: points at which it holds, of those at which it says anything; bounds of 90 %.",
+            "The bars show at which share of the points each statement of the paper holds, of those at "
+            "which it says anything, with bounds of 90 %.",
         )
 
 

@@ -11,15 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sam.scene import Path, Result, Scene
-from verification.cases.case import SAM, Context, Plot, with_grid, with_loading
+from verification.cases.case import SAM, Context, with_grid, with_loading
 from verification.cases.running_in.study import outside
-from verification.figures.lines import of_passes
 from verification.runs import models
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-    from verification.rows import CaseFile
 
 CELLS, STEPS, PASSES, RISES = 24, 6, 2, 3  # of the small scene: cells of 1 um, steps of one cell
 FEWER = 2  # steps of the one that goes on from the middle of a way
@@ -103,14 +101,3 @@ def on_way(scene: Scene, moving: Result, rest: Result) -> dict[str, Any]:
 def total(rows: DataFrame, column: str) -> float:
     """Of all runs."""
     return float(rows[column].sum())
-
-
-def passes(file: CaseFile, frame: DataFrame) -> Plot:
-    """Friction and wear of each."""
-    return Plot(
-        of_passes(frame.iloc[0]),
-        "passes",
-        "Passes of running-in on a way",
-        "Coefficient of friction and wear of each pass over its number",
-        "Means over the places of a pass, and the volume that it removes at its end.",
-    )

@@ -57,11 +57,13 @@ class Pair:
     def why(self) -> str:
         """Why it is as far off as it is, as far as that is known."""
         if self.gate:
-            return f"its gate allows {100 * self.gate['tolerance']:g} %: {self.gate['reason']}"
-        for case, quantity, why in PAGES["pairs"]["beyond"]:
-            if fnmatch(self.case.name, case) and self.quantity.startswith(quantity):
-                return f"no gate; {why}"
-        return UNGATED
+            return f"the gate allows {100 * self.gate['tolerance']:g} %: {self.gate['reason']}"
+        why = next((why for *of, why in PAGES["pairs"]["beyond"] if self.is_of([of])), "")
+        return f"{UNGATED}; {why}" if why else UNGATED
+
+    def is_of(self, named: Iterable[Sequence[str]]) -> bool:
+        """Whether it is of one of some (cases, begin of a quantity)."""
+        return any(fnmatch(self.case.name, case) and self.quantity.startswith(begin) for case, begin in named)
 
 
 def pairs_of(stored: Stored) -> list[Pair]:
@@ -80,7 +82,7 @@ def pairs_of(stored: Stored) -> list[Pair]:
         said = pairs_in(each.case) if "data" not in each.case else each.case["data"].get("pairs", ())
         beside = (Pair(each, words, FEM, sam, fem) for words, sam, fem in said)
         found += gated + [pair for pair in beside if round(pair.error, 4) not in known]
-    return found
+    return [pair for pair in found if not pair.is_of(PAGES["pairs"]["singular"])]
 
 
 def far(pairs: Iterable[Pair]) -> list[list[Pair]]:
@@ -141,7 +143,8 @@ class Evidence:
 @dataclass(frozen=True)
 class Finding:
     """One number of an answer. value: with its unit; cases: all behind it; worst: the one that the number is
-    from, if it is one; gates: behind it; allowed: what the gate of the number allows, or that it has none.
+    from, if it is one; gates: behind it; allowed: what the gate of the number allows, or that it has none;
+    deviation: the number, if it is one.
     """
 
     words: str
@@ -150,6 +153,7 @@ class Finding:
     worst: ShownCase | None = None
     gates: Sequence[Mapping] = ()
     allowed: str = ""
+    deviation: float = 0.0
 
     @property
     def red(self) -> list[str]:
@@ -165,17 +169,14 @@ def largest(evidence: Evidence, words: str, *of: str) -> Iterator[Finding]:
         for each, gate in evidence.gates(*of)
         if gate["error"] is not None and NORMALISED not in gate["quantity"]
     ]
-    found += [
-        (abs(pair.error), pair.case, pair.gate)
-        for pair in evidence.pairs
-        if any(fnmatch(pair.case.name, case) and pair.quantity.startswith(q) for case, q in begins)
-    ]
+    found += [(abs(pair.error), pair.case, pair.gate) for pair in evidence.pairs if pair.is_of(begins)]
     if found:
         error, worst, by = max(found, key=lambda each: each[0])
-        within = f", {len(found)} comparisons, half of them within {percent(median(e for e, *_ in found))}"
+        within = f" ({len(found)} comparisons, half of them within {percent(median(e for e, *_ in found))})"
         cases, gates = _once(each for _, each, _ in found), [gate for *_, gate in found if gate]
         allowed = _allowed(by, percent) if by else UNGATED
-        yield Finding(f"{words}{within * (len(found) > 1)}", percent(error), cases, worst, gates, allowed)
+        text = f"{words}{within * (len(found) > 1)}"
+        yield Finding(text, percent(error), cases, worst, gates, allowed, error)
 
 
 def value(
@@ -195,28 +196,39 @@ def share(evidence: Evidence, words: str, gate: str, shown: str = "{}") -> Itera
     return value(evidence, words, gate, shown, in_percent=True)
 
 
+def spread(evidence: Evidence, words: str, gates: str, shown: str) -> Iterator[Finding]:
+    """The least and the largest value of some gates."""
+    if found := [(each, row) for each, row in evidence.gates(gates) if row["error"] is not None]:
+        errors = [row["error"] for _, row in found]
+        ends = dict.fromkeys(number(pick(errors), 3) for pick in (min, max))
+        cases = _once(each for each, _ in found)
+        yield Finding(words, shown.format(" to ".join(ends)), cases, cases[0], [row for _, row in found])
+
+
 def held(evidence: Evidence, words: str, *patterns: str) -> Iterator[Finding]:
     """How many of the gates of some cases hold."""
     if found := list(evidence.gates(*patterns)):
         gates = [gate for _, gate in found]
         red = sum(gate["status"] in RED for gate in gates)
-        text = f"{len(gates) - red} of {len(gates)} gates"
+        text = f"{len(gates) - red} of {len(gates)} gates hold"
         yield Finding(words, text, _once(each for each, _ in found), gates=gates)
 
 
 def cell(evidence: Evidence, words: str, case: str, caption: str, *how: Any) -> Iterator[Finding]:
-    """Numbers of a row of a table as they stand, which no gate holds. caption: its begin; how: cells that
-    tell the row, columns of the numbers, and how they are shown, with {} for each.
+    """Numbers of a row of a table as they stand. caption: its begin; how: cells that tell the row, columns of
+    the numbers, how they are shown, with {} for each, and the gate that holds the first, if one does.
     """
-    row, columns, shown = how
+    row, columns, shown, *gate = how
+    gates = [found for _, found in evidence.gates(*gate)]
+    allowed = _allowed(gates[0], lambda of: number(of, 3)) if gates else UNGATED
     ran = evidence.stored.ran.get(case)
     for table in ran.case["tables"] if ran else ():
         if table["caption"].startswith(caption) and set(columns) <= set(table["columns"]):
             at = [table["columns"].index(column) for column in columns]
             for cells in (cells for cells in table["rows"] if set(row) <= set(cells)):
                 signed = (cells[k].replace("-", "\N{MINUS SIGN}") for k in at)
-                spaced = (re.sub(r"(?<=\d) ?%", "\N{NO-BREAK SPACE}%", each) for each in signed)
-                yield Finding(words, shown.format(*spaced), (ran,), ran, allowed=UNGATED)
+                spaced = [re.sub(r"(?<=\d) ?%", "\N{NO-BREAK SPACE}%", each) for each in signed]
+                yield Finding(words.format(*spaced), shown.format(*spaced), (ran,), ran, gates, allowed)
 
 
 def times(evidence: Evidence, _: str) -> Iterator[Finding]:
@@ -227,8 +239,9 @@ def times(evidence: Evidence, _: str) -> Iterator[Finding]:
     if both := sorted((each for each in costs if each.ratio > 0.0), key=lambda each: each.ratio):
         bounds = sum(each.sam[1] or each.fem[1] for each in both)
         words = (
-            f"the processor time of SAM: finite elements to an error of 1 %, in {len(both)} of {len(costs)} "
-            f"contacts{f' ({bounds} of them as bounds)' * bool(bounds)}; of the others the ratio is not known"
+            "the processor time of SAM is needed by the faster FEM model for an error of 1 %, in "
+            f"{len(both)} of {len(costs)} contacts{f' ({bounds} of them as bounds)' * bool(bounds)}; the "
+            "other ratios are unknown"
         )
         ran = (evidence.stored.ran["work-precision"],)
         yield Finding(words, f"{both[0].shown} to {both[-1].shown} times", ran)
@@ -245,6 +258,7 @@ PARTS: Mapping[str, Callable[..., Iterator[Finding]]] = {
     "held": held,
     "value": value,
     "percent": share,
+    "range": spread,
     "cell": cell,
     "times": times,
     "statements": statements,
@@ -278,7 +292,17 @@ class Answer:
 
 def answers_of(evidence: Evidence) -> list[Answer]:
     """An answer to each question, whether its cases ran or not."""
-    return [_answer({"note": "", "parts": []} | question, evidence) for question in PAGES["question"]]
+    return [
+        _answer({"note": "", "parts": [], "open": False} | question, evidence)
+        for question in PAGES["question"]
+    ]
+
+
+def first_numbers(evidence: Evidence) -> list[tuple[str, Finding | None]]:
+    """(label, what is found) of the numbers on the first screen, None where no case of the report has it."""
+    return [
+        (label, next(PARTS[kind](evidence, *part), None)) for label, kind, *part in PAGES["first"]["numbers"]
+    ]
 
 
 def _answer(question: Mapping, evidence: Evidence) -> Answer:
@@ -286,7 +310,9 @@ def _answer(question: Mapping, evidence: Evidence) -> Answer:
     behind = {each.name: each for finding in findings for each in finding.cases}
     gated = [finding.red for finding in findings if finding.gates]
     if not findings:
-        status = str(RowStatus.NOT_RUN) if question["parts"] else OPEN
+        status = (
+            ("full level" if evidence.stored.quick else str(RowStatus.NOT_RUN)) if question["parts"] else OPEN
+        )
     else:
         status = str(RowStatus.FAILED if any(gated) else RowStatus.PASSED) if gated else REPORTED
     seconds = [each.case["seconds"] or 0.0 for each in behind.values()]
@@ -321,9 +347,9 @@ def sentence(stored: Stored, pairs: Sequence[Pair]) -> str:
     inside = [sum(abs(pair.error) <= band for pair in pairs) for band in BANDS]
     worst = max(pairs, key=lambda pair: abs(pair.error))
     return (
-        f"{text}; of {len(pairs)} single values of SAM beside a reference {inside[0]} lie within "
-        f"{100 * BANDS[0]:g} %, {inside[1]} within {100 * BANDS[1]:g} %, and the farthest is "
-        f"{100 * abs(worst.error):.0f} % off ({worst.quantity.split(' [')[0]}, {worst.case.case['title']}"
+        f"{text}. Of {len(pairs)} values with a reference, {inside[0]} agree within {100 * BANDS[0]:g} % and "
+        f"{inside[1]} within {100 * BANDS[1]:g} %; the largest deviation is {100 * abs(worst.error):.0f} % "
+        f"({worst.quantity.split(' [')[0]}, {worst.case.case['title']}"
         f"{'' if worst.gate else '; it has no gate'}).{end}"
     )
 

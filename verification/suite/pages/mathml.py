@@ -33,6 +33,8 @@ SIGNS = tuple(
         ("<=", "≤"),
         (r"\bmu\b", "μ"),
         (r"\bsigma_", "σ_"),
+        (r"\bs(?=[xyz]{2}\b)", "σ_"),
+        (r"\bp0\b", "p₀"),
         (r"(?<=[0-9] )um\b", "µm"),
         (r" %", "\N{NO-BREAK SPACE}%"),
     )

@@ -26,9 +26,11 @@ from verification.suite.pages.answers import (
     Evidence,
     answers_of,
     far,
+    first_numbers,
     kind_of,
     origins,
     pairs_of,
+    percent,
     sentence,
 )
 from verification.suite.pages.headline import PAGE, headline_of
@@ -36,6 +38,7 @@ from verification.suite.pages.mathml import formula, with_scripts
 from verification.suite.pages.stored import (
     GROUPS,
     LIMIT_SIGNS,
+    PAGES,
     RED,
     ShownCase,
     Stored,
@@ -55,46 +58,38 @@ PICTURE = "figures/agreement"
 WORDS = {
     "verification": {
         "title": "Verification of samfem",
-        "lead": "Each contact is described once. The semi-analytical method (SAM) and, where they can "
-        "represent it, finite elements (FEM) solve it without sharing any physics code, and are held against "
-        "closed forms and against each other. Nothing here is compared with a measurement. A case is a "
-        "contact or a study; a gate is a number of it with a tolerance and its reason. The paper: Bosman & "
-        "Schipper (2011), whose method SAM follows.",
-        "symbols": "Percentages are relative differences, the largest of all comparisons. L2: root of the "
-        "sum of squared differences over that of the squared reference. a: contact radius, a₀: that of "
-        "Hertz; R: radius of the sphere; p₀: largest pressure of Hertz; σ_y0: initial yield stress; μ: "
-        "coefficient of friction; E₁, E₂: Young's moduli of film and body; h: thickness of the film; Swift: "
-        "σ_y = B (C + 10⁶ ε_p)ⁿ. "
-        "Sliding: every point of the contact slips while the contact stays where it is; moving: the contact "
-        "travels along the surface. In brackets: what the gate of a number allows. Passed: every gate behind "
-        "an answer holds; stale: the code has changed since.",
+        "lead": "",
         "case": "Case",
         "gate": "gate",
     },
     "comparison": {
         "title": "Comparison of SAM and FEM",
         "lead": "Each scene is described once. The semi-analytical method (SAM) and finite elements (FEM) "
-        "solve it without sharing any physics code, and are held against each other. Where there are data of "
-        "the user, SAM is held against them too: then these are what is expected.",
+        "solve it without sharing any physics code, and the results are compared. Data of the user, where "
+        "there are any, are the expected values for SAM.",
         "case": "Scene",
         "gate": "row",
     },
 }
 """What a page is about, by its kind."""
 WIDE = 1600  # pixels: letters of a picture drawn wider than 8 inches are too small in half a page
-NOT_CONFIRMED = "not confirmed"
 _NUMBER = re.compile(r"[<>≤≥]? ?[+−-]?[0-9][^ ]*( [^ ]{1,4})?$")
 
 
 @dataclass(frozen=True)
 class Look:
-    """How pages are written. folder: where; embed: figures inside the page; scenes: the folder of
-    the scenes as the pages link it, empty where it is not near them.
-    """
+    """How pages are written. folder: where; embed: figures inside the page."""
 
     folder: Path
     embed: bool = False
-    scenes: str = ""
+
+    def to(self, place: str) -> str:
+        """A file of the repository as the pages link it; empty where they are elsewhere: a link would name a
+        place of the machine.
+        """
+        if not self.folder.resolve().is_relative_to(ROOT):
+            return ""
+        return Path(os.path.relpath(ROOT / place, self.folder.resolve())).as_posix()
 
 
 def case_view(each: ShownCase, look: Look) -> dict:
@@ -106,9 +101,9 @@ def case_view(each: ShownCase, look: Look) -> dict:
         "status": str(RowStatus.FAILED if each.failed else RowStatus.PASSED),
         "gates": sorted(each.gates, key=lambda gate: (gate["status"] not in RED, -(share_used(gate) or 0.0))),
         "red": len(each.red),
-        "tightest": f"{max(tight)[1]}: {100 * max(tight)[0]:.0f} %" if tight else "",
+        "tightest": f"{max(tight)[1]} ({100 * max(tight)[0]:.0f} % used)" if tight else "",
         "figures": [figure_view(figure, look) for figure in case["figures"]],
-        "scenes": [(name, f"{look.scenes}/{name}" if look.scenes else "") for name in each.inputs],
+        "scenes": [(name, look.to(f"verification/scenes/{name}")) for name in each.inputs],
         "runs": [run for run in case["runs"] if (look.folder / run / SUMMARY).is_file()],
         "works": works_of(case),
         "origin": f"{each.date[:10]}, {short(each.commit)}" + f", code {digest}" * bool(digest),
@@ -118,24 +113,21 @@ def case_view(each: ShownCase, look: Look) -> dict:
 @cache
 def works() -> list[dict[str, str]]:
     """The literature: what finds it in the words of a case, a regular expression; its text; its DOI as public
-    lists of references or its first page have it, NOT_CONFIRMED where none was found, empty without.
+    lists of references or its first page have it, empty where none was found.
     """
     place = resources.files("verification.suite").joinpath("pages", "literature.csv")
     return list(csv.DictReader(place.read_text(encoding="utf-8").splitlines()))
 
 
 def works_of(case: Mapping) -> list[tuple[str, str]]:
-    """(citation, link) of what the question, the equations and the notes of a case refer to; no
-    link without a confirmed DOI.
-    """
+    """(citation, link) of what the question, the equations and the notes of a case refer to."""
     words = [text for row in case["equations"] for text in row]
-    text, found = "\n".join([*words, case["question"], *case["notes"]]), []
-    for work in works():
-        doubt = work["doi"] == NOT_CONFIRMED
-        if re.search(work["mark"], text):
-            cited = work["text"] + f" (DOI {NOT_CONFIRMED})" * doubt
-            found.append((cited, f"https://doi.org/{work['doi']}" if work["doi"] and not doubt else ""))
-    return found
+    text = "\n".join([*words, case["question"], *case["notes"]])
+    return [
+        (work["text"], f"https://doi.org/{work['doi']}" if work["doi"] else "")
+        for work in works()
+        if re.search(work["mark"], text)
+    ]
 
 
 def amount(gate: Mapping, value: float | None) -> str:
@@ -219,6 +211,7 @@ FILTERS = {
     "scripts": with_scripts,
     "time": with_time,
     "kind_of": kind_of,
+    "percent": percent,
     "page_of": page_of,
     "numeric": numeric,
     "sources": sources,
@@ -227,27 +220,32 @@ _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]")  # not allowed i
 
 
 def write_report(
-    results: Mapping, folder: Path, *, single_file: bool = False, stale: Mapping[str, str] | None = None
+    results: Mapping,
+    folder: Path,
+    *,
+    single_file: bool = False,
+    stale: Mapping[str, str] | None = None,
+    place: Path | None = None,
 ) -> Path:
     """Write the pages of results into the folder of their figures; returns the one to open.
 
     single_file: also report.html with everything inside, which is all there is of a comparison;
-    stale: name -> why a case is older than the code, which is marked.
+    stale: name -> why a case is older than the code, which is marked; place: where the folder will stand.
     """
     alone = results.get("kind") == "comparison"
     if not alone:
-        _write_pages(read_stored(results, stale), folder)
+        look = Look(folder, scenes=_scenes_from(place or folder))
+        _write_pages(read_stored(results, stale), look)
     if alone or single_file:
         write_atomically(folder / ONE_FILE, _one_file(results, folder).encode())
     return folder / (ONE_FILE if alone or single_file else INDEX)
 
 
-def _write_pages(stored: Stored, folder: Path) -> None:
+def _write_pages(stored: Stored, look: Look) -> None:
     """Write index.html, README.md and a page for each group of which a case ran, in place of older pages.
 
     report.html leads to the index, for those who look for that.
     """
-    look = Look(folder, scenes=_scenes_from(folder))
     evidence = Evidence(stored, pairs_of(stored))
     answers = answers_of(evidence)
     pages = {
@@ -259,11 +257,11 @@ def _write_pages(stored: Stored, folder: Path) -> None:
         (README, "README.md.j2"),
         (ONE_FILE, "moved.html.j2"),
     ):
-        pages[name] = _index(template, evidence, answers)
-    remove_pages(folder)
-    _draw(evidence, folder)
+        pages[name] = _index(template, evidence, answers, look)
+    remove_pages(look.folder)
+    _draw(evidence, look.folder)
     for name, text in pages.items():
-        write_atomically(folder / name, text.encode())
+        write_atomically(look.folder / name, text.encode())
 
 
 def remove_pages(folder: Path) -> None:
@@ -276,8 +274,9 @@ def remove_pages(folder: Path) -> None:
 def _one_file(results: Mapping, folder: Path) -> str:
     """All cases on one page that needs no other file; also of a comparison."""
     stored = read_stored(results)
-    cases = [case_view(each, Look(folder, embed=True)) for each in _ordered(stored.ran.values())]
-    return _page("single.html.j2", stored, cases=cases, origins=origins(stored.ran.values()))
+    look = Look(folder, embed=True)
+    cases = [case_view(each, look) for each in _ordered(stored.ran.values())]
+    return _page("single.html.j2", stored, look, cases=cases, origins=origins(stored.ran.values()))
 
 
 def _groups(stored: Stored) -> Iterator[tuple[dict, list[ShownCase]]]:
@@ -298,6 +297,7 @@ def _group_page(
     return _page(
         "group.html.j2",
         stored,
+        look,
         headline=headline_of(stored) if group["name"] == PAGE else None,
         answers=[each for each in answers if each.question["page"] == group["name"]],
         group=group,
@@ -307,14 +307,29 @@ def _group_page(
     )
 
 
-def _index(template: str, evidence: Evidence, answers: list[Answer]) -> str:
+def _contact(stored: Stored, look: Look) -> dict | None:
+    """The picture of a contact on the first screen, of the case that is named for it or else of any."""
+    case, name = PAGES["first"]["picture"]
+    figures = [(each, figure) for each in stored.ran.values() for figure in each.case["figures"]]
+    figures.sort(key=lambda one: f"{case}-{name}" not in one[1]["png"])
+    return next(({"of": each, **figure_view(figure, look)} for each, figure in figures), None)
+
+
+def _index(template: str, evidence: Evidence, answers: list[Answer], look: Look) -> str:
     stored = evidence.stored
     return _page(
         template,
         stored,
+        look,
+        contact=_contact(stored, look),
+        numbers=first_numbers(evidence),
+        cases=stored.ran,
         sentence=sentence(stored, evidence.pairs),
         picture=f"{PICTURE}.png" if evidence.pairs else "",
         far=far(evidence.pairs),
+        worst=max((abs(pair.error) for pair in evidence.pairs), default=None),
+        pairs=len(evidence.pairs),
+        gates=len(stored.gates),
         answers=answers,
         red=stored.red,
         broken=stored.broken,
@@ -324,7 +339,7 @@ def _index(template: str, evidence: Evidence, answers: list[Answer]) -> str:
     )
 
 
-def _page(template: str, stored: Stored, **shown: Any) -> str:
+def _page(template: str, stored: Stored, look: Look, **shown: Any) -> str:
     environment = Environment(
         loader=PackageLoader("verification.suite"),
         autoescape=lambda name: bool(name) and "html" in name,
@@ -342,6 +357,8 @@ def _page(template: str, stored: Stored, **shown: Any) -> str:
         results=stored.results,
         stale=stored.stale,
         words=words,
+        first=PAGES["first"],
+        home=look.to("README.md"),
         **shown,
     )
     return _CONTROL.sub("?", text)
@@ -361,13 +378,3 @@ def _draw(evidence: Evidence, folder: Path) -> None:
             for title, each in titled
         ]
         save(agreement(rows), folder / PICTURE, long=sys.maxsize)
-
-
-def _scenes_from(folder: Path) -> str:
-    """The scenes as seen from a folder of the repository; empty from elsewhere, where a link would
-    name a place of the machine.
-    """
-    scenes = ROOT / "verification" / "scenes"
-    if not folder.resolve().is_relative_to(ROOT):
-        return ""
-    return Path(os.path.relpath(scenes, folder.resolve())).as_posix()

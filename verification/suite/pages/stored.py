@@ -29,12 +29,13 @@ GROUPS: list[dict] = [*PAGES["page"], OTHER]
 """The pages: name of the file, title, families of cases, and what it is about."""
 LIMIT_SIGNS = {"<=": "\N{LESS-THAN OR EQUAL TO}", ">=": "\N{GREATER-THAN OR EQUAL TO}", "=": "="}
 
-ASKED, NAMED = "asked", "named"
+ASKED, NAMED, WAITS = "asked", "named", "still to run"
 ELSEWHERE = {
     "quick": "of the quick level",
     "full": "of the full level",
     NAMED: "run only when named",
     ASKED: "not asked for",
+    WAITS: WAITS,
 }
 """Why a case did not run that nothing kept from it."""
 RED = (RowStatus.FAILED, RowStatus.UNCHECKED)
@@ -90,12 +91,22 @@ class Stored:
         return [gate for each in self.ran.values() for gate in each.gates]
 
     @property
+    def quick(self) -> bool:
+        """Whether it holds what the quick level has, so that only cases of the full level are missing."""
+        others = {ELSEWHERE[ASKED], WAITS}.intersection(why for *_, why in self.waiting)
+        return self.results.get("level") == "quick" and not others
+
+    @property
     def further(self) -> str:
         """How many cases are not in the report, and why; empty where all are."""
         known = (*ELSEWHERE.values(), "")
         whys = Counter(why if why in known else "could not run here" for *_, why in self.waiting)
         said = ", ".join(f"{count} {why or 'did not run'}" for why, count in whys.most_common())
-        return f"{len(self.waiting)} further case{'s' * (len(self.waiting) > 1)}: {said}" if said else ""
+        said = f"{len(self.waiting)} further case{'s' * (len(self.waiting) > 1)}: {said}" if said else ""
+        if not self.quick:
+            return said
+        level = f"Quick level: {len(self.gates)} of the {len(self.results['gates'])} gates"
+        return f"{level}; {said}" if said else level
 
     @property
     def red(self) -> list[tuple[ShownCase, Mapping]]:
