@@ -80,7 +80,7 @@ def test_the_lock_of_a_killed_process_is_free_and_leaves_no_file(tmp_path, holde
 
 
 def test_two_blocks_of_one_process_exclude_each_other_until_one_ends_or_fails(tmp_path):
-    with pytest.raises(ZeroDivisionError), locked(tmp_path):  # noqa: PT012 - the lock fails in it first
+    with pytest.raises(ZeroDivisionError), locked(tmp_path):
         with pytest.raises(FolderError), locked(tmp_path):
             pass
         raise ZeroDivisionError
