@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Sphinx's settings for `make docs`: the pages of this folder, the API, the gallery and the verification pages."""
+"""The site of `make docs`: the pages of this folder, the API, the gallery and the verification pages."""
 
+import hashlib
 import re
 import shutil
 import sys
@@ -8,9 +9,11 @@ from pathlib import Path
 
 from docutils.nodes import SkipNode
 from docutils.utils.math.latex2mathml import tex2mathml
+from matplotlib.figure import Figure
+from sphinx_gallery.scrapers import figure_rst
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT), str(ROOT / "docs" / "tools")]
+sys.path[:0] = [str(ROOT), str(ROOT / "docs"), str(ROOT / "docs" / "tools")]
 
 project = "samfem"
 author = "the samfem authors"
@@ -28,10 +31,7 @@ extensions = [
 exclude_patterns = ["_build", "examples", "gallery", "theory", "tools"]
 default_role = "code"
 nitpicky = True
-nitpick_ignore_regex = [  # of other libraries, or of no use to a reader of the API
-    ("py:.*", r"(collections|numpy|pathlib|pandas|matplotlib|pydantic)\..*"),
-    ("py:class", r"DataFrame|DataSet|Figure|Path|Mapping\[str|OwnData|Result|sam\.scene\..*"),
-]
+nitpick_ignore_regex = [("py:.*", r"(?!samfem\.).*")]  # other libraries, and what is below samfem
 autodoc_member_order = "bysource"
 
 myst_enable_extensions = ["colon_fence", "dollarmath"]
@@ -47,7 +47,7 @@ html_title = "samfem"
 html_show_sourcelink = False
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
-html_sidebars = {"*": []}  # pages without others below them
+html_sidebars = {"*": [], "api/*": []}  # pages without others below them
 html_theme_options = {"header_links_before_dropdown": 6, "show_toc_level": 2}
 copybutton_selector = "div:not(.output):not(.sphx-glr-script-out) > div.highlight > pre"
 
@@ -57,9 +57,19 @@ sphinx_gallery_conf = {
     "filename_pattern": "/",  # all scripts run, whatever their name
     "abort_on_example_error": True,
     "show_memory": False,
+    "image_scrapers": ("matplotlib", "conf.last_figure"),
     "min_reported_time": 5,
 }
 
+SOURCES = sorted(
+    path
+    for package in ("samfem", "sam", "fem_reference", "verification")
+    for path in (ROOT / package).rglob("*.*")
+    if path.suffix != ".pyc"
+)
+CODE = hashlib.sha256(b"".join(path.read_bytes() for path in SOURCES)).hexdigest()
+"""Where it has changed, everything is run and drawn anew."""
+SEEN = ROOT / "docs" / "_build" / "code"
 LINK = re.compile(r"(!?\[(?:[^][]|\[[^]]*\])*\]\()([^)\s:]+)\)")
 INCLUDED = re.compile(r"^```\{include\} \.\./(\S+)\n```$", re.MULTILINE)
 
@@ -79,7 +89,7 @@ def link_in_site(match: re.Match) -> str:
 
 
 def as_page(app, name: str, source: list[str]) -> None:
-    """A page as Sphinx reads it: with the files of the root that it includes, and links that work in the site."""
+    """A page with the files of the root that it includes, and with links that work in the site."""
 
     def included(match: re.Match) -> str:
         app.env.note_dependency(str(ROOT / match[1]))
@@ -89,12 +99,31 @@ def as_page(app, name: str, source: list[str]) -> None:
     source[0] = LINK.sub(link_in_site, INCLUDED.sub(included, source[0]))
 
 
-def copy_reports(app, failed: Exception | None) -> None:
+def as_written(app, what: str, *others: object) -> None:
+    """A docstring in which |x| is an absolute value, and `a: b` of an attribute no type and description."""
+    lines = others[-1]
+    lines[:] = [line.replace("|", "\\|") for line in lines]
+    if what in ("attribute", "data", "property"):
+        lines.insert(0, "")
+
+
+def last_figure(block, block_vars: dict, gallery_conf: dict) -> str:
+    """A figure that is the value of the last line of a block, as of `run.plot()`, as a picture."""
+    value = block_vars["example_globals"].get("___")
+    if not isinstance(value, Figure):
+        return ""
+    path = next(block_vars["image_path_iterator"])
+    value.savefig(path, dpi=120)
+    return figure_rst([path], gallery_conf["src_dir"])
+
+
+def finish(app, failed: Exception | None) -> None:
     """Put the published verification pages into the site, whose home is their home, and the scenes that they
     name.
     """
     site = Path(app.outdir) / "verification"
     if not failed:
+        SEEN.write_text(CODE, encoding="utf-8")
         shutil.copytree(
             ROOT / "reports", site, ignore=shutil.ignore_patterns("latest*", "*.md"), dirs_exist_ok=True
         )
@@ -120,6 +149,11 @@ def displayed_formula(translator, node) -> None:
 
 def setup(app) -> None:
     """Called by Sphinx."""
+    app.add_config_value("code", CODE, "env")
+    if not SEEN.exists() or SEEN.read_text(encoding="utf-8") != CODE:
+        for folder in ("auto_gallery", "_build/plot_directive"):
+            shutil.rmtree(ROOT / "docs" / folder, ignore_errors=True)
     app.add_html_math_renderer("mathml", (inline_formula, None), (displayed_formula, None))
     app.connect("source-read", as_page)
-    app.connect("build-finished", copy_reports)
+    app.connect("autodoc-process-docstring", as_written, priority=100)  # before napoleon
+    app.connect("build-finished", finish)

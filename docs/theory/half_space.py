@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The half-space, its axes, and a sphere that is pressed on: Hertz's solution, drawn to scale but for the heights."""
+"""The half-space, its axes, and a sphere that is pressed on: the solution of Hertz."""
 
 import matplotlib.pyplot as plt
 import numpy as np

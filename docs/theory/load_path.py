@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Loading and unloading of a sphere on steel that yields: force over approach, and the strain that is left."""
+"""Loading and unloading of a sphere on steel that yields: force over approach, and plastic strain."""
 
 import matplotlib.pyplot as plt
 import numpy as np

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a repeated load does: cycles of a bar with two back-stresses, and the shakedown limits below a contact."""
+"""What a repeated load does: cycles of a bar with back-stresses, and shakedown limits below a contact."""
 
 import matplotlib.pyplot as plt
 import numpy as np

@@ -27,12 +27,12 @@ for axes, back, radius, title in (
     ):
         if np.linalg.norm(end - start) > 0:
             axes.annotate("", end, start, arrowprops={"arrowstyle": "->", "color": color, "linewidth": 1.5})
-    axes.text(*(trial + [0.04, 0.02]), "trial stress\ns + 2μ Δe", color="tab:orange")
-    axes.text(*(final + [-0.05, -0.3]), "returned\nalong the normal", color="tab:red")
+    axes.text(trial[0] + 0.04, trial[1] + 0.02, "trial stress\ns + 2μ Δe", color="tab:orange")
+    axes.text(final[0] - 0.05, final[1] - 0.3, "returned\nalong the normal", color="tab:red")
     if back.any():
-        axes.text(*(back + [-0.45, -0.22]), "back-stress X", color="tab:green")
+        axes.text(back[0] - 0.45, back[1] - 0.22, "back-stress X", color="tab:green")
     axes.plot(*begin, "o", color="black", markersize=4)
-    axes.text(*(begin + [-0.2, -0.02]), "s")
+    axes.text(begin[0] - 0.2, begin[1] - 0.02, "s")
     axes.set(title=title, xlim=(-1.3, 1.9), ylim=(-1.3, 1.7), aspect="equal", xticks=[], yticks=[])
     axes.legend(loc="lower left", frameon=False, fontsize="small")
     axes.spines[:].set_visible(False)

@@ -44,7 +44,8 @@ class Quiet(SimpleHTTPRequestHandler):
 def faults(page: Page) -> list[str]:
     """What is wrong with a page as it is shown."""
     found = [
-        f"axe, {rule['impact']}: {rule['id']}, {len(rule['nodes'])} times, as {rule['nodes'][0]['html'][:120]}"
+        f"axe, {rule['impact']}: {rule['id']}, {len(rule['nodes'])} times"
+        f", as {rule['nodes'][0]['html'][:120]}"
         f" ({' '.join(rule['nodes'][0]['failureSummary'].split())[:300]})"
         for rule in Axe().run(page).response["violations"]
     ]

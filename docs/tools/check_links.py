@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Names every link of a built site to a file or an anchor that is not there: `python docs/tools/check_links.py FOLDER`."""
+"""Names every link of a built site to a file or an anchor that is not there: `check_links.py FOLDER`."""
 
 import sys
 from html.parser import HTMLParser

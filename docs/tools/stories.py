@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The commands of a page of the guide, run while the site is built: their output and pictures are those of the reader.
+"""The commands of a page of the guide, run while the site is built: what they print and draw is on the page.
 
-A block that begins with "```sh run" is run, one after the other in an empty folder for each page. What it prints on a
+Blocks that begin with "```sh run" are run one after the other in an empty folder, and what each prints on a
 terminal is shown below it. `<!-- picture: PATH ALT -->` shows a picture that the commands have made.
 """
 
@@ -24,8 +24,7 @@ PART = re.compile(
     r"^```sh run\n(?P<commands>.*?)^```\n|<!-- picture: (?P<path>\S+) (?P<alt>.*?) -->",
     re.MULTILINE | re.DOTALL,
 )
-COLUMNS, HEAD, TAIL = 110, 24, 6
-LONGEST_S = 120  # what a reader of a story is promised
+COLUMNS, HEAD, TAIL = 120, 24, 6
 END = "\x1e"  # between the outputs of two blocks
 
 
@@ -76,7 +75,7 @@ def printed(script: str, work: Path) -> str:
     found = b"".join(iter(partial(read, ours), b""))
     os.close(ours)
     text = found.decode().replace("\r\n", "\n")
-    if program.wait(LONGEST_S) != 0:
+    if program.wait() != 0:
         raise ExtensionError(f"a command failed in {folder}:\n{text[-2000:]}")
     return text
 

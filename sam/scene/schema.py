@@ -192,7 +192,7 @@ class Scene(Section):
 
     @property
     def seeds(self) -> tuple[int, ...]:
-        """The seeds of what is drawn at random, of the surface and of the counter-body's in each cycle."""
+        """The seeds of what is drawn at random: of the surface, and of the counter-body's in each cycle."""
         seed = self.surface.seed if self.surface is not None else None
         counter = self.counter_surface
         opposite = () if counter is None else counter.seeds(self.loading.cycles)

@@ -129,7 +129,7 @@ def cross_of(panel) -> tuple[float, float]:
 
 
 def test_the_history_distinguishes_loading_and_unloading_and_has_hertz():
-    """Of a made history on the curve of Hertz; the lines begin at the first touch, and where loading ended."""
+    """A made history on the curve of Hertz: the lines begin at the first touch, and where loading ended."""
     run = run_of("sphere")
     force = np.array([0.02, 0.05, 0.03, 0.0])
     x = 1e6 * hertz_of(run.scene)["approach_m"] * (force / 0.05) ** (2 / 3)

@@ -2,8 +2,9 @@
 """The numbers of README.md and of pages of the guide, from the published results: `python -m
 verification.suite.readme` (make readme).
 
-A row of a table that names a gate gets the value of that gate, with as many digits as before; what stands between the
-two marks, where a file has them, is written anew: the gates that failed, and the answer about running-in.
+A row of a table that names a gate gets the value of that gate, with as many digits as before; what stands
+between the two marks, in a file that has them, is written anew: the gates that failed, and the answer about
+running-in.
 """
 
 from __future__ import annotations

@@ -78,18 +78,18 @@ _NUMBER = re.compile(r"[<>≤≥]? ?[+−-]?[0-9][^ ]*( [^ ]{1,4})?$")
 
 @dataclass(frozen=True)
 class Look:
-    """How pages are written. folder: where; embed: figures inside the page."""
+    """How pages are written. folder: where; place: where it will stand; embed: figures inside the page."""
 
     folder: Path
     embed: bool = False
+    place: Path | None = None
 
     def to(self, place: str) -> str:
         """A file of the repository as the pages link it; empty where they are elsewhere: a link would name a
         place of the machine.
         """
-        if not self.folder.resolve().is_relative_to(ROOT):
-            return ""
-        return Path(os.path.relpath(ROOT / place, self.folder.resolve())).as_posix()
+        here = (self.place or self.folder).resolve()
+        return Path(os.path.relpath(ROOT / place, here)).as_posix() if here.is_relative_to(ROOT) else ""
 
 
 def case_view(each: ShownCase, look: Look) -> dict:
@@ -234,8 +234,7 @@ def write_report(
     """
     alone = results.get("kind") == "comparison"
     if not alone:
-        look = Look(folder, scenes=_scenes_from(place or folder))
-        _write_pages(read_stored(results, stale), look)
+        _write_pages(read_stored(results, stale), Look(folder, place=place))
     if alone or single_file:
         write_atomically(folder / ONE_FILE, _one_file(results, folder).encode())
     return folder / (ONE_FILE if alone or single_file else INDEX)
