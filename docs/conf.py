@@ -48,7 +48,7 @@ html_show_sourcelink = False
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_sidebars = {"*": [], "api/*": []}  # pages without others below them
-html_theme_options = {"header_links_before_dropdown": 6, "show_toc_level": 2}
+html_theme_options = {"header_links_before_dropdown": 6, "show_toc_level": 2, "collapse_navigation": True}
 copybutton_selector = "div:not(.output):not(.sphx-glr-script-out) > div.highlight > pre"
 
 sphinx_gallery_conf = {

@@ -47,4 +47,4 @@ def broken_links(site: Path) -> list[str]:
 
 
 if __name__ == "__main__":
-    sys.exit("\n".join(broken_links(Path(sys.argv[1]))))
+    sys.exit("\n".join(broken_links(Path(sys.argv[1]))) or 0)
