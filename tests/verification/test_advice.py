@@ -162,7 +162,8 @@ def test_plan_is_five_short_lines_and_more_with_verbose(capsys):
     short = capsys.readouterr().out.splitlines()
     assert short == str(found).splitlines() and len(short) == 5 + len(found.warnings)
     assert max(map(len, short)) <= 112 and f"sam {found.cells_in_radius:.3g}, 0.3 %" in short[1]
-    assert found.error == 0.003 and found.contact["over_yield"] == pytest.approx(4.0, rel=1e-3)
+    assert found.error == 0.003 and plan(with_loading(load_scene(Path(file)), steps=1)).error == 0.01
+    assert found.contact["over_yield"] == pytest.approx(4.0, rel=1e-3)
     assert main(["plan", file, "--verbose"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines == found.lines(verbose=True) and lines[0] == found.content["title"]

@@ -106,7 +106,8 @@ class Plan:
         """The largest relative error that was measured with so many cells and load steps, by the advice; None
         where none was.
         """
-        return self._entry["resolution"]["error"]
+        found = self._entry["resolution"]
+        return None if found["error"] is None else max(found["error"], found["steps_error"] or 0.0)
 
     @property
     def contact(self) -> Mapping[str, Any]:
