@@ -17,9 +17,16 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from verification import foreign_package, need
-from verification.runs.models import MODELS, SAM
-from verification.text.console import Cleaned, print_anything, unknown
+from samfem.clash import foreign_package
+
+try:
+    from verification import need
+    from verification.runs.models import MODELS, SAM
+    from verification.text.console import Cleaned, print_anything, unknown
+except ImportError:
+    if words := foreign_package():
+        sys.exit(f"samfem: error: {words}")
+    raise
 
 NOT_MET, WRONG_INPUT, INTERRUPTED = 1, 2, 130
 NO_MEMORY = ("failed to map segment", "annot allocate memory", "can't start new thread")

@@ -29,6 +29,7 @@ from verification.runs.files import (
     Run,
     check_target,
     clear_run,
+    figures_of,
     json_text,
     write_atomically,
 )
@@ -63,7 +64,7 @@ def compare(paths: Sequence[Path], **options: Any) -> int:
     store, found = default_store() if given.use_store else None, []
     for job in jobs:
         with locked(job.folder):
-            found.append(_answered(job, store))
+            found.append(_answered(job, store, draw=given.figures))
             _write(job, found[-1], draw=given.figures)
     if len(jobs) == 1:
         _show(jobs[0], found[0], figures=given.figures)
@@ -123,12 +124,15 @@ def _check_pages(given: SimpleNamespace) -> None:
             raise FolderError(f"--junit {given.junit}: a file in a folder that can be written to")
 
 
-def _answered(job: Job, store: Store | None) -> Compared:
+def _answered(job: Job, store: Store | None, *, draw: bool) -> Compared:
     """The comparison, each run written to its folder once it is there; what an older one says is removed."""
     for name in WRITTEN:
         (job.folder / name).unlink(missing_ok=True)
     if job.folder.exists():
-        clear_run(job.folder)  # figures of an older comparison
+        if figures_of(job.folder) and not draw:
+            words = "the figures of the earlier comparison are removed: --figures draws new ones"
+            print(f"samfem: {job.folder}: {words}", file=sys.stderr)
+        clear_run(job.folder)
 
     def solved(model: str, result: Result, source: Reuse) -> None:
         where = job.folder / PARTS[model]

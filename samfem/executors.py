@@ -21,7 +21,7 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from importlib import import_module
 from multiprocessing.connection import Connection
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
 
 from verification.runs.threads import computing_with
 
@@ -233,7 +233,7 @@ class Cluster:
     def died(self, error: BaseException) -> bool:
         return isinstance(error, self._killed) or _died_with_its_result(error)
 
-    def __enter__(self) -> Cluster:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, kind: object, *_: object) -> None:

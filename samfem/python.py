@@ -10,11 +10,12 @@ import subprocess
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from importlib import import_module
 from pathlib import Path
 from subprocess import PIPE
 from tempfile import TemporaryDirectory, TemporaryFile
 from typing import TYPE_CHECKING, Any, Literal, overload
+
+from samfem.clash import foreign_package
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,17 +25,10 @@ if TYPE_CHECKING:
     from verification.compare.own_data import OwnData
     from verification.cost.plan import Plan
 
-_others = import_module("verification")
-_file = getattr(_others, "__file__", None)
-if _file is None or Path(_file).resolve().parents[1] != Path(__file__).resolve().parents[1]:
-    raise ImportError(
-        f"samfem needs its own package verification, and Python finds another one, {_file or 'a folder'}: "
-        f"uninstall the distribution that it belongs to, or install samfem in an environment of its own"
-    )
-if _words := _others.foreign_package():
+if _words := foreign_package():
     raise ImportError(_words)
 
-from sam.scene import (  # noqa: E402 - only once they are ours
+from sam.scene import (
     HeightMap as HeightMap,
     Progress,
     Result,
@@ -42,15 +36,15 @@ from sam.scene import (  # noqa: E402 - only once they are ours
     SceneError as SceneError,
     load_scene,
 )
-from samfem.refusals import SeveralError as SeveralError  # noqa: E402
-from verification import figures  # noqa: E402
-from verification.runs import files, meshes, models  # noqa: E402
-from verification.runs.files import COMPANION, FolderError  # noqa: E402
-from verification.runs.model_range import off_in_words  # noqa: E402
-from verification.runs.models import MODELS, SAM, ModelError  # noqa: E402
-from verification.runs.tables import read_any_table  # noqa: E402
-from verification.text.console import followed  # noqa: E402
-from verification.text.readable import in_working_unit  # noqa: E402
+from samfem.refusals import SeveralError as SeveralError
+from verification import figures
+from verification.runs import files, meshes, models
+from verification.runs.files import COMPANION, FolderError
+from verification.runs.model_range import off_in_words
+from verification.runs.models import MODELS, SAM, ModelError
+from verification.runs.tables import read_any_table
+from verification.text.console import followed
+from verification.text.readable import in_working_unit
 
 SHOWN = ("p_max_Pa", "contact_radius_m", "approach_m", "peeq_max", "friction_coefficient", "wear_volume_m3")
 """Quantities of the short representation, those of them that are not zero."""

@@ -113,13 +113,13 @@ def on_face(part: Stresses, depth: float) -> Array:
 def largest_in_layer(s: Stresses, coating: bool) -> Peak:
     """Largest von Mises stress in Pa of the coating or below it, with its faces, and depth in m."""
     part = s.layer(coating)
-    peaks = [largest_mises(part)]
+    inside = largest_mises(part)
     if coating and part.peeq.any():
-        return peaks[0]
+        return inside
     interface = required(s.interface)
-    for depth in (0.0, interface) if coating else (interface,):
-        peaks.append((float(mises(on_face(part, depth)).max()), depth))
-    return max(peaks, key=lambda peak: peak[0])
+    depths = (0.0, interface) if coating else (interface,)
+    on_faces = [(float(mises(on_face(part, depth)).max()), depth) for depth in depths]
+    return max(inside, *on_faces, key=lambda peak: peak[0])
 
 
 def on_axis(r: Array, z: Array, gauss: Array) -> tuple[Array, Array]:

@@ -109,9 +109,10 @@ class Friction(Section):
         """A wide contact, or a yield stress of another unit than Young's modulus."""
         if self.film and stated(self.high) < (low := stated(self.low)):
             yield "high", f"at least low, {low:g}"
-        if self.film_yield is not None:
-            if words := off_unit(self.film_yield, stated(self.film_young), "film_young"):
-                yield "film_yield", words
+        if self.film_yield is not None and (
+            words := off_unit(self.film_yield, stated(self.film_young), "film_young")
+        ):
+            yield "film_yield", words
         if self.contact_width is not None and self.contact_width >= (track := stated(self.track)):
             yield "contact_width", f"less than track, {track:g} m"
 

@@ -196,8 +196,8 @@ class TestFailure:
         ],
     )
     def test_bad_input(self, law, change, message):
+        loads = {"strain": np.zeros((3, 1, 1)), "pressure": cells(1e9)} | change
         with pytest.raises(ValueError, match=message):
-            loads = {"strain": np.zeros((3, 1, 1)), "pressure": cells(1e9)} | change
             replace(LAW, **law).step(FilmState.fresh((1, 1)), **loads)
 
 

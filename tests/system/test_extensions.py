@@ -79,5 +79,7 @@ def test_one_row_of_the_table_is_enough_for_a_shape_without_radii_which_needs_a_
 def test_every_reference_solution_is_asked_for_by_a_test():
     texts = "\n".join(path.read_text() for path in (ROOT / "tests").rglob("test_*.py"))
     names = {module.name for module in pkgutil.iter_modules(reference.__path__)} - {"checks"}  # of arguments
-    untested = {name for name in names if not re.search(rf"\breference\.{name}\b|^    {name},$", texts, re.M)}
+    untested = {
+        name for name in names if not re.search(rf"\breference\.{name}\b|^    {name},$", texts, re.MULTILINE)
+    }
     assert not untested

@@ -165,12 +165,17 @@ def test_wrong_input_is_refused_by_name(tmp_path):
         samfem.load(tmp_path / "bad.toml")
 
 
-@pytest.mark.parametrize("name", ["sam", "verification"])
-def test_another_distribution_of_the_same_name_is_named(tmp_path, name):
+FROM_PYTHON, COMMAND = ("-c", "import samfem; samfem.solve"), ("-m", "samfem.cli", "schema")
+
+
+@pytest.mark.parametrize(
+    ("name", "words"), [("sam", FROM_PYTHON), ("verification", FROM_PYTHON), ("verification", COMMAND)]
+)
+def test_another_distribution_of_the_same_name_is_named(tmp_path, name, words):
     (tmp_path / name).mkdir()
     (tmp_path / name / "__init__.py").write_text("")
-    found = ended("-c", "import samfem; samfem.solve", folder=tmp_path, first=str(tmp_path))
-    assert found.returncode == 1
+    found = ended(*words, folder=tmp_path, first=str(tmp_path))
+    assert found.returncode == 1 and found.stderr.count("Traceback") == (words == FROM_PYTHON)
     assert f"needs its own package {name}" in found.stderr and f"{tmp_path}" in found.stderr
 
 

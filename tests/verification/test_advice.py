@@ -34,6 +34,7 @@ from verification.cost.advice import (
     read_rows,
     table_text,
 )
+from verification.cost.contact import expected_contact, hertz_of
 from verification.cost.plan import plan
 from verification.cost.precision import TARGETS
 from verification.runs.models import FEM, FEM_3D, MODELS, SAM
@@ -161,7 +162,8 @@ def test_plan_is_five_short_lines_and_more_with_verbose(capsys):
     short = capsys.readouterr().out.splitlines()
     assert short == str(found).splitlines() and len(short) == 5 + len(found.warnings)
     assert max(map(len, short)) <= 112 and f"sam {found.cells_in_radius:.3g}, 0.3 %" in short[1]
-    assert found.error == 0.003 and found.contact["over_yield"] == pytest.approx(4.0, rel=1e-3)
+    assert found.error == 0.003 and plan(with_loading(load_scene(Path(file)), steps=1)).error == 0.01
+    assert found.contact["over_yield"] == pytest.approx(4.0, rel=1e-3)
     assert main(["plan", file, "--verbose"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines == found.lines(verbose=True) and lines[0] == found.content["title"]
@@ -170,3 +172,19 @@ def test_plan_is_five_short_lines_and_more_with_verbose(capsys):
     assert lines[table + 1].split()[:2] == ["error", "method"] and " s " in lines[table + 2]
     first = next(k for k, line in enumerate(lines) if line.startswith("sam: about "))
     assert first == table + 2 + len(found.content["advice"]["table"]["rows"]) + 1
+
+
+def test_the_expected_contact_is_that_of_hertz_and_of_a_light_rough_contact():
+    """An approach is turned into its force; below a plane the share has the slope 2 over p/(E* h')."""
+    pressed = scene("hertz-ellipse")
+    exact = hertz_of(pressed)
+    by_approach = {"force": None, "approach": exact["approach_m"]}
+    again = hertz_of(with_loading(pressed, **by_approach))
+    assert again.pop("force_N") == pytest.approx(pressed.loading.force, rel=1e-9)
+    assert again == pytest.approx({name: exact[name] for name in again}, rel=1e-9)
+    found = expected_contact(pressed)
+    assert found["p0_Pa"] == pytest.approx(exact["p_max_Pa"], rel=1e-6)
+    light = expected_contact(with_loading(scene("pin-recipe"), force=1e-4))
+    over = light["p_nominal_Pa"] / (2 * light["p_spots_Pa"])
+    assert light["contact_share"] == pytest.approx(2 * over, rel=1e-3)
+    assert not hertz_of(scene("coated-sphere")) and not hertz_of(scene("rough-patch"))

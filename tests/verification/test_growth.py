@@ -44,7 +44,7 @@ def test_a_power_needs_three_points_in_its_range():
         (CELLS, CELLS * [1, 0, 1, 1], 0),
         (CELLS, CELLS * np.nan, 0),
     ):
-        with pytest.raises(ValueError):
+        with pytest.raises(ValueError, match="x and y"):
             fit_power(x, y, first)
 
 

@@ -77,7 +77,7 @@ def test_bad_input_is_refused():
         lambda: KogutEtsion(0.6),
         lambda: onset(1.6, -1.0, MODULUS, YIELD),
     ):
-        with pytest.raises(ValueError):
+        with pytest.raises(ValueError, match=r"must be (<=|>=|finite|0 <=)"):
             call()
 
 

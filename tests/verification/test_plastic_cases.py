@@ -96,5 +96,5 @@ class TestExtrapolation:
 
     @pytest.mark.parametrize("values", [[1.0, 2.0], [1.0, np.nan, 2.0]])
     def test_what_cannot_be_extrapolated_is_refused(self, values):
-        with pytest.raises(ValueError):
+        with pytest.raises(ValueError, match="values"):
             extrapolate([0.4, 0.2, 0.1], values)

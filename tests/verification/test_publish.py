@@ -145,9 +145,10 @@ def test_one_case_of_other_code_runs_again_beside_what_stays_and_a_kill_loses_no
     place.write_text(json.dumps(results))
     published.runs.clear()
     where = {"level": "full", "out": tmp_path / "out", "workers": 2}
-    with monkeypatch.context() as killed, pytest.raises(KeyboardInterrupt):
+    with monkeypatch.context() as killed:
         killed.setattr(verify, "finish", interrupted)
-        publishing.publish([NAMES[1]], store=tmp_path / "new", **where)
+        with pytest.raises(KeyboardInterrupt):
+            publishing.publish([NAMES[1]], store=tmp_path / "new", **where)
     assert report_in(tmp_path) == results  # the report of before stays
     assert publishing.publish([NAMES[1]], store=tmp_path / "newer", **where) == 0
     assert published.runs == 2 * [NAMES[1]]  # the third is older too, and was not asked for

@@ -34,7 +34,9 @@ def test_the_numbers_are_those_of_the_published_pages(published, page):
     text = (ROOT / page).read_text(encoding="utf-8")
     texts = [renewed(text, published), text]
     if not any("data" in case for case in published["cases"]):
-        texts = [re.sub(r"\n- \[Does the model of running-in.*?(?=\n<!--)", "", t, flags=re.S) for t in texts]
+        texts = [
+            re.sub(r"\n- \[Does the model of running-in.*?(?=\n<!--)", "", t, flags=re.DOTALL) for t in texts
+        ]
     assert texts[0] == texts[1]
 
 

@@ -413,13 +413,13 @@ def cluster(tmp_path_factory):
     distributed = dask_distributed()
     marker = tmp_path_factory.mktemp("dask") / "marker"
     seen = {functions.MARKER: str(marker), "PYTHONPATH": str(Path(__file__).parents[1])}
-    with patch.dict(
-        os.environ, seen
-    ):  # the cluster sets MALLOC_TRIM_THRESHOLD_ for all processes that come later
-        with distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=str(marker.parent)
-        ) as found:
-            yield found.scheduler_address, marker
+    # the cluster sets MALLOC_TRIM_THRESHOLD_ for all processes that come later
+    how = {"dashboard_address": None, "local_directory": str(marker.parent)}
+    with (
+        patch.dict(os.environ, seen),
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, **how) as found,
+    ):
+        yield found.scheduler_address, marker
 
 
 def test_a_dask_cluster_that_loses_a_worker_gives_the_same_table(

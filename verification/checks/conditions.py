@@ -203,7 +203,7 @@ def flow(scene: Scene, records: Sequence[Checkpoint], depths: np.ndarray) -> dic
     for before, now in pairwise(trees):
         old, new, stress = before["state"]["points"], now["state"]["points"], now["last"]["stress"]
         a, b = old["strain"], new["strain"]  # at the points of the cells
-        if a.shape != b.shape or before["extent"] != now["extent"] or not now["parts"]["count"] == 0:
+        if a.shape != b.shape or before["extent"] != now["extent"] or now["parts"]["count"] != 0:
             continue
         z = np.broadcast_to(depths[: a.shape[2], None, None], a.shape[1:])
         effective = at_points(scene, stress, b) - back_stress(scene, new.get("back"), z)

@@ -56,7 +56,9 @@ def expected_contact(scene: Scene) -> dict[str, Any]:
         stress = estimates.MISES * estimates.peak_pressure(scene)
         radius = with_prefix(scene.loading.radius, "m")
         found = {"mises_Pa": stress, **beyond(stress)}
-        return found | {"words": f"misfit sphere: radius {radius}, no contact{_over(found, 'mises')}"}
+        return found | {
+            "words": f"misfit sphere: radius {radius}, no contact{_over(found, 'largest stress')}"
+        }
     if other is not None and other.shape == "flat":
         return _of_plane(scene, beyond)
     from sam import expected_force, hertz_semi_axes
@@ -113,6 +115,6 @@ def _of_plane(scene: Scene, beyond: Any) -> dict[str, Any]:
     if slope:
         spots = modulus * slope / 2
         found |= {"p_spots_Pa": spots, **beyond(spots)}
-        words += f", spots at {with_prefix(spots, 'Pa')}"
+        words += f" at {with_prefix(spots, 'Pa')}"
         words += f" = {found['over_yield']:.2g} yield stresses" if "over_yield" in found else ""
     return found | {"words": words}

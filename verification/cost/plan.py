@@ -106,7 +106,8 @@ class Plan:
         """The largest relative error that was measured with so many cells and load steps, by the advice; None
         where none was.
         """
-        return self._entry["resolution"]["error"]
+        found = self._entry["resolution"]
+        return None if found["error"] is None else max(found["error"], found["steps_error"] or 0.0)
 
     @property
     def contact(self) -> Mapping[str, Any]:
@@ -210,9 +211,9 @@ def _resolved(entries: Sequence[Mapping[str, Any]]) -> str:
 def _needed(entry: Mapping[str, Any]) -> str:
     """Time and memory of a model, or the keys for which it cannot be used."""
     if not entry["available"]:
-        keys = re.findall(r"([a-z_]+(?:\.[a-z_]+)+) = ", entry["reason"]) or [entry["reason"]]
+        keys = re.findall(r"([a-z_]+(?:\.[a-z_]+)+) (?:=|together)", entry["reason"]) or [entry["reason"]]
         first, *more = dict.fromkeys(keys)
-        return f"{entry['model']} cannot ({first}{f' and {len(more)} more' * bool(more)})"
+        return f"{entry['model']} cannot ({first}{', ...' * bool(more)})"
     memory, time = with_prefix(entry["estimate"]["memory_bytes"], "B"), with_time(entry["estimate"]["time_s"])
     return f"{entry['model']} {time}, {memory}"
 
@@ -224,7 +225,7 @@ def _brief(stages: Sequence[Mapping[str, Any]], *, runs: bool) -> str:
         if stage in sizes and (runs or stage not in SELDOM):
             words, _, size = BRIEF[stage].partition("|")
             sized = size.format_map(sizes[stage]) if runs else ""
-            told[words] = sized.replace("in 1 load steps", "in one load step")
+            told[words] = re.sub(r"in 1 (load )?steps", r"in one \1step", sized)
     return ", ".join(words + size for words, size in told.items()) or "nothing"
 
 

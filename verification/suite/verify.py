@@ -466,6 +466,6 @@ def draw_pdf(folder: Path, progress: Told, store: Store | None) -> list[Path]:
             level = record.get("level", results["level"])
             context = Context(record["name"], out, level, progress, store=store, pdf=True)
             known[record["name"]].run(context)
-            for path in sorted((out / "figures").glob("*.pdf")):
-                written.append(Path(shutil.copy(path, folder / "figures" / path.name)))
+            drawn = sorted((out / "figures").glob("*.pdf"))
+            written += [Path(shutil.copy(path, folder / "figures" / path.name)) for path in drawn]
     return written

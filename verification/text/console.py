@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from html import escape as in_html
-from typing import Any, TextIO
+from typing import Any, Self, TextIO
 
 from verification.text.readable import with_time
 
@@ -101,7 +101,7 @@ class Progress:
         self._notebook = in_notebook()
         self._terminal = not self._notebook and sys.stderr.isatty()
 
-    def __enter__(self) -> Progress:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_exception) -> None:

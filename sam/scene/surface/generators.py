@@ -59,10 +59,8 @@ def heights(surface: Surface, x: Array, y: Array, extent: tuple[float, float]) -
 @lru_cache(maxsize=4)
 def mean_deviation(surface: Surface, extent: tuple[float, float]) -> float:
     """Ra in m on points of its own: of a file those of it, else on a patch (Lx, Ly)."""
-    if surface.kind == "file":
-        h = prepared(surface)
-    else:
-        h = heights(surface, *_sampling(surface, extent), extent)
+    of_file = surface.kind == "file"
+    h = prepared(surface) if of_file else heights(surface, *_sampling(surface, extent), extent)
     return float(np.abs(h - h.mean()).mean())
 
 

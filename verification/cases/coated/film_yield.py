@@ -153,7 +153,7 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
     def solved(contact: FilmContact, cells: int = cells) -> dict[str, Any]:
         scene = scene_of(base, contact, cells)
         alone = replace(contact, radius=BARE_RADIUS, film="elastic")
-        label = "-".join((contact.body, contact.film, contact.counterbody)).lower().replace(" ", "")
+        label = f"{contact.body}-{contact.film}-{contact.counterbody}".lower().replace(" ", "")
         label += f"-{1e6 * contact.radius:g}um-{1e-8 * contact.p0:g}-{cells}"
         if (alone, cells) not in bare:
             without = scene_of(base, alone, cells, film=False)

@@ -53,7 +53,7 @@ class Found:
         if not path.exists() or (self.run.model == "fem-axisymmetric" and not radius):
             return None
         grid = _mesh(self.run.folder, path.name).copy()
-        for name in grid.point_data.keys():
+        for name in list(grid.point_data):
             if grid.point_data[name].ndim > 1:
                 if name.endswith("displacement_m"):
                     grid.point_data[RAISED] = grid.point_data[name][:, 2]

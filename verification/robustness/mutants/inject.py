@@ -136,9 +136,9 @@ def importers(module: ModuleType, name: str) -> Iterator[tuple[ModuleType, str]]
     for other in list(sys.modules.values()):
         file = getattr(other, "__file__", None) or ""
         # an environment may lie below the root, too
-        if file.endswith(".py") and any(file.startswith(f"{ROOT}/{part}/") for part in OWN):
-            if called := _imported(file, other.__package__ or "").get((module.__name__, name)):
-                yield other, called
+        own = file.endswith(".py") and any(file.startswith(f"{ROOT}/{part}/") for part in OWN)
+        if own and (called := _imported(file, other.__package__ or "").get((module.__name__, name))):
+            yield other, called
 
 
 @functools.cache

@@ -189,9 +189,9 @@ def uses(test: ModuleType, modules: Collection[str], tests: tuple[str, ...] = ()
         if owner in modules or (isinstance(owner, str) and owner.rpartition(".")[0] in packages):
             return True
         helper = sys.modules.get(owner) if isinstance(owner, str) and owner not in tests else None
-        if (getattr(helper, "__file__", None) or "").startswith(f"{inject.ROOT}/tests/"):
-            if uses(helper, modules, (*tests, test.__name__, owner)):
-                return True
+        own = (getattr(helper, "__file__", None) or "").startswith(f"{inject.ROOT}/tests/")
+        if own and uses(helper, modules, (*tests, test.__name__, owner)):
+            return True
     return False
 
 
