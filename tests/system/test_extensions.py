@@ -28,7 +28,6 @@ from verification.cost.estimates import plastic_boxes
 
 ROOT = Path(__file__).parents[2]
 GUIDE = (ROOT / "docs" / "guide" / "scenes.md").read_text()
-README = (ROOT / "README.md").read_text()
 FILM = {"thickness": 1e-6, "young": 400e9, "poisson": 0.3}
 
 
@@ -43,7 +42,7 @@ def test_every_law_is_written_once_more_by_the_checks_and_in_the_guide(law, tmp_
     expected = found.body.plasticity.depth_profile()(z) * found.body.plasticity.curve().stress(peeq)
     # fewer than ten roundings, of terms no larger than three times the result
     assert yield_stress(found, peeq, z) == pytest.approx(expected, rel=1e-14, abs=0.0)
-    assert f'`"{law}"`' in GUIDE and f'"{law}"' in README
+    assert f'`"{law}"`' in GUIDE
 
 
 @pytest.mark.parametrize("shape", SHAPES_OF_SCENES)
@@ -55,7 +54,7 @@ def test_every_shape_has_the_same_gap_in_the_checks_and_is_in_the_guide(shape):
     edge = np.abs(np.hypot(x, y) - (other.radius if shape == "punch" else math.inf)) < 0.8e-6
     gap = bodies.SHAPES[shape].gap(other).gap(grid)
     np.testing.assert_allclose(GAPS[shape](other, x, y)[~edge], gap[~edge], rtol=1e-14)
-    assert f'`"{shape}"`' in GUIDE and f'"{shape}"' in README
+    assert f'`"{shape}"`' in GUIDE
 
 
 def test_one_row_of_the_table_is_enough_for_a_shape_without_radii_which_needs_a_force(monkeypatch):
