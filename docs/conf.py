@@ -47,8 +47,13 @@ html_title = "samfem"
 html_show_sourcelink = False
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
-html_sidebars = {"*": [], "api/*": []}  # pages without others below them
-html_theme_options = {"header_links_before_dropdown": 6, "show_toc_level": 2, "collapse_navigation": True}
+html_sidebars = {
+    "*": [],
+    "api/*": [],
+    "auto_gallery/*": [],
+    "auto_gallery/*/*": [],
+}  # pages without others below them
+html_theme_options = {"header_links_before_dropdown": 6, "show_toc_level": 2}
 copybutton_selector = "div:not(.output):not(.sphx-glr-script-out) > div.highlight > pre"
 
 sphinx_gallery_conf = {
@@ -64,7 +69,7 @@ sphinx_gallery_conf = {
 
 SOURCES = sorted(
     path
-    for package in ("samfem", "sam", "fem_reference", "verification")
+    for package in ("samfem", "sam", "fem_reference", "verification", "docs/gallery")
     for path in (ROOT / package).rglob("*.*")
     if path.suffix != ".pyc"
 )
