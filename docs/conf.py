@@ -28,7 +28,7 @@ extensions = [
     "stories",
     "matplotlib.sphinxext.plot_directive",
 ]
-exclude_patterns = ["_build", "examples", "gallery", "theory", "tools"]
+exclude_patterns = ["_build", "gallery", "theory", "tools"]
 default_role = "code"
 nitpicky = True
 nitpick_ignore_regex = [("py:.*", r"(?!samfem\.).*")]  # other libraries, and what is below samfem
@@ -54,6 +54,7 @@ copybutton_selector = "div:not(.output):not(.sphx-glr-script-out) > div.highligh
 sphinx_gallery_conf = {
     "examples_dirs": "gallery",
     "gallery_dirs": "auto_gallery",
+    "within_subsection_order": "FileNameSortKey",
     "filename_pattern": "/",  # all scripts run, whatever their name
     "abort_on_example_error": True,
     "show_memory": False,
@@ -84,8 +85,8 @@ def link_in_site(match: re.Match) -> str:
     inside = {"CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md", "README.md": "index.md"}
     if path in inside:
         return f"{start}{to_root}{inside[path]})"
-    script = re.fullmatch(r"((?:\.\./)?)(?:docs/)?gallery/(\w+)\.py", target)
-    return f"{start}{script[1]}auto_gallery/{script[2]}.rst)" if script else match.group()
+    gallery = re.fullmatch(r"((?:\.\./)?)(?:docs/)?gallery/(?:(\w+/\w+)\.py)?", target)
+    return f"{start}{gallery[1]}auto_gallery/{gallery[2] or 'index'}.rst)" if gallery else match.group()
 
 
 def as_page(app, name: str, source: list[str]) -> None:

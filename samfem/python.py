@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import html
 import json
+import os
 import pickle
 import subprocess
 import sys
@@ -402,7 +403,12 @@ def sweep(
     program = f"from {answer.__module__} import answer; answer()"
     with TemporaryDirectory() as temporary, TemporaryFile() as said, followed(progress) as told:
         folder = Path(out or Path(temporary, "sweep")).absolute()
-        child = subprocess.Popen([sys.executable, "-c", program], stdin=PIPE, stdout=PIPE, stderr=said)
+        found = os.environ | {
+            "PYTHONPATH": os.pathsep.join(filter(None, sys.path))
+        }  # where a notebook has it
+        child = subprocess.Popen(
+            [sys.executable, "-c", program], stdin=PIPE, stdout=PIPE, stderr=said, env=found
+        )
         assert child.stdin is not None and child.stdout is not None
         with child:
             try:

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: MIT
+"""
+Rough contact and its spots
+===========================
+An elastic plane touches a rough surface in a few spots only. Their common area grows nearly in proportion to
+the force.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import samfem
+
+steel = {"young": "210 GPa", "poisson": 0.3}
+rough = {"kind": "self-affine", "sq": "0.1 um", "cutoff_long": "32 um", "cutoff_short": "8 um", "hurst": 0.8}
+scene = samfem.Scene(
+    title="steel plane on a rough steel surface",
+    body=steel,
+    counterbody={"shape": "flat", **steel},
+    surface={**rough, "seed": 1},
+    loading={"force": "0.6 N", "steps": 6},
+    grid={"cells": (160, 160), "extent": ("64 um", "64 um"), "border": "relief"},
+    solver={"uncertainty": True},
+)
+run = samfem.solve(scene)
+print(run)
+pressure = run.tables["surface"].pivot(index="y_m", columns="x_m", values="p_Pa")
+history = run.tables["history"]
+
+figure, (left, right) = plt.subplots(1, 2, figsize=(7, 3.2), layout="constrained")
+image = left.imshow(1e-9 * pressure.replace(0, np.nan), origin="lower", extent=(-32, 32, -32, 32))
+left.set(xlabel="x [µm]", ylabel="y [µm]", title=f"{run.quantities['contact_spots']:.0f} spots")
+figure.colorbar(image, label="contact pressure [GPa]")
+right.plot(history["force_N"], 100 * history["contact_area_m2"] / 64e-6**2, "o-")
+right.set(xlabel="force [N]", ylabel="area in contact [%]", xlim=(0, None), ylim=(0, None))
+plt.show()
