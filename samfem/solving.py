@@ -38,7 +38,7 @@ from verification.runs.provenance import collect
 from verification.runs.store import Reuse, Store, default_store, solve_or_reuse
 from verification.text.console import Progress, table_lines
 from verification.text.readable import in_working_unit, with_prefix, with_time
-from verification.uncertainty import asked_of as with_uncertainty
+from verification.uncertainty import asked_of as with_uncertainty, unknown
 
 ROUNDING = 1e-12
 """Of the contact radius: a length below it is shown as 0 to a person."""
@@ -239,12 +239,14 @@ def check(scene: Scene, model: str, *, anyway: bool = False) -> Any:
 
 
 def unconverged(results: Sequence[Result | Run]) -> int:
-    """1 if a result did not converge, with its status and what to change on stderr; else 0."""
+    """1 if a result did not converge, or has not the accuracy or no uncertainty at all that was asked for,
+    with what to change on stderr; else 0.
+    """
     ended = [result for result in results if not result.converged]
     for result in ended:
         message = result.message or Status(result.status).advice
         print(f"samfem: {result.model}: {result.status}: {message}", file=sys.stderr)
-    short = [(result.model, words) for result in results if (words := missed(result))]
+    short = [(result.model, words) for result in results if (words := missed(result) or unknown(result))]
     for model, words in short:
         print(f"samfem: {model}: {words}", file=sys.stderr)
     return 1 if ended or short else 0
@@ -299,7 +301,7 @@ def result_lines(result: Result | Run, scene: Scene | None = None, *, readable: 
     columns = [(result.model, _texts(found, found, readable))]
     if not result.last_fitting and found:
         columns += _hertz_columns(scene, found, readable)
-    if result.uncertainty:
+    if result.uncertainty and not unknown(result):
         columns += _uncertain_columns(result, found, readable)
     names = [in_working_unit(name, 0.0)[0] if readable else name for name in found]
     rows = [

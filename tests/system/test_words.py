@@ -315,7 +315,10 @@ class TestAdviceOfWhatCanBeChanged:
 
 @pytest.mark.parametrize("scene", [SMOOTH, PATCH])
 def test_a_comparison_is_refined_by_keys_of_the_scene_unless_a_solve_did_not_converge(scene, capsys):
-    row, how = judged("p_max_Pa", "relative", Measured(1.0, 2.0), (0.01, "")), {"model": "sam"}
+    row, how = (
+        judged("p_max_Pa", "relative", Measured(1.0, 2.0), (0.01, "")),
+        {"model": "sam", "uncertainty": None},
+    )
     good = SimpleNamespace(converged=True, discretisation={}, **how)
     bad = SimpleNamespace(converged=False, status=Status.STEP_CUT_LIMIT, message="change this", **how)
     bad.discretisation = {}

@@ -221,6 +221,36 @@ def test_nothing_more_is_solved(solver, status, found):
     assert len(calls) == 1 and result.uncertainty == found and "quantities" not in result.tables
 
 
+@pytest.mark.parametrize(
+    "tables, larger, solves",
+    [
+        (YIELDING | {"grid": {"cells": (65, 65)}}, {"43 cells": (65, 65), "29 cells": (45, 45)}, 7),
+        (ROUGH | {"body": YIELDING["body"]}, {"22 cells": (22, 22)}, 7),
+        (ROUGH, {}, 3),
+    ],
+    ids=["sphere", "rough", "elastic and rough"],
+)
+def test_coarse_grids_that_the_plastic_zone_leaves_have_more_cells_of_the_same_size(tables, larger, solves):
+    """Each is solved again, once; a rough patch has more layers alone, and an elastic one nothing more."""
+    calls, more = {}, " and more beside them"
+
+    def solver(each: Scene, label: str) -> Result:
+        at_edge = bool(calls) and more not in label
+        calls[label] = each
+        return replace(made(each), status=Status.PLASTIC_ZONE_AT_GRID_EDGE if at_edge else Status.CONVERGED)
+
+    found = entries(Scene(**tables), solver)["peeq_max"]
+    assert len(calls) == solves and (found["u_num"] is None) == ("surface" in tables)
+    for label, cells in larger.items():
+        small, large = choose_grid(calls[label]), choose_grid(calls[label + more])
+        beside = (cells[0] - small.nx) // 2
+        assert large.shape == cells and large.x[beside : cells[0] - beside] == pytest.approx(
+            small.x, rel=1e-12
+        )
+        assert list(large.faces[: len(small.faces)]) == list(small.faces)
+        assert 1.5 * small.faces[-1] <= large.faces[-1] < 2 * small.faces[-1]
+
+
 def test_a_coarser_grid_that_the_model_refuses_gives_none():
     """The rounded edge of a punch on two cells."""
     punch = {"shape": "rounded-punch", "flat_radius": 1e-5, "radius": 1e-4}
@@ -263,11 +293,29 @@ def test_depths_without_a_maximum_are_left_out_of_the_others_and_change_nothing(
 
 
 def test_the_plan_says_what_is_solved_besides():
-    asked, plain = (Scene(**ELASTIC | {"solver": {"uncertainty": each}}) for each in (True, False))
+    asked, plain = (Scene(**FINER | {"solver": {"uncertainty": each}}) for each in (True, False))
     with_it, without = (plan(scene).content["models"][0] for scene in (asked, plain))
     (stage,) = (each for each in with_it["stages"] if each["stage"] == "uncertainty")
-    assert stage["size"] == {"solves": 2} and "23 cells" in stage["reason"]
-    assert with_it["estimate"]["time_s"] > without["estimate"]["time_s"]
+    assert stage["size"] == {"solves": 2} and "27 cells" in stage["reason"]
+    assert with_it["estimate"]["time_s"] > without["estimate"]["time_s"] and not plan(asked).warnings
+
+
+@pytest.mark.parametrize(
+    "model, change, enough",
+    [
+        (SAM, {"grid": {"cells": (31, 31)}}, "grid.cells to [37, 37]"),
+        (SAM, {"grid": {"cells": (32, 40)}}, "grid.cells to [34, 44]"),
+        (FEM, {"fem": {"cells_per_radius": 6}}, "fem.cells_per_radius to 8"),
+    ],
+)
+def test_what_leaves_enough_cells_to_the_coarsest_is_told_before(model, change, enough):
+    (warning,) = (
+        each for each in plan(Scene(**FINER | change), model).warnings if each.startswith(f"{model}: no")
+    )
+    assert warning.endswith(f"4 needed: raise {enough}")
+    key, words = enough.split(" to ")
+    section, name = key.split(".")
+    assert not plan(Scene(**FINER | {section: {name: json.loads(words)}}), model).warnings
 
 
 # the command
@@ -294,6 +342,13 @@ def test_the_command_prints_and_writes_it(sphere, samfem):
     again = read_run(sphere / "plain")
     assert again.quantities == plain and again.uncertainty is None and "quantities" not in again.tables
     assert not (sphere / "sphere-sam" / "members").exists()
+
+
+def test_no_uncertainty_at_all_is_an_error_that_says_what_to_change(sphere, samfem):
+    (sphere / "sphere.toml").write_text(TEXT.replace("37, 37", "33, 33"))
+    said = samfem("solve", "sphere.toml", "--uncertainty", code=1)
+    assert "sam: no uncertainty of any quantity: the coarsest grid is under-resolved: 15 cells" in said.err
+    assert said.err.endswith("raise grid.cells to [37, 37]\n") and "+-" not in said.out
 
 
 def test_resume_begins_with_the_first_solve_that_is_not_finished(sphere, samfem, monkeypatch):

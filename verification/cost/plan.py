@@ -22,7 +22,7 @@ from verification.runs.model_range import model_range, off_in_words, outside_in_
 from verification.runs.provenance import memory_bytes
 from verification.text.console import table_lines
 from verification.text.readable import with_prefix, with_time
-from verification.uncertainty.solving import NoFamilyError, family
+from verification.uncertainty.solving import NoFamilyError, family, too_coarse
 
 UNCERTAINTY = "uncertainty"
 LONGEST = 86400.0  # predicted processor seconds that a command begins unasked
@@ -246,6 +246,8 @@ def _warnings(entries: Sequence[Mapping[str, Any]]) -> list[str]:
         cells, needs, model = entry["resolution"]["cells_in_radius"], entry["estimate"], entry["model"]
         if cells is not None and cells < COARSEST:
             found.append(f"{model}: only {cells:.2g} cells in the contact radius")
+        none = [each for each in entry["stages"] if each["stage"] == UNCERTAINTY and not each["runs"]]
+        found += [f"{model}: no uncertainty: {each['reason']}" for each in none]
         if (most := memory_bytes()) and needs["memory_bytes"] > most:
             found.append(f"{model}: this machine has {with_prefix(most, 'B')} of memory")
         if needs["time_s"] > LONGEST:
@@ -267,8 +269,9 @@ def _model(scene: Scene, model: str) -> dict:
         return {"model": model, "available": False, "reason": str(reason), **nothing}
     made = models.plan(scene, model)
     stages, estimate = _stages(scene, made), estimates.estimate(scene, model, made)
+    resolution = _resolution(scene, model, made)
     if scene.solver.uncertainty:
-        stage, seconds = _uncertainty(scene, model)
+        stage, seconds = _uncertainty(scene, model, resolution["cells_in_radius"])
         stages, estimate = [*chosen, *stages, stage], replace(estimate, time_s=estimate.time_s + seconds)
     return {
         "model": model,
@@ -276,7 +279,7 @@ def _model(scene: Scene, model: str) -> dict:
         "reason": "",
         "stages": [asdict(stage) for stage in stages],
         "estimate": asdict(estimate),
-        "resolution": _resolution(scene, model, made),
+        "resolution": resolution,
     }
 
 
@@ -294,13 +297,17 @@ def _stages(scene: Scene, made: Any) -> list[Stage]:
     return [*found, *(Stage(entry.stage, False, entry.reason) for entry in made.left_out)]
 
 
-def _uncertainty(scene: Scene, model: str) -> tuple[Stage, float]:
-    """What the uncertainty of a scene is taken from besides the scene itself, and the seconds it adds."""
+def _uncertainty(scene: Scene, model: str, cells: float | None = None) -> tuple[Stage, float]:
+    """What the uncertainty of a scene is taken from besides the scene itself, or why it is expected to have
+    none, and the seconds it adds; cells: in the estimated contact radius.
+    """
     try:
         found = family(scene, model)
     except NoFamilyError as error:
         return Stage(UNCERTAINTY, False, str(error)), 0.0
     seconds = sum(estimates.estimate(member.scene, model).time_s for member in found.all[1:])
+    if cells is not None and (reason := too_coarse(found, model, cells)):
+        return Stage(UNCERTAINTY, False, f"by the estimated contact, {reason}"), seconds
     words = "solver.uncertainty: " + "; ".join(member.label for member in found.all[1:])
     return Stage(UNCERTAINTY, True, words, {"solves": len(found.all) - 1}), seconds
 

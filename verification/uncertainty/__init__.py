@@ -4,6 +4,6 @@
 The solvers know nothing of it.
 """
 
-from verification.uncertainty.solving import asked_of, solve
+from verification.uncertainty.solving import asked_of, solve, unknown
 
-__all__ = ["asked_of", "solve"]
+__all__ = ["asked_of", "solve", "unknown"]

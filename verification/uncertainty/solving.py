@@ -5,17 +5,19 @@ has none, the coarser companions of a scene, and what the results of all say tog
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from math import floor, inf, sqrt
+from math import ceil, floor, inf, sqrt
 from typing import Any
 
 import numpy as np
 
 import sam
 from sam.grid import CellGrid, Room
-from sam.scene import COLUMNS, Grid, Problem, Result, Scene, SceneError, spelling
+from sam.scene import COLUMNS, Grid, Problem, Result, Scene, SceneError, Status, spelling
 from verification.runs import models
+from verification.runs.files import Run
 from verification.uncertainty.rule import EDGE, FACTOR, STEP_FACTOR, bound, converging, of_edge, order_seen
 
 Solve = Callable[[Scene, str], Result]
@@ -73,6 +75,7 @@ SINGULAR = "the stress is singular at the edge of the punch"
 WHOLE_RINGS = "the cells have the area of the punch as closely as whole rings allow"
 ONE_SPOT = "a maximum below a rough body is that of a single spot"
 UNKNOWN = "none was measured for it"
+NONE_AT_ALL = (*WHY_NOT.values(), SINGULAR, WHOLE_RINGS, ONE_SPOT, UNKNOWN)
 
 
 def is_given(name: str, scene: Scene) -> bool:
@@ -109,6 +112,8 @@ LEAST_BOX = 3.0  # of [fem], in radii
 # Of the largest von Mises stress: at depths with less its largest value is not looked for. It then takes a
 # third of the depths, and 1.4 to 1.5 times the cost of the plain solve in place of 2.2 for a coated sphere.
 LARGE = 0.85
+WIDER = 1.5  # sides and depth of coarse cells over those of the fine ones, where these are too small
+AT_EDGE = (Status.PLASTIC_ZONE_AT_GRID_EDGE, Status.CONTACT_AT_GRID_EDGE)
 FEWEST_STEPS = 4  # from so many on the others have fewer, else more
 
 
@@ -169,7 +174,11 @@ def family(
             models.check(member.scene, model)
         except models.ModelError as reason:
             raise NoFamilyError(f"{member.label}: {reason}") from None
-    steps = members_of_steps(cells[-1]) if has_history(scene) else ()
+    return _with_steps_and_box(cells, model)
+
+
+def _with_steps_and_box(cells: tuple[Member, ...], model: str) -> Family:
+    steps = members_of_steps(cells[-1]) if has_history(cells[-1].scene) else ()
     box = members_of_box((steps or cells)[-1]) if model != models.SAM else ()
     return Family(cells, steps, box)
 
@@ -280,6 +289,23 @@ def _faces(scene: Scene, faces: np.ndarray, share: float) -> tuple[float, ...]:
     return tuple(map(float, np.unique(found)))
 
 
+def wider(member: Member) -> Member:
+    """The member with half as many cells again beside its own and layers below them, where they may be more:
+    cells and layers of the same size in the same places. Of a sphere that fits both grids every quantity
+    is the same within 6e-11.
+    """
+    grid, change = sam.plan(member.scene).grid, {}
+    if member.scene.patch_surface is None:
+        cells = [n + 2 * ceil(n * (WIDER - 1) / 2) for n in grid.shape]
+        change = {"cells": tuple(cells), "extent": (cells[0] * grid.hx, cells[1] * grid.hy)}
+    if (faces := grid.faces) is not None:
+        last = faces[-1] - faces[-2]
+        deeper = np.append(faces, np.arange(faces[-1], WIDER * faces[-1], last) + last)
+        change |= {"depths": tuple(map(float, deeper)), "layers": None, "depth": None}
+    scene = _changed(member.scene, "grid", **change)
+    return replace(member, scene=scene, label=f"{member.label} and more beside them")
+
+
 def members_of_steps(coarsest: Member) -> tuple[Member, ...]:
     """A scene with its number of load steps and two others, its own first."""
     loading = coarsest.scene.loading
@@ -333,11 +359,13 @@ class Solved:
     @property
     def reason(self) -> str:
         """Why the results are not of one family; empty if they are."""
+        finer = "grid.cells" if self.cells[0].model == models.SAM else "fem.cells_per_radius"
         members = (*self.family.cells, *self.family.steps, *self.family.box)
         pairs = list(zip(members, (*self.cells, *self.steps, *self.box), strict=True))
-        for member, result in pairs:
+        keys = [finer] * len(self.cells) + ["loading.steps"] * len(self.steps) + ["fem.box"] * len(self.box)
+        for (member, result), key in zip(pairs, keys, strict=True):
             if not result.converged:
-                return f"{member.label}: {result.status}"
+                return f"{member.label}: {result.status}: raise {key}"
         cuts = [result.cost.get("step_cuts") or 0 for _, result in pairs]
         if len(set(cuts)) > 1:
             words = ", ".join(f"{cut} with {each.label}" for each, cut in zip(members, cuts, strict=True))
@@ -380,10 +408,24 @@ def with_uncertainty(scene: Scene, model: str, solver: Solve) -> Result:
         reason = str(error)
     if reason:
         return _reported(fine, scene, reason)
-    cells = [fine, *(solver(member.scene, member.label) for member in found.cells[1:])]
-    steps = [cells[-1], *(solver(member.scene, member.label) for member in found.steps[1:])]
-    box = [steps[-1], *(solver(member.scene, member.label) for member in found.box[1:])]
-    return assessed(scene, Solved(found, cells, steps if found.steps else (), box if found.box else ()))
+
+    def solved(members: Sequence[Member], first: Result) -> tuple[tuple, tuple]:
+        """The members, wider where that is needed, and their results, of which the first is known."""
+        pairs = [(member, first) for member in members[:1]]
+        for member in members[1:]:
+            result = solver(member.scene, member.label)
+            if model == models.SAM and result.status in AT_EDGE:
+                larger = wider(member)
+                if larger.scene != member.scene:
+                    member, result = larger, solver(larger.scene, larger.label)
+            pairs.append((member, result))
+        return tuple(member for member, _ in pairs), tuple(result for _, result in pairs)
+
+    of_cells, cells = solved(found.cells, fine)
+    found = _with_steps_and_box(of_cells, model)
+    of_steps, steps = solved(found.steps, cells[-1])
+    of_box, box = solved(found.box, (steps or cells)[-1])
+    return assessed(scene, Solved(Family(of_cells, of_steps, of_box), cells, steps, box))
 
 
 def under_resolved(scene: Scene, fine: Result, found: Family) -> str:
@@ -392,14 +434,41 @@ def under_resolved(scene: Scene, fine: Result, found: Family) -> str:
     """
     if scene.patch_surface is not None:
         return ""
-    resolved = found.cells[-1].number
-    if fine.model == models.SAM:
-        radius = scene.loading.radius or fine.quantities["contact_radius_m"]
-        resolved = (radius or 0.0) / found.cells[-1].size
-    if resolved >= LEAST_IN_RADIUS:
+    if fine.model != models.SAM:
+        return too_coarse(found, fine.model, found.cells[0].number)
+    radius = scene.loading.radius or fine.quantities["contact_radius_m"] or 0.0
+    return too_coarse(found, fine.model, radius / found.cells[0].size)
+
+
+def too_coarse(found: Family, model: str, resolved: float) -> str:
+    """Why the coarsest grid of a family is under-resolved, and what to set; empty if it is not. resolved:
+    cells or elements of the finest in the contact radius.
+    """
+    finest, coarsest = found.cells[0], found.cells[-1]
+    left = resolved * finest.size / coarsest.size
+    if left >= LEAST_IN_RADIUS:
         return ""
-    words = f"{found.cells[-1].label}, {resolved:.2g} in the contact radius, {LEAST_IN_RADIUS:g} needed"
-    return f"the coarsest grid is under-resolved: {words}"
+    if model != models.SAM:
+        enough = next(n for n in itertools.count(finest.number) if _whole(n / RATIO**2) >= LEAST_IN_RADIUS)
+        what = f"fem.cells_per_radius to {enough}"
+    elif left:
+        least, (nx, ny) = LEAST_IN_RADIUS / left * coarsest.number, coarsest.scene.grid.cells
+        enough = next(n for n in itertools.count(finest.number, 2) if coarser(n, RATIO**2) >= least)
+        what = f"grid.cells to [{enough}, {coarser(enough, nx / ny)}]"
+    else:
+        what = "the load"
+    words = f"{coarsest.label}, {left:.2g} in the contact radius, {LEAST_IN_RADIUS:g} needed"
+    return f"the coarsest grid is under-resolved: {words}: raise {what}"
+
+
+def unknown(result: Result | Run) -> str:
+    """Why no quantity has the uncertainty that was asked for, and what to change; empty if one has it."""
+    entries = (result.uncertainty or {}).values()
+    if any(entry["u_num"] is not None for entry in entries):
+        return ""
+    reasons = dict.fromkeys(entry["flag"] for entry in entries)
+    for_all = [words for words in reasons if words not in NONE_AT_ALL]
+    return f"no uncertainty of any quantity: {'; '.join(for_all or reasons)}" if reasons else ""
 
 
 def assessed(scene: Scene, solved: Solved) -> Result:
