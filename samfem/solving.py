@@ -114,8 +114,8 @@ def _draw(folder: Path) -> None:
         in_space = beside.submit(draw_run, folder)
         with Progress() as progress:
             drawn = solve_figures(folder, progress=progress)
-            progress("drawing in space", 0, 1)
-            wait([in_space])
+            while not wait([in_space], timeout=1.0).done:
+                progress("drawing pictures in space", 0, 0)
     print(*drawn, sep="\n")
     try:
         print(*in_space.result(), sep="\n")
