@@ -15,7 +15,7 @@ Examples
 >>> run = samfem.solve(scene)
 >>> run  # doctest: +NORMALIZE_WHITESPACE
 <samfem.Run sam, converged: p_max 8.47 GPa, contact_radius 6.05 um, approach 0.349 um;
- model: mean pressure -1.7 %>
+ model: mean pressure 1.7 % too low>
 >>> round(run.quantities["p_max_Pa"] / 1e9, 2)
 8.47
 >>> run.tables["history"][["force_N", "p_max_Pa"]].shape

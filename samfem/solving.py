@@ -110,12 +110,13 @@ def _draw(folder: Path) -> None:
     from verification.figures import solve_figures  # noqa: PLC0415 - not needed without
     from verification.figures.space import CannotDrawError, draw_run  # noqa: PLC0415
 
+    told = [("drawing pictures in space", 0, 0)]
     with ThreadPoolExecutor(1) as beside:
-        in_space = beside.submit(draw_run, folder)
+        in_space = beside.submit(draw_run, folder, progress=lambda *state: told.append(state))
         with Progress() as progress:
             drawn = solve_figures(folder, progress=progress)
-            progress("drawing in space", 0, 1)
-            wait([in_space])
+            while not wait([in_space], timeout=1.0).done:
+                progress(*told[-1])
     print(*drawn, sep="\n")
     try:
         print(*in_space.result(), sep="\n")

@@ -72,13 +72,13 @@ def solve_plastic(
         record = begun(model, model.plan.schedule.targets, first_box(model, peak))
     else:
         raise ValueError("either a record or the elastic peak is needed")
-    total = len(model.plan.schedule.targets)
     while not record.ended:
         before, record = record, onward(model, record)
         done = len(record.history.rows)
+        total = done + len(record.targets)
         if keep is not None and record.last is not before.last:
-            keep(record, done, done + len(record.targets))
-        if before.targets[0].rises and done > len(before.history.rows):
+            keep(record, done, total)
+        if done > len(before.history.rows):
             report("load steps", done, total)
     history = finished(model, record)
     return history, replace(record, counters=replace(model.counters))

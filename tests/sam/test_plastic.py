@@ -45,7 +45,12 @@ A = np.pi * 4 * SWIFT_YIELD * RADIUS / (2 * MODULUS)  # Hertz at p0 = 4 yield st
 
 @pytest.fixture(scope="module")
 def swift4():
-    return sam.solve(yielding(4, loading={"steps": 4}, grid=FEW))
+    told = []
+    result = sam.solve(
+        yielding(4, loading={"steps": 4}, grid=FEW), progress=lambda *state: told.append(state)
+    )
+    assert ("load steps", 5, 5) in told  # the unloading too
+    return result
 
 
 def test_converged_in_every_cell(swift4):

@@ -136,7 +136,7 @@ def solved(tmp_path_factory):
     (folder / "edge.toml").write_text(scene_text(add="steps = 8\n" + law + grid))
     command = ["solve", str(folder / "edge.toml"), "--out", str(folder / "out"), "--figures"]
     with pytest.MonkeyPatch.context() as patched, redirect_stdout(out), redirect_stderr(err):
-        patched.setattr(space, "draw_run", lambda _folder: [])  # pictures in space: not looked at here
+        patched.setattr(space, "draw_run", lambda _folder, **_: [])  # pictures in space: not looked at here
         assert main(command) == 1
     return folder / "out", out.getvalue(), err.getvalue()
 

@@ -86,7 +86,7 @@ def test_a_run_in_memory_is_the_run_that_is_written_and_read(tmp_path, model):
 
 
 def test_a_run_is_shown_short_and_as_html(run):
-    assert repr(run).startswith("<samfem.Run sam, converged: p_max 8.47 GPa") and len(repr(run)) < 120
+    assert repr(run).startswith("<samfem.Run sam, converged: p_max 8.47 GPa") and len(repr(run)) < 125
     page = run._repr_html_()
     assert page.count("<details") == page.count("</details>") == 3 and "8.46" in page and "history" in page
     titled = samfem.Scene(title="<script>", body=STEEL, counterbody=BALL, loading={"force": 0.1})

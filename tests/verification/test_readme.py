@@ -62,7 +62,7 @@ def test_failed_gates_are_named_and_counted(published):
     running_in["data"] = {"statements": {"printed inputs": verdicts([as_the_paper_says()])}}
     one = renewed(README, changed(none, pavement_fox={"status": "failed", "error": 2.0, "tolerance": 1.0}))
     assert "One gate fails on the published pages: `pavement.fox` (2 against \u2264 1)." in one
-    assert "Yes. With the printed inputs, 17 of its 17 statements" in " ".join(one.split())
+    assert "Yes. With the inputs that the paper prints, 17 of its 17 statements" in " ".join(one.split())
     next(case for case in none["cases"] if case["name"] == "pavement")["status"] = "failed"
     assert "have a figure that cannot be read: `pavement`." in " ".join(renewed(README, none).split())
 

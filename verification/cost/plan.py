@@ -18,7 +18,13 @@ from verification.cost.accuracy import chosen_scene, expected, first_choice, qua
 from verification.cost.advice import LOAD_STEPS, ON_TWO_GRIDS, advice_of, kind_of, table
 from verification.cost.contact import expected_contact
 from verification.runs import models
-from verification.runs.model_range import model_range, off_in_words, outside_in_words, range_lines
+from verification.runs.model_range import (
+    in_a_sentence,
+    model_range,
+    off_in_words,
+    outside_in_words,
+    range_lines,
+)
 from verification.runs.provenance import memory_bytes
 from verification.text.console import table_lines
 from verification.text.readable import with_prefix, with_time
@@ -63,7 +69,7 @@ SELDOM = ("counter-surface heights", "back-stresses", "chemical film")  # told o
 
 @dataclass(frozen=True, repr=False)
 class Plan:
-    """What the models will compute of a scene; `print` shows it in five lines and one for each warning.
+    """What the models will compute of a scene; `print` shows it in a line for each topic and each warning.
 
     content: all of it as a mapping that JSON can hold: stages, estimate and resolution of every model, or why
     it cannot be used; contact; advice; by how much small strains of a flat half-space are off. model: the one
@@ -132,6 +138,7 @@ class Plan:
             short += [_resolved(entries[:2])]
         short += ["time and memory (estimated): " + "; ".join(map(_needed, content["models"]))]
         if self._entry["available"]:
+            short += _cheapest(content["advice"], self.error)
             stages = self._entry["stages"]
             short += [f"computed: {_brief(stages, runs=True)}", f"left out: {_brief(stages, runs=False)}"]
         short += [f"warning: {words}" for words in self.warnings]
@@ -150,14 +157,15 @@ def plan(scene: Scene, model: str | None = None) -> Plan:
     entries = [_model(scene, name) for name in models.MODELS]
     usable = [entry["model"] for entry in entries if entry["available"]]
     advice, of_model = advice_of(scene, usable), model_range(scene)
+    contact = expected_contact(scene)
     content = {
         "title": scene.title,
         "note": NOTE,
-        "contact": expected_contact(scene),
+        "contact": contact,
         "models": entries,
         "advice": advice,
         "model_range": of_model,
-        "warnings": [*_off(of_model), *_warnings(entries)],
+        "warnings": [*_off(of_model, contact.get("a_over_R")), *_warnings(entries)],
     }
     return Plan(content, model or (usable or list(models.MODELS))[0])
 
@@ -208,6 +216,18 @@ def _resolved(entries: Sequence[Mapping[str, Any]]) -> str:
     return f"{head}{about}: {'; '.join(parts)}"
 
 
+def _cheapest(advice: Mapping[str, Any], error: float | None) -> list[str]:
+    """Which model took the least time for an error in scenes of this kind, if more than one was measured."""
+    rows = [row for row in advice["rows"] if row["error"] == error and row["method"] in models.MODELS]
+    times = sorted((row["relative"], row["method"]) for row in rows if row["relative"] is not None)
+    if error is None or len(times) < 2:
+        return []
+    (least, best), *others = times
+    slower = ", ".join(f"{model} {float(f'{time / least:.2g}'):g}" for time, model in others)
+    how = f"on the fewest cells that reach it (measured, {advice['kind']})"
+    return [f"cheapest at {100 * error:g} % {how}: {best}; {slower} times as long"]
+
+
 def _needed(entry: Mapping[str, Any]) -> str:
     """Time and memory of a model, or the keys for which it cannot be used."""
     if not entry["available"]:
@@ -229,14 +249,17 @@ def _brief(stages: Sequence[Mapping[str, Any]], *, runs: bool) -> str:
     return ", ".join(words + size for words, size in told.items()) or "nothing"
 
 
-def _off(found: Mapping[str, Any] | None) -> list[str]:
-    """That the contact is outside of the model, and by how much that is off, short."""
+def _off(found: Mapping[str, Any] | None, hertz: float | None) -> list[str]:
+    """That the contact is outside of the model, and by how much that is off, short; hertz: a/R of the elastic
+    contact.
+    """
     if found is None:
         return []
     outside = [outside_in_words(found["a_over_R"])] if found["outside"] else []
     like = f"{'as of a sphere at ' * bool(found['like'])}a/R = {found['a_over_R']:.2g}"
+    like += " with yielding" * bool(hertz and found["a_over_R"] > 1.01 * hertz)
     off = off_in_words(found)
-    return [*outside, *([f"small strains of a flat half-space are off: {off} ({like})"] if off else [])]
+    return [*outside, *([in_a_sentence(off, like)] if off else [])]
 
 
 def _warnings(entries: Sequence[Mapping[str, Any]]) -> list[str]:

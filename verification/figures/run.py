@@ -55,9 +55,9 @@ def draw_run(folder: Path, *, pdf: bool = False, progress: Progress = lambda *_:
     drawings = drawings_of(read_run(folder))
     (folder / FIGURES).mkdir(exist_ok=True)
     paths = []
-    for k, (name, drawing) in enumerate(drawings.items()):
-        progress("drawing figures", k, len(drawings))
+    for k, (name, drawing) in enumerate(drawings.items(), start=1):
         paths += save(drawing, folder / FIGURES / name, pdf=pdf, small=False)
+        progress("drawing figures", k, len(drawings))
     return paths
 
 

@@ -145,16 +145,21 @@ def model_range(scene: Scene, result: Result | None = None) -> dict[str, Any] | 
 
 
 def off_in_words(found: Mapping[str, Any]) -> str:
-    """The quantities that are off by more than SAID, and by how much."""
+    """The quantities that are off by more than SAID and the uncertainty of that, and by how much."""
     off = [
-        f"{WORDS[name]} {_percent(**each)}"
+        f"{WORDS[name]} {_percent(**each)} too {'low' if each['error'] < 0.0 else 'high'}"
         for name, each in found["quantities"].items()
-        if abs(each["error"]) > SAID
+        if abs(each["error"]) > max(SAID, each["uncertainty"])
     ]
     lost = found.get("lost_height", 0.0)
     if lost > SAID:
         off.append(f"lost height {100 * lost:.2g} % of the relief")
     return ", ".join(off)
+
+
+def in_a_sentence(off: str, about: str) -> str:
+    """What `off_in_words` says, of the model; about: which contact that is."""
+    return f"error of the model (small strains, flat half-space): {off} ({about})"
 
 
 def range_lines(found: Mapping[str, Any]) -> list[str]:
@@ -166,14 +171,14 @@ def range_lines(found: Mapping[str, Any]) -> list[str]:
         parts.append(f"only up to {found['measured_to']:.2g}: more is to be expected")
     if by not in ("", LARGER):
         parts.append("a rule of thumb")
-    words = f"the flat half-space of small strains: {off} ({'; '.join(parts)})"
-    return [*([outside_in_words(ratio)] if found["outside"] else []), *([words] if off else [])]
+    words = [in_a_sentence(off, "; ".join(parts))] if off else []
+    return [*([outside_in_words(ratio)] if found["outside"] else []), *words]
 
 
 def _percent(error: float, uncertainty: float) -> str:
-    """An error, with its uncertainty where that is more than half of it."""
+    """The size of an error, with its uncertainty where that is more than half of it."""
     around = f" (+-{100 * uncertainty:.1g})" if uncertainty > abs(error) / 2.0 else ""
-    return f"{100 * error:+.2g}{around} %"
+    return f"{100 * abs(error):.2g}{around} %"
 
 
 def outside_of_model(result: Any) -> float | None:

@@ -71,7 +71,7 @@ def _written(results: Mapping) -> str:
     headline = headline_of(stored)
     if headline:
         link = f"[Does the model of running-in predict what its authors say?](reports/{headline.page})"
-        items.append(f"{link} {headline.answer}")
+        items.append(f"{link} {headline.brief or headline.answer}")
     return "\n".join(
         textwrap.fill(f"- {each}", WIDTH, subsequent_indent="  ", break_on_hyphens=False) for each in items
     )

@@ -96,7 +96,7 @@ class Progress:
     def __init__(self, remaining: bool = False):
         self._bar: Any = None
         self._task: Any = None
-        self._stage, self._next = "", time.monotonic() + QUIET_S
+        self._stage, self._said, self._next = "", "", time.monotonic() + QUIET_S
         self._remaining, self._began = remaining, (0.0, 0)
         self._notebook = in_notebook()
         self._terminal = not self._notebook and sys.stderr.isatty()
@@ -116,13 +116,14 @@ class Progress:
             return
         if stage != self._stage:
             self._stage, self._began = stage, (now, done)
-        if now >= self._next or (self._notebook and self._bar is not None and done == total):
+        if now >= self._next or (stage == self._said and done == total):
             count = f": {done} of {total}" if total else ""
             line = f"{stage}{count}{left or self._left(done, total, now)}"
             if self._notebook:
                 self._display(line, done, total)
             else:
                 print(line, file=sys.stderr, flush=True)
+            self._said = stage * (done != total)  # the last step of what was begun is said too, once
             self._next = now + (NOTEBOOK_EVERY_S if self._notebook else LINE_EVERY_S)
 
     def _display(self, line: str, done: int, total: int) -> None:

@@ -28,19 +28,19 @@ def main() -> None:
     parser.add_argument("--page", action="store_true", help="as HTML")
     options = parser.parse_args()
     found = Found(of_last_load(read_run(options.run)))
-    for name in [options.name] if options.name else PICTURES:
-        picture = PICTURES[name](found)
-        if picture is None:
-            continue
+    made = ((name, PICTURES[name](found)) for name in ([options.name] if options.name else PICTURES))
+    pictures = [(name, picture) for name, picture in made if picture is not None][
+        : 1 if options.one else None
+    ]
+    ending = "html" if options.page else "png"
+    for name, _ in pictures:
+        (options.into / f"{name}.{ending}").touch()  # empty until it is drawn: `offscreen` counts them
+    for name, picture in pictures:
         if (outside := outside_of_model(found.run)) is not None:
             note = "; ".join(filter(None, (picture.note, outside_in_words(outside))))
             picture = replace(picture, note=note)
-        if options.page:
-            (options.into / f"{name}.html").write_text(page(picture), encoding="utf-8")
-        else:
-            (options.into / f"{name}.png").write_bytes(encoded(drawn(picture)))
-        if options.one:
-            return
+        content = page(picture).encode() if options.page else encoded(drawn(picture))
+        (options.into / f"{name}.{ending}").write_bytes(content)
 
 
 if __name__ == "__main__":

@@ -9,8 +9,10 @@ import signal
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor, wait
 from pathlib import Path
 
+from sam.scene import Progress
 from verification.runs.files import FIGURES, FolderError, write_atomically
 
 IN_SPACE = "-3d"
@@ -39,26 +41,42 @@ def window() -> str | None:
     return next((window for library, window in WINDOWS.items() if _loads(library)), None)
 
 
-def draw(folder: Path, name: str | None = None, *, one: bool = False, page: bool = False) -> dict[str, bytes]:
+def draw(
+    folder: Path,
+    name: str | None = None,
+    *,
+    one: bool = False,
+    page: bool = False,
+    progress: Progress = lambda *_: None,
+) -> dict[str, bytes]:
     """The pictures that the run in `folder` has: name -> the content of a PNG, or of an HTML page.
 
-    name: this one alone; one: the first alone. Raises CannotDrawError, or FolderError for a damaged run.
+    name: this one alone; one: the first alone; progress: called twice a second. Raises CannotDrawError, or
+    FolderError for a damaged run.
     """
     found = window()
     if found is None and not page:  # a page is drawn by the browser
         raise CannotDrawError(f"no pictures in space: {REMEDY}")
     options = [*(["--name", name] if name else []), *["--one"] * one, *["--page"] * page]
     with tempfile.TemporaryDirectory(prefix="samfem-") as into:
-        _run([str(folder.absolute()), into, *options], {WINDOW: found or ""})
+        with ThreadPoolExecutor(1) as beside:
+            ended = beside.submit(_run, [str(folder.absolute()), into, *options], {WINDOW: found or ""})
+            while not wait([ended], timeout=0.5).done:
+                drawn = [path.stat().st_size > 0 for path in Path(into).iterdir()]
+                progress("drawing pictures in space", sum(drawn), len(drawn))
+        ended.result()
         return {path.stem: path.read_bytes() for path in sorted(Path(into).iterdir())}
 
 
-def draw_run(folder: Path, name: str | None = None) -> list[Path]:
+def draw_run(folder: Path, name: str | None = None, *, progress: Progress = lambda *_: None) -> list[Path]:
     """Draw the pictures of a finished run, or the one that is named, into its folder of figures.
 
     Raises CannotDrawError, and then has written nothing.
     """
-    pictures = {folder / FIGURES / f"{each}{IN_SPACE}.png": png for each, png in draw(folder, name).items()}
+    pictures = {
+        folder / FIGURES / f"{each}{IN_SPACE}.png": png
+        for each, png in draw(folder, name, progress=progress).items()
+    }
     for path, png in pictures.items():
         path.parent.mkdir(exist_ok=True)
         write_atomically(path, png)

@@ -57,14 +57,16 @@ Verdicts = Mapping[str, Sequence[Mapping[str, Any]]]
 
 @dataclass(frozen=True)
 class Headline:
-    """What the page of running-in begins with. answer: by the readings of the paper; depends: on what that
-    depends; rows: of the table of statements; studies: behind it. Of an older version only the answer.
+    """What the page of running-in begins with. answer: by the readings of the paper; brief: the same for
+    whoever has not read it; depends: on what that depends; rows: of the table of statements; studies: behind
+    it. Of an older version only the answer.
     """
 
     answer: str
     studies: tuple[ShownCase, ...]
     depends: str = ""
     rows: Sequence[Sequence[str]] = ()
+    brief: str = ""
     page: str = f"{PAGE}.html"
 
     @property
@@ -114,6 +116,7 @@ def headline_of(stored: Stored) -> Headline | None:
             (figure, *_row(words, read.get(words, ()), drawn.get(words), tried.get(words)))
             for words, figure in figures.items()
         ],
+        _in_brief(read) if read else "",
     )
 
 
@@ -127,12 +130,31 @@ def held(found: Mapping) -> bool:
     return found["by_median"] == HELD
 
 
+def _by_median(read: Verdicts) -> list[int]:
+    """How many statements hold by the median of the surfaces, in each reading."""
+    return [sum(map(held, each)) for each in zip(*read.values(), strict=True)]
+
+
+def _answer(held_first: int, count: int) -> str:
+    return "Yes." if held_first == count else "In part." if held_first else "No."
+
+
+def _in_brief(read: Verdicts) -> str:
+    first, *others = _by_median(read)
+    second = "".join(f", {more} in a second reading of it" for more in others)
+    return (
+        f"{_answer(first, len(read))} With the inputs that the paper prints, {first} of its {len(read)} "
+        f"statements about wear and friction of five materials hold{second}. The page says which, "
+        "on how many rough surfaces, and what finer cells change."
+    )
+
+
 def _of_readings(read: Verdicts, finer: Verdicts, second: str) -> Iterator[str]:
     count, readings = len(read), list(zip(*read.values(), strict=True))
     (first, agreed), *others = [
         (sum(map(held, each)), sum(one["by_agreement"] == HELD for one in each)) for each in readings
     ]
-    yield "Yes." if first == count else "In part." if first else "No."
+    yield _answer(first, count)
     yield (
         f"With the printed inputs, {first} of its {count} statements on five materials hold by the median of "
         f"the surfaces, {agreed} on at least 80 % of them"
@@ -140,7 +162,7 @@ def _of_readings(read: Verdicts, finer: Verdicts, second: str) -> Iterator[str]:
         + "."
     )
     own = {words: each for words, each in read.items() if words not in FOLLOWS}
-    first, *others = (sum(map(held, each)) for each in zip(*own.values(), strict=True))
+    first, *others = _by_median(own)
     yield (
         f"{count - len(own)} of the {count} follow from others: of the {len(own)} independent ones {first} "
         "hold" + "".join(f", in the second reading {more}" for more in others) + "."
