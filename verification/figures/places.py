@@ -24,6 +24,8 @@ AROUND = 1.0
 """Beside the contact a figure shows so many of its widths, half on each side."""
 FINE, DEEP, REACH = 121, 1.9, 1.5
 """Points along x of an axisymmetric plane, and how far it is drawn, in contact radii."""
+YIELDED = 0.01
+"""Of the largest plastic strain: where the plastic zone is drawn to end."""
 IN_FILM, BELOW = 9, 77
 """Points over depth of an axisymmetric plane, in a film and below it."""
 

@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator
 
-from sam.scene.result import STRAINED
 from verification.compare.running_in_measures import Scar
 from verification.figures.maps import (
     BAR,
@@ -28,6 +27,7 @@ from verification.figures.maps import (
 )
 from verification.figures.places import (
     REACH,
+    YIELDED,
     Section,
     SurfaceMap,
     in_film,
@@ -64,7 +64,7 @@ def plane_map(run: Run, section: Section, column: str, label: str) -> Drawing:
         (first, last), beside = section.reach, 0.25 * np.ptp(section.reach)
         first, last = min(first, at - beside), max(last, at + beside)
     if column == "peeq" and np.nanmax(values) > 0.0:
-        strained = values > STRAINED * np.nanmax(values)
+        strained = values > YIELDED * np.nanmax(values)
         zone = next(ends for ends in spots_of(x, strained.any(axis=1)) if ends[0] <= at <= ends[1])
         below, margin = (x > zone[0]) & (x < zone[1]), max(0.25 * np.ptp(zone), 1.5 * np.diff(x).min())
         shown = z <= max(z[strained[below].any(axis=0)][-1] + margin, z[1])

@@ -10,15 +10,13 @@ import numpy as np
 import pyvista as pv
 
 from sam.scene import UNLOADED
-from verification.figures.places import interface_of
+from verification.figures.places import YIELDED, interface_of
 from verification.figures.space.meshes import MICRO, RAISED, Found, around, drawn_at
 from verification.figures.space.view import BODY, FLAT, LIT, Picture, length_unit
 
 GIGA, NANO, PERCENT = 1e-9, 1e9, 1e2
 RELIEF = 0.25
 """Heights are drawn over about this share of the width."""
-YIELDED = 0.01
-"""Of the largest plastic strain: where the plastic zone is drawn to end."""
 NOTHING = 1e-6
 """Of the largest displacement under load: one that is smaller everywhere is rounding."""
 VALUE = {"scalars": "value"}
