@@ -5,6 +5,7 @@ import hashlib
 import re
 import shutil
 import sys
+import warnings
 from pathlib import Path
 
 from docutils.nodes import SkipNode
@@ -66,6 +67,9 @@ sphinx_gallery_conf = {
     "image_scrapers": ("matplotlib", "conf.last_figure"),
     "min_reported_time": 5,
 }
+
+# the scripts print what a run warns of
+warnings.filterwarnings("ignore", category=UserWarning, module="__main__")
 
 SOURCES = sorted(
     path

@@ -9,6 +9,7 @@ import os
 import pickle
 import subprocess
 import sys
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -65,6 +66,8 @@ class Run(files.Run):
         Name with SI unit, as "p_max_Pa" -> float, or None where it does not apply.
     tables
         Name ("history", "axis", "line", "plane", "surface", ...) -> DataFrame, columns with SI unit.
+    warnings
+        What to know about the quantities, such as that the contact reaches the edge of its patch.
     model_range
         By how much small strains of a flat half-space are off, see `docs/guide/limits.md`; or None.
     cost
@@ -123,7 +126,8 @@ class Run(files.Run):
     def __str__(self) -> str:
         from samfem.solving import result_lines  # noqa: PLC0415 - loads the solvers
 
-        return "\n".join(result_lines(self))
+        said = [self.message] * (not self.converged) + [f"warning: {words}" for words in self.warnings]
+        return "\n".join([*result_lines(self), *said])
 
     def __repr__(self) -> str:
         values = self.last_fitting or self.quantities
@@ -136,10 +140,10 @@ class Run(files.Run):
         rows = [in_working_unit(name, value) for name, value in values.items() if value is not None]
         left_out = [(entry["stage"], entry["reason"]) for entry in self.summary["left_out"]]
         tables = [(name, f"{len(table)} rows: {', '.join(table)}") for name, table in self.tables.items()]
-        off = " ".join(self.range_lines)
-        head = f"{self.summary['title'] or 'scene'} ({self.model}): {self.status}. {self.message} {off}"
+        head = f"{self.summary['title'] or 'scene'} ({self.model}): {self.status}. {self.message}"
+        said = "".join(f"<p>warning: {html.escape(words)}</p>" for words in self.warnings)
         parts = (("Quantities", rows), ("Left out", left_out), ("Tables", tables))
-        return f"<p><b>{html.escape(head)}</b></p>" + "".join(
+        return f"<p><b>{html.escape(head)}</b></p>{said}" + "".join(
             f"<details{' open' * (of is rows)}><summary>{what}</summary>{_table(of)}</details>"
             for what, of in parts
         )
@@ -187,6 +191,13 @@ class Comparison:
     def plot(self, name: str | None = None) -> Figure:
         """The figure of that name, see `samfem.plot`; the profiles along the surface without a name."""
         return _figure(self, name, "line")
+
+    def __str__(self) -> str:
+        from samfem.solving import status_line  # noqa: PLC0415 - loads the solvers
+
+        runs = self.sam, self.fem
+        said = dict.fromkeys(f"warning: {words}" for run in runs for words in run.warnings)
+        return "\n".join([*(f"{run.model}: {status_line(run)}" for run in runs), self.line, *said])
 
     def __repr__(self) -> str:
         return f"<samfem.Comparison {self.line}{_off(self.sam)}>"
@@ -279,7 +290,7 @@ def solve(
     *,
     progress: bool | Progress | None = None,
 ) -> Run:
-    """The result of a scene.
+    """The result of a scene; each of its warnings is a UserWarning too.
 
     Parameters
     ----------
@@ -314,7 +325,10 @@ def solve(
             return models.solve(each, model, of_stage)
 
         run = _run_of(solve_family(scene, model, one), scene)
-    return run if out is None else run.save(out)
+    run = run if out is None else run.save(out)
+    for words in run.warnings:
+        warnings.warn(words, stacklevel=2)
+    return run
 
 
 def compare(

@@ -338,7 +338,10 @@ def _texts(values: Mapping[str, float], found: Mapping[str, float], readable: bo
         return {name: f"{value:.6g}" for name, value in values.items()}
     least = ROUNDING * (found.get("contact_radius_m") or 0.0)
     noise = {name for name, value in values.items() if name.endswith("_m") and abs(value) < least}
-    return {name: in_working_unit(name, value * (name not in noise))[1] for name, value in values.items()}
+    return {
+        name: in_working_unit(name, value * (name not in noise), beside=found.get(name))[1]
+        for name, value in values.items()
+    }
 
 
 def _hertz_columns(scene: Scene, found: Mapping[str, float], readable: bool) -> list[Column]:
@@ -366,7 +369,9 @@ def _uncertain_columns(result: Result | Run, found: Mapping[str, float], readabl
         (
             "+-",
             {
-                name: in_working_unit(name, each, digits=2)[1] if readable else f"{each:.2g}"
+                name: in_working_unit(name, each, digits=2, beside=found[name])[1]
+                if readable
+                else f"{each:.2g}"
                 for name, each in around.items()
             },
         ),

@@ -47,6 +47,7 @@ swept.plot().savefig("sweep.png")
 if TYPE_CHECKING:  # nothing that a user gets is of any type, but tables: pandas has no types of its own
     assert_type(samfem.plan(scene), samfem.Plan)
     assert_type(run.quantities["p_max_Pa"], float | None)
+    assert_type(run.warnings, list[str])
     assert_type((run.mesh(), run.plot()), tuple[DataSet, Figure])
     assert_type(samfem.plot(run), dict[str, Figure])
     assert_type((comparison, comparison.passed), tuple[samfem.Comparison, bool])

@@ -196,14 +196,16 @@ def check(scene: Scene) -> None:
     if end and 0.0 < 1.0 - end < NARROWEST:
         words = f"more: the contact ends {1.0 - end:.2g} of its radius beyond the flat end, the mesh allows "
         words += f'{NARROWEST:g}; or shape = "punch"'
-        problems.append(Problem("counterbody.radius", spelling(required(scene.counterbody).radius), words))
+        problems.append(
+            Problem("counterbody.radius", spelling(required(scene.counterbody).radius, "m"), words)
+        )
     refuse(problems)
     if (misfit := misfit_of(scene)) is not None:
         zone = _zone(scene, misfit)
         if not misfit.free and zone >= misfit.depth:  # it would change the tractions that hold the surface
             least = zone * scales(scene).length
             words = f'with surface = "held" more than {least:g} m is allowed, the radius of the plastic zone'
-            refuse([Problem("loading.depth", spelling(scene.loading.depth), words)])
+            refuse([Problem("loading.depth", spelling(scene.loading.depth, "m"), words)])
         reach = core_about(scene, misfit) + 1.0 / scene.fem.cells_per_radius
         refuse(box_problems(scene, reach, "misfit sphere"))
     elif scene.body.plasticity is not None or scene.body.coating is not None:

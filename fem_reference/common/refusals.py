@@ -84,13 +84,13 @@ def coating_problems(scene: Scene) -> list[Problem]:
     least, most = THINNEST * length, THICKEST * scene.fem.box * length
     if not least <= coating.thickness <= most:
         allowed = f"from {least:.3g} to {most:.3g} m for this contact and fem.box = {spelling(scene.fem.box)}"
-        problems.append(Problem("body.coating.thickness", spelling(coating.thickness), allowed))
+        problems.append(Problem("body.coating.thickness", spelling(coating.thickness, "m"), allowed))
     if problems or (share := expected_radius(scene)) >= SMALLEST:
         return problems
     words = (
         f"less: the contact would have {share:.2g} of the radius without film, the mesh allows {SMALLEST:g}"
     )
-    return [Problem("body.coating.young", spelling(coating.young), words)]
+    return [Problem("body.coating.young", spelling(coating.young, "Pa"), words)]
 
 
 def box_problems(scene: Scene, reach: float, contact: str) -> list[Problem]:

@@ -175,7 +175,7 @@ def check(scene: Scene) -> None:
         problems.append(Problem("loading.prescribed", spelling(scene.loading.prescribed), words))
     if counter is not None and counter.elastic:
         words = f"{ALLOWS} only a rigid counter-body: remove young and poisson"
-        problems.append(Problem("counterbody.young", spelling(counter.young), words))
+        problems.append(Problem("counterbody.young", spelling(counter.young, "Pa"), words))
     problems += incompressible("body", scene.body.poisson) + running_in_problems(scene) + _combinations(scene)
     refuse(problems)
     refuse(coating_problems(scene))  # these need the contact radius of a shape that is allowed
@@ -190,7 +190,7 @@ def _combinations(scene: Scene) -> list[Problem]:
     first, opposite = scene.patch_surface, scene.counter_surface
     if first is not None and coating is not None:
         words = f"{ALLOWS} no film in a rough contact: remove it, or [{first.table}]"
-        problems.append(Problem("body.coating.thickness", spelling(coating.thickness), words))
+        problems.append(Problem("body.coating.thickness", spelling(coating.thickness, "m"), words))
     if opposite is not None and opposite.renewed and scene.loading.cycles > 1:
         words = f"{ALLOWS} the same counter-surface in every cycle: false"
         problems.append(Problem("counterbody.surface.renew", "true", words))

@@ -213,22 +213,25 @@ def build(plan: SpatialPlan) -> Model:
 def _contact_quantities(model: Model, peak: Equilibrium) -> Quantities:
     """Quantities of the contact at the peak."""
     unit, area = model.scales, model.contact_area(peak)
-    centre = at_origin(model.nodal_pressure(peak), model) * unit.pressure
-    quantities = {
+    quantities: Quantities = {
         "force_N": model.plan.force * model.share(peak),
         "contact_area_m2": area,
         "contact_radius_m": float(np.sqrt(area / np.pi)),
-        "p_center_Pa": centre if model.plan.kind == "smooth" else None,
         "pressure_centroid_x_m": model.centroid(peak) * unit.length,
         **model.quantities_of_patch(peak),
     }
+    if model.plan.kind != "smooth":  # nothing says where its centre is
+        return quantities
+    quantities["p_center_Pa"] = at_origin(model.nodal_pressure(peak), model) * unit.pressure
     if model.plan.sliding.coefficient > 0.0:
         quantities["tangential_displacement_center_m"] = _centre(model, peak, 0)
     return quantities
 
 
 def _residual_quantities(model: Model, left: Equilibrium, s: Stresses) -> Quantities:
-    """Quantities of the surface after unloading."""
+    """Quantities of the surface after unloading, of which a rough patch has none."""
+    if model.plan.kind != "smooth":
+        return {}
     quantities: Quantities = {"residual_uz_center_m": _centre(model, left, 2)}
     if model.plan.sliding.coefficient > 0.0:
         quantities["residual_ux_center_m"] = _centre(model, left, 0)

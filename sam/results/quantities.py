@@ -91,7 +91,7 @@ def quantities(
         "contact_area_m2": area,
         "contact_radius_m": equivalent_radius(area),
         "p_max_Pa": p_max,
-        "p_center_Pa": float(contact.pressure[grid.axis_columns, rows].mean()) if centred else None,
+        "p_center_Pa": float(contact.pressure[grid.axis_columns, rows].mean()),
         "mises_max_Pa": largest,
         "mises_max_depth_m": depth,
         "peeq_max": top,
@@ -112,7 +112,8 @@ def quantities(
         if sliding is not None:
             values["residual_ux_center_m"] = float(sliding.residual_ux[grid.axis_columns].mean())
             values["plastic_shear_center_m"] = float(sliding.shear[grid.axis_columns].mean())
-    return {name: values.get(name) for name in QUANTITIES}
+    known = QUANTITIES if centred else [name for name in QUANTITIES if "_center_" not in name]
+    return dict.fromkeys(QUANTITIES) | {name: values.get(name) for name in known}
 
 
 def coated_quantities(depths: Array, mises: Array, p_max: float, coated: Coated) -> Quantities:

@@ -19,7 +19,7 @@ import subprocess
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
+from itertools import islice, pairwise
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, BinaryIO
@@ -179,7 +179,7 @@ class TwoColumns:
             except (csv.Error, InputError) as error:
                 raise refused(f"{'not CSV: ' * isinstance(error, csv.Error)}{error}") from None
         else:
-            value = value.tolist() if hasattr(value, "tolist") else value  # a numpy array
+            value = listed(value)
             if not isinstance(value, list | tuple) or len(value) > MOST_ROWS:
                 raise refused(f"rows: {self.allowed}")
             places, rows = [f"row {k + 1}" for k in range(len(value))], list(value)
@@ -253,11 +253,19 @@ class TwoColumns:
         return {"type": "string", "minLength": 1, "description": f"the name of a CSV file: {self.allowed}"}
 
 
+def listed(value: object) -> object:
+    """A numpy array or a zip as the list that Python users mean by it; others as they are."""
+    if isinstance(value, zip):
+        return list(islice(value, MOST_ROWS + 1))
+    return value.tolist() if isinstance(value, np.ndarray) else value
+
+
 def list_of(shortest: int, longest: int) -> BeforeValidator:
     """A TOML array (or tuple, or list) of so many entries, as a tuple."""
     words = f"a list of {shortest}" if shortest == longest else f"a list of {shortest} to {longest}"
 
     def check(value: object) -> tuple[Any, ...]:
+        value = listed(value)
         if not isinstance(value, list | tuple) or not shortest <= len(value) <= longest:
             raise refused(words)
         return tuple(value)

@@ -17,6 +17,8 @@ from sam.scene.section import Problem, SceneError, problems
 from sam.scene.units import IN_FILE
 
 _BETWEEN = re.compile(rb"([\n,={}\[\]#])")
+_BARE = re.compile(rb"^[^\n#\"']*[=\[,]\s*+[+-]?[0-9][0-9.eE_+-]*+[ \t]*+[A-Za-z]", re.MULTILINE)
+"""A number with a unit and without quotes."""
 _MOST_DOTS = 32  # in one key
 
 KINDS = {
@@ -81,7 +83,8 @@ def parse_toml(content: bytes, source: str) -> dict[str, Any]:
     except RecursionError:
         raise _whole_file("nested too deeply", source) from None
     except ValueError as error:  # TOMLDecodeError, and a number of thousands of digits
-        raise _whole_file(f"not TOML: {error}", source) from None
+        quotes = ": numbers with units stand in quotes" if _BARE.search(content) else ""
+        raise _whole_file(f"not TOML: {error}{quotes}", source) from None
 
 
 def check_kind(table: Mapping[str, Any], own: str, source: str) -> None:

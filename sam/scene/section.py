@@ -24,7 +24,7 @@ from pydantic import (
 )
 from pydantic_core import InitErrorDetails
 
-from sam.scene.units import Number, in_file, refused
+from sam.scene.units import Number, in_file, refused, spelled
 
 NOT_YET = "not available in this version of samfem: remove it"
 Conflict = tuple[str, str]
@@ -112,15 +112,15 @@ def problems(error: ValidationError) -> list[Problem]:
     return listed
 
 
-def spelling(value: object) -> str:
-    """A value as a scene file spells it, on one line of at most 60 characters; what JSON cannot hold is named
-    by its type.
+def spelling(value: Any, unit: str = "") -> str:
+    """A value, of a number in SI with its unit, as a scene file spells it, on one line of at most 60
+    characters; what JSON cannot hold is named by its type.
 
     >>> spelling([1, "m"])
     '[1, "m"]'
     """
     try:
-        text = json.dumps(value, ensure_ascii=False, default=str)
+        text = json.dumps(spelled(value, unit) if unit else value, ensure_ascii=False, default=str)
     except (ValueError, RecursionError):
         text = repr(type(value))
     text = printable(text)
@@ -242,8 +242,19 @@ class Section(BaseModel):
                 value = given.at(key) if given.has(key) else MISSING_INPUT
                 lines.append(_line(tuple(key.split(".")), value, allowed))
         if lines or section is None:
-            raise ValidationError.from_exception_data(cls.__name__, lines)
+            raise ValidationError.from_exception_data(cls.__name__, cls._once(lines, given))
         return section
+
+    @classmethod
+    def _once(cls, lines: Sequence[InitErrorDetails], given: Given) -> list[InitErrorDetails]:
+        """The errors without that of a missing key for which an unknown one stands, which is an error too."""
+        unknown = [name for name in given if name not in cls._names()][:MOST_SHOWN]
+        meant = {(near,) for name in unknown for near in cls._near(name, isinstance(given[name], Mapping))}
+        return [line for line in lines if line["input"] is not MISSING_INPUT or line["loc"] not in meant]
+
+    @classmethod
+    def _names(cls) -> list[str]:
+        return [field.alias or key for key, field in cls.model_fields.items()]
 
     @classmethod
     def _allowed(cls, item: Mapping[str, Any], info: ValidationInfo, hints: bool) -> str:
@@ -259,10 +270,9 @@ class Section(BaseModel):
         return str(context.get("allowed") or _WORDS.get(kind, item["msg"]))
 
     @classmethod
-    def _unknown(cls, name: str, is_table: bool) -> str:
-        """What is allowed for an unknown key: the place it belongs to, or keys that look alike."""
-        known = [field.alias or key for key, field in cls.model_fields.items()]
-        near: Sequence[str] = difflib.get_close_matches(name, known, n=_MOST_ALIKE, cutoff=_ALIKE)
+    def _near(cls, name: str, is_table: bool) -> Sequence[str]:
+        """For an unknown key the place it belongs to, or keys that look alike."""
+        near: Sequence[str] = difflib.get_close_matches(name, cls._names(), n=_MOST_ALIKE, cutoff=_ALIKE)
         if cls.of_scene and cls.whole is not None:
             places = places_of(cls.whole)
             there, others = places.get(name, ()), OTHER_NAMES.get(name.lower(), ()) if is_table else ()
@@ -275,8 +285,14 @@ class Section(BaseModel):
                 ]
                 or near
             )
+        return near
+
+    @classmethod
+    def _unknown(cls, name: str, is_table: bool) -> str:
+        """What is allowed for an unknown key."""
+        near = cls._near(name, is_table)
         hint = f"did you mean {' or '.join(near)}? " if near else ""
-        return f"unknown key, {hint}allowed here: {', '.join(known)}"
+        return f"unknown key, {hint}allowed here: {', '.join(cls._names())}"
 
     @classmethod
     def _field_in_words(cls, name: str, file: bool) -> str:

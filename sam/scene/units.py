@@ -63,6 +63,19 @@ class Number:
     infinite: bool = False
     percent: bool = False
 
+    def _wrong(self, value: object, number: float | None) -> str:
+        """What is wrong with a value, before what is allowed; empty where that says it."""
+        if number is not None and not self.whole and self.low > 0 >= number:
+            return "must be positive: "
+        parts = number_and_unit(value) if self.unit else None
+        if parts is None or _is_known(parts[1]):
+            return ""
+        # of two prefixes that differ by case the likelier one: MPa and mm
+        powers = sorted(PREFIXES.items(), key=lambda item: item[1], reverse=self.unit != "Pa")
+        names = {f"{prefix}{self.unit}".lower(): f"{prefix}{self.unit}" for prefix, _ in powers}
+        near = names.get(parts[1].lower()) if self.unit in PLAIN else None
+        return f"unknown unit {parts[1]}, " + (f"did you mean {near}? allowed: " if near else "allowed: ")
+
     def allowed(self, file: bool) -> str:
         """What a value may be, in words, for a scene file or for Python."""
         bounds = f"from {self.low:g} to {self.high:g} {self.unit}".rstrip() + (" or 0" if self.zero else "")
@@ -87,7 +100,7 @@ class Number:
         else:
             number = _real(value, self.whole)
         if number is None or not (self.low <= number <= self.high or (self.zero and number == 0)):
-            raise refused(self.allowed(file))
+            raise refused(self._wrong(value, number) + self.allowed(file))
         return number
 
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> core_schema.CoreSchema:
@@ -180,6 +193,15 @@ def _factor(text: str, unit: str) -> Decimal | None:
     except Exception:  # for odd text pint raises errors of a dozen kinds, KeyError and TypeError among them
         return None
     return factor
+
+
+def _is_known(text: str) -> bool:
+    """Whether pint knows a unit."""
+    try:
+        _registry().Unit(text)
+    except Exception:  # of a dozen kinds, as above
+        return False
+    return True
 
 
 def spelled(number: float, unit: str) -> str:

@@ -89,6 +89,6 @@ def test_refusals_name_the_key():
     with pytest.raises(UnsupportedScene, match=r'loading.prescribed = "misfit-sphere"'):
         check_spatial(sphere())
     soft = {"law": "perfect", "yield_stress": 0.2e9}
-    with pytest.raises(UnsupportedScene, match=r"loading.depth = 1.5.*held"):
+    with pytest.raises(UnsupportedScene, match=r'loading.depth = "15.*held'):
         plan(sphere(soft))
     assert plan(sphere(soft, surface="free")).misfit is not None

@@ -98,7 +98,9 @@ REFUSED = r"""
 ## SPHERE
 body.young = 210000000000.0 | '210e9' | '210 mm' | 'nan GPa' | '1e400 GPa' | '2 GPa * 3' | '9**9**9**9 Pa' \
     | '1 Pa**9**9**9' | '1 2 GPa' | '20 degC' | true | ['210 GPa'] | '' -> = & $PRESSURE
-body.young = '-210 GPa' | '0 GPa' -> = & from 1e-30 to 1e+30 Pa
+body.young = '-210 GPa' | '0 GPa' -> = & must be positive: a pressure & from 1e-30 to 1e+30 Pa
+body.young = '210 Gpa' | '210 gPA' -> = & unknown unit & did you mean GPa? allowed: a pressure
+body.young = '210 foo' -> = & unknown unit foo, allowed: a pressure
 body.poisson = 0.51 | -0.1 | nan | true | '0.3' -> = & from 0 to 0.5
 -body.young -> body.young is missing & $PRESSURE
 -body; -title -> body is missing & a table [body]
@@ -476,7 +478,12 @@ IN_PYTHON = [
     (rows_of(0.0, 1e9), f"{AT}file", "", "row 1: 0.0 is not two numbers"),
     (rows_of((0.0, 1e9), (0.1, 1e9, 2)), f"{AT}file", "", "row 2: "),
     (rows_of((0.0, np.nan)), f"{AT}file", "", "row 1: yield_stress_Pa = NaN"),
-    ({"surface": {"kind": "file", "path": np.zeros((5, 5))}}, "surface.path", "", "a HeightMap"),
+    (
+        {"surface": {"kind": "file", "path": np.zeros((5, 5))}},
+        "surface.path",
+        "",
+        "wrap it: samfem.HeightMap(array",
+    ),
     (described(sha256="00" * 31), "surface.path", "0000", "or sha256, cells and extent of one"),
     (described(cells=(2, 8)), "surface.path", "sha256", "or sha256, cells and extent of one"),
 ]

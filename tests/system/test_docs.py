@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from sam.scene import load_scene
+from sam.scene import PATH_QUANTITIES, QUANTITIES, load_scene
 from sam.scene.inputs import Inputs
 from sam.scene.load import scene_of
 from samfem.cli import COMMANDS, _options
@@ -162,6 +162,13 @@ def test_the_reading_path_is_short_and_each_file_defines_what_is_to_be_read_in_i
     for file, words in path.items():
         parts = [part for name in CODE.findall(words) for part in name.split(".")]
         assert parts and [part for part in parts if not defines(file, part)] == [], file
+
+
+def test_the_guide_has_every_quantity_with_its_unit():
+    rows = re.findall(r"^\| `(\w+)` \| (\S+) \| \w", (GUIDE / "results.md").read_text("utf-8"), re.MULTILINE)
+    units = {"m2": "m²", "m3": "m³", "Pa": "Pa", "m": "m", "N": "N"}
+    found = [*QUANTITIES, *PATH_QUANTITIES]
+    assert rows[: len(found)] == [(name, units.get(name.rpartition("_")[2], "1")) for name in found]
 
 
 @pytest.mark.parametrize("where, parts", fragments(), ids=[found[0] for found in fragments()])

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Each script of the gallery is short, runs, says how well its numbers are known, draws, leaves no file."""
+"""Each script of the gallery is short, runs, says how well its numbers are known and what they warn
+of, draws, leaves no file.
+"""
 
 import re
 import runpy
@@ -18,11 +20,12 @@ def test_a_script_of_the_gallery_runs(script, folder, monkeypatch, capsys):
     monkeypatch.delenv("DISPLAY", raising=False)  # else `plt.show` warns that it cannot
     plt.switch_backend("Agg")
     plt.close("all")
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
+    with warnings.catch_warnings(record=True) as heard:
+        warnings.simplefilter("always")
         runpy.run_path(str(script), run_name="__main__")
     said = capsys.readouterr()
     assert re.search(r"\d+ cells of|\d+ elements", said.out) and said.err == ""
+    assert all(f"warning: {each.message}" in said.out for each in heard)
     assert re.search(r"^uncertainty: .* times the estimated error", said.out, re.MULTILINE)
     assert plt.get_fignums()
     plt.close("all")

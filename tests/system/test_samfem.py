@@ -3,6 +3,7 @@
 
 import doctest
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -61,7 +62,7 @@ def test_a_scene_takes_si_numbers_and_strings_with_units():
         "scene: 2 errors",
         '  body.young = "210 m": a pressure from 1e-30 to 1e+30 Pa (a float in SI, or a string with a unit)',
     ]
-    assert words[2].startswith("  loading.force = -1: a force from")
+    assert words[2].startswith("  loading.force = -1: must be positive: a force from")
 
 
 @pytest.mark.parametrize("model", ["sam", "fem-axisymmetric"])
@@ -92,6 +93,18 @@ def test_a_run_is_shown_short_and_as_html(run):
     assert "<script" not in samfem.solve(titled)._repr_html_()
 
 
+def test_warnings_are_listed_shown_and_issued():
+    rough = {"kind": "sinusoid", "amplitude": "0.1 um", "wavelength_x": "4 um"}
+    grid = {"cells": np.array([16, 16]), "extent": np.full(2, 16e-6)}
+    tables = {"counterbody": {"shape": "flat", **STEEL}, "loading": {"force": 0.1}, "surface": rough}
+    with pytest.warns(UserWarning, match=".") as heard:
+        found = samfem.solve(samfem.Scene(body=STEEL, grid=grid, **tables))
+    assert [(str(each.message), each.filename) for each in heard] == [(w, __file__) for w in found.warnings]
+    assert "\nwarning: the contact touches the edge of the grid" in str(found)
+    assert "<p>warning: the contact touches" in found._repr_html_()
+    assert not any(value for name, value in found.quantities.items() if "_center_" in name)
+
+
 def test_figures_are_named_and_an_unknown_one_is_refused(run, comparison):
     assert {"history", "pressure"} <= set(samfem.plot(run))
     assert samfem.plot(run, "pressure").axes and comparison.plot("history").axes
@@ -104,6 +117,7 @@ def test_figures_are_named_and_an_unknown_one_is_refused(run, comparison):
 def test_a_comparison_passes_and_fails_with_its_rows_and_is_read_back(folder, comparison):
     assert comparison.passed and comparison.check() is None
     assert (comparison.frame["difference"] <= comparison.frame["tolerance"]).all()
+    assert re.match(r"sam: .* cells of .*\nfem-axisymmetric: .* elements, .*\n\d+ of", str(comparison))
     assert "of its tolerance" in repr(comparison) and "<table" in comparison._repr_html_()
     strict = samfem.compare(parsed(), tolerances={"p_max_Pa": 1e-9})
     with pytest.raises(AssertionError, match="p_max_Pa"):

@@ -29,7 +29,7 @@ from verification.cost import plan as plan_module
 from verification.judging import Measured
 from verification.runs import checkpoints, models, store
 from verification.runs.study import read_study
-from verification.text.readable import with_prefix, with_time
+from verification.text.readable import in_working_unit, with_prefix, with_time
 
 
 def advice(scene: Scene, status: Status) -> str:
@@ -139,6 +139,9 @@ def test_values_and_times_for_a_person():
         (float("inf"), "m", "inf m"),
     ):
         assert with_prefix(value, unit) == text
+    sizes = [("contact_area_m2", 2.45781e-7, None), ("p_max_Pa", 5e7, None), ("approach_m", 3e-8, 2e-3)]
+    shown = [in_working_unit(name, value, beside=beside)[1] for name, value, beside in sizes]
+    assert shown == ["0.245781 mm^2", "50 MPa", "3e-05 mm"]
     times = [with_time(seconds) for seconds in (0.0123, 99.0, 150.0, 9e4, 1e6)]
     assert times == ["0.012 s", "99 s", "2.5 min", "25 h", "12 days"]
 

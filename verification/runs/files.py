@@ -108,6 +108,10 @@ class Run:
         return self.summary["message"]
 
     @property
+    def warnings(self) -> list[str]:
+        return list(self.summary["warnings"])
+
+    @property
     def cost(self) -> Mapping[str, float | int | None]:
         return self.summary["cost"]
 

@@ -9,13 +9,15 @@ import math
 
 PREFIXES = {-12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T", 15: "P", 18: "E"}
 WORKING_UNITS = {
-    "Pa": ("GPa", 1e9),
-    "m": ("um", 1e-6),
-    "m2": ("um^2", 1e-12),
-    "m3": ("um^3", 1e-18),
-    "N": ("N", 1.0),
+    "Pa": {"GPa": 1e9, "MPa": 1e6},
+    "m": {"mm": 1e-3, "um": 1e-6},
+    "m2": {"mm^2": 1e-6, "um^2": 1e-12},
+    "m3": {"mm^3": 1e-9, "um^3": 1e-18},
+    "N": {"N": 1.0},
 }
-"""SI unit at the end of the name of a quantity -> unit for a person, and what it is in SI."""
+"""SI unit at the end of the name of a quantity -> units for a person, the largest first, and what each is in
+SI; a value takes the first of which it has a tenth.
+"""
 
 
 def with_prefix(value: float, unit: str, digits: int = 3) -> str:
@@ -31,12 +33,17 @@ def with_prefix(value: float, unit: str, digits: int = 3) -> str:
     return f"{float(f'{value / 10.0**power:.{digits}g}'):g} {PREFIXES[power]}{unit}"
 
 
-def in_working_unit(name: str, value: float, digits: int = 6) -> tuple[str, str]:
-    """A quantity in the unit of the contact, GPa, um or N: ("p_max_Pa", 2.1e9) is ("p_max", "2.1 GPa")."""
+def in_working_unit(name: str, value: float, digits: int = 6, beside: float | None = None) -> tuple[str, str]:
+    """A quantity in a unit of the contact, of GPa, um and N: ("p_max_Pa", 2.1e9) is ("p_max", "2.1 GPa").
+
+    beside: the value whose unit it takes, in place of its own.
+    """
     words, _, si = name.rpartition("_")
-    unit, size = WORKING_UNITS.get(si, ("", 1.0))
-    if not unit:
+    units = WORKING_UNITS.get(si)
+    if units is None:
         return name, f"{value:.{digits}g}"
+    size_of = abs(value if beside is None else beside)
+    unit, size = next((pair for pair in units.items() if size_of >= 0.1 * pair[1]), [*units.items()][-1])
     return words, f"{value / size:.{digits}g} {unit}"
 
 

@@ -25,9 +25,9 @@ for young, colour in (("80 GPa", "C0"), ("400 GPa", "C1")):
             solver={"uncertainty": True},
         )
         run = samfem.solve(scene)
+        print(f"\n{scene.title}:\n{run}")
         pressure.append(100 * run.quantities["p_max_change"])
         stress.append(100 * run.quantities["mises_max_change"])
-    print(f"\n{scene.title}:\n{run}")
     axes.plot(thicknesses, pressure, "o-", color=colour, label=f"{young}: pressure")
     axes.plot(thicknesses, stress, "s--", color=colour, label=f"{young}: von Mises stress in the steel")
 axes.axhspan(-5, 5, color="0.9", label="negligible")

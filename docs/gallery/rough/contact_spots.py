@@ -32,7 +32,7 @@ figure, (left, right) = plt.subplots(1, 2, figsize=(7, 3.2), layout="constrained
 image = left.imshow(1e-9 * pressure.replace(0, np.nan), origin="lower", extent=(-32, 32, -32, 32))
 left.set(xlabel="x [µm]", ylabel="y [µm]", title=f"{len(spots)} contact spots")
 for spot in spots.head().itertuples():
-    left.text(1e6 * (spot.x_m + 0.7 * spot.area_m2**0.5), 1e6 * spot.y_m, f"{spot.spot:.0f}", va="top")
+    left.text(1e6 * (spot.x_m + 0.6 * spot.area_m2**0.5), 1e6 * spot.y_m, f"{spot.spot:.0f}", va="top")
 figure.colorbar(image, label="contact pressure [GPa]")
 right.plot(history["force_N"], 100 * history["contact_area_m2"] / 64e-6**2, "o-")
 right.set(xlabel="force [N]", ylabel="area in contact [%]", xlim=(0, None), ylim=(0, None))

@@ -47,6 +47,7 @@ class HeightMap:
 
     __slots__ = ("cells", "extent", "of_file", "sha256", "values")
     column: ClassVar[str] = "height_m"
+    wrapped: ClassVar[str] = "samfem.HeightMap(array, (Lx, Ly)), heights in m, x first"
 
     @classmethod
     def columns(cls) -> tuple[str, str, str]:
@@ -131,6 +132,7 @@ class FrictionMap(HeightMap):
 
     __slots__ = ()
     column: ClassVar[str] = "friction"
+    wrapped: ClassVar[str] = "sam.scene.FrictionMap(array, (Lx, Ly)), x first"
 
     def __init__(self, values: Array, extent: tuple[float, float]):
         """Raises InputError also for coefficients out of range."""
@@ -145,7 +147,8 @@ def from_python(value: object, kind: type[HeightMap]) -> HeightMap:
     if type(value) is kind:
         return value
     if not isinstance(value, Mapping) or set(value) != set(KEYS):
-        raise refused(f"a {kind.__name__}")
+        array = isinstance(value, np.ndarray)
+        raise refused(f"wrap it: {kind.wrapped}" if array else f"a {kind.__name__}")
     try:
         sha256, cells, extent = (value[key] for key in KEYS)
         cells, extent = _sizes(tuple(cells), tuple(extent))

@@ -9,6 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
+from sam.scene.inputs import listed
 from sam.scene.numerics import Grid
 from sam.scene.section import Conflict, Given, Section, broken, of_choice, stated
 from sam.scene.surface.height_map import HeightMap
@@ -43,6 +44,7 @@ CROP = "[lx, ly], or [x, y, lx, ly] with the middle of the part at (x, y)"
 
 def _two_or_four(value: object) -> tuple[Any, ...]:
     """A TOML array (or tuple, or list) as a tuple."""
+    value = listed(value)
     if not isinstance(value, list | tuple) or len(value) not in (2, 4):
         raise refused(CROP)
     return tuple(value)
@@ -50,6 +52,7 @@ def _two_or_four(value: object) -> tuple[Any, ...]:
 
 def _one_or_two(value: object) -> tuple[Any, ...]:
     """One length, or two of them in a TOML array (or tuple, or list), as a tuple."""
+    value = listed(value)
     sides = tuple(value) if isinstance(value, list | tuple) else (value,)
     if len(sides) not in (1, 2):
         raise refused("[lx, ly], the sides of the map, or one length for a square one")
