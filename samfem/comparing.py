@@ -31,6 +31,8 @@ from verification.runs.files import (
     clear_run,
     figures_of,
     json_text,
+    lasting,
+    read_summary,
     write_atomically,
 )
 from verification.runs.lock import locked
@@ -64,8 +66,9 @@ def compare(paths: Sequence[Path], **options: Any) -> int:
     store, found = default_store() if given.use_store else None, []
     for job in jobs:
         with locked(job.folder):
-            found.append(_answered(job, store, draw=given.figures))
-            _write(job, found[-1], draw=given.figures)
+            drawn = _shown(job.folder)
+            found.append(_answered(job, store))
+            _write(job, found[-1], drawn, draw=given.figures)
     if len(jobs) == 1:
         _show(jobs[0], found[0], figures=given.figures)
     else:
@@ -124,15 +127,23 @@ def _check_pages(given: SimpleNamespace) -> None:
             raise FolderError(f"--junit {given.junit}: a file in a folder that can be written to")
 
 
-def _answered(job: Job, store: Store | None, *, draw: bool) -> Compared:
-    """The comparison, each run written to its folder once it is there; what an older one says is removed."""
+def _shown(folder: Path) -> list[Any]:
+    """What figures of the comparison in a folder show: its rows and both runs; empty where there is none."""
+    try:
+        runs = [lasting(read_summary(folder / part)) for part in ("sam", "fem")]
+        return [(folder / COMPARISON).read_bytes(), *runs]
+    except (FolderError, OSError):
+        return []
+
+
+def _answered(job: Job, store: Store | None) -> Compared:
+    """The comparison, each run written to its folder once it is there; what an older one says is removed, but
+    for its figures.
+    """
     for name in WRITTEN:
         (job.folder / name).unlink(missing_ok=True)
     if job.folder.exists():
-        if figures_of(job.folder) and not draw:
-            words = "the figures of the earlier comparison are removed: --figures draws new ones"
-            print(f"samfem: {job.folder}: {words}", file=sys.stderr)
-        clear_run(job.folder)
+        clear_run(job.folder, figures=False)
 
     def solved(model: str, result: Result, source: Reuse) -> None:
         where = job.folder / PARTS[model]
@@ -142,8 +153,10 @@ def _answered(job: Job, store: Store | None, *, draw: bool) -> Compared:
         return job.question.answer(store=store, progress=progress, solved=solved)
 
 
-def _write(job: Job, found: Compared, *, draw: bool) -> None:
-    """Write the rows, the cost of both models, the verdict on a film, and figures if they are asked for."""
+def _write(job: Job, found: Compared, drawn: list[Any], *, draw: bool) -> None:
+    """Write the rows, the cost of both models, the verdict on a film, and figures if they are asked for;
+    those of an earlier comparison stay if what they have `drawn` is the same.
+    """
     if found.film is not None:
         write_atomically(job.folder / VERDICT, json_text(found.film.content()).encode())
     table = found.frame
@@ -162,6 +175,11 @@ def _write(job: Job, found: Compared, *, draw: bool) -> None:
         "cost": {each.model: {"seconds": seconds(each), **each.cost} for each in found.results},
     }
     write_atomically(job.folder / COMPANION, json_text(content).encode())
+    if figures_of(job.folder) and _shown(job.folder) != drawn:
+        clear_run(job.folder)
+        if not draw:
+            words = "the figures were of another comparison and are removed: --figures draws new ones"
+            print(f"samfem: {job.folder}: {words}", file=sys.stderr)
     if draw:
         compare_figures(job.folder, found.solutions)
 

@@ -21,7 +21,7 @@ from sam.results.snapshots import Snapshot
 from sam.results.tables import Remedies
 from sam.scene.remedies import either
 from sam.scene.result import COUNTER_HEIGHT, SURFACE
-from sam.scene.surface import Roughness, roughness_as_read
+from sam.scene.surface import Roughness, border_cells, roughness_as_read
 
 LEAST_SHARE = 0.05  # of the load: a spot that carries as much has to be resolved
 WELL_RESOLVED = 4.0  # cells in the shortest wavelength; below it maxima depend on where the cells lie
@@ -106,6 +106,8 @@ class RoughRecord:
                 )
         if coarse := too_few_cells(contact.pressure):
             out.append(f"{coarse}{finer}")
+        if self.patch.relief and (made := in_the_fall_off(contact.pressure)):
+            out.append("; ".join(filter(None, (made, self.remedies.larger_patch))))
         if touching[[0, -1], :].any() or touching[:, [0, -1]].any():
             words, (bx, by) = (
                 "the contact touches the edge of the grid, where the half-space is cut",
@@ -140,4 +142,24 @@ def too_few_cells(pressure: Array) -> str:
         f"too few cells in {few.sum()} of {judged.sum()} spots with {100 * LEAST_SHARE:g} % of the load or "
         f"more, or with the largest pressure ({counts} cells; together {100 * share[few].sum():.3g} % of the "
         f"load): with fewer than {FEWEST_IN_SPOT} the largest pressure of a spot is off by some percent"
+    )
+
+
+def in_the_fall_off(pressure: Array) -> str:
+    """What to know about spots (nx, ny) in Pa where grid.border = "relief" lowers the heights."""
+    from scipy import ndimage  # noqa: PLC0415 - for rough scenes alone
+
+    spots, (bx, by) = ndimage.label(pressure > 0)[0].ravel(), border_cells(pressure.shape)
+    border = np.ones(pressure.shape, dtype=bool)
+    border[bx:-bx, by:-by] = False
+    share = np.bincount(spots, pressure.ravel())[1:] / pressure.sum()
+    outside = np.bincount(spots, (pressure * border).ravel())[1:] / pressure.sum()
+    number = np.count_nonzero((share >= LEAST_SHARE) & (outside > 0.5 * share))
+    what = ["the largest pressure"] * bool(pressure[border].max() == pressure.max() > 0)
+    what += [f"{number} of the spots with {100 * LEAST_SHARE:g} % of the load or more"] * bool(number)
+    if not what:
+        return ""
+    return (
+        f'grid.border = "relief" lowers the heights of the outer {bx} x {by} cells, which have '
+        f"{' and '.join(what)}: the surface itself need not have them"
     )

@@ -9,7 +9,7 @@ from builders import LINEAR, MODULUS, STEEL, running_in, scene
 
 from sam import UnsupportedScene, choose_grid, left_out, plan, solve
 from sam.contact.convolution import Counters
-from sam.results.rough import too_few_cells
+from sam.results.rough import in_the_fall_off, too_few_cells
 from sam.scene import COUNTER_HEIGHT, CounterSurface, HeightMap, Scene, SceneError, Status, resolved
 from sam.scene.surface import heights
 from verification.cost.plan import plan as cost_plan
@@ -154,6 +154,23 @@ def test_every_spot_that_carries_a_twentieth_of_the_load_is_judged(pressure, wor
     """28 cells are needed: pi 3^2."""
     found = too_few_cells(pressure)
     assert bool(found) == bool(words) and all(each in found for each in words.split("|") if words)
+
+
+@pytest.mark.parametrize(
+    "outside, inside, words",
+    [
+        (2.0, 1.0, "outer 3 x 3 cells, which have the largest pressure and 1 of the spots"),
+        (0.9, 1.0, "which have 1 of the spots"),
+        (0.02, 1.0, ""),
+        (0.0, 0.0, ""),
+    ],
+)
+def test_what_the_fall_off_of_the_border_makes_is_said(outside, inside, words):
+    """A spot of which 2 of 3 cells lie in the border, 3/32 of 32 cells, and one within it."""
+    pressure = np.zeros((32, 32))
+    pressure[1:4, 16], pressure[16, 4:7] = outside, inside
+    found = in_the_fall_off(pressure)
+    assert bool(found) == bool(words) and words in found
 
 
 def test_surface_table_and_fields_hold_the_heights(tmp_path):

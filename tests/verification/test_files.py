@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from sam.scene import Body, CounterBody, FieldMesh, LeftOut, Loading, Plasticity, Result, Scene, Status
-from sam.scene.result import AXIS, COST, HISTORY, LINE, PLANE, QUANTITIES
+from sam.scene.result import AXIS, COST, HISTORY, LINE, PLANE, QUANTITIES, SURFACE
 from verification.runs import files
 from verification.runs.files import FolderError, json_text, read_run, write_run
 from verification.runs.meshes import is_mesh
@@ -82,6 +82,19 @@ def test_a_run_reads_back_to_the_last_digit(tmp_path):
     assert summary["discretisation"] == {"cells": [65, 65], "h_m": THIRD, "dofs": 7}
     assert list(summary["cost"]) == list(COST) and summary["cost"]["ffts"] is None
     assert [summary[key] for key in ("status", "model", "message")] == ["converged", "sam", ""]
+
+
+def test_the_spots_of_a_rough_body_by_hand(tmp_path):
+    """Two spots on 4 x 3 cells of 2 um x 1 um, the larger force second, and none after unloading."""
+    x, y = np.meshgrid([0.0, 2e-6, 4e-6, 6e-6], [0.0, 1e-6, 2e-6], indexing="ij")
+    p = np.array([[1e6, 0, 0], [0, 0, 0], [0, 0, 2e6], [0, 0, 6e6]])  # x down, y to the right
+    surface = {name: np.zeros(24) for name in SURFACE} | {"state": ["peak"] * 12 + ["unloaded"] * 12}
+    surface |= {"x_m": np.tile(x.ravel(), 2), "y_m": np.tile(y.ravel(), 2), "p_Pa": np.append(p, 0.0 * p)}
+    result = a_result(tables=a_result().tables | {"surface": surface})
+    write_run(result, SCENE, tmp_path)
+    first, second = read_run(tmp_path).tables["spots"].itertuples(index=False)
+    assert first == pytest.approx(("peak", 1, 5.5e-6, 2e-6, 4e-12, 1.6e-5, 6e6, 2))
+    assert second == pytest.approx(("peak", 2, 0.0, 0.0, 2e-12, 2e-6, 1e6, 1))
 
 
 def test_a_plastic_scene_reads_back_with_its_curve(tmp_path):

@@ -21,7 +21,7 @@ from sam.scene import FrictionMap, Scene
 from verification.cost.contact import hertz_of
 from verification.figures.run import drawings_of, history
 from verification.runs import models
-from verification.runs.files import Run, read_run, write_run
+from verification.runs.files import Run, mesh_of as mesh_in, read_run, write_run
 
 BODY = {"young": 210e9, "poisson": 0.3}
 SOFT = BODY | {"plasticity": {"law": "linear", "yield_stress": 1e9, "modulus": 1e10}}
@@ -179,6 +179,11 @@ MAPS = [(name, *MISES) for name in ("sphere", "punch", "coated", "travelling")] 
 MAPS += [("worn", *PEEQ)]
 
 
+def test_the_displacement_into_the_body_points_down():
+    pressure, displacement, gap = drawn("sphere")["line"].figure.axes
+    assert displacement.yaxis_inverted() and not (pressure.yaxis_inverted() or gap.yaxis_inverted())
+
+
 class TestPlane:
     @pytest.mark.parametrize("name, figure, quantity, unit", MAPS)
     def test_writes_the_largest_value_that_it_draws(self, name, figure, quantity, unit):
@@ -187,6 +192,8 @@ class TestPlane:
         _, _, field = mesh_of(panel)
         words, largest = words_of(panel), np.nanmax(field)
         assert numbers(words, "max") == pytest.approx(largest, rel=6e-4)
+        if name == "worn":  # the plane goes through it
+            assert largest == 100 * mesh_in(run_of(name).folder, "body.vtr").cell_data["peeq"].max()
         assert largest <= quoted * (1 + 1e-9) or name == "punch"
         if abs(quoted - largest) > 1e-3 * quoted:
             assert numbers(words, "refined") == pytest.approx(quoted, rel=6e-4)

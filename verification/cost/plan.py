@@ -138,7 +138,6 @@ class Plan:
             short += [_resolved(entries[:2])]
         short += ["time and memory (estimated): " + "; ".join(map(_needed, content["models"]))]
         if self._entry["available"]:
-            short += _cheapest(content["advice"], self.error)
             stages = self._entry["stages"]
             short += [f"computed: {_brief(stages, runs=True)}", f"left out: {_brief(stages, runs=False)}"]
         short += [f"warning: {words}" for words in self.warnings]
@@ -214,18 +213,6 @@ def _resolved(entries: Sequence[Mapping[str, Any]]) -> str:
         parts.append(words)
     head = "cells in a" if any(entry["resolution"]["cells_in_radius"] for entry in entries) else "grid"
     return f"{head}{about}: {'; '.join(parts)}"
-
-
-def _cheapest(advice: Mapping[str, Any], error: float | None) -> list[str]:
-    """Which model took the least time for an error in scenes of this kind, if more than one was measured."""
-    rows = [row for row in advice["rows"] if row["error"] == error and row["method"] in models.MODELS]
-    times = sorted((row["relative"], row["method"]) for row in rows if row["relative"] is not None)
-    if error is None or len(times) < 2:
-        return []
-    (least, best), *others = times
-    slower = ", ".join(f"{model} {float(f'{time / least:.2g}'):g}" for time, model in others)
-    how = f"on the fewest cells that reach it (measured, {advice['kind']})"
-    return [f"cheapest at {100 * error:g} % {how}: {best}; {slower} times as long"]
 
 
 def _needed(entry: Mapping[str, Any]) -> str:

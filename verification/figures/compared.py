@@ -36,7 +36,7 @@ LOOKS = {"SAM": SAM, "FEM": FEM}
 PANELS = {
     "line": {
         "pressure [GPa]": ("p_Pa", GIGA),
-        "displacement of the body [$\\mu$m]": ("uz_m", MICRO),
+        lines.INTO: ("uz_m", MICRO),
         "gap [$\\mu$m]": ("gap_m", MICRO),
     },
     "axis": {

@@ -64,6 +64,8 @@ CYCLES = tuple(
     )
 )
 """Looks of series that have none of their own, in order: hollow, so that one behind another is seen."""
+INTO = "displacement into the body [$\\mu$m]"
+"""Of y, which then points down."""
 LETTERS = 10.5
 """Of a title or a label in an inch."""
 BAND = {"color": GREEN, "alpha": 0.15, "linewidth": 0.0}
@@ -145,6 +147,8 @@ def curves(
                 data.add(panel, name, curve.x, curve.y, *([fit] if fitted else []))
                 _draw(axis, curve, name, {**looks[name], **curve.look})
             _finish(axis, title, series.values(), way)
+            if label == INTO:
+                axis.invert_yaxis()
             if ylabel is not None and (not rows or k < across):
                 axis.set_title(fill(title, int(LETTERS * way.size[0]), break_on_hyphens=False))
             if not rows or label == rows[-1]:

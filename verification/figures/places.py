@@ -14,14 +14,18 @@ import numpy as np
 from sam.scene.surface import border_cells
 from verification.runs.files import Run, mesh_of
 from verification.runs.meshes import SURFACE
-from verification.runs.sampling import Tables, peak, plane_field_on
+from verification.runs.sampling import Tables, gridded, peak, plane_field_on
 
+BODIES = {"sam": "body.vtr", "fem-3d": "fields.vtu"}
+"""Model -> the mesh of a run with what its cells have strained."""
 ON_CELLS = ("p_Pa", "friction", "worn_m", "height_m")
 """What is drawn of the surface of SAM."""
 AROUND = 1.0
 """Beside the contact a figure shows so many of its widths, half on each side."""
 FINE, DEEP, REACH = 121, 1.9, 1.5
 """Points along x of an axisymmetric plane, and how far it is drawn, in contact radii."""
+YIELDED = 0.01
+"""Of the largest plastic strain: where the plastic zone is drawn to end."""
 IN_FILM, BELOW = 9, 77
 """Points over depth of an axisymmetric plane, in a film and below it."""
 
@@ -118,8 +122,9 @@ def in_film(z: np.ndarray, film: float) -> np.ndarray:
 class Section:
     """The plane in which a run is drawn, y = const in m.
 
-    place: x of the largest pressure in it, in m; spots: where it is in contact, (first, last) x in
-    m of each; source: the table with its fields, "plane" (y = 0) or "cut".
+    place: x of the largest pressure (of a "body": plastic strain) in it, in m; spots: where it is in
+    contact, (first, last) x in m of each; source: the table with its fields, "plane" (y = 0) or "cut", or
+    "body", the mesh.
     """
 
     y: float
@@ -151,6 +156,23 @@ def section_of(run: Run, surface: SurfaceMap | None) -> Section:
     return Section(0.0, float(np.mean(spots)) if spots else 0.0, spots, "plane")
 
 
+def strained_of(run: Run, surface: SurfaceMap | None, section: Section) -> Section:
+    """The plane of the cells with the largest plastic strain, where the section is that of a table cut."""
+    if section.source != "cut" or run.model not in BODIES or not (run.folder / BODIES[run.model]).is_file():
+        return section
+    x, y, _, peeq = _cells_of(run)
+    most = int(np.argmax(peeq))
+    row = int(np.argmin(np.abs(surface.y - y[most])))
+    return Section(float(y[most]), float(x[most]), spots_of(surface.x, surface.p[:, row]), "body")
+
+
+def _cells_of(run: Run) -> tuple[np.ndarray, ...]:
+    """Centres in m, z into the body, and plastic strain of the cells of the mesh of the body, each (n,)."""
+    mesh = mesh_of(run.folder, BODIES[run.model])
+    x, y, z = np.round(mesh.cell_centers().points.T, 13) + 0.0  # centres of one row differ by rounding
+    return x, y, -z, np.array(mesh.cell_data["peeq"])
+
+
 def spots_of(x: np.ndarray, p: np.ndarray) -> list[tuple[float, float]]:
     """Where a row of points is in contact; a spot ends half-way to the next point, x: (n,) in m."""
     edges = edges_of(x)
@@ -171,6 +193,9 @@ def plane_of(run: Run, section: Section, column: str) -> tuple[np.ndarray, np.nd
     """
     if run.model == "fem-axisymmetric":
         return _axisymmetric_plane(run, column)
+    if section.source == "body":
+        x, y, z, values = _cells_of(run)
+        return gridded(*(each[y == section.y] for each in (x, z, values)))
     x, z, values = peak(run.tables[section.source], "x_m", "z_m", column)
     (xs, i), (zs, k) = (np.unique(c, return_inverse=True) for c in (x, z))
     field = np.full((xs.size, zs.size), np.nan)

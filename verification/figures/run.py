@@ -2,7 +2,8 @@
 """Figures of one finished run, from its files: pressure, von Mises stress, plastic strain,
 profiles, wear, load.
 
-Every plane and profile goes through the largest pressure, see `verification.figures.places`.
+Every plane and profile goes through the largest pressure, that of the plastic strain below a contact that may
+lie beside the origin through its largest value, see `verification.figures.places`.
 Lengths are in contact radii below a circular contact around the origin, else in µm.
 """
 
@@ -20,7 +21,7 @@ from sam.scene import Progress
 from verification.compare.running_in_measures import History, Scar
 from verification.cost.contact import hertz_of
 from verification.figures import repeated
-from verification.figures.lines import Curve, curves
+from verification.figures.lines import INTO, Curve, curves
 from verification.figures.maps import INTERFACE, mark_interface
 from verification.figures.places import (
     Section,
@@ -29,6 +30,7 @@ from verification.figures.places import (
     interface_of,
     is_circular,
     section_of,
+    strained_of,
     surface_map,
 )
 from verification.figures.run_maps import contact_map, plane_map, worn
@@ -79,7 +81,7 @@ def _drawings_of(run: Run) -> dict[str, Drawing]:
         "mises": plane_map(run, section, "mises_Pa", "von Mises stress [GPa]"),
     }
     if run.quantities["peeq_max"]:
-        drawings["peeq"] = plane_map(run, section, "peeq", "plastic strain [%]")
+        drawings["peeq"] = plane_map(run, strained_of(run, surface, section), "peeq", "plastic strain [%]")
     if surface is not None:
         drawings["pressure"] = contact_map(surface, "p_Pa", "pressure [GPa]")
         if not _runs_in(run) and _varies(surface):
@@ -137,8 +139,7 @@ def line(run: Run, surface: SurfaceMap | None, section: Section) -> Drawing:
             found["height [$\\mu$m]"] = MICRO * height[:, row]
         horizontal += f" at $y$ = {MICRO * section.y:.4g} $\\mu$m"
     else:
-        wanted = {"pressure [GPa]": ("p_Pa", GIGA), "displacement of the body [$\\mu$m]": ("uz_m", MICRO)}
-        wanted[gap] = ("gap_m", MICRO)
+        wanted = {"pressure [GPa]": ("p_Pa", GIGA), INTO: ("uz_m", MICRO), gap: ("gap_m", MICRO)}
         x = peak(run.tables["line"], "x_m")[0]
         found = {label: unit * peak(run.tables["line"], name)[0] for label, (name, unit) in wanted.items()}
         least = NOTHING * MICRO * abs(run.quantities["approach_m"] or 0.0)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Maps of one run: fields in the plane through the largest pressure, pressure and friction over the
-contact, wear.
+"""Maps of one run: fields in the plane through the largest pressure or plastic strain, pressure and friction
+over the contact, wear.
 """
 
 from __future__ import annotations
@@ -27,12 +27,14 @@ from verification.figures.maps import (
 )
 from verification.figures.places import (
     REACH,
+    YIELDED,
     Section,
     SurfaceMap,
     in_film,
     interface_of,
     is_circular,
     plane_of,
+    spots_of,
 )
 from verification.figures.style import EXACT, SAM, Drawing, sheet
 from verification.runs.files import Run
@@ -45,25 +47,32 @@ DIGITS = 5e-4
 
 
 def plane_map(run: Run, section: Section, column: str, label: str) -> Drawing:
-    """A column at the peak in the plane through the largest pressure, with iso-lines, contact and
-    its maximum; in contact radii of a circle around the origin, else in µm, around the spot of the
-    largest pressure and what is around the largest value.
+    """A column at the peak in the plane of a section, with iso-lines, contact and its maximum; in contact
+    radii of a circle around the origin, else in µm, around the spot of the largest pressure and what is
+    around the largest value. Plastic strain is drawn as far as its zone around the largest value reaches.
     """
     (unit, _), film = UNITS[column], interface_of(run)
     x, z, values = plane_of(run, section, column)
+    at, shown = float(x[np.unravel_index(np.nanargmax(values), values.shape)[0]]), np.full(z.shape, True)
     if circular := is_circular(run):
         length = run.quantities["contact_radius_m"]
         names, last = ("$x/a$", "$z/a$"), REACH * length * (1.0 + 1e-9)
         first = -last
     else:
-        where = f" at $y$ = {MICRO * section.y:.4g} $\\mu$m" if section.source == "cut" else ""
+        where = f" at $y$ = {MICRO * section.y:.4g} $\\mu$m" if section.source != "plane" else ""
         length, names = 1.0 / MICRO, (f"$x$ [$\\mu$m]{where}", "$z$ [$\\mu$m]")
-        (first, last), at = section.reach, float(x[np.unravel_index(np.nanargmax(values), values.shape)[0]])
-        beside = 0.25 * (last - first)
+        (first, last), beside = section.reach, 0.25 * np.ptp(section.reach)
         first, last = min(first, at - beside), max(last, at + beside)
+    if column == "peeq" and np.nanmax(values) > 0.0:
+        strained = values > YIELDED * np.nanmax(values)
+        zone = next(ends for ends in spots_of(x, strained.any(axis=1)) if ends[0] <= at <= ends[1])
+        below, margin = (x > zone[0]) & (x < zone[1]), max(0.25 * np.ptp(zone), 1.5 * np.diff(x).min())
+        shown = z <= max(z[strained[below].any(axis=0)][-1] + margin, z[1])
+        if not circular:
+            first, last = zone[0] - margin, zone[1] + margin
     use = (x >= first) & (x <= last)
-    u, v, field = x[use] / length, z / length, unit * values[use]
-    top = _largest(run, column, field, (u, v), depth=names[1].partition(" [")[0])
+    z, u, v, field = z[shown], x[use] / length, z[shown] / length, unit * values[np.ix_(use, shown)]
+    top = _largest(run, section, column, (u, v, field))
     with sheet(5.4, 3.8, layout="compressed") as (figure, panel):
         mesh = draw_field(panel, u, v, field, cmap="viridis", vmin=0.0, vmax=top.value or 1.0)
         levels = MaxNLocator(7).tick_values(0.0, top.value or 1.0)[1:]
@@ -84,15 +93,16 @@ def plane_map(run: Run, section: Section, column: str, label: str) -> Drawing:
     return Drawing(figure, dict(zip((*columns, label), (*places, field.ravel()), strict=True)))
 
 
-def _largest(run: Run, column: str, field: np.ndarray, places: tuple, *, depth: str) -> MapPeak:
+def _largest(run: Run, section: Section, column: str, drawn_as: tuple[np.ndarray, ...]) -> MapPeak:
     """The largest value that is drawn, and in words also that of summary.json, where it is another number."""
-    (i, k), (u, v) = np.unravel_index(np.nanargmax(field), field.shape), places
+    u, v, field = drawn_as
+    i, k = np.unravel_index(np.nanargmax(field), field.shape)
     (unit, name), drawn = UNITS[column], float(field[i, k])
-    after = "" if is_circular(run) else " $\\mu$m"
-    words = f"max {drawn:#.4g} {name} at {depth} = {v[k]:.3f}{after}"
+    place = f"$x$ = {u[i]:.4g}, $z$ = {v[k]:.4g} $\\mu$m"
+    words = f"max {drawn:#.4g} {name} at {f'$z/a$ = {v[k]:.3f}' if is_circular(run) else place}"
     anywhere = unit * run.quantities["mises_max_Pa" if column == "mises_Pa" else "peeq_max"]
     if abs(anywhere - drawn) > DIGITS * anywhere:
-        refined = "cut" not in run.tables and run.model != "fem-3d"
+        refined = section.source != "cut" and run.model != "fem-3d"
         where = "refined between the points" if refined else "anywhere, refined"
         words = f"{words}\n{where} {anywhere:#.4g} {name}"
     return MapPeak(float(u[i]), float(v[k]), drawn, words)

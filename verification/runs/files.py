@@ -51,7 +51,10 @@ COMPANION = "compare.json"
 MEMBERS = "members"
 """Folder in that of a run with what is solved for its uncertainty, until all of it is."""
 FORMAT = "samfem run 1"
-RUN_FILES = (SUMMARY, CHECKPOINT, *(f"{name}.csv" for name in COLUMNS))
+SPOTS = ("state", "spot", "x_m", "y_m", "area_m2", "force_N", "p_max_Pa", "cells")
+TABLES = {**COLUMNS, "spots": SPOTS}
+"""Columns of each table of a run: those of a result, and the contact spots of a rough body."""
+RUN_FILES = (SUMMARY, CHECKPOINT, *(f"{name}.csv" for name in TABLES))
 FIGURES, FIGURE_KINDS = "figures", (".png", ".pdf", ".svg", ".csv")
 _TEMPORARY = ".part"
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
@@ -156,7 +159,7 @@ def write_run(result: Result, scene: Scene, folder: str | Path, provenance: Mapp
     if provenance is None:
         provenance = collect()
     outside = outside_of_model(result)
-    tables = {name: _table_text(name, table, outside) for name, table in result.tables.items()}
+    tables = {name: _table_text(name, table, outside) for name, table in _tables(result).items()}
     said = replace(result, left_out=(*result.left_out, *not_written(result)))
     summary = plain(_summary(said, scene, provenance))
     folder.mkdir(parents=True, exist_ok=True)
@@ -176,7 +179,7 @@ def read_run(folder: str | Path) -> Run:
     folder = Path(folder)
     summary = read_summary(folder)
     tables = {
-        name: _read_table(folder / f"{name}.csv") for name in COLUMNS if (folder / f"{name}.csv").exists()
+        name: _read_table(folder / f"{name}.csv") for name in TABLES if (folder / f"{name}.csv").exists()
     }
     return Run(folder, summary, tables)
 
@@ -197,7 +200,7 @@ def mesh_of(folder: Path, name: str) -> Any:
 
 def run_of(result: Result, scene: Scene) -> Run:
     """A result that is in no folder, as it would be read back from one."""
-    tables = {name: frame_of(table) for name, table in result.tables.items()}
+    tables = {name: frame_of(table) for name, table in _tables(result).items()}
     return Run(None, plain(_summary(result, scene, collect())), tables)
 
 
@@ -271,12 +274,17 @@ def check_place(folder: Path) -> None:
 
 
 def _holds(folder: Path, summary: Mapping) -> bool:
-    """Whether the run in a folder has this summary, but for its cost and provenance."""
+    """Whether the run in a folder has this summary."""
     try:
         older = read_summary(folder)
     except FolderError:
         return False
-    return all(older.get(key) == summary[key] for key in summary if key not in ("cost", "provenance"))
+    return lasting(older) == lasting(summary)
+
+
+def lasting(summary: Mapping) -> dict[str, Any]:
+    """A summary but for its cost and provenance, which differ from solve to solve."""
+    return {key: value for key, value in summary.items() if key not in ("cost", "provenance")}
 
 
 def figures_of(folder: Path) -> list[Path]:
@@ -350,11 +358,20 @@ def plain(value: Any) -> Any:
     return value if isinstance(value, int) else str(value)
 
 
+def _tables(result: Result) -> dict[str, Table]:
+    """The tables of a result, and that of its contact spots where it is of a rough body."""
+    if "surface" not in result.tables:
+        return dict(result.tables)
+    from verification.runs.sampling import spots_of  # noqa: PLC0415 - loads scipy
+
+    return {**result.tables, "spots": dict(zip(SPOTS, spots_of(result.tables["surface"]), strict=True))}
+
+
 def _table_text(name: str, table: Table, outside: float | None) -> str:
-    """A table in the column order of COLUMNS, with the a/R of a contact outside of the model as the last one.
+    """A table in the column order of TABLES, with the a/R of a contact outside of the model as the last one.
     Raises ValueError for other columns or unequal lengths.
     """
-    columns = COLUMNS[name] + tuple(extra for extra in EXTRA_COLUMNS.get(name, ()) if extra in table)
+    columns = TABLES[name] + tuple(extra for extra in EXTRA_COLUMNS.get(name, ()) if extra in table)
     if set(table) != set(columns):
         raise ValueError(f"table {name} has the columns {sorted(table)}, not {sorted(columns)}")
     shown = {column: table[column] for column in columns}

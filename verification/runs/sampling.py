@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from scipy.interpolate import LinearNDInterpolator
+from scipy.ndimage import label, maximum
 
 from sam.scene import Result
 
@@ -64,6 +65,29 @@ def gridded(x: np.ndarray, y: np.ndarray, *values: np.ndarray) -> tuple[np.ndarr
     fields = np.full((len(values), xs.size, ys.size), np.nan)
     fields[:, i, j] = values
     return xs, ys, *fields
+
+
+def spots_of(surface: Mapping[str, Sequence]) -> list[list]:
+    """Spots of a table surface, whose cells join at their sides, the largest force of a state first: state,
+    number, x and y of the centre of force, area, force, largest pressure and cells of each, in SI units.
+    """
+    columns: list[list] = [[] for _ in range(8)]
+    for state in dict.fromkeys(surface["state"]):
+        x, y, p = gridded(*rows_of(surface, state, "x_m", "y_m", "p_Pa"))
+        cell = float(np.ptp(x) / (x.size - 1) * np.ptp(y) / (y.size - 1))
+        of, count = label(p > 0.0)
+        cells, load, along, across = (
+            np.bincount(of.ravel(), (weight * np.ones_like(p)).ravel(), count + 1)[1:]
+            for weight in (1.0, p, p * x[:, None], p * y)
+        )
+        first = np.argsort(-load, kind="stable")
+        top = np.array(maximum(p, of, np.arange(1, count + 1)))
+        found = along / load, across / load, cell * cells, cell * load, top, cells.astype(int)
+        columns[0] += [state] * count
+        columns[1] += range(1, count + 1)
+        for column, values in zip(columns[2:], found, strict=True):
+            column += values[first].tolist()
+    return columns
 
 
 def plane_field_on(x: np.ndarray, z: np.ndarray, axisymmetric: Tables, column: str) -> np.ndarray:

@@ -10,15 +10,13 @@ import numpy as np
 import pyvista as pv
 
 from sam.scene import UNLOADED
-from verification.figures.places import interface_of
+from verification.figures.places import YIELDED, interface_of
 from verification.figures.space.meshes import MICRO, RAISED, Found, around, drawn_at
-from verification.figures.space.view import BODY, FLAT, LIT, Picture
+from verification.figures.space.view import BODY, FLAT, LIT, Picture, length_unit
 
 GIGA, NANO, PERCENT = 1e-9, 1e9, 1e2
 RELIEF = 0.25
 """Heights are drawn over about this share of the width."""
-YIELDED = 0.01
-"""Of the largest plastic strain: where the plastic zone is drawn to end."""
 NOTHING = 1e-6
 """Of the largest displacement under load: one that is smaller everywhere is rounding."""
 VALUE = {"scalars": "value"}
@@ -88,8 +86,9 @@ def imprint(found: Found) -> Picture | None:
     rough = "height_m" in whole.point_data
     sheet = whole if rough else around(whole, np.abs(whole.point_data[RAISED]) > 0.05 * largest)
     height = MICRO * (_known(sheet, "height_m") + sheet.point_data[RAISED])
-    label = "residual displacement $-u_z$ [nm]"
-    return _coloured("Imprint after unloading", label, sheet, height, values=NANO * sheet.point_data[RAISED])
+    unit, name = length_unit(MICRO * largest)
+    label, values = f"residual displacement $-u_z$ [{name}]", unit * MICRO * sheet.point_data[RAISED]
+    return _coloured("Imprint after unloading", label, sheet, height, values=values)
 
 
 def _known(sheet: pv.StructuredGrid, name: str) -> np.ndarray:

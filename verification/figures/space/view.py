@@ -35,11 +35,18 @@ document.documentElement.append(document.getElementById("over").content)
 </script>"""
 """The scene empties the body of its page: what lies over it waits in the head and is then added."""
 COLOURS = "viridis"
+LOW = 0.2
+"""Of the width: bodies that are lower have less room for numbers along z."""
 BODY = "#d0d0d0"
 """Of surfaces without a value."""
 LIT = {"ambient": 0.4, "diffuse": 0.6, "specular": 0.0, "smooth_shading": True}
 FLAT = {"lighting": False}
 """Colours as in the colour bar: nothing shaded."""
+
+
+def length_unit(size: float) -> tuple[float, str]:
+    """The unit of lengths up to a size in µm: how many of it are 1 µm, and its name."""
+    return (1e3, "nm") if size < 0.1 else (1.0, "$\\mu$m")
 
 
 @dataclass(frozen=True)
@@ -77,9 +84,10 @@ def drawn(picture: Picture) -> Figure:
     ends[2] /= picture.exaggeration
     with style():
         figure = new_figure(6.2, 4.4, "none")
-        panel = figure.add_axes((0.03, 0.06, 0.78, 0.86), projection="3d", proj_type="ortho")
+        panel = figure.add_axes((-0.03, 0.06, 0.78, 0.86), projection="3d", proj_type="ortho")
         panel.set(xlim=ends[0], ylim=ends[1], zlim=ends[2], facecolor="none")
-        panel.set(xlabel="$x$ [$\\mu$m]", ylabel="$y$ [$\\mu$m]", zlabel="$z$ [$\\mu$m]")
+        (unit, name), upright = length_unit(np.abs(ends[2]).max()), np.ptp(picture.box[2])
+        panel.set(xlabel="$x$ [$\\mu$m]", ylabel="$y$ [$\\mu$m]", zlabel=f"$z$ [{name}]")
         panel.set_box_aspect(np.ptp(picture.box, axis=1), zoom=1.05)
         panel.view_init(np.degrees(np.arcsin(towards[2])), np.degrees(np.arctan2(towards[1], towards[0])))
         panel.grid(False)
@@ -87,6 +95,8 @@ def drawn(picture: Picture) -> Figure:
             axis.set_pane_color((1.0, 1.0, 1.0, 0.0))
             axis.set_major_locator(MaxNLocator(4))
             axis.labelpad = 6
+        panel.zaxis.set_major_locator(MaxNLocator(2 if upright < LOW * np.ptp(picture.box[0]) else 4))
+        panel.zaxis.set_major_formatter(lambda z, _: f"{unit * z:.4g}".replace("-", "\N{MINUS SIGN}"))
         figure.draw_without_rendering()
         x, y, _ = proj_transform(*(corners / times).T, panel.get_proj())
         (x0, y0), (x1, y1) = (panel.transData + figure.transFigure.inverted()).transform(np.stack([x, y], 1))
@@ -95,7 +105,7 @@ def drawn(picture: Picture) -> Figure:
         bodies.set_axis_off()
         figure.suptitle(picture.title, fontsize=9.5, fontweight="bold")
         colours = ScalarMappable(Normalize(*picture.limits), COLOURS)
-        bar = figure.add_axes((0.85, 0.2, 0.02, 0.6))
+        bar = figure.add_axes((0.87, 0.2, 0.02, 0.6))
         figure.colorbar(colours, cax=bar, label=picture.label).ax.grid(False)
         figure.text(0.99, 0.015, picture.said, ha="right", fontsize=8)
     return figure
