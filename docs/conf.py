@@ -76,7 +76,7 @@ SOURCES = sorted(
 CODE = hashlib.sha256(b"".join(path.read_bytes() for path in SOURCES)).hexdigest()
 """Where it has changed, everything is run and drawn anew."""
 SEEN = ROOT / "docs" / "_build" / "code"
-LINK = re.compile(r"(!?\[(?:[^][]|\[[^]]*\])*\]\()([^)\s:]+)\)")
+LINK = re.compile(r"(!?\[(?:[^][]|\[[^]]*\])*\]\()([^)\s:#][^)\s:]*)\)")
 INCLUDED = re.compile(r"^```\{include\} \.\./(\S+)\n```$", re.MULTILINE)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 import samfem
 
-side, x, random = 64e-6, np.arange(64) / 64, np.random.default_rng(3)
+side, x, random = 64e-6, np.arange(64) / 64, np.random.default_rng(9)
 heights = 0.5e-6 * np.add.outer(x, 0 * x)  # the tilt; your own array takes the place of these lines
 for kx, ky, phase in zip(*random.integers(-4, 5, (2, 12)), random.uniform(0, 6.28, 12), strict=True):
     heights += 0.04e-6 * np.cos(2 * np.pi * np.add.outer(kx * x, ky * x) + phase)

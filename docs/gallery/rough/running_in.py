@@ -3,7 +3,7 @@
 Running-in: friction falls, wear slows down
 ===========================================
 A rough surface with a weak outer layer slides under a chemical film; where that breaks down, friction is high
-and steel is worn off. So few cells tell the worn volume to a factor of two or three, as its uncertainty says.
+and steel is worn off. So few cells tell no more than the order of the worn volume, as its uncertainty says.
 """
 
 import matplotlib.pyplot as plt
@@ -18,7 +18,7 @@ depths = [1e-6 * z for z in (0, 0.08, 0.17, 0.28, 0.42, 0.6, 0.85, 1.2, 1.7, 2.5
 scene = samfem.Scene(
     body={**elastic, "plasticity": steel},
     counterbody={"shape": "flat", **elastic},
-    surface={**rough, "seed": 8},
+    surface={**rough, "seed": 11},
     loading={"force": "0.3 N", "steps": 3, "unload": True, "cycles": 4},
     friction={"law": "chemical-film", "low": 0.1, "high": 0.4, **film, "strain_limit": 0.02},
     wear={"strain_limit": 0.02, "smoothing_window": 5},
