@@ -147,7 +147,7 @@ def changed(results, gate, **values):
 
 def said(results) -> str:
     found = evidence_of(results)
-    return sentence(found.stored, found.pairs)
+    return sentence(found.stored, found.pairs, 0.15)
 
 
 def test_failed_gates_are_told_apart_by_what_they_are_about(results):
@@ -159,7 +159,9 @@ def test_failed_gates_are_told_apart_by_what_they_are_about(results):
     assert "none failed. Of" in said(held)
     one = copy.deepcopy(held)
     one["cases"][0]["status"] = "not run"
-    assert said(one).endswith(" 1 further case: 1 did not run.")
+    assert said(one).endswith(
+        f"{len(one['cases']) - 1} of the {len(one['cases'])} cases ran; the others: 1 did not run."
+    )
     words = "1 failed (none about a result; 1 about a cost)"
     assert words in said(changed(held, "peers.step-16", status="failed"))
     assert "1 failed (1 about a result)" in said(changed(held, "peers.same-solution", status="failed"))
@@ -217,18 +219,26 @@ def answer_to(results, words):
 
 def test_an_answer_is_the_worst_of_its_gates_or_that_none_ran(results):
     words, gate = "Do SAM and FEM agree on rough", "rough-contact-0-2.load-3"
-    (load, *_) = answer_to(results, words).findings
+    held = answer_to(results, words)
+    load, gates = held.findings[0], int(held.badge.split()[0])
+    assert "(24 comparisons, half of them within 0.22" in load.words
+    assert (
+        answer_to(results, "Do SAM and FEM give the same pr").findings[-1].words.endswith("(3 comparisons)")
+    )
+    assert held.badge == f"{gates} of {gates} gates"
     assert load.allowed == "≤ 1\N{NO-BREAK SPACE}%"
     assert load.worst.name != "rough-contact-0-2" and load.red == []
     failed = answer_to(changed(results, gate, error=0.031, status="failed"), words)
     (load, *_) = failed.findings
     assert (load.value, load.worst.name, load.red) == ("3.1\N{NO-BREAK SPACE}%", "rough-contact-0-2", [gate])
-    assert failed.status == "failed"
+    assert (failed.status, failed.badge) == ("failed", f"{gates - 1} of {gates} gates")
     new = copy.deepcopy(results)
     next(case for case in new["cases"] if case["name"] == "peers")["status"] = "not run"
     answer = answer_to(new, "How does samfem compare")
     assert (answer.findings, answer.status, answer.cost) == ([], "not run", "")
     assert answer_to(new | {"level": "quick"}, "How does samfem compare").status == "full level"
+    next(case for case in new["cases"] if case["name"] == "peers")["unmet"] = "run only when named"
+    assert answer_to(new | {"level": "quick"}, "How does samfem compare").status == "only when named"
 
 
 @pytest.fixture(scope="module")

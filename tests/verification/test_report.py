@@ -319,7 +319,7 @@ def test_page_says_what_held_and_why(tmp_path):
     run(tmp_path / "out")
     index = page_of(tmp_path / "out", "index.html").text
     assert "2 of 4 gates hold, 2 failed" in index
-    assert "Quick level: 4 of the 5 gates; 1 further case: 1 of the full level." in index
+    assert "3 of the 4 cases ran; the others: 1 of the full level (--level full)." in index
     text = page_of(tmp_path / "out").text
     assert "2 of 3 cases failed." in text and "Not in this report" in text
     places = [text.index(f"{each} case") for each in ("Bad", "Good", "Slow")]

@@ -18,7 +18,16 @@ from verification.judging import LIMITS, RowStatus
 from verification.runs.store import short
 from verification.suite.pages.headline import headline_of
 from verification.suite.pages.older import pairs_in, times_in
-from verification.suite.pages.stored import LIMIT_SIGNS, PAGES, RED, ShownCase, Stored
+from verification.suite.pages.stored import (
+    ELSEWHERE,
+    LIMIT_SIGNS,
+    NAMED,
+    PAGES,
+    RED,
+    ShownCase,
+    Stored,
+    group_of,
+)
 from verification.text.console import number
 from verification.text.readable import with_time
 
@@ -26,6 +35,10 @@ FEM, EXACT = "finite elements", "closed form or published value"
 BANDS = (0.01, 0.05)
 """Of the picture of all pairs, and of the sentence above it."""
 OPEN, REPORTED, RESULT, UNGATED = "open", "reported", "a result", "no gate"
+FULL, NAMED_ONLY = "full level", "only when named"
+UNANSWERED = {FULL: "Not run at the quick level.", NAMED_ONLY: "Its case runs only when named."}
+"""Status of an answer without a number -> why it has none."""
+ENOUGH = 5  # comparisons to say within what half of them lie
 NORMALISED = " over the larger of "
 """Such an error is no share of the quantity, but of what the refinement leaves."""
 
@@ -162,7 +175,7 @@ class Finding:
 
 
 def largest(evidence: Evidence, words: str, *of: str) -> Iterator[Finding]:
-    """The largest relative difference, how many there are, and within what half of them lie."""
+    """The largest relative difference, of how many, and within what half of them lie if that says more."""
     begins = [each.split(": ", 1) for each in of if ": " in each]
     found = [
         (gate["error"], each, gate)
@@ -172,28 +185,33 @@ def largest(evidence: Evidence, words: str, *of: str) -> Iterator[Finding]:
     found += [(abs(pair.error), pair.case, pair.gate) for pair in evidence.pairs if pair.is_of(begins)]
     if found:
         error, worst, by = max(found, key=lambda each: each[0])
-        within = f" ({len(found)} comparisons, half of them within {percent(median(e for e, *_ in found))})"
+        count, half = len(found), percent(median(e for e, *_ in found))
+        within = f", half of them within {half}" if count >= ENOUGH and half != percent(error) else ""
         cases, gates = _once(each for _, each, _ in found), [gate for *_, gate in found if gate]
         allowed = _allowed(by, percent) if by else UNGATED
-        text = f"{words}{within * (len(found) > 1)}"
+        text = f"{words} ({count} comparisons{within})" if count > 1 else words
         yield Finding(text, percent(error), cases, worst, gates, allowed, error)
 
 
 def value(
-    evidence: Evidence, words: str, gate: str, shown: str = "{}", *, in_percent: bool = False
+    evidence: Evidence, words: str, gate: str, *how: str, in_percent: bool = False
 ) -> Iterator[Finding]:
-    """The value of a gate, or its error where it has none. shown: how, with {} for the number."""
+    """The value of a gate, or its error where it has none. how: it and its tolerance are shown, with {} for
+    the number.
+    """
+    shown, limit = (*how, *("{}", "")[len(how) :])
     show = percent if in_percent else lambda of: number(of, 3)
     for each, row in evidence.gates(gate):
         found = row["error"] if row["value"] is None else row["value"]
         if found is not None:
-            allowed = _allowed(row, show) if row["metric"] in ("at_most", "at_least") else ""
+            bound = row["metric"] in ("at_most", "at_least")
+            allowed = limit.format(show(row["tolerance"])) or (_allowed(row, show) if bound else "")
             yield Finding(words, shown.format(show(found)), (each,), each, [row], allowed)
 
 
-def share(evidence: Evidence, words: str, gate: str, shown: str = "{}") -> Iterator[Finding]:
+def share(evidence: Evidence, words: str, gate: str, *how: str) -> Iterator[Finding]:
     """The same in per cent."""
-    return value(evidence, words, gate, shown, in_percent=True)
+    return value(evidence, words, gate, *how, in_percent=True)
 
 
 def spread(evidence: Evidence, words: str, gates: str, shown: str) -> Iterator[Finding]:
@@ -285,6 +303,12 @@ class Answer:
         return [name for each in self.findings for name in each.red]
 
     @property
+    def badge(self) -> str:
+        """How many of its gates hold; the status where it has none."""
+        gates = {gate["id"] for each in self.findings for gate in each.gates}
+        return f"{len(gates) - len(set(self.red))} of {len(gates)} gates" if gates else self.status
+
+    @property
     def about(self) -> str:
         """What the failed gates are about, empty without any."""
         return " and ".join(dict.fromkeys(map(kind_of, self.red)))
@@ -309,15 +333,23 @@ def _answer(question: Mapping, evidence: Evidence) -> Answer:
     findings = [each for kind, *part in question["parts"] for each in PARTS[kind](evidence, *part)]
     behind = {each.name: each for finding in findings for each in finding.cases}
     gated = [finding.red for finding in findings if finding.gates]
-    if not findings:
-        status = (
-            ("full level" if evidence.stored.quick else str(RowStatus.NOT_RUN)) if question["parts"] else OPEN
-        )
+    waiting = {why for name, _, why in evidence.stored.waiting if group_of(name)["name"] == question["page"]}
+    if not question["parts"]:
+        status = OPEN
+    elif not findings and waiting == {ELSEWHERE[NAMED]}:
+        status = NAMED_ONLY
+    elif not findings:
+        status = FULL if evidence.stored.quick else str(RowStatus.NOT_RUN)
     else:
         status = str(RowStatus.FAILED if any(gated) else RowStatus.PASSED) if gated else REPORTED
     seconds = [each.case["seconds"] or 0.0 for each in behind.values()]
     cost = f"{len(seconds)} case{'s' * (len(seconds) > 1)}, {with_time(sum(seconds))}" if seconds else ""
     return Answer(question, findings, status, cost, origins(behind.values()), list(behind))
+
+
+def unanswered(status: str) -> str:
+    """Why an answer of this status has no number."""
+    return UNANSWERED.get(status, "No case of this report answers it.")
 
 
 def origins(cases: Iterable[ShownCase]) -> list[tuple[str, str]]:
@@ -335,8 +367,14 @@ def kind_of(gate: str) -> str:
     return next((kind for kind, names in kinds if any(fnmatch(gate, name) for name in names)), RESULT)
 
 
-def sentence(stored: Stored, pairs: Sequence[Pair]) -> str:
-    """What stands above the picture."""
+def of_fields(answers: Iterable[Answer]) -> float:
+    """The largest difference of whole fields among the answers, 0 without any."""
+    fields = (each.deviation for answer in answers for each in answer.findings if "(L2)" in each.words)
+    return max(fields, default=0.0)
+
+
+def sentence(stored: Stored, pairs: Sequence[Pair], fields: float) -> str:
+    """What stands above the picture. fields: as `of_fields` says."""
     ran, counts = len(stored.gates), Counter(kind_of(gate["id"]) for _, gate in stored.red)
     red, rest = counts.total(), "" if counts[RESULT] else f"none about {RESULT}; "
     about = ", ".join(f"{count} about {kind}" for kind, count in counts.items() if count)
@@ -346,11 +384,12 @@ def sentence(stored: Stored, pairs: Sequence[Pair]) -> str:
         return f"{text}.{end}"
     inside = [sum(abs(pair.error) <= band for pair in pairs) for band in BANDS]
     worst = max(pairs, key=lambda pair: abs(pair.error))
+    whole = f" Differences of whole fields (L2) are among the answers, up to {percent(fields)}."
     return (
-        f"{text}. Of {len(pairs)} values with a reference, {inside[0]} agree within {100 * BANDS[0]:g} % and "
-        f"{inside[1]} within {100 * BANDS[1]:g} %; the largest deviation is {100 * abs(worst.error):.0f} % "
-        f"({worst.quantity.split(' [')[0]}, {worst.case.case['title']}"
-        f"{'' if worst.gate else '; it has no gate'}).{end}"
+        f"{text}. Of {len(pairs)} single values with a reference, {inside[0]} agree within "
+        f"{100 * BANDS[0]:g} % and {inside[1]} within {100 * BANDS[1]:g} %; the largest deviation is "
+        f"{100 * abs(worst.error):.0f} % ({worst.quantity.split(' [')[0]}, {worst.case.case['title']}"
+        f"{'' if worst.gate else '; it has no gate'}).{whole * bool(fields)}{end}"
     )
 
 

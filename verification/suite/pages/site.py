@@ -15,6 +15,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from PIL import Image
 
@@ -28,10 +29,12 @@ from verification.suite.pages.answers import (
     far,
     first_numbers,
     kind_of,
+    of_fields,
     origins,
     pairs_of,
     percent,
     sentence,
+    unanswered,
 )
 from verification.suite.pages.headline import PAGE, headline_of
 from verification.suite.pages.mathml import formula, with_scripts
@@ -212,6 +215,7 @@ FILTERS = {
     "time": with_time,
     "kind_of": kind_of,
     "percent": percent,
+    "unanswered": unanswered,
     "page_of": page_of,
     "numeric": numeric,
     "sources": sources,
@@ -308,10 +312,17 @@ def _group_page(
 
 def _contact(stored: Stored, look: Look) -> dict | None:
     """The picture of a contact on the first screen, of the case that is named for it or else of any."""
-    case, name = PAGES["first"]["picture"]
+    case, name, words = PAGES["first"]["picture"]
     figures = [(each, figure) for each in stored.ran.values() for figure in each.case["figures"]]
     figures.sort(key=lambda one: f"{case}-{name}" not in one[1]["png"])
-    return next(({"of": each, **figure_view(figure, look)} for each, figure in figures), None)
+    if not figures:
+        return None
+    of, figure = figures[0]
+    data, caption = look.folder / figure.get("csv", ""), f"{of.case['title']}: {figure['title']}"
+    if f"{case}-{name}" in figure["png"] and data.is_file():
+        *_, own, fem = np.loadtxt(data, delimiter=",", skiprows=1, unpack=True)
+        caption = words.format(percent(np.abs(own - fem).max() / fem.max()))
+    return {**figure_view(figure, look), "of": of, "caption": caption}
 
 
 def _index(template: str, evidence: Evidence, answers: list[Answer], look: Look) -> str:
@@ -323,7 +334,8 @@ def _index(template: str, evidence: Evidence, answers: list[Answer], look: Look)
         contact=_contact(stored, look),
         numbers=first_numbers(evidence),
         cases=stored.ran,
-        sentence=sentence(stored, evidence.pairs),
+        fields=(fields := of_fields(answers)),
+        sentence=sentence(stored, evidence.pairs, fields),
         picture=f"{PICTURE}.png" if evidence.pairs else "",
         far=far(evidence.pairs),
         worst=max((abs(pair.error) for pair in evidence.pairs), default=None),

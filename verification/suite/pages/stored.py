@@ -98,15 +98,14 @@ class Stored:
 
     @property
     def further(self) -> str:
-        """How many cases are not in the report, and why; empty where all are."""
+        """How many cases are in the report, and why the others are not; empty where all are."""
+        if not self.waiting:
+            return ""
         known = (*ELSEWHERE.values(), "")
         whys = Counter(why if why in known else "could not run here" for *_, why in self.waiting)
         said = ", ".join(f"{count} {why or 'did not run'}" for why, count in whys.most_common())
-        said = f"{len(self.waiting)} further case{'s' * (len(self.waiting) > 1)}: {said}" if said else ""
-        if not self.quick:
-            return said
-        level = f"Quick level: {len(self.gates)} of the {len(self.results['gates'])} gates"
-        return f"{level}; {said}" if said else level
+        said = said.replace(ELSEWHERE["full"], f"{ELSEWHERE['full']} (--level full)")
+        return f"{len(self.ran)} of the {len(self.ran) + len(self.waiting)} cases ran; the others: {said}"
 
     @property
     def red(self) -> list[tuple[ShownCase, Mapping]]:
