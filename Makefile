@@ -43,7 +43,7 @@ wheel: $(INSTALLED)
 docs: $(DOCS_INSTALLED)
 	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going docs docs/_build/html
 	$(BIN)/python docs/tools/check_links.py docs/_build/html
-	find docs/auto_gallery -name '*.ipynb' -print0 | xargs -0 -n 1 -P 2 $(BIN)/jupyter-execute --timeout 120
+	$(BIN)/python docs/tools/run_notebooks.py
 
 # The tests again for each of the processors, languages, users, ... of other machines: ENVIRONMENTS="no-home ascii" for some,
 # TESTS=tests/sam/test_wear.py for some of the tests.

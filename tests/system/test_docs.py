@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The documentation is right: its commands, scenes, file names and symbols are checked.
 
-`make docs` runs the stories of the guide, one command after the other in an empty folder, and checks all
-links; `.ci/wheel` runs the first story with the package installed as its reader installs it.
+`make docs` runs the stories of the guide, each in an empty folder, and checks all links.
 """
 
 import re
