@@ -35,6 +35,8 @@ BELOW, NEVER = "<", "not reached"
 DEEPER = 4.5
 """p0 of the elastic contact over the initial yield stress: between the two spheres of the case, which have 3
 and 6.2."""
+DEEPEST = 6.5
+"""The same, up to which the deeper one tells: beyond, no error was measured."""
 YIELDS = 1.6
 """The same at first yield below a sphere: 1.613 (nu = 0.3)."""
 MOVING = "moving"
@@ -125,9 +127,10 @@ def kind_of(scene: Scene) -> str | None:
     ratio = _load_ratio(scene)
     if ratio is None or ratio < YIELDS * (scene.coefficient == 0.0):
         return ELASTIC
-    if scene.coefficient:
+    if scene.coefficient and ratio <= DEEPEST:
         return SLIDING
-    return YIELDING if ratio < DEEPER else DEEP
+    limits = {DEEPER: YIELDING, DEEPEST: DEEP, math.inf: None}  # beyond, errors are larger
+    return next(kind for limit, kind in limits.items() if ratio <= limit)
 
 
 def _load_ratio(scene: Scene) -> float | None:
