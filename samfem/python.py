@@ -48,6 +48,7 @@ from verification.runs.tables import read_any_table
 from verification.text.console import followed
 from verification.text.readable import in_working_unit
 
+load = load_scene
 SHOWN = ("p_max_Pa", "contact_radius_m", "approach_m", "peeq_max", "friction_coefficient", "wear_volume_m3")
 """Quantities of the short representation, those of them that are not zero."""
 
@@ -244,22 +245,6 @@ class Sweep:
         return f"<p><b>{html.escape(repr(self))}</b></p>{self.frame.to_html(index=False, max_rows=20)}"
 
 
-def load(path: str | Path) -> Scene:
-    """The scene in a TOML file.
-
-    Parameters
-    ----------
-    path
-        Of the file; files that it names are read from its folder.
-
-    Raises
-    ------
-    SceneError
-        With every problem of the file: key, value and what is allowed.
-    """
-    return load_scene(path)
-
-
 def plan(scene: Scene | str | Path, model: str = SAM) -> Plan:
     """What the models will compute of a scene, what is left out and why, the error that the grid leaves, time
     and memory. Solves nothing.
@@ -420,11 +405,13 @@ def sweep(
     program = f"from {answer.__module__} import answer; answer()"
     with TemporaryDirectory() as temporary, TemporaryFile() as said, followed(progress) as told:
         folder = Path(out or Path(temporary, "sweep")).absolute()
-        found = os.environ | {
-            "PYTHONPATH": os.pathsep.join(filter(None, sys.path))
-        }  # where a notebook has it
+        path = os.pathsep.join(filter(None, sys.path))  # a notebook may have extended it
         child = subprocess.Popen(
-            [sys.executable, "-c", program], stdin=PIPE, stdout=PIPE, stderr=said, env=found
+            [sys.executable, "-c", program],
+            stdin=PIPE,
+            stdout=PIPE,
+            stderr=said,
+            env={**os.environ, "PYTHONPATH": path},
         )
         assert child.stdin is not None and child.stdout is not None
         with child:
@@ -502,7 +489,7 @@ def _off(run: Run) -> str:
 
 
 def _scene(scene: Scene | str | Path) -> Scene:
-    return scene if isinstance(scene, Scene) else load_scene(scene)
+    return scene if isinstance(scene, Scene) else load(scene)
 
 
 def _run_of(result: Result, scene: Scene) -> Run:

@@ -53,7 +53,7 @@ right.plot(
     friction,
     [shakedown.upper_bound(mu) for mu in friction],
     "k:",
-    label="upper bound for a load that travels, with the surface",
+    label="load that travels: upper bound at the surface",
 )
 right.set(xlabel="coefficient of friction", ylabel="p$_0$ / k at the shakedown limit", ylim=(0, None))
-right.legend()
+right.legend(fontsize="small", loc="lower left")

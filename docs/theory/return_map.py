@@ -34,5 +34,5 @@ for axes, back, radius, title in (
     axes.plot(*begin, "o", color="black", markersize=4)
     axes.text(begin[0] - 0.2, begin[1] - 0.02, "s")
     axes.set(title=title, xlim=(-1.3, 1.9), ylim=(-1.3, 1.7), aspect="equal", xticks=[], yticks=[])
-    axes.legend(loc="lower left", frameon=False, fontsize="small")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0.02), ncols=2, frameon=False, fontsize="small")
     axes.spines[:].set_visible(False)

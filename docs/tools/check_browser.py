@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The built site in a browser, by hand: accessibility by axe-core, sideways scrolling, and the search.
 
-    python3 -m venv /tmp/browser && /tmp/browser/bin/pip install playwright axe-playwright-python
-    apt-get install --no-install-recommends chromium     # or: /tmp/browser/bin/playwright install chromium
-    /tmp/browser/bin/python docs/tools/check_browser.py docs/_build/html [FOLDER for screenshots]
+    python3 -m venv browser && browser/bin/pip install playwright axe-playwright-python
+    apt-get install --no-install-recommends chromium     # or: browser/bin/playwright install chromium
+    browser/bin/python docs/tools/check_browser.py docs/_build/html [FOLDER for screenshots]
 
 Each page is opened at 1280 and 390 pixels, light and dark.
 """
