@@ -365,7 +365,7 @@ def test_a_plan_names_the_law_and_the_advice_counts_the_weaker_one():
         assert after[stage] == before[stage] + ", law linear of its own at z < 1.2e-06 m"
     idle = [one.reason for one in sam.plan(own).left_out if one.stage == "strain limit of the layer"]
     assert idle == ["no [wear]"]
-    weak = body | {"layer": {"law": "perfect", "yield_stress": 0.4e9}}
+    weak = body | {"layer": {"law": "perfect", "yield_stress": 1e9}}
     for plasticity, kind in ((body, "yielding"), (weak, "deeply yielding")):
         light = scene(body={"plasticity": plasticity}, loading={"force": 0.17})
         assert advice_of(light, ["sam"])["kind"] == kind
