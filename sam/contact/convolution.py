@@ -478,11 +478,13 @@ class Transforms:
         self.counters.ffts += int(np.prod(field.shape[:-2], dtype=int))
         field = field.astype(self.real, copy=False)
         if not self.mirror[1]:
-            rows = fft.rfft(field, n=self.lengths[1], axis=-1)  # rows of zeros need none
-            spectrum = fft.fft(rows, n=self.lengths[0], axis=-2)
-            both = np.stack([spectrum[..., : self.half[0] + 1, :], spectrum[..., self._flip, :]], axis=-1)
-            columns = np.ascontiguousarray(np.moveaxis(both, (-3, -2), (0, 1)))
-            columns *= self._phases(odd_x, odd_y, field.ndim - 3)
+            cells_first = np.ascontiguousarray(np.moveaxis(field, (-2, -1), (0, 1)))
+            rows = fft.rfft(cells_first, n=self.lengths[1], axis=1)  # rows of zeros need none
+            spectrum = fft.fft(rows, n=self.lengths[0], axis=0, overwrite_x=True)
+            columns = np.empty((self.half[0] + 1, *spectrum.shape[1:], 2), dtype=self.complex)
+            phases = self._phases(odd_x, odd_y, field.ndim - 3)
+            np.multiply(spectrum[: self.half[0] + 1], phases[..., 0], out=columns[..., 0])
+            np.multiply(spectrum[self._flip], phases[..., 1], out=columns[..., 1])
             return columns.view(self.real)
         rows = _by_parity(field, odd_y, n=self.cells[1], half=self.half[1], axis=-1)
         sign = np.where(odd_y, -1, 1).reshape(-1, *[1] * (field.ndim - 1)).astype(self.real)  # (-i)(-i)
@@ -497,14 +499,14 @@ class Transforms:
         """(N_x + 1, N_y + 1, n, ..., r) to (n, ..., nx, ny), kept."""
         self.counters.ffts += int(np.prod(columns.shape[2:-1], dtype=int))
         if not self.mirror[1]:
-            phased = columns.view(self.complex) * self._phases(odd_x, odd_y, columns.ndim - 4)
-            spectrum = np.empty((*phased.shape[2:-1], self.lengths[0], phased.shape[1]), dtype=self.complex)
-            both = np.moveaxis(phased, (0, 1), (-3, -2))
-            spectrum[..., self._flip, :] = both[..., 1]
-            spectrum[..., : self.half[0] + 1, :] = both[..., 0]
+            both, phases = columns.view(self.complex), self._phases(odd_x, odd_y, columns.ndim - 4)
+            spectrum = np.empty((self.lengths[0], *both.shape[1:-1]), dtype=self.complex)
+            spectrum[self._flip] = both[..., 1] * phases[..., 1]
+            np.multiply(both[..., 0], phases[..., 0], out=spectrum[: self.half[0] + 1])
             # no other rows are wanted
-            rows = fft.ifft(spectrum, axis=-2, overwrite_x=True)[..., : self.cells[0], :]
-            return fft.irfft(rows, n=self.lengths[1], axis=-1)[..., : self.cells[1]]
+            rows = fft.ifft(spectrum, axis=0, overwrite_x=True)[: self.cells[0]]
+            found: Real = fft.irfft(rows, n=self.lengths[1], axis=1)[:, : self.cells[1]]
+            return np.ascontiguousarray(np.moveaxis(found, (0, 1), (-2, -1)))
         if self.mirror[0]:
             spectrum = np.ascontiguousarray(np.moveaxis(columns[..., 0], (0, 1), (-2, -1)))
             rows = _by_parity(spectrum, odd_x, n=self.cells[0], half=self.half[0], axis=-2, inverse=True)

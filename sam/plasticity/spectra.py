@@ -44,6 +44,7 @@ CACHED_BOXES = 4  # spectra that are kept: the boxes of a history, or of both gr
 # tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough
 SINGLE = 5e-5
 GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3)  # points of the mean over a cell, in each direction
+WAVES_AT_ONCE = 256  # whose rows of coefficients are written together: 64 and 1024 take as long
 NEAR = 4  # cells: up to there stresses are means over the observed cell
 
 
@@ -114,6 +115,13 @@ def _with_lag_before(kernel: Array, odd_x: Parities, odd_y: Parities) -> Array:
     return np.concatenate([sign_y * kernel[..., 1:2], kernel], axis=-1)
 
 
+def _by_wave(rows: Reals, out: Reals) -> None:
+    """Rows (6, columns, waves) into (waves, 6, columns), some waves at a time, which stay in the cache."""
+    for start in range(0, rows.shape[-1], WAVES_AT_ONCE):
+        some = slice(start, start + WAVES_AT_ONCE)
+        out[some] = rows[..., some].transpose(2, 0, 1)
+
+
 class BoxSpectra:
     """Real transforms of coefficients of cuboids, with mu = 1; stored: of which wave numbers."""
 
@@ -124,7 +132,7 @@ class BoxSpectra:
         every = np.ones((nx + 1, ny + 1), dtype=bool)
         self.stored = np.flatnonzero(np.triu(every)) if exchange else slice(None)
         waves = every.ravel()[self.stored].size
-        self.strain_to_stress = np.empty((6 * layers, waves, 6 * layers), dtype=self.real)
+        self.strain_to_stress = np.empty((waves, 6 * layers, 6 * layers), dtype=self.real)
         mean = LayerStress(
             CellMeans(cuboids.lags), _points(faces), faces, cuboids.nu, transform=self._of_block
         )
@@ -132,7 +140,7 @@ class BoxSpectra:
         for i in range(layers):
             mean.of(i, spectrum)
             spectrum[TWICE] *= -1
-            self.strain_to_stress[i::layers] = np.moveaxis(spectrum.reshape(6, 6 * layers, waves), 1, -1)
+            _by_wave(spectrum.reshape(6, 6 * layers, waves), self.strain_to_stress[:, i::layers])
         self.strain_to_displacement = self._of_surface(surface_displacement_coefficients(cuboids), ODD_X)
 
     @cached_property
@@ -143,8 +151,8 @@ class BoxSpectra:
         if not isinstance(self.stored, slice):
             weight[np.not_equal(*np.divmod(self.stored, self.half[1] + 1))] *= 2
         layers = range(self.cuboids.layers)
-        blocks = [self.strain_to_stress[i :: len(layers), :, i :: len(layers)] for i in layers]
-        stress: Array = np.einsum("kipj,p->ijk", np.stack(blocks), weight).reshape(36, -1)
+        blocks = [self.strain_to_stress[:, i :: len(layers), i :: len(layers)] for i in layers]
+        stress: Array = np.einsum("kpij,p->ijk", np.stack(blocks), weight).reshape(36, -1)
         stress[TWICE] *= -1
         stress[ODD] = 0.0
         return stress.reshape(6, 6, -1)
@@ -254,9 +262,9 @@ class BoxOperator:
         matrices, shape = self.spectra.strain_to_stress, transformed.shape  # paper Eq. 7, second sum
         waves = transformed.reshape(-1, *shape[2:])[self.spectra.stored]
         if shape[-1] == 1:  # bound by the memory of the matrices: einsum reads them faster than matmul
-            product = np.einsum("ipj,pj->ip", matrices, waves[..., 0]).T[..., None]
+            product = np.einsum("pij,pj->pi", matrices, waves[..., 0])[..., None]
         else:
-            product = matrices.swapaxes(0, 1) @ waves
+            product = matrices @ waves
         if self.exchange:
             product = self._exchanged(product)
         return self.real(self.mu) * product.reshape(shape)
