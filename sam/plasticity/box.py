@@ -6,7 +6,7 @@ that a solve is expected to go through.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, floor
 
 import numpy as np
@@ -50,11 +50,13 @@ def first_extent(
     path: Sequence[tuple[float, float]] = ((0.0, 0.0),),
 ) -> Extent:
     """Box around the contact and the cells that would yield; limit: yield stress (nz,) in Pa;
-    anywhere: as wide as the grid, below a rough surface; path: places of the load in m.
+    anywhere: below a rough surface, just around the contact, as wide as the grid if that moves;
+    path: places of the load in m.
     """
     exceeds = yielding(peak.mises, limit[:, None])
     if anywhere:
-        return Extent(Window(0, 0, grid.nx, grid.ny), _layers(np.flatnonzero(exceeds.any(axis=1)), grid))
+        window = around(peak.contact.pressure > 0) if len(path) == 1 else grid.whole
+        return Extent(window, _layers(np.flatnonzero(exceeds.any(axis=1)), grid))
     if not peak.contact.pressure.any():
         return _about_zone(exceeds, grid)
     box = around(peak.contact.pressure > 0)
@@ -113,6 +115,14 @@ def grown(extent: Extent, trial: Trial, grid: CellGrid) -> Extent:
     if strained[-1].any():
         layers = min(layers + growth(layers), len(grid.depths))
     return Extent(Window(i, j, nx, ny), layers)
+
+
+def holding(extent: Extent, cells: Mask) -> Extent:
+    """The box with these cells of the grid, (nx, ny), and a margin around them."""
+    box, more = extent.window, around(cells)
+    i0, j0 = min(box.i0, more.i0), min(box.j0, more.j0)
+    i1, j1 = max(box.i0 + box.nx, more.i0 + more.nx), max(box.j0 + box.ny, more.j0 + more.ny)
+    return replace(extent, window=Window(i0, j0, i1 - i0, j1 - j0))
 
 
 def widened(first: int, count: int, limit: int, reached: tuple[bool, bool]) -> tuple[int, int]:

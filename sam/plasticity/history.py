@@ -19,7 +19,7 @@ from sam.elastic.history import UNLOADING
 from sam.elastic.problem import ElasticProblem
 from sam.elastic.stress import ElasticPeak
 from sam.grid.cells import CellGrid, Sides, Window
-from sam.plasticity.box import edge_reached, first_extent, grown
+from sam.plasticity.box import edge_reached, first_extent, grown, holding
 from sam.plasticity.load_step import ITERATIONS, LONG_ITERATIONS
 from sam.plasticity.measure import (
     contact_in_box,
@@ -28,6 +28,7 @@ from sam.plasticity.measure import (
     moved,
     new_strain,
     pass_end,
+    penetrated,
     problem_of,
     snapshot,
     start_of,
@@ -153,12 +154,8 @@ def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, T
         if not trial.converged:
             return record, trial
         extent = grown(record.extent, trial, model.grid)
-        if extent != record.extent:  # once more, with the residual fields computed anew there
-            larger = model.problem(extent, film, record.wear)
-            state = on_larger_box(record.state, record.extent, extent, larger.residual_of)
-            record = replace(record, state=state, extent=extent, outside=None)
-            guess, start = record.guess(load), start_of(model, record, load)
-            continue
+        if extent != record.extent:
+            return attempt(model, _enlarged(model, record, extent), load)
         place, reached = model.place(load), edge_reached(trial, cut_beside=model.plan.places.anywhere)
         if reached.beside or reached.below:
             return _ended(record, Status.PLASTIC_ZONE_AT_GRID_EDGE, place, reached), None
@@ -174,9 +171,28 @@ def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, T
         film_stays = tested is None or film is None or tested.film.failed is film.film.failed
         film = tested
         if film_stays and until <= model.tolerance:
-            return committed(model, record, trial, film), trial
+            after = committed(model, record, trial, film)
+            if model.plan.places.anywhere and record.extent.window != model.grid.whole:
+                after = with_outside(model, after)
+                if (cells := penetrated(model, after, trial)).any():
+                    return attempt(model, _enlarged(model, record, holding(record.extent, cells)), load)
+            return after, trial
         guess, start = trial.change(record.state), trial.pressure  # with more friction or more exactly
         until = model.tolerance if film_stays else until
+
+
+def _enlarged(model: Model, record: Progressed, extent: Extent) -> Progressed:
+    """The record on a larger box, with the residual fields computed anew there; a film counts the
+    strain of the cells that come in from now, as that at the start of its cycle is not known.
+    """
+    film, old = record.tribofilm, record.extent
+    larger = model.problem(extent, film, record.wear)
+    state = on_larger_box(record.state, old, extent, larger.residual_of)
+    if film is not None and film.visits is None:
+        reference = model.surface_strain(extent, state.residual.stress, state.material.strain)
+        reference[(..., *old.window.slices)] = film.reference[(..., *old.window.slices)]
+        film = replace(film, reference=reference)
+    return replace(record, state=state, extent=extent, outside=None, tribofilm=film)
 
 
 def committed(model: Model, record: Progressed, trial: Trial, film: TribofilmState | None) -> Progressed:

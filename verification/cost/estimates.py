@@ -58,6 +58,9 @@ ROUGH_DIGITS = 3.0
 # Cells that a cycle removes were those that had hardened: after it by a factor more iterations where the
 # strain limit is lower than 1 %, and fewer where it is higher; 0.2 to 5 % measured.
 WORN_AT, WORN_POWER, WORN_MOST = 0.01, 1 / 3, 2.0
+# Cells with the smallest gap, over those expected in contact, that reach as far as an elastic contact does:
+# within a tenth of each side of ten boxes of twelve, of 24 to 256 cells.
+WIDER_SPOTS = 1.5
 # Of a step of SAM below a smooth body, under p0 = ratio times the yield stress at 1 % strain: STEEPER ratio -
 # FEWER.
 # Measured for ratios of 0.9 to 15, perfectly plastic, linear and Swift, within a factor 1.3 but at first
@@ -144,17 +147,18 @@ def flows(scene: Scene) -> bool:
     return scene.body.plasticity is not None or (coating is not None and coating.yield_stress is not None)
 
 
-def plastic_boxes(scene: Scene, grid: CellGrid, beyond: float = 0.0) -> list[ExpectedBox]:
+def plastic_boxes(scene: Scene, plan: Any, beyond: float = 0.0) -> list[ExpectedBox]:
     """The boxes around the plastic zone, the first one and what it grows to, as the solver makes them: a
-    little wider (SPREAD) than the zone of Hertz' elastic stress; below a rough body the patch. beyond: cells
-    by which the zone is wider than is guessed.
+    little wider (SPREAD) than the zone of Hertz' elastic stress; below a rough body around the contact.
+    plan: of SAM; beyond: cells by which the zone is wider than is guessed.
     """
     from sam.plasticity import ExpectedBox, expected_sides
 
+    grid = plan.grid
     faces = np.asarray(grid.depths if grid.faces is None else grid.faces)
     tolerance = scene.solver.tolerance
     if scene.patch_surface is not None or not loaded(scene):
-        return [ExpectedBox(grid.nx, grid.ny, max(len(faces) - 1, 1), tolerance)]
+        return [ExpectedBox(*_rough_sides(scene, plan), max(len(faces) - 1, 1), tolerance)]
     depths = (faces[1:] + faces[:-1]) / 2
     if scene.loading.misfit_sphere:
         return [_box_of_sphere(scene, grid, depths, beyond)]
@@ -163,6 +167,24 @@ def plastic_boxes(scene: Scene, grid: CellGrid, beyond: float = 0.0) -> list[Exp
     zone = replace(zone, needed=(wide + beyond * min(grid.hx, grid.hy) / min(zone.axes), deep))
     found = expected_sides(grid, depths, zone)
     return [ExpectedBox(*box, tolerance, exchange=box[0] == box[1] and _turns(scene, grid)) for box in found]
+
+
+def _rough_sides(scene: Scene, plan: Any) -> tuple[int, int]:
+    """Cells in x and y of the box around the contact of a rough body: the grid if that moves, else
+    around the cells with the smallest gap, WIDER_SPOTS times as many as are expected in contact.
+    """
+    from sam.contact.convolution import Counters
+    from sam.contact.normal import around
+    from verification.cost.contact import expected_contact
+
+    contact, grid = expected_contact(scene), plan.grid
+    share = contact.get("contact_share")
+    if share is None and "a_m" in contact:
+        share = np.pi * contact["a_m"] * contact["b_m"] / (grid.nx * grid.ny * grid.cell_area)
+    if share is None or len(plan.schedule.path) > 1:
+        return grid.shape
+    gap = plan.problem(Counters()).gap(plan.schedule.peak)
+    return around(gap <= np.quantile(gap, min(WIDER_SPOTS * share, 1.0))).shape
 
 
 def _box_of_sphere(scene: Scene, grid: CellGrid, depths: np.ndarray, beyond: float) -> ExpectedBox:
@@ -359,11 +381,11 @@ def _sam(scene: Scene, plan: Any) -> Counted:
         return Counted(memory, work)
     from sam.plasticity import held
 
-    boxes = plastic_boxes(scene, grid)
+    boxes = plastic_boxes(scene, plan)
     last, cycles = boxes[-1], plan.schedule.cycles
     if rough:
         rows, further = rough_iterations(scene, plan)
-        size = cells * log2(cells)
+        size = last.nx * last.ny * log2(last.nx * last.ny)
         work |= {"patch steps": rows * size, "patch iterations": further * size}
         iterations = ELASTIC_ITERATIONS * rows + further
     else:
@@ -377,7 +399,7 @@ def _sam(scene: Scene, plan: Any) -> Counted:
         "set-up": 8.0 * last.set_up,
         "chunks": 1.0,
     }
-    either = [plastic_boxes(scene, grid, beyond) for beyond in (-UNDECIDED, UNDECIDED)]
+    either = [plastic_boxes(scene, plan, beyond) for beyond in (-UNDECIDED, UNDECIDED)]
     work |= {
         "box set-up": sum(box.layers * box.set_up for each in either for box in each) / 2,
         "box": iterations * last.width / 8 * sum(each[-1].coefficients for each in either) / 2,
