@@ -50,13 +50,12 @@ def first_extent(
     path: Sequence[tuple[float, float]] = ((0.0, 0.0),),
 ) -> Extent:
     """Box around the contact and the cells that would yield; limit: yield stress (nz,) in Pa;
-    anywhere: below a rough surface, just around the contact, as wide as the grid if that moves;
-    path: places of the load in m.
+    anywhere: below a rough surface, just around the contact; path: places of the load in m.
     """
     exceeds = yielding(peak.mises, limit[:, None])
     if anywhere:
-        window = around(peak.contact.pressure > 0) if len(path) == 1 else grid.whole
-        return Extent(window, _layers(np.flatnonzero(exceeds.any(axis=1)), grid))
+        layers = _layers(np.flatnonzero(exceeds.any(axis=1)), grid)
+        return Extent(around(peak.contact.pressure > 0), layers)
     if not peak.contact.pressure.any():
         return _about_zone(exceeds, grid)
     box = around(peak.contact.pressure > 0)

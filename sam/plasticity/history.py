@@ -94,10 +94,12 @@ def begun(model: Model, targets: Sequence[Target], extent: Extent) -> Progressed
 
 
 def first_box(model: Model, peak: ElasticPeak) -> Extent:
-    """The first box of a history."""
-    both_ways, path = model.plan.schedule.alternates, model.plan.schedule.path
-    anywhere, limit = model.plan.places.anywhere, model.plan.initial_yield
-    return first_extent(model.grid, peak, limit, anywhere=anywhere, both_ways=both_ways, path=path)
+    """The first box of a history; the whole grid below a rough patch that touches elsewhere later."""
+    schedule, anywhere, limit = model.plan.schedule, model.plan.places.anywhere, model.plan.initial_yield
+    both_ways, path = schedule.alternates, schedule.path
+    extent = first_extent(model.grid, peak, limit, anywhere=anywhere, both_ways=both_ways, path=path)
+    elsewhere = anywhere and (len(path) > 1 or schedule.renews)
+    return replace(extent, window=model.grid.whole) if elsewhere else extent
 
 
 def onward(model: Model, record: Progressed) -> Progressed:
@@ -154,8 +156,10 @@ def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, T
         if not trial.converged:
             return record, trial
         extent = grown(record.extent, trial, model.grid)
-        if extent != record.extent:
-            return attempt(model, _enlarged(model, record, extent), load)
+        if extent != record.extent:  # once more
+            record = _enlarged(model, record, extent, film)
+            guess, start = record.guess(load), start_of(model, record, load)
+            continue
         place, reached = model.place(load), edge_reached(trial, cut_beside=model.plan.places.anywhere)
         if reached.beside or reached.below:
             return _ended(record, Status.PLASTIC_ZONE_AT_GRID_EDGE, place, reached), None
@@ -171,28 +175,30 @@ def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, T
         film_stays = tested is None or film is None or tested.film.failed is film.film.failed
         film = tested
         if film_stays and until <= model.tolerance:
-            after = committed(model, record, trial, film)
-            if model.plan.places.anywhere and record.extent.window != model.grid.whole:
-                after = with_outside(model, after)
-                if (cells := penetrated(model, after, trial)).any():
-                    return attempt(model, _enlarged(model, record, holding(record.extent, cells)), load)
+            after, extent = _beside(model, committed(model, record, trial, film), trial)
+            if extent != record.extent:
+                return attempt(model, _enlarged(model, record, extent, record.tribofilm), load)
             return after, trial
         guess, start = trial.change(record.state), trial.pressure  # with more friction or more exactly
         until = model.tolerance if film_stays else until
 
 
-def _enlarged(model: Model, record: Progressed, extent: Extent) -> Progressed:
-    """The record on a larger box, with the residual fields computed anew there; a film counts the
-    strain of the cells that come in from now, as that at the start of its cycle is not known.
-    """
-    film, old = record.tribofilm, record.extent
+def _enlarged(model: Model, record: Progressed, extent: Extent, film: TribofilmState | None) -> Progressed:
+    """The record on a larger box, with the residual fields computed anew there."""
     larger = model.problem(extent, film, record.wear)
-    state = on_larger_box(record.state, old, extent, larger.residual_of)
-    if film is not None and film.visits is None:
-        reference = model.surface_strain(extent, state.residual.stress, state.material.strain)
-        reference[(..., *old.window.slices)] = film.reference[(..., *old.window.slices)]
-        film = replace(film, reference=reference)
-    return replace(record, state=state, extent=extent, outside=None, tribofilm=film)
+    state = on_larger_box(record.state, record.extent, extent, larger.residual_of)
+    return replace(record, state=state, extent=extent, outside=None)
+
+
+def _beside(model: Model, record: Progressed, trial: Trial) -> tuple[Progressed, Extent]:
+    """The record after a step, and its box; below a rough patch the one that also holds the cells
+    beside it that the counter-body penetrates.
+    """
+    if not model.plan.places.anywhere or record.extent.window == model.grid.whole:
+        return record, record.extent
+    record = with_outside(model, record)
+    cells = penetrated(model, record, trial)
+    return record, holding(record.extent, cells) if cells.any() else record.extent
 
 
 def committed(model: Model, record: Progressed, trial: Trial, film: TribofilmState | None) -> Progressed:

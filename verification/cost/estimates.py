@@ -170,7 +170,7 @@ def plastic_boxes(scene: Scene, plan: Any, beyond: float = 0.0) -> list[Expected
 
 
 def _rough_sides(scene: Scene, plan: Any) -> tuple[int, int]:
-    """Cells in x and y of the box around the contact of a rough body: the grid if that moves, else
+    """Cells in x and y of the box around the contact of a rough body: the grid if that changes place, else
     around the cells with the smallest gap, WIDER_SPOTS times as many as are expected in contact.
     """
     from sam.contact.convolution import Counters
@@ -181,7 +181,7 @@ def _rough_sides(scene: Scene, plan: Any) -> tuple[int, int]:
     share = contact.get("contact_share")
     if share is None and "a_m" in contact:
         share = np.pi * contact["a_m"] * contact["b_m"] / (grid.nx * grid.ny * grid.cell_area)
-    if share is None or len(plan.schedule.path) > 1:
+    if share is None or len(plan.schedule.path) > 1 or plan.schedule.renews:
         return grid.shape
     gap = plan.problem(Counters()).gap(plan.schedule.peak)
     return around(gap <= np.quantile(gap, min(WIDER_SPOTS * share, 1.0))).shape
