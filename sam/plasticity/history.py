@@ -38,7 +38,7 @@ from sam.plasticity.measure import (
 )
 from sam.plasticity.model import Model
 from sam.plasticity.progress import Begun, CycleStart, Parts, Progressed, floor
-from sam.plasticity.state import Extent, MaterialFields, State, Trial, on_larger_box
+from sam.plasticity.state import Change, Extent, MaterialFields, State, Trial, on_larger_box, surrounded
 from sam.results.history import History, Row, row_of
 from sam.scene import Status
 from sam.scene.result import LAST, PEAK, UNLOADED, Progress, unfinished
@@ -156,10 +156,8 @@ def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, T
         if not trial.converged:
             return record, trial
         extent = grown(record.extent, trial, model.grid)
-        if extent != record.extent:  # once more
-            record = _enlarged(model, record, extent, film)
-            guess, start = record.guess(load), start_of(model, record, load)
-            continue
+        if extent != record.extent:
+            return attempt(model, _enlarged(model, record, extent), load)
         place, reached = model.place(load), edge_reached(trial, cut_beside=model.plan.places.anywhere)
         if reached.beside or reached.below:
             return _ended(record, Status.PLASTIC_ZONE_AT_GRID_EDGE, place, reached), None
@@ -177,17 +175,29 @@ def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, T
         if film_stays and until <= model.tolerance:
             after, extent = _beside(model, committed(model, record, trial, film), trial)
             if extent != record.extent:
-                return attempt(model, _enlarged(model, record, extent, record.tribofilm), load)
+                return attempt(model, _enlarged(model, record, extent), load)
             return after, trial
         guess, start = trial.change(record.state), trial.pressure  # with more friction or more exactly
         until = model.tolerance if film_stays else until
 
 
-def _enlarged(model: Model, record: Progressed, extent: Extent, film: TribofilmState | None) -> Progressed:
-    """The record on a larger box, with the residual fields computed anew there."""
-    larger = model.problem(extent, film, record.wear)
-    state = on_larger_box(record.state, record.extent, extent, larger.residual_of)
-    return replace(record, state=state, extent=extent, outside=None)
+def _enlarged(model: Model, record: Progressed, extent: Extent) -> Progressed:
+    """The record on a larger box, where the next attempt is the one of a history that began on it:
+    residual fields are computed anew, and steps start from the same guess.
+    """
+    larger, change = model.problem(extent, record.tribofilm, record.wear), record.change
+    state, where = (
+        on_larger_box(record.state, record.extent, extent, larger.residual_of),
+        record.extent.inside(extent),
+    )
+    if change is not None:
+        strain = surrounded(change.strain, where, extent.shape)
+        change = Change(strain, larger.residual(larger.virgin().residual, strain))
+    recalled = {
+        load: surrounded(pressure, where[1:], extent.window.shape)
+        for load, pressure in record.recalled.items()
+    }
+    return replace(record, state=state, extent=extent, outside=None, change=change, recalled=recalled)
 
 
 def _beside(model: Model, record: Progressed, trial: Trial) -> tuple[Progressed, Extent]:

@@ -296,7 +296,9 @@ def test_only_a_renewed_counter_surface_strains_in_every_cycle():
         for renew in (False, True)
     )
     same, renewed = same.tables["cycles"], renewed.tables["cycles"]
-    assert same["new_strain_max"][0] == renewed["new_strain_max"][0] > 0
+    # of the second the box is the whole grid: equal to a tenth of the tolerance
+    assert same["new_strain_max"][0] == pytest.approx(renewed["new_strain_max"][0], rel=1e-5)
+    assert same["new_strain_max"][0] > 0
     assert same["new_strain_max"][1:] == [0.0, 0.0] and same["yielding_cells"][1:] == [0, 0]
     assert min(renewed["new_strain_max"]) > 1e-4 and min(renewed["yielding_cells"]) > 0
 

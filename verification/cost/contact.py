@@ -6,7 +6,7 @@ chosen, and beside a result by the closed form of Hertz.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import erf, pi, prod, sqrt
+from math import pi, prod, sqrt
 from typing import Any
 
 from sam.scene import Scene
@@ -110,7 +110,7 @@ def _of_plane(scene: Scene, beyond: Any) -> dict[str, Any]:
         found["p_nominal_Pa"] = nominal = scene.loading.force / prod(scene.patch[1])
         words += f", nominal pressure {with_prefix(nominal, 'Pa')}"
         if slope:
-            found["contact_share"] = share = erf(sqrt(pi) * nominal / (modulus * slope))
+            found["contact_share"] = share = estimates.contact_share(scene, nominal)
             words += f", elastic contact on about {100 * share:.2g} % of the patch"
     if slope:
         spots = modulus * slope / 2

@@ -11,13 +11,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from math import ceil, floor, log2, log10
+from math import ceil, erf, floor, log2, log10, pi, prod, sqrt
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sam.scene import Scene, Wear
 from verification.runs import models
+from verification.runs.model_range import contact_modulus, rms_slope
 
 if TYPE_CHECKING:
     from sam.grid import CellGrid
@@ -169,20 +170,28 @@ def plastic_boxes(scene: Scene, plan: Any, beyond: float = 0.0) -> list[Expected
     return [ExpectedBox(*box, tolerance, exchange=box[0] == box[1] and _turns(scene, grid)) for box in found]
 
 
+def contact_share(scene: Scene, pressure: float) -> float:
+    """Share of a rough patch in elastic contact under a mean pressure in Pa, by erf(sqrt(pi) p/(E* h')), h'
+    the rms slope, whose slope 2 for light loads is that of Hyun et al., Phys. Rev. E 70 (2004) 026117, and
+    which ends at 1 as by Persson, J. Chem. Phys. 115 (2001) 3840; 1 without a slope.
+    """
+    slope = rms_slope(scene)
+    return erf(sqrt(pi) * pressure / (contact_modulus(scene) * slope)) if slope else 1.0
+
+
 def _rough_sides(scene: Scene, plan: Any) -> tuple[int, int]:
     """Cells in x and y of the box around the contact of a rough body: the grid if that changes place, else
     around the cells with the smallest gap, WIDER_SPOTS times as many as are expected in contact.
     """
     from sam.contact.convolution import Counters
     from sam.contact.normal import around
-    from verification.cost.contact import expected_contact
 
-    contact, grid = expected_contact(scene), plan.grid
-    share = contact.get("contact_share")
-    if share is None and "a_m" in contact:
-        share = np.pi * contact["a_m"] * contact["b_m"] / (grid.nx * grid.ny * grid.cell_area)
-    if share is None or len(plan.schedule.path) > 1 or plan.schedule.renews:
+    grid, force = plan.grid, scene.loading.force
+    if not force or scene.counterbody is None or len(plan.schedule.path) > 1 or plan.schedule.renews:
         return grid.shape
+    area = grid.nx * grid.ny * grid.cell_area
+    plane = scene.counterbody.shape == "flat"
+    share = contact_share(scene, force / area) if plane else pi * prod(plan.axes) / area
     gap = plan.problem(Counters()).gap(plan.schedule.peak)
     return around(gap <= np.quantile(gap, min(WIDER_SPOTS * share, 1.0))).shape
 
