@@ -99,9 +99,8 @@ def _over(found: Mapping[str, Any], what: str) -> str:
 
 
 def _of_plane(scene: Scene, beyond: Any) -> dict[str, Any]:
-    """A plane on a rough body: nominal pressure, and the share of an elastic contact by erf(sqrt(pi) p /
-    (E* h')), h' the rms slope, whose slope 2 for light loads is that of Hyun et al., Phys. Rev. E 70 (2004)
-    026117, and which ends at 1 as by Persson, J. Chem. Phys. 115 (2001) 3840; pressure of the spots E* h'/2.
+    """A plane on a rough body: nominal pressure, share of an elastic contact, pressure of the spots, E*/2
+    times the rms slope.
     """
     slope, modulus = rms_slope(scene), contact_modulus(scene)
     found: dict[str, Any] = {"rms_slope": slope}

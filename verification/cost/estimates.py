@@ -159,7 +159,10 @@ def plastic_boxes(scene: Scene, plan: Any, beyond: float = 0.0) -> list[Expected
     faces = np.asarray(grid.depths if grid.faces is None else grid.faces)
     tolerance = scene.solver.tolerance
     if scene.patch_surface is not None or not loaded(scene):
-        return [ExpectedBox(*_rough_sides(scene, plan), max(len(faces) - 1, 1), tolerance)]
+        sides, worn = [_rough_sides(scene, plan)], scene.wear is not None and scene.wear.removes
+        if worn and scene.loading.cycles > 1 and sides[0] != grid.shape:
+            sides.append(grid.shape)  # where summits are worn others touch
+        return [ExpectedBox(*each, max(len(faces) - 1, 1), tolerance) for each in sides]
     depths = (faces[1:] + faces[:-1]) / 2
     if scene.loading.misfit_sphere:
         return [_box_of_sphere(scene, grid, depths, beyond)]
