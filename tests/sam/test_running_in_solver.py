@@ -181,8 +181,8 @@ def test_a_new_film_without_friction_forgets_the_traction_of_the_cycle_before(mo
 
 
 def test_a_history_whose_box_grows_is_that_of_the_whole_grid(monkeypatch):
-    """With a film, whose cells fail in steps that have not converged: to 1e-7 at a tolerance of 1e-6 (measured
-    8e-9; 3e-7 where the steps on a larger box begin without the guess of the smaller one).
+    """With a film, whose cells fail in steps that have not converged: to 1e-7 at a tolerance of 1e-6
+    (measured 8e-9; 3e-7 where the steps on a larger box begin without the guess of the smaller one).
     """
     first, boxes, results = history.first_extent, [], []
 

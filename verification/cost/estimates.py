@@ -186,8 +186,7 @@ def _rough_sides(scene: Scene, plan: Any) -> tuple[int, int]:
     """Cells in x and y of the box around the contact of a rough body: the grid if that changes place, else
     around the cells with the smallest gap, WIDER_SPOTS times as many as are expected in contact.
     """
-    from sam.contact.convolution import Counters
-    from sam.contact.normal import around
+    from sam.contact import Counters, around
 
     grid, force = plan.grid, scene.loading.force
     if not force or scene.counterbody is None or len(plan.schedule.path) > 1 or plan.schedule.renews:
