@@ -189,11 +189,11 @@ class Model:
         return Cuboids(lags, tuple(self.faces(extent).tolist()), self.plan.pair.body.poisson)
 
     def _operator(self, extent: Extent) -> BoxOperator:
+        self.counters.tangential_kernels += self.plan.slip.slides
         return BoxOperator(
             self.cuboids(extent),
             self.plan.pair.body.shear,
             self.counters,
-            sliding=self.plan.slip.slides,
             single=self.tolerance >= SINGLE,
             mirror=self._mirror(extent.window),
             exchange=self._exchange(extent.window),
