@@ -27,7 +27,7 @@ from sam.arrays import Array
 from sam.contact.convolution import Counters, Transforms, real_spectrum
 from sam.kernels.eigenstrain import surface_displacement_coefficients
 from sam.kernels.layer_stress import CornerFunctions, LayerStress, four_points, mesh
-from sam.kernels.patches import STRESS, Cuboids, Lags, stress_coefficients
+from sam.kernels.patches import ODD_X, ODD_Y, STRESS, Cuboids, Lags, stress_coefficients
 from sam.plasticity.images import PeriodImages
 from sam.plasticity.swept import GAUSS, SweptLayers
 
@@ -35,8 +35,6 @@ Reals = NDArray[Any]
 """Real numbers in the precision of the operator, single or double."""
 Parities = NDArray[np.integer[Any]]
 """1 for odd, 0 for even, of each component."""
-ODD_X = np.array([name.count("1") % 2 for name in STRESS])
-ODD_Y = np.array([name.count("2") % 2 for name in STRESS])
 TWICE = ((np.outer(ODD_X, ODD_X) + np.outer(ODD_Y, ODD_Y)) % 2 == 1).ravel()  # 6 I + J, where (-i)^2 is left
 ODD_LAGS = [(x, y) for x, y in zip(*(np.not_equal.outer(o, o).ravel() for o in (ODD_X, ODD_Y)), strict=True)]
 """Of 6 I + J, whether the coefficient is odd in the lag in x and in y."""

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: MIT
+"""Sweeps over depth against the matrices between all layers, and against the tables they are derived from."""
+
+import numpy as np
+import pytest
+
+from sam.contact.convolution import Counters
+from sam.kernels.eigenstrain import ENTRIES, FOURTH, MIRRORED, _full_space_matrix, eigenstrain_table
+from sam.kernels.patches import Cuboids, Lags
+from sam.plasticity.spectra import ODD_X, ODD_Y, BoxOperator
+from sam.plasticity.swept import GAUSS, Sweeps
+
+EVEN, GRADED = np.arange(7.0), np.append(0.0, np.cumsum(0.3 * 1.5 ** np.arange(6)))
+ASPECT = 0.7
+PHASE = (-1j) ** (ODD_X + ODD_Y)
+
+
+def in_waves(nu, kx, ky, z, source):
+    """Stress/mu at depths z by a unit strain per depth at others, at one wave number, (6, 6, z, source): in the
+    full space and what the free surface adds. R and 1/R are -2 pi (1 + k |zeta|) e^{-k |zeta|}/k^3 and
+    2 pi e^{-k zeta}/k in wave numbers.
+    """
+    k, zeta, sum_z = np.hypot(kx, ky), np.abs(z[:, None] - source), z[:, None] + source
+    full, image = np.zeros((2, 36, *zeta.shape), complex)
+    for column, indices in zip(_full_space_matrix(nu).T / (8 * np.pi * (1 - nu)), FOURTH, strict=True):
+        a, b, c = (indices.count(i) for i in range(3))
+        of_z = (
+            (-k) ** c * (1 - c + k * zeta) * np.exp(-k * zeta)
+        )  # c-th derivative of (1 + k zeta) e^{-k zeta}
+        full += column[:, None, None] * -2 * np.pi / k**3 * (1j * kx) ** a * (1j * ky) ** b * of_z
+    for row, name in enumerate(ENTRIES):
+        for (p, q, a, b, c), powers in eigenstrain_table()["stress"][name].items():
+            factor = sum(value * nu**n for n, value in enumerate(powers)) / (8 * np.pi * (1 - nu))
+            of_z = (-k) ** c * 2 * np.pi / k * np.exp(-k * sum_z)
+            image[row] += factor * np.outer(z**p, source**q) * (1j * kx) ** a * (1j * ky) ** b * of_z
+    full *= np.where(z[:, None] < source, MIRRORED, 1)
+    return full.reshape(6, 6, *zeta.shape), image.reshape(6, 6, *zeta.shape)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
+@pytest.mark.parametrize("faces", [EVEN, GRADED], ids=["even", "graded"])
+def test_sweeps_sum_over_the_layers_what_the_tables_give(nu, faces):
+    """Gauss-Legendre quadrature over the strained layer, points of the observed one; none in its own layer."""
+    rng, layers, box = (
+        np.random.default_rng(0),
+        len(faces) - 1,
+        Cuboids(Lags(4, 4, 1.0, ASPECT), tuple(faces), nu),
+    )
+    waves, centres, halves = rng.uniform(0.1, 3.0, (2, 2)), (faces[1:] + faces[:-1]) / 2, np.diff(faces) / 2
+    x, w = np.polynomial.legendre.leggauss(12)
+    z, source = (np.add(centres[:, None], np.outer(halves, at)).ravel() for at in (GAUSS, x))
+    weight = np.outer(halves, w).ravel() / 2
+    expected = np.zeros((2, 6, layers, 6, layers))
+    for n, (kx, ky) in enumerate(waves.T):
+        plane = np.sinc(kx / 2 / np.pi) * np.sinc(ky * ASPECT / 2 / np.pi) * np.cos(kx / 2 / np.sqrt(3))
+        plane *= np.cos(ky * ASPECT / 2 / np.sqrt(3))
+        full, image = (
+            (plane * weight * each).reshape(6, 6, layers, 2, layers, 12).sum(axis=(3, 5))
+            for each in in_waves(nu, kx, ky, z, source)
+        )
+        stress = (full * (1 - np.eye(layers)) + image).swapaxes(1, 2)
+        stress /= PHASE.reshape(6, 1, 1, 1) * PHASE.reshape(6, 1)
+        expected[n] = stress.real
+        assert np.abs(stress.imag).max() < 1e-14
+    size, strain = np.abs(expected).max(), rng.standard_normal((2, 6 * layers, 3))
+    for real, rounding in ((np.float64, 1e-12), (np.float32, 1e-6)):
+        found = next(each for _, each in Sweeps(waves, box, real).matrices(reflected=True))
+        assert np.abs(found - expected).max() <= rounding * size
+        product = found.reshape(2, 6 * layers, -1) @ strain
+        assert np.abs(Sweeps(waves, box, real)(strain) - product).max() <= rounding * np.abs(product).max()
+
+
+@pytest.mark.parametrize("kind", [{}, {"mirror": (False, True)}, {"mirror": (True, True), "exchange": True}])
+@pytest.mark.parametrize("faces", [EVEN, GRADED, np.arange(19.0) / 2], ids=["even", "graded", "many"])
+def test_swept_stress_is_that_of_the_matrices(faces, kind):
+    """Stress over mu, of strain of size 1, to the stated error: the images of the period and the short waves."""
+    n, nu = 10, 0.3
+    aspect = 1.0 if kind.get("exchange") else ASPECT
+    box, rng = Cuboids(Lags(n, n, 1.0, aspect), tuple(faces), nu), np.random.default_rng(1)
+    dense = BoxOperator(box, 1.0, Counters(), **kind)
+    strain = dense.keep(rng.standard_normal((6, len(faces) - 1, n, n)))
+    if kind.get("exchange"):
+        strain = strain + strain[[1, 0, 2, 4, 3, 5]].swapaxes(-1, -2)
+    expected = dense.stress(None, dense.response(dense.transformed(strain)))
+    for error in (1e-3, 1e-5):
+        swept = BoxOperator(box, 1.0, Counters(), swept=error, **kind)
+        found = swept.stress(None, swept.response(swept.transformed(strain)))
+        assert np.linalg.norm(found - expected) <= 3 * error * np.linalg.norm(expected)
