@@ -40,7 +40,7 @@ DEEPEST = 1.8
 # 24 layers of cells both take as long an application, at 96 x 96 cells and 1e-3 the sweeps a third of the
 # set-up.
 MANY_LAYERS, MANY_BYTES, MOST_BYTES = 24, 2e8, 1e9
-SWEPT_SHARE = 0.1  # of the tolerance of the plastic iteration, the error of the sweeps
+SWEPT_SHARE = 0.05  # of the tolerance of the plastic iteration, the error of the sweeps
 # Cells that are free beside the zone of a body that nothing touches: with two strained ones a box grows.
 FREE_BESIDE = 3
 
@@ -160,7 +160,7 @@ class ExpectedBox:
 
     @property
     def coefficients(self) -> int:
-        """Numbers of the matrices between all layers: 36 nz^2 (N_x + 1)(N_y + 1), with k_x <= k_y if exchanged."""
+        """Numbers in the matrices between all layers: 36 nz^2 (N_x + 1)(N_y + 1), or k_x <= k_y of them."""
         nx, ny = half_length(self.nx) + 1, half_length(self.ny) + 1
         return 36 * self.layers**2 * (nx * (nx + 1) // 2 if self.exchange else nx * ny)
 

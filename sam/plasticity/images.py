@@ -29,9 +29,8 @@ from numpy.polynomial.legendre import leggauss
 
 from sam.arrays import Array
 from sam.kernels.eigenstrain import ENTRIES, FOURTH, MIRRORED, blocks, eigenstrain_table
-from sam.kernels.patches import Cuboids
 from sam.kernels.patches import ODD_X, ODD_Y
-from sam.plasticity.swept import GAUSS, Reals
+from sam.plasticity.swept import GAUSS
 
 MODES = np.arange(5)
 POLYNOMIALS = np.zeros((3, 5, 5))  # of u in (a), by n - 2, m and j

@@ -254,10 +254,11 @@ class InWaves(NamedTuple):
 
 
 class BoxOperator:
-    """Stress in the cells of a box and u_z of its surface, of plastic strain and loads, on the
-    cells that `keep` leaves. box: cells as lags, in m, layers from 0; mu in Pa; single: precision, 1e-7 of the largest stress, in half the time; mirror: of all fields in
-    x (with y) and y; exchange: of x and y, half of the wave numbers give all; swept: sweeps over the
-    layers in place of matrices between all of them, to this error of the stress/mu of a unit strain, or 0.
+    """Stress in the cells of a box and u_z of its surface, of plastic strain and loads, on the cells that
+    `keep` leaves. box: cells as lags, in m, layers from 0; mu in Pa; single: precision, 1e-7 of the largest
+    stress, in half the time; mirror: of all fields in x (with y) and y; exchange: of x and y, half of the wave
+    numbers give all; swept: error of the stress/mu of a unit strain by sweeps over the layers, which then take
+    the place of matrices between all of them.
     """
 
     def __init__(
@@ -329,7 +330,8 @@ class BoxOperator:
             product = self._exchanged(product)
         if self.spectra.images is not None and transformed.images is not None:
             images = -self.mu * self.spectra.images.values(transformed.images)
-        return InWaves(self.real(self.mu) * product.reshape(shape), images)
+        product *= self.real(self.mu)
+        return InWaves(product.reshape(shape), images)
 
     def _exchanged(self, product: Reals) -> Reals:
         """The product at all wave numbers from k_x <= k_y: 11 and 22, 23 and 13 change places with them."""
@@ -348,11 +350,14 @@ class BoxOperator:
     ) -> Reals:
         """Stress of pressure, traction (Pa) and plastic strain, (6, n_layers, nx, ny) in Pa: paper Eq. 7."""
         loads = [(p, k) for k, p in enumerate((pressure, traction)) if p is not None and p.any()]
-        if response is None and not loads:
+        if loads:
+            columns = self._of_loads(loads)
+            if response is not None:
+                columns += response.columns  # paper Eq. 4: elastic and residual stress
+        elif response is not None:
+            columns = response.columns
+        else:
             return np.zeros((6, self.layers, *self.transforms.shape))
-        columns = self._of_loads(loads) if loads else np.zeros(1, self.real)
-        if response is not None:  # paper Eq. 4: elastic and residual stress
-            columns = columns + response.columns
         columns = columns.reshape(*columns.shape[:2], 6, self.layers, -1)
         stress = self.transforms.fields(columns, ODD_X, ODD_Y)
         if self.spectra.images is not None and response is not None and response.images is not None:

@@ -45,15 +45,15 @@ Reals = NDArray[Any]
 """Real numbers in the precision of the operator, single or double."""
 WAVES_AT_ONCE = 512  # that are swept together, so that they stay in the cache
 GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3)  # points of the mean over a cell, in each direction
-# What waves two cells long leave of (h) between layers r cells apart, over e^{-pi r} and the largest singular
-# value of the operator: 1.3 to 2 for r = 1 to 3.
-WORST = 2.0
+# The largest stress/mu that waves two cells long leave of (h) between layers r cells apart, over e^{-pi r}: 5 to
+# 8 for r = 1 to 3.
+WORST = 8.0
 DIGITS = 9  # to which thicknesses are compared
 
 
 class Sweeps:
-    """The operator (h) over mu, real as in `sam.plasticity.spectra`, without the full space in the strain's own
-    layer. waves: k_x, k_y, (2, n) per hx; box: in hx, from z = 0.
+    """The operator (h) over mu, real as in `sam.plasticity.spectra`, without the full space in the layer of the
+    strain. waves: k_x, k_y, (2, n) per hx; box: in hx, from z = 0.
     """
 
     def __init__(self, waves: Array, box: Cuboids, real: type[np.floating[Any]]):
@@ -172,7 +172,7 @@ class Run:
         return not self.count or (alike and not any(0 <= i + d < layers for d in known if d not in keys))
 
     def stress(self, strain: Reals, some: slice) -> Reals:
-        """Stress/mu (n, 6, count, r) in the run by its neighbours; strain: (n, 6, layers, r) of some waves."""
+        """Stress/mu (n, 6, count, r) in the run by its neighbours; strain: (n, 6, layers, r), some waves."""
         n, _, layers, r = strain.shape
         begin, offsets = self.first + min(self.keys), len(self.keys)
         end = begin + offsets + self.count - 1
@@ -200,8 +200,8 @@ def runs_of(faces: Array, within: Mask) -> list[Run]:
 
 class SweptLayers:
     """The operator of a box, strain to stress/mu in its layers: by `Sweeps`, and between layers less than some
-    cells apart by the `exact` coefficients less (h). waves, box: as there; error: what the shortest waves
-    leave of (h) between the other layers, over the largest singular value of the operator.
+    cells apart by the `exact` coefficients less (h). waves, box: as there; error: of the stress/mu of a unit
+    strain, what the shortest waves leave of (h) between the other layers.
     """
 
     def __init__(

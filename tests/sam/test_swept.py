@@ -16,8 +16,8 @@ PHASE = (-1j) ** (ODD_X + ODD_Y)
 
 
 def in_waves(nu, kx, ky, z, source):
-    """Stress/mu at depths z by a unit strain per depth at others, at one wave number, (6, 6, z, source): in the
-    full space and what the free surface adds. R and 1/R are -2 pi (1 + k |zeta|) e^{-k |zeta|}/k^3 and
+    """Stress/mu at depths z by a unit strain per depth at others, at one wave number, (6, 6, z, source), in the
+    full space, and what the free surface adds. R and 1/R are -2 pi (1 + k |zeta|) e^{-k |zeta|}/k^3 and
     2 pi e^{-k zeta}/k in wave numbers.
     """
     k, zeta, sum_z = np.hypot(kx, ky), np.abs(z[:, None] - source), z[:, None] + source
@@ -40,7 +40,7 @@ def in_waves(nu, kx, ky, z, source):
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
 @pytest.mark.parametrize("faces", [EVEN, GRADED], ids=["even", "graded"])
 def test_sweeps_sum_over_the_layers_what_the_tables_give(nu, faces):
-    """Gauss-Legendre quadrature over the strained layer, points of the observed one; none in its own layer."""
+    """Quadrature over the strained layer, points of the observed one; no full space in its own layer."""
     rng, layers, box = (
         np.random.default_rng(0),
         len(faces) - 1,
@@ -73,7 +73,7 @@ def test_sweeps_sum_over_the_layers_what_the_tables_give(nu, faces):
 @pytest.mark.parametrize("kind", [{}, {"mirror": (False, True)}, {"mirror": (True, True), "exchange": True}])
 @pytest.mark.parametrize("faces", [EVEN, GRADED, np.arange(19.0) / 2], ids=["even", "graded", "many"])
 def test_swept_stress_is_that_of_the_matrices(faces, kind):
-    """Stress over mu, of strain of size 1, to the stated error: the images of the period and the short waves."""
+    """To the stated error, without the images of the period and with the waves shorter than the cells."""
     n, nu = 10, 0.3
     aspect = 1.0 if kind.get("exchange") else ASPECT
     box, rng = Cuboids(Lags(n, n, 1.0, aspect), tuple(faces), nu), np.random.default_rng(1)
@@ -85,4 +85,4 @@ def test_swept_stress_is_that_of_the_matrices(faces, kind):
     for error in (1e-3, 1e-5):
         swept = BoxOperator(box, 1.0, Counters(), swept=error, **kind)
         found = swept.stress(None, swept.response(swept.transformed(strain)))
-        assert np.linalg.norm(found - expected) <= 3 * error * np.linalg.norm(expected)
+        assert np.linalg.norm(found - expected) <= error * np.linalg.norm(strain)
