@@ -8,7 +8,7 @@ from sam.contact.convolution import Counters
 from sam.kernels.eigenstrain import ENTRIES, FOURTH, MIRRORED, _full_space_matrix, eigenstrain_table
 from sam.kernels.patches import Cuboids, Lags
 from sam.plasticity.spectra import ODD_X, ODD_Y, BoxOperator
-from sam.plasticity.swept import GAUSS, Sweeps
+from sam.plasticity.swept import GAUSS, Sweeps, SweptLayers
 
 EVEN, GRADED = np.arange(7.0), np.append(0.0, np.cumsum(0.3 * 1.5 ** np.arange(6)))
 ASPECT = 0.7
@@ -16,7 +16,7 @@ PHASE = (-1j) ** (ODD_X + ODD_Y)
 
 
 def in_waves(nu, kx, ky, z, source):
-    """Stress/mu at depths z by a unit strain per depth at others, at one wave number, (6, 6, z, source), in the
+    """Stress/mu at depths z by a unit strain per depth at others, of one wave, (6, 6, z, source), in the
     full space, and what the free surface adds. R and 1/R are -2 pi (1 + k |zeta|) e^{-k |zeta|}/k^3 and
     2 pi e^{-k zeta}/k in wave numbers.
     """
@@ -68,6 +68,54 @@ def test_sweeps_sum_over_the_layers_what_the_tables_give(nu, faces):
         assert np.abs(found - expected).max() <= rounding * size
         product = found.reshape(2, 6 * layers, -1) @ strain
         assert np.abs(Sweeps(waves, box, real)(strain) - product).max() <= rounding * np.abs(product).max()
+
+
+class Drawn:
+    """Coefficients drawn at random, alike for layers alike at equal distances."""
+
+    def __init__(self, faces, waves, nu):
+        self.faces, self.waves, self.nu, self.known = faces, waves, nu, {}
+
+    def pair(self, i, j):
+        key = np.round([*np.diff(self.faces)[[i, j]], self.faces[i] - self.faces[j]], 9).tobytes()
+        seed = np.frombuffer(key, np.uint32)
+        return np.random.default_rng(seed).standard_normal((6, 6, self.waves.shape[1]))
+
+    def full_space(self, observed, sources):
+        return np.stack([self.pair(observed, j) for j in range(sources.start, sources.stop)], axis=2)
+
+    def image(self, layers):
+        shape = (6, layers, 6, layers, self.waves.shape[1])
+        return np.random.default_rng(layers).standard_normal(shape)
+
+
+TWO = np.append(np.arange(5.0) / 4, np.arange(2.0, 9.0))
+
+
+@pytest.mark.parametrize("error", [0.5, 1e-3, 1e-30])
+@pytest.mark.parametrize("faces", [EVEN, np.arange(3.0), GRADED, TWO], ids=["even", "few", "graded", "two"])
+def test_layers_near_each_other_have_the_coefficients_of_cells(faces, error):
+    """In place of (h) between layers less than log(8/error)/pi cells apart, and where those and their mirror
+    images are; everywhere if the error is small enough.
+    """
+    layers, waves = len(faces) - 1, np.array([[0.0, 0.4, 3.0], [0.0, 1.0, 0.2]])
+    box, drawn = Cuboids(Lags(4, 4, 1.0, 1.0), tuple(faces), 0.3), Drawn(faces, waves, 0.3)
+    full, both = (next(Sweeps(waves, box, np.float64).matrices(each))[1] for each in (False, True))
+    expected, reach = both.copy(), np.log(8 / error) / np.pi
+    top = np.count_nonzero(faces[:-1] < reach)
+    some = slice(0, top)
+    expected[:, :, some, :, some] += np.moveaxis(drawn.image(top), -1, 0)
+    expected[:, :, some, :, some] -= (both - full)[:, :, some, :, some]
+    for i, j in np.ndindex(layers, layers):
+        if max(faces[i] - faces[j + 1], faces[j] - faces[i + 1]) < reach:
+            expected[:, :, i, :, j] += np.moveaxis(drawn.pair(i, j), -1, 0) - full[:, :, i, :, j]
+    strain = np.random.default_rng(3).standard_normal((3, 6 * layers, 2))
+    expected = expected.reshape(3, 6 * layers, -1) @ strain
+    for real, rounding in ((np.float64, 1e-12), (np.float32, 1e-6)):
+        swept = SweptLayers(drawn, waves, box, error=error, real=real)
+        assert np.abs(swept(strain.astype(real)) - expected).max() <= rounding * np.abs(expected).max()
+        counts = [run.count for run in swept.runs]
+        assert sum(counts) == layers and (faces is not EVEN or len(counts) == 1)
 
 
 @pytest.mark.parametrize("kind", [{}, {"mirror": (False, True)}, {"mirror": (True, True), "exchange": True}])
