@@ -27,8 +27,8 @@ from numpy.polynomial.legendre import leggauss
 
 from sam.arrays import Array
 from sam.kernels.eigenstrain import ENTRIES, FOURTH, MIRRORED, blocks, eigenstrain_table
-from sam.kernels.patches import Cuboids
-from sam.plasticity.spectra import GAUSS, ODD_X, ODD_Y, Reals
+from sam.kernels.patches import ODD_X, ODD_Y, Cuboids
+from sam.plasticity.swept import GAUSS, Reals
 
 NEAR = 2  # periods: images further away are summed at fewer nodes
 SUMS = 2.0 * np.arange(

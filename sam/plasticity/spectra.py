@@ -188,8 +188,8 @@ class BoxSpectra:
         """The spectrum (36, 1, waves) of a coefficient with that of its periodic images: (6, 6, waves)."""
         if self.images is None:
             raise ValueError("only what is swept has a period")
-        faces = [self.cuboids.faces[i : i + 2] for i in (observed, source)]
-        more = self.images.between(image, *faces, self.half)
+        (top, bottom), (upper, lower) = (self.cuboids.faces[i : i + 2] for i in (observed, source))
+        more = self.images.between(image, (top, bottom), (upper, lower), lags=self.half)
         out = spectrum.reshape(36, -1).copy()
         for row, odd in enumerate(ODD_LAGS):
             out[row] += self._of_block(more[row, None, : self.half[0], : self.half[1]], odd).ravel()
@@ -256,9 +256,9 @@ class InWaves(NamedTuple):
 class BoxOperator:
     """Stress in the cells of a box and u_z of its surface, of plastic strain and loads, on the cells that
     `keep` leaves. box: cells as lags, in m, layers from 0; mu in Pa; single: precision, 1e-7 of the largest
-    stress, in half the time; mirror: of all fields in x (with y) and y; exchange: of x and y, half of the wave
-    numbers give all; swept: error of the stress/mu of a unit strain by sweeps over the layers, which then take
-    the place of matrices between all of them.
+    stress, in half the time; mirror: of all fields in x (with y) and y; exchange: of x and y, half of the
+    wave numbers give all; swept: error of the stress/mu of a unit strain by sweeps over the layers in place
+    of matrices between all of them.
     """
 
     def __init__(
@@ -288,7 +288,8 @@ class BoxOperator:
     @property
     def memory(self) -> int:
         """Bytes of the stored coefficients."""
-        return self.spectra.layers.nbytes
+        images = self.spectra.images
+        return self.spectra.layers.nbytes + (0 if images is None else images.nbytes)
 
     @property
     def own_stress(self) -> Array:
@@ -361,7 +362,7 @@ class BoxOperator:
         columns = columns.reshape(*columns.shape[:2], 6, self.layers, -1)
         stress = self.transforms.fields(columns, ODD_X, ODD_Y)
         if self.spectra.images is not None and response is not None and response.images is not None:
-            stress += self.keep(self.spectra.images.fields(response.images))
+            stress += self.keep(self.spectra.images.fields(response.images.astype(self.real)))
         return stress
 
     def _of_loads(self, loads: list[tuple[Array, int]]) -> Reals:

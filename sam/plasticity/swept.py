@@ -30,7 +30,7 @@ them.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from math import log, pi
 from typing import Any, Protocol
@@ -45,15 +45,15 @@ Reals = NDArray[Any]
 """Real numbers in the precision of the operator, single or double."""
 WAVES_AT_ONCE = 512  # that are swept together, so that they stay in the cache
 GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3)  # points of the mean over a cell, in each direction
-# The largest stress/mu that waves two cells long leave of (h) between layers r cells apart, over e^{-pi r}: 5 to
-# 8 for r = 1 to 3.
+# The largest stress/mu that waves two cells long leave of (h) between layers r cells apart, over e^{-pi r}:
+# 5 to 8 for r = 1 to 3.
 WORST = 8.0
 DIGITS = 9  # to which thicknesses are compared
 
 
 class Sweeps:
-    """The operator (h) over mu, real as in `sam.plasticity.spectra`, without the full space in the layer of the
-    strain. waves: k_x, k_y, (2, n) per hx; box: in hx, from z = 0.
+    """The operator (h) over mu, real as in `sam.plasticity.spectra`, without the full space in the layer of
+    the strain. waves: k_x, k_y, (2, n) per hx; box: in hx, from z = 0.
     """
 
     def __init__(self, waves: Array, box: Cuboids, real: type[np.floating[Any]]):
@@ -165,7 +165,7 @@ class Run:
     made: dict[int, int] = field(default_factory=dict)
     matrices: Reals = field(default_factory=lambda: np.empty(0))
 
-    def takes(self, keys: dict[int, tuple[float, ...]], layers: int) -> bool:
+    def takes(self, keys: Mapping[int, tuple[float, ...]], layers: int) -> bool:
         """Whether the next layer has the same neighbours, but for those beyond either end."""
         i, known = self.first + self.count, self.keys
         alike = all(known[d] == keys[d] if d in known else i - 1 + d < 0 for d in keys)
@@ -199,9 +199,9 @@ def runs_of(faces: Array, within: Mask) -> list[Run]:
 
 
 class SweptLayers:
-    """The operator of a box, strain to stress/mu in its layers: by `Sweeps`, and between layers less than some
-    cells apart by the `exact` coefficients less (h). waves, box: as there; error: of the stress/mu of a unit
-    strain, what the shortest waves leave of (h) between the other layers.
+    """The operator of a box, strain to stress/mu in its layers: by `Sweeps`, and between layers less than
+    some cells apart by the `exact` coefficients less (h). waves, box: as there; error: of the stress/mu of a
+    unit strain, what the shortest waves leave of (h) between the other layers.
     """
 
     def __init__(
