@@ -12,7 +12,6 @@ from sam.scene import Scene
 from verification.cases.case import SAM, Context, with_keys, with_loading
 from verification.cases.cost.growth import factor
 from verification.cost.estimates import estimate
-from verification.quantities import Quantity, Solved
 
 NAMES = (
     "approach_m contact_area_m2 p_max_Pa mises_max_Pa residual_mises_max_Pa peeq_max peeq_p95 wear_volume_m3 "
@@ -47,18 +46,18 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
         }
 
 
-def _cost(solved: Solved, name: str) -> float:
-    planned = estimate(solved.scene, SAM)
-    said = {"peak_memory_bytes": planned.memory_bytes, "cpu_s": planned.time_s}
-    return factor(solved.results["sam"].cost[name], said[name])
-
-
-memory_factor = Quantity(
-    "largest memory of the process, over what the plan says",
-    whole=lambda solved: _cost(solved, "peak_memory_bytes"),
-)
-time_factor = Quantity("processor time, over what the plan says", whole=lambda solved: _cost(solved, "cpu_s"))
-layers = Quantity(
-    "layers of the plastic box",
-    whole=lambda solved: solved.results["sam"].discretisation["plastic_box_layers"],
-)
+def large(context: Context) -> Iterator[dict[str, Any]]:
+    """Time in s and memory in bytes of the large patch, and the factor between each and its plan."""
+    scene = context.scene("large-patch")
+    result, planned = context.solve(SAM, scene, "sam"), estimate(scene, SAM)
+    time_s, memory = result.cost["cpu_s"], result.cost["peak_memory_bytes"]
+    yield {
+        "sweep": "large patch",
+        "cpu-s": time_s,
+        "time-factor": factor(time_s, planned.time_s),
+        "memory": memory,
+        "memory-factor": factor(memory, planned.memory_bytes),
+        "box-cells": "-".join(map(str, result.discretisation["plastic_box_cells"])),
+        "box-layers": result.discretisation["plastic_box_layers"],
+        "applications": result.cost["operator_applications"],
+    }
