@@ -208,7 +208,7 @@ def _beside(model: Model, record: Progressed, trial: Trial) -> tuple[Progressed,
         return record, record.extent
     record = with_outside(model, record)
     cells = penetrated(model, record, trial)
-    return record, holding(record.extent, cells) if cells.any() else record.extent
+    return record, holding(record.extent, cells, model.grid) if cells.any() else record.extent
 
 
 def committed(model: Model, record: Progressed, trial: Trial, film: TribofilmState | None) -> Progressed:
