@@ -226,7 +226,7 @@ def _moved_up(state: Array, faces: Array, depth: Array) -> tuple[Array, Array]:
 def closing_residual(before: Array, after: Array, removed: Array, faces: Array) -> float:
     """Largest difference of both sides of (b) over the largest integral of |before|; 0 without strain."""
     h = np.diff(faces)[:, None, None]
-    scale = (np.abs(before) * h).sum(axis=-3).max()
+    scale = (np.abs(before) * h).sum(axis=-3).max(initial=0.0)
     difference = (after * h).sum(axis=-3) + removed - (before * h).sum(axis=-3)
     return float(np.abs(difference).max() / scale) if scale > 0 else 0.0
 
