@@ -33,8 +33,9 @@ from numpy.typing import NDArray
 from sam.arrays import Array, Mask
 from sam.contact.convolution import Transforms
 from sam.contact.stress import yielding
+from sam.kernels.patches import ODD_X, ODD_Y
 from sam.plasticity.flow import Flow, Material, contraction, deviator, equivalent_strain, mises
-from sam.plasticity.spectra import EVEN, ODD_X, ODD_Y
+from sam.plasticity.spectra import EVEN
 from sam.plasticity.state import CellFields, filled, spread
 
 POINTS = 4
