@@ -39,6 +39,7 @@ from sam.plasticity.spectra import EVEN
 from sam.plasticity.state import CellFields, filled, spread
 
 POINTS = 4
+CELLS_AT_ONCE = 2**14  # of layers whose trial stress is made together: a tensor of them fits into the cache
 SIGNS = np.array([[-1.0, -1, 1, 1], [-1, 1, -1, 1]])[..., None]  # in x and in y
 OFFSET = 1 / (4 * sqrt(3))  # of a point, over the distance between both neighbours of its cell
 OPPOSITE = {-2: (np.array([2, 3, 0, 1]), ODD_X), -1: (np.array([1, 0, 3, 2]), ODD_Y)}
@@ -188,12 +189,14 @@ class CellFlow:
     def trial(self, x: Array, stress: Array) -> Array:
         """The trial stress (e) at the points of the cells that may yield, (6, 4, n); x: of `cells`."""
         added = 2 * self.m * (self.flow.before.strain.mean(axis=1) + x)
-        of_layers = np.split(added, np.cumsum(self.counts)[:-1], axis=-1)
+        at_once = max(1, CELLS_AT_ONCE // self.least[0].size)
+        parts = np.split(added, np.cumsum(self.counts)[at_once - 1 : -1 : at_once], axis=-1)
         may_yield, at = self.cells.copy(), []
-        for layer, cells in enumerate(may_yield):  # what a layer takes fits into the cache
-            smooth = deviator(stress[:, layer])
-            smooth[:, cells] += of_layers[layer]
-            cells |= yielding(self.linear.farthest(mises(smooth)), self.least[layer])
+        for k, part in enumerate(parts):
+            layers = slice(k * at_once, (k + 1) * at_once)
+            smooth, cells = deviator(stress[:, layers]), may_yield[layers]
+            smooth[:, cells] += part
+            cells |= yielding(self.linear.farthest(mises(smooth)), self.least[layers])
             at.append(self.linear.at_points(smooth, cells))
         self.add(may_yield)
         return np.concatenate(at, axis=-1) - 2 * self.m * self.flow.before.strain
