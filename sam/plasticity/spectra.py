@@ -25,9 +25,10 @@ from numpy.typing import NDArray
 
 from sam.arrays import Array
 from sam.contact.convolution import Counters, Transforms, real_spectrum
-from sam.kernels.eigenstrain import surface_displacement_coefficients
+from sam.kernels.eigenstrain import EXCHANGED, surface_displacement_coefficients
 from sam.kernels.layer_stress import CornerFunctions, LayerStress, four_points, mesh
 from sam.kernels.patches import STRESS, Cuboids, Lags, stress_coefficients
+from sam.kernels.store import kept
 
 Reals = NDArray[Any]
 """Real numbers in the precision of the operator, single or double."""
@@ -38,13 +39,11 @@ ODD_Y = np.array([name.count("2") % 2 for name in STRESS])
 TWICE = ((np.outer(ODD_X, ODD_X) + np.outer(ODD_Y, ODD_Y)) % 2 == 1).ravel()  # 6 I + J, where (-i)^2 is left
 # likewise, where the coefficient is odd in a lag
 ODD = (np.not_equal.outer(ODD_X, ODD_X) | np.not_equal.outer(ODD_Y, ODD_Y)).ravel()
-EXCHANGED = np.array([STRESS.index(name) for name in ("22", "11", "33", "13", "23", "12")])  # x and y
 EVEN = np.zeros(1, int), np.zeros(1, int)  # parities in x and y of pressure and u_z
 CACHED_BOXES = 4  # spectra that are kept: the boxes of a history, or of both grids of an extrapolation
 # tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough
 SINGLE = 5e-5
 GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3)  # points of the mean over a cell, in each direction
-WAVES_AT_ONCE = 256  # whose rows of coefficients are written together: 64 and 1024 take as long
 NEAR = 4  # cells: up to there stresses are means over the observed cell
 
 
@@ -57,7 +56,7 @@ class CellMeans(CornerFunctions):
     """The same functions as means over the cell in x and y: by Gauss points up to NEAR cells away."""
 
     def __init__(self, lags: Lags):
-        self.near = min(NEAR, lags.nx), min(NEAR, lags.ny)
+        self.shape, self.near = lags.shape, (min(NEAR, lags.nx), min(NEAR, lags.ny))
         points = four_points((lags.hx * GAUSS[1] / 2, lags.hy * GAUSS[1] / 2))
         super().__init__(
             lags.shape,
@@ -65,11 +64,25 @@ class CellMeans(CornerFunctions):
             mesh(_first(lags, self.near), points),
         )
 
-    def observed(self, out: Array, far: Array, near: Array) -> None:  # type: ignore[override]
-        """The means over the cells of each mesh, into (offsets, nx, ny)."""
-        # two meshes: all cells, and the near ones from four points
-        _plane_mean(far[:, 0], out)
-        super().observed(out[:, : self.near[0], : self.near[1]], near)
+    def planes(self, corners: Array, odd: tuple[int, int]) -> Array:
+        """Means over the cells, (..., nx, ny)."""
+        far, near = self._differences(corners)
+        out = np.empty((*corners.shape[:-1], *self.shape))
+        _plane_mean(far[..., 0, :, :], out)
+        np.mean(near[..., :-1, :-1], axis=-3, out=out[..., : self.near[0], : self.near[1]])
+        return out
+
+
+class CellSpectra(CellMeans):
+    """Their transforms of so many wave numbers, see `real_spectrum`."""
+
+    def __init__(self, lags: Lags):
+        super().__init__(lags)
+        self.itself = np.ones((lags.nx + 1, lags.ny + 1))
+
+    def planes(self, corners: Array, odd: tuple[int, int]) -> Array:
+        """(..., nx + 1, ny + 1)."""
+        return np.asarray(real_spectrum(super().planes(corners, odd), self.shape, odd))
 
 
 def _first(lags: Lags, counts: tuple[int, int]) -> Lags:
@@ -96,14 +109,14 @@ def mean_stress_of_load(cuboids: Cuboids, load: int = 3) -> Array:
 
 def _plane_mean(kernel: Array, out: Array) -> None:
     """Mean over the cell in x and y, K + (d_x^2 K + d_y^2 K)/24, from lags -1 .. n at lags 0 .. n - 1."""
-    row, flat = kernel.shape[-1], kernel.reshape(-1)
+    (nx, ny), row, flat = out.shape[-2:], kernel.shape[-1], kernel.reshape(-1)
     # sums of neighbours in one go; those over the border are not kept
     pairs = flat[row:] + flat[1 : 1 - row]  # one further in x and one further in y
     mean = 20 * flat  # 24 - 4
     inner = mean[row + 1 : -row]
     inner += pairs[row + 1 :]
     inner += pairs[: -row - 1]
-    np.multiply(mean.reshape(kernel.shape)[..., 1:-1, 1:-1], 1 / 24, out=out)
+    np.multiply(mean.reshape(kernel.shape)[..., 1 : nx + 1, 1 : ny + 1], 1 / 24, out=out)
 
 
 def _with_lag_before(kernel: Array, odd_x: Parities, odd_y: Parities) -> Array:
@@ -115,33 +128,41 @@ def _with_lag_before(kernel: Array, odd_x: Parities, odd_y: Parities) -> Array:
     return np.concatenate([sign_y * kernel[..., 1:2], kernel], axis=-1)
 
 
-def _by_wave(rows: Reals, out: Reals) -> None:
-    """Rows (6, columns, waves) into (waves, 6, columns), some waves at a time, which stay in the cache."""
-    for start in range(0, rows.shape[-1], WAVES_AT_ONCE):
-        some = slice(start, start + WAVES_AT_ONCE)
-        out[some] = rows[..., some].transpose(2, 0, 1)
-
-
 class BoxSpectra:
     """Real transforms of coefficients of cuboids, with mu = 1; stored: of which wave numbers."""
 
     def __init__(self, cuboids: Cuboids, single: bool, exchange: bool = False):
         self.cuboids, self.half = cuboids, cuboids.lags.shape
         self.real = np.float32 if single else np.float64
-        faces, layers, (nx, ny) = cuboids.depths, cuboids.layers, self.half
-        every = np.ones((nx + 1, ny + 1), dtype=bool)
+        every = np.ones(np.add(self.half, 1), dtype=bool)
         self.stored = np.flatnonzero(np.triu(every)) if exchange else slice(None)
-        waves = every.ravel()[self.stored].size
-        self.strain_to_stress = np.empty((waves, 6 * layers, 6 * layers), dtype=self.real)
-        mean = LayerStress(
-            CellMeans(cuboids.lags), _points(faces), faces, cuboids.nu, transform=self._of_block
+        shape = every.ravel()[self.stored].size, 6 * cuboids.layers, 6 * cuboids.layers
+        self.strain_to_stress = kept(
+            repr((cuboids, exchange)), shape, self.real, lambda: self._of_strain(shape)
         )
-        spectrum = np.empty((36, layers, 1, waves), dtype=self.real)
+        self.strain_to_displacement = self._of_surface(surface_displacement_coefficients(cuboids), ODD_X)
+
+    def _of_strain(self, shape: tuple[int, int, int]) -> Reals:
+        """Spectra of the stress of plastic strain, (waves, 6 n_layers, 6 n_layers)."""
+        exchange = not isinstance(self.stored, slice)
+        faces, layers, lags = self.cuboids.depths, self.cuboids.layers, self.cuboids.lags
+        square = lags.nx == lags.ny and lags.hx == lags.hy
+        mean = LayerStress(
+            *(CellSpectra(lags), _points(faces), faces, self.cuboids.nu),
+            scale=np.where(TWICE, -1.0, 1.0),
+            exchanged=square,
+        )
+        spectrum = np.empty((36, layers, lags.nx + 1, lags.ny + 1), dtype=self.real)
+        rows = spectrum.reshape(6, 6 * layers, *spectrum.shape[2:])
+        out = np.empty(shape, dtype=self.real)
         for i in range(layers):
             mean.of(i, spectrum)
-            spectrum[TWICE] *= -1
-            _by_wave(spectrum.reshape(6, 6 * layers, waves), self.strain_to_stress[:, i::layers])
-        self.strain_to_displacement = self._of_surface(surface_displacement_coefficients(cuboids), ODD_X)
+            start = 0
+            for k in range(lags.nx + 1):  # one row of wave numbers at a time stays in the cache
+                of_row = rows[:, :, k, k * exchange :].transpose(2, 0, 1)
+                out[start : start + len(of_row), i::layers] = of_row
+                start += len(of_row)
+        return out
 
     @cached_property
     def own_stress(self) -> Array:
@@ -156,11 +177,6 @@ class BoxSpectra:
         stress[TWICE] *= -1
         stress[ODD] = 0.0
         return stress.reshape(6, 6, -1)
-
-    def _of_block(self, kernel: Array, odd: tuple[int, int]) -> Reals:
-        """Spectra of coefficients (..., rows, nx, ny) of one parity: (..., rows, 1, stored)."""
-        spectrum = real_spectrum(kernel, self.half, odd)
-        return spectrum.reshape(*spectrum.shape[:-2], 1, -1)[..., self.stored]
 
     def _of_surface(self, kernel: Array, odd_x: Parities) -> Reals:
         """Spectra of (6, n_layers, nx, ny) between layers and surface, (N_x + 1, N_y + 1, 6 n_layers)."""
