@@ -154,28 +154,44 @@ class LayerStress:
 
     def of(self, layer: int, out: Array) -> None:
         """Stress/mu in one of the observed layers into `out`, (36, n, X, Y); each once, in order."""
-        parts = zip(self.image.of(layer), self.full.of(layer), strict=True)
-        for k, ((first, image), (_, full)) in enumerate(parts):
-            stress = self._rows_of_full_space(full)
+        for k, (image, stress) in enumerate(zip(self._image(layer), self._full_space(layer), strict=True)):
+            stress += image
+            self._every(stress, out[:, k])
+
+    def of_image(self, layer: int) -> Iterator[Array]:
+        """The part of the free surface alone, (36, X, Y) by each source; layers in order, as in `of`."""
+        for rows in self._image(layer):
+            yield self._every(rows, np.empty((36, *rows.shape[1:])))
+
+    def of_full_space(self, layer: int) -> Iterator[Array]:
+        """The rest, that of the full space less the eigenstrain's own stress."""
+        for rows in self._full_space(layer):
+            yield self._every(rows, np.empty((36, *rows.shape[1:])))
+
+    def _every(self, rows: Array, out: Array) -> Array:
+        """Into all coefficients from those that are summed."""
+        if self.exchanged:
+            out[EXCHANGED_ROWS[self.rows]] = rows.swapaxes(-1, -2)
+        out[self.rows] = rows
+        return out
+
+    def _image(self, layer: int) -> Iterator[Array]:
+        for first, image in self.image.of(layer):
+            if move := self.points[layer, 0] - self.points[first // (len(self.faces) - 1), 0]:
+                yield np.dot(move ** np.arange(3), image.reshape(3, -1)).reshape(image.shape[1:])
+            else:
+                yield image[0]
+
+    def _full_space(self, layer: int) -> Iterator[Array]:
+        for k, (_, functions) in enumerate(self.full.of(layer)):
+            flat = functions.reshape(len(functions), -1)
+            stress = np.concatenate([block.full @ flat[block.of_full] for block in self.blocks])
+            stress = stress.reshape(-1, *functions.shape[1:])
             if self.above[layer, k]:
                 stress *= self.mirrored
             if self.inside[layer, k]:  # paper, last term of Eq. 3: inside the plastic volume
                 stress -= self.own[:, None, None] * self.functions.itself
-            move = self.points[layer, 0] - self.points[first // (len(self.faces) - 1), 0]
-            if move:
-                image = np.dot(move ** np.arange(3), image.reshape(3, -1)).reshape(stress.shape)
-            else:
-                image = image[0]
-            stress += image
-            if self.exchanged:
-                out[EXCHANGED_ROWS[self.rows], k] = stress.swapaxes(-1, -2)
-            out[self.rows, k] = stress
-
-    def _rows_of_full_space(self, functions: Array) -> Array:
-        """Coefficients (rows, X, Y) from functions (functions, X, Y)."""
-        flat = functions.reshape(len(functions), -1)
-        rows = [block.full @ flat[block.of_full] for block in self.blocks]
-        return np.concatenate(rows).reshape(-1, *functions.shape[1:])
+            yield stress
 
     def _at_faces(self, pairs: Numbers, opposite: Mask) -> tuple[Array, Array, Numbers, Numbers]:
         """Points and faces, both (m, g), that these pairs of layers need, each once; the sign of their

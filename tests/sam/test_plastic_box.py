@@ -66,7 +66,7 @@ def test_equals_direct_summation_on_uneven_layers():
     rng = np.random.default_rng(0)
     strain, pressure = rng.standard_normal((6, LAYERS, NX, NY)), rng.standard_normal((NX, NY))
     traction = rng.standard_normal((NX, NY))
-    operator = BoxOperator(cuboids(), MU, Counters(), sliding=True)
+    operator = BoxOperator(cuboids(), MU, Counters())
     transformed = operator.transformed(strain)
     found = operator.stress(pressure, operator.response(transformed), traction)
     expected = np.zeros_like(strain)
@@ -135,8 +135,8 @@ def test_coefficients_are_taken_from_files_that_are_whole(tmp_path, monkeypatch)
     """Bit by bit as they were made; a file that is cut, changed or of something else is made again, and none
     is touched without a store.
     """
-    made, few = of_box().strain_to_stress, of_box(exchange=True).strain_to_stress
-    monkeypatch.setattr(BoxSpectra, "_of_strain", lambda *_: pytest.fail("made again"))
+    made, few = of_box().layers, of_box(exchange=True).layers
+    monkeypatch.setattr(BoxSpectra, "_dense", lambda *_: pytest.fail("made again"))
     with pytest.raises(pytest.fail.Exception):
         of_box()
     store = CoefficientStore(tmp_path / "new", 3 * made.nbytes, "1")
@@ -144,9 +144,9 @@ def test_coefficients_are_taken_from_files_that_are_whole(tmp_path, monkeypatch)
     def found(content=made, exchange=False, version="1"):
         """With whether it had to be made."""
         again = []
-        monkeypatch.setattr(BoxSpectra, "_of_strain", lambda *_: again.append(1) or content)
+        monkeypatch.setattr(BoxSpectra, "_dense", lambda *_: again.append(1) or content)
         with using(replace(store, version=version)):
-            values = of_box(exchange).strain_to_stress
+            values = of_box(exchange).layers
         assert np.array_equal(values, content)
         return bool(again)
 
