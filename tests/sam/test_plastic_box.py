@@ -3,6 +3,7 @@
 preconditioner, and the largest values between the centres.
 """
 
+import os
 from dataclasses import replace
 
 import numpy as np
@@ -12,12 +13,13 @@ from sam.contact.convolution import Counters, Transforms
 from sam.grid.cells import Window
 from sam.kernels.eigenstrain import displacement_parity, surface_displacement_coefficients
 from sam.kernels.layer_stress import LayerStress, residual_stress_coefficients
-from sam.kernels.patches import STRESS, Cuboids, Lags, parity
+from sam.kernels.patches import ODD_X, ODD_Y, STRESS, Cuboids, Lags, parity
+from sam.kernels.store import CoefficientStore, kept, using
 from sam.plasticity.flow import Material, contraction, deviator, equivalent_strain, mises
 from sam.plasticity.load_step import PARTS, ROOT, preconditioned, stiffness_of_parts
 from sam.plasticity.measure import Strained, at_centres, largest, residual_stress, surface_displacement
 from sam.plasticity.points import POINTS, CellFlow, Linear, stress_at_points, whole
-from sam.plasticity.spectra import ODD_X, ODD_Y, BoxOperator, CellMeans, _points, mean_stress_of_load
+from sam.plasticity.spectra import BoxOperator, BoxSpectra, CellMeans, _points, mean_stress_of_load
 from sam.plasticity.state import CellFields, MaterialFields, filled
 from sam.scene.yield_curve import Layered, Linear as LinearLaw, Swift
 
@@ -107,6 +109,73 @@ def test_equal_layers_share_what_each_pair_alone_gives():
     layers = LayerStress(CellMeans(Lags(5, 4, 1.0, ASPECT)), _points(faces), faces, NU)
     assert len(layers.image.first) == 2 * 6 - 1 + 8 * 8 - 6 * 6
     assert len(layers.full.first) == 6 + 8 * 8 - 6 * 6
+
+
+def test_one_of_two_coefficients_gives_the_other_with_x_and_y_exchanged():
+    """On square cells, 1e-13 of the largest value."""
+    both, half = (np.empty((36, LAYERS, 5, 5)) for _ in range(2))
+    for out, exchanged in ((both, False), (half, True)):
+        means = CellMeans(Lags(5, 5, 1.0, 1.0))
+        LayerStress(means, _points(FACES)[1:2], FACES, NU, exchanged=exchanged).of(0, out)
+    assert np.abs(half - both).max() < 1e-13 * np.abs(both).max()
+
+
+def of_box(exchange=False):
+    return BoxSpectra(cuboids(5, 5, aspect=1.0), single=False, exchange=exchange)
+
+
+def test_coefficients_are_taken_from_files_that_are_whole(tmp_path, monkeypatch):
+    """Bit by bit as they were made; a file that is cut, changed or of something else is made again, and none
+    is touched without a store.
+    """
+    made, few = of_box().layers, of_box(exchange=True).layers
+    monkeypatch.setattr(BoxSpectra, "_dense", lambda *_: pytest.fail("made again"))
+    with pytest.raises(pytest.fail.Exception):
+        of_box()
+    store = CoefficientStore(tmp_path / "new", 3 * made.nbytes, "1")
+
+    def found(content=made, exchange=False, version="1"):
+        """With whether it had to be made."""
+        again = []
+        monkeypatch.setattr(BoxSpectra, "_dense", lambda *_: again.append(1) or content)
+        with using(replace(store, version=version)):
+            values = of_box(exchange).layers
+        assert np.array_equal(values, content)
+        return bool(again)
+
+    assert found() and not found() and found(few, exchange=True) and not found(few, exchange=True)
+    assert found(version="2") and not found()
+    first, second = sorted(store.path.iterdir(), key=lambda path: path.stat().st_size)[:2]
+    whole = second.read_bytes()
+    flipped = bytearray(whole)
+    flipped[len(whole) // 2] ^= 1
+    other = next(path for path in store.path.iterdir() if path not in (first, second))
+    for damaged in (whole[:-8], whole[:100], b"", whole + b"\0", bytes(flipped), other.read_bytes()):
+        second.write_bytes(damaged)
+        assert sorted([found(), found(version="2")]) == [False, True]
+        assert second.read_bytes() == whole
+
+
+def test_a_store_of_coefficients_is_bounded(tmp_path):
+    """The one used longest ago goes; one that is larger than all is not kept; nor is what nobody finished."""
+    array, store = np.arange(1000.0), CoefficientStore(tmp_path, 3e4, "1")
+
+    def found(name, size=1000):
+        again = []
+        with using(store):
+            kept(name, (size,), float, lambda: again.append(1) or np.resize(array, size))
+        return bool(again)
+
+    for path in (tmp_path / "a.part", tmp_path / "b.part"):
+        path.touch()
+    os.utime(tmp_path / "a.part", (0, 0))
+    assert [found(name) for name in "ab"] == [True, True]
+    for path in tmp_path.glob("*.coefficients"):
+        os.utime(path, (1000, 1000))
+    assert not found("a") and found("c")  # a is the newer one now
+    assert not found("a") and not found("c") and found("b")
+    assert found("large", 4000) and found("large", 4000)
+    assert not (tmp_path / "a.part").exists() and (tmp_path / "b.part").exists()
 
 
 def test_fields_outside_the_box_continue_those_inside():
