@@ -36,6 +36,11 @@ CONTAINED = 3.0
 # Contact half-widths that the first guess of the depth of the plastic zone has at most: with 1.2 S takes two
 # boxes and 29 applications, with 2.5 it stays.
 DEEPEST = 1.8
+# A box is swept from so many layers and bytes of matrices on, or from the bytes of any number of layers: with
+# 24 layers of cells both take as long an application, at 96 x 96 cells and 1e-3 the sweeps a third of the
+# set-up.
+MANY_LAYERS, MANY_BYTES, MOST_BYTES = 24, 2e8, 1e9
+SWEPT_SHARE = 0.05  # of the tolerance of the plastic iteration, the error of the sweeps
 # Cells that are free beside the zone of a body that nothing touches: with two strained ones a box grows.
 FREE_BESIDE = 3
 
@@ -131,13 +136,22 @@ def edge_reached(trial: Trial, *, cut_beside: bool) -> Sides:
 
 @dataclass(frozen=True)
 class ExpectedBox:
-    """A box on which plastic strain is expected; tolerance: of the iteration; exchange: of x and y."""
+    """A box of plastic strain; tolerance: of the iteration; exchange: of x and y; operator: see `Solver`."""
 
     nx: int
     ny: int
     layers: int
     tolerance: float
     exchange: bool = False
+    operator: str | None = None
+
+    @property
+    def swept(self) -> float:
+        """The error of the operator where it is swept, or 0."""
+        matrices = self.width * self.coefficients
+        chosen = matrices > (MANY_BYTES if self.layers >= MANY_LAYERS else MOST_BYTES)
+        swept = self.operator == "swept" or (self.operator is None and chosen)
+        return SWEPT_SHARE * self.tolerance if swept else 0.0
 
     @property
     def width(self) -> int:
@@ -146,7 +160,7 @@ class ExpectedBox:
 
     @property
     def coefficients(self) -> int:
-        """Numbers of the coefficients: 36 nz^2 (N_x + 1)(N_y + 1), with k_x <= k_y if exchanged."""
+        """Numbers in the matrices between all layers: 36 nz^2 (N_x + 1)(N_y + 1), or k_x <= k_y of them."""
         nx, ny = half_length(self.nx) + 1, half_length(self.ny) + 1
         return 36 * self.layers**2 * (nx * (nx + 1) // 2 if self.exchange else nx * ny)
 
