@@ -73,7 +73,7 @@ $(INSTALLED): requirements.lock pyproject.toml
 	touch $@
 
 $(DOCS_INSTALLED): $(INSTALLED) requirements-docs.lock
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-docs.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --require-hashes -r requirements-docs.lock
 	touch $@
 
 # SAM beside Tamaas, ContactMechanics and aspher, which have an environment of their own and are no dependency. aspher is
