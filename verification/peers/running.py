@@ -130,7 +130,6 @@ def measure(
     rounds: int,
     progress: Progress = lambda *_: None,
     *,
-    calibrate: Callable[[], float] = calibration_s,
     reaches: Callable[[Measurement], bool] = lambda _: True,
 ) -> tuple[dict[str, list[Measurement]], list[float]]:
     """The programs in turn, a job each, over several rounds, each in a process of its own: (program ->
@@ -139,7 +138,7 @@ def measure(
     interpreter.
     """
     found = {program: [Measurement(job) for job in own] for program, own in jobs.items()}
-    kernel = [calibrate()]
+    kernel = [calibration_s()]
     turns = list(zip_longest(*found.values()))
     for number in range(rounds):
         for k, turn in enumerate(turns):
@@ -152,7 +151,7 @@ def measure(
             for program, each in due:
                 run(program, each, pythons[program])
             if due:
-                kernel.append(calibrate())
+                kernel.append(calibration_s())
     return found, kernel
 
 
