@@ -39,7 +39,7 @@ wheel: CASES ?= hertz-ellipse hertz-sphere certificates mutation
 wheel: $(INSTALLED)
 	PYTHON=$(PYTHON) .ci/wheel $(CASES)
 
-# The site in docs/_build/html: without a warning of Sphinx, without a broken link; each notebook of the gallery runs.
+# The site in docs/_build/html: without a warning of Sphinx, without a broken link; the gallery runs, of its notebooks some.
 docs: $(DOCS_INSTALLED)
 	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going docs docs/_build/html
 	$(BIN)/python docs/tools/check_links.py docs/_build/html
