@@ -198,6 +198,15 @@ def runs_of(faces: Array, within: Mask) -> list[Run]:
     return out
 
 
+def neighbours(faces: Array, error: float, aspect: float = 1.0) -> tuple[list[Run], int]:
+    """Which layers are so close that (h) leaves more than an error, in runs; and how many of the uppermost
+    are as close to the mirror image of the first. faces: in hx; aspect: hy/hx.
+    """
+    reach = log(WORST / error) / pi * max(1.0, aspect) - 10.0**-DIGITS
+    gap = np.subtract.outer(faces[:-1], faces[1:])
+    return runs_of(faces, np.maximum(gap, gap.T) < reach), int(np.searchsorted(faces[:-1], reach))
+
+
 class SweptLayers:
     """The operator of a box, strain to stress/mu in its layers: by `Sweeps`, and between layers less than
     some cells apart by the `exact` coefficients less (h). waves, box: as there; error: of the stress/mu of a
@@ -208,14 +217,13 @@ class SweptLayers:
         self, exact: Exact, waves: Array, box: Cuboids, *, error: float, real: type[np.floating[Any]]
     ):
         faces = box.depths
-        reach = log(WORST / error) / pi * max(1.0, box.lags.hy / box.lags.hx) - 10.0**-DIGITS
 
         def matrices(some: slice, reflected: bool) -> Iterator[tuple[slice, Array]]:
             layers = faces[some.start : some.stop + 1] - faces[some.start]
             return Sweeps(waves, replace(box, faces=tuple(layers)), np.float64).matrices(reflected)
 
-        self.sweeps, gap = Sweeps(waves, box, real), np.subtract.outer(faces[:-1], faces[1:])
-        self.runs = runs_of(faces, np.maximum(gap, gap.T) < reach)
+        self.sweeps = Sweeps(waves, box, real)
+        self.runs, self.top = neighbours(faces, error, box.lags.hy / box.lags.hx)
         for run in self.runs:
             offsets = sorted(run.made)
             found = np.empty((waves.shape[1], 6, 6, len(offsets)), dtype=real)
@@ -229,7 +237,6 @@ class SweptLayers:
                     left = np.moveaxis(spectra[..., some], -1, 0) - swept[:, :, i - first, :, columns]
                     found[some, ..., new[0] : new[-1] + 1] = left
             run.matrices = found.reshape(len(found), 6, -1)
-        self.top = int(np.searchsorted(faces[:-1], reach))
         self.image = np.empty((waves.shape[1], 6, self.top, 6, self.top), dtype=real)
         spectra = exact.image(self.top)
         whole, alone = (matrices(slice(0, self.top), reflected) for reflected in (True, False))
