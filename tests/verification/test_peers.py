@@ -150,13 +150,17 @@ class TestWorker:
         assert not bad.solved and "KeyError" in bad.failure and math.isnan(bad.seconds)
 
     @pytest.mark.parametrize(
-        ("first", "again", "counts"), [(0.4, (0.1, 0.6, 0.2, 0.5, 0.3), 0.3), (0.6, (), 0.6)]
+        ("problem", "first", "again", "counts"),
+        [(problems.HERTZ, 0.4, (0.1, 0.6, 0.2, 0.5, 0.3), 0.3), (problems.HERTZ, 0.6, (), 0.6)]
+        + [(problems.STEP, 0.4, (), 0.4)],
     )
-    def test_a_short_job_counts_as_it_is_solved_again(self, tmp_path, monkeypatch, first, again, counts):
+    def test_a_short_job_counts_as_it_is_solved_again(
+        self, tmp_path, monkeypatch, problem, first, *, again, counts
+    ):
         times = iter((9.0, first, *again))  # the smaller problem before it
         made = lambda *_: ({"setup_s": 0.0, "solve_s": next(times)}, {})  # noqa: E731
         monkeypatch.setattr(worker, "measured", made)
-        job = {"problem": problems.HERTZ, "cells": 48, "settings": {}}
+        job = {"problem": problem, "cells": 48, "settings": {}}
         worker.main(json.dumps({"program": SAM, "job": job}), str(tmp_path / "answer"))
         record = json.loads((tmp_path / "answer.json").read_text())
         assert (record["solve_s"], record["first_s"], [*times]) == (counts, first, [])

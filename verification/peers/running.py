@@ -158,7 +158,7 @@ def measure(
 def run(program: str, measurement: Measurement, python: Path, allowance: float = ALLOWANCE_S) -> None:
     """One process of a program for a job; adds its times, or says why there is no answer."""
     environment = {**os.environ, **dict.fromkeys(THREADS, "1"), "PYTHONPATH": str(ROOT)}
-    environment["PYTHONDONTWRITEBYTECODE"] = "1"
+    environment |= {"PYTHONDONTWRITEBYTECODE": "1", "SAMFEM_STORE": ""}  # nothing of an earlier solve
     task = json.dumps({"program": program, "job": asdict(measurement.job)})
     with tempfile.TemporaryDirectory(prefix="samfem-peers-") as folder:
         target = Path(folder, "answer")
