@@ -208,6 +208,11 @@ def _left_out(scene: Scene) -> list[tuple[str, str]]:
             "extrapolation",
             "solver.extrapolate is a method of the semi-analytical model",
         ),
+        (
+            scene.solver.operator is not None,
+            "operator",
+            "solver.operator is of the semi-analytical model",
+        ),
         (not unload, "unloading", "loading.unload is false"),
         (unload and not yields, "unloading steps", "elastic: unloading in one step is exact"),
         (again, LATER_CYCLES, "elastic: every cycle equals the first"),

@@ -143,16 +143,21 @@ class LayerStress:
 
     def of(self, layer: int, out: Array) -> None:
         """Stress/mu in one of the observed layers into `out`, (36, n, X, Y); each once, in order."""
-        parts = zip(self.image.of(layer), self.full.of(layer), strict=True)
-        for k, ((first, image), (_, full)) in enumerate(parts):
-            move = self.z[layer, k, 0] - self.z.reshape(-1, self.z.shape[-1])[first, 0]
-            if move:
-                image = np.dot(move ** np.arange(3), image.reshape(3, -1)).reshape(image.shape[1:])
+        for k, (image, full) in enumerate(zip(self.of_image(layer), self.of_full_space(layer), strict=True)):
+            np.add(image, full, out=out[:, k], casting="same_kind")
+
+    def of_image(self, layer: int) -> Iterator[Array]:
+        """The part of the free surface alone, (36, X, Y) by each source; layers in order, as in `of`."""
+        for k, (first, image) in enumerate(self.image.of(layer)):
+            if move := self.z[layer, k, 0] - self.z.reshape(-1, self.z.shape[-1])[first, 0]:
+                yield np.dot(move ** np.arange(3), image.reshape(3, -1)).reshape(image.shape[1:])
             else:
-                image = image[0]
-            np.add(
-                image, full * MIRRORED if self.above[layer, k] else full, out=out[:, k], casting="same_kind"
-            )
+                yield image[0]
+
+    def of_full_space(self, layer: int) -> Iterator[Array]:
+        """The rest, that of the full space less the eigenstrain's own stress."""
+        for k, (_, full) in enumerate(self.full.of(layer)):
+            yield full * MIRRORED if self.above[layer, k] else full
 
     def _image_sums(self, first: Numbers, offsets: Array, shared: bool) -> Array:
         """Coefficients of 1, d and d^2, of 1 alone if not shared: (sets of offsets, 3 or 1, 36, X, Y)."""

@@ -92,6 +92,9 @@ class Cuboids:
 
 STRESS = ("11", "22", "33", "23", "13", "12")
 """Index order of the stress components, here and everywhere."""
+ODD_X = np.array([name.count("1") % 2 for name in STRESS])
+ODD_Y = np.array([name.count("2") % 2 for name in STRESS])
+"""1 for a component that is odd under y -> -y, 0 for an even one; before, the same of x."""
 Row = tuple[int, int, int, int, tuple[float, ...]]
 """A term of the derived table: z^p times a derivative a, b, c, and coefficients of 1, nu, nu^2."""
 

@@ -21,6 +21,7 @@ from sam.grid.cells import CellGrid, Sides, Window
 from sam.plasticity.points import OFFSET, POINTS
 from sam.plasticity.spectra import CACHED_BOXES, SINGLE
 from sam.plasticity.state import Extent, Trial
+from sam.plasticity.swept import neighbours
 
 # Measured on spheres, 41 x 41 cells, 4 steps at 1e-4: P is of perfect plasticity at p0 = 4.8 yield stresses,
 # and takes two boxes and 58 operator applications; S is of Swift steel at p0 = 5.3, one box and 22
@@ -36,6 +37,11 @@ CONTAINED = 3.0
 # Contact half-widths that the first guess of the depth of the plastic zone has at most: with 1.2 S takes two
 # boxes and 29 applications, with 2.5 it stays.
 DEEPEST = 1.8
+# A box is swept from so many layers and bytes of matrices on, or from the bytes of any number of layers: with
+# 24 layers of cells both take as long an application, at 96 x 96 cells and 1e-3 the sweeps a third of the
+# set-up.
+MANY_LAYERS, MANY_BYTES, MOST_BYTES = 24, 2e8, 1e9
+SWEPT_SHARE = 0.05  # of the tolerance of the plastic iteration, the error of the sweeps
 # Cells that are free beside the zone of a body that nothing touches: with two strained ones a box grows.
 FREE_BESIDE = 3
 
@@ -131,13 +137,17 @@ def edge_reached(trial: Trial, *, cut_beside: bool) -> Sides:
 
 @dataclass(frozen=True)
 class ExpectedBox:
-    """A box on which plastic strain is expected; tolerance: of the iteration; exchange: of x and y."""
+    """A box of plastic strain; tolerance: of the iteration; exchange: of x and y; operator: see `Solver`;
+    faces: of the layers in hx, for `pairs`.
+    """
 
     nx: int
     ny: int
     layers: int
     tolerance: float
     exchange: bool = False
+    operator: str | None = None
+    faces: tuple[float, ...] = ()
 
     @property
     def width(self) -> int:
@@ -145,10 +155,43 @@ class ExpectedBox:
         return 4 if self.tolerance >= SINGLE else 8
 
     @property
-    def coefficients(self) -> int:
-        """Numbers of the coefficients: 36 nz^2 (N_x + 1)(N_y + 1), with k_x <= k_y if exchanged."""
+    def waves(self) -> int:
+        """Wave numbers that are kept: (N_x + 1)(N_y + 1), or k_x <= k_y of them."""
         nx, ny = half_length(self.nx) + 1, half_length(self.ny) + 1
-        return 36 * self.layers**2 * (nx * (nx + 1) // 2 if self.exchange else nx * ny)
+        return nx * (nx + 1) // 2 if self.exchange else nx * ny
+
+    @property
+    def matrices(self) -> int:
+        """Bytes of the matrices between all layers, 36 nz^2 coefficients for each wave number."""
+        return self.width * 36 * self.layers**2 * self.waves
+
+    @property
+    def swept(self) -> float:
+        """The error of the operator where it is swept, or 0."""
+        chosen = self.matrices > (MANY_BYTES if self.layers >= MANY_LAYERS else MOST_BYTES)
+        swept = self.operator == "swept" or (self.operator is None and chosen)
+        return SWEPT_SHARE * self.tolerance if swept else 0.0
+
+    @property
+    def words(self) -> str:
+        """Which operator, and why."""
+        matrices = f"matrices between all {self.layers} layers"
+        if self.operator is not None:
+            return f'solver.operator = "{self.operator}"'
+        return f"swept: {matrices} would take {self.matrices / 1e9:.3g} GB" if self.swept else matrices
+
+    @property
+    def pairs(self) -> int:
+        """Pairs of layers between which coefficients are stored: all, or those that sweeps leave to them."""
+        if not self.swept:
+            return self.layers**2
+        runs, top = neighbours(np.array(self.faces[: self.layers + 1]), self.swept)
+        return sum(len(run.keys) for run in runs) + top**2
+
+    @property
+    def coefficients(self) -> int:
+        """Numbers of the stored coefficients."""
+        return 36 * self.pairs * self.waves
 
     def numbers(self, back_stresses: int) -> int:
         """Numbers of the material at the points of all cells: strain, accumulated strain, back-stresses."""
@@ -156,8 +199,8 @@ class ExpectedBox:
 
     @property
     def set_up(self) -> int:
-        """Coefficients of a layer with all others, which are made at once."""
-        return 36 * self.layers * (self.nx + 1) * (self.ny + 1)
+        """Coefficients between these pairs in the lags of the box, from which those are transformed."""
+        return 36 * self.pairs * (self.nx + 1) * (self.ny + 1)
 
 
 @dataclass(frozen=True)

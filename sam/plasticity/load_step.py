@@ -37,7 +37,7 @@ from sam.contact.convolution import Counters
 from sam.contact.normal import control_of
 from sam.plasticity.flow import SHEAR, Material, deviator, equivalent_strain
 from sam.plasticity.points import POINTS, CellFlow, whole
-from sam.plasticity.spectra import BoxOperator
+from sam.plasticity.spectra import BoxOperator, InWaves
 from sam.plasticity.state import Change, MaterialFields, ResidualFields, State, Trial
 from sam.schedule import UNLOADED, Load
 
@@ -153,7 +153,7 @@ class Problem:
         """q_x on the body in the unit of the pressure, (nx, ny); None without friction."""
         return load.sign * self.coefficient * pressure if np.any(self.coefficient) else None
 
-    def stress(self, pressure: Array, load: Load, response: Array | None = None) -> Array:
+    def stress(self, pressure: Array, load: Load, response: InWaves | None = None) -> Array:
         """Stress in Pa of p_hat, its traction, a misfit strain and plastic strain (`BoxOperator.stress`)."""
         keep, pressure = self.operator.keep, pressure * self.unit
         traction = self.traction(pressure, load)

@@ -27,12 +27,11 @@ from sam.elastic.stress import plane_stress, sliding_of
 from sam.grid.cells import Window
 from sam.kernels.eigenstrain import surface_displacement_coefficients
 from sam.kernels.layer_stress import residual_stress_coefficients
-from sam.kernels.patches import STRESS, Cuboids, Lags, parity
+from sam.kernels.patches import ODD_X, ODD_Y, STRESS, Cuboids, Lags, parity
 from sam.moving import Track
 from sam.plasticity.load_step import ContactPressure, PressureSource, Problem
 from sam.plasticity.model import Model
 from sam.plasticity.progress import Outside, Progressed
-from sam.plasticity.spectra import ODD_X, ODD_Y
 from sam.plasticity.state import Extent, Trial, surrounded
 from sam.results.history import CycleEnd, LoopRow, Moved, PassEnd, counted
 from sam.results.snapshots import Box, Cut, Snapshot, row_of_largest

@@ -21,6 +21,7 @@ from sam.contact.stress import surface_strain
 from sam.elastic.problem import ElasticProblem, Plan
 from sam.grid.cells import CellGrid, Window
 from sam.kernels.patches import Cuboids, Lags
+from sam.plasticity.box import ExpectedBox
 from sam.plasticity.flow import KinematicMaterial, Material
 from sam.plasticity.load_step import (
     CONTACT_SHARE,
@@ -189,14 +190,18 @@ class Model:
         return Cuboids(lags, tuple(self.faces(extent).tolist()), self.plan.pair.body.poisson)
 
     def _operator(self, extent: Extent) -> BoxOperator:
+        self.counters.tangential_kernels += self.plan.slip.slides
+        nx, ny = extent.window.shape
+        exchange, asked = self._exchange(extent.window), self.plan.solver.operator
+        box = ExpectedBox(nx, ny, extent.layers, self.tolerance, exchange, asked)
         return BoxOperator(
             self.cuboids(extent),
             self.plan.pair.body.shear,
             self.counters,
-            sliding=self.plan.slip.slides,
             single=self.tolerance >= SINGLE,
             mirror=self._mirror(extent.window),
-            exchange=self._exchange(extent.window),
+            exchange=exchange,
+            swept=box.swept,
         )
 
     def _mirror(self, window: Window) -> tuple[bool, bool]:

@@ -32,8 +32,9 @@ import numpy as np
 from sam.arrays import Array, Mask
 from sam.contact.convolution import Transforms
 from sam.contact.stress import yielding
+from sam.kernels.patches import ODD_X, ODD_Y
 from sam.plasticity.flow import Flow, Material, contraction, equivalent_strain, mises
-from sam.plasticity.spectra import EVEN, ODD_X, ODD_Y
+from sam.plasticity.spectra import EVEN
 from sam.plasticity.state import MaterialFields
 
 POINTS = 4

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,23 +27,22 @@ from sam.arrays import Array
 from sam.contact.convolution import Counters, Transforms, real_spectrum
 from sam.kernels.eigenstrain import surface_displacement_coefficients
 from sam.kernels.layer_stress import CornerFunctions, LayerStress, four_points, mesh
-from sam.kernels.patches import STRESS, Cuboids, Lags, stress_coefficients
+from sam.kernels.patches import ODD_X, ODD_Y, STRESS, Cuboids, Lags, stress_coefficients
+from sam.plasticity.images import PeriodImages
+from sam.plasticity.swept import GAUSS, SweptLayers
 
 Reals = NDArray[Any]
 """Real numbers in the precision of the operator, single or double."""
 Parities = NDArray[np.integer[Any]]
 """1 for odd, 0 for even, of each component."""
-ODD_X = np.array([name.count("1") % 2 for name in STRESS])
-ODD_Y = np.array([name.count("2") % 2 for name in STRESS])
 TWICE = ((np.outer(ODD_X, ODD_X) + np.outer(ODD_Y, ODD_Y)) % 2 == 1).ravel()  # 6 I + J, where (-i)^2 is left
-# likewise, where the coefficient is odd in a lag
-ODD = (np.not_equal.outer(ODD_X, ODD_X) | np.not_equal.outer(ODD_Y, ODD_Y)).ravel()
+ODD_LAGS = [(x, y) for x, y in zip(*(np.not_equal.outer(o, o).ravel() for o in (ODD_X, ODD_Y)), strict=True)]
+"""Of 6 I + J, whether the coefficient is odd in the lag in x and in y."""
 EXCHANGED = np.array([STRESS.index(name) for name in ("22", "11", "33", "13", "23", "12")])  # x and y
 EVEN = np.zeros(1, int), np.zeros(1, int)  # parities in x and y of pressure and u_z
 CACHED_BOXES = 4  # spectra that are kept: the boxes of a history, or of both grids of an extrapolation
 # tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough
 SINGLE = 5e-5
-GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3)  # points of the mean over a cell, in each direction
 WAVES_AT_ONCE = 256  # whose rows of coefficients are written together: 64 and 1024 take as long
 NEAR = 4  # cells: up to there stresses are means over the observed cell
 
@@ -123,39 +122,97 @@ def _by_wave(rows: Reals, out: Reals) -> None:
 
 
 class BoxSpectra:
-    """Real transforms of coefficients of cuboids, with mu = 1; stored: of which wave numbers."""
+    """Real transforms of coefficients of cuboids, with mu = 1; stored: of which wave numbers; images: of the
+    strain in (nx, ny) `cells` where its stress is swept, to an error of it.
+    """
 
-    def __init__(self, cuboids: Cuboids, single: bool, exchange: bool = False):
+    def __init__(
+        self,
+        cuboids: Cuboids,
+        single: bool,
+        exchange: bool = False,
+        *,
+        cells: tuple[int, int] = (0, 0),
+        error: float = 0.0,
+    ):
         self.cuboids, self.half = cuboids, cuboids.lags.shape
         self.real = np.float32 if single else np.float64
-        faces, layers, (nx, ny) = cuboids.depths, cuboids.layers, self.half
-        every = np.ones((nx + 1, ny + 1), dtype=bool)
+        every = np.ones((self.half[0] + 1, self.half[1] + 1), dtype=bool)
         self.stored = np.flatnonzero(np.triu(every)) if exchange else slice(None)
-        waves = every.ravel()[self.stored].size
-        self.strain_to_stress = np.empty((waves, 6 * layers, 6 * layers), dtype=self.real)
-        mean = LayerStress(
-            CellMeans(cuboids.lags), _points(faces), faces, cuboids.nu, transform=self._of_block
-        )
-        spectrum = np.empty((36, layers, 1, waves), dtype=self.real)
-        for i in range(layers):
-            mean.of(i, spectrum)
-            spectrum[TWICE] *= -1
-            _by_wave(spectrum.reshape(6, 6 * layers, waves), self.strain_to_stress[:, i::layers])
+        self.waves = every.ravel()[self.stored].size
+        self.images: PeriodImages | None = None
+        if error:
+            self.images = PeriodImages(cuboids, cells, (2 * self.half[0], 2 * self.half[1]), error)
+            kx, ky = (np.arange(n + 1) * np.pi / n for n in self.half)
+            waves = np.array(np.broadcast_arrays(kx[:, None], ky / cuboids.lags.hy)).reshape(2, -1)
+            waves = waves[:, self.stored]
+            self.layers: Reals | SweptLayers = SweptLayers(self, waves, cuboids, error=error, real=self.real)
+        else:
+            self.layers = self._dense()
         self.strain_to_displacement = self._of_surface(surface_displacement_coefficients(cuboids), ODD_X)
+
+    def _dense(self) -> Reals:
+        """The matrices between all layers, (waves, 6 layers, 6 layers)."""
+        layers = self.cuboids.layers
+        out = np.empty((self.waves, 6 * layers, 6 * layers), dtype=self.real)
+        spectrum = np.empty((36, layers, 1, self.waves), dtype=self.real)
+        stress = self._layer_stress(slice(None), slice(None))
+        for i in range(layers):
+            stress.of(i, spectrum)
+            spectrum[TWICE] *= -1
+            _by_wave(spectrum.reshape(6, 6 * layers, self.waves), out[:, i::layers])
+        return out
+
+    def _layer_stress(self, observed: slice, sources: slice) -> LayerStress:
+        """Spectra of the means over the cells of some layers by strain in some."""
+        faces, means = self.cuboids.depths, CellMeans(self.cuboids.lags)
+        some = np.append(faces[:-1][sources], faces[1:][sources][-1])
+        return LayerStress(means, _points(faces)[observed], some, self.cuboids.nu, transform=self._of_block)
+
+    def full_space(self, observed: int, sources: slice) -> Array:
+        """See `sam.plasticity.swept.Exact`."""
+        found = self._layer_stress(slice(observed, observed + 1), sources).of_full_space(0)
+        parts = [self._periodic(part, False, observed, j) for j, part in enumerate(found, sources.start)]
+        return np.stack(parts, axis=2)
+
+    def image(self, layers: int) -> Array:
+        """See `sam.plasticity.swept.Exact`."""
+        some = slice(0, layers)
+        stress, out = self._layer_stress(some, some), np.empty((6, layers, 6, layers, self.waves))
+        for i in range(layers):
+            for j, part in enumerate(stress.of_image(i)):
+                out[:, i, :, j] = self._periodic(part, True, i, j)
+        return out
+
+    def _periodic(self, spectrum: Array, image: bool, observed: int, source: int) -> Array:
+        """The spectrum (36, 1, waves) of a coefficient with that of its periodic images: (6, 6, waves)."""
+        if self.images is None:
+            raise ValueError("only what is swept has a period")
+        (top, bottom), (upper, lower) = (self.cuboids.faces[i : i + 2] for i in (observed, source))
+        more = self.images.between(image, (top, bottom), (upper, lower), lags=self.half)
+        out = spectrum.reshape(36, -1).copy()
+        for row, odd in enumerate(ODD_LAGS):
+            out[row] += self._of_block(more[row, None, : self.half[0], : self.half[1]], odd).ravel()
+        out[TWICE] *= -1
+        return out.reshape(6, 6, -1)
+
+    def stress(self, strain: Reals) -> Reals:
+        """Stress/mu of strain in wave numbers, both (waves, 6 layers, r): paper Eq. 7, second sum."""
+        if isinstance(self.layers, SweptLayers):
+            return self.layers(strain)
+        if strain.shape[-1] == 1:  # bound by the memory of the matrices: einsum reads them faster than matmul
+            return np.asarray(np.einsum("pij,pj->pi", self.layers, strain[..., 0])[..., None])
+        return np.asarray(self.layers @ strain)
 
     @cached_property
     def own_stress(self) -> Array:
-        """Stress/mu of plastic strain in its own cell, (6, 6, n_layers): sums over the wave numbers."""
-        ends = [np.where(np.isin(np.arange(n + 1), (0, n)), 0.5, 1.0) / n for n in self.half]
-        weight = np.outer(*ends).ravel()[self.stored]
-        if not isinstance(self.stored, slice):
-            weight[np.not_equal(*np.divmod(self.stored, self.half[1] + 1))] *= 2
-        layers = range(self.cuboids.layers)
-        blocks = [self.strain_to_stress[:, i :: len(layers), i :: len(layers)] for i in layers]
-        stress: Array = np.einsum("kpij,p->ijk", np.stack(blocks), weight).reshape(36, -1)
-        stress[TWICE] *= -1
-        stress[ODD] = 0.0
-        return stress.reshape(6, 6, -1)
+        """Stress/mu of plastic strain in its own cell, (6, 6, n_layers)."""
+        faces, means = self.cuboids.depths, CellMeans(_first(self.cuboids.lags, (1, 1)))
+        stress = LayerStress(means, _points(faces), faces, self.cuboids.nu)
+        out = np.empty((len(faces) - 1, 36, len(faces) - 1, 1, 1))
+        for i, row in enumerate(out):
+            stress.of(i, row)
+        return out.diagonal(axis1=0, axis2=2).reshape(6, 6, -1)
 
     def _of_block(self, kernel: Array, odd: tuple[int, int]) -> Reals:
         """Spectra of coefficients (..., rows, nx, ny) of one parity: (..., rows, 1, stored)."""
@@ -180,16 +237,28 @@ class BoxSpectra:
 
 
 @lru_cache(maxsize=CACHED_BOXES)
-def spectra_of(cuboids: Cuboids, single: bool, exchange: bool) -> BoxSpectra:
+def spectra_of(
+    cuboids: Cuboids, single: bool, exchange: bool, *, cells: tuple[int, int], error: float
+) -> BoxSpectra:
     """Spectra by content: boxes with equal transforms, layers (in cells) and Poisson's ratio share them."""
-    return BoxSpectra(cuboids, single, exchange)
+    return BoxSpectra(cuboids, single, exchange, cells=cells, error=error)
+
+
+class InWaves(NamedTuple):
+    """Tensors in the layers: in wave numbers, (N_x + 1, N_y + 1, 6 n_layers, r), and what periodic images of
+    the box need of them or make of them, see `PeriodImages`.
+    """
+
+    columns: Reals
+    images: Array | None = None
 
 
 class BoxOperator:
-    """Stress in the cells of a box and u_z of its surface, of plastic strain and loads, on the
-    cells that `keep` leaves. box: cells as lags, in m, layers from 0; mu in Pa; sliding: tractions
-    come; single: precision, 1e-7 of the largest stress, in half the time; mirror: of all fields in
-    x (with y) and y; exchange: of x and y, half of the wave numbers give all.
+    """Stress in the cells of a box and u_z of its surface, of plastic strain and loads, on the cells that
+    `keep` leaves. box: cells as lags, in m, layers from 0; mu in Pa; single: precision, 1e-7 of the largest
+    stress, in half the time; mirror: of all fields in x (with y) and y; exchange: of x and y, half of the
+    wave numbers give all; swept: error of the stress/mu of a unit strain by sweeps over the layers in place
+    of matrices between all of them.
     """
 
     def __init__(
@@ -198,10 +267,10 @@ class BoxOperator:
         mu: float,
         counters: Counters,
         *,
-        sliding: bool = False,
         single: bool = False,
         mirror: tuple[bool, bool] = (False, False),
         exchange: bool = False,
+        swept: float = 0.0,
     ):
         lags = box.lags
         self.transforms = Transforms(lags.shape, mirror, single=single, counters=counters)
@@ -211,21 +280,16 @@ class BoxOperator:
         aspect = float(f"{lags.hy / lags.hx:.12g}")
         in_cells = tuple(float(f"{z / lags.hx:.12g}") for z in box.faces)
         in_cells_of_hx = Cuboids(Lags(*self.transforms.half, 1.0, aspect), in_cells, box.nu)
-        self.spectra = spectra_of(in_cells_of_hx, single, exchange)
-        self.exchange, self.sliding = exchange, sliding
-        self.real = self.transforms.real
-        counters.tangential_kernels += sliding
-
-    @cached_property
-    def from_surface(self) -> Reals:
-        """Spectra of the stress of pressure and, if there is to be one, traction."""
-        parts = [self.spectra.pressure_to_stress]
-        return np.stack([*parts, self.spectra.traction_to_stress] if self.sliding else parts, axis=-1)
+        self.spectra = spectra_of(
+            in_cells_of_hx, single, exchange, cells=lags.shape if swept else (0, 0), error=swept
+        )
+        self.exchange, self.real = exchange, self.transforms.real
 
     @property
     def memory(self) -> int:
         """Bytes of the stored coefficients."""
-        return self.spectra.strain_to_stress.nbytes
+        images = self.spectra.images
+        return self.spectra.layers.nbytes + (0 if images is None else images.nbytes)
 
     @property
     def own_stress(self) -> Array:
@@ -244,30 +308,31 @@ class BoxOperator:
             return self.transforms.whole(field, ODD_X, ODD_Y)
         return self.transforms.whole(field[None], *EVEN)[0]
 
-    def transformed(self, strain: Reals) -> Reals:
-        """Plastic strain (6, n_layers, nx, ny) in wave numbers, (N_x + 1, N_y + 1, 6 n_layers, r)."""
+    def transformed(self, strain: Reals) -> InWaves:
+        """Plastic strain (6, n_layers, nx, ny) in wave numbers."""
         columns = self.transforms.columns(strain, ODD_X, ODD_Y)
-        return columns.reshape(*columns.shape[:2], 6 * self.layers, -1)
+        columns = columns.reshape(*columns.shape[:2], 6 * self.layers, -1)
+        images = self.spectra.images
+        return InWaves(columns, None if images is None else images.moments(self.whole(strain)))
 
-    def displacement(self, transformed: Reals) -> Reals:
+    def displacement(self, transformed: InWaves) -> Reals:
         """u_z of the surface due to plastic strain, (nx, ny) in m, > 0 into the body: paper Eq. 6."""
         # paper Eq. 6 in the wave numbers
-        columns = np.einsum("xyj,xyjr->xyr", self.spectra.strain_to_displacement, transformed)
+        columns = np.einsum("xyj,xyjr->xyr", self.spectra.strain_to_displacement, transformed.columns)
         self.counters.displacement_applications += 1
         return self.transforms.fields(columns[:, :, None], *EVEN)[0] * self.hx
 
-    def response(self, transformed: Reals) -> Reals:
-        """Transform of the stress of plastic strain: the one product with the stored matrices."""
+    def response(self, transformed: InWaves) -> InWaves:
+        """Transform of the stress of plastic strain: paper Eq. 7, second sum."""
         self.counters.operator_applications += 1
-        matrices, shape = self.spectra.strain_to_stress, transformed.shape  # paper Eq. 7, second sum
-        waves = transformed.reshape(-1, *shape[2:])[self.spectra.stored]
-        if shape[-1] == 1:  # bound by the memory of the matrices: einsum reads them faster than matmul
-            product = np.einsum("pij,pj->pi", matrices, waves[..., 0])[..., None]
-        else:
-            product = matrices @ waves
+        shape, images = transformed.columns.shape, None
+        product = self.spectra.stress(transformed.columns.reshape(-1, *shape[2:])[self.spectra.stored])
         if self.exchange:
             product = self._exchanged(product)
-        return self.real(self.mu) * product.reshape(shape)
+        if self.spectra.images is not None and transformed.images is not None:
+            images = -self.mu * self.spectra.images.values(transformed.images)
+        product *= self.real(self.mu)
+        return InWaves(product.reshape(shape), images)
 
     def _exchanged(self, product: Reals) -> Reals:
         """The product at all wave numbers from k_x <= k_y: 11 and 22, 23 and 13 change places with them."""
@@ -281,7 +346,7 @@ class BoxOperator:
     def stress(
         self,
         pressure: Array | None,
-        response: Reals | None = None,
+        response: InWaves | None = None,
         traction: Array | None = None,
     ) -> Reals:
         """Stress of pressure, traction (Pa) and plastic strain, (6, n_layers, nx, ny) in Pa: paper Eq. 7."""
@@ -289,18 +354,22 @@ class BoxOperator:
         if loads:
             columns = self._of_loads(loads)
             if response is not None:
-                columns += response  # paper Eq. 4: elastic and residual stress
+                columns += response.columns  # paper Eq. 4: elastic and residual stress
         elif response is not None:
-            columns = response
+            columns = response.columns
         else:
             return np.zeros((6, self.layers, *self.transforms.shape))
-        return self.transforms.fields(columns.reshape(*columns.shape[:2], 6, self.layers, -1), ODD_X, ODD_Y)
+        columns = columns.reshape(*columns.shape[:2], 6, self.layers, -1)
+        stress = self.transforms.fields(columns, ODD_X, ODD_Y)
+        if self.spectra.images is not None and response is not None and response.images is not None:
+            stress += self.keep(self.spectra.images.fields(response.images.astype(self.real)))
+        return stress
 
     def _of_loads(self, loads: list[tuple[Array, int]]) -> Reals:
         """Transform of the stress of loads in Pa, each with 0 (pressure) or 1 (traction, odd in x)."""
         which = np.array([k for _, k in loads])
         columns = self.transforms.columns(np.stack([load for load, _ in loads]), which, np.zeros_like(which))
-        spectra = (
-            self.from_surface if len(which) == self.from_surface.shape[-1] else self.from_surface[..., which]
-        )
-        return spectra @ columns  # paper Eq. 7, first sum
+        spectra = [self.spectra.traction_to_stress if k else self.spectra.pressure_to_stress for k in which]
+        # paper Eq. 7, first sum
+        terms = [part[..., None] * columns[:, :, [i]] for i, part in enumerate(spectra)]
+        return np.asarray(terms[0] if len(terms) == 1 else terms[0] + terms[1])

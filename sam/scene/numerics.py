@@ -83,7 +83,9 @@ class Solver(Section):
     numbers of load steps too, for a numerical uncertainty of each quantity; the models know nothing of it.
     accuracy: relative; cells and load steps are chosen so that the uncertainty of the quantities accuracy_of
     (by default the one that advice is given for) is no larger. beyond_model: solve a contact too large for
-    small strains of a flat half-space too; the models know nothing of it.
+    small strains of a flat half-space too; the models know nothing of it. operator: of the semi-analytical
+    model, the stress of plastic strain by a matrix between all layers for each wave number, or by sweeps over
+    them; chosen from sizes if not given.
     """
 
     method: Literal["backward-euler", "paper"] = "backward-euler"
@@ -95,6 +97,7 @@ class Solver(Section):
     accuracy: Annotated[float, ACCURACY] | None = None
     accuracy_of: Annotated[tuple[QuantityName, ...], list_of(1, len(QUANTITIES))] | None = None
     beyond_model: bool = False
+    operator: Literal["dense", "swept"] | None = None
     unwritten: ClassVar[tuple[str, ...]] = ("beyond_model",)
 
     @classmethod

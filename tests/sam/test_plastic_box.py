@@ -56,7 +56,7 @@ def test_equals_direct_summation_on_uneven_layers():
     rng = np.random.default_rng(0)
     strain, pressure = rng.standard_normal((6, LAYERS, NX, NY)), rng.standard_normal((NX, NY))
     traction = rng.standard_normal((NX, NY))
-    operator = BoxOperator(cuboids(), MU, Counters(), sliding=True)
+    operator = BoxOperator(cuboids(), MU, Counters())
     transformed = operator.transformed(strain)
     found = operator.stress(pressure, operator.response(transformed), traction)
     expected = np.zeros_like(strain)

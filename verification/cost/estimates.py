@@ -27,7 +27,7 @@ IDLE_BYTES = 92e6  # interpreter with numpy, scipy and the model loaded
 MEMORY = {  # chunks: what is worked through piece by piece
     models.SAM: {
         "surface": 33.7, "stresses": 5.68, "patch": 3.5, "patch stresses": 7.0, "layered": 1.2, "boxes": 1.0,
-        "points": 7.0, "set-up": 5.0, "chunks": 30e6,
+        "points": 7.0, "set-up": 5.0, "waves": 4.0, "chunks": 30e6,
     },
     models.FEM: {"unknowns": 545.0, "steps": 226.0, "points": 152.0},
     models.FEM_3D: {"unknowns": 1780.0, "states": 1.0},
@@ -35,7 +35,7 @@ MEMORY = {  # chunks: what is worked through piece by piece
 TIME = {
     models.SAM: {
         "solve": 0.0435, "contact": 3.33e-8, "patch contact": 2.6e-9, "stresses": 6.28e-8, "patch": 9.64e-8,
-        "tables": 1.7e-3, "layered": 1.05e-7, "box set-up": 5.19e-8, "box": 1.13e-9,
+        "tables": 1.7e-3, "layered": 1.05e-7, "box set-up": 5.19e-8, "box": 1.13e-9, "swept": 6e-8,
         "patch steps": 1.45e-6, "patch iterations": 1.6e-6,
     },
     models.FEM: {"solve": 0.129, "factors": 3.01e-7, "points": 0.0},
@@ -154,7 +154,10 @@ def plastic_boxes(scene: Scene, grid: CellGrid, beyond: float = 0.0) -> list[Exp
     faces = np.asarray(grid.depths if grid.faces is None else grid.faces)
     tolerance = scene.solver.tolerance
     if scene.patch_surface is not None or not loaded(scene):
-        return [ExpectedBox(grid.nx, grid.ny, max(len(faces) - 1, 1), tolerance)]
+        layers, in_cells = max(len(faces) - 1, 1), tuple(faces / grid.hx)
+        return [
+            ExpectedBox(grid.nx, grid.ny, layers, tolerance, operator=scene.solver.operator, faces=in_cells)
+        ]
     depths = (faces[1:] + faces[:-1]) / 2
     if scene.loading.misfit_sphere:
         return [_box_of_sphere(scene, grid, depths, beyond)]
@@ -162,7 +165,8 @@ def plastic_boxes(scene: Scene, grid: CellGrid, beyond: float = 0.0) -> list[Exp
     wide, deep = zone.needed
     zone = replace(zone, needed=(wide + beyond * min(grid.hx, grid.hy) / min(zone.axes), deep))
     found = expected_sides(grid, depths, zone)
-    return [ExpectedBox(*box, tolerance, exchange=box[0] == box[1] and _turns(scene, grid)) for box in found]
+    turns, operator, in_cells = _turns(scene, grid), scene.solver.operator, tuple(faces / grid.hx)
+    return [ExpectedBox(*box, tolerance, box[0] == box[1] and turns, operator, in_cells) for box in found]
 
 
 def _box_of_sphere(scene: Scene, grid: CellGrid, depths: np.ndarray, beyond: float) -> ExpectedBox:
@@ -361,6 +365,7 @@ def _sam(scene: Scene, plan: Any) -> Counted:
 
     boxes = plastic_boxes(scene, grid)
     last, cycles = boxes[-1], plan.schedule.cycles
+    kept = 4 if rough else 2 if loads > 1 or len(plan.schedule.path) > 1 else 1  # numbers of a wave number
     if rough:
         rows, further = rough_iterations(scene, plan)
         size = cells * log2(cells)
@@ -374,14 +379,18 @@ def _sam(scene: Scene, plan: Any) -> Counted:
         "surface": memory["surface"],
         "boxes": float(sum(box.width * box.coefficients for box in held(boxes))),
         "points": 8.0 * last.numbers(plan.plasticity.back_stresses),
-        "set-up": 8.0 * last.set_up,
+        "set-up": 8.0 * last.set_up / last.layers,
+        "waves": 0.0 if not last.swept else last.width * 6.0 * last.layers * last.waves * kept,
         "chunks": 1.0,
     }
     either = [plastic_boxes(scene, grid, beyond) for beyond in (-UNDECIDED, UNDECIDED)]
     work |= {
-        "box set-up": sum(box.layers * box.set_up for each in either for box in each) / 2,
-        "box": iterations * last.width / 8 * sum(each[-1].coefficients for each in either) / 2,
+        "box set-up": sum(box.set_up for each in either for box in each) / 2,
     }
+    if last.swept:
+        work["swept"] = iterations * last.width / 8 * 6.0 * last.layers * last.waves * kept
+    else:
+        work["box"] = iterations * last.width / 8 * sum(each[-1].coefficients for each in either) / 2
     return Counted(memory, work)
 
 

@@ -77,24 +77,24 @@ def climb(rungs: Sequence[Rung], report: Progress = lambda *_: None) -> list[dic
     return taken
 
 
-def applied(nx: int, ny: int, layers: int) -> dict[str, Any]:
+def applied(nx: int, ny: int, layers: int, error: float = 0.0) -> dict[str, Any]:
     """The residual-stress operator of a box of cells, in single precision, in a process of its own: seconds
-    of one application and of the set-up, bytes of its coefficients and of all.
+    of one application and of the set-up, bytes of its coefficients and of all; error: of sweeps, else dense.
     """
-    setup, apply_s, stored, peak = alone(_applied, nx, ny, layers)
+    setup, apply_s, stored, peak = alone(_applied, nx, ny, layers, error)
     size = {"cells": nx * ny * layers, "plane": nx * ny, "depth": layers}
     cost = {"cpu-s": apply_s, "set-up-s": setup, "stored": stored, "memory": peak - idle_bytes(models.SAM)}
     return {"model": models.SAM, "scene": f"{nx} × {ny} × {layers}"} | size | cost
 
 
-def _applied(nx: int, ny: int, layers: int) -> tuple[float, float, int, int]:
+def _applied(nx: int, ny: int, layers: int, error: float) -> tuple[float, float, int, int]:
     from sam.contact import Counters
     from sam.kernels import Cuboids, Lags
     from sam.plasticity import BoxOperator
 
     began = time.process_time()
     box = Cuboids(Lags(nx, ny, CELL, CELL), tuple(CELL * np.arange(layers + 1.0)), POISSON)
-    operator = BoxOperator(box, SHEAR, Counters(), single=True)
+    operator = BoxOperator(box, SHEAR, Counters(), single=True, swept=error)
     setup = time.process_time() - began
     strain = np.random.default_rng(0).standard_normal((6, layers, nx, ny))
 

@@ -302,7 +302,8 @@ def _stages(scene: Scene, made: Any) -> list[Stage]:
         if stage.stage == "eigenstrain kernels" and stage.runs:
             box = estimates.plastic_boxes(scene, made.grid)[-1]
             size = {"box_cells": [box.nx, box.ny, box.layers], "coefficients": box.coefficients}
-            stage = replace(stage, size=size | {"bytes": box.width * box.coefficients})
+            size |= {"bytes": box.width * box.coefficients}
+            stage = replace(stage, size=size, reason=f"{stage.reason}; {box.words}")
         found.append(stage)
     return [*found, *(Stage(entry.stage, False, entry.reason) for entry in made.left_out)]
 
@@ -366,6 +367,8 @@ def _smaller(scene: Scene, model: str) -> str:
         return f"lower grid.cells or fem.box = {scene.fem.box:g}"
     if model != models.SAM:
         return f"lower fem.cells_per_radius = {scene.fem.cells_per_radius} or fem.box = {scene.fem.box:g}"
+    if scene.solver.operator == "dense":
+        return 'leave out solver.operator = "dense"'
     from sam import choose_grid
 
     grid = choose_grid(scene)
