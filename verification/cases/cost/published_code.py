@@ -33,7 +33,6 @@ ROOT = Path(__file__).resolve().parents[3]
 PAIRS, LOSS = 5, 1.2
 FEW, SHARE = 2, 0.05  # by how much a count may grow
 ROUNDING = 1e-9  # of the largest quantity in a unit: what is less is no result
-NO_COUNTS = ("setup_s", "solve_s", "cpu_s", "peak_memory_bytes")
 
 
 @dataclass(frozen=True)
@@ -140,13 +139,11 @@ def solved(rung: Rung, text: str, tree: Path) -> dict[str, Any]:
             code = "this code" if tree == ROOT else "the published code"
             raise RuntimeError(f"{rung.words}, {code}: {ended.stderr[-400:]}")
         summary = json.loads(Path(folder, "run/summary.json").read_text(encoding="utf-8"))
-    cost = summary["cost"]
+    memory = summary["cost"].pop("peak_memory_bytes")
     return {
-        "time": sum(after[:2]) - sum(before[:2]),
-        "memory": cost["peak_memory_bytes"],
-        "counts": {
-            name: count for name, count in cost.items() if count is not None and name not in NO_COUNTS
-        },
+        "time": sum(after[:2]) - sum(before[:2]),  # of user and system
+        "memory": memory,
+        "counts": {name: count for name, count in summary["cost"].items() if isinstance(count, int)},
         "quantities": summary["quantities"],
         "tolerance": summary["scene"]["solver"]["tolerance"],
     }
