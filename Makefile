@@ -39,7 +39,7 @@ wheel: CASES ?= hertz-ellipse hertz-sphere certificates mutation
 wheel: $(INSTALLED)
 	PYTHON=$(PYTHON) .ci/wheel $(CASES)
 
-# The site in docs/_build/html: without a warning of Sphinx, without a broken link; each notebook of the gallery runs.
+# The site in docs/_build/html: without a warning of Sphinx, without a broken link; the gallery runs, of its notebooks some.
 docs: $(DOCS_INSTALLED)
 	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going docs docs/_build/html
 	$(BIN)/python docs/tools/check_links.py docs/_build/html
@@ -73,7 +73,7 @@ $(INSTALLED): requirements.lock pyproject.toml
 	touch $@
 
 $(DOCS_INSTALLED): $(INSTALLED) requirements-docs.lock
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-docs.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --require-hashes -r requirements-docs.lock
 	touch $@
 
 # SAM beside Tamaas, ContactMechanics and aspher, which have an environment of their own and are no dependency. aspher is

@@ -75,7 +75,8 @@ class ManyDigits:
                 matrix[row, j] = film[index]
             for j, body in enumerate(self._body_waves(self.kh), start=4):
                 matrix[row, j] = -body[index] * (self.r if index < 2 else 1)  # u ~ 1/mu
-        return [mp.lu_solve(matrix, loads[:, j]) for j in range(2)]
+        factors, order = mp.mp.LU_decomp(matrix)
+        return [mp.mp.U_solve(factors, mp.mp.L_solve(factors, loads[:, j], order)) for j in range(2)]
 
     def _solve_antiplane(self):
         """u_T mu_1 k = a e^{-s} + b e^{s - kh} in the film, r c e^{-(s - kh)} below; s_zT = mu du_T/dz."""

@@ -76,3 +76,10 @@ def solve_but_raise(scene, model, code, *how):
         return solve_scene(scene, model, code, *how)
     finally:
         models.solve = original
+
+
+def solved(asked):
+    """The results of pairs (scene, model)."""
+    from verification.runs import models
+
+    return [models.solve(scene, model) for scene, model in asked]

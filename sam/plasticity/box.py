@@ -99,7 +99,7 @@ def _about_zone(exceeds: Mask, grid: CellGrid) -> Extent:
 
 def _strained(trial: Trial) -> Mask:
     """The cells of the box that a step has strained, (n_layers, nx, ny)."""
-    return np.asarray(trial.increment.strain.any(axis=0))
+    return trial.increment.cells
 
 
 def _layers(deep: NDArray[np.intp], grid: CellGrid) -> int:

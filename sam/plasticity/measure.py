@@ -32,7 +32,7 @@ from sam.moving import Track
 from sam.plasticity.load_step import ContactPressure, PressureSource, Problem
 from sam.plasticity.model import Model
 from sam.plasticity.progress import Outside, Progressed
-from sam.plasticity.state import Extent, Trial, surrounded
+from sam.plasticity.state import Extent, Trial, filled
 from sam.results.history import CycleEnd, LoopRow, Moved, PassEnd, counted
 from sam.results.snapshots import Box, Cut, Snapshot, row_of_largest
 from sam.scene.result import BACK_STRESS, unfinished
@@ -190,8 +190,8 @@ def snapshot(model: Model, record: Progressed, name: str, trial: Trial) -> Snaps
     sliding = sliding_of(loaded)
     if sliding is not None:
         sliding = sliding.strained(_moved(model, record, 1, rows), strain, np.diff(grid.layer_faces))
-    back = model.material(extent).back_stress(record.state.points)
-    repeated = {} if back is None else {BACK_STRESS: back.mean(axis=1)}
+    back = model.material(extent).at(material.cells).back_stress(material.points)
+    repeated = {} if back is None else {BACK_STRESS: filled(back.mean(axis=1), material.cells)}
 
     # the largest von Mises stress at each depth of all cells of the box, below it of those in y = 0
     counts, mises = counted(contact, grid), von_mises(stress).max(axis=(-2, -1))
@@ -282,8 +282,12 @@ def dissipated_by(model: Model, record: Progressed, trial: Trial) -> float:
     """The energy in J that a step from a record dissipates; 0 where nobody asks for it."""
     if not (model.plan.dissipates and trial.plastic):
         return 0.0
-    flow = model.material(record.extent).flow(record.state.points)
-    return float((model.volumes(record.extent) * flow.dissipated(trial.points).mean(axis=0)).sum())
+    extent, before = record.extent, record.state.material
+    cells = before.cells | trial.increment.cells
+    dissipated = model.material(extent).at(cells).flow(before.on(cells)).dissipated(trial.increment.on(cells))
+    return float(
+        np.sum(np.broadcast_to(model.volumes(extent), extent.shape)[cells] * dissipated.mean(axis=0))
+    )
 
 
 def cycle_end(model: Model, record: Progressed, cycle: int, new: Array) -> CycleEnd:
@@ -336,8 +340,7 @@ def with_loops(model: Model, record: Progressed, target: Target, trial: Trial) -
 def _chosen(record: Progressed) -> list[tuple[int, int, int]]:
     """Layer and cells of the grid of the cells, see `loop_places`."""
     extent, window, last = record.extent, record.extent.window, record.periods.last[-1]
-    accumulated = surrounded(last.accumulated, last.extent.inside(extent), extent.shape)
-    places = loop_places(accumulated.ravel(), record.state.material.peeq.ravel())
+    places = loop_places(last.on(extent, None).accumulated, record.state.material.peeq.ravel())
     where = [np.unravel_index(place, extent.shape) for place in places]
     return [(int(layer), int(i) + window.i0, int(j) + window.j0) for layer, i, j in where]
 

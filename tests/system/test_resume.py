@@ -158,8 +158,8 @@ def test_a_solve_continued_from_any_checkpoint_gives_the_same_bytes(name, tmp_pa
     """From the file of each of its checkpoints in turn: the next checkpoint, bit by bit, is the
     undisturbed run's.
 
-    By induction every continued solve ends like it. From the first, a middle and the last one, the
-    end itself is compared: every file of the run.
+    By induction every continued solve ends like it. From the first and the last one the end itself is
+    compared: every file of the run.
     """
     model, scene, change = CASES[name]
     if change is not None:
@@ -176,7 +176,7 @@ def test_a_solve_continued_from_any_checkpoint_gives_the_same_bytes(name, tmp_pa
     for path, following in pairwise(made):
         _, (found,) = made_by(scene, model, further, start=read(path, model), stop=1)
         assert state_of(found) == state_of(following), f"after {path.name}"
-    for path in (made[0], made[len(made) // 2], made[-1]):
+    for path in (made[0], made[-1]):
         again = models.solve(scene, model, start=read(path, model))
         assert contents(again, scene, tmp_path / "parts") == expected, f"from {path.name} of {len(made)}"
 
@@ -211,7 +211,7 @@ def test_a_solve_that_breaks_off_leaves_checkpoints_as_good(model, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "model, changed", [(SAM, "state.points.strain"), (FEM, "steps.1.state.history.plastic_strain")]
+    "model, changed", [(SAM, "state.material.points.strain"), (FEM, "steps.1.state.history.plastic_strain")]
 )
 def test_a_perturbed_checkpoint_gives_other_bytes(model, changed, tmp_path):
     """The comparison can fail: one part in 1e12 of the plastic strain, or one counter, shows."""

@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""The same solve with one thread and with two, each in a process of its own, is the same result."""
+"""The same solves with one thread and with two, in a process for each number, have the same results."""
 
 import os
 
 import numpy as np
 import pytest
+import worker_functions
 from builders import PERFECT, hertz_force, running_in, scene
 
 from sam.scene import Status
 from verification.cases.recipes import Resolution, resolved_at
-from verification.cost.measured import solve_alone
+from verification.cost.measured import alone
 from verification.runs.models import FEM, SAM
 
 CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
@@ -17,25 +18,38 @@ two_cores = pytest.mark.skipif(CORES < 2, reason="a second thread on the same co
 COUNTERS = ("contact_iterations", "plastic_iterations", "newton_iterations", "step_cuts")
 
 
-def twice(of, model=SAM):
-    """Both results, which end alike, and the relative difference that is allowed: of rounding, or
-    of the tolerance where an iteration more or less was taken.
-    """
-    one, two = (solve_alone(of, model, threads) for threads in (1, 2))
-    assert one.status is two.status and one.status in (Status.CONVERGED, Status.UNDER_RESOLVED)
-    same = all(one.cost.get(name) == two.cost.get(name) for name in COUNTERS)
-    return one, two, 1e-10 if same else of.solver.tolerance
-
-
-@two_cores
-@pytest.mark.parametrize("model, mu", [(SAM, None), (SAM, 0.2), (FEM, None)])
-def test_every_number_of_a_load_step_is_that_of_one_thread(model, mu):
+def sphere(mu=None):
+    """A load step beyond yield, with a coefficient of friction or without."""
     made = scene(
         body={"plasticity": PERFECT},
         loading={"force": hertz_force(4e9), "steps": 1},
         friction=mu and {"coefficient": mu},
     )
-    one, two, allowed = twice(resolved_at(made, Resolution(8, 8)), model)
+    return resolved_at(made, Resolution(8, 8))
+
+
+SPHERES = (sphere(), SAM), (sphere(0.2), SAM), (sphere(), FEM)
+ASKED = (*SPHERES, (running_in(cycles=3), SAM))
+
+
+@pytest.fixture(scope="module")
+def pairs():
+    """Of each that is asked: both results, which end alike, and the relative difference that is allowed: of
+    rounding, or of the tolerance where an iteration more or less was taken.
+    """
+    found = []
+    each = [alone(worker_functions.solved, ASKED, threads=threads) for threads in (1, 2)]
+    for (of, _), one, two in zip(ASKED, *each, strict=True):
+        assert one.status is two.status and one.status in (Status.CONVERGED, Status.UNDER_RESOLVED)
+        same = all(one.cost.get(name) == two.cost.get(name) for name in COUNTERS)
+        found.append((one, two, 1e-10 if same else of.solver.tolerance))
+    return found
+
+
+@two_cores
+@pytest.mark.parametrize("k", range(len(SPHERES)), ids=["SAM", "SAM, friction", "FEM"])
+def test_every_number_of_a_load_step_is_that_of_one_thread(pairs, k):
+    one, two, allowed = pairs[k]
     largest = {"Pa": one.quantities["p_max_Pa"], "m": one.quantities["approach_m"]}
     parts = [(one.tables[name], two.tables[name]) for name in ("axis", "line", "plane")]
     parts += [(getattr(one.fields, kind), getattr(two.fields, kind)) for kind in ("point_data", "cell_data")]
@@ -49,11 +63,11 @@ def test_every_number_of_a_load_step_is_that_of_one_thread(model, mu):
 
 
 @two_cores
-def test_the_same_cells_are_worn_and_lose_their_film():
+def test_the_same_cells_are_worn_and_lose_their_film(pairs):
     """Where iteration counts differ a load step differs by its tolerance: cycles at random add up
     to five times that.
     """
-    one, two, _ = twice(running_in(cycles=3))
+    one, two, _ = pairs[-1]
     first, second = (
         {name: np.asarray(each.tables["surface"][name], dtype=float) for name in ("worn_m", "friction")}
         for each in (one, two)

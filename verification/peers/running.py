@@ -10,6 +10,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -129,30 +130,35 @@ def measure(
     rounds: int,
     progress: Progress = lambda *_: None,
     *,
-    calibrate: Callable[[], float] = calibration_s,
     reaches: Callable[[Measurement], bool] = lambda _: True,
 ) -> tuple[dict[str, list[Measurement]], list[float]]:
-    """Every program's jobs in each round in turn, each in a process of its own: (program -> measurements,
-    seconds of the kernel). Jobs that take long are measured in fewer rounds (`Measurement.wanted`), and those
-    whose first answer `reaches` nothing in one. pythons: program -> interpreter.
+    """The programs in turn, a job each, over several rounds, each in a process of its own: (program ->
+    measurements, seconds of the kernel). Jobs that take long are measured in fewer rounds
+    (`Measurement.wanted`), and those whose first answer `reaches` nothing in one. pythons: program ->
+    interpreter.
     """
     found = {program: [Measurement(job) for job in own] for program, own in jobs.items()}
-    kernel = [calibrate()]
+    kernel = [calibration_s()]
+    turns = list(zip_longest(*found.values()))
     for number in range(rounds):
-        for k, (program, own) in enumerate(found.items()):
-            progress(f"round {number + 1} of {rounds}, {NAMES.get(program, program)}", k + 1, len(found))
-            due = [each for each in own if each.wanted(number) and (not each.solved or reaches(each))]
-            for each in due:
+        for k, turn in enumerate(turns):
+            progress(f"round {number + 1} of {rounds}", k + 1, len(turns))
+            due = [
+                (program, each)
+                for program, each in zip(found, turn, strict=True)
+                if each is not None and each.wanted(number) and (not each.solved or reaches(each))
+            ]
+            for program, each in due:
                 run(program, each, pythons[program])
             if due:
-                kernel.append(calibrate())
+                kernel.append(calibration_s())
     return found, kernel
 
 
 def run(program: str, measurement: Measurement, python: Path, allowance: float = ALLOWANCE_S) -> None:
     """One process of a program for a job; adds its times, or says why there is no answer."""
     environment = {**os.environ, **dict.fromkeys(THREADS, "1"), "PYTHONPATH": str(ROOT)}
-    environment["PYTHONDONTWRITEBYTECODE"] = "1"
+    environment |= {"PYTHONDONTWRITEBYTECODE": "1", "SAMFEM_STORE": ""}  # nothing of an earlier solve
     task = json.dumps({"program": program, "job": asdict(measurement.job)})
     with tempfile.TemporaryDirectory(prefix="samfem-peers-") as folder:
         target = Path(folder, "answer")
@@ -196,6 +202,7 @@ def rows_of(
             label = ", ".join(filter(None, (NAMES[program], each.job.label)))
             row: dict[str, Any] = {"sweep": problem, "model": program, "curve": label}
             row |= {"cells": cells_in_words(each.job.cells), "seconds": each.seconds}
+            row["first"] = each.record.get("first_s", float("nan"))
             row["error"] = error(each) if each.solved else float("nan")
             if each.solved:
                 row |= {"rounds": len(each.cpu_s), "iterations": each.record.get("iterations")}

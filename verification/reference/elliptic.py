@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
 from scipy.special import elliprd, elliprf
 
 from .checks import Checked, coordinate, depth, poisson, positive
@@ -30,6 +29,7 @@ def axis_ratio(radius_ratio: float) -> float:
     target = math.log(positive("radius_ratio", radius_ratio))
     if target == 0.0:
         return 1.0
+    from scipy.optimize import brentq  # noqa: PLC0415 - a tenth of samfem solve, for ellipses alone
 
     def residual(log_k: float) -> float:
         square = math.exp(2.0 * log_k)
@@ -123,6 +123,8 @@ class EllipticContact(Checked):
 
     def largest_axis_von_mises(self, nu: float) -> tuple[float, float]:
         """Largest von Mises stress on the axis (Pa) and its depth (m), between 0.02 and 2 minor semi-axes."""
+        from scipy.optimize import minimize_scalar  # noqa: PLC0415 - as above
+
         scale = min(self.semi_axes)
         best = minimize_scalar(
             lambda t: -float(von_mises(self.axis_stress(t * scale, nu))) / self.peak_pressure,

@@ -23,7 +23,7 @@ print(samfem.solve(samfem.Scene(**contact, solver={"uncertainty": True})))
 
 # %%
 # The sweep solves each scene once, on all cores.
-vary = {"loading.force": np.linspace(0.01, 0.1, 4), "friction.coefficient": np.linspace(0, 0.5, 9)}
+vary = {"loading.force": np.linspace(0.01, 0.1, 4), "friction.coefficient": np.linspace(0, 0.5, 6)}
 sweep = samfem.sweep({"scene": contact, "vary": vary})
 stress = 1e-9 * sweep.frame.pivot(
     index="friction.coefficient", columns="loading.force", values="mises_max_Pa"
