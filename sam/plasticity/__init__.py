@@ -8,7 +8,7 @@ record. The load step is `Problem.step`, its operator on a box of cells is `BoxO
 
 from __future__ import annotations
 
-from sam.plasticity.box import ExpectedBox, Zone, expected_sides, held
+from sam.plasticity.box import ExpectedBox, Zone, expected_sides, held, or_whole
 from sam.plasticity.flow import SHEAR, contraction
 from sam.plasticity.history import onward
 from sam.plasticity.measure import Strained, at_centres, surface_displacement
@@ -35,6 +35,7 @@ __all__ = [
     "expected_sides",
     "held",
     "onward",
+    "or_whole",
     "stress_at_points",
     "surface_displacement",
 ]

@@ -44,8 +44,9 @@ MANY_LAYERS, MANY_BYTES, MOST_BYTES = 24, 2e8, 1e9
 SWEPT_SHARE = 0.05  # of the tolerance of the plastic iteration, the error of the sweeps
 # Cells that are free beside the zone of a body that nothing touches: with two strained ones a box grows.
 FREE_BESIDE = 3
-# Share of a rough patch up to which a box is smaller than it: the fields beside a box have coefficients of
-# their own, which take more than so few cells less save.
+# Share of a rough patch up to which a box is smaller than that, as fields beside a box have coefficients of
+# their own: with 0.67 of 64 x 64 cells, 25 cycles take 34 s in place of 43 s; those of 0.9 of 512 x 512 cells
+# and 32 layers would take minutes.
 MOST_OF_PATCH = 0.8
 
 
@@ -64,7 +65,7 @@ def first_extent(
     exceeds = yielding(peak.mises, limit[:, None])
     if anywhere:
         layers = _layers(np.flatnonzero(exceeds.any(axis=1)), grid)
-        return Extent(_or_whole(around(peak.contact.pressure > 0), grid), layers)
+        return Extent(or_whole(around(peak.contact.pressure > 0), grid), layers)
     if not peak.contact.pressure.any():
         return _about_zone(exceeds, grid)
     box = around(peak.contact.pressure > 0)
@@ -125,7 +126,7 @@ def grown(extent: Extent, trial: Trial, grid: CellGrid) -> Extent:
     return Extent(Window(i, j, nx, ny), layers)
 
 
-def _or_whole(window: Window, grid: CellGrid) -> Window:
+def or_whole(window: Window, grid: CellGrid) -> Window:
     """The window, or the whole grid where it is most of that."""
     return window if window.nx * window.ny <= MOST_OF_PATCH * grid.nx * grid.ny else grid.whole
 
@@ -135,7 +136,7 @@ def holding(extent: Extent, cells: Mask, grid: CellGrid) -> Extent:
     box, more = extent.window, around(cells)
     i0, j0 = min(box.i0, more.i0), min(box.j0, more.j0)
     i1, j1 = max(box.i0 + box.nx, more.i0 + more.nx), max(box.j0 + box.ny, more.j0 + more.ny)
-    return replace(extent, window=_or_whole(Window(i0, j0, i1 - i0, j1 - j0), grid))
+    return replace(extent, window=or_whole(Window(i0, j0, i1 - i0, j1 - j0), grid))
 
 
 def widened(first: int, count: int, limit: int, reached: tuple[bool, bool]) -> tuple[int, int]:

@@ -189,6 +189,7 @@ def _rough_sides(scene: Scene, plan: Any) -> tuple[int, int]:
     around the cells with the smallest gap, WIDER_SPOTS times as many as are expected in contact.
     """
     from sam.contact import Counters, around
+    from sam.plasticity import or_whole
 
     grid, force = plan.grid, scene.loading.force
     if not force or scene.counterbody is None or len(plan.schedule.path) > 1 or plan.schedule.renews:
@@ -197,7 +198,7 @@ def _rough_sides(scene: Scene, plan: Any) -> tuple[int, int]:
     plane = scene.counterbody.shape == "flat"
     share = contact_share(scene, force / area) if plane else pi * prod(plan.axes) / area
     gap = plan.problem(Counters()).gap(plan.schedule.peak)
-    return around(gap <= np.quantile(gap, min(WIDER_SPOTS * share, 1.0))).shape
+    return or_whole(around(gap <= np.quantile(gap, min(WIDER_SPOTS * share, 1.0))), grid).shape
 
 
 def _box_of_sphere(scene: Scene, grid: CellGrid, depths: np.ndarray, beyond: float) -> ExpectedBox:
