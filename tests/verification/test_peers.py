@@ -151,8 +151,11 @@ class TestWorker:
 
     @pytest.mark.parametrize(
         ("problem", "first", "again", "counts"),
-        [(problems.HERTZ, 0.4, (0.1, 0.6, 0.2, 0.5, 0.3), 0.3), (problems.HERTZ, 0.6, (), 0.6)]
-        + [(problems.STEP, 0.4, (), 0.4)],
+        [
+            (problems.HERTZ, 0.4, (0.1, 0.6, 0.2, 0.5, 0.3), 0.3),
+            (problems.HERTZ, 0.6, (), 0.6),
+            (problems.STEP, 0.4, (), 0.4),
+        ],
     )
     def test_a_short_job_counts_as_it_is_solved_again(
         self, tmp_path, monkeypatch, problem, first, *, again, counts
