@@ -226,7 +226,7 @@ def _moved_up(state: Array, faces: Array, depth: Array) -> tuple[Array, Array]:
 def closing_residual(before: Array, after: Array, removed: Array, faces: Array) -> float:
     """Largest difference of both sides of (b) over the largest integral of |before|; 0 without strain."""
     h = np.diff(faces)[:, None, None]
-    scale = (np.abs(before) * h).sum(axis=-3).max()
+    scale = (np.abs(before) * h).sum(axis=-3).max(initial=0.0)
     difference = (after * h).sum(axis=-3) + removed - (before * h).sum(axis=-3)
     return float(np.abs(difference).max() / scale) if scale > 0 else 0.0
 
@@ -293,18 +293,33 @@ class WearLaw:
         return 1.0 - float((peeq / self.limits((faces[:-1] + faces[1:]) / 2)[:, None, None]).max())
 
     def removed(
-        self, state: WearState, fields: dict[str, Array], faces: Array, window: Window, *, peeq: Array
-    ) -> tuple[WearState, dict[str, Array]]:
-        """Wear after one more cycle, and the fields (..., n_layers, nx, ny) below the new surface."""
+        self,
+        state: WearState,
+        fields: dict[str, Array],
+        faces: Array,
+        window: Window,
+        *,
+        cells: Mask,
+        peeq: Array,
+    ) -> tuple[WearState, Mask, dict[str, Array]]:
+        """Wear after one more cycle; below the new surface the cells of a window that are not fresh,
+        (n_layers, nx, ny), and the fields (..., n) of these. peeq: the accumulated strain that decides.
+        """
         raw = worn_depth(peeq, faces, self.limits, self.interpolate)
         depth, roofed = (self._on_grid(each, window) for each in (raw.depth, raw.roofed))
         whole = Worn(depth, roofed, self._on_grid(raw.at_bottom, window))
         depth = smoothed(whole.depth, self.window, self.order, all_removed=True)
-        below, worst = {}, 0.0
-        for name, field in fields.items():
-            below[name], gone = remapped(field, faces, depth[window.slices])
-            worst = max(worst, closing_residual(field, below[name], gone, faces))
-        return with_cycle(state, whole, depth, worst), below
+        columns = cells.any(axis=0)  # all others are fresh, and stay so
+        below, worst, worn = {}, 0.0, depth[window.slices][columns][:, None]
+        before, after = cells[:, columns], cells.copy()
+        after[:, columns] = remapped(before[..., None].astype(float), faces, worn)[0][..., 0] > 0
+        for name, values in fields.items():
+            field = np.zeros((*values.shape[:-1], *before.shape, 1))
+            field[..., before, 0] = values
+            moved, gone = remapped(field, faces, worn)
+            worst = max(worst, closing_residual(field, moved, gone, faces))
+            below[name] = np.ascontiguousarray(moved[..., after[:, columns], 0])
+        return with_cycle(state, whole, depth, worst), after, below
 
     def _on_grid(self, field: NDArray[T], window: Window) -> NDArray[T]:
         """A field of the window on the whole grid, zero outside of it."""

@@ -29,7 +29,7 @@ def store(prune: str | None, older_than: float | None) -> int:
             return prune == ALL or entry.state != CURRENT or old
 
         sizes = []
-        for what, size in kept.prune(goes):
+        for what, size in kept.prune(goes, coefficients=prune == ALL):
             print(f"removed {what}")
             sizes.append(size)
         print(f"{len(sizes)} removed, {with_prefix(sum(sizes), 'B')} freed: {kept.folder}")
@@ -46,6 +46,9 @@ def store(prune: str | None, older_than: float | None) -> int:
         total = with_prefix(sum(entry.size for entry in entries), "B")
         over = len(kept.left_over())
         print(f"{len(entries)} entries ({', '.join(counts)}), {over} left over, {total}: {kept.folder}")
+        if boxes := kept.coefficients():
+            total = with_prefix(sum(path.stat().st_size for path in boxes), "B")
+            print(f"coefficients of {len(boxes)} plastic boxes, {total}")
     return 0
 
 

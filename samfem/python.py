@@ -296,13 +296,14 @@ def solve(
         For a wrong file, a scene that the model cannot represent, a folder that holds something else.
     """
     from verification.cost.accuracy import solve as solve_family  # noqa: PLC0415 - loads the solvers
+    from verification.runs.store import kept_coefficients  # noqa: PLC0415 - only where it solves
 
     scene = _scene(scene)
     if model not in MODELS:
         raise ModelError(f"model = {model!r}, allowed: {', '.join(MODELS)}")
     if out is not None:
         files.check_target(Path(out))
-    with followed(progress) as told:
+    with followed(progress) as told, kept_coefficients():
 
         def one(each: Scene, label: str) -> Result:
             def of_stage(stage: str, done: int, total: int) -> None:

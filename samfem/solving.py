@@ -35,7 +35,7 @@ from verification.runs.lock import locked
 from verification.runs.meshes import not_written
 from verification.runs.model_range import refusal
 from verification.runs.provenance import collect
-from verification.runs.store import Reuse, Store, default_store, solve_or_reuse
+from verification.runs.store import Reuse, Store, default_store, kept_coefficients, solve_or_reuse
 from verification.text.console import Progress, table_lines
 from verification.text.readable import in_working_unit, with_prefix, with_time
 from verification.uncertainty import asked_of as with_uncertainty, unknown
@@ -76,7 +76,7 @@ def solve(
     folder = out or Path(f"{path.stem}-{model}")
     made = check(scene, model, anyway=anyway or resume)
     check_target(folder)
-    with locked(folder):
+    with locked(folder), kept_coefficients():
         return _solve(scene, model, folder, inputs, made=made, figures=figures, resume=resume)
 
 

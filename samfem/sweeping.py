@@ -43,7 +43,16 @@ from verification.runs.files import (
 )
 from verification.runs.lock import locked
 from verification.runs.provenance import collect, without_places
-from verification.runs.store import RESULT, UNCONVERGED, Lookup, Reuse, Store, default_store, identity
+from verification.runs.store import (
+    RESULT,
+    UNCONVERGED,
+    Lookup,
+    Reuse,
+    Store,
+    default_store,
+    identity,
+    kept_coefficients,
+)
 from verification.runs.study import Points, StudyPoint, read_study
 from verification.runs.tables import csv_text
 from verification.sensitivity import indices
@@ -341,7 +350,8 @@ def solve_scene(scene: Scene, model: str, code: str, anyway: bool = False) -> So
                 "the worker runs another version of samfem, numpy or scipy: install the same one there"
             )
         made = check_needs(scene, model, anyway=anyway)
-        return models.solve(scene, model, made=made), _origin()
+        with kept_coefficients():
+            return models.solve(scene, model, made=made), _origin()
     except models.ModelError as error:
         return Failure(str(error))
     except MemoryError:

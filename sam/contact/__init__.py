@@ -6,7 +6,7 @@ Uses the influence coefficients of `sam.kernels` and `sam.layered`. Used by `sam
 """
 
 from sam.contact.convolution import Convolution, Counters, convolution_onto
-from sam.contact.normal import Contact, Search, solve_contact
+from sam.contact.normal import Contact, Search, around, solve_contact
 from sam.contact.stress import stresses, von_mises
 
 __all__ = [
@@ -14,6 +14,7 @@ __all__ = [
     "Convolution",
     "Counters",
     "Search",
+    "around",
     "convolution_onto",
     "solve_contact",
     "stresses",

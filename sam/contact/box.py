@@ -2,11 +2,11 @@
 """Contact on a box of cells: constrained, preconditioned conjugate gradients (see `sam.contact.normal`, paper
 Eq. 9 and 10).
 
-Directions are transformed in single precision: what they lack is a share of a change, and the displacement
-that the iteration carries along is replaced by one in double precision before it decides to stop. The
-pressure is projected onto p >= 0 once the residual of the cells in contact, sqrt(r . z), has fallen to
-`HalfSpaces.restart_threshold` of what a sequence of directions started with, not in each iteration: each
-projection costs a displacement of its own and restarts the directions.
+Directions are in single precision, in units of the residual that they begin with: what they lack is a share
+of a change, and the displacement that the iteration carries along is replaced by one in double precision
+before it decides to stop. The pressure is projected onto p >= 0 once the residual of the cells in contact,
+sqrt(r . z), has fallen to `HalfSpaces.restart_threshold` of what a sequence of directions started with, not
+in each iteration: each projection costs a displacement of its own and restarts the directions.
 
 Given is the force, or how far the bodies approach; the conjugate gradients are the same for both. Under force
 control the rigid approach is the mean separation of the cells in contact, and each change of the pressure has
@@ -23,13 +23,13 @@ from math import pi, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sam.arrays import Array, Mask
-from sam.contact.convolution import BoxConvolution, MirroredConvolution, mirror_half, unfolded
-from sam.contact.operators import SurfaceOperators
+from sam.contact.convolution import BoxConvolution, MirroredConvolution, Real, mirror_half, unfolded
+from sam.contact.operators import Operator, SurfaceOperators
 from sam.grid.cells import Window
 
-Counted = np.ndarray[Any, np.dtype[np.floating[Any]]]
 Begun = tuple[Array, Array]
 """p_hat and its u_hat."""
 
@@ -65,11 +65,11 @@ class ForceControl:
         p = self.scaled(p, count)
         return p, apply(p)
 
-    def shares(self, counted: Counted) -> Array:
-        """Share of each cell in what is taken off a change of the pressure: equal, it has no sum."""
-        return counted / counted.sum()
+    def share(self, counted: Array) -> float:
+        """Share of a cell in what is taken off a change of the pressure: equal, it has no sum."""
+        return 1 / float(counted.sum())
 
-    def level(self, separation: Array, counted: Counted) -> float:
+    def level(self, separation: Array, counted: Array) -> float:
         """Rigid approach of an iterate: the mean separation gap0 + u_hat of the cells in contact."""
         return np.vdot(counted, separation) / counted.sum()
 
@@ -115,11 +115,11 @@ class ApproachControl:
         factor = np.vdot(p * count, overlap) / np.vdot(p * count, u)
         return factor * p, factor * u
 
-    def shares(self, counted: Counted) -> Array:
+    def share(self, counted: Array) -> float:
         """None: the sum of the pressure may change."""
-        return np.zeros_like(counted)
+        return 0.0
 
-    def level(self, separation: Array, counted: Counted) -> float:
+    def level(self, separation: Array, counted: Array) -> float:
         """The given approach."""
         return self.distance
 
@@ -130,11 +130,11 @@ class ApproachControl:
 
 # Counted in displacements to 1e-8 for a sphere on 129 x 129 cells, with a traction at a coupling of 0.1.
 PASSES = 500  # limit with a traction; 12 at beta mu = 0.1
-FIRST_PASS = 1e-2  # tolerance of the first pass with a traction: 85; 1e-1 the same, 1e-3 82
-NEXT_PASS = 0.1  # tolerance of the next passes as a share of the residual: 85; 0.3 86, 0.03 83
-ANEW = 1e-3  # fall of the residual until the displacement is computed anew in double: 58; 1e-1 66, 1e-6 57
+FIRST_PASS = 1e-2  # tolerance of the first pass with a traction: 83; 1e-1 80, 1e-3 85
+NEXT_PASS = 0.1  # tolerance of the next passes as a share of the residual: 83; 0.3 89, 0.03 88
+ANEW = 1e-3  # fall of the residual until the displacement is computed anew in double: 44; 1e-1 48, 1e-6 45
 LONGEST = 20  # iterations without a projection: 5 and 100 the same, as the residual falls before
-NEGLIGIBLE = 0.01  # share of the tolerance: cells that penetrate more join; 0 the same, 1 82 with a traction
+NEGLIGIBLE = 0.01  # share of the tolerance: cells that penetrate more join; 0 and 1 the same
 NOTHING_OPPOSITE = 1e100  # gap, in cells, where the counter-body ends
 
 
@@ -150,32 +150,33 @@ class Solution(NamedTuple):
     iterations: int
 
 
-@dataclass
 class _State:
-    """The iterate: pressure, displacement, search direction; count: cells that each stands for."""
+    """The iterate and the search direction, on the free cells alone: elsewhere the pressure is zero."""
 
-    p: Array
-    u: Array
-    count: Array | float
-    free: Mask | None = None  # cells that the sequence of directions changes: True, and
-    weight: Array | None = None  # their shares in what is taken off a change
-    direction: Array | None = None
-    residual: Array | None = None  # times the count
-    product: float = 0.0  # r . z of the last iteration
-    first: float = 0.0  # of the first one of the sequence
-    since: int = 0  # iterations of the sequence
-    negative: bool = False
+    unit = np.float64(1.0)  # of the following fields: the largest residual when the sequence started
+    direction: Real | None = None
+    residual: Real | None = None  # times the count
+    product = 0.0  # r . z of the last iteration
+    first = 0.0  # of the first one of the sequence
+    since = 0  # iterations of the sequence
+    negative = False
 
-    def set_free(self, free: Mask, control: Control) -> None:
-        """Start a new sequence of directions if other cells are free."""
-        if self.free is None or not np.array_equal(free, self.free):
-            self.free, self.weight = free, control.shares(free * self.count)
-            self.direction, self.since = None, 0
+    def __init__(self, free: Mask, p: Array, count: Array, control: Control):
+        """free: the cells that the sequence changes; p, count: of all cells, count: that each stands for."""
+        self.free, self.cells = free, np.flatnonzero(free)
+        self.p, self.count = p.take(self.cells), count.take(self.cells)
+        self.share = control.share(self.count)
 
-    def projected(self, field: Array) -> Array:
-        """The field on the free cells, less its mean over them where the force is given; zero elsewhere."""
-        assert self.weight is not None and self.free is not None, "set_free comes first"
-        return (field - np.vdot(self.weight, field)) * self.free
+    def projected(self, field: Real) -> NDArray[Any]:
+        """A field of all cells on the free ones, less its mean over them where the force is given."""
+        found = field.take(self.cells)
+        return found - float(self.share * np.vdot(self.count, found))
+
+    def spread(self, values: Real) -> NDArray[Any]:
+        """A field of all cells from its values on the free ones, zero elsewhere."""
+        field = np.zeros(self.free.shape, dtype=values.dtype)
+        field.ravel()[self.cells] = values
+        return field
 
 
 def gap_of_contact(p: Array, separation: Array, control: Control) -> Array:
@@ -194,9 +195,13 @@ class BoxContact:
     """
 
     def __init__(self, operators: SurfaceOperators, box: Window):
-        self.operators, self.box = operators, box
-        self.tangential, self.relaxation = operators.tangential(box, box), operators.relaxation
+        self.operators, self.box, self.relaxation = operators, box, operators.relaxation
         self.residuals: list[float] = []
+
+    @cached_property
+    def tangential(self) -> Operator | None:
+        """p_hat -> u_hat of its traction."""
+        return self.operators.tangential(self.box, self.box)
 
     @cached_property
     def _whole(self) -> _Iteration:
@@ -250,19 +255,24 @@ class _Iteration:
     """The conjugate gradients on all of a box, or on the quarter from its middle outward."""
 
     def __init__(self, operators: SurfaceOperators, box: Window, mirrored: bool):
-        self.box, self.counters, self.bodies = box, operators.counters, operators.bodies
+        self.operators, self.box = operators, box
+        self.counters, self.bodies = operators.counters, operators.bodies
         self.self_influence, self.mirrored = operators.self_influence, mirrored
         convolution = MirroredConvolution if mirrored else BoxConvolution
         self.operator = convolution(operators.coefficients, box.shape, operators.counters)
-        self.precondition = operators.preconditioner(box, mirrored)
         self.residuals: list[float] = []
-        self.count: Array | float = 1.0
+        self.count: Array = np.ones(box.shape)
         if mirrored:
             self.kept = tuple(mirror_half(n) for n in box.shape)
             count = np.outer(*(np.full(n - n // 2, 2.0) for n in box.shape))
             count[0] /= 1 + box.nx % 2  # the middle cell of an odd number is its own mirror image
             count[:, 0] /= 1 + box.ny % 2
             self.count = count
+
+    @cached_property
+    def precondition(self) -> Callable[[Real], Real]:
+        """r -> z, both on the kept cells."""
+        return self.operators.preconditioner(self.box, self.mirrored)
 
     def displacement(self, p: Array) -> Array:
         """u_hat on the box of p_hat there."""
@@ -281,13 +291,9 @@ class _Iteration:
     def _back(self, kept: Array) -> Array:
         return kept[np.ix_(*map(unfolded, self.box.shape))] if self.mirrored else kept
 
-    def _apply(self, p: Array) -> Array:
+    def _apply(self, p: Real) -> NDArray[Any]:
         self.counters.displacement_applications += 1
         return self.operator(p)
-
-    def _apply_change(self, change: Array) -> Array:
-        self.counters.displacement_applications += 1
-        return self.operator.single(change) if self.bodies.single else self.operator(change)
 
     def residual(self, p: Array, gap: Array) -> float:
         """The larger of |gap| in contact and penetration elsewhere, as a pressure error: paper Eq. 9."""
@@ -296,71 +302,76 @@ class _Iteration:
 
     def _solve(self, gap0: Array, control: Control, p: Array, *, tolerance: float, limit: int) -> Solution:
         """Iterate on the kept cells until the residual is below the tolerance in double precision."""
-        state = _State(p, p, self.count)
-        (state.p, state.u), fresh = control.begun(p, gap0, self.count, self._apply), True
+        (p, u), fresh = control.begun(p, gap0, self.count, self._apply), True
         # gaps near zero: sums over many cells then round little
-        offset = control.approach(p > 0, gap0 + state.u)
+        offset = control.approach(p > 0, gap0 + u)
         gap0, control = gap0 - offset, control.less(offset)
+        separation, state = gap0 + u, _State(p > 0, p, self.count, control)
         iteration, smallest, since, anew, self.residuals = 0, np.inf, 0, 0.0, []
         while iteration < limit and since < self.bodies.stagnation_limit:
-            separation = gap0 + state.u
             if not state.negative:
-                contact = state.p > 0
-                counted = contact * self.count
-                gap = separation - control.level(separation, counted)
-                worst = self.residual(state.p, gap)
+                p = state.spread(state.p)
+                contact = p > 0
+                gap = separation - control.level(separation, contact * self.count)
+                worst = self.residual(p, gap)
                 self.residuals.append(float(worst))
                 if fresh and worst <= tolerance:
                     break
                 if fresh:
                     anew = max(ANEW * worst, tolerance)
                 elif worst <= anew:
-                    state.p = control.scaled(state.p, self.count)
-                    state.u, fresh = self._apply(state.p), True
+                    state.p = control.scaled(state.p, state.count)
+                    u, fresh = self._apply(state.spread(state.p)), True
+                    separation = gap0 + u
                     continue
                 smallest, since = (worst, 0) if worst < smallest else (smallest, since)
-                joining = gap < -NEGLIGIBLE * tolerance * self.self_influence * state.p.max()
-                state.set_free(contact | joining, control)
+                free = contact | (gap < -NEGLIGIBLE * tolerance * self.self_influence * p.max())
+                if not np.array_equal(free, state.free):
+                    state = _State(free, p, self.count, control)
             if not self._step(state, separation, control):
                 break
             fresh = False
             iteration, since = iteration + 1, since + 1
             self.counters.contact_iterations += 1
         if not fresh:
-            if state.negative:
-                self._project(state, control)
-            state.u = self._apply(state.p)
-        return Solution(state.p, state.u, iteration)
+            p = control.scaled(np.maximum(state.spread(state.p), 0.0), self.count)
+            u = self._apply(p)
+        return Solution(p, u, iteration)
 
     def _step(self, state: _State, separation: Array, control: Control) -> bool:
         """One iteration of Eq. 10 on the free cells, with a projection where due; False at no residual."""
-        r = state.projected(separation)
-        z = state.projected(self.precondition(r))
-        r = r * self.count
+        gap = state.projected(separation)
+        if state.direction is None:
+            state.unit = np.float64(max(gap.max(), -gap.min()) or 1.0)
+        r = (gap / state.unit).astype(self.bodies.real)
+        z = state.projected(self.precondition(state.spread(r)))
+        r *= state.count
         product = float(np.vdot(r, z))
         if product <= 0.0:
             return False
+        d = -z
         if state.direction is None or state.residual is None:
-            d, state.first = -z, product
+            state.first = product
         else:
             beta = max(0.0, (product - float(np.vdot(state.residual, z))) / state.product)  # Polak-Ribiere
-            d = beta * state.direction - z  # paper Eq. 10, third line, preconditioned
-        u_d = self._apply_change(d)
-        work = float(np.vdot(self.count * d, u_d))
-        if work == 0.0:  # of a load so small that its square is none
-            return False
-        alpha = -float(np.vdot(r, d)) / work
+            d += beta * state.direction  # paper Eq. 10, third line, preconditioned
+            if -np.vdot(r, d) < product / 2:  # it is the product, but for rounding
+                d = -z
+        u_d = self._apply(state.spread(d))
+        alpha = -float(np.vdot(r, d)) / float(np.vdot(state.count * d, u_d.take(state.cells)))
         # paper Eq. 10, first and second line: u carries the residual
-        state.p, state.u = state.p + alpha * d, state.u + alpha * u_d
+        state.p += alpha * state.unit * d
+        separation += alpha * state.unit * u_d
         state.direction, state.residual, state.product, state.since = d, r, product, state.since + 1
         state.negative = bool(state.p.min() < 0)
         fallen = product <= self.bodies.restart_threshold**2 * state.first
         if state.negative and (fallen or state.since >= LONGEST):
-            self._project(state, control)
+            self._project(state, separation, control)
         return True
 
-    def _project(self, state: _State, control: Control) -> None:
+    def _project(self, state: _State, separation: Array, control: Control) -> None:
         """Project the pressure onto p >= 0, with the sum that may be given, and update its displacement."""
-        p = control.scaled(np.maximum(state.p, 0.0), self.count)  # paper Eq. 9: p >= 0
-        state.u = state.u + self._apply_change(p - state.p)
+        p = control.scaled(np.maximum(state.p, 0.0), state.count)  # paper Eq. 9: p >= 0
+        change = ((p - state.p) / state.unit).astype(self.bodies.real)
+        separation += state.unit * self._apply(state.spread(change))
         state.p, state.negative = p, False

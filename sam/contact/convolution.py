@@ -44,7 +44,7 @@ from sam.grid.cells import Window
 # products a row, 64 values times 128 wave numbers, up to which they take less time than a fast transform
 Real = NDArray[np.floating[Any]]
 """Real numbers in single or double precision."""
-SHORT = 8500  # products a row, 64 values times 128 wave numbers: up to here they beat a fast transform
+SHORT = 25000  # products a row, 64 values times 128 wave numbers: up to here they beat a fast transform
 
 
 class _Sum(NamedTuple):
@@ -357,39 +357,49 @@ def _run(chosen: Array) -> slice:
 
 
 class BoxConvolution:
-    """f -> sum over the cells of a box of K[lag] f on it, K even in x and y and real; in single
+    """f -> sum over the cells of a box of K[lag] f on it, K even in x and y and real; of a field in single
     precision good to 1e-6 of the largest value in half the time.
+
+    Columns are followed by as many zeros: their transform over 2 N values is that of f over N at the even
+    wave numbers, and at the odd ones that of f exp(-i pi j/N), which takes less time than one over 2 N.
     """
 
     def __init__(self, kernel: Real, shape: tuple[int, int], counters: Counters):
         self.shape, self.counters = shape, counters
         half = half_length(shape[0]), half_length(shape[1])
         self.lengths = 2 * half[0], 2 * half[1]
+        self.turn = np.exp(-1j * np.pi / half[0] * np.arange(half[0]))[:, None]
         self.spectrum = self._spectrum(kernel[: shape[0], : shape[1]], half)
 
     def _spectrum(self, kernel: Real, half: tuple[int, int]) -> Real:
-        """The real transform of the kernel at all wave numbers along x, and those >= 0 along y."""
-        index = np.arange(self.lengths[0])
-        return real_spectrum(kernel, half, (0, 0))[np.minimum(index, self.lengths[0] - index)]
+        """Half the real transform of the kernel at even and odd wave numbers along x, those >= 0 along y."""
+        index = np.arange(self.lengths[0]).reshape(-1, 2).T
+        return real_spectrum(kernel / 2, half, (0, 0))[np.minimum(index, self.lengths[0] - index)]
 
     @cached_property
     def _single(self) -> Real:
         return self.spectrum.astype(np.float32)
 
-    def __call__(self, field: Array) -> Array:
+    def __call__(self, field: Real) -> NDArray[Any]:
         """field: (nx, ny)."""
-        return self._apply(field, self.spectrum)
-
-    def single(self, field: Array) -> Array:
-        """The same in single precision; the field is scaled first, so that its unit does not matter."""
-        scale = max(field.max(), -field.min()) or 1.0
-        return scale * self._apply((field / scale).astype(np.float32), self._single)
+        self.counters.ffts += 2
+        return self._apply(field, self._single if field.dtype == np.float32 else self.spectrum)
 
     def _apply(self, field: Real, spectrum: Real) -> NDArray[Any]:
-        self.counters.ffts += 2
-        product = transformed(field, self.lengths)
-        product *= spectrum
-        return cropped(product, self.lengths, self.shape)
+        even = fft.rfft(field, n=self.lengths[1], axis=-1)
+        turn = self.turn.astype(even.dtype)
+        odd = turn[: len(field)] * even
+        even, odd = (self._columns(*each) for each in zip((even, odd), spectrum, strict=True))
+        odd *= turn.conj()
+        even += odd
+        return fft.irfft(even[: self.shape[0]], n=self.lengths[1], axis=-1)[:, : self.shape[1]]
+
+    @staticmethod
+    def _columns(rows: NDArray[Any], spectrum: Real) -> NDArray[Any]:
+        """The columns, their transform multiplied by a real one."""
+        columns = fft.fft(rows, n=len(spectrum), axis=-2, overwrite_x=True)
+        columns *= spectrum
+        return fft.ifft(columns, axis=-2, overwrite_x=True)
 
 
 Complex = NDArray[np.complexfloating[Any, Any]]
@@ -426,7 +436,6 @@ class MirroredConvolution(BoxConvolution):
         return real_spectrum(kernel, half, (0, 0))
 
     def _apply(self, field: Real, spectrum: Real) -> NDArray[Any]:
-        self.counters.ffts += 2
         return filtered(field, self.shape, spectrum)
 
 

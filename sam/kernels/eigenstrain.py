@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import combinations_with_replacement
 from math import pi
@@ -38,6 +38,10 @@ PARITIES = (
     (1, 1),
     (0, 1),
 )  # odd in x, in y; the orders of primitives with a < b are in the last
+EXCHANGED = np.array([STRESS.index(name) for name in ("22", "11", "33", "13", "23", "12")])
+"""The component that each becomes if x and y are exchanged."""
+EXCHANGED_ROWS = np.add.outer(6 * EXCHANGED, EXCHANGED).ravel()
+"""The same of coefficients 6 I + J."""
 MIRRORED = np.array([(-1.0) ** (i + j).count("3") for i in STRESS for j in STRESS])[:, None, None]
 """Sign of each coefficient of the full space under z -> -z."""
 FOURTH = tuple(
@@ -89,10 +93,17 @@ class Block:
     image: Array
     full: Array
 
+    def times(self, factors: Array) -> Block:
+        """The block with factors (36,) of its coefficients."""
+        of_rows = factors[self.rows][:, None]
+        return replace(self, image=of_rows * self.image, full=of_rows * self.full)
+
 
 @cache
-def blocks(nu: float) -> list[Block]:
-    """The four blocks by PARITIES, for paper Eq. 22 to 26; z^p z' is integrated over z' by parts."""
+def blocks(nu: float, exchanged: bool = False) -> list[Block]:
+    """The four blocks by PARITIES, for paper Eq. 22 to 26; z^p z' is integrated over z' by parts. exchanged:
+    of two coefficients that an exchange of x and y takes into each other the first alone, in three blocks.
+    """
     terms, coefficients = _matrix("stress", ENTRIES, nu)
     orders, scale = image_orders(), 8 * pi * (1 - nu)
     image = np.zeros((2, 2, 36, len(orders)))  # by powers of z and of the face
@@ -104,9 +115,11 @@ def blocks(nu: float) -> list[Block]:
     # paper Eq. 22, 23, 24 and 25, terms with a prime (the full space)
     full = -_full_space_matrix(nu) / scale  # minus: integrated over z', its antiderivative is one in z - z'
     signs = np.array([parity(*divmod(row, 6)) for row in range(36)])
+    first = np.arange(36) <= EXCHANGED_ROWS
     out = []
-    for odd in PARITIES:
-        rows = np.flatnonzero((signs == (-1) ** np.array(odd)).all(axis=1))
+    for odd in PARITIES[: 3 if exchanged else 4]:
+        of_parity = (signs == (-1) ** np.array(odd)).all(axis=1)
+        rows = np.flatnonzero(of_parity & first if exchanged and odd[0] == odd[1] else of_parity)
         of_image = _run([(a % 2, b % 2) == odd for a, b, _ in orders])
         of_full = _run([(indices.count(0) % 2, indices.count(1) % 2) == odd for indices in FOURTH])
         weights = image.reshape(4, 36, -1)[:, rows, of_image]

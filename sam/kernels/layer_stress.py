@@ -8,16 +8,17 @@ Most of the work of a grid with equal layers is shared between pairs of layers, 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from itertools import islice
 from math import floor, log10, prod
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sam.arrays import Array
+from sam.arrays import Array, Mask
 from sam.kernels.eigenstrain import (
+    EXCHANGED_ROWS,
     FOURTH,
     MIRRORED,
-    Block,
     blocks,
     full_space_functions,
     image_functions,
@@ -29,7 +30,6 @@ from sam.kernels.patches import Cuboids, Lags
 Numbers = NDArray[np.intp]
 """Numbers of pairs of layers."""
 AT_ONCE = 1e5  # corners whose functions are computed together: 1e4 and 1e6 take as long
-IN_CACHE = 2500  # cells of coefficients that are summed together: 100 take as long, 1e5 longer
 DIGITS = 9  # to which depths are compared, in thicknesses of the thinnest layer: far above rounding
 
 
@@ -70,51 +70,60 @@ def mesh(lags: Lags, points: Points = ((0.0, 0.0),), *, first: int = 0) -> tuple
 
 
 class CornerFunctions:
-    """The functions that coefficients are sums of, differenced over the corners of cells; meshes:
-    of corners, (points, X, Y), over whose points the mean is taken.
+    """The functions that coefficients are sums of, at the corners of cells; meshes: of corners,
+    (points, X, Y), over whose points the mean is taken.
     """
 
     def __init__(self, shape: tuple[int, int], *meshes: tuple[Array, Array]):
-        self.shape, self.meshes = shape, [x.shape for x, _ in meshes]
+        self.meshes = [x.shape for x, _ in meshes]
         self.x, self.y = (
             np.concatenate([part.ravel() for part in parts]) for parts in zip(*meshes, strict=True)
         )
+        self.itself = np.zeros(shape)  # the plane that is 1 in the cell of the source
+        self.itself[0, 0] = 1.0
 
-    def __call__(self, image: bool, offsets: Array) -> Array:
-        """`image_orders` at depths z + face, or FOURTH at z - face: (offsets, functions, nx, ny)."""
+    def __call__(self, image: bool, offsets: Array, wanted: int | None = None) -> Array:
+        """The first of `image_orders` at depths z + face, or of FOURTH at z - face, all if not said how many:
+        (..., functions, g, corners) at offsets (..., g).
+        """
         functions = image_functions if image else full_space_functions
-        out = np.empty((len(offsets), len(image_orders() if image else FOURTH), *self.shape))
-        for k, value in enumerate(functions(self.x, self.y, offsets[:, None])):
-            self.observed(out[:, k], *self._differenced(value))
+        if wanted is None:
+            wanted = len(image_orders() if image else FOURTH)
+        out = np.empty((*offsets.shape[:-1], wanted, offsets.shape[-1], self.x.size))
+        for k, value in enumerate(islice(functions(self.x, self.y, offsets[..., None]), wanted)):
+            out[..., k, :, :] = value
         return out
 
-    def _differenced(self, value: Array) -> Iterator[Array]:
-        """The cells of each mesh, (offsets, points, X - 1, Y - 1)."""
+    def _differences(self, corners: Array) -> Iterator[Array]:
+        """Over the corners of the cells of each mesh: (..., points, X, Y), the last of X and of Y to be left
+        out.
+        """
         start = 0
         for sides in self.meshes:
-            stop = start + prod(sides)
-            corners = value[:, start:stop].reshape(-1, *sides)
-            in_x = corners[..., 1:, :] - corners[..., :-1, :]
-            yield in_x[..., 1:] - in_x[..., :-1]
+            stop, row = start + prod(sides), sides[-1]
+            # in one go; those over the border are not wanted
+            flat = corners[..., start:stop].reshape(-1)
+            out = np.empty(flat.size)
+            np.subtract(flat[row:], flat[:-row], out=out[:-row])
+            np.subtract(out[1:-row], out[: -row - 1], out=out[: -row - 1])
+            yield out.reshape(*corners.shape[:-1], *sides)
             start = stop
 
-    def observed(self, out: Array, cells: Array) -> None:
-        """What is wanted of the cells of each mesh, into (offsets, nx, ny)."""
-        np.add.reduce(cells, axis=1, out=out)
-        if cells.shape[1] > 1:
-            out /= cells.shape[1]
+    def planes(self, corners: Array, odd: tuple[int, int]) -> Array:
+        """What is wanted of the cells: (..., nx, ny) from sums of functions (..., corners) of one parity."""
+        (cells,) = self._differences(corners)
+        return np.asarray(cells[..., :-1, :-1].mean(axis=-3))
 
 
 class LayerStress:
     """Stress in observed layers by eigenstrains in layers of cuboids, both of any thickness, from functions
-    of corners. functions: (image?, offsets in depth) -> (offsets, functions, nx, ny), as `CornerFunctions`;
-    points: (observed layers, g) depths, the answer is the mean over these g; faces: (n + 1,) as above;
-    transform: a linear one of planes (..., nx, ny) of the given parity (odd in x?, in y?), whose last two
-    sides are then those of the answer. With s = -1, +1 on the upper and lower face the stress is a sum over
-    points and faces of s F(z - face) in the full space and of s (p00 + face p01 + z p10 + z face p11) G(z +
-    face) of the image. Pairs of layers with equal offsets share them: the first depends on these alone, up to
-    a sign for their opposite; the second, moved to z + d and face - d, is a polynomial of second degree in d.
-    So equal layers need 2 n - 1 sums each, not n^2.
+    of corners. points: (observed layers, g) depths, the answer is the mean over these g; faces: (n + 1,) as
+    above; scale: (36,) factors; exchanged: the mesh is the same with x and y exchanged, and of two
+    coefficients that change places one is summed. With s = -1, +1 on the upper and lower face the stress is a
+    sum over points and faces of s F(z - face) in the full space and of s (p00 + face p01 + z p10 + z face
+    p11) G(z + face) of the image. Pairs of layers with equal offsets share them: the first depends on these
+    alone, up to a sign for their opposite; the second, moved to z + d and face - d, is a polynomial of second
+    degree in d. So equal layers need 2 n - 1 sums each, not n^2.
     """
 
     def __init__(
@@ -124,97 +133,111 @@ class LayerStress:
         faces: Array,
         nu: float,
         *,
-        transform: Callable[[Array, tuple[int, int]], Array] = lambda planes, odd: planes,
+        scale: Array | None = None,
+        exchanged: bool = False,
     ):
-        self.functions, self.nu, self.transform = functions, nu, transform
-        z, face = np.broadcast_arrays(
-            points[:, None, :, None], np.stack([faces[:-1], faces[1:]], axis=-1)[None, :, None]
-        )
-        self.z, self.face = (part.reshape(*part.shape[:2], -1) for part in (z, face))
-        self.sign = np.tile([-1.0, 1.0], points.shape[1]) / points.shape[1]
+        self.functions, self.points, self.faces = functions, points, faces
+        self.exchanged, factors = exchanged, np.ones(36) if scale is None else scale
+        self.blocks = [block.times(factors) for block in blocks(nu, exchanged)]
+        self.rows = np.concatenate([block.rows for block in self.blocks])
+        self.own = (factors * own_stress(nu).ravel())[self.rows]
+        self.mirrored = MIRRORED[self.rows]
+        offsets = points[:, None, :, None] - np.stack([faces[:-1], faces[1:]], axis=-1)[:, None]
         self.inside = (faces[:-1] <= points[:, :1]) & (points[:, :1] < faces[1:])
-        offsets = self.z - self.face
-        self.above = offsets.mean(axis=-1) < 0
-        offsets[self.above] = -offsets[self.above][:, ::-1]
-        self.digits = DIGITS - floor(log10(np.diff(faces).min()))
-        at_once = max(1, int(AT_ONCE // (functions.x.size * self.sign.size)))
-        self.image = _Shared(self.z + self.face, self.digits, self._image_sums, at_once)
-        self.full = _Shared(offsets, self.digits, self._full_space_sums, at_once)
+        self.above = offsets.mean(axis=(2, 3)) < 0
+        sums = 2 * points[:, None, :, None] - offsets
+        offsets[self.above] = -offsets[self.above][:, ::-1, ::-1]
+        digits = DIGITS - floor(log10(np.diff(faces).min()))
+        at_once = max(1, int(AT_ONCE // (functions.x.size * 2 * points.shape[1])))
+        self.image = _Shared(sums, digits, self._image_sums, at_once)
+        self.full = _Shared(offsets, digits, self._full_space_sums, at_once)
 
     def of(self, layer: int, out: Array) -> None:
         """Stress/mu in one of the observed layers into `out`, (36, n, X, Y); each once, in order."""
-        for k, (image, full) in enumerate(zip(self.of_image(layer), self.of_full_space(layer), strict=True)):
-            np.add(image, full, out=out[:, k], casting="same_kind")
+        for k, (image, stress) in enumerate(zip(self._image(layer), self._full_space(layer), strict=True)):
+            stress += image
+            self._every(stress, out[:, k])
 
     def of_image(self, layer: int) -> Iterator[Array]:
         """The part of the free surface alone, (36, X, Y) by each source; layers in order, as in `of`."""
-        for k, (first, image) in enumerate(self.image.of(layer)):
-            if move := self.z[layer, k, 0] - self.z.reshape(-1, self.z.shape[-1])[first, 0]:
+        for rows in self._image(layer):
+            yield self._every(rows, np.empty((36, *rows.shape[1:])))
+
+    def of_full_space(self, layer: int) -> Iterator[Array]:
+        """The rest, that of the full space less the eigenstrain's own stress."""
+        for rows in self._full_space(layer):
+            yield self._every(rows, np.empty((36, *rows.shape[1:])))
+
+    def _every(self, rows: Array, out: Array) -> Array:
+        """Into all coefficients from those that are summed."""
+        if self.exchanged:
+            out[EXCHANGED_ROWS[self.rows]] = rows.swapaxes(-1, -2)
+        out[self.rows] = rows
+        return out
+
+    def _image(self, layer: int) -> Iterator[Array]:
+        for first, image in self.image.of(layer):
+            if move := self.points[layer, 0] - self.points[first // (len(self.faces) - 1), 0]:
                 yield np.dot(move ** np.arange(3), image.reshape(3, -1)).reshape(image.shape[1:])
             else:
                 yield image[0]
 
-    def of_full_space(self, layer: int) -> Iterator[Array]:
-        """The rest, that of the full space less the eigenstrain's own stress."""
-        for k, (_, full) in enumerate(self.full.of(layer)):
-            yield full * MIRRORED if self.above[layer, k] else full
+    def _full_space(self, layer: int) -> Iterator[Array]:
+        for k, (_, functions) in enumerate(self.full.of(layer)):
+            flat = functions.reshape(len(functions), -1)
+            stress = np.concatenate([block.full @ flat[block.of_full] for block in self.blocks])
+            stress = stress.reshape(-1, *functions.shape[1:])
+            if self.above[layer, k]:
+                stress *= self.mirrored
+            if self.inside[layer, k]:  # paper, last term of Eq. 3: inside the plastic volume
+                stress -= self.own[:, None, None] * self.functions.itself
+            yield stress
 
-    def _image_sums(self, first: Numbers, offsets: Array, shared: bool) -> Array:
-        """Coefficients of 1, d and d^2, of 1 alone if not shared: (sets of offsets, 3 or 1, 36, X, Y)."""
-        z, face = (part.reshape(-1, part.shape[-1])[first] for part in (self.z, self.face))
+    def _at_faces(self, pairs: Numbers, opposite: Mask) -> tuple[Array, Array, Numbers, Numbers]:
+        """Points and faces, both (m, g), that these pairs of layers need, each once; the sign of their
+        offset, (m, 1), -1 if opposite; and which of them belong to the upper and to the lower face of each
+        pair, (2, pairs).
+        """
+        layer, source = np.divmod(pairs, len(self.faces) - 1)
+        face = layer * len(self.faces) + source + np.stack([opposite, ~opposite])
+        each, index = np.unique(2 * face + opposite, return_inverse=True)
+        layer, face = np.divmod(each // 2, len(self.faces))
+        z, face = np.broadcast_arrays(self.points[layer], self.faces[face][:, None])
+        return z, face, 1 - 2 * (each % 2)[:, None], index.reshape(2, -1)
+
+    def _image_sums(self, pairs: Numbers, shared: bool) -> Array:
+        """Coefficients of 1, d and d^2, of 1 alone if not shared: (pairs, 3 or 1, rows, X, Y)."""
+        z, face, _, index = self._at_faces(pairs, np.zeros(len(pairs), bool))
+        functions = self.functions(True, z + face, self.blocks[-1].of_image.stop)
         ones, zeros = np.ones_like(z), np.zeros_like(z)
         of_d = [[ones, face, z, z * face], [zeros, -ones, ones, face - z], [zeros, zeros, zeros, -ones]]
-        # (sets, 3 or 1, 4, points and faces)
-        powers = self.sign * np.moveaxis(np.array(of_d[: 3 if shared else 1]), 2, 0)
+        powers = np.array(of_d[: 3 if shared else 1]) / z.shape[1]  # (3 or 1, 4, m, g)
+        planes = []
+        for block in self.blocks:
+            weights = np.einsum("dpmg,prf->mdrfg", powers, block.image)
+            sides = len(z), -1, weights[0, 0, 0].size
+            at_faces = weights.reshape(sides) @ functions[:, block.of_image].reshape(len(z), sides[-1], -1)
+            sums = at_faces[index[1]] - at_faces[index[0]]
+            sums = sums.reshape(len(pairs), len(powers), len(block.rows), -1)
+            planes.append(self.functions.planes(sums, block.odd))
+        return np.concatenate(planes, axis=2)
 
-        def weights(block: Block) -> Array:
-            return np.einsum("sdpq,prf->sdrqf", powers, block.image)
-
-        return self._sums(True, offsets, weights)
-
-    def _full_space_sums(self, first: Numbers, offsets: Array, shared: bool) -> Array:
-        """(sets of offsets, 36, X, Y), less the eigenstrain's own stress."""
-        own = np.where(self.inside.ravel()[first][:, None], own_stress(self.nu).ravel(), 0.0)
-        sign = self.sign[:, None]
-        return self._sums(False, offsets, lambda block: (sign * block.full[:, None])[None, None], own)[:, 0]
-
-    def _sums(
-        self, image: bool, offsets: Array, weights: Callable[[Block], Array], own: Array | None = None
-    ) -> Array:
-        """Sums of functions at offsets (sets, n): (sets, d, 36, X, Y); own: subtracted inside."""
-        _, first, index = np.unique(np.round(offsets, self.digits), return_index=True, return_inverse=True)
-        functions, index = self.functions(image, offsets.ravel()[first]), index.reshape(offsets.shape)
-        of_parity = [
-            (block, block.of_image if image else block.of_full, weights(block)) for block in blocks(self.nu)
-        ]
-        some = max(1, int(IN_CACHE // prod(functions.shape[2:])))
-        out: Array | None = None
-        for sets in (slice(start, start + some) for start in range(0, len(offsets), some)):
-            for block, of_block, matrix in of_parity:
-                matrix = matrix[sets] if len(matrix) > 1 else matrix
-                chosen = functions[:, of_block][index[sets]]
-                sides = len(matrix), -1, prod(matrix.shape[3:])
-                planes = matrix.reshape(sides) @ chosen.reshape(len(chosen), sides[-1], -1)
-                planes = planes.reshape(len(chosen), *matrix.shape[1:3], *functions.shape[2:])
-                if own is not None:  # paper, last term of Eq. 3: inside the plastic volume
-                    planes[:, 0, :, 0, 0] -= own[sets][:, block.rows]
-                planes = self.transform(planes, block.odd)
-                if out is None:
-                    out = np.empty((len(offsets), planes.shape[1], 36, *planes.shape[3:]))
-                out[sets, :, block.rows] = planes
-        assert out is not None, "there are sets and blocks"
-        return out
+    def _full_space_sums(self, pairs: Numbers, shared: bool) -> Array:
+        """Sums of the functions, which give the coefficients: (pairs, functions, X, Y)."""
+        z, face, sign, index = self._at_faces(pairs, self.above.ravel()[pairs])
+        functions = self.functions(False, sign * (z - face), self.blocks[-1].of_full.stop).mean(axis=2)
+        sums = functions[index[1]] - functions[index[0]]
+        planes = [self.functions.planes(sums[:, block.of_full], block.odd) for block in self.blocks]
+        return np.concatenate(planes, axis=1)
 
 
 class _Shared:
     """What pairs of layers with equal offsets share, made when first needed, kept to the last."""
 
-    def __init__(
-        self, offsets: Array, digits: int, make: Callable[[Numbers, Array, bool], Array], at_once: int
-    ):
-        self.offsets, self.make, self.at_once = offsets.reshape(-1, offsets.shape[-1]), make, at_once
+    def __init__(self, offsets: Array, digits: int, make: Callable[[Numbers, bool], Array], at_once: int):
+        self.make, self.at_once = make, at_once
         _, first, index, uses = np.unique(
-            np.round(self.offsets, digits) + 0.0,
+            np.round(offsets.reshape(-1, prod(offsets.shape[2:])), digits) + 0.0,
             axis=0,
             return_index=True,
             return_inverse=True,
@@ -244,5 +267,5 @@ class _Shared:
             some = chosen[self.shared[chosen] == shared]
             if some.size:
                 pairs = self.first[some]
-                self.known.update(zip(some, self.make(pairs, self.offsets[pairs], shared), strict=True))
+                self.known.update(zip(some, self.make(pairs, shared), strict=True))
         self.made += len(chosen)

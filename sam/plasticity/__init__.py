@@ -16,12 +16,13 @@ from sam.plasticity.model import Model
 from sam.plasticity.points import POINTS, stress_at_points
 from sam.plasticity.progress import Progressed
 from sam.plasticity.spectra import BoxOperator
-from sam.plasticity.state import Extent, MaterialFields, surrounded
+from sam.plasticity.state import CellFields, Extent, MaterialFields
 
 __all__ = [
     "POINTS",
     "SHEAR",
     "BoxOperator",
+    "CellFields",
     "ExpectedBox",
     "Extent",
     "MaterialFields",
@@ -36,5 +37,4 @@ __all__ = [
     "onward",
     "stress_at_points",
     "surface_displacement",
-    "surrounded",
 ]

@@ -6,7 +6,7 @@ that a solve is expected to go through.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, floor
 
 import numpy as np
@@ -44,6 +44,9 @@ MANY_LAYERS, MANY_BYTES, MOST_BYTES = 24, 2e8, 1e9
 SWEPT_SHARE = 0.05  # of the tolerance of the plastic iteration, the error of the sweeps
 # Cells that are free beside the zone of a body that nothing touches: with two strained ones a box grows.
 FREE_BESIDE = 3
+# Share of a rough patch up to which a box is smaller than it: the fields beside a box have coefficients of
+# their own, which take more than so few cells less save.
+MOST_OF_PATCH = 0.8
 
 
 def first_extent(
@@ -56,11 +59,12 @@ def first_extent(
     path: Sequence[tuple[float, float]] = ((0.0, 0.0),),
 ) -> Extent:
     """Box around the contact and the cells that would yield; limit: yield stress (nz,) in Pa;
-    anywhere: as wide as the grid, below a rough surface; path: places of the load in m.
+    anywhere: below a rough surface, just around the contact; path: places of the load in m.
     """
     exceeds = yielding(peak.mises, limit[:, None])
     if anywhere:
-        return Extent(Window(0, 0, grid.nx, grid.ny), _layers(np.flatnonzero(exceeds.any(axis=1)), grid))
+        layers = _layers(np.flatnonzero(exceeds.any(axis=1)), grid)
+        return Extent(_or_whole(around(peak.contact.pressure > 0), grid), layers)
     if not peak.contact.pressure.any():
         return _about_zone(exceeds, grid)
     box = around(peak.contact.pressure > 0)
@@ -94,7 +98,7 @@ def _about_zone(exceeds: Mask, grid: CellGrid) -> Extent:
 
 def _strained(trial: Trial) -> Mask:
     """The cells of the box that a step has strained, (n_layers, nx, ny)."""
-    return np.asarray(trial.increment.strain.any(axis=0))
+    return trial.increment.cells
 
 
 def _layers(deep: NDArray[np.intp], grid: CellGrid) -> int:
@@ -119,6 +123,19 @@ def grown(extent: Extent, trial: Trial, grid: CellGrid) -> Extent:
     if strained[-1].any():
         layers = min(layers + growth(layers), len(grid.depths))
     return Extent(Window(i, j, nx, ny), layers)
+
+
+def _or_whole(window: Window, grid: CellGrid) -> Window:
+    """The window, or the whole grid where it is most of that."""
+    return window if window.nx * window.ny <= MOST_OF_PATCH * grid.nx * grid.ny else grid.whole
+
+
+def holding(extent: Extent, cells: Mask, grid: CellGrid) -> Extent:
+    """The box with these cells of the grid, (nx, ny), and a margin around them, or the whole grid."""
+    box, more = extent.window, around(cells)
+    i0, j0 = min(box.i0, more.i0), min(box.j0, more.j0)
+    i1, j1 = max(box.i0 + box.nx, more.i0 + more.nx), max(box.j0 + box.ny, more.j0 + more.ny)
+    return replace(extent, window=_or_whole(Window(i0, j0, i1 - i0, j1 - j0), grid))
 
 
 def widened(first: int, count: int, limit: int, reached: tuple[bool, bool]) -> tuple[int, int]:

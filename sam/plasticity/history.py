@@ -19,7 +19,7 @@ from sam.elastic.history import UNLOADING
 from sam.elastic.problem import ElasticProblem
 from sam.elastic.stress import ElasticPeak
 from sam.grid.cells import CellGrid, Sides, Window
-from sam.plasticity.box import edge_reached, first_extent, grown
+from sam.plasticity.box import edge_reached, first_extent, grown, holding
 from sam.plasticity.load_step import ITERATIONS, LONG_ITERATIONS
 from sam.plasticity.measure import (
     contact_in_box,
@@ -28,6 +28,7 @@ from sam.plasticity.measure import (
     moved,
     new_strain,
     pass_end,
+    penetrated,
     problem_of,
     snapshot,
     start_of,
@@ -37,7 +38,16 @@ from sam.plasticity.measure import (
 )
 from sam.plasticity.model import Model
 from sam.plasticity.progress import Begun, CycleStart, Parts, Progressed, floor
-from sam.plasticity.state import Extent, MaterialFields, State, Trial, on_larger_box
+from sam.plasticity.state import (
+    CellFields,
+    Change,
+    Extent,
+    MaterialFields,
+    State,
+    Trial,
+    on_larger_box,
+    surrounded,
+)
 from sam.results.history import History, Row, row_of
 from sam.scene import Status
 from sam.scene.result import LAST, PEAK, UNLOADED, Progress, unfinished
@@ -73,12 +83,13 @@ def solve_plastic(
     else:
         raise ValueError("either a record or the elastic peak is needed")
     while not record.ended:
-        before, record = record, onward(model, record)
+        before = len(record.history.rows), record.parts.count
+        record = onward(model, record)
         done = len(record.history.rows)
         total = done + len(record.targets)
-        if keep is not None and record.last is not before.last:
+        if keep is not None and (done, record.parts.count) != before:
             keep(record, done, total)
-        if done > len(before.history.rows):
+        if done > before[0]:
             report("load steps", done, total)
     history = finished(model, record)
     return history, replace(record, counters=replace(model.counters))
@@ -93,10 +104,12 @@ def begun(model: Model, targets: Sequence[Target], extent: Extent) -> Progressed
 
 
 def first_box(model: Model, peak: ElasticPeak) -> Extent:
-    """The first box of a history."""
-    both_ways, path = model.plan.schedule.alternates, model.plan.schedule.path
-    anywhere, limit = model.plan.places.anywhere, model.plan.initial_yield
-    return first_extent(model.grid, peak, limit, anywhere=anywhere, both_ways=both_ways, path=path)
+    """The first box of a history; the whole grid below a rough patch that touches elsewhere later."""
+    schedule, anywhere, limit = model.plan.schedule, model.plan.places.anywhere, model.plan.initial_yield
+    both_ways, path = schedule.alternates, schedule.path
+    extent = first_extent(model.grid, peak, limit, anywhere=anywhere, both_ways=both_ways, path=path)
+    elsewhere = anywhere and (len(path) > 1 or schedule.renews)
+    return replace(extent, window=model.grid.whole) if elsewhere else extent
 
 
 def onward(model: Model, record: Progressed) -> Progressed:
@@ -121,10 +134,10 @@ def _cycle_begun(model: Model, record: Progressed) -> Progressed:
     """The record that counts a cycle and period from here, with a new tribofilm on the surface."""
     material, state, film = record.state.material, record.state, record.tribofilm
     if model.plan.schedule.cycles > 1:
-        record = replace(record, cycle_start=CycleStart(record.extent, material.peeq))
+        record = replace(record, cycle_start=CycleStart(record.extent, material))
         if model.plan.judging is not None and record.periods.begun is None:
             worn = None if record.wear is None else record.wear.depth
-            period = Begun(record.extent, material.strain, material.peeq, worn)
+            period = Begun(record.extent, material, worn)
             record = replace(record, periods=replace(record.periods, begun=period))
     if model.plan.tribofilm is None or (
         film is not None and film.visits is not None and state.load.force > 0
@@ -153,12 +166,8 @@ def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, T
         if not trial.converged:
             return record, trial
         extent = grown(record.extent, trial, model.grid)
-        if extent != record.extent:  # once more, with the residual fields computed anew there
-            larger = model.problem(extent, film, record.wear)
-            state = on_larger_box(record.state, record.extent, extent, larger.residual_of)
-            record = replace(record, state=state, extent=extent, outside=None)
-            guess, start = record.guess(load), start_of(model, record, load)
-            continue
+        if extent != record.extent:
+            return attempt(model, _enlarged(model, record, extent), load)
         place, reached = model.place(load), edge_reached(trial, cut_beside=model.plan.places.anywhere)
         if reached.beside or reached.below:
             return _ended(record, Status.PLASTIC_ZONE_AT_GRID_EDGE, place, reached), None
@@ -168,15 +177,47 @@ def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, T
         if law is not None and film is not None and before is not None:
             pressure = np.zeros((model.grid.nx, model.grid.ny))
             pressure[record.extent.window.slices] = trial.pressure * model.unit
-            plastic = record.state.material.strain + trial.increment.strain
-            strain = model.surface_strain(record.extent, trial.stress, plastic)
+            strain = model.surface_strain(
+                record.extent, trial.stress, record.state.material.strain + trial.increment.strain
+            )
             tested = law.tested(before, film, strain, pressure=pressure, sign=trial.load.sign)
         film_stays = tested is None or film is None or tested.film.failed is film.film.failed
         film = tested
         if film_stays and until <= model.tolerance:
-            return committed(model, record, trial, film), trial
+            after, extent = _beside(model, committed(model, record, trial, film), trial)
+            if extent != record.extent:
+                return attempt(model, _enlarged(model, record, extent), load)
+            return after, trial
         guess, start = trial.change(record.state), trial.pressure  # with more friction or more exactly
         until = model.tolerance if film_stays else until
+        del trial  # its fields are large
+
+
+def _enlarged(model: Model, record: Progressed, extent: Extent) -> Progressed:
+    """The record on a larger box, where the next attempt is the one of a history that began on it:
+    residual fields are computed anew, and steps start from the same guess.
+    """
+    larger, old, change = model.problem(extent, record.tribofilm, record.wear), record.extent, record.change
+    state = on_larger_box(record.state, old, extent, larger.residual_of)
+    if change is not None:
+        increment = change.increment.on_box(old, extent)
+        change = Change(increment, larger.residual_of(increment))
+    recalled = {
+        load: surrounded(pressure, old.inside(extent)[1:], extent.window.shape)
+        for load, pressure in record.recalled.items()
+    }
+    return replace(record, state=state, extent=extent, outside=None, change=change, recalled=recalled)
+
+
+def _beside(model: Model, record: Progressed, trial: Trial) -> tuple[Progressed, Extent]:
+    """The record after a step, and its box; below a rough patch the one that also holds the cells
+    beside it that the counter-body penetrates.
+    """
+    if not model.plan.places.anywhere or record.extent.window == model.grid.whole:
+        return record, record.extent
+    record = with_outside(model, record)
+    cells = penetrated(model, record, trial)
+    return record, holding(record.extent, cells, model.grid) if cells.any() else record.extent
 
 
 def committed(model: Model, record: Progressed, trial: Trial, film: TribofilmState | None) -> Progressed:
@@ -192,7 +233,7 @@ def committed(model: Model, record: Progressed, trial: Trial, film: TribofilmSta
         tribofilm=film,
         recalled=recalled,
         dissipated=record.dissipated + dissipated_by(model, record, trial),
-        outside=record.outside if state.points is record.state.points else None,
+        outside=record.outside if state.material is record.state.material else None,
     )
 
 
@@ -291,18 +332,21 @@ def _worn(model: Model, record: Progressed, trial: Trial) -> tuple[Progressed, T
     """What is strained too much is removed, and equilibrium found again; the same trial if nothing is."""
     if model.plan.wear is None or record.wear is None:
         return record, trial
-    points, peeq, faces = (
-        record.state.points.by_name(),
-        record.state.material.peeq,
-        model.faces(record.extent),
+    material, faces = record.state.material, model.faces(record.extent)
+    wear, cells, below = model.plan.wear.removed(
+        record.wear,
+        material.points.by_name(),
+        faces,
+        record.extent.window,
+        cells=material.cells,
+        peeq=material.peeq,
     )
-    wear, below = model.plan.wear.removed(record.wear, points, faces, record.extent.window, peeq=peeq)
     record = replace(record, wear=wear)
     if not wear.volumes[-1]:
         return record, trial
     rows = record.history.rows
-    problem, left = problem_of(model, record), MaterialFields(**below)
-    state = State(left, problem.residual_of(left.means()), trial.pressure, trial.load)
+    problem, left = problem_of(model, record), CellFields(cells, MaterialFields(**below))
+    state = State(left, problem.residual_of(left), trial.pressure, trial.load)
     record = replace(record, state=state, outside=None)
     after = replace(problem, longer=record.longer).step(state, trial.load)
     note = f"{wear.volumes[-1]:.6g} m3 removed"
@@ -355,8 +399,7 @@ def finished(model: Model, record: Progressed) -> History:
     snapshots, residuals, plan = dict(history.snapshots), history.certificate, model.plan
     if not residuals:
         last = record.last
-        strain = record.state.material.strain
-        if last is None or last.increment.strain.shape != strain.shape:  # the box has grown
+        if last is None or last.increment.cells.shape != record.extent.shape:  # the box has grown
             last = problem_of(model, record).step(record.state, record.state.load)
         record = with_outside(model, record, stress=True)
         snapshots[LAST], residuals = snapshot(model, record, LAST, last), last.excesses

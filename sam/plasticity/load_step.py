@@ -27,18 +27,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
-from sam.arrays import Array
+from sam.arrays import Array, Mask
 from sam.contact.box import BoxContact
 from sam.contact.convolution import Counters
 from sam.contact.normal import control_of
-from sam.plasticity.flow import SHEAR, Material, deviator, equivalent_strain
+from sam.plasticity.flow import SHEAR, Material, equivalent_strain
 from sam.plasticity.points import POINTS, CellFlow, whole
 from sam.plasticity.spectra import BoxOperator, InWaves
-from sam.plasticity.state import Change, MaterialFields, ResidualFields, State, Trial
+from sam.plasticity.state import CellFields, Change, ResidualFields, State, Trial, filled, spread
 from sam.schedule import UNLOADED, Load
 
 CONTACT_LIMIT = 400  # iterations of a contact solve, ten times what a step takes; more halve the step
@@ -147,7 +146,8 @@ class Problem:
         """The body before the first load."""
         shape = (self.operator.layers, *self.operator.shape)
         nothing = ResidualFields(np.zeros((6, *shape)), np.zeros(self.operator.shape))
-        return State(self.material.virgin((POINTS, *shape)), nothing, self.pressure.start(UNLOADED))
+        material = CellFields(np.zeros(shape, dtype=bool), self.material.virgin((POINTS, 0)))
+        return State(material, nothing, self.pressure.start(UNLOADED))
 
     def traction(self, pressure: Array, load: Load) -> Array | None:
         """q_x on the body in the unit of the pressure, (nx, ny); None without friction."""
@@ -168,20 +168,21 @@ class Problem:
         stress = operator.whole(operator.stress(None, operator.response(transformed)))
         return before.plus(ResidualFields(stress, displacement))
 
-    def residual_of(self, material: MaterialFields) -> ResidualFields:
+    def residual_of(self, material: CellFields) -> ResidualFields:
         """The residual fields of a material; nothing is applied where it is unstrained."""
         nothing = self.virgin().residual
-        return self.residual(nothing, material.strain) if material.strain.any() else nothing
+        return self.residual(nothing, material.strain) if material.cells.any() else nothing
 
     def stays_elastic(self, state: State) -> bool:
         """Whether the stress that is left without any load is within the yield surface."""
-        s = deviator(self.operator.keep(state.residual.stress))
-        return self.flow(state).stays_elastic(s, self.tolerance)
+        stress = self.operator.keep(state.residual.stress)
+        return self.flow(state).stays_elastic(stress, self.tolerance)
 
     def flow(self, state: State) -> CellFlow:
         """How the kept cells yield over a step that begins in a state."""
-        before = state.points.each(self.operator.keep)
-        return CellFlow(self.material, before, self.operator.transforms, self.stiffness)
+        transforms = self.operator.transforms
+        before = state.material.part(self.operator.keep)
+        return CellFlow(self.material, before, transforms, self.stiffness)
 
     @property
     def stiffness(self) -> float:
@@ -198,42 +199,53 @@ class Problem:
         tolerance: float | None = None,
     ) -> Trial:
         """The end of a load step from a committed state, converged or not: a fixed point of the increment x,
-        (6, n_layers, nx, ny) on the cells that the symmetry keeps. guess, start: change and p_hat before.
+        (6, n) of the cells that may flow, of those that the symmetry keeps. guess, start: change and p_hat
+        before.
         """
         K, goal = self.operator, self.tolerance if tolerance is None else tolerance
         window, most = (LONG_WINDOW, LONG_ITERATIONS) if self.longer else (WINDOW, ITERATIONS)
-        anderson = Anderson(window, np.sqrt(SHEAR)[:, None, None, None])
+        anderson = Anderson(window, np.sqrt(SHEAR)[:, None])
         flow, history, finest = self.flow(state), list[float](), CONTACT_SHARE * goal
 
-        residual = state.residual if guess is None else state.residual.plus(guess.residual)
-        x = np.zeros_like(K.keep(state.material.strain)) if guess is None else K.keep(guess.strain)
-        # of the plastic strain so far: u_3 (Eq. 6), and its stress (Eq. 7) as base plus response
-        displacement, base, response = residual.displacement, K.keep(residual.stress), None
+        # of the plastic strain so far: u_3 (Eq. 6), and its stress (Eq. 7) as that of residual plus response
+        residual, response = state.residual, None
+        x = flow.nothing
+        if guess is not None:
+            residual = residual.plus(guess.residual.times(guess.ratio))
+            increment = guess.increment.part(K.keep)
+            flow.add(increment.cells)
+            x = guess.ratio * spread(increment.points.strain.mean(axis=1), increment.cells, flow.cells)
+        displacement = residual.displacement
         pressure, accuracy = state.pressure if start is None else start, FIRST_CONTACT
         while True:
             pressure = self.pressure(displacement, load, pressure, accuracy)  # paper Eq. 9 and 10
-            stress = base + self.stress(pressure, load, response)  # paper Eq. 4 and 7
-            returned = flow.returned(x, deviator(stress))  # paper Eq. 8, at the points of each cell
+            stress = K.keep(residual.stress) + self.stress(pressure, load, response)  # paper Eq. 4 and 7
+            returned = flow.returned(x, stress)  # paper Eq. 8, at the points of each cell
             worst = returned.worst(goal)
             history.append(worst)
             if (worst <= goal and accuracy <= finest) or len(history) > most:
                 break
             accuracy = max(min(CONTACT_SHARE * AHEAD * worst, accuracy), finest)
+            x = returned.x
             if worst <= goal:
                 accuracy = finest  # once more, with the contact as good as promised
                 continue
-            of_parts = stiffness_of_parts(K.own_stress)
-            image = preconditioned(x, returned.image, flow.limit, m=self.stiffness, own=of_parts)
-            x = anderson.next(x, image)
-            strain = K.transformed(x)
-            displacement = state.residual.displacement + K.whole(K.displacement(strain))  # paper Eq. 6
-            base, response = K.keep(state.residual.stress), K.response(strain)  # paper Eq. 7, second sum
+            own = np.repeat(stiffness_of_parts(K.own_stress), flow.counts, axis=-1)
+            limit = flow.flow.limit.mean(axis=0)
+            image = preconditioned(x, returned.image, limit, m=self.stiffness, own=own)
+            x, residual, response = anderson.next(x, image, flow.cells), state.residual, None
+            del stress, returned, image  # so long as the next ones are made
+            strain = K.transformed(filled(x.astype(K.real, copy=False), flow.cells))
+            displacement = residual.displacement + K.whole(K.displacement(strain))  # paper Eq. 6
+            response = K.response(strain)  # paper Eq. 7, second sum
+            del strain
             self.counters.plastic_iterations += 1
         if response is not None:  # of the stress, what the load does not make: paper Eq. 4
+            del response, anderson
             residual = ResidualFields(K.whole(stress - self.stress(pressure, load)), displacement)
         return Trial(
             load=self.pressure.loaded(load, pressure),
-            points=flow.increment(returned).each(partial(whole, K.transforms)),
+            increment=whole(K.transforms, returned.increment()),
             stress=K.whole(stress),
             residual=residual,
             pressure=pressure,
@@ -255,33 +267,44 @@ class Anderson:
     def __init__(self, window: int, weight: Array, cutoff: float = 1e-12):
         self.window, self.weight, self.cutoff = window, weight, cutoff
         self.count = 0  # differences so far; they take turns in the rows of
-        self.steps = self.changes = np.empty((window, 0))  # of g(x), and of the weighted g(x) - x
+        self.steps, self.changes = list[Array](), list[Array]()  # of g(x), and of the weighted g(x) - x
         self.gram = np.zeros((window, window))
-        self.last: tuple[Array, Array] | None = None
+        self.last = list[Array]()  # g(x), and the weighted g(x) - x
+        self.cells: Mask | None = None
 
-    def next(self, x: Array, image: Array) -> Array:
-        """The next iterate after g(x) = image."""
-        flat, distance = image.ravel(), ((image - x) * self.weight).ravel()
-        if self.last is not None:
-            self._add(flat - self.last[0], distance - self.last[1])
-        self.last = (flat, distance)
-        n = min(self.count, self.window)
+    def next(self, x: Array, image: Array, cells: Mask) -> Array:
+        """The next iterate after g(x) = image, (6, n) of cells, which those before were among."""
+        distance = (image - x) * self.weight
+        if self.cells is not None:
+            if cells is not self.cells:
+                kinds = self.steps, self.changes, self.last
+                self.steps, self.changes, self.last = (
+                    [spread(each, self.cells, cells) for each in rows] for rows in kinds
+                )
+            self._add(image - self.last[0], distance - self.last[1])
+        self.last, self.cells = [image, distance], cells
+        n = len(self.steps)
         if not n:
             return image
         gram = self.gram[:n, :n]
         size = np.sqrt(np.maximum(gram.diagonal(), np.finfo(float).tiny))
-        right = self.changes[:n] @ distance / size
+        right = self._products(distance) / size
         coefficients = np.linalg.lstsq(gram / np.outer(size, size), right, rcond=self.cutoff)[0] / size
-        return (flat - coefficients @ self.steps[:n]).reshape(image.shape)
+        out = image.copy()
+        for coefficient, step in zip(coefficients, self.steps, strict=True):
+            out -= coefficient * step
+        return out
 
     def _add(self, step: Array, change: Array) -> None:
         """The newest differences, in place of the oldest, and their products with those in the window."""
-        if not self.count:
-            self.steps, self.changes = np.empty((2, self.window, step.size))
         row, self.count = self.count % self.window, self.count + 1
-        self.steps[row], self.changes[row] = step, change
-        n = min(self.count, self.window)
-        self.gram[row, :n] = self.gram[:n, row] = self.changes[:n] @ change
+        self.steps[row : row + 1], self.changes[row : row + 1] = [step], [change]
+        n = len(self.changes)
+        self.gram[row, :n] = self.gram[:n, row] = self._products(change)
+
+    def _products(self, change: Array) -> Array:
+        """Of all changes in the window with one."""
+        return np.array([np.vdot(each, change) for each in self.changes])
 
 
 ROOT = np.sqrt(SHEAR)
@@ -301,13 +324,13 @@ def stiffness_of_parts(own_stress: Array) -> Array:
 
 
 def preconditioned(x: Array, image: Array, limit: Array, *, m: float, own: Array) -> Array:
-    """The image (6, n_layers, nx, ny) of an increment x by the return map, its change multiplied by (g);
-    limit: yield stress in Pa, (n_layers, nx, ny); own: k of `stiffness_of_parts`.
+    """The image (6, n) of an increment x by the return map, its change multiplied by (g); limit: yield stress
+    of the cells in Pa, (n,); own: k of `stiffness_of_parts` for each, (5, n).
     """
     out, flowing = image.copy(), image.any(axis=0)
     start, end = x[:, flowing], image[:, flowing]
     turn = limit[flowing] / (1.5 * equivalent_strain(end))
-    factor = (2 * m + turn) / (own[:, np.nonzero(flowing)[0]] + turn)
+    factor = (2 * m + turn) / (own[:, flowing] + turn)
     parts = factor * (PARTS @ (ROOT[:, None] * (end - start)))
     out[:, flowing] = start + PARTS.T @ parts / ROOT[:, None]
     return out

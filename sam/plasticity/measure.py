@@ -19,7 +19,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
-from sam.arrays import ROUNDING, Array
+from sam.arrays import ROUNDING, Array, Mask
 from sam.contact.convolution import FEW_ROWS, Convolution, Counters, row_sums
 from sam.contact.normal import Contact, Solved, Units, around, measured, no_contact
 from sam.contact.stress import von_mises
@@ -32,7 +32,7 @@ from sam.moving import Track
 from sam.plasticity.load_step import ContactPressure, PressureSource, Problem
 from sam.plasticity.model import Model
 from sam.plasticity.progress import Outside, Progressed
-from sam.plasticity.state import Extent, Trial, surrounded
+from sam.plasticity.state import Extent, Trial, filled
 from sam.results.history import CycleEnd, LoopRow, Moved, PassEnd, counted
 from sam.results.snapshots import Box, Cut, Snapshot, row_of_largest
 from sam.scene.result import BACK_STRESS, unfinished
@@ -78,6 +78,17 @@ def contact_on_grid(model: Model, record: Progressed, trial: Trial) -> Contact:
     return again if again.converged else contact
 
 
+def penetrated(model: Model, record: Progressed, trial: Trial) -> Mask:
+    """The cells of the grid, outside of the box, that the counter-body penetrates at the end of a
+    step, (nx, ny); the record is that after it, with the fields outside.
+    """
+    contact = contact_on_grid(model, record, trial)
+    least = 2 * model.contact_tolerance * contact.compliance * contact.pressure.max()
+    outside = np.asarray(contact.gap < -least)
+    outside[record.extent.window.slices] = False
+    return outside
+
+
 def _contact(model: Model, source: PressureSource, load: Load, gap: Array, *, p: Array, u: Array) -> Contact:
     """The contact of p_hat and u_hat, on the box or on the grid."""
     # the transforms of another window round differently
@@ -96,9 +107,8 @@ def with_outside(model: Model, record: Progressed, *, stress: bool = False) -> P
     """The record with the fields of its plastic strain outside of the box; stress: also that."""
     known = record.outside
     if known is None:
-        whole = Window(0, 0, model.grid.nx, model.grid.ny)
-        inside = record.state.residual.displacement
-        known = Outside(inside if record.extent.window == whole else _moved(model, record, 3, whole))
+        whole, inside = record.extent.window == model.grid.whole, record.state.residual.displacement
+        known = Outside(inside if whole else _moved_grid(model, record))
     if stress and known.stress is None:
         known = replace(known, stress=_residual_stress(model, record))
     return record if known is record.outside else replace(record, outside=known)
@@ -130,6 +140,18 @@ def _moved(model: Model, record: Progressed, component: int, observed: Window) -
     """Displacement of a window of the surface by the plastic strain, (nx, ny) in m."""
     source, counters = _strained(model, record), model.counters
     return surface_displacement(source, observed, counters=counters, component=component)
+
+
+def _moved_grid(model: Model, record: Progressed) -> Array:
+    """u_z of the surface of the grid by the plastic strain, (nx, ny) in m; below a rough patch, where
+    each step asks for it, with kept coefficients.
+    """
+    if not model.plan.places.anywhere:
+        return _moved(model, record, 3, model.grid.whole)
+    built, source = model.built, _strained(model, record)
+    if built.onto_grid is None or built.onto_grid[0] != record.extent:
+        built.onto_grid = record.extent, source.onto(model.grid.whole, 3, model.counters)
+    return np.asarray(model.grid.hx * built.onto_grid[1].summed(source.strain)[0])
 
 
 def start_of(model: Model, record: Progressed, load: Load) -> Array | None:
@@ -168,16 +190,18 @@ def snapshot(model: Model, record: Progressed, name: str, trial: Trial) -> Snaps
     sliding = sliding_of(loaded)
     if sliding is not None:
         sliding = sliding.strained(_moved(model, record, 1, rows), strain, np.diff(grid.layer_faces))
-    back = model.material(extent).back_stress(record.state.points)
-    repeated = {} if back is None else {BACK_STRESS: back.mean(axis=1)}
+    back = model.material(extent).at(material.cells).back_stress(material.points)
+    repeated = {} if back is None else {BACK_STRESS: filled(back.mean(axis=1), material.cells)}
 
     # the largest von Mises stress at each depth of all cells of the box, below it of those in y = 0
     counts, mises = counted(contact, grid), von_mises(stress).max(axis=(-2, -1))
     flowed = np.zeros(mises.shape, dtype=bool)
-    inside = von_mises(trial.stress)[(..., *counts.slices)].reshape(layers, -1)
+    counting = np.zeros(grid.shape, dtype=bool)
+    counting[counts.slices] = True
+    inside = (von_mises(trial.stress) * counting[window.slices]).reshape(layers, -1)
     at = np.arange(layers), inside.argmax(axis=1)
     mises[:layers] = inside[at]
-    flowed[:layers] = material.peeq[(..., *counts.slices)].reshape(layers, -1)[at] > 0
+    flowed[:layers] = material.peeq.reshape(layers, -1)[at] > 0
 
     # the largest plastic strain; cells hold means
     top, interval = None, model.strength.kinks.interval(grid.depths[:layers])
@@ -258,8 +282,12 @@ def dissipated_by(model: Model, record: Progressed, trial: Trial) -> float:
     """The energy in J that a step from a record dissipates; 0 where nobody asks for it."""
     if not (model.plan.dissipates and trial.plastic):
         return 0.0
-    flow = model.material(record.extent).flow(record.state.points)
-    return float((model.volumes(record.extent) * flow.dissipated(trial.points).mean(axis=0)).sum())
+    extent, before = record.extent, record.state.material
+    cells = before.cells | trial.increment.cells
+    dissipated = model.material(extent).at(cells).flow(before.on(cells)).dissipated(trial.increment.on(cells))
+    return float(
+        np.sum(np.broadcast_to(model.volumes(extent), extent.shape)[cells] * dissipated.mean(axis=0))
+    )
 
 
 def cycle_end(model: Model, record: Progressed, cycle: int, new: Array) -> CycleEnd:
@@ -312,8 +340,7 @@ def with_loops(model: Model, record: Progressed, target: Target, trial: Trial) -
 def _chosen(record: Progressed) -> list[tuple[int, int, int]]:
     """Layer and cells of the grid of the cells, see `loop_places`."""
     extent, window, last = record.extent, record.extent.window, record.periods.last[-1]
-    accumulated = surrounded(last.accumulated, last.extent.inside(extent), extent.shape)
-    places = loop_places(accumulated.ravel(), record.state.material.peeq.ravel())
+    places = loop_places(last.on(extent, None).accumulated, record.state.material.peeq.ravel())
     where = [np.unravel_index(place, extent.shape) for place in places]
     return [(int(layer), int(i) + window.i0, int(j) + window.j0) for layer, i, j in where]
 
@@ -347,6 +374,12 @@ class Strained:
         faces = tuple(float(z / cells.hx) for z in self.cuboids.faces)
         return replace(self.cuboids, lags=Lags(*lags, 1.0, cells.hy / cells.hx), faces=faces)
 
+    def onto(self, observed: Window, component: int, counters: Counters) -> Convolution:
+        """Its strain -> the displacement of a window of the surface, in hx. Paper Eq. 6."""
+        kernels = surface_displacement_coefficients(self.seen_from(observed), component=component)[None]
+        signs = [parity(name, component) for name in STRESS for _ in range(self.cuboids.layers)]
+        return Convolution(kernels, signs, self.window, observed, counters=counters)
+
 
 def residual_stress(source: Strained, depths: Array, observed: Window, *, mu: float) -> Array:
     """Stress of the plastic strain at depths in m, (6, n_depths, nx, ny) in Pa. Paper Eq. 7."""
@@ -372,15 +405,14 @@ def surface_displacement(
     if part is None:
         return np.zeros(observed.shape)
     hx = part.cuboids.lags.hx
-    kernels = surface_displacement_coefficients(part.seen_from(observed), component=component)[None]
-    if observed.ny <= FEW_ROWS:
-        odd, kernels = np.array([[component == 1], [component == 2]], dtype=int), kernels[:, :, None]
-        rows = row_sums(kernels, part.strain, part.window, observed, odd_out=odd, odd_in=ODD)
-        return np.asarray(hx * rows[0, 0])
-    signs = [parity(name, component) for name in STRESS for _ in range(part.cuboids.layers)]
-    # paper Eq. 6
-    convolution = Convolution(kernels, signs, part.window, observed, counters=counters)
-    return np.asarray(hx * convolution.summed(part.strain)[0])
+    if observed.ny > FEW_ROWS:
+        return np.asarray(hx * part.onto(observed, component, counters).summed(part.strain)[0])
+    kernels = surface_displacement_coefficients(part.seen_from(observed), component=component)
+    odd = np.array([[component == 1], [component == 2]], dtype=int)
+    rows = row_sums(
+        kernels[None, :, None], part.strain, part.window, observed, odd_out=odd, odd_in=ODD
+    )  # paper Eq. 6
+    return np.asarray(hx * rows[0, 0])
 
 
 def at_centres(means: Array, faces: Array, interval: NDArray[np.intp] | None = None) -> Array:

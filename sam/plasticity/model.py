@@ -15,7 +15,7 @@ import numpy as np
 
 from sam.arrays import Array, Mask
 from sam.contact.box import BoxContact
-from sam.contact.convolution import Counters
+from sam.contact.convolution import Convolution, Counters
 from sam.contact.operators import SurfaceOperators
 from sam.contact.stress import surface_strain
 from sam.elastic.problem import ElasticProblem, Plan
@@ -44,13 +44,16 @@ PAPER_SHARE = 1e2  # residual of a contact in the paper's loops, over the tolera
 
 @dataclass
 class Built:
-    """The problem that a model built last with its parts, and the box and arrays that it was built for."""
+    """The problem that a model built last with its parts, and the box and arrays that it was built for;
+    onto_grid: the displacement of the grid by the strain of a box.
+    """
 
     extent: Extent | None = None
     failed: Mask | None = None
     depth: Array | None = None
     surface: SurfaceOperators | None = None
     problem: Problem | None = None
+    onto_grid: tuple[Extent, Convolution] | None = None
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from sam.contact.stress import von_mises, yielding
 from sam.plasticity.flow import contraction, deviator, equivalent_strain
 from sam.plasticity.load_step import CONTACT_SHARE, Problem
 from sam.plasticity.points import POINTS
-from sam.plasticity.state import Change, MaterialFields, ResidualFields, State, Trial
+from sam.plasticity.state import CellFields, Change, MaterialFields, ResidualFields, State, Trial
 from sam.schedule import Load
 
 OUTER = 60  # alternations of contact and displacement; they end by their criterion, or the step is halved
@@ -53,14 +53,16 @@ class PaperProblem(Problem):
         tolerance: float | None = None,
     ) -> Trial:
         """A step from a committed state, where the loops start; guess, start, tolerance are not used."""
-        zero = np.zeros_like(state.material.strain), np.zeros_like(state.material.peeq)
+        # the loops are of cells, as printed
+        begun = MaterialFields(state.material.strain, state.material.peeq)
+        zero = np.zeros_like(begun.strain), np.zeros_like(begun.peeq)
         total, pressure, history = Sum(*zero, state.residual), state.pressure, []
         converged = False
         for _ in range(OUTER):
             last = total.residual.displacement
             pressure = self.pressure(last, load, pressure, CONTACT_SHARE * self.tolerance)
             elastic = self.stress(pressure, load)  # paper Eq. 7, first sum
-            total = self._relaxed(state, total, elastic)
+            total = self._relaxed(begun, state.residual, total, elastic)
             displaced = total.residual.displacement
             moved = np.abs(displaced - last).max() / max(np.abs(displaced).max(), np.finfo(float).tiny)
             history.append(float(moved))
@@ -68,14 +70,15 @@ class PaperProblem(Problem):
             if converged or not total.stopped:
                 break
         stress = elastic + total.residual.stress
-        step, m = self.material.flow(state.material), self.material.mu
+        step, m = self.material.flow(begun), self.material.mu
         again = step.returned(deviator(stress) + 2 * m * total.x, m, near=equivalent_strain(total.x))
         flow = 2 * m * np.sqrt(contraction(again - total.x, again - total.x).max())
-        increment = step.increment(total.x, total.length)
-        limit = self.material.yield_stress(state.material.peeq + total.length)
+        increment, cells = step.increment(total.x, total.length), total.length > 0
+        points = increment.each(lambda values: np.repeat(values[..., None, cells], POINTS, axis=-2))
+        limit = self.material.yield_stress(begun.peeq + total.length)
         return Trial(
             load=self.pressure.loaded(load, pressure),
-            points=increment.each(lambda values: np.repeat(values[..., None, :, :, :], POINTS, axis=-4)),
+            increment=CellFields(cells, points),
             stress=stress,
             residual=total.residual,
             pressure=pressure,
@@ -87,12 +90,12 @@ class PaperProblem(Problem):
             goal=self.tolerance,
         )
 
-    def _relaxed(self, state: State, before: Sum, elastic: Array) -> Sum:
-        """The plasticity loop at frozen pressure, from the returns so far."""
+    def _relaxed(self, begun: MaterialFields, left: ResidualFields, before: Sum, elastic: Array) -> Sum:
+        """The plasticity loop at frozen pressure, from the returns so far; begun, left: before the step."""
         x, length, residual = before.x, before.length, before.residual
         for _ in range(INNER):
             stress = elastic + residual.stress  # paper Eq. 4
-            peeq = state.material.peeq + length
+            peeq = begun.peeq + length
             q, limit = von_mises(stress), self.material.yield_stress(peeq)
             # paper Eq. 8, as the stop of Fig. 7
             if self.stop == "stress" and np.max(q / limit - 1) <= self.tolerance:
@@ -107,8 +110,8 @@ class PaperProblem(Problem):
             x, length = x + change, length.copy()
             length[flowing] += gamma
             self.counters.plastic_iterations += 1
-            residual = self.residual(state.residual, x)
-            total = equivalent_strain(state.material.strain + x).max()
+            residual = self.residual(left, x)
+            total = equivalent_strain(begun.strain + x).max()
             if self.stop == "strain" and equivalent_strain(change).max() <= self.tolerance * total:
                 return Sum(x, length, residual, True)
         return Sum(x, length, residual)

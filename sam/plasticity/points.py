@@ -28,34 +28,43 @@ from functools import cached_property
 from math import sqrt
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sam.arrays import Array, Mask
 from sam.contact.convolution import Transforms
 from sam.contact.stress import yielding
 from sam.kernels.patches import ODD_X, ODD_Y
-from sam.plasticity.flow import Flow, Material, contraction, equivalent_strain, mises
+from sam.plasticity.flow import Flow, Material, contraction, deviator, equivalent_strain, mises
 from sam.plasticity.spectra import EVEN
-from sam.plasticity.state import MaterialFields
+from sam.plasticity.state import CellFields, filled, spread
 
 POINTS = 4
+CELLS_AT_ONCE = 2**14  # of layers whose trial stress is made together: a tensor of them fits into the cache
 SIGNS = np.array([[-1.0, -1, 1, 1], [-1, 1, -1, 1]])[..., None]  # in x and in y
 OFFSET = 1 / (4 * sqrt(3))  # of a point, over the distance between both neighbours of its cell
-OPPOSITE = {-2: np.array([2, 3, 0, 1]), -1: np.array([1, 0, 3, 2])}  # after x -> -x, and after y -> -y
+OPPOSITE = {-2: (np.array([2, 3, 0, 1]), ODD_X), -1: (np.array([1, 0, 3, 2]), ODD_Y)}
+"""Points after x -> -x and after y -> -y, and the components that change their sign."""
 
 
-def whole(transforms: Transforms, kept: Array) -> Array:
-    """A kept field at the points on all of the box, tensors (..., 6, 4, n_layers, nx, ny) or numbers."""
-    *lead, points = kept.shape[:-3]
-    flat = kept.reshape(-1, *kept.shape[-3:])
-    parities = (ODD_X, ODD_Y) if lead else EVEN
-    odd_x, odd_y = (np.resize(np.repeat(each, points), len(flat)) for each in parities)
-    out = transforms.whole(flat, odd_x, odd_y)
-    out = out.reshape(*kept.shape[:-3], *out.shape[-3:])
-    for axis, order in OPPOSITE.items():
-        if transforms.mirror[axis]:
-            first = np.moveaxis(out, axis, 0)[: transforms.cells[axis] // 2]
-            first[...] = np.take(first, order, axis=-3)
-    return np.asarray(out, dtype=float)
+def whole(transforms: Transforms, kept: CellFields) -> CellFields:
+    """The fields on all of the box, of those on the cells that are kept."""
+    if not any(transforms.mirror):
+        return kept
+    places = filled(1.0 + np.arange(np.count_nonzero(kept.cells)), kept.cells)
+    places = transforms.whole(places[None], *EVEN)[0]
+    cells = places > 0
+    places = places[cells].astype(int) - 1
+    first = {axis: np.nonzero(cells)[axis] < transforms.cells[axis] // 2 for axis in OPPOSITE}
+
+    def everywhere(values: Array) -> Array:
+        out = values.take(places, axis=-1)
+        for axis, (order, odd) in OPPOSITE.items():
+            if transforms.mirror[axis]:
+                sign = np.where(odd, -1.0, 1.0)[:, None, None] if values.ndim > 2 else 1.0
+                out[..., first[axis]] = sign * out[..., first[axis]][..., order, :]
+        return out
+
+    return CellFields(cells, kept.points.each(everywhere))
 
 
 @dataclass(frozen=True)
@@ -66,7 +75,7 @@ class Linear:
     mirror: tuple[bool, bool] = (False, False)
 
     def at_points(self, values: Array, cells: Mask) -> Array:
-        """Of means of cells, kept tensors (6, n_layers, nx, ny): at the points of some of them, (6, 4, n)."""
+        """Of means of cells, kept tensors (6, ..., nx, ny): at the points of some of them, (6, 4, n)."""
         at = np.repeat(values[:, None, cells], POINTS, axis=1)
         for axis, signs in zip((-2, -1), SIGNS, strict=True):
             at += OFFSET * signs * self.difference(values, axis)[:, None, cells]
@@ -111,13 +120,14 @@ def stress_at_points(stress: Array, strain: Array, m: float) -> Array:
 
 @dataclass(frozen=True)
 class Returned:
-    """The return map of an increment x: image, its mean over the points, (6, n_layers, nx, ny);
-    cells that may flow; their points (6, 4, n), with the mean x; deviatoric stress there in Pa;
-    flow_residual: 2 m |image - x| over the initial yield stress.
+    """The return map of an increment x of the cells that may flow: x and image, its mean over the points,
+    (6, n); their points (6, 4, n), with the mean x; deviatoric stress there in Pa; flow_residual:
+    2 m |image - x| over the initial yield stress.
     """
 
-    image: Array
     cells: Mask
+    x: Array
+    image: Array
     points: Array
     stress: Array
     flow: Flow
@@ -132,68 +142,88 @@ class Returned:
         """The larger residual; that of the flow rule alone where this is beyond the goal."""
         return self.flow_residual if self.flow_residual > goal else max(self.flow_residual, self.yield_excess)
 
+    def increment(self) -> CellFields:
+        """The increment of the fields at the points of the cells that x strains."""
+        strains: Mask = np.asarray(self.x.any(axis=0))
+        fields = self.flow.increment(self.points, equivalent_strain(self.points))
+        cells = filled(strains, self.cells)
+        return CellFields(cells, fields.each(lambda values: values.compress(strains, axis=-1)))
+
 
 class CellFlow:
     """How cells yield over a step, the return map at their points. before: the fields there at its beginning,
-    on the cells that the transforms keep; m: of the return map (a).
+    on the cells that the transforms keep; m: of the return map (a); cells: those that may flow, of which more
+    are found as they do.
     """
 
-    def __init__(self, material: Material, before: MaterialFields, transforms: Transforms, m: float):
-        self.material, self.before, self.m = material, before, m
+    def __init__(self, material: Material, before: CellFields, transforms: Transforms, m: float):
+        self.material, self.before, self.m, self.cells = material, before, m, before.cells
         self.linear = Linear(transforms.cells, transforms.mirror)
-        self.strain = before.strain.mean(axis=1)
-        limit = material.yield_stress(before.peeq)
-        self.least, self.limit = limit.min(axis=0), limit.mean(axis=0)  # of the yield stress of each cell
-        self.cells: Mask = np.asarray(before.peeq.any(axis=0))  # those that flow, now or before
+        # the least yield stress at the points of each cell
+        unstrained = material.yield_stress(np.zeros((1, 1, 1)))
+        self.least = np.broadcast_to(unstrained, before.cells.shape).copy()
+        self.least[before.cells] = self.flow.limit.min(axis=0)
         self.last: tuple[Mask | None, Array] = None, np.zeros(0)  # cells and lengths of the last return
 
     @cached_property
     def flow(self) -> Flow:
         """Of the points of the cells."""
-        return self.material.at(self.cells).flow(self.before.each(lambda values: values[..., self.cells]))
+        return self.material.at(self.cells).flow(self.before.on(self.cells))
 
-    def trial(self, x: Array, s: Array) -> Array:
-        """The trial stress (e) at the points of the cells that may yield, (6, 4, n)."""
-        smooth = s + 2 * self.m * (self.strain + x)
-        may_yield: Mask = yielding(self.linear.farthest(mises(smooth)), self.least)
-        may_yield |= x.any(axis=0)
-        if (may_yield & ~self.cells).any():
-            self.cells = self.cells | may_yield
+    def add(self, cells: Mask) -> None:
+        """More cells that may flow."""
+        if (cells & ~self.cells).any():
+            self.cells = self.cells | cells
             vars(self).pop("flow", None)
-        return self.linear.at_points(smooth, self.cells) - 2 * self.m * self.flow.before.strain
 
-    def returned(self, x: Array, s: Array) -> Returned:
-        """The return map of an increment x (6, n_layers, nx, ny) and the deviatoric stress s of the cells."""
-        trial = self.trial(x, s)
-        means = x[:, self.cells]
-        points = self.flow.returned(trial, self.m, near=self.near(means))
+    @property
+    def nothing(self) -> Array:
+        """No increment of the cells, (6, n)."""
+        return np.zeros((6, np.count_nonzero(self.cells)))
+
+    @property
+    def counts(self) -> NDArray[np.intp]:
+        """Of the cells in each layer."""
+        return np.count_nonzero(self.cells, axis=(1, 2))
+
+    def trial(self, x: Array, stress: Array) -> Array:
+        """The trial stress (e) at the points of the cells that may yield, (6, 4, n); x: of `cells`."""
+        added = 2 * self.m * (self.flow.before.strain.mean(axis=1) + x)
+        at_once = max(1, CELLS_AT_ONCE // self.least[0].size)
+        parts = np.split(added, np.cumsum(self.counts)[at_once - 1 : -1 : at_once], axis=-1)
+        may_yield, at = self.cells.copy(), []
+        for k, part in enumerate(parts):
+            layers = slice(k * at_once, (k + 1) * at_once)
+            smooth, cells = deviator(stress[:, layers]), may_yield[layers]
+            smooth[:, cells] += part
+            cells |= yielding(self.linear.farthest(mises(smooth)), self.least[layers])
+            at.append(self.linear.at_points(smooth, cells))
+        self.add(may_yield)
+        return np.concatenate(at, axis=-1) - 2 * self.m * self.flow.before.strain
+
+    def returned(self, x: Array, stress: Array) -> Returned:
+        """The return map of an increment x (6, n) of `cells` and the stress of all, (6, n_layers, nx, ny)."""
+        before = self.cells
+        trial = self.trial(x, stress)
+        x = spread(x, before, self.cells)
+        points = self.flow.returned(trial, self.m, near=self.near(x))
         self.last = self.cells, equivalent_strain(points)
-        image = np.zeros_like(x)
-        image[:, self.cells] = points.mean(axis=1)
-        change = means - image[:, self.cells]
+        image = points.mean(axis=1)
+        change = x - image
         points += change[:, None]
-        points[:, :, ~means.any(axis=0)] = 0.0  # what is accepted without an increment strains nothing
+        points[:, :, ~x.any(axis=0)] = 0.0  # what is accepted without an increment strains nothing
         unequal = 2 * self.m * np.sqrt(contraction(change, change).max(initial=0.0))
-        stress, relative = trial - 2 * self.m * points, float(unequal / self.material.initial_yield)
-        return Returned(image, self.cells, points, stress, self.flow, relative)
+        trial -= 2 * self.m * points
+        return Returned(
+            self.cells, x, image, points, trial, self.flow, float(unequal / self.material.initial_yield)
+        )
 
     def near(self, means: Array) -> Array:
         """Lengths that the increments at the points about have: of the last return, or of the cells."""
         cells, lengths = self.last
         return lengths if cells is self.cells else equivalent_strain(means)
 
-    def increment(self, returned: Returned) -> MaterialFields:
-        """The increment of the fields at the points of all cells."""
-        small = self.flow.increment(returned.points, equivalent_strain(returned.points))
-
-        def everywhere(values: Array) -> Array:
-            out = np.zeros((*values.shape[:-1], *self.cells.shape))
-            out[..., self.cells] = values
-            return out
-
-        return small.each(everywhere)
-
-    def stays_elastic(self, s: Array, tolerance: float) -> bool:
-        """Whether the deviatoric stress s of the cells strains no point."""
-        trial = self.trial(np.zeros_like(s), s)
+    def stays_elastic(self, stress: Array, tolerance: float) -> bool:
+        """Whether a stress of the cells, (6, n_layers, nx, ny), strains no point."""
+        trial = self.trial(self.nothing, stress)
         return self.flow.excess(np.zeros_like(trial), trial) <= tolerance

@@ -13,11 +13,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from sam.arrays import ROUNDING, Array
+from sam.arrays import ROUNDING, Array, Mask
 from sam.contact.convolution import Counters
 from sam.grid.cells import Room
 from sam.plasticity.model import Model
-from sam.plasticity.state import Change, Extent, State, Trial, surrounded
+from sam.plasticity.state import CellFields, Change, Extent, State, Trial, filled, surrounded
 from sam.results.history import History
 from sam.scene import Status
 from sam.scene.result import Attempt
@@ -29,9 +29,10 @@ from sam.wear import WearState
 
 @dataclass(frozen=True)
 class Added:
-    """What a period added on a box, (n_layers, nx, ny) and (6, ...); worn: depth in m before it."""
+    """What a period added to some cells of a box, (n,) and (6, n); worn: depth in m before it."""
 
     extent: Extent
+    cells: Mask
     accumulated: Array
     norm: Array
     strain: Array | None
@@ -40,8 +41,9 @@ class Added:
     def on(self, extent: Extent, before: Array | None) -> Period:
         """The cells of a box in one row. before: worn depth at the beginning of the period before it."""
         where, shape = self.extent.inside(extent), extent.shape
-        accumulated, norm = (surrounded(part, where, shape).ravel() for part in (self.accumulated, self.norm))
-        strain = None if self.strain is None else surrounded(self.strain, where, shape).reshape(6, -1)
+        cells = surrounded(self.cells, where, shape)
+        accumulated, norm = (filled(part, cells).ravel() for part in (self.accumulated, self.norm))
+        strain = None if self.strain is None else filled(self.strain, cells).reshape(6, -1)
         restarted = None
         if self.worn is not None and before is not None:
             moved = (self.worn != before)[extent.window.slices]
@@ -51,19 +53,20 @@ class Added:
 
 @dataclass(frozen=True)
 class Begun:
-    """Plastic strain and accumulated one at the beginning of a period, on a box; worn as of `Added`."""
+    """The material at the beginning of a period, on a box; worn as of `Added`."""
 
     extent: Extent
-    strain: Array
-    peeq: Array
+    material: CellFields
     worn: Array | None = None
 
     def added(self, state: State, extent: Extent) -> Added:
         """What a later state has more."""
-        where, shape = self.extent.inside(extent), extent.shape
-        strain = state.material.strain - surrounded(self.strain, where, shape)
-        accumulated = state.material.peeq - surrounded(self.peeq, where, shape)
-        return Added(extent, accumulated, norm_of(strain), strain, self.worn)
+        before = self.material.on_box(self.extent, extent)
+        cells = state.material.cells | before.cells  # material may be gone where it was
+        start, end = before.on(cells), state.material.on(cells)
+        strain = end.strain.mean(axis=1) - start.strain.mean(axis=1)
+        accumulated = end.peeq.mean(axis=0) - start.peeq.mean(axis=0)
+        return Added(extent, cells, accumulated, norm_of(strain), strain, self.worn)
 
 
 @dataclass(frozen=True)
@@ -156,15 +159,14 @@ class Outside:
 
 @dataclass(frozen=True)
 class CycleStart:
-    """The accumulated plastic strain at the start of a cycle, (n_layers, nx, ny) on the cells of a box."""
+    """The material at the start of a cycle, on a box."""
 
     extent: Extent
-    peeq: Array
+    material: CellFields
 
     def new_strain(self, state: State, extent: Extent) -> Array:
-        """What has been added to it in a later state of the same cycle, on the box of that."""
-        before = surrounded(self.peeq, self.extent.inside(extent), extent.shape)
-        return state.material.peeq - before
+        """Accumulated plastic strain of a later state of the same cycle that is new, on the box of that."""
+        return state.material.peeq - self.material.on_box(self.extent, extent).peeq
 
 
 @dataclass(frozen=True)
@@ -202,14 +204,10 @@ class Progressed:
 
     def guess(self, load: Load) -> Change | None:
         """What the last step changed, scaled with the load, while the load rises on the same box."""
-        if (
-            self.change is None
-            or self.last is None
-            or self.change.strain.shape != self.state.material.strain.shape
-        ):
+        if self.change is None or self.last is None or self.change.increment.cells.shape != self.extent.shape:
             return None
         ratio = load.rise(self.state.load) / (self.last.rise or float("inf"))
-        return self.change.times(ratio) if 0 < ratio <= 1 + ROUNDING else None
+        return replace(self.change, ratio=ratio) if 0 < ratio <= 1 + ROUNDING else None
 
     def recall(self, load: Load) -> Array | None:
         """p_hat under the same load in the cycle before, if the box is the same."""

@@ -25,9 +25,10 @@ from numpy.typing import NDArray
 
 from sam.arrays import Array
 from sam.contact.convolution import Counters, Transforms, real_spectrum
-from sam.kernels.eigenstrain import surface_displacement_coefficients
+from sam.kernels.eigenstrain import EXCHANGED, surface_displacement_coefficients
 from sam.kernels.layer_stress import CornerFunctions, LayerStress, four_points, mesh
-from sam.kernels.patches import ODD_X, ODD_Y, STRESS, Cuboids, Lags, stress_coefficients
+from sam.kernels.patches import ODD_X, ODD_Y, Cuboids, Lags, stress_coefficients
+from sam.kernels.store import kept
 from sam.plasticity.images import PeriodImages
 from sam.plasticity.swept import GAUSS, SweptLayers
 
@@ -38,12 +39,11 @@ Parities = NDArray[np.integer[Any]]
 TWICE = ((np.outer(ODD_X, ODD_X) + np.outer(ODD_Y, ODD_Y)) % 2 == 1).ravel()  # 6 I + J, where (-i)^2 is left
 ODD_LAGS = [(x, y) for x, y in zip(*(np.not_equal.outer(o, o).ravel() for o in (ODD_X, ODD_Y)), strict=True)]
 """Of 6 I + J, whether the coefficient is odd in the lag in x and in y."""
-EXCHANGED = np.array([STRESS.index(name) for name in ("22", "11", "33", "13", "23", "12")])  # x and y
+SIGN = np.where(TWICE, -1.0, 1.0)  # of what is stored
 EVEN = np.zeros(1, int), np.zeros(1, int)  # parities in x and y of pressure and u_z
 CACHED_BOXES = 4  # spectra that are kept: the boxes of a history, or of both grids of an extrapolation
 # tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough
 SINGLE = 5e-5
-WAVES_AT_ONCE = 256  # whose rows of coefficients are written together: 64 and 1024 take as long
 NEAR = 4  # cells: up to there stresses are means over the observed cell
 
 
@@ -56,7 +56,7 @@ class CellMeans(CornerFunctions):
     """The same functions as means over the cell in x and y: by Gauss points up to NEAR cells away."""
 
     def __init__(self, lags: Lags):
-        self.near = min(NEAR, lags.nx), min(NEAR, lags.ny)
+        self.shape, self.near = lags.shape, (min(NEAR, lags.nx), min(NEAR, lags.ny))
         points = four_points((lags.hx * GAUSS[1] / 2, lags.hy * GAUSS[1] / 2))
         super().__init__(
             lags.shape,
@@ -64,11 +64,25 @@ class CellMeans(CornerFunctions):
             mesh(_first(lags, self.near), points),
         )
 
-    def observed(self, out: Array, far: Array, near: Array) -> None:  # type: ignore[override]
-        """The means over the cells of each mesh, into (offsets, nx, ny)."""
-        # two meshes: all cells, and the near ones from four points
-        _plane_mean(far[:, 0], out)
-        super().observed(out[:, : self.near[0], : self.near[1]], near)
+    def planes(self, corners: Array, odd: tuple[int, int]) -> Array:
+        """Means over the cells, (..., nx, ny)."""
+        far, near = self._differences(corners)
+        out = np.empty((*corners.shape[:-1], *self.shape))
+        _plane_mean(far[..., 0, :, :], out)
+        np.mean(near[..., :-1, :-1], axis=-3, out=out[..., : self.near[0], : self.near[1]])
+        return out
+
+
+class CellSpectra(CellMeans):
+    """Their transforms of so many wave numbers, see `real_spectrum`."""
+
+    def __init__(self, lags: Lags):
+        super().__init__(lags)
+        self.itself = np.ones((lags.nx + 1, lags.ny + 1))
+
+    def planes(self, corners: Array, odd: tuple[int, int]) -> Array:
+        """(..., nx + 1, ny + 1)."""
+        return np.asarray(real_spectrum(super().planes(corners, odd), self.shape, odd))
 
 
 def _first(lags: Lags, counts: tuple[int, int]) -> Lags:
@@ -95,14 +109,14 @@ def mean_stress_of_load(cuboids: Cuboids, load: int = 3) -> Array:
 
 def _plane_mean(kernel: Array, out: Array) -> None:
     """Mean over the cell in x and y, K + (d_x^2 K + d_y^2 K)/24, from lags -1 .. n at lags 0 .. n - 1."""
-    row, flat = kernel.shape[-1], kernel.reshape(-1)
+    (nx, ny), row, flat = out.shape[-2:], kernel.shape[-1], kernel.reshape(-1)
     # sums of neighbours in one go; those over the border are not kept
     pairs = flat[row:] + flat[1 : 1 - row]  # one further in x and one further in y
     mean = 20 * flat  # 24 - 4
     inner = mean[row + 1 : -row]
     inner += pairs[row + 1 :]
     inner += pairs[: -row - 1]
-    np.multiply(mean.reshape(kernel.shape)[..., 1:-1, 1:-1], 1 / 24, out=out)
+    np.multiply(mean.reshape(kernel.shape)[..., 1 : nx + 1, 1 : ny + 1], 1 / 24, out=out)
 
 
 def _with_lag_before(kernel: Array, odd_x: Parities, odd_y: Parities) -> Array:
@@ -112,13 +126,6 @@ def _with_lag_before(kernel: Array, odd_x: Parities, odd_y: Parities) -> Array:
     )
     kernel = np.concatenate([sign_x * kernel[..., 1:2, :], kernel], axis=-2)
     return np.concatenate([sign_y * kernel[..., 1:2], kernel], axis=-1)
-
-
-def _by_wave(rows: Reals, out: Reals) -> None:
-    """Rows (6, columns, waves) into (waves, 6, columns), some waves at a time, which stay in the cache."""
-    for start in range(0, rows.shape[-1], WAVES_AT_ONCE):
-        some = slice(start, start + WAVES_AT_ONCE)
-        out[some] = rows[..., some].transpose(2, 0, 1)
 
 
 class BoxSpectra:
@@ -148,26 +155,36 @@ class BoxSpectra:
             waves = waves[:, self.stored]
             self.layers: Reals | SweptLayers = SweptLayers(self, waves, cuboids, error=error, real=self.real)
         else:
-            self.layers = self._dense()
+            shape = self.waves, 6 * cuboids.layers, 6 * cuboids.layers
+            self.layers = kept(repr((cuboids, exchange)), shape, self.real, lambda: self._dense(shape))
         self.strain_to_displacement = self._of_surface(surface_displacement_coefficients(cuboids), ODD_X)
 
-    def _dense(self) -> Reals:
+    def _dense(self, shape: tuple[int, int, int]) -> Reals:
         """The matrices between all layers, (waves, 6 layers, 6 layers)."""
-        layers = self.cuboids.layers
-        out = np.empty((self.waves, 6 * layers, 6 * layers), dtype=self.real)
-        spectrum = np.empty((36, layers, 1, self.waves), dtype=self.real)
+        layers, exchange = self.cuboids.layers, not isinstance(self.stored, slice)
+        out = np.empty(shape, dtype=self.real)
+        spectrum = np.empty((36, layers, *np.add(self.half, 1)), dtype=self.real)
+        rows = spectrum.reshape(6, 6 * layers, *spectrum.shape[2:])
         stress = self._layer_stress(slice(None), slice(None))
         for i in range(layers):
             stress.of(i, spectrum)
-            spectrum[TWICE] *= -1
-            _by_wave(spectrum.reshape(6, 6 * layers, self.waves), out[:, i::layers])
+            start = 0
+            for k in range(rows.shape[2]):  # one row of wave numbers at a time stays in the cache
+                of_row = rows[:, :, k, k * exchange :].transpose(2, 0, 1)
+                out[start : start + len(of_row), i::layers] = of_row
+                start += len(of_row)
         return out
 
     def _layer_stress(self, observed: slice, sources: slice) -> LayerStress:
-        """Spectra of the means over the cells of some layers by strain in some."""
-        faces, means = self.cuboids.depths, CellMeans(self.cuboids.lags)
+        """Spectra of the means over the cells of some layers by strain in some, with their sign."""
+        faces, lags = self.cuboids.depths, self.cuboids.lags
         some = np.append(faces[:-1][sources], faces[1:][sources][-1])
-        return LayerStress(means, _points(faces)[observed], some, self.cuboids.nu, transform=self._of_block)
+        square = lags.nx == lags.ny and lags.hx == lags.hy
+        return LayerStress(
+            *(CellSpectra(lags), _points(faces)[observed], some, self.cuboids.nu),
+            scale=SIGN,
+            exchanged=square,
+        )
 
     def full_space(self, observed: int, sources: slice) -> Array:
         """See `sam.plasticity.swept.Exact`."""
@@ -185,15 +202,17 @@ class BoxSpectra:
         return out
 
     def _periodic(self, spectrum: Array, image: bool, observed: int, source: int) -> Array:
-        """The spectrum (36, 1, waves) of a coefficient with that of its periodic images: (6, 6, waves)."""
+        """The spectrum of a coefficient, (36, N_x + 1, N_y + 1), with that of its periodic images, (6, 6,
+        waves).
+        """
         if self.images is None:
             raise ValueError("only what is swept has a period")
         (top, bottom), (upper, lower) = (self.cuboids.faces[i : i + 2] for i in (observed, source))
         more = self.images.between(image, (top, bottom), (upper, lower), lags=self.half)
-        out = spectrum.reshape(36, -1).copy()
+        out = spectrum.reshape(36, -1)[:, self.stored].copy()
         for row, odd in enumerate(ODD_LAGS):
-            out[row] += self._of_block(more[row, None, : self.half[0], : self.half[1]], odd).ravel()
-        out[TWICE] *= -1
+            periodic = real_spectrum(more[row, : self.half[0], : self.half[1]], self.half, odd)
+            out[row] += SIGN[row] * periodic.ravel()[self.stored]
         return out.reshape(6, 6, -1)
 
     def stress(self, strain: Reals) -> Reals:
@@ -213,11 +232,6 @@ class BoxSpectra:
         for i, row in enumerate(out):
             stress.of(i, row)
         return out.diagonal(axis1=0, axis2=2).reshape(6, 6, -1)
-
-    def _of_block(self, kernel: Array, odd: tuple[int, int]) -> Reals:
-        """Spectra of coefficients (..., rows, nx, ny) of one parity: (..., rows, 1, stored)."""
-        spectrum = real_spectrum(kernel, self.half, odd)
-        return spectrum.reshape(*spectrum.shape[:-2], 1, -1)[..., self.stored]
 
     def _of_surface(self, kernel: Array, odd_x: Parities) -> Reals:
         """Spectra of (6, n_layers, nx, ny) between layers and surface, (N_x + 1, N_y + 1, 6 n_layers)."""

@@ -143,17 +143,19 @@ def test_a_step_starts_from_the_last_one_without_an_operator():
     now = committed(model, now, problem.step(now.state, Load(0.5 * force)), None)
     applied, iterations = counters.operator_applications, counters.plastic_iterations
     change, guess = now.change, now.guess(Load(force))
-    assert np.array_equal(guess.strain, change.strain)
-    assert np.array_equal(guess.residual.displacement, change.residual.displacement)
+    assert guess.ratio == 1.0 and now.guess(Load(0.75 * force)).ratio == pytest.approx(0.5)
     trial = problem.step(now.state, Load(force), guess=guess)
     assert counters.operator_applications - applied == counters.plastic_iterations - iterations > 0
     with pytest.raises(ValueError, match="did not converge"):
         now.state.after(replace(trial, converged=False))
-    expected = problem.residual(problem.virgin().residual, change.strain)
+    expected = problem.residual(problem.virgin().residual, change.increment.strain)
     for name in ("displacement", "stress"):
         found, right = getattr(change.residual, name), getattr(expected, name)
         assert np.abs(found - right).max() <= 1e-6 * np.abs(right).max()
-    done, start = counters.plastic_iterations, {"guess": trial.change(now.state), "start": trial.pressure}
+    whole = trial.change(now.state)  # here as half of what is twice as large
+    twice = replace(whole.increment, points=whole.increment.points.each(lambda values: 2 * values))
+    half = replace(whole, increment=twice, residual=whole.residual.times(2), ratio=0.5)
+    done, start = counters.plastic_iterations, {"guess": half, "start": trial.pressure}
     again = problem.step(now.state, trial.load, **start)
     residual = trial.residual.displacement
     assert counters.plastic_iterations == done
@@ -184,7 +186,7 @@ def test_the_papers_loops_meet_yield_but_not_the_flow_rule(stop):
     model, now = begin(given)
     trial = model.problem(now.extent).step(now.state, Load(given.loading.force / 4**3))
     assert trial.converged and trial.history == (0.0,) and trial.pressure.any()
-    assert not trial.points.strain.any() and not trial.points.peeq.any()
+    assert not trial.plastic and not trial.increment.points.strain.size
 
 
 # steps that do not converge

@@ -3,6 +3,7 @@
 preconditioner, and the largest values between the centres.
 """
 
+import os
 from dataclasses import replace
 
 import numpy as np
@@ -12,12 +13,14 @@ from sam.contact.convolution import Counters, Transforms
 from sam.grid.cells import Window
 from sam.kernels.eigenstrain import displacement_parity, surface_displacement_coefficients
 from sam.kernels.layer_stress import LayerStress, residual_stress_coefficients
-from sam.kernels.patches import STRESS, Cuboids, Lags, parity
+from sam.kernels.patches import ODD_X, ODD_Y, STRESS, Cuboids, Lags, parity
+from sam.kernels.store import CoefficientStore, kept, using
 from sam.plasticity.flow import Material, contraction, deviator, equivalent_strain, mises
 from sam.plasticity.load_step import PARTS, ROOT, preconditioned, stiffness_of_parts
 from sam.plasticity.measure import Strained, at_centres, largest, residual_stress, surface_displacement
 from sam.plasticity.points import POINTS, CellFlow, Linear, stress_at_points, whole
-from sam.plasticity.spectra import ODD_X, ODD_Y, BoxOperator, CellMeans, _points, mean_stress_of_load
+from sam.plasticity.spectra import BoxOperator, BoxSpectra, CellMeans, _points, mean_stress_of_load
+from sam.plasticity.state import CellFields, MaterialFields, filled
 from sam.scene.yield_curve import Layered, Linear as LinearLaw, Swift
 
 NX, NY, ASPECT, NU, MU = 7, 6, 0.8, 0.3, 2.5
@@ -108,6 +111,73 @@ def test_equal_layers_share_what_each_pair_alone_gives():
     assert len(layers.full.first) == 6 + 8 * 8 - 6 * 6
 
 
+def test_one_of_two_coefficients_gives_the_other_with_x_and_y_exchanged():
+    """On square cells, 1e-13 of the largest value."""
+    both, half = (np.empty((36, LAYERS, 5, 5)) for _ in range(2))
+    for out, exchanged in ((both, False), (half, True)):
+        means = CellMeans(Lags(5, 5, 1.0, 1.0))
+        LayerStress(means, _points(FACES)[1:2], FACES, NU, exchanged=exchanged).of(0, out)
+    assert np.abs(half - both).max() < 1e-13 * np.abs(both).max()
+
+
+def of_box(exchange=False):
+    return BoxSpectra(cuboids(5, 5, aspect=1.0), single=False, exchange=exchange)
+
+
+def test_coefficients_are_taken_from_files_that_are_whole(tmp_path, monkeypatch):
+    """Bit by bit as they were made; a file that is cut, changed or of something else is made again, and none
+    is touched without a store.
+    """
+    made, few = of_box().layers, of_box(exchange=True).layers
+    monkeypatch.setattr(BoxSpectra, "_dense", lambda *_: pytest.fail("made again"))
+    with pytest.raises(pytest.fail.Exception):
+        of_box()
+    store = CoefficientStore(tmp_path / "new", 3 * made.nbytes, "1")
+
+    def found(content=made, exchange=False, version="1"):
+        """With whether it had to be made."""
+        again = []
+        monkeypatch.setattr(BoxSpectra, "_dense", lambda *_: again.append(1) or content)
+        with using(replace(store, version=version)):
+            values = of_box(exchange).layers
+        assert np.array_equal(values, content)
+        return bool(again)
+
+    assert found() and not found() and found(few, exchange=True) and not found(few, exchange=True)
+    assert found(version="2") and not found()
+    first, second = sorted(store.path.iterdir(), key=lambda path: path.stat().st_size)[:2]
+    whole = second.read_bytes()
+    flipped = bytearray(whole)
+    flipped[len(whole) // 2] ^= 1
+    other = next(path for path in store.path.iterdir() if path not in (first, second))
+    for damaged in (whole[:-8], whole[:100], b"", whole + b"\0", bytes(flipped), other.read_bytes()):
+        second.write_bytes(damaged)
+        assert sorted([found(), found(version="2")]) == [False, True]
+        assert second.read_bytes() == whole
+
+
+def test_a_store_of_coefficients_is_bounded(tmp_path):
+    """The one used longest ago goes; one that is larger than all is not kept; nor is what nobody finished."""
+    array, store = np.arange(1000.0), CoefficientStore(tmp_path, 3e4, "1")
+
+    def found(name, size=1000):
+        again = []
+        with using(store):
+            kept(name, (size,), float, lambda: again.append(1) or np.resize(array, size))
+        return bool(again)
+
+    for path in (tmp_path / "a.part", tmp_path / "b.part"):
+        path.touch()
+    os.utime(tmp_path / "a.part", (0, 0))
+    assert [found(name) for name in "ab"] == [True, True]
+    for path in tmp_path.glob("*.coefficients"):
+        os.utime(path, (1000, 1000))
+    assert not found("a") and found("c")  # a is the newer one now
+    assert not found("a") and not found("c") and found("b")
+    assert found("large", 4000) and found("large", 4000)
+    assert not (tmp_path / "a.part").exists() and (tmp_path / "b.part").exists()
+
+
 def test_fields_outside_the_box_continue_those_inside():
     """Stress at cell centres and surface of the general routine: direct sums of the same coefficients."""
     strain = np.random.default_rng(2).standard_normal((6, LAYERS, NX, NY))
@@ -188,10 +258,16 @@ def test_a_linear_field_is_exact_at_the_points():
 def test_a_mirrored_box_gives_what_the_whole_one_does(mirror, cells):
     """Components that are odd in x or in y change sign across the mirror, and the points their places."""
     field, transforms = smooth(cells), Transforms(cells, mirror, single=False, counters=Counters())
-    half, full = at_points(Linear(cells, mirror), transforms.keep(field)), at_points(Linear(cells), field)
-    assert whole(transforms, half) == pytest.approx(full, abs=1e-5)
-    assert whole(transforms, half[0]) == pytest.approx(full[0], abs=1e-5)
-    assert whole(transforms, np.stack([half, 2 * half]))[1] == pytest.approx(2 * full, abs=1e-5)
+    full, some = at_points(Linear(cells), field), contraction(field, field) > 3e17
+    kept = transforms.keep(some)
+    half = Linear(cells, mirror).at_points(transforms.keep(field), kept)
+    fields = MaterialFields(half, half[0], np.stack([half, 2 * half]))
+    found = whole(transforms, CellFields(kept, fields))
+    assert np.array_equal(found.cells, some) and some.any()
+    assert found.points.strain == pytest.approx(full[..., some], abs=1e-5)
+    assert found.points.peeq == pytest.approx(full[0][..., some], abs=1e-5)
+    assert found.points.back[1] == pytest.approx(2 * full[..., some], abs=1e-5)
+    assert np.array_equal(found.part(transforms.keep).points.strain, half)
 
 
 @pytest.mark.parametrize("mirror", [(False, False), (True, True)])
@@ -221,26 +297,35 @@ def test_two_steps_end_on_the_yield_surface_of_each_point(name):
     stress, the mean over the points is the strain of the cell, and the same load again strains nothing.
     """
     material, load = MATERIALS[name], deviator(smooth())
-    state, x = material.virgin((POINTS, 2, *CELLS)), np.zeros_like(load)
+    state = virgin(material)
     for size in (1.0, 1.5, 1.5):
-        flow, x = CellFlow(material, state, WHOLE, STEEL_MU / 2), np.zeros_like(load)
+        flow = CellFlow(material, state, WHOLE, STEEL_MU / 2)
+        x = flow.nothing
         for _ in range(400):
-            s = size * load - 2 * STEEL_MU * (state.means().strain + x)
+            s = size * load - 2 * STEEL_MU * (state.strain + filled(x, flow.cells))
             found = flow.returned(x, s)
             if max(found.yield_excess, found.flow_residual) < 1e-12:
                 break
-            x = x + (found.image - x) / 2
+            x = found.x + (found.image - found.x) / 2
         assert found.flow_residual < 1e-12
-        increment = flow.increment(found)
-        assert increment.means().strain == pytest.approx(x, abs=1e-17)
+        increment = found.increment()
+        assert increment.strain == pytest.approx(filled(found.x, flow.cells), abs=1e-17)
         before, state = state, state.plus(increment)
-        stress = mises(stress_at_points(s, state.strain, STEEL_MU / 2))
-        limit, flows = material.yield_stress(state.peeq), increment.peeq > 1e-9
-        assert (stress <= limit * (1 + 1e-11)).all()
+        everywhere = state.on(every((2, *CELLS))).each(lambda v: v.reshape(*v.shape[:-1], 2, *CELLS))
+        stress = mises(stress_at_points(s, everywhere.strain, STEEL_MU / 2))
+        assert (stress <= material.yield_stress(everywhere.peeq) * (1 + 1e-11)).all()
+        stress, cells = stress[..., increment.cells], increment.cells
+        limit, flows = material.yield_stress(everywhere.peeq)[..., cells], increment.points.peeq > 1e-9
         assert stress[flows] == pytest.approx(limit[flows], rel=1e-9)
-    some = (before.peeq.min(axis=0) < 1e-12)[before.peeq.max(axis=0) > 1e-9]
-    assert before.peeq.max() > 1e-4 and some.any()
+    peeq = before.points.peeq
+    some = (peeq.min(axis=0) < 1e-12)[peeq.max(axis=0) > 1e-9]
+    assert peeq.max() > 1e-4 and some.any() and not before.cells.all()
     assert not flows.any() and equivalent_strain(x).max() < 1e-12
+
+
+def virgin(material) -> CellFields:
+    """Two layers of cells that never yielded."""
+    return CellFields(~every((2, *CELLS)), material.virgin((POINTS, 0)))
 
 
 def test_a_step_is_accepted_only_if_flow_rule_and_yield_condition_both_hold():
@@ -248,10 +333,10 @@ def test_a_step_is_accepted_only_if_flow_rule_and_yield_condition_both_hold():
     accepts without an increment of the cells leaves the points as they are.
     """
     material, load = MATERIALS["perfect"], deviator(smooth())
-    flow = CellFlow(material, material.virgin((POINTS, 2, *CELLS)), WHOLE, STEEL_MU / 2)
+    flow = CellFlow(material, virgin(material), WHOLE, STEEL_MU / 2)
     assert flow.stays_elastic(0.1 * load, 1e-6) and not flow.stays_elastic(load, 1e-6)
-    found = flow.returned(np.zeros_like(load), load)
-    assert found.image.any() and not flow.increment(found).strain.any()
+    found = flow.returned(flow.nothing, load)
+    assert found.image.any() and not found.increment().cells.any()
     size = np.sqrt((found.image[:3] ** 2).sum(axis=0) + 2 * (found.image[3:] ** 2).sum(axis=0)).max()
     assert found.flow_residual == pytest.approx(STEEL_MU * size / 1e9, rel=1e-12)
     right = replace(found, flow_residual=1e-4)
@@ -290,12 +375,12 @@ def test_the_preconditioner_solves_a_cell_that_flows_by_itself():
     """One cell of perfect plasticity, whose own strain lowers its stress by another stiffness in each part:
     an error across the flow is gone after one iteration, to second order.
     """
-    m, limit, own = 1.0, np.full((1, 1, 1), 0.3), np.array([[1.6], [0.9], [0.1], [0.1], [1.6]])
-    solution = np.array([0.0, 0, 0, 0, 2.0, 0]).reshape(6, 1, 1, 1)  # a shear 13
+    m, limit, own = 1.0, np.full(1, 0.3), np.array([[1.6], [0.9], [0.1], [0.1], [1.6]])
+    solution = np.array([0.0, 0, 0, 0, 2.0, 0]).reshape(6, 1)  # a shear 13
 
     def image(x):
         """Return map of the stress at x: that of the solution less what its own strain lowers it by."""
-        off = PARTS @ (ROOT * (x - solution)[:, 0, 0, 0])
+        off = PARTS @ (ROOT * (x - solution)[:, 0])
         lowered = (PARTS.T @ (own[:, 0] * off)) / ROOT
         at = solution * limit / (1.5 * equivalent_strain(solution))
         trial = at - lowered.reshape(x.shape) + 2 * m * x
@@ -304,7 +389,7 @@ def test_the_preconditioner_solves_a_cell_that_flows_by_itself():
 
     assert image(solution) == pytest.approx(solution, abs=1e-15)
     assert preconditioned(solution, image(solution), limit, m=m, own=own) == pytest.approx(solution)
-    error = 1e-6 * deviator(np.array([1.0, -2, 0.5, 3, 0, 1]).reshape(6, 1, 1, 1))
+    error = 1e-6 * deviator(np.array([1.0, -2, 0.5, 3, 0, 1]).reshape(6, 1))
     x = solution + error
     better = preconditioned(x, image(x), limit, m=m, own=own)
     assert np.abs(better - solution).max() < 1e-5 * np.abs(error).max()

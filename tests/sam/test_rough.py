@@ -3,12 +3,15 @@
 and each other; borders, spots, and what is recorded.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from builders import LINEAR, MODULUS, STEEL, running_in, scene
 
 from sam import UnsupportedScene, choose_grid, left_out, plan, solve
 from sam.contact.convolution import Counters
+from sam.plasticity import Extent, history
 from sam.results.rough import in_the_fall_off, too_few_cells
 from sam.scene import COUNTER_HEIGHT, CounterSurface, HeightMap, Scene, SceneError, Status, resolved
 from sam.scene.surface import heights
@@ -209,6 +212,26 @@ def test_a_tolerance_that_cannot_be_met_is_not_called_converged(monkeypatch):
     assert result.status is Status.NOT_CONVERGED and "stagnated" in result.message
 
 
+def test_contact_outside_of_the_plastic_box_is_found(monkeypatch):
+    """Two equal summits, and a first box about one of them: each carries half, to 1e-8 (measured 1e-9)."""
+    first = history.first_extent
+
+    def about_one(*arguments, **keys) -> Extent:
+        extent = first(*arguments, **keys)
+        window = extent.window
+        return replace(extent, window=replace(window, nx=window.nx // 2))
+
+    monkeypatch.setattr(history, "first_extent", about_one)
+    summits = np.maximum(
+        *(paraboloid(centres(32, SIDE)[:, None] + x, centres(32, SIDE)) for x in (-5e-6, 5e-6))
+    )
+    tables = {"body": {"plasticity": LINEAR}, "grid": {"depths": FACES}, "solver": {"tolerance": 1e-5}}
+    result = solve(of_heights(lambda x, y: summits, 32, SIDE, force=0.04, loading={"steps": 2}, **tables))
+    p = column(result, "surface", "p_Pa").reshape(32, 32)
+    assert result.converged and result.quantities["peeq_max"] > 4e-3
+    assert np.abs(p - p[::-1]).max() < 1e-8 * p.max()
+
+
 # a rough counter-body
 
 
@@ -273,7 +296,9 @@ def test_only_a_renewed_counter_surface_strains_in_every_cycle():
         for renew in (False, True)
     )
     same, renewed = same.tables["cycles"], renewed.tables["cycles"]
-    assert same["new_strain_max"][0] == renewed["new_strain_max"][0] > 0
+    # of the second the box is the whole grid: equal to a tenth of the tolerance
+    assert same["new_strain_max"][0] == pytest.approx(renewed["new_strain_max"][0], rel=1e-5)
+    assert same["new_strain_max"][0] > 0
     assert same["new_strain_max"][1:] == [0.0, 0.0] and same["yielding_cells"][1:] == [0, 0]
     assert min(renewed["new_strain_max"]) > 1e-4 and min(renewed["yielding_cells"]) > 0
 

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import assume, given, settings, strategies as st
 from rounding import EPS, close, of_least_squares
 
+from sam.grid.cells import Window
 from sam.scene import Wear
 from sam.wear import (
     StrainLimits,
@@ -347,6 +348,22 @@ def test_closing_residual_sees_what_is_lost():
     lost[5] *= 1 - 1e-9
     assert closing_residual(alpha, lost, removed, GRADED) > 1e-11
     assert closing_residual(0 * alpha, 0 * alpha, 0 * removed, GRADED) == 0
+
+
+@pytest.mark.parametrize("share", [0.5, 0.0])
+def test_of_the_cells_that_have_yielded_is_left_what_is_left_of_all(share):
+    """The fields of these cells alone, in a row, against the remap of the whole box; also if none has."""
+    rng, law = np.random.default_rng(6), WearLaw((9, 7), 1.0, 1.0, StrainLimits(0.5, 0.5, 0.0), True, 3, 1)
+    cells, faces = rng.random((4, 5, 3)) < share, np.array([0.0, 0.4, 1.0, 1.7, 3.0])
+    field = np.where(cells, rng.random((2, *cells.shape)), 0.0)
+    window, values = Window(2, 3, 5, 3), field[:, cells]
+    wear, left, below = law.removed(
+        law.fresh(), {"peeq": values}, faces, window, cells=cells, peeq=field.mean(axis=0)
+    )
+    expected, removed = remapped(field, faces, wear.depth[window.slices])
+    assert np.array_equal(left, expected.any(axis=0)) and np.array_equal(below["peeq"], expected[:, left])
+    assert wear.residuals == (closing_residual(field, expected, removed, faces),)
+    assert removed.any() == (left != cells).any() == bool(share)
 
 
 # cycles

@@ -70,7 +70,7 @@ def test_one_row_of_the_table_is_enough_for_a_shape_without_radii_which_needs_a_
     coated = sam.plan(cone(body={"coating": FILM})).grid
     assert 0.6e-6 < coated.nx * coated.hx / 4 < 6e-6
     yielding = cone(body={"plasticity": {"law": "perfect", "yield_stress": 1e9}})
-    assert plastic_boxes(yielding, sam.plan(yielding).grid) and advice_of(yielding, ["sam"])["kind"] is None
+    assert plastic_boxes(yielding, sam.plan(yielding)) and advice_of(yielding, ["sam"])["kind"] is None
     with pytest.raises(UnsupportedScene, match=r'loading\.force = 0.*"cone".*above 0'):
         check(cone(loading={"force": 0.0}))
 

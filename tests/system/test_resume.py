@@ -211,7 +211,7 @@ def test_a_solve_that_breaks_off_leaves_checkpoints_as_good(model, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "model, changed", [(SAM, "state.points.strain"), (FEM, "steps.1.state.history.plastic_strain")]
+    "model, changed", [(SAM, "state.material.points.strain"), (FEM, "steps.1.state.history.plastic_strain")]
 )
 def test_a_perturbed_checkpoint_gives_other_bytes(model, changed, tmp_path):
     """The comparison can fail: one part in 1e12 of the plastic strain, or one counter, shows."""

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Growth of time and memory: exponents, processes that measure themselves alone, predictions against measured
-memory.
+memory; both against the published code.
 """
 
+import json
 import os
+import subprocess
 
 import numpy as np
 import pandas as pd
@@ -12,12 +14,13 @@ from builders import PERFECT, RUN_IN_STEEL, SWIFT, running_in, scene
 from made_results import of_frame, red
 
 import sam
+from sam.scene import parse_scene
 from verification.cases.case import Context
-from verification.cases.cost import growth as case
+from verification.cases.cost import growth as case, published_code
 from verification.cost import estimates, growth
 from verification.cost.measured import alone, idle_bytes
 from verification.reference.convergence import fit_power
-from verification.runs.models import FEM, SAM
+from verification.runs.models import FEM, SAM, check
 from verification.runs.threads import EVERY_LIBRARY as THREADS
 
 CELLS = np.array([1e3, 4e3, 16e3, 64e3])
@@ -186,3 +189,89 @@ def test_memory_that_was_not_predicted_and_a_solve_that_failed_are_red():
     last = found["contact"][-1]
     last |= {"memory": round(1.25 * last["memory"]), "converged": False}
     assert {"memory-error", "unconverged"} <= gates(found, boxes)[2]
+
+
+# against the published code
+
+PROGRAM = """
+import json, os
+def main():
+    with open({log!r}, "a") as log:
+        log.write({name!r} + open("scene.toml").read() + os.environ["OMP_NUM_THREADS"])
+    os.mkdir("run")
+    cost = {{"cpu_s": 1.0, "peak_memory_bytes": {memory}, "ffts": 40, "newton_iterations": None}}
+    found = {{"cost": cost, "quantities": {{"force_N": 1.0}}, "scene": {{"solver": {{"tolerance": 1e-3}}}}}}
+    json.dump(found, open("run/summary.json", "w"))
+    return {code}
+"""
+
+
+def test_both_codes_solve_the_published_scene_in_turns_and_a_loss_is_named(tmp_path, monkeypatch):
+    log, root = tmp_path / "log", tmp_path / "root"
+    for folder in ("samfem", "reports", "verification/scenes"):
+        (root / folder).mkdir(parents=True)
+    cli, report = root / "samfem/cli.py", root / "reports/results.json"
+    (root / "pyproject.toml").write_text('[project]\n[project.scripts]\nsamfem = "samfem.cli:main"\n')
+    (root / "verification/scenes/small.toml").write_text("cells = 9\nsteps = 2\n")
+    monkeypatch.setattr(published_code, "ROOT", root)
+    monkeypatch.setattr(published_code, "RUNGS", (published_code.Rung("small", "small", {"cells": "3"}),))
+    assert published_code.published() == "" and "with its history" in published_code.missing()
+
+    def git(*words: str) -> str:
+        named = ("-c", "user.name=n", "-c", "user.email=e", "-C", str(root))
+        return subprocess.run(
+            ["git", *named, *words], check=True, capture_output=True, text=True
+        ).stdout.strip()
+
+    cli.write_text(PROGRAM.format(log=str(log), name="old ", memory=10**8, code=0))
+    git("init", "--quiet")
+    git("add", ".")
+    git("commit", "--quiet", "--message", "published")
+    cli.write_text(PROGRAM.format(log=str(log), name="new ", memory=125 * 10**6, code=0))
+    (root / "verification/scenes/small.toml").write_text("cells = 10\n")
+    head, growing = (
+        git("rev-parse", "HEAD"),
+        {"name": "growth", "tables": [[]], "reused": {"commit": "0" * 40}},
+    )
+    broken_off = {"name": "published-code", "tables": [], "reused": None}
+    report.write_text(json.dumps({"provenance": {"commit": head}, "cases": [growing, broken_off]}))
+    assert published_code.published() == "0" * 40 and "with its history" in published_code.missing()
+    report.write_text(report.read_text().replace("[]", "[[]]"))
+    assert published_code.published() == head and published_code.missing() == ""
+    context = Context("published-code", tmp_path, "full", lambda *_: None)
+    (row,) = published_code.frame(context)
+    assert log.read_text() == "old cells = 3\nsteps = 2\n1new cells = 3\nsteps = 2\n1" * published_code.PAIRS
+    assert row["memory ratio"] == 1.25 and row["counts"] == "equal" and row["time ratio"] > 0.0
+    time, memory = published_code.losses(pd.DataFrame([row | {"time ratio": 1.1}])).rows
+    assert time[1:] == ("1.10", "in small; in no scene more than 1.2")
+    assert memory[1:] == ("1.25", "more than 1.2 in small (1.25)")
+    cli.write_text(PROGRAM.format(log=str(log), name="", memory=1, code=1))
+    with pytest.raises(RuntimeError, match="small, this code"):
+        next(published_code.frame(context))
+
+
+def took(time: float = 1.0, ffts: int = 100, **quantities) -> dict:
+    """What a solve took, counted and found."""
+    counts = {"ffts": ffts, "step_cuts": max(ffts - 104, 0)}
+    found = {"p_max_Pa": 1e9, "p_center_Pa": 1e-3, "contact_spots": None} | quantities
+    return {"time": time, "memory": 1e8, "counts": counts, "quantities": found, "tolerance": 1e-4}
+
+
+@pytest.mark.parametrize(("ffts", "wrong"), [(90, set()), (105, set()), (106, {"counts"}), (107, {"counts"})])
+def test_a_count_may_grow_by_two_or_a_twentieth(ffts, wrong):
+    pairs = [(took(), took(time, ffts, p_max_Pa=1.1e9, p_center_Pa=2e-3)) for time in (3.0, 1.0, 1.5)]
+    row = published_code.row_of(pairs)
+    assert (row["time ratio"], row["time ratio of pairs"], row["time [s]"]) == (1.5, "1.00 to 3.00", 1.5)
+    assert row["counts"].startswith(f"ffts 100 {ffts - 100:+d}") and row["most different"] == "p_max_Pa"
+    assert row["difference"] == pytest.approx(0.1)
+    assert (
+        red("published-code", of_frame("published-code", pd.DataFrame([{"sweep": "", "model": ""} | row])))
+        == wrong
+    )
+
+
+def test_the_scenes_for_the_published_code_are_read_and_can_be_solved():
+    for rung in published_code.RUNGS:
+        check(parse_scene(rung.text(published_code.ROOT).encode(), rung.file), rung.model)
+    with pytest.raises(RuntimeError, match="0 lines of cycles"):
+        published_code.Rung("", "hertz-sphere", {"cycles": "2"}).text(published_code.ROOT)

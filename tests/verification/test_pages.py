@@ -200,6 +200,21 @@ def test_costs_are_those_of_the_fastest_elements():
     assert found.value == "< 3 to > 4 times" and "2 of 3 contacts (2 of them as bounds)" in found.words
 
 
+def test_the_page_of_costs_begins_with_what_became_slower_or_larger():
+    first = next(question for question in PAGES["question"] if question["page"] == "cost")
+    rows = [
+        ["processor time", "1.41", "more than 1.2 in running-in (1.41)"],
+        ["peak memory", "0.9", "in a-2"],
+    ]
+    table = {"caption": "Largest ratios", "columns": ["what", "ratio", "where"], "rows": rows}
+    stored = SimpleNamespace(ran={"published-code": SimpleNamespace(case={"tables": [table]}, gates=[])})
+    slower, larger = (
+        next(cell(Evidence(stored, []), *part)) for kind, *part in first["parts"] if kind == "cell"
+    )
+    assert slower.value == "1.41 times" and slower.words.endswith(": more than 1.2 in running-in (1.41)")
+    assert larger.value == "0.9 times" and larger.words.endswith("memory: in a\N{MINUS SIGN}2")
+
+
 def test_the_published_index_answers_every_question(evidence):
     answers = answers_of(evidence)
     silent = [answer for answer in answers if not answer.findings]

@@ -6,7 +6,7 @@ chosen, and beside a result by the closed form of Hertz.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import erf, pi, prod, sqrt
+from math import pi, prod, sqrt
 from typing import Any
 
 from sam.scene import Scene
@@ -99,9 +99,8 @@ def _over(found: Mapping[str, Any], what: str) -> str:
 
 
 def _of_plane(scene: Scene, beyond: Any) -> dict[str, Any]:
-    """A plane on a rough body: nominal pressure, and the share of an elastic contact by erf(sqrt(pi) p /
-    (E* h')), h' the rms slope, whose slope 2 for light loads is that of Hyun et al., Phys. Rev. E 70 (2004)
-    026117, and which ends at 1 as by Persson, J. Chem. Phys. 115 (2001) 3840; pressure of the spots E* h'/2.
+    """A plane on a rough body: nominal pressure, share of an elastic contact, pressure of the spots, E*/2
+    times the rms slope.
     """
     slope, modulus = rms_slope(scene), contact_modulus(scene)
     found: dict[str, Any] = {"rms_slope": slope}
@@ -110,7 +109,7 @@ def _of_plane(scene: Scene, beyond: Any) -> dict[str, Any]:
         found["p_nominal_Pa"] = nominal = scene.loading.force / prod(scene.patch[1])
         words += f", nominal pressure {with_prefix(nominal, 'Pa')}"
         if slope:
-            found["contact_share"] = share = erf(sqrt(pi) * nominal / (modulus * slope))
+            found["contact_share"] = share = estimates.contact_share(scene, nominal)
             words += f", elastic contact on about {100 * share:.2g} % of the patch"
     if slope:
         spots = modulus * slope / 2

@@ -11,13 +11,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from math import ceil, floor, log2, log10
+from math import ceil, erf, floor, log2, log10, pi, prod, sqrt
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sam.scene import Scene, Wear
 from verification.runs import models
+from verification.runs.model_range import contact_modulus, rms_slope
 
 if TYPE_CHECKING:
     from sam.grid import CellGrid
@@ -58,6 +59,9 @@ ROUGH_DIGITS = 3.0
 # Cells that a cycle removes were those that had hardened: after it by a factor more iterations where the
 # strain limit is lower than 1 %, and fewer where it is higher; 0.2 to 5 % measured.
 WORN_AT, WORN_POWER, WORN_MOST = 0.01, 1 / 3, 2.0
+# Cells with the smallest gap, over those expected in contact, that reach as far as an elastic contact does:
+# within a tenth of each side of ten boxes of twelve, of 24 to 256 cells.
+WIDER_SPOTS = 1.5
 # Of a step of SAM below a smooth body, under p0 = ratio times the yield stress at 1 % strain: STEEPER ratio -
 # FEWER.
 # Measured for ratios of 0.9 to 15, perfectly plastic, linear and Swift, within a factor 1.3 but at first
@@ -144,20 +148,22 @@ def flows(scene: Scene) -> bool:
     return scene.body.plasticity is not None or (coating is not None and coating.yield_stress is not None)
 
 
-def plastic_boxes(scene: Scene, grid: CellGrid, beyond: float = 0.0) -> list[ExpectedBox]:
+def plastic_boxes(scene: Scene, plan: Any, beyond: float = 0.0) -> list[ExpectedBox]:
     """The boxes around the plastic zone, the first one and what it grows to, as the solver makes them: a
-    little wider (SPREAD) than the zone of Hertz' elastic stress; below a rough body the patch. beyond: cells
-    by which the zone is wider than is guessed.
+    little wider (SPREAD) than the zone of Hertz' elastic stress; below a rough body around the contact.
+    plan: of SAM; beyond: cells by which the zone is wider than is guessed.
     """
     from sam.plasticity import ExpectedBox, expected_sides
 
+    grid = plan.grid
     faces = np.asarray(grid.depths if grid.faces is None else grid.faces)
     tolerance = scene.solver.tolerance
     if scene.patch_surface is not None or not loaded(scene):
-        layers, in_cells = max(len(faces) - 1, 1), tuple(faces / grid.hx)
-        return [
-            ExpectedBox(grid.nx, grid.ny, layers, tolerance, operator=scene.solver.operator, faces=in_cells)
-        ]
+        sides, worn = [_rough_sides(scene, plan)], scene.wear is not None and scene.wear.removes
+        if worn and scene.loading.cycles > 1 and sides[0] != grid.shape:
+            sides.append(grid.shape)  # where summits are worn others touch
+        layers, operator, in_cells = max(len(faces) - 1, 1), scene.solver.operator, tuple(faces / grid.hx)
+        return [ExpectedBox(*each, layers, tolerance, False, operator, in_cells) for each in sides]
     depths = (faces[1:] + faces[:-1]) / 2
     if scene.loading.misfit_sphere:
         return [_box_of_sphere(scene, grid, depths, beyond)]
@@ -167,6 +173,31 @@ def plastic_boxes(scene: Scene, grid: CellGrid, beyond: float = 0.0) -> list[Exp
     found = expected_sides(grid, depths, zone)
     turns, operator, in_cells = _turns(scene, grid), scene.solver.operator, tuple(faces / grid.hx)
     return [ExpectedBox(*box, tolerance, box[0] == box[1] and turns, operator, in_cells) for box in found]
+
+
+def contact_share(scene: Scene, pressure: float) -> float:
+    """Share of a rough patch in elastic contact under a mean pressure in Pa, by erf(sqrt(pi) p/(E* h')), h'
+    the rms slope, whose slope 2 for light loads is that of Hyun et al., Phys. Rev. E 70 (2004) 026117, and
+    which ends at 1 as by Persson, J. Chem. Phys. 115 (2001) 3840; 1 without a slope.
+    """
+    slope = rms_slope(scene)
+    return erf(sqrt(pi) * pressure / (contact_modulus(scene) * slope)) if slope else 1.0
+
+
+def _rough_sides(scene: Scene, plan: Any) -> tuple[int, int]:
+    """Cells in x and y of the box around the contact of a rough body: the grid if that changes place, else
+    around the cells with the smallest gap, WIDER_SPOTS times as many as are expected in contact.
+    """
+    from sam.contact import Counters, around
+
+    grid, force = plan.grid, scene.loading.force
+    if not force or scene.counterbody is None or len(plan.schedule.path) > 1 or plan.schedule.renews:
+        return grid.shape
+    area = grid.nx * grid.ny * grid.cell_area
+    plane = scene.counterbody.shape == "flat"
+    share = contact_share(scene, force / area) if plane else pi * prod(plan.axes) / area
+    gap = plan.problem(Counters()).gap(plan.schedule.peak)
+    return around(gap <= np.quantile(gap, min(WIDER_SPOTS * share, 1.0))).shape
 
 
 def _box_of_sphere(scene: Scene, grid: CellGrid, depths: np.ndarray, beyond: float) -> ExpectedBox:
@@ -363,12 +394,12 @@ def _sam(scene: Scene, plan: Any) -> Counted:
         return Counted(memory, work)
     from sam.plasticity import held
 
-    boxes = plastic_boxes(scene, grid)
+    boxes = plastic_boxes(scene, plan)
     last, cycles = boxes[-1], plan.schedule.cycles
     kept = 4 if rough else 2 if loads > 1 or len(plan.schedule.path) > 1 else 1  # numbers of a wave number
     if rough:
         rows, further = rough_iterations(scene, plan)
-        size = cells * log2(cells)
+        size = last.nx * last.ny * log2(last.nx * last.ny)
         work |= {"patch steps": rows * size, "patch iterations": further * size}
         iterations = ELASTIC_ITERATIONS * rows + further
     else:
@@ -383,7 +414,7 @@ def _sam(scene: Scene, plan: Any) -> Counted:
         "waves": 0.0 if not last.swept else last.width * 6.0 * last.layers * last.waves * kept,
         "chunks": 1.0,
     }
-    either = [plastic_boxes(scene, grid, beyond) for beyond in (-UNDECIDED, UNDECIDED)]
+    either = [plastic_boxes(scene, plan, beyond) for beyond in (-UNDECIDED, UNDECIDED)]
     work |= {
         "box set-up": sum(box.set_up for each in either for box in each) / 2,
     }

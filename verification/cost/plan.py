@@ -300,7 +300,7 @@ def _stages(scene: Scene, made: Any) -> list[Stage]:
     found = []
     for stage in (each for each in made.stages if each.runs or each.reason == NO_FORCE):
         if stage.stage == "eigenstrain kernels" and stage.runs:
-            box = estimates.plastic_boxes(scene, made.grid)[-1]
+            box = estimates.plastic_boxes(scene, made)[-1]
             size = {"box_cells": [box.nx, box.ny, box.layers], "coefficients": box.coefficients}
             size |= {"bytes": box.width * box.coefficients}
             stage = replace(stage, size=size, reason=f"{stage.reason}; {box.words}")

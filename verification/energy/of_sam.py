@@ -19,6 +19,7 @@ from sam.kernels import Lags, displacement_coefficients, parity
 from sam.plasticity import (
     POINTS,
     SHEAR,
+    CellFields,
     Extent,
     MaterialFields,
     Progressed,
@@ -26,7 +27,6 @@ from sam.plasticity import (
     contraction,
     stress_at_points,
     surface_displacement,
-    surrounded,
 )
 from sam.scene import Checkpoint, Scene, plastic_work
 from verification.energy.balance import Balance, along_path, back_energies
@@ -34,14 +34,14 @@ from verification.energy.balance import Balance, along_path, back_energies
 
 @dataclass(frozen=True)
 class Committed:
-    """A state: its load, pressure (nx, ny) in Pa on the full grid; fields of the material at the points of
-    the cells of `extent`, None if elastic.
+    """A state: its load, pressure (nx, ny) in Pa on the full grid; material of the cells of `extent`, None
+    if elastic.
     """
 
     load: Load
     pressure: np.ndarray
     extent: Extent | None = None
-    material: MaterialFields | None = None
+    material: CellFields | None = None
 
 
 def balance_of(scene: Scene) -> Balance:
@@ -78,7 +78,7 @@ def _plastic_states(scene: Scene, grid: CellGrid) -> list[Committed]:
         now = checkpoint.record(Progressed)
         pressure = np.zeros((grid.nx, grid.ny))
         pressure[now.extent.window.slices] = now.state.pressure * unit
-        states.append(Committed(now.state.load, pressure, now.extent, now.state.points))
+        states.append(Committed(now.state.load, pressure, now.extent, now.state.material))
 
     result = sam.solve(scene, checkpoint=keep)
     if not result.converged:
@@ -133,11 +133,14 @@ def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
     problem = model.problem(extent)
     material, m = problem.material, problem.stiffness
     volume = (grid.hx * grid.hy * np.diff(model.faces(extent)))[:, None, None]
-    fields = [_on(material, extent, state) for state in states]
+    materials = [
+        problem.virgin().material if state.material is None else state.material.on_box(state.extent, extent)
+        for state in states
+    ]
+    fields = [_at_points(each) for each in materials]
     residuals, stresses, means = [], [], []
     stored, between, dissipated = np.zeros((3, len(states)))
-    for k, (state, points) in enumerate(zip(states, fields, strict=True)):
-        mean = points.means()
+    for k, (state, mean, points) in enumerate(zip(states, materials, fields, strict=True)):
         residual = problem.residual_of(mean)
         both = np.zeros((2, grid.nx, grid.ny))
         both[0, *window.slices] = residual.displacement
@@ -173,9 +176,7 @@ def _work(stresses, strains) -> np.ndarray:
     return along_path([[twice * each for each in stresses]], [strains])
 
 
-def _on(material, extent: Extent, state: Committed) -> MaterialFields:
-    """The fields of the material of a state on a box that holds its own."""
-    if state.extent is None or state.material is None:
-        return material.virgin((POINTS, *extent.shape))
-    where = state.extent.inside(extent)
-    return state.material.each(lambda values: surrounded(values, where, extent.shape))
+def _at_points(material: CellFields) -> MaterialFields:
+    """The fields at the points of all cells, (..., 4, n_layers, nx, ny)."""
+    shape = material.cells.shape
+    return material.on(np.ones(shape, dtype=bool)).each(lambda each: each.reshape(*each.shape[:-1], *shape))

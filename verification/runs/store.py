@@ -17,6 +17,7 @@ import re
 import sys
 import threading
 from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cache
@@ -27,9 +28,11 @@ from sam.scene import CodecError, Progress, Result, Scene, decode, encode, resol
 from verification.runs import models
 from verification.runs.archive import ArchiveError, read_archive, read_values, write_archive
 from verification.runs.code_version import code_version, unchanged, version_of_cases
+from verification.runs.files import FolderError
 from verification.runs.provenance import collect
 
 FOLDER = "SAMFEM_STORE"
+LIMIT, PLACE = "SAMFEM_COEFFICIENTS", "coefficients"  # of the coefficients of plastic boxes
 FORMAT = "samfem store 2"
 RESULT, UNCONVERGED, OUTCOME = "result", "unconverged", "outcome"
 CURRENT, STALE, DAMAGED = "current", "stale", "damaged"
@@ -175,18 +178,25 @@ class Store:
         found = [path for path in self.folder.glob(".*.npz.*.part") if _KEY.match(path.name[1:])]
         return sorted(path for path in found if not _is_running(path.name.split(".")[-2]))
 
-    def prune(self, chosen: Callable[[Entry], bool]) -> Iterator[tuple[str, int]]:
-        """Remove the chosen entries and what is left over; (what, bytes) of each as it goes. Raises
-        OSError.
+    def coefficients(self) -> list[Path]:
+        """Files with the coefficients of plastic boxes, see `kept_coefficients`."""
+        return sorted((self.folder / PLACE).glob("*"))
+
+    def prune(
+        self, chosen: Callable[[Entry], bool], *, coefficients: bool = False
+    ) -> Iterator[tuple[str, int]]:
+        """Remove the chosen entries, what is left over and, if wanted, coefficients; (what, bytes) of each as
+        it goes. Raises OSError.
         """
         for entry in self.entries():
             if chosen(entry):
                 entry.path.unlink(missing_ok=True)
                 yield f"{entry.path.stem[:12]} {entry.kind} {entry.what} ({entry.state})", entry.size
-        for path in self.left_over():
+        of_boxes = self.coefficients() if coefficients else []
+        for path in [*self.left_over(), *of_boxes]:
             size = path.stat().st_size
             path.unlink(missing_ok=True)
-            yield f"{path.name[:13]} (left over)", size
+            yield f"{path.name[:13]} ({'coefficients' if path in of_boxes else 'left over'})", size
 
     def _path(self, who: dict) -> Path:
         return self.folder / f"{_key(who)}.npz"
@@ -209,6 +219,20 @@ def default_store() -> Store | None:
         return Store((Path(caches) if os.path.isabs(caches) else Path.home() / ".cache") / "samfem")
     except RuntimeError:  # the user has no home folder
         return None
+
+
+def kept_coefficients() -> AbstractContextManager[None]:
+    """In the block SAM takes the coefficients of plastic boxes from the store of the user, and keeps them
+    there up to $SAMFEM_COEFFICIENTS bytes (0: none). Raises FolderError for what is no such number.
+    """
+    from sam.kernels import CoefficientStore, using  # noqa: PLC0415 - not needed by other commands
+
+    known, text = default_store(), os.environ.get(LIMIT, "").strip() or "2e9"
+    try:
+        limit = float(text)
+    except ValueError:
+        raise FolderError(f"{LIMIT} = {text}: a number of bytes is needed") from None
+    return using(known and CoefficientStore(known.folder / PLACE, limit, code_version(models.SAM)))
 
 
 def solve_or_reuse(

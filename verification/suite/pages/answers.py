@@ -244,7 +244,7 @@ def cell(evidence: Evidence, words: str, case: str, caption: str, *how: Any) -> 
         if table["caption"].startswith(caption) and set(columns) <= set(table["columns"]):
             at = [table["columns"].index(column) for column in columns]
             for cells in (cells for cells in table["rows"] if set(row) <= set(cells)):
-                signed = (cells[k].replace("-", "\N{MINUS SIGN}") for k in at)
+                signed = (re.sub(r"-(?=\d)", "\N{MINUS SIGN}", cells[k]) for k in at)
                 spaced = [re.sub(r"(?<=\d) ?%", "\N{NO-BREAK SPACE}%", each) for each in signed]
                 yield Finding(words.format(*spaced), shown.format(*spaced), (ran,), ran, gates, allowed)
 
