@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from sam.arrays import Array, Mask
 from sam.contact.convolution import BoxConvolution, MirroredConvolution, Real, mirror_half, unfolded
-from sam.contact.operators import Operator, SurfaceOperators
+from sam.contact.operators import SurfaceOperators
 from sam.grid.cells import Window
 
 Begun = tuple[Array, Array]
@@ -195,13 +195,9 @@ class BoxContact:
     """
 
     def __init__(self, operators: SurfaceOperators, box: Window):
-        self.operators, self.box, self.relaxation = operators, box, operators.relaxation
+        self.operators, self.box = operators, box
+        self.tangential, self.relaxation = operators.tangential(box, box), operators.relaxation
         self.residuals: list[float] = []
-
-    @cached_property
-    def tangential(self) -> Operator | None:
-        """p_hat -> u_hat of its traction."""
-        return self.operators.tangential(self.box, self.box)
 
     @cached_property
     def _whole(self) -> _Iteration:

@@ -37,10 +37,9 @@ CONTAINED = 3.0
 # Contact half-widths that the first guess of the depth of the plastic zone has at most: with 1.2 S takes two
 # boxes and 29 applications, with 2.5 it stays.
 DEEPEST = 1.8
-# A box is swept from so many layers and bytes of matrices on, or from the bytes of any number of layers: with
-# 24 layers of cells both take as long an application, at 96 x 96 cells and 1e-3 the sweeps a third of the
-# set-up.
-MANY_LAYERS, MANY_BYTES, MOST_BYTES = 24, 2e8, 1e9
+# Bytes of the matrices between all layers from which a box is swept. With 24 layers of cells both take as long
+# an application; the matrices may be kept on disk.
+MOST_BYTES = 1e9
 SWEPT_SHARE = 0.05  # of the tolerance of the plastic iteration, the error of the sweeps
 # Cells that are free beside the zone of a body that nothing touches: with two strained ones a box grows.
 FREE_BESIDE = 3
@@ -186,8 +185,7 @@ class ExpectedBox:
     @property
     def swept(self) -> float:
         """The error of the operator where it is swept, or 0."""
-        chosen = self.matrices > (MANY_BYTES if self.layers >= MANY_LAYERS else MOST_BYTES)
-        swept = self.operator == "swept" or (self.operator is None and chosen)
+        swept = self.operator == "swept" or (self.operator is None and self.matrices > MOST_BYTES)
         return SWEPT_SHARE * self.tolerance if swept else 0.0
 
     @property

@@ -98,7 +98,7 @@ class Solver(Section):
     accuracy_of: Annotated[tuple[QuantityName, ...], list_of(1, len(QUANTITIES))] | None = None
     beyond_model: bool = False
     operator: Literal["dense", "swept"] | None = None
-    unwritten: ClassVar[tuple[str, ...]] = ("beyond_model",)
+    unwritten: ClassVar[tuple[str, ...]] = ("beyond_model", "operator")
 
     @classmethod
     def implied(cls, given: Given) -> Mapping[str, Any]:

@@ -33,7 +33,7 @@ from verification.checks import (
     spatial as spatial_checks,
 )
 from verification.checks.certificates import OF_GROUP, common, curves_of, of_sam, solved
-from verification.checks.material import back_stress, flow_of, yield_stress
+from verification.checks.material import around, back_stress, flow_of, yield_stress
 from verification.reference.hertz import CircularContact
 from verification.reference.point_loads import cerruti_displacement
 from verification.rows import load_rows
@@ -143,7 +143,7 @@ def material(name, factor, component=..., *, always=False):
         trees = [record.tree() for record in records]
         peak = max(trees, key=lambda tree: tree["state"]["load"]["force"])
         for tree in trees if always else [peak]:
-            owner = tree["last"] if name == "stress" else tree["state"]["points"]
+            owner = tree["last"] if name == "stress" else tree["state"]["material"]["points"]
             owner[name] = np.array(owner[name])
             owner[name][component] *= factor
         return scene, result, [SimpleNamespace(tree=lambda tree=tree: tree) for tree in trees]
@@ -389,7 +389,8 @@ def test_a_wrong_state_of_a_chemical_film_is_seen(solve):
         peak = max(trees, key=lambda each: each["state"]["load"]["force"])
         film = peak["tribofilm"]
         state = film["film"] = {name: np.array(values) for name, values in film["film"].items()}
-        change(film_checks.pressure_of(scene, peak), state)
+        pressure, window = film_checks.pressure_of(scene, peak), peak["extent"]["window"]
+        change(around(pressure, window, state["failed"].shape), state)
         return film_checks.states(scene, [SimpleNamespace(tree=lambda tree=tree: tree) for tree in trees])
 
     def mended(pressure, state):
@@ -509,9 +510,10 @@ def test_only_what_has_a_yield_stress_is_held_to_the_flow_rule():
 
 def test_a_step_in_which_the_box_moves_is_not_held_to_the_flow_rule():
     def tree(peeq, extent):
-        points = {"strain": 1.5 * peeq * DEVIATOR[..., None, None, None] * np.ones((6, 4, 1, 2, 2))}
-        points["peeq"] = np.full((4, 1, 2, 2), peeq)
-        made = {"extent": extent, "state": {"points": points}, "parts": {"count": 0}}
+        points = {"strain": 1.5 * peeq * DEVIATOR[..., None] * np.ones((6, 4, 4))}
+        points["peeq"] = np.full((4, 4), peeq)
+        material = {"cells": np.ones((1, 2, 2), bool), "points": points}
+        made = {"extent": extent, "state": {"material": material}, "parts": {"count": 0}}
         made["last"] = {"stress": 1e9 * UNIAXIAL[..., None, None] * np.ones((6, 1, 2, 2))}
         return SimpleNamespace(tree=lambda: made)
 

@@ -26,6 +26,7 @@ from verification.checks.conditions import (
     surface_of,
     traction_of,
 )
+from verification.checks.material import fields_at_points
 from verification.reference.point_loads import boussinesq_stress, cerruti_stress
 
 NEAR = 2
@@ -124,10 +125,8 @@ def _corners(
 
 def residual_uz(scene: Scene, tree: Mapping, cell: Sequence[float], shape: tuple[int, int]) -> np.ndarray:
     """(nx, ny) displacement in m by the plastic strain of a record."""
-    strain, window = (
-        TWICE[:, None, None, None] * tree["state"]["points"]["strain"].mean(axis=1),
-        tree["extent"]["window"],
-    )
+    window, points = tree["extent"]["window"], fields_at_points(tree["state"]["material"])
+    strain = TWICE[:, None, None, None] * points["strain"].mean(axis=1)
     faces = choose_grid(scene).faces[: strain.shape[1] + 1]
     i0, j0, n, m = (window[name] for name in ("i0", "j0", "nx", "ny"))
     reach = max(shape[0] - i0, i0 + n), max(shape[1] - j0, j0 + m)

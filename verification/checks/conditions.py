@@ -16,7 +16,7 @@ from itertools import pairwise
 import numpy as np
 
 from sam.scene import COUNTER_HEIGHT, Checkpoint, Result, Scene
-from verification.checks.material import back_stress, flow_of, von_mises, yield_stress
+from verification.checks.material import back_stress, fields_at_points, flow_of, von_mises, yield_stress
 
 # of the contact radius: so far from the edge of contact are tractions judged, where the stress is singular
 EDGE = 0.25
@@ -201,7 +201,8 @@ def flow(scene: Scene, records: Sequence[Checkpoint], depths: np.ndarray) -> dic
     worst: dict[str, float] = {}
     trees = [record.tree() for record in records]
     for before, now in pairwise(trees):
-        old, new, stress = before["state"]["points"], now["state"]["points"], now["last"]["stress"]
+        old, new = (fields_at_points(each["state"]["material"]) for each in (before, now))
+        stress = now["last"]["stress"]
         a, b = old["strain"], new["strain"]  # at the points of the cells
         if a.shape != b.shape or before["extent"] != now["extent"] or now["parts"]["count"] != 0:
             continue

@@ -13,7 +13,7 @@ import numpy as np
 
 from sam import choose_grid
 from sam.scene import Checkpoint, Scene
-from verification.checks.material import in_plane
+from verification.checks.material import around, fields_at_points, in_plane
 from verification.reference.film_flow import Film, FlowPoint
 
 
@@ -30,9 +30,12 @@ def states(scene: Scene, records: Sequence[Checkpoint]) -> float:
     limit, bears = law.thinning_limit, film.yield_stress / np.sqrt(3.0) / law.low
     worst, healed = 0.0, 0.0
     for now in [tree for tree in trees if tree["state"]["load"]["force"] > 0.0]:
-        pressure, strain = pressure_of(scene, now), surface_strain(scene, now, depths)
         state = now["tribofilm"]["film"]
-        failed = state["failed"]
+        failed, window = state["failed"], now["extent"]["window"]
+        pressure, strain = (
+            around(values, window, failed.shape)
+            for values in (pressure_of(scene, now), surface_strain(scene, now, depths))
+        )
         healed += float((before["failed"] & ~failed).sum())
         worst = max(worst, float(pressure[~failed].max(initial=0.0)) / bears - 1.0)
         for i, j in np.argwhere((pressure > 0) & (pressure < bears) & ~failed):
@@ -47,12 +50,12 @@ def states(scene: Scene, records: Sequence[Checkpoint]) -> float:
 
 
 def pressure_of(scene: Scene, tree: Mapping) -> np.ndarray:
-    """(nx, ny) in Pa on a box that is the whole patch; E/(1 - nu^2)/2 is the unit of the record."""
+    """(nx, ny) in Pa on the box; E/(1 - nu^2)/2 is the unit of the record."""
     return tree["state"]["pressure"] * scene.body.young / (1 - scene.body.poisson**2) / 2
 
 
 def surface_strain(scene: Scene, tree: Mapping, depths: np.ndarray) -> np.ndarray:
     """exx, eyy, exy (3, nx, ny) at z = 0 of a record."""
     elastic = in_plane(tree["last"]["stress"][:, :2], scene.body.young, scene.body.poisson)
-    total = elastic + tree["state"]["points"]["strain"].mean(axis=1)[[0, 1, 5], :2]
+    total = elastic + fields_at_points(tree["state"]["material"])["strain"].mean(axis=1)[[0, 1, 5], :2]
     return total[:, 0] + (total[:, 0] - total[:, 1]) * depths[0] / (depths[1] - depths[0])

@@ -7,6 +7,8 @@ Components in the order 11 22 33 23 13 12, no engineering shear; every value is 
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 
 from sam.scene import Plasticity, Scene
@@ -133,3 +135,26 @@ def flow_of(
         found["consistency"].append(float(np.abs(excess)[straining].max(initial=0.0)))
         found["yield"].append(float(excess.max()))
     return {name: max(values) for name, values in found.items()}
+
+
+def around(values: np.ndarray, box: Mapping, shape: Sequence[int]) -> np.ndarray:
+    """Values (..., nx, ny) of a box in a larger one, zero beside it; box: a window of a record; shape: of
+    the larger one, (nx, ny) or (nz, nx, ny).
+    """
+    out = np.zeros((*values.shape[: values.ndim - len(shape)], *shape), dtype=values.dtype)
+    layers = values.shape[values.ndim - len(shape) : -2]
+    first, count = [0] * len(layers) + [box["i0"], box["j0"]], [*layers, box["nx"], box["ny"]]
+    out[(..., *(slice(a, a + n) for a, n in zip(first, count, strict=True)))] = values
+    return out
+
+
+def fields_at_points(material: Mapping) -> dict[str, np.ndarray]:
+    """The fields at the points of all cells of a box, (..., 4, nz, nx, ny), of a record, which holds those of
+    the cells that have yielded.
+    """
+    cells, out = material["cells"], {}
+    for name, values in material["points"].items():
+        if values is not None:
+            out[name] = np.zeros((*values.shape[:-1], *cells.shape))
+            out[name][..., cells] = values
+    return out

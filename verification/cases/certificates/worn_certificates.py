@@ -22,6 +22,7 @@ from verification.cases.running_in.running_in_converged import COARSEST, Member
 from verification.checks import cells as cell_checks, conditions as contact_checks, film as film_checks
 from verification.checks.certificates import late, solved
 from verification.checks.conditions import surface_of
+from verification.checks.material import around, fields_at_points
 
 __all__ = ["frame"]
 
@@ -91,7 +92,11 @@ def lowered(result: Result) -> Result:
 def since(before: Checkpoint, now: Checkpoint) -> Any:
     """A record whose stress and plastic strain are what has come since another one."""
     start, tree = before.tree(), now.tree()
-    points = {"strain": tree["state"]["points"]["strain"] - start["state"]["points"]["strain"]}
-    state = {**tree["state"], "points": points}
-    last = {**tree["last"], "stress": tree["last"]["stress"] - start["last"]["stress"]}
+    old, new = (fields_at_points(each["state"]["material"])["strain"] for each in (start, tree))
+    box, larger = start["extent"]["window"], tree["extent"]["window"]
+    inside = box | {"i0": box["i0"] - larger["i0"], "j0": box["j0"] - larger["j0"]}
+    strain, stress = (around(v, inside, new.shape[2:]) for v in (old, start["last"]["stress"]))
+    points = {"strain": (new - strain).reshape(*new.shape[:2], -1)}
+    state = {**tree["state"], "material": {"cells": np.ones(new.shape[2:], bool), "points": points}}
+    last = {**tree["last"], "stress": tree["last"]["stress"] - stress}
     return SimpleNamespace(tree=lambda: {**tree, "state": state, "last": last})
