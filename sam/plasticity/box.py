@@ -37,8 +37,8 @@ CONTAINED = 3.0
 # Contact half-widths that the first guess of the depth of the plastic zone has at most: with 1.2 S takes two
 # boxes and 29 applications, with 2.5 it stays.
 DEEPEST = 1.8
-# Bytes of the matrices between all layers from which a box is swept. With 24 layers of cells both take as long
-# an application; the matrices may be kept on disk.
+# Bytes of the matrices between all layers from which a box is swept. With 24 layers of cells an application
+# takes as long either way; the matrices may be kept on disk.
 MOST_BYTES = 1e9
 SWEPT_SHARE = 0.05  # of the tolerance of the plastic iteration, the error of the sweeps
 # Cells that are free beside the zone of a body that nothing touches: with two strained ones a box grows.

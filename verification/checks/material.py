@@ -142,9 +142,10 @@ def around(values: np.ndarray, box: Mapping, shape: Sequence[int]) -> np.ndarray
     the larger one, (nx, ny) or (nz, nx, ny).
     """
     out = np.zeros((*values.shape[: values.ndim - len(shape)], *shape), dtype=values.dtype)
-    layers = values.shape[values.ndim - len(shape) : -2]
-    first, count = [0] * len(layers) + [box["i0"], box["j0"]], [*layers, box["nx"], box["ny"]]
-    out[(..., *(slice(a, a + n) for a, n in zip(first, count, strict=True)))] = values
+    inside = out[..., box["i0"] : box["i0"] + box["nx"], box["j0"] : box["j0"] + box["ny"]]
+    if len(shape) > 2:
+        inside = inside[..., : values.shape[-3], :, :]
+    inside[...] = values
     return out
 
 
