@@ -209,9 +209,10 @@ class ExpectedBox:
         """Numbers of the stored coefficients."""
         return 36 * self.pairs * self.waves
 
-    def numbers(self, back_stresses: int) -> int:
-        """Numbers of the material at the points of all cells: strain, accumulated strain, back-stresses."""
-        return (7 + 6 * back_stresses) * POINTS * self.layers * self.nx * self.ny
+    @property
+    def cells(self) -> int:
+        """Cells of all layers."""
+        return self.layers * self.nx * self.ny
 
     @property
     def set_up(self) -> int:
