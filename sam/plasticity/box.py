@@ -18,7 +18,7 @@ from sam.contact.normal import around, margin_around
 from sam.contact.stress import yielding
 from sam.elastic.stress import ElasticPeak
 from sam.grid.cells import CellGrid, Sides, Window
-from sam.plasticity.points import OFFSET, POINTS
+from sam.plasticity.points import OFFSET
 from sam.plasticity.spectra import CACHED_BOXES, SINGLE
 from sam.plasticity.state import Extent, Trial
 from sam.plasticity.swept import neighbours
