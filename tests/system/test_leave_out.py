@@ -54,7 +54,7 @@ NEEDS: dict[str, dict[str, str]] = {
         "elastic peak": "yield stress",
         "eigenstrain kernels": f"{IN_BOX} | u3 beside the box, shear across y",
         f"eigenstrain kernels, not {TRACTION}": "plastic box",
-        f"eigenstrain kernels, {TRACTION}": "sliding plastic box, u1 beside the box, u1 of plastic strain",
+        f"eigenstrain kernels, {TRACTION}": "plastic box, sliding plastic box, u1 beside the box, u1 of plastic strain",
         "plastic loop": "plastic step",
         "plastic loop, loops of the paper": "loops of the paper",
         "back-stresses": "return map with back-stresses",

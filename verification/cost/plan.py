@@ -303,7 +303,7 @@ def _stages(scene: Scene, made: Any) -> list[Stage]:
             box = estimates.plastic_boxes(scene, made)[-1]
             size = {"box_cells": [box.nx, box.ny, box.layers], "coefficients": box.coefficients}
             size |= {"bytes": box.width * box.coefficients}
-            stage = replace(stage, size=size, reason=f"{stage.reason}; {box.words}")
+            stage = replace(stage, size=size | {"operator": box.words})
         found.append(stage)
     return [*found, *(Stage(entry.stage, False, entry.reason) for entry in made.left_out)]
 
