@@ -41,10 +41,9 @@ from scipy import fft
 from sam.arrays import Array
 from sam.grid.cells import Window
 
-# products a row, 64 values times 128 wave numbers, up to which they take less time than a fast transform
 Real = NDArray[np.floating[Any]]
 """Real numbers in single or double precision."""
-SHORT = 25000  # products a row, 64 values times 128 wave numbers: up to here they beat a fast transform
+SHORT = 25000  # products a row, 110 values times 220 wave numbers: up to here they beat a fast transform
 
 
 class _Sum(NamedTuple):

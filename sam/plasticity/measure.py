@@ -152,7 +152,9 @@ def _moved_grid(model: Model, record: Progressed) -> Array:
     if built.onto_grid is None or built.onto_grid[0] != record.extent:
         counted = vars(model.counters).copy()
         built.onto_grid = record.extent, source.onto(model.grid.whole, 3, model.counters)
-        vars(model.counters).update(counted)  # a solve that is continued makes them anew
+        vars(model.counters).update(
+            counted
+        )  # coefficients that are kept are not counted: a continued solve makes them anew
     return np.asarray(model.grid.hx * built.onto_grid[1].summed(source.strain)[0])
 
 

@@ -28,7 +28,7 @@ IDLE_BYTES = 92e6  # interpreter with numpy, scipy and the model loaded
 MEMORY = {  # chunks: what is worked through piece by piece
     models.SAM: {
         "surface": 33.7, "stresses": 5.68, "patch": 3.5, "patch stresses": 7.0, "layered": 1.2, "boxes": 1.0,
-        "fields": 104.0, "set-up": 5.0, "waves": 4.0, "chunks": 30e6,
+        "fields": 104.0, "set-up": 5.0, "chunks": 30e6,
     },
     models.FEM: {"unknowns": 545.0, "steps": 226.0, "points": 152.0},
     models.FEM_3D: {"unknowns": 1780.0, "states": 1.0},
@@ -412,7 +412,6 @@ def _sam(scene: Scene, plan: Any) -> Counted:
         "boxes": float(sum(box.width * box.coefficients for box in held(boxes))),
         "fields": 8.0 * last.cells,
         "set-up": 8.0 * last.set_up / last.layers,
-        "waves": 0.0 if not last.swept else last.width * 6.0 * last.layers * last.waves * kept,
         "chunks": 1.0,
     }
     either = [plastic_boxes(scene, plan, beyond) for beyond in (-UNDECIDED, UNDECIDED)]
