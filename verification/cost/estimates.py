@@ -36,7 +36,7 @@ MEMORY = {  # chunks: what is worked through piece by piece
 TIME = {
     models.SAM: {
         "solve": 0.0435, "contact": 3.33e-8, "patch contact": 2.6e-9, "stresses": 6.28e-8, "patch": 9.64e-8,
-        "tables": 1.7e-3, "layered": 1.05e-7, "box set-up": 5.19e-8, "box": 1.13e-9, "swept": 6e-8,
+        "tables": 1.7e-3, "layered": 1.05e-7, "box set-up": 5.19e-8, "box": 1.13e-9, "swept": 6e-8, "beside": 3.6e-8,
         "patch steps": 1.45e-6, "patch iterations": 1.6e-6,
     },
     models.FEM: {"solve": 0.129, "factors": 3.01e-7, "points": 0.0},
@@ -418,6 +418,8 @@ def _sam(scene: Scene, plan: Any) -> Counted:
     work |= {
         "box set-up": sum(box.set_up for each in either for box in each) / 2,
     }
+    if rough and (last.nx, last.ny) != grid.shape:  # stress in y = 0, beside the box
+        work["beside"] = 36.0 * depths * last.layers * cells / 2
     if last.swept:
         work["swept"] = iterations * last.width / 8 * 6.0 * last.layers * last.waves * kept
     else:
