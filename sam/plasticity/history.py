@@ -107,7 +107,10 @@ def first_box(model: Model, peak: ElasticPeak) -> Extent:
     """The first box of a history; the whole grid below a rough patch that touches elsewhere later."""
     schedule, anywhere, limit = model.plan.schedule, model.plan.places.anywhere, model.plan.initial_yield
     both_ways, path = schedule.alternates, schedule.path
-    extent = first_extent(model.grid, peak, limit, anywhere=anywhere, both_ways=both_ways, path=path)
+    slides = model.plan.slip.slides or len(path) > 1
+    extent = first_extent(
+        model.grid, peak, limit, anywhere=anywhere, both_ways=both_ways, slides=slides, path=path
+    )
     elsewhere = anywhere and (len(path) > 1 or schedule.renews)
     return replace(extent, window=model.grid.whole) if elsewhere else extent
 

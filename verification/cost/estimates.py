@@ -238,7 +238,8 @@ def _zone(scene: Scene, grid: CellGrid, depths: np.ndarray) -> Zone:
         soft = hardening + _back_hardening(scene, depths) < HARDENS
         wider, deeper = (share * max(ratio - GIVEN_ABOVE, 0.0) for share in GIVEN_SPREAD[soft])
     needed, path = ((1 + wider) * wide, (1 + deeper) * deep), _path_cells(scene, grid)
-    return Zone(hertz_semi_axes(scene), wide, deep, needed, MISES * ratio, path=path)
+    slides = bool(scene.coefficient) or scene.loading.path is not None
+    return Zone(hertz_semi_axes(scene), wide, deep, needed, slides, path)
 
 
 def _back_hardening(scene: Scene, depths: np.ndarray) -> float:
