@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import ceil, floor
+from math import floor
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,7 +87,7 @@ def first_extent(
 
 
 def beside(columns: int, slides: bool) -> int:
-    """Cells of a first box beside a zone of elastic stress of so many: of plastic strain, and two free ones."""
+    """Cells of a first box beside a zone of elastic stress of so many: of plastic strain and two free."""
     return 2 + columns // SPREAD + slides
 
 
