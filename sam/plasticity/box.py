@@ -31,10 +31,11 @@ from sam.plasticity.swept import neighbours
 GROWTH = 8
 # Cells or layers by which it grows at least: two boxes in P also with 1 and with 6.
 LEAST_GROWTH = 3
-# Cells of the width of the zone of elastic stress for one by which plastic strain reaches further on either
-# side; one more if it slides or moves. Of 62 spheres (p0 = 1.8 to 6.2 yield stresses, 4 to 16 cells in the
-# contact radius, friction up to 0.4, on a path) none takes a second box, with 32 six do.
-SPREAD = 16
+# Share of the width of the zone of elastic stress by which that of plastic strain reaches further on either
+# side: of the largest von Mises stress in yield stresses, less CONTAINED, one over SPREAD, and FURTHEST at
+# most; a cell more if it slides or moves. Of 88 spheres (p0 = 1.8 to 7 yield stresses, 4 to 16 cells in the
+# contact radius, friction up to 0.4, on a path) six take a second box, five of perfect plasticity from 3.5 on.
+CONTAINED, SPREAD, FURTHEST = 1.6, 30, 1 / 12
 # Contact half-widths that the first guess of the depth of the plastic zone has at most: with 1.2 S takes two
 # boxes and 29 applications, with 2.5 it stays.
 DEEPEST = 1.8
@@ -74,7 +75,8 @@ def first_extent(
     half_width = min(box.nx * grid.hx, box.ny * grid.hy) / 2
     deep = np.flatnonzero(exceeds.any(axis=1) & (grid.depths <= DEEPEST * half_width))
     columns, end = np.flatnonzero(exceeds.any(axis=0)), box.i0 + box.nx
-    free = beside(columns[-1] + 1 - columns[0], slides)
+    ratio = float((peak.mises / limit[:, None]).max())
+    free = beside(int(columns[-1] + 1 - columns[0]), ratio, slides)
     margins = np.clip([box.i0 + free - columns[0], columns[-1] + 1 + free - end], 0, box.nx // 3)
     across, widest = int(margins.min()), int(margins.max())
     before, after = (widest, widest) if both_ways else margins
@@ -86,9 +88,9 @@ def first_extent(
     return Extent(Window(i0, j0, i1 - i0, j1 - j0), _layers(deep, grid))
 
 
-def beside(columns: int, slides: bool) -> int:
+def beside(columns: int, ratio: float, slides: bool) -> int:
     """Cells of a first box beside a zone of elastic stress of so many: of plastic strain and two free."""
-    return 2 + columns // SPREAD + slides
+    return 2 + floor(columns * min(max((ratio - CONTAINED) / SPREAD, 0), FURTHEST)) + slides
 
 
 def _about_zone(exceeds: Mask, grid: CellGrid) -> Extent:
@@ -228,13 +230,15 @@ class ExpectedBox:
 @dataclass(frozen=True)
 class Zone:
     """A smooth contact, and the zone beyond yield below it: wide, deep of elastic stress, needed of
-    plastic strain, in semi-axes; slides: as for `first_extent`; path in cells.
+    plastic strain, in semi-axes; ratio of stress to yield stress; slides: as for `first_extent`; path in
+    cells.
     """
 
     axes: tuple[float, float]
     wide: float
     deep: float
     needed: tuple[float, float]
+    ratio: float
     slides: bool = False
     path: tuple[int, int] = (0, 0)
 
@@ -246,7 +250,7 @@ def expected_sides(grid: CellGrid, depths: np.ndarray, zone: Zone) -> list[tuple
         contact = 2 * floor(axis / h) + n % 2
         contact += 2 * margin_around(contact)
         columns = 2 * floor(zone.wide * axis / h) + 1
-        more = columns // 2 + beside(columns, zone.slides) - contact // 2
+        more = columns // 2 + beside(columns, zone.ratio, zone.slides) - contact // 2
         box.append(min(contact + 2 * min(max(more, 0), contact // 3) + path, n))
         # a cell yields with the first of its points; the last two cells of a box stay free
         needed.append(min(2 * floor(zone.needed[0] * axis / h + 2 * OFFSET) + 5 + path, n))

@@ -239,7 +239,7 @@ def _zone(scene: Scene, grid: CellGrid, depths: np.ndarray) -> Zone:
         wider, deeper = (share * max(ratio - GIVEN_ABOVE, 0.0) for share in GIVEN_SPREAD[soft])
     needed, path = ((1 + wider) * wide, (1 + deeper) * deep), _path_cells(scene, grid)
     slides = bool(scene.coefficient) or scene.loading.path is not None
-    return Zone(hertz_semi_axes(scene), wide, deep, needed, slides, path)
+    return Zone(hertz_semi_axes(scene), wide, deep, needed, MISES * ratio, slides, path)
 
 
 def _back_hardening(scene: Scene, depths: np.ndarray) -> float:
