@@ -48,7 +48,10 @@ def refuse(problems: Sequence[Problem]) -> None:
 
 
 def shape_problems(scene: Scene, shapes: Sequence[str], model: str) -> list[Problem]:
-    """A counter-body of a shape that `model` has not."""
+    """A counter-body of a shape that `model` has not, or a patch that repeats."""
+    if scene.grid is not None and scene.grid.periodic is not None:
+        allowed = f"the {model} finite-element model allows a patch that does not repeat: leave it out"
+        return [Problem("grid.periodic", spelling(scene.grid.periodic), allowed)]
     shape = scene.counterbody.shape if scene.counterbody else None
     if shape in (*shapes, None):
         return []

@@ -93,7 +93,7 @@ class Bodies:
         """The force in N at the peak: the given one, or an estimate from the approach."""
         loading, other = self.scene.loading, stated(self.scene.counterbody)
         if loading.approach is None:
-            return stated(loading.force)
+            return stated(self.scene.force)
         return SHAPES[other.shape].force(self, other, loading.approach)
 
     @cached_property

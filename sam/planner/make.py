@@ -104,7 +104,7 @@ def schedule_of(scene: Scene) -> Schedule:
         peak = Load.by_approach(loading.approach)
     else:
         given = Bodies(scene).given
-        peak = Load(stated(loading.force) if given is None else given.peak_force)
+        peak = Load(stated(scene.force) if given is None else given.peak_force)
     empty = Schedule(
         (),
         peak,
@@ -272,6 +272,10 @@ def check_bodies(bodies: Bodies) -> None:
     """Refuse the scene of some bodies, see `check`."""
     scene = bodies.scene
     plasticity, other = scene.body.plasticity, scene.counterbody
+    if scene.grid is not None and scene.grid.periodic is not None:
+        raise UnsupportedScene(f'grid.periodic = "{scene.grid.periodic}": not yet solved, leave it out')
+    if other is not None and other.shape == "cylinder":
+        raise UnsupportedScene('counterbody.shape = "cylinder": not yet solved')
     _check_coating(scene)
     if other is not None and other.radii is None and min(bodies.axes) == 0.0:
         raise UnsupportedScene(

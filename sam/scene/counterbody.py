@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from sam.scene.section import Conflict, Given, Section, of_choice, stated
 from sam.scene.surface.counter import CounterSurface
@@ -17,6 +17,7 @@ SHAPES = {
     "punch": ("radius",),
     "rounded-punch": ("flat_radius", "radius"),
     "flat": (),
+    "cylinder": ("radius", "length"),
 }
 """The shapes of a scene and the keys that each needs."""
 CURVED = ("sphere", "ellipsoid")  # the shapes that have radii of curvature: their own keys
@@ -29,7 +30,8 @@ else:
 class CounterBody(Section):
     """The counter-body. Rigid without young and poisson, elastic with both; it neither yields nor wears.
     Smooth without surface. radius: of a sphere, of the flat end of a punch, of the rounded edge of a
-    rounded-punch, whose flat end has flat_radius. Lengths in m, young in Pa. slip: of one that moves
+    rounded-punch, whose flat end has flat_radius, of a cylinder, whose axis lies along y and whose length
+    bears the force: a line contact, the same at every y. Lengths in m, young in Pa. slip: of one that moves
     (loading.path), the share of its way by which it slides over the body, 1 if not given; 0: it rolls.
     """
 
@@ -38,10 +40,12 @@ class CounterBody(Section):
     flat_radius: Length | None = None
     radius_x: Length | None = None
     radius_y: Length | None = None
+    length: Length | None = None
     young: Pressure | None = None
     poisson: Poisson | None = None
     surface: CounterSurface | None = None
     slip: Share | None = None
+    unwritten: ClassVar[tuple[str, ...]] = ("length",)
 
     @property
     def elastic(self) -> bool:

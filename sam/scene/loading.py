@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import ceil, copysign, hypot
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import ConfigDict, Field
 
@@ -169,14 +169,17 @@ class Loading(Section):
     the cycles.
 
     The load is a normal force in N, by which a counter-body is pressed on, or in its place the approach of
-    the bodies in m, whose force is then a result; or with prescribed = "hertz" the
-    pressure itself: at step k (k/steps) p0 sqrt(1 - r^2/radius^2), p0 in Pa, radius in m the same in all
-    steps. Each of these may travel on a path at full size; a cycle is then one pass.
+    the bodies in m, whose force is then a result, or on a periodic patch the mean_pressure in Pa; or with
+    prescribed = "hertz" the pressure itself: at step k (k/steps) p0 sqrt(1 - r^2/radius^2), p0 in Pa, radius
+    in m the same in all steps. Each of these may travel on a path at full size; a cycle is then one pass.
 
     With prescribed = "misfit-sphere" nothing touches the body: material about
     a centre at `depth` would grow by a linear strain in all directions if it were free, at step k (k/steps)
     misfit f(r/radius), r the distance from the centre, f = (1 - x^2)^2 inside x = 1 ("smooth"), 1 inside it
     ("ball") or exp(-x^2) ("gauss"). surface: "free", or "held" by the tractions of the infinite body.
+
+    lateral: of a periodic patch of a body that yields; the mean strain along x and y grows with the plastic
+    strain so that no mean stress remains ("free"), or is held at zero ("held").
     """
 
     force: Force | None = None
@@ -193,6 +196,9 @@ class Loading(Section):
     unload: bool = False
     unload_steps: Count | None = None
     cycles: Count = 1
+    mean_pressure: Pressure | None = None
+    lateral: Literal["free", "held"] | None = None
+    unwritten: ClassVar[tuple[str, ...]] = ("mean_pressure", "lateral")
 
     @property
     def hertz(self) -> bool:
@@ -215,7 +221,7 @@ class Loading(Section):
     def conflicts(cls, given: Given) -> Iterator[Conflict]:
         """No load or more than one; keys without the one that they need."""
         named, load = "prescribed" in given, PRESCRIBED.get(given.text("prescribed"))
-        force, approach = "force" in given, "approach" in given
+        pressed = [key for key in ("force", "approach", "mean_pressure") if key in given]
         if not named or load is not None:
             taken = ("path",) if load is None else load.keys
             for key in dict.fromkeys(key for other in PRESCRIBED.values() for key in other.keys):
@@ -223,12 +229,15 @@ class Loading(Section):
                     yield key, _only_with(key)
         if load is not None:
             yield from ((key, f"required: {load.words}") for key in load.needed if key not in given)
-            both = ((key, f"either {key}, or {load.words}, not both") for key in ("force", "approach"))
-            yield from (conflict for conflict in both if conflict[0] in given)
+            yield from ((key, f"either {key}, or {load.words}, not both") for key in pressed)
         required = f"required: force, approach, or {PRESCRIBED[HERTZ].words}"
         yield from broken(
-            (not named and force and approach, "approach", "either force or approach, not both"),
-            (not (named or force or approach), "force", required),
+            (
+                not named and len(pressed) > 1,
+                pressed[-1] if pressed else "",
+                f"either {' or '.join(pressed)}, not both",
+            ),
+            (not (named or pressed), "force", required),
         )
         if "unload_steps" in given and given.get("unload", False) is False:
             yield "unload_steps", "only together with unload = true"

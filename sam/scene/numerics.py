@@ -51,7 +51,8 @@ class Grid(Section):
     Cells alone take the default extent, an extent alone the default number of cells. depths: z in m where
     stresses are returned, with plasticity the faces of the layers, the first at 0; or `layers` equal layers
     down to `depth`. border: of a rough patch; "relief": its heights fall off there, so that the contact ends
-    before the patch does.
+    before the patch does. periodic: "xy": cells and heights repeat beside the patch in both directions; "y":
+    below a cylinder they repeat along its axis.
     """
 
     cells: Annotated[tuple[Cells, Cells], list_of(2, 2)] | None = None
@@ -60,6 +61,8 @@ class Grid(Section):
     layers: Count | None = None
     depth: Length | None = None
     border: Literal["free", "relief"] = "free"
+    periodic: Literal["xy", "y"] | None = None
+    unwritten: ClassVar[tuple[str, ...]] = ("periodic",)
 
     @classmethod
     def conflicts(cls, given: Given) -> Iterator[Conflict]:

@@ -6,14 +6,14 @@ apex at the origin, gap0 = x^2/(2 Rx) + y^2/(2 Ry), the flat end of a cylinder (
 radius, the same with a rounded edge (rounded-punch), gap0 = (r - flat_radius)^2/(2 radius) for r >
 flat_radius, or a plane (flat), gap0 = 0. A rough body has heights, positive out of it, and so has a rough
 counter-body: gap0 less the heights of both, and shifted to touch first at 0, anew with each stretch of a
-renewed counter-surface. A value out of range, an unknown key or keys that contradict each other raise
-pydantic.ValidationError, all at once.
+renewed counter-surface. A cylinder has gap0 = x^2/(2 radius), its axis along y. A value out of range, an
+unknown key or keys that contradict each other raise pydantic.ValidationError, all at once.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import ceil, inf, isclose, sqrt
+from math import ceil, inf, isclose, pi, sqrt
 from typing import Any, Required, TypedDict, Unpack
 
 from pydantic import BaseModel, ValidationError
@@ -139,6 +139,7 @@ class Scene(Section):
             (smooth and flat, "surface", f"required: a table {either}, {anywhere}"),
             (smooth and at("grid.border") == "relief", "grid.border", f"only together with {either}"),
         )
+        yield from cls._conflicts_of_period(given)
         kinds = [at("surface.kind"), at("counterbody.surface.kind")]
         large = "nothing else says how large the generated surface is"
         if longer := kinds[1] == "file" and has("loading.path"):
@@ -179,6 +180,57 @@ class Scene(Section):
             (moves and paper, method, f"{euler} with loading.path: {loop} knows no motion"),
             (has("compare.claim") and not coated, "compare.claim", "only together with [body.coating]"),
         )
+
+    @classmethod
+    def _conflicts_of_period(cls, given: Given) -> Iterator[Conflict]:
+        """What a periodic patch and a line contact need, and cannot have."""
+        at, has = given.at, given.has
+        periodic, shape = at("grid.periodic"), at("counterbody.shape")
+        line, repeats, along = shape == "cylinder", periodic == "xy", periodic == "y"
+        patch, axis = 'grid.periodic = "xy"', 'counterbody.shape = "cylinder"'
+        summits = 'counterbody.shape = "flat", whose summits or those of the body repeat'
+        datum = f"a force with {axis}: the approach of a line contact has no absolute value"
+        absent = (("body.coating", has("body.coating")), ("loading.path", repeats and has("loading.path")))
+        loop, plastic = at("solver.method") == "paper", has("body.plasticity")
+        yield from broken(
+            *(
+                (there and (repeats or line), key, f"with {patch if repeats else axis} {NOT_YET}")
+                for key, there in absent
+            ),
+            (repeats and shape != "flat", "counterbody.shape", f"with {patch}: {summits}"),
+            (
+                repeats and at("grid.border") == "relief",
+                "grid.border",
+                f'"free" with {patch}: it has no border',
+            ),
+            (along and not line, "grid.periodic", f'"y" only together with {axis}'),
+            (repeats and line, "grid.periodic", f'"y" with {axis}'),
+            (line and has("loading.approach"), "loading.approach", datum),
+            (
+                (repeats or line) and loop,
+                "solver.method",
+                f'"backward-euler" with {patch if repeats else axis}',
+            ),
+            (
+                has("loading.mean_pressure") and not repeats,
+                "loading.mean_pressure",
+                f"only together with {patch}",
+            ),
+            (
+                has("loading.lateral") and not (repeats and plastic),
+                "loading.lateral",
+                f"only together with {patch} and [body.plasticity]",
+            ),
+        )
+
+    @property
+    def force(self) -> float | None:
+        """The normal force in N, of a mean pressure on the patch; None if another load is given."""
+        pressure = self.loading.mean_pressure
+        if pressure is None:
+            return self.loading.force
+        lx, ly = self.patch[1]
+        return pressure * lx * ly
 
     @property
     def coefficient(self) -> float:
@@ -374,22 +426,24 @@ Section.whole = Scene
 def contact_radius(scene: Scene) -> float:
     """Radius in m of the contact by Hertz, in which steps along a path are counted: (3 F R/(4 E*))^(1/3), of
     an ellipsoid with the geometric mean R of its radii (Johnson 1985, Eq. 4.22); under an approach d
-    sqrt(R d). That of the flat end of a punch, and of a load that is given. 0 without force, infinite below
-    a plane.
+    sqrt(R d). Of a cylinder its half-width, (4 F R/(pi length E*))^(1/2) (Johnson 1985, Eq. 4.43). That of
+    the flat end of a punch, and of a load that is given. 0 without force, infinite below a plane.
     """
     other, loading, body = scene.counterbody, scene.loading, scene.body
     if other is None:
         return stated(loading.radius)
     if other.shape == "flat":
         return inf
+    compliance = (1 - body.poisson**2) / body.young
+    if other.young is not None:
+        compliance += (1 - stated(other.poisson) ** 2) / other.young
+    if other.length is not None:
+        return sqrt(4 / pi * stated(loading.force) / other.length * stated(other.radius) * compliance)
     if other.radii is None:
         return stated(other.flat_radius or other.radius)
     radius = sqrt(other.radii[0] * other.radii[1])
     if loading.approach is not None:
         return sqrt(radius * loading.approach)
-    compliance = (1 - body.poisson**2) / body.young
-    if other.young is not None:
-        compliance += (1 - stated(other.poisson) ** 2) / other.young
     return float((0.75 * stated(loading.force) * radius * compliance) ** (1 / 3))
 
 

@@ -119,7 +119,7 @@ fem.box = 2.9 -> = & from 3 to 1000
 fem.cells_per_radius = 257 | 1 -> = & from 2 to 256
 title = 3 -> = & a string
 ## SPHERE counterbody.
--radius; shape = 'cone' -> = & "punch", "rounded-punch" or "flat"
+-radius; shape = 'cone' -> = & "rounded-punch", "flat" or "cylinder"
 -shape; radius = '1 mm' -> @shape is missing & "sphere" or "ellipsoid"
 -radius; shape = 'flat' -> surface is missing & =
 shape = 'flat'; radius = '1 mm' -> = & takes no radius
