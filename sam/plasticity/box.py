@@ -33,8 +33,8 @@ GROWTH = 8
 LEAST_GROWTH = 3
 # Share of the width of the zone of elastic stress by which that of plastic strain reaches further on either
 # side: of the largest von Mises stress in yield stresses, less CONTAINED, one over SPREAD, and FURTHEST at
-# most; a cell more if it slides or moves. Of 88 spheres (p0 = 1.8 to 7 yield stresses, 4 to 16 cells in the
-# contact radius, friction up to 0.4, on a path) six take a second box, five of perfect plasticity from 3.5 on.
+# most; a cell more if it slides or moves. Of 88 spheres (p0 = 1.8 to 7 yield stresses, 4 to 16 cells in
+# the radius, friction up to 0.4, on a path) six take a second box, five of perfect plasticity from 3.5 on.
 CONTAINED, SPREAD, FURTHEST = 1.6, 30, 1 / 12
 # Contact half-widths that the first guess of the depth of the plastic zone has at most: with 1.2 S takes two
 # boxes and 29 applications, with 2.5 it stays.
