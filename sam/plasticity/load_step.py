@@ -205,7 +205,7 @@ class Problem:
         K, goal = self.operator, self.tolerance if tolerance is None else tolerance
         window, most = (LONG_WINDOW, LONG_ITERATIONS) if self.longer else (WINDOW, ITERATIONS)
         anderson = Anderson(window, np.sqrt(SHEAR)[:, None])
-        flow, history, finest = self.flow(state), list[float](), CONTACT_SHARE * goal
+        flow, history, accuracy = self.flow(state), list[float](), CONTACT_SHARE * self.tolerance
 
         # of the plastic strain so far: u_3 (Eq. 6), and its stress (Eq. 7) as that of residual plus response
         residual, response = state.residual, None
@@ -216,20 +216,16 @@ class Problem:
             flow.add(increment.cells)
             x = guess.ratio * spread(increment.points.strain.mean(axis=1), increment.cells, flow.cells)
         displacement = residual.displacement
-        pressure, accuracy = state.pressure if start is None else start, FIRST_CONTACT
+        pressure = state.pressure if start is None else start
         while True:
             pressure = self.pressure(displacement, load, pressure, accuracy)  # paper Eq. 9 and 10
             stress = K.keep(residual.stress) + self.stress(pressure, load, response)  # paper Eq. 4 and 7
             returned = flow.returned(x, stress)  # paper Eq. 8, at the points of each cell
             worst = returned.worst(goal)
             history.append(worst)
-            if (worst <= goal and accuracy <= finest) or len(history) > most:
+            if worst <= goal or len(history) > most:
                 break
-            accuracy = max(min(CONTACT_SHARE * AHEAD * worst, accuracy), finest)
             x = returned.x
-            if worst <= goal:
-                accuracy = finest  # once more, with the contact as good as promised
-                continue
             own = np.repeat(stiffness_of_parts(K.own_stress), flow.counts, axis=-1)
             limit = flow.flow.limit.mean(axis=0)
             image = preconditioned(x, returned.image, limit, m=self.stiffness, own=own)
