@@ -288,6 +288,7 @@ class BoxOperator:
         mirror: tuple[bool, bool] = (False, False),
         exchange: bool = False,
         swept: float = 0.0,
+        kept: bool = True,
     ):
         lags = box.lags
         self.transforms = Transforms(lags.shape, mirror, single=single, counters=counters)
@@ -297,7 +298,7 @@ class BoxOperator:
         aspect = float(f"{lags.hy / lags.hx:.12g}")
         in_cells = tuple(float(f"{z / lags.hx:.12g}") for z in box.faces)
         in_cells_of_hx = Cuboids(Lags(*self.transforms.half, 1.0, aspect), in_cells, box.nu)
-        self.spectra = spectra_of(
+        self.spectra = (spectra_of if kept else spectra_of.__wrapped__)(
             in_cells_of_hx, single, exchange, cells=lags.shape if swept else (0, 0), error=swept
         )
         self.exchange, self.real = exchange, self.transforms.real
