@@ -99,8 +99,8 @@ class GivenPressure:
 
 PressureSource = ContactPressure | GivenPressure
 
-# Measured: operator applications (and contact iterations, ci) on a sphere of perfect plasticity at p0 = 3
-# yield stresses, 25 x 25 cells, 4 steps and back at 1e-6: 40 applications and 150 ci with the values below.
+# Measured: operator applications on a sphere of perfect plasticity at p0 = 3
+# yield stresses, 25 x 25 cells, 4 steps and back at 1e-6: 40 applications with the values below.
 # Iterates that the acceleration combines: 47 with 2 of them, 41 with 4, 40 with 16.
 WINDOW = 8
 # m over mu, see (a) and (e): about that of a sphere in its surroundings, 0.52 for nu = 0.3 (Eshelby 1957). It
@@ -114,14 +114,10 @@ ITERATIONS = 60
 # 8; with a strain of 4 it takes 50, and more than ITERATIONS with 8.
 LONG_WINDOW = 20
 LONG_ITERATIONS = 600
-# Share of the plastic residual to which the contact is solved: 181 ci with 1e-3; with 1e-1 the residual of
-# the contact is found too large.
+# Share of the tolerance of the plastic residual to which each contact is solved: with 1e-1 the residual of the
+# contact is found too large. An evaluation takes as long as tens of its iterations, so that none is repeated
+# for a better contact.
 CONTACT_SHARE = 1e-2
-# Share of the plastic residual that the next iteration leaves, for which its contact is solved: 174 ci with
-# 1e-2; 120 ci with 1, but 6438 transforms in place of 6306.
-AHEAD = 0.1
-# Tolerance of the first contact of a step: 154 ci with 1e-4, 147 with 1e-2.
-FIRST_CONTACT = 1e-3
 
 
 @dataclass(frozen=True)
