@@ -182,9 +182,14 @@ class ExpectedBox:
         return self.width * 36 * self.layers**2 * self.waves
 
     @property
+    def large(self) -> bool:
+        """Whether sweeps take less time and memory."""
+        return self.matrices > MOST_BYTES
+
+    @property
     def swept(self) -> float:
         """The error of the operator where it is swept, or 0."""
-        swept = self.operator == "swept" or (self.operator is None and self.matrices > MOST_BYTES)
+        swept = self.operator == "swept" or (self.operator is None and self.large)
         return SWEPT_SHARE * self.tolerance if swept else 0.0
 
     @property

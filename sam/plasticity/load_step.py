@@ -114,8 +114,8 @@ ITERATIONS = 60
 # 8; with a strain of 4 it takes 50, and more than ITERATIONS with 8.
 LONG_WINDOW = 20
 LONG_ITERATIONS = 600
-# Share of the tolerance of the plastic residual to which each contact is solved: with 1e-1 the residual of the
-# contact is found too large. An evaluation takes as long as tens of its iterations, so that none is repeated
+# Share of the tolerance of the plastic residual to which each contact is solved: with 1e-1 the residual of
+# the contact is found too large. An evaluation takes as long as tens of contact iterations: none is repeated
 # for a better contact.
 CONTACT_SHARE = 1e-2
 

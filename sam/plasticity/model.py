@@ -193,7 +193,7 @@ class Model:
         return Cuboids(lags, tuple(self.faces(extent).tolist()), self.plan.pair.body.poisson)
 
     def operator(self, extent: Extent, *, once: Counters | None = None) -> BoxOperator:
-        """The operator of a box. once: counters of one whose coefficients are not kept for the next."""
+        """The operator of a box. once: counters of one beside that of the steps."""
         counters = self.counters if once is None else once
         counters.tangential_kernels += self.plan.slip.slides
         nx, ny = extent.window.shape
@@ -207,7 +207,6 @@ class Model:
             mirror=self._mirror(extent.window),
             exchange=exchange,
             swept=box.swept,
-            kept=once is None,
         )
 
     def _mirror(self, window: Window) -> tuple[bool, bool]:

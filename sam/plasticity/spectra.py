@@ -288,7 +288,6 @@ class BoxOperator:
         mirror: tuple[bool, bool] = (False, False),
         exchange: bool = False,
         swept: float = 0.0,
-        kept: bool = True,
     ):
         lags = box.lags
         self.transforms = Transforms(lags.shape, mirror, single=single, counters=counters)
@@ -298,7 +297,7 @@ class BoxOperator:
         aspect = float(f"{lags.hy / lags.hx:.12g}")
         in_cells = tuple(float(f"{z / lags.hx:.12g}") for z in box.faces)
         in_cells_of_hx = Cuboids(Lags(*self.transforms.half, 1.0, aspect), in_cells, box.nu)
-        self.spectra = (spectra_of if kept else spectra_of.__wrapped__)(
+        self.spectra = spectra_of(
             in_cells_of_hx, single, exchange, cells=lags.shape if swept else (0, 0), error=swept
         )
         self.exchange, self.real = exchange, self.transforms.real
@@ -383,7 +382,7 @@ class BoxOperator:
         return stress
 
     def _of_loads(self, loads: Array) -> Reals:
-        """Transform of the stress of a pressure, or of one and a traction (odd in x), (1 or 2, nx, ny) in Pa."""
+        """Transform of the stress of a pressure, or of one and a traction (odd in x), (r, nx, ny) in Pa."""
         which = np.arange(len(loads))
         columns = self.transforms.columns(loads, which, np.zeros_like(which))
         spectra = self.spectra.loads_to_stress if len(loads) > 1 else self.spectra.pressure_to_stress

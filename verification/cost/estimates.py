@@ -419,7 +419,7 @@ def _sam(scene: Scene, plan: Any) -> Counted:
         "box set-up": sum(box.set_up for each in either for box in each) / 2,
     }
     if rough and (last.nx, last.ny) != grid.shape:  # stress in y = 0, beside the box
-        if last.swept:  # by an operator of its own
+        if last.swept and last.large:  # by an operator of its own
             plane = replace(last, nx=grid.nx, layers=depths)
             work["box set-up"] += plane.set_up
             iterations += plane.waves * depths / (last.waves * last.layers)
