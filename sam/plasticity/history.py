@@ -186,7 +186,7 @@ def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, T
             tested = law.tested(before, film, strain, pressure=pressure, sign=trial.load.sign)
         film_stays = tested is None or film is None or tested.film.failed is film.film.failed
         film = tested
-        if film_stays and until <= model.tolerance:
+        if film_stays and trial.history[-1] <= model.tolerance:
             after, extent = _beside(model, committed(model, record, trial, film), trial)
             if extent != record.extent:
                 return attempt(model, _enlarged(model, record, extent), load)

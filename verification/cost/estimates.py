@@ -420,7 +420,12 @@ def _sam(scene: Scene, plan: Any) -> Counted:
         "box set-up": sum(box.set_up for each in either for box in each) / 2,
     }
     if rough and (last.nx, last.ny) != grid.shape:  # stress in y = 0, beside the box
-        work["beside"] = 36.0 * depths * last.layers * cells / 2
+        if last.swept and last.large:  # by an operator of its own
+            plane = replace(last, nx=grid.nx, layers=depths)
+            work["box set-up"] += plane.set_up
+            iterations += plane.waves * depths / (last.waves * last.layers)
+        else:
+            work["beside"] = 36.0 * depths * last.layers * cells / 2
     if last.swept:
         work["swept"] = iterations * last.width / 8 * 6.0 * last.layers * last.waves * kept
     else:
