@@ -29,7 +29,7 @@ from sam.arrays import Array, Mask
 from sam.contact.box import ApproachControl, BoxContact, Control, ForceControl, gap_of_contact
 from sam.contact.convolution import Counters
 from sam.contact.operators import HALF_SPACES, HalfSpaces, SurfaceOperators
-from sam.grid.cells import Window
+from sam.grid.cells import Window, at_edge
 from sam.scene import Status
 from sam.scene.result import unfinished
 from sam.schedule import Approach
@@ -315,8 +315,10 @@ FEWEST_CELLS = 3.0
 FEWEST_IN_SPOT = round(pi * FEWEST_CELLS**2)
 
 
-def fit_of(contact: Contact, rough: bool = False) -> Status:
-    """CONVERGED, or what is wrong with a contact on the full grid; rough: all spots count together."""
+def fit_of(contact: Contact, rough: bool = False, line: bool = False) -> Status:
+    """CONVERGED, or what is wrong with a contact on the full grid; rough: all spots count together; line: all
+    repeats along y.
+    """
     if not contact.converged:
         return Status.NOT_CONVERGED
     touching = contact.pressure > 0
@@ -324,8 +326,9 @@ def fit_of(contact: Contact, rough: bool = False) -> Status:
         return Status.CONVERGED
     if rough:
         return Status.CONVERGED if touching.sum() >= FEWEST_IN_SPOT else Status.UNDER_RESOLVED
-    if touching[[0, -1], :].any() or touching[:, [0, -1]].any():
+    if at_edge(touching, line):
         return Status.CONTACT_AT_GRID_EDGE
-    if min(touching.any(axis=1).sum(), touching.any(axis=0).sum()) < 2 * FEWEST_CELLS:
+    across = [touching.any(axis=1 - axis).sum() for axis in range(1 if line else 2)]
+    if min(across) < 2 * FEWEST_CELLS:
         return Status.UNDER_RESOLVED
     return Status.CONVERGED

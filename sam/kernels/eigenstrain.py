@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sam.arrays import Array
+from sam.kernels import line
 from sam.kernels.patches import STRESS, Cuboids
 from sam.kernels.primitives import Corners, primitive
 
@@ -153,6 +154,8 @@ def surface_displacement_coefficients(cuboids: Cuboids, *, component: int = 3) -
     nx, ny). Paper Eq. 19 is component 3 (> 0 into the body), printed twice too large.
     """
     x, y = cuboids.lags.corners()
+    if cuboids.lags.period == 1:
+        return line.surface_displacement(x, cuboids.depths, cuboids.nu, component=component)[..., None]
     source = cuboids.depths[:, None, None]
     terms, matrix = _matrix("displacement", tuple(f"{component},{j}" for j in STRESS), cuboids.nu)
     basis = _table_basis(terms, Corners(x[:, None], y[None, :], source), source)

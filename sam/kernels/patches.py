@@ -26,17 +26,23 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sam.arrays import Array
+from sam.kernels import line
 from sam.kernels.primitives import Corners, primitive
+
+LONG = 1e12  # cells hx: stresses of plane strain to 3e-13 of the largest
 
 
 @dataclass(frozen=True)
 class Lags:
-    """Offsets (i hx, j hy), 0 <= i < nx and 0 <= j < ny, from a loaded cell to an observed one."""
+    """Offsets (i hx, j hy), 0 <= i < nx and 0 <= j < ny, from a loaded cell to an observed one; period: cells
+    along y after which loads repeat, 0 if they do not. With 1 all is the same at every y: plane strain.
+    """
 
     nx: int
     ny: int
     hx: float
     hy: float
+    period: int = 0
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -54,14 +60,14 @@ class Lags:
 
     def corners(self, first: int = 0) -> tuple[Array, Array]:
         """x and y of the corners of the cells at the lags first .. n - 1: half-integers times the cell, none
-        of them 0.
+        of them 0; in plane strain of a cell so long that stresses below it are those of plane strain.
 
         >>> Lags(2, 1, 1.0, 3.0).corners()
         (array([-0.5,  0.5,  1.5]), array([-1.5,  1.5]))
         """
         i = np.arange(first, self.nx + 1, dtype=float)
         j = np.arange(first, self.ny + 1, dtype=float)
-        return (i - 0.5) * self.hx, (j - 0.5) * self.hy
+        return (i - 0.5) * self.hx, (j - 0.5) * (LONG * self.hx if self.period == 1 else self.hy)
 
 
 @dataclass(frozen=True)
@@ -209,7 +215,7 @@ def displacement_coefficients(
     component, load
         Directions of the displacement and of the traction on the body: 1, 2 or 3 (> 0 into the body).
     z
-        Depth >= 0 in the unit of hx.
+        Depth >= 0 in the unit of hx; 0 in plane strain, where u is zero at |x| = hy/2 along the load.
 
     Returns
     -------
@@ -225,6 +231,9 @@ def displacement_coefficients(
     >>> bool(np.isclose(center, 2 * np.log(1 + np.sqrt(2)) / np.pi, rtol=1e-14))
     True
     """
+    if lags.period == 1:
+        reference = lags.hy / 2
+        return line.displacement(lags.corners()[0], nu, reference, component=component, load=load)[:, None]
     corners, depth = _corners(lags, z)
     rows = load_table()["displacement"][f"{component},F{load}"]
     return _corner_sum(rows, nu, corners, depth)[0] / (2 * pi)  # paper Eq. 5, D_ij

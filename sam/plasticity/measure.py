@@ -376,7 +376,7 @@ class Strained:
         """Its cuboids with the lags to another window of the grid, in the unit of hx."""
         lags, cells = Convolution.lags_needed(self.window, observed), self.cuboids.lags
         faces = tuple(float(z / cells.hx) for z in self.cuboids.faces)
-        return replace(self.cuboids, lags=Lags(*lags, 1.0, cells.hy / cells.hx), faces=faces)
+        return replace(self.cuboids, lags=Lags(*lags, 1.0, cells.hy / cells.hx, cells.period), faces=faces)
 
     def onto(self, observed: Window, component: int, counters: Counters) -> Convolution:
         """Its strain -> the displacement of a window of the surface, in hx. Paper Eq. 6."""

@@ -56,7 +56,11 @@ class CellMeans(CornerFunctions):
     """The same functions as means over the cell in x and y: by Gauss points up to NEAR cells away."""
 
     def __init__(self, lags: Lags):
-        self.shape, self.near = lags.shape, (min(NEAR, lags.nx), min(NEAR, lags.ny))
+        self.shape, self.line, self.near = (
+            lags.shape,
+            lags.period == 1,
+            (min(NEAR, lags.nx), min(NEAR, lags.ny)),
+        )
         points = four_points((lags.hx * GAUSS[1] / 2, lags.hy * GAUSS[1] / 2))
         super().__init__(
             lags.shape,
@@ -68,7 +72,7 @@ class CellMeans(CornerFunctions):
         """Means over the cells, (..., nx, ny)."""
         far, near = self._differences(corners)
         out = np.empty((*corners.shape[:-1], *self.shape))
-        _plane_mean(far[..., 0, :, :], out)
+        _plane_mean(far[..., 0, :, :], out, self.line)
         np.mean(near[..., :-1, :-1], axis=-3, out=out[..., : self.near[0], : self.near[1]])
         return out
 
@@ -98,7 +102,7 @@ def mean_stress_of_load(cuboids: Cuboids, load: int = 3) -> Array:
     further = replace(lags, nx=nx + 1, ny=ny + 1)
     far = stress_coefficients(further, depths, nu, load=load).reshape(*shape, *further.shape)
     out = np.empty((6, len(points), nx, ny))
-    _plane_mean(_with_lag_before(far.mean(axis=2), ODD_X ^ int(load == 1), ODD_Y), out)
+    _plane_mean(_with_lag_before(far.mean(axis=2), ODD_X ^ int(load == 1), ODD_Y), out, lags.period == 1)
     near = min(NEAR, nx), min(NEAR, ny)
     few = _first(lags, near)
     shifts = [(lags.hx * x / 2, lags.hy * y / 2) for x in GAUSS for y in GAUSS]
@@ -107,8 +111,12 @@ def mean_stress_of_load(cuboids: Cuboids, load: int = 3) -> Array:
     return out
 
 
-def _plane_mean(kernel: Array, out: Array) -> None:
-    """Mean over the cell in x and y, K + (d_x^2 K + d_y^2 K)/24, from lags -1 .. n at lags 0 .. n - 1."""
+def _plane_mean(kernel: Array, out: Array, line: bool) -> None:
+    """Mean over the cell in x and y, K + (d_x^2 K + d_y^2 K)/24, from lags -1 .. n at lags 0 .. n - 1; line:
+    K is the same at every y.
+    """
+    if line:
+        kernel[...] = kernel[..., 1:2].copy()
     (nx, ny), row, flat = out.shape[-2:], kernel.shape[-1], kernel.reshape(-1)
     # sums of neighbours in one go; those over the border are not kept
     pairs = flat[row:] + flat[1 : 1 - row]  # one further in x and one further in y
@@ -293,7 +301,7 @@ class BoxOperator:
         # rounded, so that equal boxes in other units are one entry
         aspect = float(f"{lags.hy / lags.hx:.12g}")
         in_cells = tuple(float(f"{z / lags.hx:.12g}") for z in box.faces)
-        in_cells_of_hx = Cuboids(Lags(*self.transforms.half, 1.0, aspect), in_cells, box.nu)
+        in_cells_of_hx = Cuboids(Lags(*self.transforms.half, 1.0, aspect, lags.period), in_cells, box.nu)
         self.spectra = spectra_of(
             in_cells_of_hx, single, exchange, cells=lags.shape if swept else (0, 0), error=swept
         )

@@ -13,7 +13,7 @@ import numpy as np
 
 from sam.arrays import Array
 from sam.contact.normal import FEWEST_IN_SPOT, Contact
-from sam.grid.cells import CellGrid
+from sam.grid.cells import CellGrid, at_edge
 from sam.grid.gap import Place
 from sam.grid.rough import RoughPatch
 from sam.results.history import contact_area
@@ -108,7 +108,7 @@ class RoughRecord:
             out.append(f"{coarse}{finer}")
         if self.patch.relief and (made := in_the_fall_off(contact.pressure)):
             out.append("; ".join(filter(None, (made, self.remedies.larger_patch))))
-        if touching[[0, -1], :].any() or touching[:, [0, -1]].any():
+        if at_edge(touching, grid.line):
             words, (bx, by) = (
                 "the contact touches the edge of the grid, where the half-space is cut",
                 grid.border,

@@ -169,7 +169,7 @@ contact_width = '314 mm' -> = & less than track, 0.314 m
 ## SPHERE grid.
 border = 'relief' -> = & only together with [surface]
 cells = [65] | 65 -> = & a list of 2
-cells = [65, 5000] -> @cells[1] = 5000 & from 3 to 4097
+cells = [65, 5000] -> @cells[1] = 5000 & from 1 to 4097
 extent = ['1 um', 2] -> @extent[1] = 2 & $LENGTH
 depths = ['1 um', '0 um'] -> = & strictly ascending
 depths = [] -> = & a list of 1 to 1001

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: MIT
+"""Influence coefficients in plane strain, of strips that are loaded and of sections that are strained alike
+at every y: the displacements of the surface, to which no form of `sam.kernels.primitives` tends.
+
+A line force has no displacement that is zero far away. Along its direction that of the surface is therefore
+counted from a distance: zero at |x| = reference from the middle of the strip's source at x = 0. Stresses are
+those of a rectangle or a cuboid that is long in y, see `Lags.corners`.
+"""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+
+from sam.arrays import Array
+
+
+def displacement(x: Array, nu: float, reference: float, *, component: int, load: int) -> Array:
+    """Displacement times mu of the surface by unit traction on a strip between the corners x, (n + 1,), seen
+    from the observed points; (n,) in the unit of x. component, load: 1 or 3, as of a rectangle.
+    """
+    size = np.abs(x)
+    if component == load:  # Johnson 1985, Eq. 2.19 and 2.22 with constants that fit the reference
+        return (1 - nu) / pi * -np.diff(x * (np.log(size / reference) - 1))
+    sign = 1 if component == 1 else -1
+    return sign * (2 * nu - 1) / 4 * np.diff(size)  # Johnson 1985, Eq. 2.20 and 2.23
+
+
+def surface_displacement(x: Array, faces: Array, nu: float, *, component: int) -> Array:
+    """Displacement of the surface by unit eigenstrain in sections between the corners x, (m + 1,), seen from
+    the observed points, and faces, (n + 1,): (6, n, m) in the unit of x. By reciprocity the integral over the
+    section of the stress of a unit line force at the observed point (Johnson 1985, Eq. 2.15 and 2.22).
+    """
+    x, z = np.asarray(x)[None, :], np.asarray(faces)[:, None]
+    depth, side = z * np.arctan2(x, z) / 2, np.abs(x) * np.arctan2(z, np.abs(x)) / 2
+    log = np.log(x * x + z * z) / 2
+    # double integrals of x^2 z/r^4 and x z^2/r^4, and the third power of the force's direction
+    normal, third = (depth, depth + x * log) if component == 3 else (side, side + z * log)
+    stress = np.zeros((6, *depth.shape))
+    along, across = (2, 0) if component == 3 else (0, 2)
+    stress[along], stress[across] = third, normal
+    stress[1] = nu * (third + normal)
+    stress[4] = -2 * (side if component == 3 else depth)  # e_13 and e_31
+    sign = 1.0 if component == 3 else -1.0  # of x from the source to the observed point
+    return -2 / pi * sign * np.diff(np.diff(stress, axis=1), axis=2)
