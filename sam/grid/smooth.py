@@ -41,6 +41,7 @@ PLASTIC_CELLS = 65  # with plasticity: 16 cells in the Hertz radius
 MOVING_CELLS = 41
 # The same of a line contact, whose cells are a row; (elastic, plastic, plastic and moving)
 LINE_CELLS = 513, 129, 65
+DEEPER_BELOW_LINE = 1.5  # times the depth of layers: perfect plasticity rolled at 3 yield stresses needs 1.2
 MOST_CELLS = 1025  # along a side of a chosen grid; an elastic solve then takes about a minute
 CHOSEN = 0.6  # of the largest cell allowed: 5 in a rounded edge, its largest pressure within 0.4 %
 MOST_LAYERS = 2000  # of a volume grid; memory and time of the box grow with their square
@@ -122,7 +123,8 @@ class GridDemand:
             depths = self._output_depths() if depths is None else depths
             return CellGrid(nx, ny, hx, hy, depths, room=room, line=line)
         if depths is None:
-            depths = _layer_faces(hx if line else min(hx, hy), min(self.axes), plastic, room.below)
+            cell, deeper = (hx, DEEPER_BELOW_LINE) if line else (min(hx, hy), 1.0)
+            depths = _layer_faces(cell, min(self.axes), plastic, deeper * room.below)
         return CellGrid(nx, ny, hx, hy, (depths[1:] + depths[:-1]) / 2, depths, room=room, line=line)
 
     def _output_depths(self) -> Array:
