@@ -71,8 +71,10 @@ def mesh(lags: Lags, points: Points = ((0.0, 0.0),), *, first: int = 0) -> tuple
 
 class CornerFunctions:
     """The functions that coefficients are sums of, at the corners of cells; meshes: of corners,
-    (points, X, Y), over whose points the mean is taken.
+    (points, X, Y), over whose points the mean is taken. line: all is the same at every y.
     """
+
+    line = False
 
     def __init__(self, shape: tuple[int, int], *meshes: tuple[Array, Array]):
         self.meshes = [x.shape for x, _ in meshes]
@@ -138,7 +140,9 @@ class LayerStress:
     ):
         self.functions, self.points, self.faces = functions, points, faces
         self.exchanged, factors = exchanged, np.ones(36) if scale is None else scale
-        self.blocks = [block.times(factors) for block in blocks(nu, exchanged)]
+        self.blocks = [
+            block.times(factors) for block in blocks(nu, exchanged) if not (functions.line and block.odd[1])
+        ]
         self.rows = np.concatenate([block.rows for block in self.blocks])
         self.own = (factors * own_stress(nu).ravel())[self.rows]
         self.mirrored = MIRRORED[self.rows]
@@ -153,7 +157,9 @@ class LayerStress:
         self.full = _Shared(offsets, digits, self._full_space_sums, at_once)
 
     def of(self, layer: int, out: Array) -> None:
-        """Stress/mu in one of the observed layers into `out`, (36, n, X, Y); each once, in order."""
+        """Stress/mu in one of the observed layers into `out`, (36, n, X, Y); each once, in order. In plane
+        strain what is odd in y is left as it is.
+        """
         for k, (image, stress) in enumerate(zip(self._image(layer), self._full_space(layer), strict=True)):
             stress += image
             self._every(stress, out[:, k])

@@ -56,23 +56,19 @@ class CellMeans(CornerFunctions):
     """The same functions as means over the cell in x and y: by Gauss points up to NEAR cells away."""
 
     def __init__(self, lags: Lags):
-        self.shape, self.line, self.near = (
-            lags.shape,
-            lags.period == 1,
-            (min(NEAR, lags.nx), min(NEAR, lags.ny)),
-        )
+        self.shape, self.near = lags.shape, (min(NEAR, lags.nx), min(NEAR, lags.ny))
+        self.line = lags.period == 1
         points = four_points((lags.hx * GAUSS[1] / 2, lags.hy * GAUSS[1] / 2))
-        super().__init__(
-            lags.shape,
-            mesh(replace(lags, nx=lags.nx + 1, ny=lags.ny + 1), first=-1),
-            mesh(_first(lags, self.near), points),
-        )
+        far = mesh(replace(lags, nx=lags.nx + 1, ny=lags.ny + 1), first=-1)
+        if self.line:
+            far, points = (far[0][..., 1:3], far[1][..., 1:3]), [points[0], points[2]]
+        super().__init__(lags.shape, far, mesh(_first(lags, self.near), points))
 
     def planes(self, corners: Array, odd: tuple[int, int]) -> Array:
         """Means over the cells, (..., nx, ny)."""
         far, near = self._differences(corners)
         out = np.empty((*corners.shape[:-1], *self.shape))
-        _plane_mean(far[..., 0, :, :], out, self.line)
+        _plane_mean(far[..., 0, :, :1] if self.line else far[..., 0, :, :], out)
         np.mean(near[..., :-1, :-1], axis=-3, out=out[..., : self.near[0], : self.near[1]])
         return out
 
@@ -102,7 +98,8 @@ def mean_stress_of_load(cuboids: Cuboids, load: int = 3) -> Array:
     further = replace(lags, nx=nx + 1, ny=ny + 1)
     far = stress_coefficients(further, depths, nu, load=load).reshape(*shape, *further.shape)
     out = np.empty((6, len(points), nx, ny))
-    _plane_mean(_with_lag_before(far.mean(axis=2), ODD_X ^ int(load == 1), ODD_Y), out, lags.period == 1)
+    kernel = _with_lag_before(far.mean(axis=2), ODD_X ^ int(load == 1), ODD_Y)
+    _plane_mean(kernel[..., 1:2] if lags.period == 1 else kernel, out)
     near = min(NEAR, nx), min(NEAR, ny)
     few = _first(lags, near)
     shifts = [(lags.hx * x / 2, lags.hy * y / 2) for x in GAUSS for y in GAUSS]
@@ -111,12 +108,12 @@ def mean_stress_of_load(cuboids: Cuboids, load: int = 3) -> Array:
     return out
 
 
-def _plane_mean(kernel: Array, out: Array, line: bool) -> None:
-    """Mean over the cell in x and y, K + (d_x^2 K + d_y^2 K)/24, from lags -1 .. n at lags 0 .. n - 1; line:
-    K is the same at every y.
+def _plane_mean(kernel: Array, out: Array) -> None:
+    """Mean over the cell in x and y, K + (d_x^2 K + d_y^2 K)/24, from lags -1 .. n at lags 0 .. n - 1; of
+    plane strain from one lag in y.
     """
-    if line:
-        kernel[...] = kernel[..., 1:2].copy()
+    if kernel.shape[-1] == 1:
+        kernel = np.repeat(kernel, 3, axis=-1)
     (nx, ny), row, flat = out.shape[-2:], kernel.shape[-1], kernel.reshape(-1)
     # sums of neighbours in one go; those over the border are not kept
     pairs = flat[row:] + flat[1 : 1 - row]  # one further in x and one further in y
@@ -171,7 +168,7 @@ class BoxSpectra:
         """The matrices between all layers, (waves, 6 layers, 6 layers)."""
         layers, exchange = self.cuboids.layers, not isinstance(self.stored, slice)
         out = np.empty(shape, dtype=self.real)
-        spectrum = np.empty((36, layers, *np.add(self.half, 1)), dtype=self.real)
+        spectrum = np.zeros((36, layers, *np.add(self.half, 1)), dtype=self.real)
         rows = spectrum.reshape(6, 6 * layers, *spectrum.shape[2:])
         stress = self._layer_stress(slice(None), slice(None))
         for i in range(layers):
@@ -236,7 +233,7 @@ class BoxSpectra:
         """Stress/mu of plastic strain in its own cell, (6, 6, n_layers)."""
         faces, means = self.cuboids.depths, CellMeans(_first(self.cuboids.lags, (1, 1)))
         stress = LayerStress(means, _points(faces), faces, self.cuboids.nu)
-        out = np.empty((len(faces) - 1, 36, len(faces) - 1, 1, 1))
+        out = np.zeros((len(faces) - 1, 36, len(faces) - 1, 1, 1))
         for i, row in enumerate(out):
             stress.of(i, row)
         return out.diagonal(axis1=0, axis2=2).reshape(6, 6, -1)
