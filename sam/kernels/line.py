@@ -18,19 +18,20 @@ from sam.arrays import Array
 
 def displacement(x: Array, nu: float, reference: float, *, component: int, load: int) -> Array:
     """Displacement times mu of the surface by unit traction on a strip between the corners x, (n + 1,), seen
-    from the observed points; (n,) in the unit of x. component, load: 1 or 3, as of a rectangle.
+    from the observed points; (n,) in the unit of x. component, load: 1 or 3. Paper: D_33 and D_31 of Eq. 5.
     """
     size = np.abs(x)
-    if component == load:  # Johnson 1985, Eq. 2.19 and 2.22 with constants that fit the reference
+    if component == load:  # Johnson 1985, sections 2.2 and 2.3, with that constant
         return (1 - nu) / pi * -np.diff(x * (np.log(size / reference) - 1))
     sign = 1 if component == 1 else -1
-    return sign * (2 * nu - 1) / 4 * np.diff(size)  # Johnson 1985, Eq. 2.20 and 2.23
+    return sign * (2 * nu - 1) / 4 * np.diff(size)  # the same
 
 
 def surface_displacement(x: Array, faces: Array, nu: float, *, component: int) -> Array:
     """Displacement of the surface by unit eigenstrain in sections between the corners x, (m + 1,), seen from
     the observed points, and faces, (n + 1,): (6, n, m) in the unit of x. By reciprocity the integral over the
-    section of the stress of a unit line force at the observed point (Johnson 1985, Eq. 2.15 and 2.22).
+    section of the stress of a unit line force at the observed point (Johnson 1985, sections 2.2 and 2.3).
+    Paper Eq. 19.
     """
     x, z = np.asarray(x)[None, :], np.asarray(faces)[:, None]
     depth, side = z * np.arctan2(x, z) / 2, np.abs(x) * np.arctan2(z, np.abs(x)) / 2

@@ -139,7 +139,7 @@ def test_a_cylinder_is_the_line_contact_of_hertz_with_the_stresses_of_mcewen():
     assert found["mises_max_depth_m"] / a == pytest.approx(0.704, abs=1e-3)
     outside = np.abs(line["x_m"]) > 1.2 * a
     far = np.abs(line["x_m"][outside]) / a
-    log = np.arccosh(far) - far * np.sqrt(far**2 - 1) + far**2  # Johnson 1985, Eq. 2.32 integrated
+    log = np.arccosh(far) - far * np.sqrt(far**2 - 1) + far**2  # beside Hertz's pressure
     exact = -2 * line_load / (np.pi * MODULUS) * (log - 0.5 + np.log(a / 2e-3))
     assert line["uz_m"][outside] == pytest.approx(exact, rel=2e-4)
 
