@@ -3,6 +3,8 @@
 cylinder against Hertz and McEwen, NAFEMS, the closed form of full slip, and itself on other grids.
 """
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from builders import LINEAR, MODULUS, STEEL
@@ -78,7 +80,7 @@ def test_strain_moves_the_surface_as_its_work_on_a_line_force_says(component):
     faces = (0.3, 1.0, 2.5)
     found = surface_displacement_coefficients(Cuboids(LINE, faces, NU), component=component)[..., 0]
     (s, w), x = between(-0.5, 0.5), np.arange(N)[:, None, None]
-    for layer, (top, bottom) in enumerate(zip(faces[:-1], faces[1:], strict=True)):
+    for layer, (top, bottom) in enumerate(pairwise(faces)):
         z, v = between(top, bottom)
         # at the strained section, seen from the force at the observed point
         stress = line_force(component, s[:, None] - x, z) * (w[:, None] * v)
