@@ -9,11 +9,14 @@ those of a rectangle or a cuboid that is long in y, see `Lags.corners`.
 
 from __future__ import annotations
 
-from math import pi
+from collections.abc import Callable, Sequence
+from math import pi, prod
 
 import numpy as np
 
 from sam.arrays import Array
+
+BESIDE = 3.0  # periods: further away cells that repeat act as plane strain does, to exp(-2 pi 3) = 7e-9
 
 
 def displacement(x: Array, nu: float, reference: float, *, component: int, load: int) -> Array:
@@ -45,3 +48,30 @@ def surface_displacement(x: Array, faces: Array, nu: float, *, component: int) -
     stress[4] = -2 * (side if component == 3 else depth)  # e_13 and e_31
     sign = 1.0 if component == 3 else -1.0  # of x from the source to the observed point
     return -2 / pi * sign * np.diff(np.diff(stress, axis=1), axis=2)
+
+
+def repeated(
+    cell: Callable[[int], Array], plane: Array, period: int, *, odd: Array, up_to: Sequence[int]
+) -> Array:
+    """Coefficients of a cell that repeats along y after a period of cells, (..., nx, period). cell: lags in
+    y -> those of one alone, at those lags in x that feel the cells, (..., near, lags); plane: those of a
+    strip, (..., nx, 1); odd: (...), 1 where coefficients are odd in y.
+
+    The mean over y is that of plane strain. What is left is summed over the periods |m| <= M, whose mean is
+    taken off; what further ones add is a series in (2 M + 1)^-2 (Euler and Maclaurin), here cut off at the
+    last of the numbers M, `up_to`.
+    """
+    beside = (max(up_to) + 1) * period
+    above = cell(beside + 1)
+    sign = np.where(odd, -1.0, 1.0)[..., None, None]
+    lag = np.arange(-beside, beside)
+    whole = np.concatenate([sign * above[..., :0:-1], above[..., :-1]], axis=-1)
+    squares = [(2 * m + 1) ** -2.0 for m in up_to]
+    out = np.repeat(plane / period, period, axis=-1)
+    for square, m in zip(squares, up_to, strict=True):
+        end = (2 * m + 1) * period  # of twice the lag
+        counted = whole * (np.sign(end - 2 * np.abs(lag)) + 1) / 2
+        summed = counted.reshape(*whole.shape[:-1], -1, period).sum(axis=-2)
+        weight = prod(other / (other - square) for other in squares if other != square)
+        out[..., : above.shape[-2], :] += weight * (summed - summed.mean(axis=-1, keepdims=True))
+    return out

@@ -16,10 +16,10 @@ of (length x traction / mu). Loads: tractions on the body F = (q_x, q_y, p), p >
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
-from math import pi
+from functools import cache, partial
+from math import ceil, pi
 from pathlib import Path
 
 import numpy as np
@@ -29,6 +29,7 @@ from sam.arrays import Array
 from sam.kernels import line
 from sam.kernels.primitives import Corners, primitive
 
+FURTHER = (6, 9, 13, 18), (3, 5, 7, 10)  # periods summed, of displacements to 2e-8, of stresses to 1e-6
 LONG = 1e12  # cells hx: stresses of plane strain to 3e-13 of the largest
 
 
@@ -161,6 +162,15 @@ def _corners(lags: Lags, z: ArrayLike, shift: tuple[float, float] = (0.0, 0.0)) 
     return Corners((x + shift[0])[:, None], (y + shift[1])[None, :], depth), depth
 
 
+def _repeated(lags: Lags, odd: Array, further: Sequence[int], alone: Callable[[Lags], Array]) -> Array:
+    """Coefficients of a cell that repeats along y; alone: those of one that does not, or of a strip."""
+    plane = alone(replace(lags, ny=1, hy=lags.period * lags.hy, period=1))
+    near = min(lags.nx, ceil(line.BESIDE * lags.period * lags.hy / lags.hx) + 1)
+    space = replace(lags, nx=near, period=0)
+    found = line.repeated(lambda ny: alone(replace(space, ny=ny)), plane, lags.period, odd=odd, up_to=further)
+    return found[..., np.arange(lags.ny) % lags.period]
+
+
 def stress_coefficients(
     lags: Lags,
     z: ArrayLike,
@@ -185,13 +195,22 @@ def stress_coefficients(
     names
         Components of the stress, of `STRESS`.
     shift
-        (x, y) by which every observed point is moved, in the unit of hx.
+        (x, y) by which every observed point is moved, in the unit of hx; none where loads repeat.
 
     Returns
     -------
     Array
         (len(names), nz, nx, ny), without a unit: stress per traction.
     """
+    if lags.period > 1:
+        odd = np.array([[parity(name, load)[1] < 0] for name in names])
+        at = [
+            _repeated(
+                lags, odd, FURTHER[1], partial(stress_coefficients, z=each, nu=nu, load=load, names=names)
+            )
+            for each in np.atleast_1d(z)
+        ]
+        return np.concatenate(at, axis=1)
     corners, depth = _corners(lags, z, shift)
     table = load_table()["stress"]
     # paper Eq. 20 (load 3) and Eq. 21 (load 1), with the factor 1/(2 pi) that is not printed
@@ -215,7 +234,7 @@ def displacement_coefficients(
     component, load
         Directions of the displacement and of the traction on the body: 1, 2 or 3 (> 0 into the body).
     z
-        Depth >= 0 in the unit of hx; 0 in plane strain, where u is zero at |x| = hy/2 along the load.
+        Depth >= 0 in the unit of hx. Where loads repeat 0, and u along the load is zero at |x| = period hy/2.
 
     Returns
     -------
@@ -234,6 +253,9 @@ def displacement_coefficients(
     if lags.period == 1:
         reference = lags.hy / 2
         return line.displacement(lags.corners()[0], nu, reference, component=component, load=load)[:, None]
+    if lags.period > 1:
+        alone = partial(displacement_coefficients, nu=nu, component=component, load=load)
+        return _repeated(lags, np.zeros((), int), FURTHER[0], alone)
     corners, depth = _corners(lags, z)
     rows = load_table()["displacement"][f"{component},F{load}"]
     return _corner_sum(rows, nu, corners, depth)[0] / (2 * pi)  # paper Eq. 5, D_ij

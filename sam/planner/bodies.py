@@ -139,9 +139,15 @@ class Bodies:
             return self.smooth_demand
         plastic = None
         if scene.loading.approach is None:
-            plastic = self._plastic_demand(min(patch.extent) / 2 / FARTHEST)
+            widest = patch.extent[0] if self._line else min(patch.extent)
+            plastic = self._plastic_demand(widest / 2 / FARTHEST)
         reach = 0.0 if plastic is None else plastic.reach
-        return RoughDemand(patch, scene.grid, scene.body.plasticity, film, reach)
+        return RoughDemand(patch, scene.grid, scene.body.plasticity, film, reach, self._line)
+
+    @property
+    def _line(self) -> bool:
+        """Whether the counter-body is a cylinder."""
+        return self.scene.counterbody is not None and self.scene.counterbody.length is not None
 
     @cached_property
     def smooth_demand(self) -> GridDemand:

@@ -274,10 +274,7 @@ def check_bodies(bodies: Bodies) -> None:
     """Refuse the scene of some bodies, see `check`."""
     scene = bodies.scene
     plasticity, other = scene.body.plasticity, scene.counterbody
-    if scene.grid is not None and scene.grid.periodic is not None:
-        raise UnsupportedScene(f'grid.periodic = "{scene.grid.periodic}": not yet solved, leave it out')
-    if other is not None and other.length is not None and scene.patch_surface is not None:
-        raise UnsupportedScene('counterbody.shape = "cylinder" on a rough surface: not yet solved')
+    _check_periodic(scene)
     _check_coating(scene)
     if other is not None and other.radii is None and min(bodies.axes) == 0.0:
         raise UnsupportedScene(
@@ -308,6 +305,19 @@ def check_bodies(bodies: Bodies) -> None:
         raise UnsupportedScene(
             f"grid.extent = {extent}: {layers:.3g} layers as thick as a cell, at most {MOST_LAYERS} are "
             f"allowed: raise it, or give grid.layers and grid.depth"
+        )
+
+
+def _check_periodic(scene: Scene) -> None:
+    grid, other = scene.grid, scene.counterbody
+    if grid is not None and grid.periodic == "xy":
+        raise UnsupportedScene('grid.periodic = "xy": not yet solved, leave it out')
+    if other is None or other.length is None or scene.patch_surface is None or scene.body.plasticity is None:
+        return
+    if (cells := scene.patch[0])[1] > 1:
+        raise UnsupportedScene(
+            f"grid.cells = {list(cells)}: with [body.plasticity] and a rough surface below a cylinder the "
+            f"semi-analytical model allows one cell along y"
         )
 
 

@@ -190,12 +190,14 @@ class Scene(Section):
         patch, axis = 'grid.periodic = "xy"', 'counterbody.shape = "cylinder"'
         summits = 'counterbody.shape = "flat", whose summits or those of the body repeat'
         datum = f"a force with {axis}: the approach of a line contact has no absolute value"
+        rough = has("surface") or has("counterbody.surface")
         absent = (
             ("body.coating", has("body.coating")),
             ("loading.path", repeats and has("loading.path")),
             ("friction.path", line and has("friction.path")),
+            ("loading.path", line and rough and has("loading.path")),
+            ("grid.border", line and at("grid.border") == "relief"),
         )
-        smooth = line and not (has("surface") or has("counterbody.surface"))
         cells, swept = at("grid.cells"), at("solver.operator") == "swept"
         rows = cells[1] if isinstance(cells, list | tuple) and len(cells) == 2 else 0
         loop, plastic = at("solver.method") == "paper", has("body.plasticity")
@@ -210,11 +212,12 @@ class Scene(Section):
                 "grid.border",
                 f'"free" with {patch}: it has no border',
             ),
+            (line and rough and rows > 1 and not along, "grid.periodic", f'"y" with {axis} on cells along y'),
             (along and not line, "grid.periodic", f'"y" only together with {axis}'),
             (repeats and line, "grid.periodic", f'"y" with {axis}'),
             (line and has("loading.approach"), "loading.approach", datum),
             (
-                smooth and rows > 1,
+                line and not rough and rows > 1,
                 "grid.cells",
                 f"one cell along y with a smooth {axis}: all is the same there",
             ),
