@@ -312,7 +312,11 @@ def no_contact(gap0: Array, given: float | Approach = 0.0) -> Contact:
 
 # cells in the contact radius; with fewer the largest pressure is off by up to 4 %, from here on by 1 %
 FEWEST_CELLS = 3.0
-FEWEST_IN_SPOT = round(pi * FEWEST_CELLS**2)
+
+
+def fewest_in_spot(pressure: Array) -> int:
+    """Cells that a spot of a pressure, (nx, ny), needs: of a circle, or in a row."""
+    return round(pi * FEWEST_CELLS**2) if pressure.shape[1] > 1 else round(2 * FEWEST_CELLS)
 
 
 def fit_of(contact: Contact, rough: bool = False, line: bool = False) -> Status:
@@ -325,7 +329,7 @@ def fit_of(contact: Contact, rough: bool = False, line: bool = False) -> Status:
     if not touching.any():
         return Status.CONVERGED
     if rough:
-        return Status.CONVERGED if touching.sum() >= FEWEST_IN_SPOT else Status.UNDER_RESOLVED
+        return Status.CONVERGED if touching.sum() >= fewest_in_spot(touching) else Status.UNDER_RESOLVED
     if at_edge(touching, line):
         return Status.CONTACT_AT_GRID_EDGE
     across = [touching.any(axis=1 - axis).sum() for axis in range(1 if line else 2)]

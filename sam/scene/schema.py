@@ -195,8 +195,6 @@ class Scene(Section):
             ("body.coating", has("body.coating")),
             ("loading.path", repeats and has("loading.path")),
             ("friction.path", line and has("friction.path")),
-            ("loading.path", line and rough and has("loading.path")),
-            ("grid.border", line and at("grid.border") == "relief"),
         )
         cells, swept = at("grid.cells"), at("solver.operator") == "swept"
         rows = cells[1] if isinstance(cells, list | tuple) and len(cells) == 2 else 0
@@ -213,6 +211,12 @@ class Scene(Section):
                 f'"free" with {patch}: it has no border',
             ),
             (line and rough and rows > 1 and not along, "grid.periodic", f'"y" with {axis} on cells along y'),
+            (
+                line and rough and has("loading.path"),
+                "loading.path",
+                f"with {axis} and a rough surface {NOT_YET}",
+            ),
+            (line and at("grid.border") == "relief", "grid.border", f'"free" with {axis}'),
             (along and not line, "grid.periodic", f'"y" only together with {axis}'),
             (repeats and line, "grid.periodic", f'"y" with {axis}'),
             (line and has("loading.approach"), "loading.approach", datum),
