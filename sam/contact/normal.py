@@ -329,7 +329,9 @@ def fit_of(contact: Contact, rough: bool = False, line: bool = False) -> Status:
     if not touching.any():
         return Status.CONVERGED
     if rough:
-        return Status.CONVERGED if touching.sum() >= fewest_in_spot(touching) else Status.UNDER_RESOLVED
+        return (
+            Status.CONVERGED if touching.sum() >= fewest_in_spot(contact.pressure) else Status.UNDER_RESOLVED
+        )
     if at_edge(touching, line):
         return Status.CONTACT_AT_GRID_EDGE
     across = [touching.any(axis=1 - axis).sum() for axis in range(1 if line else 2)]

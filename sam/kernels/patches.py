@@ -162,11 +162,16 @@ def _corners(lags: Lags, z: ArrayLike, shift: tuple[float, float] = (0.0, 0.0)) 
     return Corners((x + shift[0])[:, None], (y + shift[1])[None, :], depth), depth
 
 
-def _repeated(lags: Lags, odd: Array, further: Sequence[int], alone: Callable[[Lags], Array]) -> Array:
-    """Coefficients of a cell that repeats along y; alone: those of one that does not, or of a strip."""
-    plane = alone(replace(lags, ny=1, hy=lags.period * lags.hy, period=1))
+def apart(lags: Lags) -> tuple[Lags, Lags]:
+    """Of cells that repeat along y: lags of one alone in x, as far as cells are felt, and of a strip."""
     near = min(lags.nx, ceil(line.BESIDE * lags.period * lags.hy / lags.hx) + 1)
-    space = replace(lags, nx=near, period=0)
+    return replace(lags, nx=near, period=0), replace(lags, ny=1, hy=lags.period * lags.hy, period=1)
+
+
+def repeated(lags: Lags, odd: Array, further: Sequence[int], alone: Callable[[Lags], Array]) -> Array:
+    """Coefficients of a cell that repeats along y; alone: those of one that does not, or of a strip."""
+    space, strip = apart(lags)
+    plane = alone(strip)
     found = line.repeated(lambda ny: alone(replace(space, ny=ny)), plane, lags.period, odd=odd, up_to=further)
     return found[..., np.arange(lags.ny) % lags.period]
 
@@ -205,7 +210,7 @@ def stress_coefficients(
     if lags.period > 1:
         odd = np.array([[parity(name, load)[1] < 0] for name in names])
         at = [
-            _repeated(
+            repeated(
                 lags, odd, FURTHER[1], partial(stress_coefficients, z=each, nu=nu, load=load, names=names)
             )
             for each in np.atleast_1d(z)
@@ -255,7 +260,7 @@ def displacement_coefficients(
         return line.displacement(lags.corners()[0], nu, reference, component=component, load=load)[:, None]
     if lags.period > 1:
         alone = partial(displacement_coefficients, nu=nu, component=component, load=load)
-        return _repeated(lags, np.zeros((), int), FURTHER[0], alone)
+        return repeated(lags, np.zeros((), int), FURTHER[0], alone)
     corners, depth = _corners(lags, z)
     rows = load_table()["displacement"][f"{component},F{load}"]
     return _corner_sum(rows, nu, corners, depth)[0] / (2 * pi)  # paper Eq. 5, D_ij

@@ -274,7 +274,8 @@ def check_bodies(bodies: Bodies) -> None:
     """Refuse the scene of some bodies, see `check`."""
     scene = bodies.scene
     plasticity, other = scene.body.plasticity, scene.counterbody
-    _check_periodic(scene)
+    if scene.grid is not None and scene.grid.periodic == "xy":
+        raise UnsupportedScene('grid.periodic = "xy": not yet solved, leave it out')
     _check_coating(scene)
     if other is not None and other.radii is None and min(bodies.axes) == 0.0:
         raise UnsupportedScene(
@@ -305,19 +306,6 @@ def check_bodies(bodies: Bodies) -> None:
         raise UnsupportedScene(
             f"grid.extent = {extent}: {layers:.3g} layers as thick as a cell, at most {MOST_LAYERS} are "
             f"allowed: raise it, or give grid.layers and grid.depth"
-        )
-
-
-def _check_periodic(scene: Scene) -> None:
-    grid, other = scene.grid, scene.counterbody
-    if grid is not None and grid.periodic == "xy":
-        raise UnsupportedScene('grid.periodic = "xy": not yet solved, leave it out')
-    if other is None or other.length is None or scene.patch_surface is None or scene.body.plasticity is None:
-        return
-    if (cells := scene.patch[0])[1] > 1:
-        raise UnsupportedScene(
-            f"grid.cells = {list(cells)}: with [body.plasticity] and a rough surface below a cylinder the "
-            f"semi-analytical model allows one cell along y"
         )
 
 

@@ -64,7 +64,9 @@ def first_extent(
     exceeds = yielding(peak.mises, limit[:, None])
     if anywhere:
         layers = _layers(np.flatnonzero(exceeds.any(axis=1)), grid)
-        return Extent(or_whole(around(peak.contact.pressure > 0), grid), layers)
+        box = around(peak.contact.pressure > 0)
+        box = replace(box, j0=0, ny=grid.ny) if grid.line else box  # no end along y
+        return Extent(or_whole(box, grid), layers)
     if not peak.contact.pressure.any():
         return _about_zone(exceeds, grid)
     box = around(peak.contact.pressure > 0)

@@ -210,7 +210,11 @@ def snapshot(model: Model, record: Progressed, name: str, trial: Trial) -> Snaps
     # the largest plastic strain; cells hold means
     top, interval = None, model.strength.kinks.interval(grid.depths[:layers])
     if material.peeq.any():
-        centres = at_centres(material.peeq, model.faces(extent), interval)
+        peeq = material.peeq
+        if grid.line:  # no end along y
+            highest = int(peeq.max(axis=(0, 1)).argmax())
+            peeq = np.roll(peeq, window.ny // 2 - highest, axis=2)
+        centres = at_centres(peeq, model.faces(extent), interval)
         top = largest(centres, grid.depths[:layers], interval)
 
     # the cells of the box in the row of the largest pressure, where that need not be at the origin

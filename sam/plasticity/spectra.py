@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from sam.arrays import Array
 from sam.contact.convolution import Counters, Transforms, real_spectrum
 from sam.kernels.eigenstrain import EXCHANGED, surface_displacement_coefficients
-from sam.kernels.layer_stress import CornerFunctions, LayerStress, four_points, mesh
+from sam.kernels.layer_stress import CornerFunctions, LayerStress, four_points, functions_of, mesh
 from sam.kernels.patches import ODD_X, ODD_Y, Cuboids, Lags, stress_coefficients
 from sam.kernels.store import kept
 from sam.plasticity.images import PeriodImages
@@ -73,16 +73,17 @@ class CellMeans(CornerFunctions):
         return out
 
 
-class CellSpectra(CellMeans):
+class CellSpectra(CornerFunctions):
     """Their transforms of so many wave numbers, see `real_spectrum`."""
 
     def __init__(self, lags: Lags):
-        super().__init__(lags)
+        self.means = functions_of(lags, CellMeans)
+        self.x, self.y, self.line, self.shape = self.means.x, self.means.y, self.means.line, lags.shape
         self.itself = np.ones((lags.nx + 1, lags.ny + 1))
 
     def planes(self, corners: Array, odd: tuple[int, int]) -> Array:
         """(..., nx + 1, ny + 1)."""
-        return np.asarray(real_spectrum(super().planes(corners, odd), self.shape, odd))
+        return np.asarray(real_spectrum(self.means.planes(corners, odd), self.shape, odd))
 
 
 def _first(lags: Lags, counts: tuple[int, int]) -> Lags:
@@ -101,10 +102,22 @@ def mean_stress_of_load(cuboids: Cuboids, load: int = 3) -> Array:
     kernel = _with_lag_before(far.mean(axis=2), ODD_X ^ int(load == 1), ODD_Y)
     _plane_mean(kernel[..., 1:2] if lags.period == 1 else kernel, out)
     near = min(NEAR, nx), min(NEAR, ny)
-    few = _first(lags, near)
+    few = replace(_first(lags, near), period=lags.period == 1)
     shifts = [(lags.hx * x / 2, lags.hy * y / 2) for x in GAUSS for y in GAUSS]
     at = [stress_coefficients(few, depths, nu, load=load, shift=shift) for shift in shifts]
-    out[..., : near[0], : near[1]] = np.mean(at, axis=0).reshape(*shape, *near).mean(axis=2)
+    means = np.mean(at, axis=0).reshape(*shape, *near).mean(axis=2)
+    if lags.period < 2:
+        out[..., : near[0], : near[1]] = means
+        return out
+    # of the cell alone; what its repetitions add is smooth over a cell
+    space, alone = replace(few, nx=near[0] + 1, ny=near[1] + 1, period=0), np.empty_like(means)
+    far = stress_coefficients(space, depths, nu, load=load).reshape(*shape, *space.shape)
+    _plane_mean(_with_lag_before(far.mean(axis=2), ODD_X ^ int(load == 1), ODD_Y), alone)
+    means, sign = means - alone, np.where(ODD_Y, -1.0, 1.0).reshape(6, 1, 1, 1)
+    for k in range(near[1]):
+        out[..., : near[0], k % lags.period :: lags.period] += means[..., k : k + 1]
+        if k:
+            out[..., : near[0], -k % lags.period :: lags.period] += sign * means[..., k : k + 1]
     return out
 
 
@@ -184,7 +197,7 @@ class BoxSpectra:
         """Spectra of the means over the cells of some layers by strain in some, with their sign."""
         faces, lags = self.cuboids.depths, self.cuboids.lags
         some = np.append(faces[:-1][sources], faces[1:][sources][-1])
-        square = lags.nx == lags.ny and lags.hx == lags.hy
+        square = lags.nx == lags.ny and lags.hx == lags.hy and not lags.period
         return LayerStress(
             *(CellSpectra(lags), _points(faces)[observed], some, self.cuboids.nu),
             scale=SIGN,
@@ -231,7 +244,7 @@ class BoxSpectra:
     @cached_property
     def own_stress(self) -> Array:
         """Stress/mu of plastic strain in its own cell, (6, 6, n_layers)."""
-        faces, means = self.cuboids.depths, CellMeans(_first(self.cuboids.lags, (1, 1)))
+        faces, means = self.cuboids.depths, functions_of(_first(self.cuboids.lags, (1, 1)), CellMeans)
         stress = LayerStress(means, _points(faces), faces, self.cuboids.nu)
         out = np.zeros((len(faces) - 1, 36, len(faces) - 1, 1, 1))
         for i, row in enumerate(out):
@@ -293,6 +306,7 @@ class BoxOperator:
     ):
         lags = box.lags
         self.transforms = Transforms(lags.shape, mirror, single=single, counters=counters)
+        self.transforms.wraps = lags.period == lags.ny > 1
         self.shape, self.layers = lags.shape, box.layers
         self.mu, self.hx, self.counters = mu, lags.hx, counters
         # rounded, so that equal boxes in other units are one entry
