@@ -472,7 +472,11 @@ def _by_parity(field: Real, odd: Parity, *, n: int, half: int, axis: int, invers
 
 
 class Transforms:
-    """Transforms of fields on a box, mirrored in x (with y) and in y; half: the N of the text."""
+    """Transforms of fields on a box, mirrored in x (with y) and in y; half: the N of the text; wraps: the box
+    repeats along y without a gap, which changes no transform.
+    """
+
+    wraps = False
 
     def __init__(
         self, cells: tuple[int, int], mirror: tuple[bool, bool], *, single: bool, counters: Counters

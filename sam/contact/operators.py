@@ -71,8 +71,36 @@ class HalfSpaces:
         """The same bodies for cells twice as large."""
         return self
 
+    def scale(self, coefficients: Array, aspect: float) -> float:
+        """Displacement of p_hat = 1 in its own cell, in which residuals are told."""
+        return float(coefficients[0, 0])
+
 
 HALF_SPACES = HalfSpaces()
+
+
+class RepeatedAlongY(HalfSpaces):
+    """The same below pressures that repeat along y after the grid, the bodies of a line contact."""
+
+    def normal(self, nx: int, ny: int, aspect: float) -> Array:
+        """As of half-spaces, zero at |x| = ny aspect/2 below a line force at x = 0."""
+        return displacement_coefficients(Lags(nx, ny, 1.0, aspect, period=ny), nu=0.0)
+
+    def tangential(self, nx: int, ny: int, aspect: float) -> Array:
+        """As of half-spaces."""
+        return displacement_coefficients(Lags(nx, ny, 1.0, aspect, period=ny), nu=0.0, component=3, load=1)
+
+    def scale(self, coefficients: Array, aspect: float) -> float:
+        """Of one cell that does not repeat, which depends on no reference."""
+        return float(HALF_SPACES.normal(1, 1, aspect)[0, 0])
+
+
+LINE = RepeatedAlongY()
+
+
+def half_spaces(grid: CellGrid) -> HalfSpaces:
+    """The homogeneous bodies below a grid."""
+    return LINE if grid.line else HALF_SPACES
 
 
 class CoatedBodies(HalfSpaces):
@@ -170,7 +198,7 @@ class SurfaceOperators:
         self.coupling = np.broadcast_to(coupling, shape) if np.any(coupling) else None
         self.whole = Window(0, 0, *shape)
         self.coefficients = bodies.normal(*shape, aspect)
-        self.self_influence = float(self.coefficients[0, 0])
+        self.self_influence = bodies.scale(self.coefficients, aspect)
 
     def with_coupling(self, coupling: float | Array) -> SurfaceOperators:
         """The operators of the same cells with another coefficient of friction, which share the rest."""
@@ -258,7 +286,7 @@ def half_space_kernel(grid: CellGrid, nu: float) -> Kernel:
     """mu times the displacement of the surface of a half-space, lengths in hx. Paper Eq. 5."""
 
     def kernel(nx: int, ny: int, *, component: int, load: int) -> Array:
-        lags = Lags(nx, ny, 1.0, grid.hy / grid.hx)
+        lags = Lags(nx, ny, 1.0, grid.hy / grid.hx, grid.period)
         return displacement_coefficients(lags, nu, component=component, load=load)
 
     return kernel

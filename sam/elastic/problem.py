@@ -12,7 +12,7 @@ import numpy as np
 from sam.arrays import Array
 from sam.contact.convolution import Counters
 from sam.contact.normal import Contact, Search, around, no_contact, solve_contact
-from sam.contact.operators import HALF_SPACES, CoatedPair, SurfaceOperators
+from sam.contact.operators import CoatedPair, SurfaceOperators, half_spaces
 from sam.contact.stress import DEPTHS_AT_ONCE
 from sam.elastic.misfit import MisfitSphere
 from sam.grid.cells import CellGrid, Room, Sides, Window
@@ -240,7 +240,7 @@ class ElasticProblem:
             return self.untouched(load, gap)
         mu = slip.coefficient if coefficient is None else coefficient
         coupling = load.sign * (slip.coupling * mu)
-        bodies = HALF_SPACES if plan.coated is None else plan.coated.bodies(grid)
+        bodies = half_spaces(grid) if plan.coated is None else plan.coated.bodies(grid)
         if plan.given is not None:
             operators = SurfaceOperators(
                 grid.shape, grid.hy / grid.hx, self.counters, coupling=coupling, bodies=bodies

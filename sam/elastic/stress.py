@@ -28,7 +28,7 @@ def stress_at(state: Loaded, depths: Array, window: Window) -> Array:
         tractions[1] = traction
     stress = stresses(
         tractions,
-        (problem.plan.grid.hx, problem.plan.grid.hy),
+        (problem.plan.grid.hx, problem.plan.grid.hy, problem.plan.grid.period),
         depths,
         window,
         nu=problem.plan.pair.body.poisson,

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sam.arrays import Array
+from sam.arrays import Array, Mask
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,8 @@ class Room:
 @dataclass(frozen=True)
 class CellGrid:
     """nx x ny cells of hx x hy in m about the origin. depths: (nz,) of output in m; faces: (nz +
-    1,) of layers, or None; border: cells at each end that count for no maximum; room: as chosen.
+    1,) of layers, or None; border: cells at each end that count for no maximum; room: as chosen;
+    line: all repeats along y, of a line contact, with one cell the same at every y.
     """
 
     nx: int
@@ -54,6 +55,12 @@ class CellGrid:
     faces: Array | None = None
     border: tuple[int, int] = (0, 0)
     room: Room = Room()
+    line: bool = False
+
+    @property
+    def period(self) -> int:
+        """Cells along y after which all repeats, 0 if it does not."""
+        return self.ny if self.line else 0
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -99,6 +106,11 @@ class CellGrid:
         columns = 2 - self.nx % 2
         first = (self.nx - columns) // 2
         return slice(first, first + columns)
+
+
+def at_edge(cells: Mask, line: bool = False) -> bool:
+    """Whether outermost cells are true, of (nx, ny); line: along y there are none, see `CellGrid`."""
+    return bool(cells[[0, -1]].any() or (not line and cells[:, [0, -1]].any()))
 
 
 def _centres(n: int, h: float) -> Array:

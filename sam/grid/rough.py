@@ -103,13 +103,16 @@ def _heights(surface: Surface, cells: tuple[int, int], extent: tuple[float, floa
 
 @dataclass(frozen=True)
 class RoughDemand:
-    """What the grid of a rough scene is chosen from; reach: of `point_load_reach` in m."""
+    """What the grid of a rough scene is chosen from; reach: of `point_load_reach` in m; line: below a
+    cylinder, all repeats along y.
+    """
 
     patch: RoughPatch
     given: Grid | None
     plasticity: Plasticity | None
     film: float | None = None
     reach: float = 0.0
+    line: bool = False
 
     def grid(self, room: Room) -> CellGrid:
         """The cells of the patch; depths that are not given are fine near the surface, for small contacts."""
@@ -118,7 +121,7 @@ class RoughDemand:
         hx, hy = lx / nx, ly / ny
         depths = given_depths(self.given)
         if depths is None:
-            cell, deepest = min(hx, hy), DEPTH_SHARE * min(lx, ly)
+            cell, deepest = hx if ny == 1 else min(hx, hy), DEPTH_SHARE * (lx if self.line else min(lx, ly))
             chosen = (
                 _depths(cell, deepest)
                 if plasticity is None
@@ -126,9 +129,10 @@ class RoughDemand:
             )
             depths = chosen if self.film is None else depths_with_film(chosen, self.film)
         border = (0, 0) if patch.relief else border_cells((nx, ny))
-        if plasticity is not None:
-            return CellGrid(nx, ny, hx, hy, (depths[1:] + depths[:-1]) / 2, depths, border, room)
-        return CellGrid(nx, ny, hx, hy, depths, border=border, room=room)
+        border = (border[0], 0) if self.line else border
+        faces = None if plasticity is None else depths
+        depths = depths if faces is None else (faces[1:] + faces[:-1]) / 2
+        return CellGrid(nx, ny, hx, hy, depths, faces, border, room, self.line)
 
 
 def _depths(cell: float, deepest: float) -> Array:

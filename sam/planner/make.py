@@ -177,6 +177,8 @@ def track_of(scene: Scene, axes: tuple[float, float]) -> Track:
     curvatures = (0.0, 0.0) if plane else None
     if other.radii is not None:
         curvatures = 1 / other.radii[0], 1 / other.radii[1]
+    elif other.length is not None:
+        curvatures = 1 / stated(other.radius), 0.0
     carries = 1.0
     if plane:  # summits carry it, of the counter-body alone or of both
         carries = stated(strip).slip if scene.surface is None else 0.0
@@ -272,10 +274,8 @@ def check_bodies(bodies: Bodies) -> None:
     """Refuse the scene of some bodies, see `check`."""
     scene = bodies.scene
     plasticity, other = scene.body.plasticity, scene.counterbody
-    if scene.grid is not None and scene.grid.periodic is not None:
-        raise UnsupportedScene(f'grid.periodic = "{scene.grid.periodic}": not yet solved, leave it out')
-    if other is not None and other.shape == "cylinder":
-        raise UnsupportedScene('counterbody.shape = "cylinder": not yet solved')
+    if scene.grid is not None and scene.grid.periodic == "xy":
+        raise UnsupportedScene('grid.periodic = "xy": not yet solved, leave it out')
     _check_coating(scene)
     if other is not None and other.radii is None and min(bodies.axes) == 0.0:
         raise UnsupportedScene(

@@ -237,7 +237,11 @@ def snapshot(model: Model, record: Progressed, name: str, trial: Trial) -> Snaps
     # the largest plastic strain; cells hold means
     top, interval = None, model.strength.kinks.interval(grid.depths[:layers])
     if material.peeq.any():
-        centres = at_centres(material.peeq, model.faces(extent), interval)
+        peeq = material.peeq
+        if grid.line:  # no end along y
+            highest = int(peeq.max(axis=(0, 1)).argmax())
+            peeq = np.roll(peeq, window.ny // 2 - highest, axis=2)
+        centres = at_centres(peeq, model.faces(extent), interval)
         top = largest(centres, grid.depths[:layers], interval)
 
     # the cells of the box in the row of the largest pressure, where that need not be at the origin
@@ -403,7 +407,7 @@ class Strained:
         """Its cuboids with the lags to another window of the grid, in the unit of hx."""
         lags, cells = Convolution.lags_needed(self.window, observed), self.cuboids.lags
         faces = tuple(float(z / cells.hx) for z in self.cuboids.faces)
-        return replace(self.cuboids, lags=Lags(*lags, 1.0, cells.hy / cells.hx), faces=faces)
+        return replace(self.cuboids, lags=Lags(*lags, 1.0, cells.hy / cells.hx, cells.period), faces=faces)
 
     def onto(self, observed: Window, component: int, counters: Counters) -> Convolution:
         """Its strain -> the displacement of a window of the surface, in hx. Paper Eq. 6."""

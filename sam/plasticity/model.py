@@ -16,7 +16,7 @@ import numpy as np
 from sam.arrays import Array, Mask
 from sam.contact.box import BoxContact
 from sam.contact.convolution import Convolution, Counters
-from sam.contact.operators import SurfaceOperators
+from sam.contact.operators import SurfaceOperators, half_spaces
 from sam.contact.stress import surface_strain
 from sam.elastic.problem import ElasticProblem, Plan
 from sam.grid.cells import CellGrid, Window
@@ -184,12 +184,14 @@ class Model:
         grid, factor = self.grid, self.plan.slip.coupling
         if surface is None:
             aspect, coupling = grid.hy / grid.hx, factor * coefficient
-            return SurfaceOperators(grid.shape, aspect, self.counters, coupling=coupling)
+            return SurfaceOperators(
+                grid.shape, aspect, self.counters, coupling=coupling, bodies=half_spaces(grid)
+            )
         return surface.with_coupling(factor * coefficient) if factor else surface
 
     def cuboids(self, extent: Extent) -> Cuboids:
         """The cells of a box, in m."""
-        lags = Lags(extent.window.nx, extent.window.ny, self.grid.hx, self.grid.hy)
+        lags = Lags(*extent.window.shape, self.grid.hx, self.grid.hy, self.grid.period)
         return Cuboids(lags, tuple(self.faces(extent).tolist()), self.plan.pair.body.poisson)
 
     def operator(self, extent: Extent, *, once: Counters | None = None) -> BoxOperator:
@@ -206,7 +208,7 @@ class Model:
             single=self.tolerance >= SINGLE,
             mirror=self._mirror(extent.window),
             exchange=exchange,
-            swept=box.swept,
+            swept=0.0 if self.grid.line else box.swept,
         )
 
     def _mirror(self, window: Window) -> tuple[bool, bool]:

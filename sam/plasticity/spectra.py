@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from sam.arrays import Array
 from sam.contact.convolution import Counters, Transforms, real_spectrum
 from sam.kernels.eigenstrain import EXCHANGED, surface_displacement_coefficients
-from sam.kernels.layer_stress import CornerFunctions, LayerStress, four_points, mesh
+from sam.kernels.layer_stress import CornerFunctions, LayerStress, four_points, functions_of, mesh
 from sam.kernels.patches import ODD_X, ODD_Y, Cuboids, Lags, stress_coefficients
 from sam.kernels.store import kept
 from sam.plasticity.images import PeriodImages
@@ -57,32 +57,33 @@ class CellMeans(CornerFunctions):
 
     def __init__(self, lags: Lags):
         self.shape, self.near = lags.shape, (min(NEAR, lags.nx), min(NEAR, lags.ny))
+        self.line = lags.period == 1
         points = four_points((lags.hx * GAUSS[1] / 2, lags.hy * GAUSS[1] / 2))
-        super().__init__(
-            lags.shape,
-            mesh(replace(lags, nx=lags.nx + 1, ny=lags.ny + 1), first=-1),
-            mesh(_first(lags, self.near), points),
-        )
+        far = mesh(replace(lags, nx=lags.nx + 1, ny=lags.ny + 1), first=-1)
+        if self.line:
+            far, points = (far[0][..., 1:3], far[1][..., 1:3]), [points[0], points[2]]
+        super().__init__(lags.shape, far, mesh(_first(lags, self.near), points))
 
     def planes(self, corners: Array, odd: tuple[int, int]) -> Array:
         """Means over the cells, (..., nx, ny)."""
         far, near = self._differences(corners)
         out = np.empty((*corners.shape[:-1], *self.shape))
-        _plane_mean(far[..., 0, :, :], out)
+        _plane_mean(far[..., 0, :, :1] if self.line else far[..., 0, :, :], out)
         np.mean(near[..., :-1, :-1], axis=-3, out=out[..., : self.near[0], : self.near[1]])
         return out
 
 
-class CellSpectra(CellMeans):
+class CellSpectra(CornerFunctions):
     """Their transforms of so many wave numbers, see `real_spectrum`."""
 
     def __init__(self, lags: Lags):
-        super().__init__(lags)
+        self.means = functions_of(lags, CellMeans)
+        self.x, self.y, self.line, self.shape = self.means.x, self.means.y, self.means.line, lags.shape
         self.itself = np.ones((lags.nx + 1, lags.ny + 1))
 
     def planes(self, corners: Array, odd: tuple[int, int]) -> Array:
         """(..., nx + 1, ny + 1)."""
-        return np.asarray(real_spectrum(super().planes(corners, odd), self.shape, odd))
+        return np.asarray(real_spectrum(self.means.planes(corners, odd), self.shape, odd))
 
 
 def _first(lags: Lags, counts: tuple[int, int]) -> Lags:
@@ -98,17 +99,34 @@ def mean_stress_of_load(cuboids: Cuboids, load: int = 3) -> Array:
     further = replace(lags, nx=nx + 1, ny=ny + 1)
     far = stress_coefficients(further, depths, nu, load=load).reshape(*shape, *further.shape)
     out = np.empty((6, len(points), nx, ny))
-    _plane_mean(_with_lag_before(far.mean(axis=2), ODD_X ^ int(load == 1), ODD_Y), out)
+    kernel = _with_lag_before(far.mean(axis=2), ODD_X ^ int(load == 1), ODD_Y)
+    _plane_mean(kernel[..., 1:2] if lags.period == 1 else kernel, out)
     near = min(NEAR, nx), min(NEAR, ny)
-    few = _first(lags, near)
+    few = replace(_first(lags, near), period=lags.period == 1)
     shifts = [(lags.hx * x / 2, lags.hy * y / 2) for x in GAUSS for y in GAUSS]
     at = [stress_coefficients(few, depths, nu, load=load, shift=shift) for shift in shifts]
-    out[..., : near[0], : near[1]] = np.mean(at, axis=0).reshape(*shape, *near).mean(axis=2)
+    means = np.mean(at, axis=0).reshape(*shape, *near).mean(axis=2)
+    if lags.period < 2:
+        out[..., : near[0], : near[1]] = means
+        return out
+    # of the cell alone; what its repetitions add is smooth over a cell
+    space, alone = replace(few, nx=near[0] + 1, ny=near[1] + 1, period=0), np.empty_like(means)
+    far = stress_coefficients(space, depths, nu, load=load).reshape(*shape, *space.shape)
+    _plane_mean(_with_lag_before(far.mean(axis=2), ODD_X ^ int(load == 1), ODD_Y), alone)
+    means, sign = means - alone, np.where(ODD_Y, -1.0, 1.0).reshape(6, 1, 1, 1)
+    for k in range(near[1]):
+        out[..., : near[0], k % lags.period :: lags.period] += means[..., k : k + 1]
+        if k:
+            out[..., : near[0], -k % lags.period :: lags.period] += sign * means[..., k : k + 1]
     return out
 
 
 def _plane_mean(kernel: Array, out: Array) -> None:
-    """Mean over the cell in x and y, K + (d_x^2 K + d_y^2 K)/24, from lags -1 .. n at lags 0 .. n - 1."""
+    """Mean over the cell in x and y, K + (d_x^2 K + d_y^2 K)/24, from lags -1 .. n at lags 0 .. n - 1; of
+    plane strain from one lag in y.
+    """
+    if kernel.shape[-1] == 1:
+        kernel = np.repeat(kernel, 3, axis=-1)
     (nx, ny), row, flat = out.shape[-2:], kernel.shape[-1], kernel.reshape(-1)
     # sums of neighbours in one go; those over the border are not kept
     pairs = flat[row:] + flat[1 : 1 - row]  # one further in x and one further in y
@@ -163,7 +181,7 @@ class BoxSpectra:
         """The matrices between all layers, (waves, 6 layers, 6 layers)."""
         layers, exchange = self.cuboids.layers, not isinstance(self.stored, slice)
         out = np.empty(shape, dtype=self.real)
-        spectrum = np.empty((36, layers, *np.add(self.half, 1)), dtype=self.real)
+        spectrum = np.zeros((36, layers, *np.add(self.half, 1)), dtype=self.real)
         rows = spectrum.reshape(6, 6 * layers, *spectrum.shape[2:])
         stress = self._layer_stress(slice(None), slice(None))
         for i in range(layers):
@@ -179,7 +197,7 @@ class BoxSpectra:
         """Spectra of the means over the cells of some layers by strain in some, with their sign."""
         faces, lags = self.cuboids.depths, self.cuboids.lags
         some = np.append(faces[:-1][sources], faces[1:][sources][-1])
-        square = lags.nx == lags.ny and lags.hx == lags.hy
+        square = lags.nx == lags.ny and lags.hx == lags.hy and not lags.period
         return LayerStress(
             *(CellSpectra(lags), _points(faces)[observed], some, self.cuboids.nu),
             scale=SIGN,
@@ -226,9 +244,9 @@ class BoxSpectra:
     @cached_property
     def own_stress(self) -> Array:
         """Stress/mu of plastic strain in its own cell, (6, 6, n_layers)."""
-        faces, means = self.cuboids.depths, CellMeans(_first(self.cuboids.lags, (1, 1)))
+        faces, means = self.cuboids.depths, functions_of(_first(self.cuboids.lags, (1, 1)), CellMeans)
         stress = LayerStress(means, _points(faces), faces, self.cuboids.nu)
-        out = np.empty((len(faces) - 1, 36, len(faces) - 1, 1, 1))
+        out = np.zeros((len(faces) - 1, 36, len(faces) - 1, 1, 1))
         for i, row in enumerate(out):
             stress.of(i, row)
         return out.diagonal(axis1=0, axis2=2).reshape(6, 6, -1)
@@ -291,12 +309,13 @@ class BoxOperator:
     ):
         lags = box.lags
         self.transforms = Transforms(lags.shape, mirror, single=single, counters=counters)
+        self.transforms.wraps = lags.period == lags.ny > 1
         self.shape, self.layers = lags.shape, box.layers
         self.mu, self.hx, self.counters = mu, lags.hx, counters
         # rounded, so that equal boxes in other units are one entry
         aspect = float(f"{lags.hy / lags.hx:.12g}")
         in_cells = tuple(float(f"{z / lags.hx:.12g}") for z in box.faces)
-        in_cells_of_hx = Cuboids(Lags(*self.transforms.half, 1.0, aspect), in_cells, box.nu)
+        in_cells_of_hx = Cuboids(Lags(*self.transforms.half, 1.0, aspect, lags.period), in_cells, box.nu)
         self.spectra = spectra_of(
             in_cells_of_hx, single, exchange, cells=lags.shape if swept else (0, 0), error=swept
         )

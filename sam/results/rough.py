@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from sam.arrays import Array
-from sam.contact.normal import FEWEST_IN_SPOT, Contact
-from sam.grid.cells import CellGrid
+from sam.contact.normal import Contact, fewest_in_spot
+from sam.grid.cells import CellGrid, at_edge
 from sam.grid.gap import Place
 from sam.grid.rough import RoughPatch
 from sam.results.history import contact_area
@@ -108,7 +108,7 @@ class RoughRecord:
             out.append(f"{coarse}{finer}")
         if self.patch.relief and (made := in_the_fall_off(contact.pressure)):
             out.append("; ".join(filter(None, (made, self.remedies.larger_patch))))
-        if touching[[0, -1], :].any() or touching[:, [0, -1]].any():
+        if at_edge(touching, grid.line):
             words, (bx, by) = (
                 "the contact touches the edge of the grid, where the half-space is cut",
                 grid.border,
@@ -134,14 +134,15 @@ def too_few_cells(pressure: Array) -> str:
     share = np.bincount(spots.ravel(), pressure.ravel())[1:] / pressure.sum()
     judged = share >= LEAST_SHARE
     judged[spots[np.unravel_index(pressure.argmax(), pressure.shape)] - 1] = True
-    few = judged & (cells < FEWEST_IN_SPOT)
+    least = fewest_in_spot(pressure)
+    few = judged & (cells < least)
     if not few.any():
         return ""
     counts = ", ".join(map(str, sorted(cells[few], reverse=True)))
     return (
         f"too few cells in {few.sum()} of {judged.sum()} spots with {100 * LEAST_SHARE:g} % of the load or "
         f"more, or with the largest pressure ({counts} cells; together {100 * share[few].sum():.3g} % of the "
-        f"load): with fewer than {FEWEST_IN_SPOT} the largest pressure of a spot is off by some percent"
+        f"load): with fewer than {least} the largest pressure of a spot is off by some percent"
     )
 
 

@@ -118,7 +118,7 @@ def _moved(scene: Scene, grid: CellGrid, pressure: np.ndarray, friction: np.ndar
             if not field.any():
                 continue
             kernel = displacement_coefficients(
-                Lags(*lags, 1.0, grid.hy / grid.hx), body.poisson, component=component, load=load
+                Lags(*lags, 1.0, grid.hy / grid.hx, grid.period), body.poisson, component=component, load=load
             )
             signs = [parity(str(component), load)]
             out[row] += grid.hx / mu * convolution_onto(kernel[None], signs, whole, whole)(field)[0]
