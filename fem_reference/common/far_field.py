@@ -64,6 +64,27 @@ def slanted(load: tuple[float, float], body: Elastic, points: Array) -> Array:
     return u + cerruti(load[1], body, points) if load[1] else u
 
 
+def flamant(forces: tuple[float, float], body: Elastic, points: Array, datum: float) -> Array:
+    """Displacements (u_x, u_z) in plane strain of the half-space z >= 0 under the line forces P along +z and
+    Q along +x at the origin of its surface.
+
+    The integrals of `boussinesq` and `cerruti` along the line, without their infinite constants; with r^2 =
+    x^2 + z^2, t the angle from the z axis and G = E / (2 (1 + nu)):
+
+        u_x = P / (2 pi G) [ x z/r^2 - (1 - 2 nu) t ] - Q / (2 pi G) [ z^2/r^2 + 2 (1 - nu) ln(r/datum) ]
+        u_z = P / (2 pi G) [ z^2/r^2 - 2 (1 - nu) ln(r/datum) ] + Q / (2 pi G) [ x z/r^2 + (1 - 2 nu) t ]
+
+    On the surface the displacement along each force is zero at the distance `datum` (Johnson 1985, Eq. 2.19
+    and 2.22). forces: (P, Q) per length; points: x, z (2, n), not both zero. Returns (2, n).
+    """
+    (x, z), nu = points, body.poisson
+    square, angle = x**2 + z**2, np.arctan2(x, z)
+    deep, mixed, soft = z**2 / square, x * z / square, (1.0 - 2.0 * nu) * angle
+    rise = (1.0 - nu) * np.log(square / datum**2)
+    P, Q = (force * (1.0 + nu) / (np.pi * body.young) for force in forces)
+    return np.stack([P * (mixed - soft) - Q * (deep + rise), P * (deep - rise) + Q * (mixed + soft)])
+
+
 WORDS = {
     "half-space": "displacements of the point force on the outer boundary",
     "coated half-space": "displacements of the point force on the layered half-space on the outer boundary",
