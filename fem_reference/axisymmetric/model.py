@@ -24,6 +24,7 @@ from fem_reference.common.recovery import REACH, edge_radius
 from fem_reference.common.refusals import FEWEST_ELEMENTS
 from fem_reference.common.schedule import Load
 
+
 @dataclass(frozen=True)
 class Model(ContactModel):
     """The axisymmetric model of a plan.

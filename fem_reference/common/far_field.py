@@ -81,8 +81,10 @@ def flamant(forces: tuple[float, float], body: Elastic, points: Array, datum: fl
     square, angle = x**2 + z**2, np.arctan2(x, z)
     deep, mixed, soft = z**2 / square, x * z / square, (1.0 - 2.0 * nu) * angle
     rise = (1.0 - nu) * np.log(square / datum**2)
-    P, Q = (force * (1.0 + nu) / (np.pi * body.young) for force in forces)
-    return np.stack([P * (mixed - soft) - Q * (deep + rise), P * (deep - rise) + Q * (mixed + soft)])
+    down, along = (force * (1.0 + nu) / (np.pi * body.young) for force in forces)
+    return np.stack(
+        [down * (mixed - soft) - along * (deep + rise), down * (deep - rise) + along * (mixed + soft)]
+    )
 
 
 WORDS = {

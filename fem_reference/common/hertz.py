@@ -29,9 +29,10 @@ UNLOADED_RADIUS = 0.01
 class Scales:
     """Units in which a contact problem is the same, to the last digit, whatever the units of the scene.
 
-    length (m): contact radius (Hertz's of a sphere, punches), half-width (cylinder), radius (misfit sphere); displacement (m);
-    modulus (Pa): contact modulus E*. peak_force: in these units, 4/3 (sphere), pi/4 length over half-width (cylinder), 2 (punches), 1 (misfit sphere,
-    whose share of the full strain takes the place of the force) or 0.
+    length (m): contact radius (Hertz's of a sphere, punches), half-width (cylinder), radius (misfit sphere);
+    displacement (m); modulus (Pa): contact modulus E*. peak_force: in these units, 4/3 (sphere), pi/4 times
+    the length in half-widths (cylinder), 2 (punches), 1 (misfit sphere, whose share of the full strain takes
+    the place of the force) or 0.
     """
 
     length: float
@@ -89,9 +90,10 @@ def contact_radius(force: float, modulus: float, radius: float) -> float:
 def scales(scene: Scene) -> Scales:
     """Units for a sphere (a, a^2/R) or a punch (a, F/(2 E* a), Johnson 1985, Eq. 3.36), at the peak force.
 
-    For a cylinder (4 F R/(pi length E*))^(1/2), a^2/R (Eq. 4.43); for an ellipsoid R^2 = Rx Ry; for a given pressure of Hertz its own radius a, and pi a p0/(2 E*) (Eq.
-    3.42); for a misfit sphere its radius, and that times the strain at its centre. Without force both are
-    arbitrary, as nothing is deformed: see UNLOADED_RADIUS.
+    For a cylinder (a, a^2/R) with the half-width a = (4 F R/(pi length E*))^(1/2) (Eq. 4.43). For an
+    ellipsoid R^2 = Rx Ry; for a given pressure of Hertz its own radius a, and pi a p0/(2 E*) (Eq. 3.42); for
+    a misfit sphere its radius, and that times the strain at its centre. Without force both are arbitrary, as
+    nothing is deformed: see UNLOADED_RADIUS.
     """
     loading, modulus = scene.loading, contact_modulus(scene)
     if loading.misfit_sphere:

@@ -158,15 +158,13 @@ def build(plan: PlaneStrainPlan) -> Model:
     # both bodies use one mesh, each in its own coordinates, so that their surface nodes match
     solids = [PlaneSolid(mesh, elastic) for elastic in bodies.elastic]
     surface = solids[0].basis.doflocs[0, solids[0].boundary_dofs("surface", 1)]
-    candidates, line = slice(0 if plan.half else 1, surface.size - 1), 1.0 / plan.length
+    candidates = slice(0 if plan.half else 1, surface.size - 1)
     problem = LineProblem(
         solids,
         bodies.elastic,
         candidates,
         0.5 * surface[candidates] ** 2,
-        share=0.5 * line if plan.half else line,
-        line=line,
-        datum=0.5 * plan.length,
+        length=plan.length,
         material=material(bodies, plan.scales, solids[0]),
     )
     return Model(plan, problem, surface, candidates)

@@ -137,7 +137,7 @@ def check(scene: Scene) -> None:
     UnsupportedScene
         With every reason at once: key, value and what is allowed.
     """
-    loading, path, coating = scene.loading, scene.loading.path, scene.body.coating
+    loading, coating = scene.loading, scene.body.coating
     problems = shape_problems(scene, ("cylinder",), "plane-strain")
     if loading.prescribed is not None:
         words = f'{ALLOWS} a counter-body of shape "cylinder"'
@@ -152,13 +152,6 @@ def check(scene: Scene) -> None:
     for key, body in (("body", scene.body), ("counterbody", scene.counterbody)):
         problems += [] if body is None else incompressible(key, body.poisson)
     problems += running_in_problems(scene)
-    if scene.friction is not None and not scene.friction.film and not scene.constant_friction:
-        words = f'{ALLOWS} "constant"'
-        problems.append(Problem("friction.law", spelling(scene.friction.law), words))
-    for key, place in () if path is None else (("start", path.start), ("end", path.end)):
-        if place[1] != 0.0:
-            words = f"{ALLOWS} a path across the axis of the cylinder: y = 0"
-            problems.append(Problem(f"loading.path.{key}", str(list(place)), words))
     refuse(problems)
     depth = _grown(scene)[1] + 1.0 / scene.fem.cells_per_radius
     refuse(box_problems(scene, depth, "contact"))
@@ -173,7 +166,9 @@ def _grown(scene: Scene) -> tuple[float, float]:
     """Half-width of the largest contact, and depth of the uniform part, in those of Hertz."""
     units, plasticity = scales(scene), scene.body.plasticity
     peak = 0.5 * units.pressure  # p0 = E* a/(2 R), Johnson 1985, Eq. (4.44)
-    if plasticity is None or FIRST_YIELD * peak * (1.0 + scene.coefficient) <= plasticity.strength().least(0.0):
+    if plasticity is None or FIRST_YIELD * peak * (1.0 + scene.coefficient) <= plasticity.strength().least(
+        0.0
+    ):
         return 1.0, ELASTIC_DEPTH
     grown = np.pi / 4.0 * peak / (FULL * plasticity.strength().least(0.2 * units.strain))
     return max(1.0, float(grown)), PLASTIC_DEPTH * max(1.0, float(grown))

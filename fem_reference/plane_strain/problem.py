@@ -44,9 +44,8 @@ class LineProblem:
     """One body, or two whose surface nodes match, each in its own (x, z into the body).
 
     solids: the first may yield, with `material`; elastic: their constants; nodes: places in the surface of
-    the candidates, by x; gap0: (n_candidates,) their initial gap; share: modelled part of every force;
-    line: force on a length of one over the whole force; datum: distance on the surface at which a line
-    force moves nothing along itself.
+    the candidates, by x; gap0: (n_candidates,) their initial gap; length: of the contact along y, which
+    bears the forces of the loads; at half of it beside a line force the surface does not move along that.
     """
 
     anchored = False
@@ -58,13 +57,12 @@ class LineProblem:
         candidates: slice,
         gap0: Array,
         *,
-        share: float,
-        line: float,
-        datum: float,
+        length: float,
         material: Material | None = None,
     ):
         self.solids, self.elastic, self.gap0, self.material = tuple(solids), tuple(elastic), gap0, material
-        self.share, self.line, self.datum = share, line, datum
+        half = "axis" in solids[0].basis.mesh.boundaries
+        self.length, self.share = length, (0.5 if half else 1.0) / length
         count = solids[0].size
         self.size = count * len(solids)
         # u_z and u_x of the candidates, (n_bodies, n_candidates)
@@ -73,15 +71,14 @@ class LineProblem:
             first + solids[0].boundary_dofs("surface", component)[candidates] for component in (1, 0)
         )
         self.signs = np.array([1.0, -1.0])[: len(solids), None]
-        boundaries = solids[0].basis.mesh.boundaries
         self.far = [solids[0].boundary_dofs("far", component) for component in (0, 1)]
         fixed = np.zeros(count, dtype=bool)
         fixed[np.concatenate(self.far)] = True
-        if "axis" in boundaries:
+        if half:
             fixed[solids[0].boundary_dofs("axis", 0)] = True
         self.free = np.tile(~fixed, len(solids))
         self._factors = [_factor(solid, ~fixed) for solid in solids]
-        self._columns: dict[tuple[int, float], Array] = {}
+        self._columns: dict[tuple[np.intp, float], Array] = {}
 
     def with_gap(self, gap0: Array) -> LineProblem:
         """The same bodies below another initial gap (n_candidates,)."""
@@ -96,14 +93,14 @@ class LineProblem:
 
     def far_field(self, load: Load) -> Array:
         """Displacements (size,) on the outer boundary, zero elsewhere."""
-        solid, force = self.solids[0], self.line * load.force
+        solid, force = self.solids[0], load.force / self.length
         parts = []
         for elastic, sign in zip(self.elastic, self.signs[:, 0], strict=True):
             part = np.zeros(solid.size)
             for component, dofs in enumerate(self.far):
                 points = solid.basis.doflocs[:, dofs] - np.array([[load.x], [0.0]])
                 forces = force, sign * load.ratio * force
-                part[dofs] = flamant(forces, elastic, points, self.datum)[component]
+                part[dofs] = flamant(forces, elastic, points, 0.5 * self.length)[component]
             parts.append(part)
         return np.concatenate(parts)
 
@@ -147,7 +144,7 @@ class LineProblem:
         parts = [factor(self.body(force, i)) for i, factor in enumerate(self._factors)]
         return np.concatenate(parts)
 
-    def _column(self, node: int, ratio: float, solve: Callable[[Array], Array]) -> Array:
+    def _column(self, node: np.intp, ratio: float, solve: Callable[[Array], Array]) -> Array:
         """Elastic displacements under a unit multiplier of a candidate, kept while it is in contact."""
         if (node, ratio) not in self._columns:
             unit = np.arange(self.gap0.size) == node
@@ -163,15 +160,23 @@ class LineProblem:
         """
         solve, elastic, free = Counted(self.inverse), self.solids[0].stiffness, self.free
         softer, count = response.tangent is not elastic, self.solids[0].size
-        jump = np.where(free, 0.0, self.far_field(load) * ~free - u)
-        right = -response.force
-        right -= np.concatenate([(response.tangent if i == 0 else s.stiffness) @ self.body(jump, i)
-                                 for i, s in enumerate(self.solids)])
-        right = np.where(free, right, 0.0)
         nodes, ratio = np.flatnonzero(active), load.ratio
-        self._columns = {key: c for key, c in self._columns.items() if active[key[0]] and key[1] in (0.0, ratio)}
+        # increments from the multipliers and the approach that u has, so that all are small near equilibrium
+        before = response.force[self.normal[0, active]]
+        approach = float(self.gap(u, 0.0)[active].mean()) if nodes.size else 0.0
+        jump = np.where(free, 0.0, self.far_field(load) - u)
+        right = self.pressed(before, active, ratio) - response.force
+        for i, solid in enumerate(self.solids):
+            matrix = response.tangent if i == 0 else solid.stiffness
+            right[i * count :][:count] -= matrix @ self.body(jump, i)
+        right = np.where(free, right, 0.0)
+        self._columns = {
+            key: c for key, c in self._columns.items() if active[key[0]] and key[1] in (0.0, ratio)
+        }
         G = np.array([self._column(node, 0.0, solve) for node in nodes]).reshape(nodes.size, self.size)
-        C = G if ratio == 0.0 else np.array([self._column(node, ratio, solve) for node in nodes])
+        C = G
+        if ratio and nodes.size:
+            C = np.array([self._column(node, ratio, solve) for node in nodes])
         touching = self.normal[:, active]
         border = np.ones((nodes.size + 1, nodes.size + 1))
         border[:-1, :-1] = C[:, touching].sum(axis=1).T
@@ -191,16 +196,17 @@ class LineProblem:
             out[:count] = elastic @ part - response.tangent @ part
             return np.where(free, out, 0.0)
 
-        gaps, force = -self.gap(u, 0.0)[active], self.share * load.force if nodes.size else 0.0
+        gaps = -self.gap(u, approach)[active]
+        force = self.share * load.force - before.sum() if nodes.size else 0.0
         y = right
         if softer:
             none = np.zeros(nodes.size)
             y = right + lost(moved(np.zeros(self.size), gaps, force)[0])
             y = _krylov(lambda y: y - lost(moved(y, none, 0.0)[0]), y, kept.target * self.share)
-        w, approach = moved(y, gaps, force)
+        w, further = moved(y, gaps, force)
         kept.linear += solve.calls
         u = u + jump + w
-        return u, approach if nodes.size else float(self.gap(u, 0.0).min())
+        return u, approach + further if nodes.size else float(self.gap(u, 0.0).min())
 
 
 def _krylov(apply: Callable[[Array], Array], right: Array, target: float) -> Array:

@@ -14,8 +14,13 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from sam.scene import Checkpoint, Keep, Progress, Result, Scene
 
-SAM, FEM, FEM_3D = "sam", "fem-axisymmetric", "fem-3d"
-MODELS = {SAM: "sam", FEM: "fem_reference", FEM_3D: "fem_reference.spatial"}
+SAM, FEM, FEM_3D, FEM_LINE = "sam", "fem-axisymmetric", "fem-3d", "fem-plane-strain"
+MODELS = {
+    SAM: "sam",
+    FEM: "fem_reference",
+    FEM_3D: "fem_reference.spatial",
+    FEM_LINE: "fem_reference.plane_strain",
+}
 
 
 class ModelError(ValueError):
@@ -40,7 +45,7 @@ def cheapest_reference(scene: Scene) -> str:
     Raises ModelError with the reasons of every model that cannot, and the keys to change, if none can.
     """
     reasons = {model: reason for model in MODELS if (reason := _refusal(scene, model))}
-    for model in (FEM, FEM_3D):
+    for model in (FEM, FEM_LINE, FEM_3D):
         if model not in reasons:
             return model
     lines = [f"  {model}: {reason}" for model, reason in reasons.items()]
