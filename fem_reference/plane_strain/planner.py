@@ -28,8 +28,10 @@ MODEL = "fem-plane-strain"
 ALLOWS = "the plane-strain finite-element model allows"
 WIDTH = 1.4
 """Uniform part of the mesh to both sides of the contact in its half-widths: the edge stays inside."""
-ELASTIC_DEPTH, PLASTIC_DEPTH = 1.2, 2.0
+ELASTIC_DEPTH, PLASTIC_DEPTH = 1.2, 1.5
 """Uniform part of the mesh in depth, in half-widths; the largest von Mises stress of Hertz is at 0.7."""
+GROWTH = 1.4
+"""Ratio of neighbouring elements outside the uniform part."""
 FIRST_YIELD = 0.558
 """Largest von Mises stress over p0 on the axis below a cylinder, nu = 0.3, that sets meshes."""
 FULL = 2.3
@@ -180,9 +182,9 @@ def choose_lines(scene: Scene) -> tuple[tuple[Array, Array], tuple[float, float]
     """
     units, size, box = scales(scene), 1.0 / scene.fem.cells_per_radius, scene.fem.box
     grown, depth = _grown(scene)
-    z = uniform_then_growing(size, depth, box, marks=kinks_of(scene, units))
+    z = uniform_then_growing(size, depth, box, growth=GROWTH, marks=kinks_of(scene, units))
     reach, along = WIDTH * grown, slide(scene, units.length).places[:, 0]
     core = min(float(along.min()), 0.0) - reach, max(float(along.max()), 0.0) + reach
     if is_half(scene):
-        return (uniform_then_growing(size, core[1], box), z), core
-    return (two_sided(*core, size, box), z), core
+        return (uniform_then_growing(size, core[1], box, growth=GROWTH), z), core
+    return (two_sided(*core, size, box, growth=GROWTH), z), core

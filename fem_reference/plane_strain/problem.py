@@ -34,8 +34,8 @@ from fem_reference.common.plasticity import History, Material
 from fem_reference.common.schedule import Load
 from fem_reference.plane_strain.elements import PlaneSolid
 
-ACCURACY = 3e-3
-"""Residual of a linear solve over its right-hand side."""
+ACCURACY = 0.1
+"""Residual of a linear solve over its right-hand side, far from equilibrium; near it less, see `_krylov`."""
 MOST = 120
 """Iterations of a linear solve; beyond, the body flows freely."""
 
@@ -202,17 +202,26 @@ class LineProblem:
         if softer:
             none = np.zeros(nodes.size)
             y = right + lost(moved(np.zeros(self.size), gaps, force)[0])
-            y = _krylov(lambda y: y - lost(moved(y, none, 0.0)[0]), y, kept.target * self.share)
+            force_scale = self.share * (load.force or 1.0)
+            y = _krylov(
+                lambda y: y - lost(moved(y, none, 0.0)[0]),
+                y,
+                scale=force_scale,
+                target=kept.target * self.share,
+            )
         w, further = moved(y, gaps, force)
         kept.linear += solve.calls
         u = u + jump + w
         return u, approach + further if nodes.size else float(self.gap(u, 0.0).min())
 
 
-def _krylov(apply: Callable[[Array], Array], right: Array, target: float) -> Array:
-    """Solution by GMRES. Raises NotDefiniteError where it does not end."""
+def _krylov(apply: Callable[[Array], Array], right: Array, *, scale: float, target: float) -> Array:
+    """Solution by GMRES, to a share of the right-hand side that falls with the root of its size over `scale`,
+    as Newton's method converges. Raises NotDefiniteError where it does not end.
+    """
     operator = LinearOperator((right.size, right.size), apply)
-    y, info = gmres(operator, right, x0=right, rtol=ACCURACY, atol=target, restart=MOST, maxiter=1)
+    accuracy = min(ACCURACY, float(np.sqrt(np.abs(right).max() / scale)))
+    y, info = gmres(operator, right, x0=right, rtol=accuracy, atol=target, restart=MOST, maxiter=1)
     if info or not np.isfinite(y).all():
         raise NotDefiniteError("the body flows freely")
     return y
