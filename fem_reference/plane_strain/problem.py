@@ -36,6 +36,10 @@ from fem_reference.plane_strain.elements import PlaneSolid
 
 ACCURACY = 0.1
 """Residual of a linear solve over its right-hand side, far from equilibrium; near it less, see `_krylov`."""
+OVERSHOT = 0.5
+"""A Newton step is shortened, to where the secant has no work left, if behind it the forces do so much more
+work against it than the first ones did along it.
+"""
 MOST = 120
 """Iterations of a linear solve; beyond, the body flows freely."""
 
@@ -115,7 +119,7 @@ class LineProblem:
         update = self.material.update(first.strain(self.body(u, 0)), start)
         forces = [first.internal_force(update.stress), *forces]
         tangent = first.softened(update.elements, update.loss)
-        return Response(np.concatenate(forces), tangent, update.history)
+        return Response(np.concatenate(forces), tangent, update.history, start)
 
     def gap(self, u: Array, approach: float) -> Array:
         """gap0 + sum of u_z - delta at the candidates."""
@@ -185,9 +189,8 @@ class LineProblem:
 
         def moved(y: Array, gaps: Array, force: float) -> tuple[Array, float]:
             """Elastic displacements and approach under loads, changes of gaps, a force."""
-            sides = np.append(gaps - G @ y, force)
-            *multipliers, delta = lu_solve(factors, sides)
-            return solve(y) + np.array(multipliers) @ C, float(delta)
+            *multipliers, delta = lu_solve(factors, np.append(gaps - G @ y, force))
+            return (solve(y) if y.any() else y) + np.array(multipliers) @ C, float(delta)
 
         def lost(w: Array) -> Array:
             """L w."""
@@ -211,6 +214,13 @@ class LineProblem:
             )
         w, further = moved(y, gaps, force)
         kept.linear += solve.calls
+        if softer:
+            ahead = self.respond(u + jump + w, response.start)
+            after = ahead.force - self.pressed(ahead.force[self.normal[0, active]], active, ratio)
+            over, work = float(w @ np.where(free, after, 0.0)), float(w @ right)
+            if work > 0.0 and over > OVERSHOT * work:
+                share = work / (work + over)
+                w, further = share * w, share * further
         u = u + jump + w
         return u, approach + further if nodes.size else float(self.gap(u, 0.0).min())
 
