@@ -10,8 +10,8 @@ from skfem import MeshQuad
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.elasticity import mises, stiffness_tensor
 from fem_reference.common.far_field import flamant
-from fem_reference.plane_strain import UnsupportedScene, check, load_steps, plan, solve
-from fem_reference.plane_strain.elements import PlaneSolid, edge_weights, section
+from fem_reference.plane_strain import load_steps, solve
+from fem_reference.plane_strain.elements import PlaneSolid, edge_weights
 from fem_reference.plane_strain.recovery import stresses
 from sam.scene import Scene
 
@@ -58,23 +58,26 @@ def test_line_force_stress():
     """The strain of the displacements gives the one radial stress of Flamant, -2 (P cos t + Q sin t)/(pi r);
     what line forces displace is zero at the datum.
     """
-    body, (P, Q), step = Elastic(3.0, 0.3), (2.0, -0.7), 1e-5
+    body, (down, along), step = Elastic(3.0, 0.3), (2.0, -0.7), 1e-5
     r, t = np.array([0.5, 1.0, 3.0, 20.0]), np.array([0.3, -1.2, 1.5, -0.4])
     at = np.stack([r * np.sin(t), r * np.cos(t)])
     slopes = [
-        (flamant((P, Q), body, at + shift[:, None], 5.0) - flamant((P, Q), body, at - shift[:, None], 5.0))
+        (
+            flamant((down, along), body, at + shift[:, None], 5.0)
+            - flamant((down, along), body, at - shift[:, None], 5.0)
+        )
         / (2 * step)
         for shift in step * np.eye(2)
     ]
     strain = np.stack([slopes[0][0], np.zeros(4), slopes[1][1], slopes[0][1] + slopes[1][0]])
     xx, yy, zz, xz = stiffness_tensor(3.0, 0.3) @ strain
-    radial = -2.0 * (P * np.cos(t) + Q * np.sin(t)) / (np.pi * r)
+    radial = -2.0 * (down * np.cos(t) + along * np.sin(t)) / (np.pi * r)
     expected = radial * np.array([np.sin(t) ** 2, np.cos(t) ** 2, np.sin(t) * np.cos(t)])
     np.testing.assert_allclose([xx, zz, xz], expected, atol=1e-8)
     np.testing.assert_allclose(yy, 0.3 * radial, atol=1e-8)
     edge = np.array([[5.0, -5.0], [0.0, 0.0]])
-    assert np.abs(flamant((P, 0.0), body, edge, 5.0)[1]).max() < 1e-15
-    assert np.abs(flamant((0.0, Q), body, edge, 5.0)[0]).max() < 1e-15
+    assert np.abs(flamant((down, 0.0), body, edge, 5.0)[1]).max() < 1e-15
+    assert np.abs(flamant((0.0, along), body, edge, 5.0)[0]).max() < 1e-15
 
 
 def test_patch_of_elements():
@@ -145,8 +148,8 @@ def test_hertz_line_converges():
 
 
 def test_full_slip_is_askew():
-    """With friction the pressure below a rigid cylinder is (b + x)^(1/2 - k) (c - x)^(1/2 + k) times a factor,
-    tan(pi k) = mu (1 - 2 nu)/(2 (1 - nu)) (Johnson 1985, Sec. 8.2): on a half-width (1 - 4 k^2)^(-1/2) times
+    """With friction the pressure below a rigid cylinder is (b + x)^(1/2 - k) (c - x)^(1/2 + k) times a
+    factor, tan(pi k) = mu (1 - 2 nu)/(2 (1 - nu)) (Johnson 1985, Sec. 8.2): on a half-width (1 - 4 k^2)^(-1/2) times
     Hertz's its middle lies 2 k and its resultant 8/3 k half-widths behind the apex.
     """
     model, state = elastic(12, friction=0.8)
