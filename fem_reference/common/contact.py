@@ -166,7 +166,7 @@ class Response:
     force: Array
     tangent: sp.csr_matrix
     history: History | None
-    start: History | None = None
+    start: History | None = field(default=None, kw_only=True)
 
 
 class Problem(Protocol):

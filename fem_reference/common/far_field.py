@@ -87,6 +87,24 @@ def flamant(forces: tuple[float, float], body: Elastic, points: Array, datum: fl
     )
 
 
+def stretched(body: Elastic, points: Array) -> Array:
+    """Displacements (u_x, u_z) in plane strain far from a plastic strain near the origin of the surface, of
+    which the integral of e_xx + nu e_yy over its area is one.
+
+    By reciprocity: a force far away stresses the free surface along it alone, s_yy = nu s_xx, so that the
+    strain acts as a dipole E/(1 - nu^2) of forces along x, minus the derivative of `flamant` along x:
+
+        u_x = [ 2 (1 - nu) x/r^2 - 2 x z^2/r^4 ] / (pi (1 - nu))
+        u_z = [ 2 x^2 z/r^4 - 2 (1 - nu) z/r^2 ] / (pi (1 - nu))
+
+    points: x, z (2, ...), not both zero, far beside the depth of the strain. Returns (2, ...) per area.
+    """
+    (x, z), nu = points, body.poisson
+    square = x**2 + z**2
+    u_x, u_z = 2.0 * (1.0 - nu) * x - 2.0 * x * z**2 / square, 2.0 * x**2 * z / square - 2.0 * (1.0 - nu) * z
+    return np.stack([u_x, u_z]) / (np.pi * (1.0 - nu) * square)
+
+
 WORDS = {
     "half-space": "displacements of the point force on the outer boundary",
     "coated half-space": "displacements of the point force on the layered half-space on the outer boundary",

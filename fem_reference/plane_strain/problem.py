@@ -13,7 +13,8 @@ for displacements u, lambda and the approach delta. The elastic stiffness E is f
 P(y), the elastic displacements under the loads y and multipliers that leave the gaps as they are. Where
 points yield, K = E - L, u = P(y) with y - L P(y) = r, which GMRES solves: there are as many iterations as
 the yielding points make it need, few where few yield, and no factorisation. Far away the displacements are
-those of the line forces F and ratio F (Flamant) at the place of the load.
+those of the line forces F and ratio F (Flamant) at the place of the load, and of the plastic strain, as of
+the iteration before: it moves the outer boundary little, and the contact hardly.
 """
 
 from __future__ import annotations
@@ -22,13 +23,14 @@ from collections.abc import Callable, Sequence
 from copy import copy
 
 import numpy as np
+import scipy.sparse as sp
 from scipy.linalg import lu_factor, lu_solve
-from scipy.sparse.linalg import LinearOperator, gmres, splu
+from scipy.sparse.linalg import LinearOperator, aslinearoperator, gmres, splu
 
-from fem_reference.common.arrays import Array, Bools
+from fem_reference.common.arrays import Array, Bools, Integers
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.contact import NotDefiniteError, Response
-from fem_reference.common.far_field import flamant
+from fem_reference.common.far_field import flamant, stretched
 from fem_reference.common.linear import Counted, Kept, nested_dissection
 from fem_reference.common.plasticity import History, Material
 from fem_reference.common.schedule import Load
@@ -82,6 +84,7 @@ class LineProblem:
             fixed[solids[0].boundary_dofs("axis", 0)] = True
         self.free = np.tile(~fixed, len(solids))
         self._factors = [_factor(solid, ~fixed) for solid in solids]
+        self._stretches = None if material is None else _stretches(solids[0], elastic[0], self.far)
         self._columns: dict[tuple[np.intp, float], Array] = {}
 
     def with_gap(self, gap0: Array) -> LineProblem:
@@ -95,7 +98,7 @@ class LineProblem:
         count = self.solids[0].size
         return u[index * count :][:count]
 
-    def far_field(self, load: Load) -> Array:
+    def far_field(self, load: Load, history: History | None) -> Array:
         """Displacements (size,) on the outer boundary, zero elsewhere."""
         solid, force = self.solids[0], load.force / self.length
         parts = []
@@ -106,6 +109,10 @@ class LineProblem:
                 forces = force, sign * load.ratio * force
                 part[dofs] = flamant(forces, elastic, points, 0.5 * self.length)[component]
             parts.append(part)
+        if history is not None and history.yielded and self._stretches is not None:
+            for dofs, stretches in zip(self.far, self._stretches, strict=True):
+                xx, yy = (strain.ravel() for strain in history.plastic_strain[:2])
+                parts[0][dofs] += stretches @ (xx + self.elastic[0].poisson * yy)
         return np.concatenate(parts)
 
     def respond(self, u: Array, start: History | None) -> Response:
@@ -119,7 +126,7 @@ class LineProblem:
         update = self.material.update(first.strain(self.body(u, 0)), start)
         forces = [first.internal_force(update.stress), *forces]
         tangent = first.softened(update.elements, update.loss)
-        return Response(np.concatenate(forces), tangent, update.history, start)
+        return Response(np.concatenate(forces), tangent, update.history, start=start)
 
     def gap(self, u: Array, approach: float) -> Array:
         """gap0 + sum of u_z - delta at the candidates."""
@@ -168,7 +175,7 @@ class LineProblem:
         # increments from the multipliers and the approach that u has, so that all are small near equilibrium
         before = response.force[self.normal[0, active]]
         approach = float(self.gap(u, 0.0)[active].mean()) if nodes.size else 0.0
-        jump = np.where(free, 0.0, self.far_field(load) - u)
+        jump = np.where(free, 0.0, self.far_field(load, response.history) - u)
         right = self.pressed(before, active, ratio) - response.force
         for i, solid in enumerate(self.solids):
             matrix = response.tangent if i == 0 else solid.stiffness
@@ -235,6 +242,22 @@ def _krylov(apply: Callable[[Array], Array], right: Array, *, scale: float, targ
     if info or not np.isfinite(y).all():
         raise NotDefiniteError("the body flows freely")
     return y
+
+
+def _stretches(solid: PlaneSolid, elastic: Elastic, far: Sequence[Integers]) -> list[LinearOperator]:
+    """u_x and u_z of the outer boundary by e_xx + nu e_yy at the Gauss points, the depths of which are small
+    beside its distance: (n_far, n_columns) by the columns of points times (n_columns, n_points).
+    """
+    x, weights = np.round(solid.points[0].ravel(), 12), solid.weights.ravel()
+    columns, column = np.unique(x, return_inverse=True)
+    area = sp.csr_matrix((weights, (column, np.arange(x.size))), shape=(columns.size, x.size))
+    out = []
+    for component, dofs in enumerate(far):
+        places = np.broadcast_to(solid.basis.doflocs[:, dofs, None], (2, dofs.size, columns.size))
+        shifts = (columns, -columns) if "axis" in solid.basis.mesh.boundaries else (columns,)
+        fields = [stretched(elastic, places - np.stack([s, 0 * s])[:, None])[component] for s in shifts]
+        out.append(aslinearoperator(np.sum(fields, axis=0)) @ aslinearoperator(area))
+    return out
 
 
 def _factor(solid: PlaneSolid, free: Bools) -> Callable[[Array], Array]:

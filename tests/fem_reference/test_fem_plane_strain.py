@@ -7,13 +7,16 @@ import numpy as np
 import pytest
 from skfem import MeshQuad
 
+import fem_reference
+import fem_reference.spatial
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.elasticity import mises, stiffness_tensor
 from fem_reference.common.far_field import flamant
-from fem_reference.plane_strain import load_steps, solve
+from fem_reference.plane_strain import UnsupportedScene, check, load_steps, plan, solve
 from fem_reference.plane_strain.elements import PlaneSolid, edge_weights
 from fem_reference.plane_strain.recovery import stresses
 from sam.scene import Scene
+from verification.runs.models import FEM_LINE, cheapest_reference
 
 RADIUS, LENGTH, YOUNG, YIELD = 0.01, 0.02, 210e9, 400e6
 STEEL = {"young": YOUNG, "poisson": 0.3}
@@ -121,9 +124,16 @@ def test_two_cylinders():
     assert result.status == "converged" and max(result.certificate.values()) < 1e-9
 
 
+PERFECT = {"law": "perfect", "yield_stress": YIELD}
+KINEMATIC = PERFECT | {"kinematic": {"modulus": [20e9], "recovery": [0.0]}}
+
+
+def boxed(scene, box):
+    return scene.model_copy(update={"fem": scene.fem.model_copy(update={"box": box})})
+
+
 def elastic(cells, friction=0.0, box=40.0):
-    scene = line(cells=cells, friction=friction)
-    model, (step,) = load_steps(scene.model_copy(update={"fem": scene.fem.model_copy(update={"box": box})}))
+    model, (step,) = load_steps(boxed(line(cells=cells, friction=friction), box))
     return model, step.state
 
 
@@ -148,8 +158,8 @@ def test_hertz_line_converges():
 
 
 def test_full_slip_is_askew():
-    """With friction the pressure below a rigid cylinder is (b + x)^(1/2 - k) (c - x)^(1/2 + k) times a
-    factor, tan(pi k) = mu (1 - 2 nu)/(2 (1 - nu)) (Johnson 1985, Sec. 8.2): on a half-width (1 - 4 k^2)^(-1/2) times
+    """With friction the pressure below a rigid cylinder is as (b + x)^(1/2 - k) (c - x)^(1/2 + k),
+    tan(pi k) = mu (1 - 2 nu)/(2 (1 - nu)) (Johnson 1985, Sec. 8.2). On a half-width (1 - 4 k^2)^(-1/2) times
     Hertz's its middle lies 2 k and its resultant 8/3 k half-widths behind the apex.
     """
     model, state = elastic(12, friction=0.8)
@@ -159,3 +169,98 @@ def test_full_slip_is_askew():
     assert wide * np.sqrt(1.0 - 4.0 * k**2) == pytest.approx(1.0, rel=5e-3)
     assert 0.5 * (start + end) / wide == pytest.approx(-2.0 * k, rel=0.03)
     assert model.centroid(state) / wide == pytest.approx(-8.0 / 3.0 * k, rel=5e-3)
+
+
+@pytest.mark.parametrize(("ratio", "yields"), [(1.785, False), (1.803, True)])
+def test_first_yield(ratio, yields):
+    """At p0 = 1.794 Y, nu = 0.3."""
+    steps = load_steps(line(ratio, cells=12, plasticity=PERFECT))[1]
+    assert steps[-1].state.yielded is yields
+
+
+def test_flow_does_not_lock():
+    """The mean pressure of a body that flows freely stays below that of a rigid-plastic one, (2 + pi) k, and
+    rises towards it; the volume changes elastically alone.
+    """
+    model, steps = load_steps(line(6.0, cells=4, plasticity=PERFECT, steps=8))
+    mean = [np.pi / 4.0 * 6.0 * step.state.force / model.scales.peak_force for step in steps]
+    mean = [force / model.half_width(step.state) for force, step in zip(mean, steps, strict=True)]
+    assert 2.3 < mean[-1] < (2.0 + np.pi) / np.sqrt(3.0) and mean == sorted(mean)
+    state = steps[-1].state
+    volume = model.body.strain(state.u)[:3].sum(axis=0)
+    bulk = model.stress(state)[:3].sum(axis=0) * (1.0 - 2.0 * 0.3) / (1.0 - 0.3**2)
+    np.testing.assert_allclose(volume, bulk, atol=1e-9)
+    assert np.abs(state.history.plastic_strain[:3].sum(axis=0)).max() < 1e-9
+
+
+def test_far_field_of_plastic_strain():
+    """The residual stresses do not depend on the box: across every line x = const those along x, of a
+    symmetric section, have no resultant, and the largest is the same with half of the box.
+    """
+    found = []
+    for box in (12.0, 24.0):
+        scene = boxed(line(3.0, cells=4, plasticity=PERFECT, steps=2, unload=True), box)
+        model, steps = load_steps(scene)
+        state = steps[-1].state
+        assert steps[-1].unloads and not state.active.any() and state.residual < 1e-9
+        s, height = stresses(model, state), np.repeat(np.diff(model.plan.z), 2) / 2.0
+        forces = s.gauss[0] @ height / (np.abs(s.gauss[0]) @ height)
+        found.append((np.abs(forces[s.x < 2.0 * model.scales.length]).max(), mises(s.gauss).max()))
+    (near, coarse), (far, fine) = found
+    print(found)
+    assert far < 0.5 * near < 0.05 and coarse == pytest.approx(fine, rel=0.01)
+
+
+def test_rolling_leaves_a_track():
+    """A rolling cylinder: passes add less and less to a body with back-stresses; a result resumed after any
+    step is equal; nothing is left of an elastic body, whose contact moves with the apex.
+    """
+    scene = line(2.4, cells=4, plasticity=KINEMATIC, path=2.5, steps=2, cycles=2, unload=True)
+    kept = []
+    result = solve(scene, checkpoint=kept.append)
+    assert result.status == "converged" and result.quantities["groove_deepest_m"] > 0.0
+    first, second = result.tables["passes"]["new_strain_max"]
+    assert 0.0 <= second < 0.5 * first
+    again = solve(scene, start=kept[len(kept) // 2])
+    assert again.quantities == result.quantities
+    model, steps = load_steps(line(1.0, cells=6, path=2.0))
+    for step in steps:
+        assert model.centroid(step.state) == pytest.approx(step.state.load.x, abs=0.05)
+    assert solve(line(1.0, cells=6, path=2.0)).quantities["rolling_coefficient"] == pytest.approx(
+        0.0, abs=1e-4
+    )
+
+
+@pytest.mark.parametrize(
+    ("tables", "words"),
+    [
+        ({"counterbody": {"shape": "sphere", "radius": RADIUS}}, "counterbody.shape = .sphere.: .*cylinder"),
+        ({"grid": {"periodic": "y"}}, "grid.periodic = .y."),
+        ({"body": {"young": 1e9, "poisson": 0.5}}, "body.poisson = 0.5"),
+        (
+            {
+                "fem": {"box": 3.0, "cells_per_radius": 2},
+                "body": STEEL | {"plasticity": {"law": "perfect", "yield_stress": 4e7}},
+            },
+            "fem.box = 3",
+        ),
+    ],
+)
+def test_refused_by_name(tables, words):
+    """Every key that stands in the way, its value and what is allowed."""
+    given = {
+        "body": STEEL,
+        "counterbody": {"shape": "cylinder", "radius": RADIUS, "length": LENGTH},
+        "loading": {"force": force_of(10 * YIELD)[0]},
+    }
+    with pytest.raises(UnsupportedScene, match=words):
+        check(Scene(**given | tables))
+
+
+def test_other_models_refuse_a_cylinder():
+    """By its shape; the plane-strain model is the reference of a cylinder."""
+    for package in (fem_reference, fem_reference.spatial):
+        with pytest.raises(UnsupportedScene, match=r'counterbody\.shape = "cylinder"'):
+            package.check(line())
+    assert cheapest_reference(line()) == FEM_LINE and plan(line()).half
+    assert not plan(line(friction=0.1)).half

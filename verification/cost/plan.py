@@ -150,8 +150,8 @@ class Plan:
 
 
 def plan(scene: Scene, model: str | None = None) -> Plan:
-    """The plan of every model for its kind of contact; model: the one that the attributes are about, by default the first that can
-    represent the scene.
+    """The plan of every model for its kind of contact; model: the one that the attributes are about, by
+    default the first that can represent the scene.
     """
     entries = [_model(scene, name) for name in models.models_for(scene)]
     usable = [entry["model"] for entry in entries if entry["available"]]

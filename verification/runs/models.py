@@ -40,7 +40,7 @@ def check(scene: Scene, model: str) -> None:
 
 
 def models_for(scene: Scene) -> tuple[str, ...]:
-    """The models that are made for the kind of contact of a scene, a line or not, cheapest reference first."""
+    """The models that are made for the kind of contact of a scene, the cheapest reference first."""
     line = scene.counterbody is not None and scene.counterbody.shape == "cylinder"
     return (SAM, FEM_LINE) if line else (SAM, FEM, FEM_3D)
 
