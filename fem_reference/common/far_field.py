@@ -87,22 +87,28 @@ def flamant(forces: tuple[float, float], body: Elastic, points: Array, datum: fl
     )
 
 
-def stretched(body: Elastic, points: Array) -> Array:
-    """Displacements (u_x, u_z) in plane strain far from a plastic strain near the origin of the surface, of
-    which the integral of e_xx + nu e_yy over its area is one.
+def stretched(body: Elastic, points: Array) -> tuple[Array, Array]:
+    """Displacements (u_x, u_z), each (2, ...), in plane strain far from a plastic strain near the origin of
+    the surface, of which e_xx + nu e_yy has the integral one over the area; and further ones per depth of it.
 
-    By reciprocity: a force far away stresses the free surface along it alone, s_yy = nu s_xx, so that the
-    strain acts as a dipole E/(1 - nu^2) of forces along x, minus the derivative of `flamant` along x:
+    By reciprocity with a force far away, which stresses the free surface along it alone (s_yy = nu s_xx), the
+    strain acts as a dipole E/(1 - nu^2) of forces along x; and as du_x/dz = -du_z/dx on the surface, its
+    depth as twice the derivative of the forces along z. Of `flamant`, these are minus the derivative along x
+    of Q's, and minus the second one of P's:
 
-        u_x = [ 2 (1 - nu) x/r^2 - 2 x z^2/r^4 ] / (pi (1 - nu))
-        u_z = [ 2 x^2 z/r^4 - 2 (1 - nu) z/r^2 ] / (pi (1 - nu))
+        u_x = 2 (1 - nu) x/r^2 - 2 x z^2/r^4        4 x z/r^4 (1 + nu - 2 x^2/r^2)
+        u_z = 2 x^2 z/r^4 - 2 (1 - nu) z/r^2        2 z^2/r^4 (1 - 4 x^2/r^2) + 2 (1 - nu)/r^2 (1 - 2 x^2/r^2)
 
-    points: x, z (2, ...), not both zero, far beside the depth of the strain. Returns (2, ...) per area.
+    over pi (1 - nu). points: x, z (2, ...), not both zero. Second order in depth over distance.
     """
-    (x, z), nu = points, body.poisson
+    (x, z), soft = points, 1.0 - body.poisson
     square = x**2 + z**2
-    u_x, u_z = 2.0 * (1.0 - nu) * x - 2.0 * x * z**2 / square, 2.0 * x**2 * z / square - 2.0 * (1.0 - nu) * z
-    return np.stack([u_x, u_z]) / (np.pi * (1.0 - nu) * square)
+    X, Z = x**2 / square, z**2 / square
+    u = 2.0 * np.stack([x * (soft - Z), z * (X - soft)]) / square
+    deeper = np.stack(
+        [2.0 * x * z / square * (2.0 - soft - 2.0 * X), Z * (1.0 - 4.0 * X) + soft * (1.0 - 2.0 * X)]
+    )
+    return u / (np.pi * soft), 2.0 * deeper / (np.pi * soft * square)
 
 
 WORDS = {

@@ -245,18 +245,21 @@ def _krylov(apply: Callable[[Array], Array], right: Array, *, scale: float, targ
 
 
 def _stretches(solid: PlaneSolid, elastic: Elastic, far: Sequence[Integers]) -> list[LinearOperator]:
-    """u_x and u_z of the outer boundary by e_xx + nu e_yy at the Gauss points, the depths of which are small
-    beside its distance: (n_far, n_columns) by the columns of points times (n_columns, n_points).
+    """u_x and u_z of the outer boundary by e_xx + nu e_yy at the Gauss points: (n_far, n_points), by way of
+    the columns of points.
     """
-    x, weights = np.round(solid.points[0].ravel(), 12), solid.weights.ravel()
-    columns, column = np.unique(x, return_inverse=True)
-    area = sp.csr_matrix((weights, (column, np.arange(x.size))), shape=(columns.size, x.size))
+    (x, z), weights = solid.points.reshape(2, -1), solid.weights.ravel()
+    columns, column = np.unique(np.round(x, 12), return_inverse=True)
+    entries, shape = (column, np.arange(x.size)), (columns.size, x.size)
+    areas = [aslinearoperator(sp.csr_matrix((w, entries), shape=shape)) for w in (weights, z * weights)]
+    # of a half the other one too
+    shifts = (columns, -columns) if "axis" in solid.basis.mesh.boundaries else (columns,)
     out = []
     for component, dofs in enumerate(far):
-        places = np.broadcast_to(solid.basis.doflocs[:, dofs, None], (2, dofs.size, columns.size))
-        shifts = (columns, -columns) if "axis" in solid.basis.mesh.boundaries else (columns,)
-        fields = [stretched(elastic, places - np.stack([s, 0 * s])[:, None])[component] for s in shifts]
-        out.append(aslinearoperator(np.sum(fields, axis=0)) @ aslinearoperator(area))
+        points = solid.basis.doflocs[:, dofs, None]
+        found = [stretched(elastic, points - np.array([shift, 0 * shift])[:, None]) for shift in shifts]
+        flat, deeper = (aslinearoperator(sum(u)[component]) for u in zip(*found, strict=True))
+        out.append(flat @ areas[0] + deeper @ areas[1])
     return out
 
 

@@ -15,7 +15,7 @@ from fem_reference.common.contact import Equilibrium
 from fem_reference.common.elasticity import mises
 from fem_reference.common.loading import Step
 from fem_reference.common.solution import Quantities
-from fem_reference.common.tables import columns, stacked
+from fem_reference.common.tables import columns, plane_mesh, stacked
 from fem_reference.common.track import path_results
 from fem_reference.plane_strain import recovery
 from fem_reference.plane_strain.model import Model, build
@@ -23,7 +23,7 @@ from fem_reference.plane_strain.planner import PlaneStrainPlan, plan
 from fem_reference.plane_strain.recovery import Stresses
 from fem_reference.plane_strain.track import LineTrack
 from sam.scene.checkpoint import Checkpoint, Keep
-from sam.scene.result import AXIS, CUT, LINE, PLANE, FieldMesh, GridFields, Progress, Result, Table
+from sam.scene.result import AXIS, LINE, PLANE, FieldMesh, GridFields, Progress, Result, Table
 from sam.scene.schema import Scene
 
 
@@ -73,21 +73,6 @@ def plane_table(state: str, s: Stresses) -> Table:
     return columns(PLANE, [state, x.ravel(), z.ravel(), s.peeq.ravel(), mises(s.gauss).ravel()])
 
 
-def cut_table(state: str, s: Stresses) -> Table:
-    """The section with all components, as every plane y = const is."""
-    x, z = np.meshgrid(s.x, s.z, indexing="ij")
-    components = six(s.gauss.reshape(4, -1)).T
-    place = [x.ravel(), 0.0, z.ravel()]
-    return columns(CUT, [state, *place, s.peeq.ravel(), mises(s.gauss).ravel(), *components])
-
-
-def six(tensor: Array) -> Array:
-    """(n, 6), order 11 22 33 23 13 12, of (xx, yy, zz, xz) (4, n)."""
-    xx, yy, zz, xz = tensor
-    zero = np.zeros_like(xx)
-    return np.stack([xx, yy, zz, zero, xz, zero], axis=1)
-
-
 def in_elements(model: Model, field: Array) -> Array:
     """(k, n_elements) means over the four points of each element, of (k, 2 nx, 2 nz)."""
     flat = np.empty((len(field), model.body.weights.size))
@@ -98,24 +83,10 @@ def in_elements(model: Model, field: Array) -> Array:
 
 def field_mesh(model: Model, equilibrium: Equilibrium, s: Stresses) -> FieldMesh:
     """The section: pressure and displacement at the corner nodes, stresses and strains in the elements."""
-    unit, mesh = model.scales, model.body.basis.mesh
-    x, z = mesh.p
-    pressure = np.interp(x, model.surface, model.nodal_pressure(equilibrium)) * (z == 0.0) * unit.pressure
-    u = model.displacements(equilibrium) * unit.displacement
-    ux, uz = (u[dofs] for dofs in model.body.basis.nodal_dofs)
-    stress = in_elements(model, s.gauss)
-    cell_data = {"mises_Pa": mises(stress), "stress_Pa": six(stress)}
+    cells = {"stress": in_elements(model, s.gauss)}
     if s.plastic_strain is not None:
-        cell_data |= {
-            "peeq": in_elements(model, s.peeq[None])[0],
-            "plastic_strain": six(in_elements(model, s.plastic_strain)),
-        }
-    return FieldMesh(
-        points=np.stack([x, np.zeros(x.size), z], axis=1) * unit.length,
-        cells={"quad": mesh.t.T.copy()},
-        point_data={"p_Pa": pressure, "uz_m": uz, "displacement_m": np.stack([ux, 0 * ux, uz], axis=1)},
-        cell_data=cell_data,
-    )
+        cells |= {"peeq": in_elements(model, s.peeq[None]), "strain": in_elements(model, s.plastic_strain)}
+    return plane_mesh(model, equilibrium, model.surface, cells)
 
 
 def surface_grid(model: Model, equilibrium: Equilibrium) -> GridFields:
@@ -231,15 +202,11 @@ def _tables(
     model: Model, states: Mapping[str, Equilibrium], fields: Mapping[str, Stresses]
 ) -> dict[str, Table]:
     """Tables of the states."""
-    out: dict[str, Table] = {
+    return {
         "axis": stacked([axis_table(name, fields[name]) for name in states]),
         "line": stacked([line_table(name, model, states[name], fields[name]) for name in states]),
         "plane": stacked([plane_table(name, fields[name]) for name in states]),
     }
-    (shown, first), *_ = states.items()
-    if first.force and model.plan.sliding.places.any():  # beside the origin
-        out["cut"] = cut_table(shown, fields[shown])
-    return out
 
 
 def _discretisation(model: Model) -> dict[str, object]:

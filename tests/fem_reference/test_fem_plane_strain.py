@@ -11,7 +11,7 @@ import fem_reference
 import fem_reference.spatial
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.elasticity import mises, stiffness_tensor
-from fem_reference.common.far_field import flamant
+from fem_reference.common.far_field import flamant, stretched
 from fem_reference.plane_strain import UnsupportedScene, check, load_steps, plan, solve
 from fem_reference.plane_strain.elements import PlaneSolid, edge_weights
 from fem_reference.plane_strain.recovery import stresses
@@ -81,6 +81,21 @@ def test_line_force_stress():
     edge = np.array([[5.0, -5.0], [0.0, 0.0]])
     assert np.abs(flamant((down, 0.0), body, edge, 5.0)[1]).max() < 1e-15
     assert np.abs(flamant((0.0, along), body, edge, 5.0)[0]).max() < 1e-15
+
+
+def test_strain_far_away():
+    """By flat plastic strain, and by its depth: derivatives of line forces along the surface."""
+    body, at = Elastic(3.0, 0.3), np.array([[2.0, -1.0, 0.3], [0.0, 0.7, 1.5]])
+
+    def moved(forces, shift):
+        return flamant(forces, body, at - np.array([[shift], [0.0]]), 1.0)
+
+    unit, step = 3.0 / (1.0 - 0.3**2), 1e-4
+    flat, deeper = stretched(body, at)
+    along = (moved((0.0, unit), step) - moved((0.0, unit), -step)) / (2 * step)
+    down = [moved((unit, 0.0), shift) for shift in (-step, 0.0, step)]
+    np.testing.assert_allclose(flat, along, rtol=1e-6)
+    np.testing.assert_allclose(deeper, -(down[0] - 2 * down[1] + down[2]) / step**2, rtol=1e-6, atol=1e-6)
 
 
 def test_patch_of_elements():
