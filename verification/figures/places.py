@@ -15,6 +15,7 @@ from sam.scene.surface import border_cells
 from verification.runs.files import Run, mesh_of
 from verification.runs.meshes import SURFACE
 from verification.runs.sampling import Tables, gridded, peak, plane_field_on
+from verification.runs.tables import contact_size
 
 BODIES = {"sam": "body.vtr", "fem-3d": "fields.vtu"}
 """Model -> the mesh of a run with what its cells have strained."""
@@ -102,7 +103,7 @@ def is_circular(run: Run) -> bool:
     loading, other = scene["loading"], scene.get("counterbody") or {}
     if loading.get("prescribed"):
         return loading.get("path") is None
-    if is_rough(scene) or other.get("shape") == "flat":
+    if is_rough(scene) or other.get("shape") in ("flat", "cylinder"):
         return False
     return other.get("shape") != "ellipsoid" or other["radius_x"] == other["radius_y"]
 
@@ -150,7 +151,7 @@ def section_of(run: Run, surface: SurfaceMap | None) -> Section:
         return Section(y, place, spots_of(surface.x, surface.p[:, row]), "cut")
     x, p = peak(run.tables["line"], "x_m", "p_Pa")
     if surface is None:
-        radius = run.quantities["contact_radius_m"] or 0.0
+        radius = contact_size(run.quantities)
         return Section(0.0, 0.0, [(-radius, radius)] if radius else [], "plane")
     spots = spots_of(x, p)
     return Section(0.0, float(np.mean(spots)) if spots else 0.0, spots, "plane")

@@ -15,6 +15,7 @@ import pyvista as pv
 from sam.scene import PEAK, UNLOADED
 from verification.figures.places import Section, plane_of, section_of, surface_map
 from verification.runs.files import Run, mesh_of
+from verification.runs.tables import contact_size
 
 MICRO = 1e6
 FILES = {PEAK: "surface.vtr", UNLOADED: "surface-unloaded.vtr"}
@@ -49,7 +50,7 @@ class Found:
         """The surface in a state, flat, with every field in its unit at the nodes and in the cells, RAISED
         too where it is known; None where there is none, or nothing that says what of it to draw.
         """
-        path, radius = self.run.folder / FILES[state], self.run.quantities["contact_radius_m"]
+        path, radius = self.run.folder / FILES[state], contact_size(self.run.quantities)
         if not path.exists() or (self.run.model == "fem-axisymmetric" and not radius):
             return None
         grid = _mesh(self.run.folder, path.name).copy()
