@@ -21,8 +21,9 @@ from verification.compare import measures
 from verification.compare.measures import Plane, Spot, nodal_pressures, patch_pressure, spots
 from verification.judging import Measured, relative_l2
 from verification.reference.hertz import CircularContact, effective_modulus
+from verification.reference.hertz_line import LineContact
 from verification.reference.stress import von_mises
-from verification.runs.models import FEM_3D, SAM
+from verification.runs.models import FEM_3D, FEM_LINE, SAM
 from verification.runs.sampling import (
     means_of_cells,
     means_of_line,
@@ -60,8 +61,10 @@ def modulus_of(scene: Scene) -> float:
     return effective_modulus(body.young, body.poisson, other.young, other.poisson)
 
 
-def contact_of(scene: Scene) -> CircularContact:
-    """The elastic contact of a scene with a sphere."""
+def contact_of(scene: Scene) -> CircularContact | LineContact:
+    """The elastic contact of a scene with a sphere or a cylinder."""
+    if (length := scene.counterbody.length) is not None:
+        return LineContact(scene.loading.force, scene.counterbody.radius, modulus_of(scene), length)
     return CircularContact(scene.loading.force, scene.counterbody.radius, modulus_of(scene))
 
 
@@ -135,8 +138,8 @@ def _load(result: Result, reference: Reference) -> float:
 
 
 def _pressure(result: Result, reference: Reference) -> Values:
-    """On the cells of SAM, at the nodes of FEM with the area 2 pi r dr of each; along the line inside a
-    punch.
+    """On the cells of SAM, at the nodes of FEM with the area 2 pi r dr of each, dr in a section; along the
+    line inside a punch.
     """
     if np.isfinite(reference.inside):
         x, p = peak(result.tables["line"], "x_m", "p_Pa")
@@ -146,7 +149,7 @@ def _pressure(result: Result, reference: Reference) -> Values:
         x, y, p = pressure_map(result)
         return Values((x[:, None], y[None, :]), p)
     r, p = peak(result.tables["line"], "x_m", "p_Pa")
-    return Values((r, 0.0), p, r * np.gradient(r))
+    return Values((r, 0.0), p, np.gradient(r) * (1.0 if result.model == FEM_LINE else r))
 
 
 def _pressure_on_cells(scene: Scene, sam: Result, other: Result) -> Measured:
@@ -509,6 +512,7 @@ QUANTITIES: Mapping[str, Quantity] = {
     "p-center": _scalar("p_center_Pa", "pressure in the centre", "Pa"),
     "approach": _scalar("approach_m", "approach", "m"),
     "radius": _scalar("contact_radius_m", "contact radius", "m"),
+    "half-width": _scalar("contact_half_width_m", "half-width of the contact", "m"),
     "load": Quantity("sum of the pressure over the cells", "N", _load),
     "pressure": Quantity("pressure over the surface", "Pa", _pressure, _pressure_on_cells),
     "displacement": Quantity("displacement of the surface to 2 a", "m", row="uz_m on the line"),

@@ -30,6 +30,7 @@ from verification.reference.elliptic import EllipticContact
 from verification.reference.flat_punch import FlatPunch
 from verification.reference.hamilton import sliding_stress
 from verification.reference.hertz import CircularContact, axis_stress, largest_von_mises
+from verification.reference.hertz_line import LineContact
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
 from verification.reference.misfit_sphere import GrowingSphere
 from verification.reference.rounded_punch import RoundedPunch
@@ -44,7 +45,7 @@ def elliptic_contact(scene: Scene) -> EllipticContact:
 
 
 def _pressed(
-    exact: CircularContact | FlatPunch | RoundedPunch,
+    exact: CircularContact | FlatPunch | RoundedPunch | LineContact,
     stress: Callable[[np.ndarray], np.ndarray],
     values: Mapping[str, float],
     *,
@@ -89,6 +90,29 @@ def hertz_sphere(scene: Scene) -> Reference:
     }
     found = _pressed(exact, lambda z: axis_stress(np.abs(z), p0, a, nu), values, p0=p0, share=share)
     return replace(found, curves={**found.curves, ("line", "gap_m"): lambda x: exact.gap(np.abs(x))})
+
+
+def hertz_line(scene: Scene) -> Reference:
+    """Hertz's line contact with the stresses of McEwen (1949), with friction those of its pressure in full
+    slip, which moves between bodies of unlike moduli.
+    """
+    exact, nu = contact_of(scene), scene.body.poisson
+    a, p0, friction = exact.contact_radius, exact.peak_pressure, scene.coefficient
+    largest, depth = exact.largest_von_mises(nu)
+
+    def axis(z: np.ndarray) -> np.ndarray:
+        return exact.stress(0.0, z, nu, friction=friction)
+
+    values = {
+        "p-max": p0,
+        "half-width": a,
+        "mises-max": largest,
+        "mises-depth": depth,
+        "stress": lambda x, _, z: exact.stress(x, z, nu, friction=friction) / p0,
+        "pressure": lambda x, _: exact.pressure(x),
+    }
+    found = _pressed(exact, axis, values, p0=p0)
+    return replace(found, curves={key: of for key, of in found.curves.items() if key[1] != "uz_m"})
 
 
 def hertz_ellipse(scene: Scene) -> Reference:
@@ -258,6 +282,7 @@ def growing_sphere(scene: Scene, shares: tuple[float, ...] = (1.0,)) -> GrowingS
 
 REFERENCES: Mapping[str, Callable[[Scene], Reference]] = {
     "hertz-sphere": hertz_sphere,
+    "hertz-line": hertz_line,
     "hertz-ellipse": hertz_ellipse,
     "flat-punch": flat_punch,
     "rounded-punch": rounded_punch,

@@ -35,7 +35,7 @@ from verification.quantities import QUANTITIES
 LEVELS = ("quick", "full")
 FOLDER = Path(__file__).resolve().parent / "cases"
 FAMILIES = (
-    *("hertz", "plastic", "sliding", "cyclic", "moving", "published", "energy"),
+    *("hertz", "plastic", "sliding", "cyclic", "moving", "line", "published", "energy"),
     *("coated", "rough", "film", "running_in"),
     *("limits", "cost", "peers", "certificates", "robustness"),
 )

@@ -17,6 +17,7 @@ from sam.scene import Coating, CounterBody, CounterSurface, Friction, Grid, Load
 from verification.cases.case import with_body, with_grid, with_keys, with_loading, with_mesh
 from verification.reference.coated_sphere import CoatedContact
 from verification.reference.hertz import CircularContact, effective_modulus
+from verification.reference.hertz_line import LineContact
 from verification.references import coated_contact, contact_of, growing_sphere, rounded_contact
 from verification.rows import CaseFile
 from verification.scenes import asperities
@@ -43,20 +44,24 @@ def initial_yield(scene: Scene) -> float:
 def at_ratio(scene: Scene, ratio: float) -> Scene:
     """The force that gives the elastic contact the peak pressure ratio * initial yield stress."""
     elastic, p0 = contact_of(scene), ratio * initial_yield(scene)
+    if isinstance(elastic, LineContact):
+        return with_loading(scene, force=elastic.at_pressure(p0).force)
     force = CircularContact.from_peak_pressure(p0, elastic.radius, elastic.modulus).force
     return with_loading(scene, force=force)
 
 
 def resolved_at(scene: Scene, resolution: Resolution) -> Scene:
     """The scene with cells of a/sam and elements of a/fem, a the radius of the elastic contact under its
-    force; 2.2 radii each way, a cell centre on the apex.
+    force; 2.2 radii each way, a cell centre on the apex; below a cylinder one row of them.
     """
     cells, elements = resolution
-    a = contact_of(scene).contact_radius
+    a, length = contact_of(scene).contact_radius, scene.counterbody.length
     n = 2 * round(REACH * cells) + 1
     extent = n * a / cells
     depths = tuple(float(z) for z in a * layer_faces(cells))
-    return with_mesh(with_grid(scene, cells=(n, n), extent=(extent, extent), depths=depths), elements)
+    across = (1, length) if length else (n, extent)
+    grid = {"cells": (n, across[0]), "extent": (extent, across[1]), "depths": depths}
+    return with_mesh(with_grid(scene, **grid), elements)
 
 
 def layer_faces(cells: int) -> np.ndarray:
@@ -208,8 +213,12 @@ TRACK_RATIO = 4.0  # p0 over the initial yield stress
 
 
 def radius_at(scene: Scene, ratio: float = TRACK_RATIO) -> float:
-    """Hertz radius in m of a rigid sphere at p0 = ratio times the initial yield stress."""
+    """Hertz radius in m of a rigid sphere, or half-width below a cylinder, at p0 = ratio times the initial
+    yield stress.
+    """
     modulus = scene.body.young / (1 - scene.body.poisson**2)
+    if scene.counterbody.length:
+        return contact_of(at_ratio(scene, ratio)).contact_radius
     return float(np.pi * ratio * initial_yield(scene) * scene.counterbody.radius / (2 * modulus))
 
 
@@ -226,14 +235,16 @@ def on_track(scene: Scene, keys: Mapping[str, Any]) -> Scene:
         even = len(faces) <= round(EVEN_TO * cells)
         faces.append(faces[-1] + (h if even else (faces[-1] - faces[-2]) * LAYER_GROWTH))
     half = length / 2 + BEHIND + abs(shift) / cells
-    count = 2 * int(np.ceil(half * cells)) + 1, 2 * round(BESIDE_TRACK * cells) + 1
+    across = scene.counterbody.length
+    count = 2 * int(np.ceil(half * cells)) + 1, 1 if across else 2 * round(BESIDE_TRACK * cells) + 1
     ends = [(x * a + shift * h, 0.0) for x in (-length / 2, length / 2)]
     start, end = ends[::-1] if keys.get("back") else ends
     comes_back = {"return": "to-and-fro" if keys.get("to_and_fro") else "lifted"}
     path = Path(start=start, end=end, steps=round(length * keys.get("per_radius", 4.0)), **comes_back)
     force = float(2 / 3 * np.pi * ratio * initial_yield(scene) * a**2)
+    force = at_ratio(scene, ratio).loading.force if across else force
     scene = with_loading(scene, force=force, path=path, cycles=keys.get("cycles", 1))
-    return with_grid(scene, cells=count, extent=(count[0] * h, count[1] * h), depths=tuple(faces))
+    return with_grid(scene, cells=count, extent=(count[0] * h, across or count[1] * h), depths=tuple(faces))
 
 
 KINEMATIC = {"law": "perfect", "yield_stress": 1e9, "kinematic": {"modulus": (20e9,), "recovery": (0.0,)}}

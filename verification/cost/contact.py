@@ -26,12 +26,13 @@ def hertz_of(scene: Scene) -> dict[str, float]:
     other, loading, body = scene.counterbody, scene.loading, scene.body
     if other is None or scene.patch_surface is not None or body.coating is not None or loading.force == 0.0:
         return {}
-    if other.length is not None:  # Johnson 1985, Eq. 4.43 and 4.45
-        from sam import hertz_semi_axes
+    if other.length is not None:
+        from verification.reference.hertz_line import LineContact
 
-        a = hertz_semi_axes(scene)[0]
+        line = LineContact(loading.force, other.radius, contact_modulus(scene), other.length)
+        a = line.contact_radius
         area = {"contact_area_m2": 2 * a * other.length, "contact_half_width_m": a}
-        return area | {"p_max_Pa": 2 * loading.force / (pi * a * other.length)}
+        return {"approach_m": line.approach, **area, "p_max_Pa": line.peak_pressure}
     if other.radii is None:
         return {}
     from verification.reference.elliptic import EllipticContact

@@ -47,11 +47,12 @@ def surface_pressure(
 
 
 def pressure_on(x: np.ndarray, y: np.ndarray, axisymmetric: Tables, power: int = 2) -> np.ndarray:
-    """The pressure of the axisymmetric model at (x, y), (nx, ny). Linear between the nodes is p^power: 2 for
-    an elastic contact, which ends in a square root, 1 for a plastic one.
+    """The pressure of the axisymmetric model at (x, y), (nx, ny), or of both sides of a section at x. Linear
+    between the nodes is p^power: 2 for an elastic contact, which ends in a square root, 1 for a plastic one.
     """
     r, p = peak(axisymmetric["line"], "x_m", "p_Pa")
-    return np.interp(np.hypot(x[:, None], y[None, :]), r, p**power) ** (1 / power)
+    at = np.hypot(x[:, None], y[None, :]) if r[0] >= 0 else x[:, None] + 0 * y
+    return np.interp(at, r, p**power) ** (1 / power)
 
 
 def plane_field(tables: Tables, column: str) -> tuple[np.ndarray, ...]:
