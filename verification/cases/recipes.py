@@ -24,6 +24,7 @@ from verification.scenes import asperities
 
 REACH = 2.2  # half of the extent: the plastic zone reaches 1.6 a in the surface at 6.2 times the yield stress
 EVEN, DEEPEST = 1.0, 2.2  # layers are even to 1 a; at "even depth" 2.2 they have reached 3.3 a
+LINE_REACH, LINE_DEEPEST = 4.0, 3.3  # below a cylinder stress falls as 1/r: 7.3 a down
 GROWTH = 0.75
 FILM_SIDE = 1 - 1e-6  # thicknesses: the side of the interface on which the stresses are those of the film
 ROOM = 1.06  # half a side of the grid over the larger of the contact radii with and without film
@@ -52,23 +53,23 @@ def at_ratio(scene: Scene, ratio: float) -> Scene:
 
 def resolved_at(scene: Scene, resolution: Resolution) -> Scene:
     """The scene with cells of a/sam and elements of a/fem, a the radius of the elastic contact under its
-    force; 2.2 radii each way, a cell centre on the apex; below a cylinder one row of them.
+    force; 2.2 radii each way, a cell centre on the apex; below a cylinder a row of them over 4 half-widths.
     """
     cells, elements = resolution
     a, length = contact_of(scene).contact_radius, scene.counterbody.length
-    n = 2 * round(REACH * cells) + 1
+    n = 2 * round((LINE_REACH if length else REACH) * cells) + 1
     extent = n * a / cells
-    depths = tuple(float(z) for z in a * layer_faces(cells))
+    depths = tuple(float(z) for z in a * layer_faces(cells, LINE_DEEPEST if length else DEEPEST))
     across = (1, length) if length else (n, extent)
     grid = {"cells": (n, across[0]), "extent": (extent, across[1]), "depths": depths}
     return with_mesh(with_grid(scene, **grid), elements)
 
 
-def layer_faces(cells: int) -> np.ndarray:
+def layer_faces(cells: int, deepest: float = DEEPEST) -> np.ndarray:
     """Depths of the faces of the layers in a: even to 1, then each thicker than the last, halved where
     `cells` doubles.
     """
-    even = np.arange(round(DEEPEST * cells) + 1) / cells
+    even = np.arange(round(deepest * cells) + 1) / cells
     return even + GROWTH * np.maximum(even - EVEN, 0.0) ** 2
 
 
