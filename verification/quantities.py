@@ -525,6 +525,7 @@ QUANTITIES: Mapping[str, Quantity] = {
     "peeq-axis": Quantity("plastic strain on the axis", row="peeq on the axis"),
     "peeq-plane": Quantity("plastic strain in the plane y = 0", row="peeq in the plane y = 0"),
     "residual-centre": _scalar("residual_uz_center_m", "displacement of the centre after unloading", "m"),
+    "residual-axis": Quantity("residual von Mises stress on the axis", row="residual mises_Pa on the axis"),
     "residual-mises": _scalar("residual_mises_max_Pa", "largest residual von Mises stress", "Pa"),
     "pressure-rings": Quantity("mean pressure over rings of a/10", "Pa", between=_pressure_over_rings),
     "strain-layer": Quantity("largest plastic strain in the layer", between=_largest_strain(below=False)),
