@@ -19,7 +19,7 @@ from scipy import fft
 
 from sam.arrays import Array
 from sam.contact.convolution import BoxConvolution, Counters, PeriodicConvolution
-from sam.contact.operators import HalfSpaces, Kernel
+from sam.contact.operators import HALF_SPACES, HalfSpaces, Kernel
 from sam.grid.cells import CellGrid, Window
 from sam.kernels.patches import ODD_X, ODD_Y, STRESS, Cuboids
 from sam.kernels.waves import (
@@ -63,6 +63,10 @@ class PeriodicHalfSpaces(HalfSpaces):
     def normal(self, nx: int, ny: int, aspect: float) -> Array:
         """u_hat_z by p_hat = 1 on the cell at the origin and its images, about its mean."""
         return displacement_kernel((nx, ny), aspect, 0.0, component=3, load=3)
+
+    def own(self, coefficients: Array, aspect: float) -> float:
+        """That of a single cell, whatever the period."""
+        return HALF_SPACES.own(HALF_SPACES.normal(1, 1, aspect), aspect)
 
     def tangential(self, nx: int, ny: int, aspect: float) -> Array:
         """u_hat_z by a traction p_hat = 1 along x with coupling 1, and by its images."""

@@ -218,7 +218,14 @@ def snapshot(model: Model, record: Progressed, name: str, trial: Trial) -> Snaps
     # the largest plastic strain; cells hold means
     top, interval = None, model.strength.kinks.interval(grid.depths[:layers])
     if material.peeq.any():
-        centres = at_centres(material.peeq, model.faces(extent), interval)
+        around_it = [(0, 0), *[(int(grid.periodic),) * 2] * 2]
+        peeq = np.pad(material.peeq, around_it, mode="wrap")
+        centres = at_centres(peeq, model.faces(extent), interval)
+        if grid.periodic:  # the largest in the middle: it has neighbours on all sides
+            centres = centres[:, 1:-1, 1:-1]
+            place = np.unravel_index(int(centres.argmax()), centres.shape)[1:]
+            to_middle = [n // 2 - int(i) for n, i in zip(grid.shape, place, strict=True)]
+            centres = np.roll(centres, to_middle, axis=(1, 2))
         top = largest(centres, grid.depths[:layers], interval)
 
     # the cells of the box in the row of the largest pressure, where that need not be at the origin
