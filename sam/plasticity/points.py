@@ -116,11 +116,12 @@ class Linear:
         return reach
 
 
-def stress_at_points(stress: Array, strain: Array, m: float) -> Array:
+def stress_at_points(stress: Array, strain: Array, m: float, *, periodic: bool = False) -> Array:
     """The stress (e) at the points of all cells of a box, (6, 4, n_layers, nx, ny) in Pa, of the stress of
     the cells, (6, n_layers, nx, ny), and plastic strain at the points; m: of the return map (a).
     """
-    linear, every = Linear((stress.shape[-2], stress.shape[-1])), np.ones(stress.shape[1:], dtype=bool)
+    linear = Linear((stress.shape[-2], stress.shape[-1]), periodic=periodic)
+    every = np.ones(stress.shape[1:], dtype=bool)
     smooth = linear.at_points(stress + 2 * m * strain.mean(axis=1), every)
     return smooth.reshape(strain.shape) - 2 * m * strain
 

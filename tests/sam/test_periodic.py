@@ -2,8 +2,8 @@
 """Patches that repeat, against closed forms, sums over images and the same patch with another period."""
 
 from dataclasses import replace
+from itertools import pairwise
 
-import builders
 import numpy as np
 import pytest
 
@@ -23,7 +23,8 @@ from sam.kernels.patches import (
     stress_coefficients,
 )
 from sam.kernels.waves import in_cells, load_waves
-from sam.plasticity.spectra import BoxOperator
+from sam.plasticity.images import PeriodImages
+from sam.plasticity.spectra import BoxOperator, PeriodicOperator
 from sam.results.rough import spots_of
 from sam.scene import HeightMap, Scene
 
@@ -62,10 +63,10 @@ def test_coefficients_are_sums_over_images(z, load):
     cells, aspect, numbers = (8, 6), 1.3, (4, 8, 16, 32)
     if z is None:
         odd = np.zeros(1, int), np.zeros(1, int)
-        waves = load_waves("displacement", (str(load),), cells, aspect, NU, load=load)
+        waves = load_waves("displacement", (str(load),), Lags(*cells, 1.0, aspect), NU, load=load)
     else:
         odd = ODD_X ^ int(load == 1), ODD_Y
-        waves = load_waves("stress", STRESS, cells, aspect, NU, load=load, depths=(z,))
+        waves = load_waves("stress", STRESS, Lags(*cells, 1.0, aspect), NU, load=load, depths=(z,))
     lags = Lags(*(n * (numbers[-1] + 1) for n in cells), 1.0, aspect)
     if z is None:
         free = displacement_coefficients(lags, NU, component=load, load=load)[None]
@@ -86,12 +87,12 @@ def test_coefficients_are_sums_over_images(z, load):
             part = kept
         sums.append(part - part.mean(axis=(1, 2), keepdims=True))
     for power in (1, 2, 3):
-        sums = [(2**power * b - a) / (2**power - 1) for a, b in zip(sums, sums[1:], strict=False)]
+        sums = [(2**power * b - a) / (2**power - 1) for a, b in pairwise(sums)]
     np.testing.assert_allclose(in_cells(waves, cells, *odd), sums[0], rtol=0, atol=5e-7)
 
 
 def test_harmonic_loads_by_hand():
-    """Stress of p = 1 + cos x and q = .5 (Johnson 1985, by superposition of Boussinesq's), in cells of k h."""
+    """Stress of p = 1 + cos x and q = .5 (Johnson 1985, by superposition of Boussinesq's)."""
     n, z = 32, 3.0
     k, p, q = 2 * np.pi / n, np.repeat(1 + wave(n), 4, 1), np.full((n, 4), 0.5)
     cell = np.sinc(k / 2 / np.pi)
@@ -123,8 +124,8 @@ BOX = Cuboids(Lags(16, 12, 1.0, 1.25), FACES, NU)
 STRAIN = np.random.default_rng(1).standard_normal((6, 5, 16, 12))
 
 
-def operator(box: Cuboids = BOX, bodies: PeriodicHalfSpaces | None = HELD, swept: float = 1e-7):
-    return BoxOperator(box, 1.0, Counters(), swept=swept, period=bodies)
+def operator(box: Cuboids = BOX, bodies: PeriodicHalfSpaces = HELD) -> PeriodicOperator:
+    return PeriodicOperator(bodies, box, 1.0, Counters(), single=False, swept=1e-7)
 
 
 def stress_of(box: BoxOperator, strain: np.ndarray) -> np.ndarray:
@@ -133,14 +134,12 @@ def stress_of(box: BoxOperator, strain: np.ndarray) -> np.ndarray:
 
 def test_plastic_strain_is_that_in_a_box_and_in_its_images():
     small = replace(BOX, lags=Lags(8, 6, 1.0, 1.25))
-    inside, box = STRAIN[..., :8, :6], operator(small, None)  # its transforms are those of the period
-    images = box.spectra.images
-    found = stress_of(operator(small, None, 0.0), inside) + images.fields(
-        images.values(images.moments(inside))
-    )
+    inside, images = STRAIN[..., :8, :6], PeriodImages(small, (8, 6), (16, 12), 1e-5)
+    found = stress_of(BoxOperator(small, 1.0, Counters()), inside)
+    found += images.fields(images.values(images.moments(inside)))
     alone = np.zeros_like(STRAIN)
     alone[..., :8, :6] = inside
-    np.testing.assert_allclose(stress_of(operator(), alone)[..., :8, :6], found, rtol=0, atol=2e-5)
+    np.testing.assert_allclose(stress_of(operator(), alone)[..., :8, :6], found, rtol=0, atol=1e-4)
 
 
 def test_plastic_strain_repeats_wherever_the_period_begins():
@@ -186,9 +185,10 @@ def wavy(**edits) -> Scene:
         "grid": {"cells": (16, 8), "extent": (16e-6, 8e-6), "periodic": "xy", "layers": 6, "depth": 6e-6},
         "solver": {"tolerance": 1e-4},
     }
-    return Scene(**{name: table | edits.get(name, {}) for name, table in tables.items()} | {
-        name: table for name, table in edits.items() if name not in tables
-    })
+    return Scene(
+        **{name: table | edits.get(name, {}) for name, table in tables.items()}
+        | {name: table for name, table in edits.items() if name not in tables}
+    )
 
 
 def test_two_waves_are_one_twice_and_yield_alike():
@@ -199,3 +199,56 @@ def test_two_waves_are_one_twice_and_yield_alike():
         assert two.quantities[name] == pytest.approx(one.quantities[name], rel=2e-4), name
     assert one.quantities["peeq_max"] > 1e-4 and two.quantities["contact_spots"] == 2
     assert {"padding", "images of the period"} <= {each.stage for each in one.left_out}
+
+
+def test_heights_that_do_not_repeat_are_refused_or_tapered():
+    x = (np.arange(40) + 0.5) / 40
+    waves = np.sin(2 * np.pi * 3 * x)[:, None] + np.cos(2 * np.pi * 2 * x[:32])
+    assert step_across(waves[:, :20]) < 1.6 and step_across(waves) > 3
+    found = tapered(waves, 0.5)
+    assert step_across(found) < 1.6
+    middle = slice(10, 30), slice(8, 24)
+    np.testing.assert_array_equal(found[middle], waves[middle])
+    surface = {"kind": "file", "path": HeightMap(1e-8 * waves, (40e-6, 32e-6))}
+    tables = {"body": {"young": 2e11, "poisson": NU}, "counterbody": {"shape": "flat"}}
+    tables |= {"grid": {"periodic": "xy"}, "loading": {"mean_pressure": 1e8}}
+    with pytest.raises(
+        sam.UnsupportedScene, match=r"surface.path = .*at most 3 are allowed: give surface.taper"
+    ):
+        sam.solve(Scene(**tables, surface=surface))
+    result = sam.solve(Scene(**tables, surface=surface | {"taper": 0.5}))
+    change = 1e-8 * np.sqrt(np.mean((found - waves) ** 2))
+    assert f"heights are changed by {change:.4g} m (rms)" in " ".join(result.warnings)
+    assert result.converged and result.quantities["force_N"] == pytest.approx(1e8 * 40e-6 * 32e-6)
+
+
+@pytest.mark.parametrize(
+    ("edits", "words"),
+    [
+        ({"grid": {"cells": (15, 8)}}, r"grid.cells = \[15, 8\].* even numbers are allowed"),
+        ({"grid": {"extent": (24e-6, 8e-6)}}, "grid.extent = 2.4e-05 m: .* whole multiple of 1.6e-05 m"),
+        ({"solver": {"operator": "dense"}}, 'solver.operator = "dense": .*"swept" is allowed'),
+    ],
+)
+def test_what_a_periodic_patch_cannot_have(edits, words):
+    with pytest.raises(sam.UnsupportedScene, match=words):
+        sam.check(wavy(**edits))
+
+
+def test_an_approach_is_less_than_the_mean_gap():
+    scene = wavy(solver={})
+    elastic = {"body": {"young": 210e9, "poisson": NU}, "loading": {"approach": 0.9e-7}}
+    tables = (
+        scene.model_dump() | elastic | {"grid": {"cells": (16, 8), "extent": (16e-6, 8e-6), "periodic": "xy"}}
+    )
+    result = sam.solve(Scene(**tables))
+    again = Scene(**tables | {"loading": {"force": result.quantities["force_N"]}})
+    assert sam.solve(again).quantities["approach_m"] == pytest.approx(0.9e-7, rel=1e-6)
+    with pytest.raises(sam.UnsupportedScene, match=r"loading.approach = 1e-07 m: .*less than 9.808e-08 m"):
+        sam.solve(Scene(**tables | {"loading": {"approach": 1e-7}}))
+
+
+def test_spots_go_on_across_the_border():
+    p = np.zeros((6, 7))
+    p[0, 2] = p[-1, 2] = p[-1, 1] = p[3, 0] = p[3, -1] = p[2, 4] = 1.0
+    assert spots_of(p, True).max() == 3 and spots_of(p, False).max() == 5

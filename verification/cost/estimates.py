@@ -42,8 +42,8 @@ TIME = {
     models.FEM: {"solve": 0.129, "factors": 3.01e-7, "points": 0.0},
     models.FEM_3D: {"solve": 0.0712, "multigrid": 7.6e-8},
 }  # fmt: skip
-# Of a patch that repeats, whose coefficients are made in wave numbers, a depth at a time: share of the work of
-# stresses, of their memory, and what takes as long for any patch, in units of a solve.
+# Of a patch that repeats, whose coefficients are made in wave numbers, a depth at a time: share of the work
+# of stresses, of their memory, and what takes as long for any patch, in units of a solve.
 PERIODIC_WORK, PERIODIC_MEMORY, PERIODIC_SOLVES = 0.4, 1 / 7, 2.5
 SETTLES = 0.5  # power of the cycles that count: later ones strain and wear less
 RENEWED = 0.65  # the same where each cycle meets another counter-surface: 231 to 1401 iterations in 25 cycles
@@ -167,9 +167,7 @@ def plastic_boxes(scene: Scene, plan: Any, beyond: float = 0.0) -> list[Expected
             sides.append(grid.shape)  # where summits are worn others touch
         layers, operator, in_cells = max(len(faces) - 1, 1), scene.solver.operator, tuple(faces / grid.hx)
         repeats = plan.period is not None
-        return [
-            ExpectedBox(*each, layers, tolerance, False, operator, in_cells, repeats) for each in sides
-        ]
+        return [ExpectedBox(*each, layers, tolerance, False, operator, in_cells, repeats) for each in sides]
     depths = (faces[1:] + faces[:-1]) / 2
     if scene.loading.misfit_sphere:
         return [_box_of_sphere(scene, grid, depths, beyond)]
@@ -198,7 +196,13 @@ def _rough_sides(scene: Scene, plan: Any) -> tuple[int, int]:
     from sam.plasticity import or_whole
 
     grid, force = plan.grid, scene.loading.force
-    if plan.period is not None or not force or scene.counterbody is None or len(plan.schedule.path) > 1 or plan.schedule.renews:
+    if (
+        plan.period is not None
+        or not force
+        or scene.counterbody is None
+        or len(plan.schedule.path) > 1
+        or plan.schedule.renews
+    ):
         return grid.shape
     area = grid.nx * grid.ny * grid.cell_area
     plane = scene.counterbody.shape == "flat"
