@@ -17,7 +17,6 @@ but k itself are together smooth between -pi and pi: they are summed at Chebyshe
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import lru_cache
 from itertools import pairwise
 from math import ceil, erfc, log, pi
 from typing import Any
@@ -34,8 +33,6 @@ Radial = Callable[[Array], Sequence[Array]]
 """k > 0 -> functions of it, which derivatives along x and y multiply."""
 Sums = Sequence[tuple[int, int, int, int, float]]
 """(entry, a, b, function, factor): terms of the entries."""
-Parities = NDArray[np.integer[Any]]
-"""1 for odd, 0 for even, of each entry."""
 ALIASED = 1e-10  # share of a coefficient that waves are left out at
 NODES = 1e-10  # error of the sum over aliases between its nodes
 # (c, d) in 2 pi/hx: waves count by erfc((|k_x| - c)/d)/2: at the centres of cells, and at Gauss points, where
@@ -73,40 +70,25 @@ def _of_cell(x: Array, order: int, point: float) -> Array:
 
 def repeated(period: Lags, sums: Sums, radial: Radial, *, depth: float, point: float = 0.0) -> Array:
     """Entries of sums of (a), (entries, n_x // 2 + 1, n_y // 2 + 1), real: without (-i)^(odd_x + odd_y).
-
-    Parameters
-    ----------
-    period
-        Its cells, hx = 1.
-    sums, radial
-        The terms, with functions of k among which e^{-k z}/k is.
-    depth
-        The least z in hx.
-    point
-        Means over four points, so far from the centre along x and y, each in a side of the cell.
+    period: its cells, hx = 1; radial: the functions of k in the sums; depth: the least z in hx; point: means
+    over four points, so far from the centre along x and y in sides of the cell.
     """
     aspect, sides = period.hy, [2 * pi / n * np.arange(n // 2 + 1.0) for n in period.shape]
     k = np.hypot(sides[0][:, None], sides[1] / aspect)
     k[0, 0] = 1.0
-    out = np.zeros((1 + max(term[0] for term in sums), *k.shape))
-    functions = radial(k)
+    out, functions = np.zeros((1 + max(term[0] for term in sums), *k.shape)), radial(k)
     for entry, a, b, function, factor in sums:
         of_x, of_y = _of_cell(sides[0], a, point), _of_cell(sides[1], b, point) / aspect**b
         out[entry] += factor * of_x[:, None] * functions[function] * of_y
     far = log(1 / ALIASED) / (2 * pi)
     if depth < 2 * far * max(1.0, aspect):
         centre, width = WINDOW[point > 0]
-        most = [
-            ceil(min(far * side / depth if depth else np.inf, centre + 4 * width)) for side in (1, aspect)
-        ]
-        shut = [depth < far * side / (centre + 4 * width) for side in (1, aspect)]
+        widest = centre + 4 * width
+        most = [ceil(min(far * side / depth if depth else widest, widest)) for side in (1, aspect)]
         count = 2 * ceil(nodes_for(NODES, 1j * min(aspect, 1 / aspect), 2.0) / 2)
         half = pi * nodes(count)[: count // 2]
         waves = [half[:, None] + 2 * pi * np.arange(-n, n + 1) for n in most]
-        ends = [np.ones(each.shape) for each in waves]
-        for each, end, shuts in zip(waves, ends, shut, strict=True):
-            if shuts:
-                end[:] = np.vectorize(erfc)((np.abs(each) / (2 * pi) - centre) / width) / 2
+        ends = [np.vectorize(erfc)((np.abs(each) / (2 * pi) - centre) / width) / 2 for each in waves]
         functions = radial(np.hypot(waves[0][:, :, None, None], waves[1] / aspect))
         for each in functions:
             each[:, most[0], :, most[1]] = 0.0  # k itself
@@ -152,14 +134,6 @@ def load_waves(
     return repeated(period, sums, radial, depth=min(depths), point=point)
 
 
-@lru_cache(maxsize=4)
-def load_displacement_waves(period: Lags, nu: float, *, component: int, load: int) -> Array:
-    """Displacement of the surface, (n_x // 2 + 1, n_y // 2 + 1), as of `load_waves`; read-only."""
-    found = load_waves("displacement", (str(component),), period, nu, load=load)[0]
-    found.flags.writeable = False
-    return found
-
-
 def strain_displacement_waves(period: Lags, faces: Sequence[float], nu: float, component: int = 3) -> Array:
     """Displacement of the surface by unit strain in the cells of layers, in hx, (6, layers, n_x // 2 + 1,
     n_y // 2 + 1), as of `repeated`. Paper Eq. 6 and 19.
@@ -184,15 +158,21 @@ def strain_displacement_waves(period: Lags, faces: Sequence[float], nu: float, c
     return np.stack(layers, axis=1)
 
 
-def in_cells(waves: Array, cells: tuple[int, int], odd_x: Parities, odd_y: Parities) -> Array:
-    """Coefficients at the lags 0 .. n - 1 of the period, (entries, ..., n_x, n_y), from `repeated` ones."""
-    return np.fft.irfft2(whole_waves(waves, cells[0], odd_x, odd_y), s=cells)
+def in_cells(waves: Array, cells: tuple[int, int], names: Sequence[str], other: int) -> Array:
+    """Coefficients at the lags 0 .. n - 1 of the period, (entries, ..., n_x, n_y), from `repeated` ones; see
+    `whole_waves`.
+    """
+    return np.asarray(np.fft.irfft2(whole_waves(waves, cells[0], names, other), s=cells))
 
 
 def whole_waves(
-    waves: Array, nx: int, odd_x: Parities, odd_y: Parities
+    waves: Array, nx: int, names: Sequence[str], other: int
 ) -> NDArray[np.complexfloating[Any, Any]]:
-    """All wave numbers of a real transform, (entries, ..., n_x, n_y // 2 + 1), with their phase."""
+    """All wave numbers of a real transform, (entries, ..., n_x, n_y // 2 + 1), with their phase. names:
+    indices of the entries, other: of what they are due to.
+    """
+    odd_x, odd_y = ([(name + str(other)).count(axis) % 2 for name in names] for axis in "12")
     m, between = np.arange(nx), (1,) * (waves.ndim - 3)
-    sign = np.where(np.multiply.outer(odd_x, m > nx / 2), -1, 1) * ((-1j) ** (odd_x + odd_y))[:, None]
-    return sign.reshape(-1, *between, nx, 1) * waves[..., np.minimum(m, nx - m), :]
+    sign = np.where(np.multiply.outer(odd_x, m > nx / 2), -1, 1)
+    phase = (-1j) ** np.add(odd_x, odd_y)
+    return (phase[:, None] * sign).reshape(-1, *between, nx, 1) * waves[..., np.minimum(m, nx - m), :]
