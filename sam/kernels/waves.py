@@ -31,6 +31,7 @@ from sam.kernels.patches import STRESS, Lags, load_table
 
 Radial = Callable[[Array], Sequence[Array]]
 """k > 0 -> functions of it, which derivatives along x and y multiply."""
+Power = tuple[int, int]
 Sums = Sequence[tuple[int, int, int, int, float]]
 """(entry, a, b, function, factor): terms of the entries."""
 ALIASED = 1e-10  # share of a coefficient that waves are left out at
@@ -104,6 +105,15 @@ def repeated(period: Lags, sums: Sums, radial: Radial, *, depth: float, point: f
     return out
 
 
+def _sums(
+    rows: Sequence[tuple[int, Power, tuple[int, int], tuple[float, ...]]], nu: float
+) -> tuple[list[Power], Sums]:
+    """The powers (p, c) of z^p (-k)^c in rows (entry, (p, c), (a, b), factor in powers of nu), and sums."""
+    powers = sorted({power for _, power, _, _ in rows})
+    sums = [(e, *ab, powers.index(pc), sum(x * nu**k for k, x in enumerate(q))) for e, pc, ab, q in rows]
+    return powers, sums
+
+
 def load_waves(
     kind: str,
     names: Sequence[str],
@@ -117,12 +127,8 @@ def load_waves(
     """Of a unit traction on a cell (load: its direction), the mean over depths in hx of the `kind` "stress"
     or "displacement" (times mu, in hx), see `repeated`. Paper Eq. 5 and 7.
     """
-    rows = [(entry, row) for entry, name in enumerate(names) for row in load_table()[kind][f"{name},F{load}"]]
-    powers = sorted({(row[0], row[3]) for _, row in rows})  # z^p (-k)^c
-    sums = [
-        (entry, a, b, powers.index((p, c)), sum(q * nu**k for k, q in enumerate(of_nu)))
-        for entry, (p, a, b, c, of_nu) in rows
-    ]
+    rows = [(e, row) for e, name in enumerate(names) for row in load_table()[kind][f"{name},F{load}"]]
+    powers, sums = _sums([(e, (p, c), (a, b), of_nu) for e, (p, a, b, c, of_nu) in rows], nu)
 
     def radial(k: Array) -> list[Array]:
         falls, inverse = [np.exp(-k * z) / k for z in depths], -1 / k
@@ -140,11 +146,7 @@ def strain_displacement_waves(period: Lags, faces: Sequence[float], nu: float, c
     """
     table = eigenstrain_table()["displacement"]
     rows = [(e, *row) for e, name in enumerate(STRESS) for row in table[f"{component},{name}"].items()]
-    powers = sorted({(q, c) for _, (_, q, _, _, c), _ in rows})  # the integral of z'^q (-k)^c
-    sums = [
-        (entry, a, b, powers.index((q, c)), sum(x * nu**k for k, x in enumerate(of_nu)))
-        for entry, (_, q, a, b, c), of_nu in rows
-    ]
+    powers, sums = _sums([(e, (q, c), (a, b), of_nu) for e, (_, q, a, b, c), of_nu in rows], nu)
     layers = []
     for top, bottom in pairwise(faces):
 
