@@ -217,6 +217,10 @@ class Scene(Section):
                 f"with {axis} and a rough surface {NOT_YET}",
             ),
             (line and at("grid.border") == "relief", "grid.border", f'"free" with {axis}'),
+            *(
+                (has(f"{table}.taper") and not repeats, f"{table}.taper", f"only together with {patch}")
+                for table in ("surface", "counterbody.surface")
+            ),
             (along and not line, "grid.periodic", f'"y" only together with {axis}'),
             (repeats and line, "grid.periodic", f'"y" with {axis}'),
             (line and has("loading.approach"), "loading.approach", datum),
