@@ -112,11 +112,11 @@ def _heights(surface: Surface, cells: tuple[int, int], extent: tuple[float, floa
     return values
 
 
-def step_across(heights: Array) -> float:
-    """Rms step across the border of a patch over that between neighbouring cells, the larger of both
+def step_across(heights: Array, axes: tuple[int, ...] = (0, 1)) -> float:
+    """Rms step across the border of a patch over that between neighbouring cells, the larger of some
     directions: about 1 of heights (nx, ny) that repeat.
     """
-    steps = [(heights.take(0, axis) - heights.take(-1, axis), np.diff(heights, axis=axis)) for axis in (0, 1)]
+    steps = [(heights.take(0, axis) - heights.take(-1, axis), np.diff(heights, axis=axis)) for axis in axes]
     rms = [[float(np.sqrt(np.square(each).mean())) for each in both] for both in steps]
     return max(across / (inside or across or 1.0) for across, inside in rms)
 

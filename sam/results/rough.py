@@ -85,7 +85,7 @@ class RoughRecord:
         """
         mean = float(contact.gap.mean())
         return {
-            "contact_spots": float(spots_of(contact.pressure, grid.periodic).max()),
+            "contact_spots": float(spots_of(contact.pressure, grid.wraps).max()),
             "contact_share": contact_area(contact, grid) / (grid.nx * grid.hx * grid.ny * grid.hy),
             "mean_gap_m": mean if np.isfinite(mean) else None,
         }
@@ -103,7 +103,7 @@ class RoughRecord:
                     f"{min(cells):.3g} cells in the shortest wavelength of the {surface.words}: with "
                     f"fewer than {WELL_RESOLVED:g} the largest pressure depends on where the cells lie{finer}"
                 )
-        if coarse := too_few_cells(contact.pressure, grid.periodic):
+        if coarse := too_few_cells(contact.pressure, grid.wraps):
             out.append(f"{coarse}{finer}")
         if self.patch.relief and (made := in_the_fall_off(contact.pressure)):
             out.append("; ".join(filter(None, (made, self.remedies.larger_patch))))
@@ -129,26 +129,27 @@ class RoughRecord:
         return tuple(out)
 
 
-def spots_of(pressure: Array, periodic: bool) -> NDArray[np.intp]:
-    """The number of the spot of each cell (nx, ny), joined at their sides, 0 beside them; periodic: also
-    across the border.
+def spots_of(pressure: Array, wraps: tuple[bool, bool]) -> NDArray[np.intp]:
+    """The number of the spot of each cell (nx, ny), joined at their sides, 0 beside them; wraps: also across
+    the border along x and along y.
     """
     from scipy import ndimage  # noqa: PLC0415 - for rough scenes alone
 
     spots, count = ndimage.label(pressure > 0)
-    if not periodic:
+    if not any(wraps):
         return np.asarray(spots)
     from scipy import sparse  # noqa: PLC0415
 
-    ends = np.concatenate([[spots[0], spots[-1]], [spots[:, 0], spots[:, -1]]], axis=1)
+    borders = [[spots.take(0, axis), spots.take(-1, axis)] for axis in (0, 1) if wraps[axis]]
+    ends = np.concatenate(borders, axis=1)
     ends = ends[:, (ends > 0).all(axis=0)]
     pairs = sparse.coo_matrix((np.ones(ends.shape[1]), tuple(ends)), shape=(count + 1, count + 1))
     return np.asarray(sparse.csgraph.connected_components(pairs, directed=False)[1][spots])
 
 
-def too_few_cells(pressure: Array, periodic: bool = False) -> str:
+def too_few_cells(pressure: Array, wraps: tuple[bool, bool] = (False, False)) -> str:
     """What to know about spots (nx, ny) in Pa that few cells resolve, joined at their sides."""
-    spots = spots_of(pressure, periodic)
+    spots = spots_of(pressure, wraps)
     if not spots.any():
         return ""
     cells = np.bincount(spots.ravel())[1:]
