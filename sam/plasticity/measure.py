@@ -129,7 +129,7 @@ def _residual_stress(model: Model, record: Progressed) -> Array:
     across = window.j0 <= rows.j0 and rows.j0 + rows.ny <= window.j0 + window.ny
     covered = record.extent.layers if across and window.nx == grid.nx else 0
     expected = ExpectedBox(*window.shape, record.extent.layers, model.tolerance)
-    if expected.large and model.plan.solver.operator != "dense":
+    if expected.large and model.asked_operator != "dense":
         return _swept_stress(model, record)
     strained, mu = _strained(model, record), model.plan.pair.body.shear
     below = residual_stress(strained, grid.depths[covered:], rows, mu=mu)

@@ -194,13 +194,18 @@ class Model:
         lags = Lags(*extent.window.shape, self.grid.hx, self.grid.hy, self.grid.period)
         return Cuboids(lags, tuple(self.faces(extent).tolist()), self.plan.pair.body.poisson)
 
+    @property
+    def asked_operator(self) -> str | None:
+        """See `Solver.operator`; below a cylinder nothing is swept."""
+        return "dense" if self.grid.line else self.plan.solver.operator
+
     def operator(self, extent: Extent, *, once: Counters | None = None) -> BoxOperator:
         """The operator of a box. once: counters of one beside that of the steps."""
         counters = self.counters if once is None else once
         counters.tangential_kernels += self.plan.slip.slides
         nx, ny = extent.window.shape
-        exchange, asked = self._exchange(extent.window), self.plan.solver.operator
-        box = ExpectedBox(nx, ny, extent.layers, self.tolerance, exchange, asked)
+        exchange = self._exchange(extent.window)
+        box = ExpectedBox(nx, ny, extent.layers, self.tolerance, exchange, self.asked_operator)
         return BoxOperator(
             self.cuboids(extent),
             self.plan.pair.body.shear,
@@ -208,7 +213,7 @@ class Model:
             single=self.tolerance >= SINGLE,
             mirror=self._mirror(extent.window),
             exchange=exchange,
-            swept=0.0 if self.grid.line else box.swept,
+            swept=box.swept,
         )
 
     def _mirror(self, window: Window) -> tuple[bool, bool]:
