@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A line contact: coefficients of plane strain against quadrature, cells of space, and balance of forces; a
+"""A line contact: coefficients of plane strain against quadrature, images, and balance of forces; a
 cylinder against Hertz and McEwen, the closed form of full slip, and itself on other grids.
 """
 
