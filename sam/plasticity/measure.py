@@ -129,7 +129,7 @@ def _residual_stress(model: Model, record: Progressed) -> Array:
     across = window.j0 <= rows.j0 and rows.j0 + rows.ny <= window.j0 + window.ny
     covered = record.extent.layers if across and window.nx == grid.nx else 0
     expected = ExpectedBox(*window.shape, record.extent.layers, model.tolerance)
-    large = expected.large and model.plan.solver.operator != "dense"
+    large = expected.large and model.asked_operator != "dense"
     if large or model.plan.period is not None:
         return _swept_stress(model, record)
     strained, mu = _strained(model, record), model.plan.pair.body.shear

@@ -194,12 +194,17 @@ class Model:
         lags = Lags(*extent.window.shape, self.grid.hx, self.grid.hy, self.grid.period)
         return Cuboids(lags, tuple(self.faces(extent).tolist()), self.plan.pair.body.poisson)
 
+    @property
+    def asked_operator(self) -> str | None:
+        """See `Solver.operator`; below a cylinder nothing is swept."""
+        return "dense" if self.grid.line else self.plan.solver.operator
+
     def operator(self, extent: Extent, *, once: Counters | None = None) -> BoxOperator:
         """The operator of a box. once: counters of one beside that of the steps."""
         counters = self.counters if once is None else once
         counters.tangential_kernels += self.plan.slip.slides
         nx, ny = extent.window.shape
-        exchange, asked = self._exchange(extent.window), self.plan.solver.operator
+        exchange, asked = self._exchange(extent.window), self.asked_operator
         repeats = self.plan.period is not None
         box = ExpectedBox(nx, ny, extent.layers, self.tolerance, exchange, asked, periodic=repeats)
         single, period = self.tolerance >= SINGLE, self.plan.period
@@ -207,8 +212,7 @@ class Model:
         if period is not None:
             return PeriodicOperator(period, *of_cells, single=single, swept=box.swept)
         mirror = self._mirror(extent.window)
-        swept = 0.0 if self.grid.line else box.swept
-        return BoxOperator(*of_cells, single=single, mirror=mirror, exchange=exchange, swept=swept)
+        return BoxOperator(*of_cells, single=single, mirror=mirror, exchange=exchange, swept=box.swept)
 
     def _mirror(self, window: Window) -> tuple[bool, bool]:
         """Whether fields are mirrored in x and in y: on a box about the middle, x without friction."""
