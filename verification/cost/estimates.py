@@ -251,7 +251,9 @@ def _zone(scene: Scene, grid: CellGrid, depths: np.ndarray) -> Zone:
         wider, deeper = (share * max(ratio - GIVEN_ABOVE, 0.0) for share in GIVEN_SPREAD[soft])
     needed, path = ((1 + wider) * wide, (1 + deeper) * deep), _path_cells(scene, grid)
     slides = bool(scene.coefficient) or scene.loading.path is not None
-    return Zone(hertz_semi_axes(scene), wide, deep, needed, MISES * ratio, slides, path)
+    axes = hertz_semi_axes(scene)
+    axes = (axes[0], axes[0]) if grid.line else axes
+    return Zone(axes, wide, deep, needed, MISES * ratio, slides, path)
 
 
 def _back_hardening(scene: Scene, depths: np.ndarray) -> float:
@@ -327,8 +329,8 @@ def peak_pressure(scene: Scene) -> float:
         return _largest_mises(scene) / MISES
     from sam import expected_force, hertz_semi_axes
 
-    area = np.pi * np.prod(hertz_semi_axes(scene))
-    return 1.5 * expected_force(scene) / area if area else 0.0
+    area, line = np.pi * np.prod(hertz_semi_axes(scene)), scene.counterbody.length is not None
+    return (1.0 if line else 1.5) * expected_force(scene) / area if area else 0.0
 
 
 def _largest_mises(scene: Scene) -> float:

@@ -180,7 +180,9 @@ def _resolution(scene: Scene, model: str, made: Any) -> dict[str, Any]:
     if model == models.SAM:
         from sam import hertz_semi_axes
 
-        cells = sqrt(prod(hertz_semi_axes(scene)) / (made.grid.hx * made.grid.hy))
+        axes = hertz_semi_axes(scene)
+        cells = sqrt(prod(axes) / (made.grid.hx * made.grid.hy))
+        cells = axes[0] / made.grid.hx if made.grid.line else cells
     method = ON_TWO_GRIDS if model == models.SAM and scene.solver.extrapolate else model
     of_kind = [row for row in table() if row.kind == kind_of(scene)]
 
