@@ -65,6 +65,11 @@ class Found:
             for name, values in grid.point_data.items():
                 whole.point_data[name] = np.interp(r, grid.x, values.reshape(-1, grid.x.size)[0])
             grid = whole
+        elif grid.y.size == 1:  # a section, which is the same at every y
+            whole = pv.RectilinearGrid(grid.x, REACH * radius * np.array([-1.0, 1.0]), [0.0])
+            for name, values in grid.point_data.items():
+                whole.point_data[name] = np.tile(values, 2)
+            grid = whole
         elif grid.y[0] == 0.0:  # half a model: the other half is its mirror image
             whole = pv.RectilinearGrid(grid.x, np.append(-grid.y[:0:-1], grid.y), [0.0])
             for name, values in grid.point_data.items():
@@ -99,6 +104,12 @@ class Found:
             r, turn, z = np.meshgrid(x[right], np.linspace(0.0, np.pi, TURNS), -depth, indexing="ij")
             grid = pv.StructuredGrid(r * np.cos(turn), r * np.sin(turn), z)
             grid["peeq"] = np.broadcast_to(values[right][:, None, :], r.shape).ravel(order="F")
+            return grid
+        if self.run.model == "fem-plane-strain":
+            x, depth, values = self.plane("peeq")
+            beside = REACH * MICRO * contact_size(self.run.quantities) * np.array([-1.0, 1.0])
+            grid = pv.StructuredGrid(*np.meshgrid(x, beside, -depth, indexing="ij"))
+            grid["peeq"] = np.repeat(values[:, None], 2, axis=1).ravel(order="F")
             return grid
         path = self.run.folder / ("body.vtr" if self.run.model == "sam" else "fields.vtu")
         if not path.exists():
