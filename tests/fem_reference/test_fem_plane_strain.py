@@ -242,13 +242,6 @@ def test_rolling_leaves_a_track():
         ({"counterbody": {"shape": "sphere", "radius": RADIUS}}, "counterbody.shape = .sphere.: .*cylinder"),
         ({"grid": {"periodic": "y"}}, "grid.periodic = .y."),
         ({"body": {"young": 1e9, "poisson": 0.5}}, "body.poisson = 0.5"),
-        (
-            {
-                "fem": {"box": 3.0, "cells_per_radius": 2},
-                "body": STEEL | {"plasticity": {"law": "perfect", "yield_stress": 4e7}},
-            },
-            "fem.box = 3",
-        ),
     ],
 )
 def test_refused_by_name(tables, words):

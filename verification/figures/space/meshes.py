@@ -53,12 +53,7 @@ class Found:
         path, radius = self.run.folder / FILES[state], contact_size(self.run.quantities)
         if not path.exists() or (self.run.model == "fem-axisymmetric" and not radius):
             return None
-        grid = _mesh(self.run.folder, path.name).copy()
-        for name in list(grid.point_data):
-            if grid.point_data[name].ndim > 1:
-                if name.endswith("displacement_m"):
-                    grid.point_data[RAISED] = grid.point_data[name][:, 2]
-                del grid.point_data[name]
+        grid = _with_scalars(_mesh(self.run.folder, path.name).copy())
         if self.run.model == "fem-axisymmetric":  # nodes along r, turned around the axis on a square
             x = np.linspace(-REACH * radius, REACH * radius, POINTS)
             whole, r = pv.RectilinearGrid(x, x, [0.0]), np.hypot(x[:, None], x).ravel()
@@ -118,6 +113,16 @@ class Found:
         for name in set(body.cell_data.keys()) - {"peeq"}:
             del body.cell_data[name]
         return body.cell_data_to_point_data().cast_to_unstructured_grid().scale(MICRO)
+
+
+def _with_scalars(grid: pv.RectilinearGrid) -> pv.RectilinearGrid:
+    """The grid without its vectors and tensors, with RAISED in place of a displacement."""
+    for name in list(grid.point_data):
+        if grid.point_data[name].ndim > 1:
+            if name.endswith("displacement_m"):
+                grid.point_data[RAISED] = grid.point_data[name][:, 2]
+            del grid.point_data[name]
+    return grid
 
 
 def drawn_at(sheet: pv.StructuredGrid, height: np.ndarray, values: np.ndarray) -> pv.StructuredGrid:
