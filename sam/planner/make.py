@@ -66,7 +66,8 @@ def plan_of(bodies: Bodies) -> Plan:
     if scene.wear is not None and scene.wear.removes:
         limits = limit_by_depth(scene.wear, None if plasticity is None else plasticity.layer_thickness)
         smoothing = scene.wear.smoothing_window, scene.wear.smoothing_order
-        wear = WearLaw(grid.shape, grid.hx, grid.hy, limits, scene.wear.interpolate, *smoothing)
+        keys = {"roof_falls": scene.wear.roof == "falls", "fills": scene.wear.smoothing_fills}
+        wear = WearLaw(grid.shape, grid.hx, grid.hy, limits, scene.wear.interpolate, *smoothing, **keys)
     rough, last = bodies.patch, schedule.targets[-1].load
     made = Plan(
         grid=grid,
