@@ -27,9 +27,10 @@ arithmetic,
     sum_k h_k new_k + integral over 0 ... w of old = sum_k h_k old_k                                       (b)
 
 for each column and component, to rounding. A column that is raised (w < 0) has fresh material on top, and
-what it pushes below the deepest face is gone with the integral. Means of plastic strains are free of volume change again, and the
-accumulated strain stays at least their norm. A shift by a fraction t of a uniform layer h smears like a
-diffusion, with second moment t (1 - t) h^2 per remap (first-order upwind); whole layers move without it.
+what it pushes below the deepest face is gone with the integral. Means of plastic strains are free of volume
+change again, and the accumulated strain stays at least their norm. A shift by a fraction t of a uniform layer
+h smears like a diffusion, with second moment t (1 - t) h^2 per remap (first-order upwind); whole layers move
+without it.
 """
 
 from __future__ import annotations
@@ -82,16 +83,16 @@ class Worn(NamedTuple):
 
 
 def worn_depth(
-    alpha: Array, faces: Array, limits: StrainLimits, interpolate: bool, roof_falls: bool = False
+    alpha: Array, faces: Array, limits: StrainLimits, interpolate: bool, *, roof_falls: bool = False
 ) -> Worn:
-    """What is removed: all above its limit that reaches the surface, or with the roof. alpha: accumulated plastic strain (n_layers, nx, ny), mean of
-    each cell; faces: (n_layers + 1,) in m from the current surface, 0, downwards. interpolate: the strain is
-    linear between the centres of the layers. At the surface it is extrapolated from the two uppermost ones,
-    never below 0 (a single layer: constant); from the lowest centre to the deepest face it is constant. The
-    depth is the first crossing with the limit, which steps where the layer ends: a crossing at the step is
-    found exactly. Error O(dz^2). Without, whole layers are removed whose mean is above the limit at their
-    centre: error O(dz). Raises ValueError for faces that do not fit the layers or do not descend from 0, and
-    for alpha that is not finite.
+    """What is removed: all above its limit that reaches the surface, or with the roof. alpha: accumulated
+    plastic strain (n_layers, nx, ny), mean of each cell; faces: (n_layers + 1,) in m from the current
+    surface, 0, downwards. interpolate: the strain is linear between the centres of the layers. At the
+    surface it is extrapolated from the two uppermost ones, never below 0 (a single layer: constant); from the
+    lowest centre to the deepest face it is constant. The depth is the first crossing with the limit, or the
+    last, which steps where the layer ends: a crossing at the step is found exactly. Error O(dz^2). Without,
+    whole layers are removed whose mean is above the limit at their centre: error O(dz). Raises ValueError for
+    faces that do not fit the layers or do not descend from 0, and for alpha that is not finite.
     """
     faces = np.asarray(faces, dtype=float)
     if faces.shape != (len(alpha) + 1,) or faces[0] != 0 or not np.all(np.diff(faces) > 0):
@@ -281,16 +282,10 @@ class WearState:
         return sum(self.volumes)
 
     @property
-    def of_last_cycle(self) -> dict[str, float]:
-        """Volumes in m3 of the last cycle, by their names in `CycleEnd`."""
-        volumes = {
-            "wear_of_cycle": self.volumes,
-            "raw": self.raw_volumes,
-            "roofed": self.roofed_volumes,
-            "roof": self.roof_volumes,
-            "filled": self.filled_volumes,
-        }
-        return {name: each[-1] for name, each in volumes.items()}
+    def of_last_cycle(self) -> tuple[float, float, float, float, float]:
+        """In m3: removed, raw, roofed, roof, filled."""
+        raw, roofed, roof = self.raw_volumes[-1], self.roofed_volumes[-1], self.roof_volumes[-1]
+        return self.volumes[-1], raw, roofed, roof, self.filled_volumes[-1]
 
     @property
     def raw_volume(self) -> float:
@@ -343,8 +338,9 @@ class WearLaw:
         """Wear after one more cycle; below the new surface the cells of a window that are not fresh,
         (n_layers, nx, ny), and the fields (..., n) of these. peeq: the accumulated strain that decides.
         """
-        raw = worn_depth(peeq, faces, self.limits, self.interpolate, self.roof_falls)
-        whole = Worn(*(self._on_grid(each, window) for each in raw))
+        raw = worn_depth(peeq, faces, self.limits, self.interpolate, roof_falls=self.roof_falls)
+        depth, roofed, roof = (self._on_grid(each, window) for each in raw[:3])
+        whole = Worn(depth, roofed, roof, self._on_grid(raw.at_bottom, window))
         if self.fills and self.window:
             depth = filtered(whole.depth, self.window, self.order)
         else:

@@ -57,8 +57,8 @@ class WornCycle:
 
 @dataclass(frozen=True)
 class Limits:
-    """Plastic strains beyond which material is removed: `layer` down to `thickness` (m), `bulk` below; whether
-    sound material above it falls.
+    """Plastic strains beyond which material is removed: `layer` down to `thickness` (m), `bulk` below; and
+    whether sound material above it falls.
     """
 
     bulk: float
@@ -182,7 +182,9 @@ def deepest_above(limit: float, z: Array, strain: Array, between: Sequence[float
     last = len(nodes) - 1 - np.argmax(excess[rows, ::-1] > 0.0, axis=1)
     after = np.minimum(last + 1, len(nodes) - 1)  # of the last node, itself
     upper, lower = excess[rows, last], excess[rows, after]
-    depth[rows] = nodes[last] + upper / np.where(after > last, upper - lower, 1.0) * (nodes[after] - nodes[last])
+    depth[rows] = nodes[last] + upper / np.where(after > last, upper - lower, 1.0) * (
+        nodes[after] - nodes[last]
+    )
     return depth
 
 

@@ -313,7 +313,10 @@ def cycle_end(model: Model, record: Progressed, cycle: int, new: Array) -> Cycle
         return end
     margin = model.plan.wear.margin(record.state.material.peeq, model.faces(record.extent))
     end = replace(end, moved=moved, worn=wear.depth, margin=margin)
-    return replace(end, **wear.of_last_cycle) if len(wear.volumes) == cycle else end
+    if len(wear.volumes) != cycle:
+        return end
+    worn, raw, roofed, roof, filled = wear.of_last_cycle
+    return replace(end, wear_of_cycle=worn, raw=raw, roofed=roofed, roof=roof, filled=filled)
 
 
 def with_loops(model: Model, record: Progressed, target: Target, trial: Trial) -> Progressed:

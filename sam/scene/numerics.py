@@ -142,7 +142,7 @@ class Wear(Section):
     Savitzky-Golay filter of the worn depth, 0: none; smoothing_order: of its polynomials. interpolate: depths
     between the layers by linear interpolation of the strain; else whole layers are removed. roof: whether
     sound material above material beyond its limit stays, or goes with it. smoothing_fills: the filter may
-    leave, or raise, what is removed, as it does in its printed form. Bosman & Schipper 2011, sections 1 and 5.
+    leave, or raise, what is removed, as its printed form does. Bosman & Schipper 2011, sections 1 and 5.
     """
 
     strain_limit: StrainLimit

@@ -18,7 +18,14 @@ from fem_reference.common.plasticity import History
 from fem_reference.common.schedule import Load
 from fem_reference.spatial import worn_cycles
 from fem_reference.spatial.rough import build, on_mesh
-from fem_reference.spatial.worn import Limits, columns_of_points, deepest_above, depth_above, moved_up, own_depth
+from fem_reference.spatial.worn import (
+    Limits,
+    columns_of_points,
+    deepest_above,
+    depth_above,
+    moved_up,
+    own_depth,
+)
 from sam.scene import COUNTER_HEIGHT, CounterSurface, FrictionMap, HeightMap, Scene, load_scene
 from verification.compare.comparison import compare_scene
 from verification.scenes.asperities import CELLS, height_map
@@ -358,9 +365,11 @@ def test_a_profile_is_removed_down_to_its_first_crossing():
 
 
 def test_a_roof_falls_down_to_the_last_crossing():
-    """The profiles above, the third with a second zone; between depths, from which on, or at which it ends."""
+    """The profiles above, the third with a second zone; between two depths."""
     z = np.array([1.0, 2.0, 4.0, 5.0])
-    strain = np.array([[3.0, 2.0, 0.0, 0.0], [0.5, 3.0, 0.0, 0.0], [3.0, 1.0, 3.0, 0.0], [0.8, 0.2, 0.0, 0.0]])
+    strain = np.array(
+        [[3.0, 2.0, 0.0, 0.0], [0.5, 3.0, 0.0, 0.0], [3.0, 1.0, 3.0, 0.0], [0.8, 0.2, 0.0, 0.0]]
+    )
     strain = np.vstack([strain, np.zeros(4)])
     for between, expected in (
         ((0.0, 5.0), [3.0, 2 + 4 / 3, 4 + 2 / 3, 2 / 3, 0.0]),

@@ -134,7 +134,7 @@ def test_a_roof_that_falls_leaves_nothing_beyond_the_limit():
 
 
 def test_the_filter_as_printed_keeps_the_volume_and_raises_the_surface():
-    """It fills what it digs from the flanks, to the rounding of its sums; cells next to a scar stand higher."""
+    """It fills what it digs from the flanks, to rounding; cells next to a scar stand higher."""
     wear = {"strain_limit": 0.002, "smoothing_fills": True}
     found = sam.solve(running_in(counterbody=STEEL, wear=wear))
     cycles = {name: np.array(values) for name, values in found.tables["cycles"].items()}

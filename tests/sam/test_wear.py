@@ -414,7 +414,7 @@ def test_the_books_close_over_25_cycles(interpolate, fills):
     worn = WearState.empty(original.shape, UM, 0.8 * UM)
     for _ in range(25):
         alpha = alpha + 0.02 * shape * (1 + rng.random(alpha.shape))
-        raw = worn_depth(alpha, GRADED, StrainLimits(0.005, 0.02, 0.5 * UM), interpolate, fills)
+        raw = worn_depth(alpha, GRADED, StrainLimits(0.005, 0.02, 0.5 * UM), interpolate, roof_falls=fills)
         depth = (filtered if fills else smoothed)(raw.depth, 5, 2)
         found, removed = remapped(alpha, GRADED, depth)
         worn = with_cycle(worn, raw, depth, closing_residual(alpha, found, removed, GRADED))
@@ -454,6 +454,6 @@ def test_a_cycle_of_the_wear_state():
     worn = with_cycle(WearState.empty((1, 2), 2 * UM, 3 * UM), raw, np.array([[5e-8, 4e-8]]), 1e-16)
     assert worn.volumes == close((5.4e-19,)) and worn.raw_volumes == close((7.8e-19,))
     assert worn.roofed_volumes == close((1.8e-18,)) and worn.roof_volumes == close((6e-20,))
-    assert worn.filled_volumes == close((3e-19,)) and worn.of_last_cycle["wear_of_cycle"] == close(5.4e-19)
+    assert worn.filled_volumes == close((3e-19,)) and worn.of_last_cycle[0] == close(5.4e-19)
     assert worn.bottom_columns == (1,) and worn.residuals == (1e-16,)
     assert with_cycle(worn, raw, raw.depth, 0.0).raw_volume == close(2 * 7.8e-19)

@@ -384,16 +384,16 @@ STATEMENTS = tuple(
 )
 
 
-def measured(
-    frame: DataFrame, by: Sequence[str], statements: Sequence[Statement] = STATEMENTS
-) -> DataFrame:
+def measured(frame: DataFrame, by: Sequence[str], statements: Sequence[Statement] = STATEMENTS) -> DataFrame:
     """The measure of each statement (columns, by their words) on each surface, of which `by` are
     the parts of a key; NaN where it says nothing, or a run is missing or did not converge.
     """
     import pandas as pd
 
     names, materials = (
-        list(dict.fromkeys(word for each in statements for word in each.how.split()[part] if word not in "-/"))
+        list(
+            dict.fromkeys(word for each in statements for word in each.how.split()[part] if word not in "-/")
+        )
         for part in (slice(1), slice(1, None))
     )
     every = pd.MultiIndex.from_product([names, materials])
