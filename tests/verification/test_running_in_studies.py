@@ -218,6 +218,8 @@ class TestReadings:
         assert len(words.SAID) == 20 and verdicts == ["held"] * 19 + ["failed"]
         tables = readable(self.CASE, found)
         assert tables[-1].rows[0][:6] == (words.LOOP, "bulk", "1", "1.0e-03", "1.0e+00", "1")
+        changes = self.CASE.data(found)["changes"]
+        assert {each[end] for each in changes for end in ("reading", "beside")} <= words.READINGS.keys()
         assert words.never_together(found) == ([], len(words.READINGS) - 4)
         assert words.near(words.SAID[0], {"values": (0.82,)}) and not words.near(
             words.SAID[0], {"values": (0.8,)}

@@ -137,6 +137,17 @@ SAID = tuple(
     Statement(figure, words, measure, float(low), float(high), how)
     for figure, words, measure, low, high, how in study.parts_of(TABLE)
 )
+PLAIN = "roof stays", "removes all"
+CHANGES = (
+    (named(PRINTED, "roof falls", "removes all"), named(PRINTED, *PLAIN), "A roof that falls", "physics"),
+    (named(PRINTED, "roof stays", "fills"), named(PRINTED, *PLAIN), "A filter that fills", "numerics"),
+    (named(SECOND, *PLAIN), named(SMALL, *PLAIN), "The second reading", "physics"),
+    (named(FINE, *PLAIN), named(SMALL, *PLAIN), "Finer cells", "numerics"),
+    (LOOP, named(SMALL, *PLAIN), "The plastic loop as printed", "numerics"),
+    (LOOSE, named(SMALL, *PLAIN), "That loop, stopped 20 times earlier", "numerics"),
+    (FILM, named(SMALL, *PLAIN), "The film by Eq. 12 to 14 as printed", "physics"),
+)
+"""Reading, the one beside it, the one thing that differs, and what kind of thing that is."""
 NEAR = 0.1  # of its threshold: how near the median of a measure is that finer cells may decide
 
 
@@ -184,7 +195,12 @@ class RunningInReadings(Readings):
         return study.readings_of(found, SAID)
 
     def data(self, found: DataFrame) -> dict[str, Any]:
-        return {"statements": self.judged(found)}
+        """changes: readings that differ from another one in one thing, in words, and whether that is physics."""
+        keys = "reading", "beside", "words", "kind"
+        return {
+            "statements": self.judged(found),
+            "changes": [dict(zip(keys, each, strict=True)) for each in CHANGES],
+        }
 
     def tables(self, found: DataFrame) -> Iterator[SmallTable]:
         said = self.judged(found)
@@ -265,7 +281,7 @@ def late_wear(found: DataFrame) -> SmallTable:
 
 def loops(found: DataFrame) -> SmallTable:
     """What the printed loop leaves in a cycle, and its strain and wear over those of the exact one."""
-    exact = found[found["reading"] == named(SMALL, "roof stays", "removes all")]
+    exact = found[found["reading"] == named(SMALL, *PLAIN)]
     rows = []
     for name, case, seed, one in found.loc[
         found["converged"] & found["reading"].isin((LOOP, LOOSE)), [*study.PARTS, "run"]
