@@ -195,7 +195,7 @@ class RunningInReadings(Readings):
         return study.readings_of(found, SAID)
 
     def data(self, found: DataFrame) -> dict[str, Any]:
-        """changes: readings that differ from another one in one thing, in words, and whether that is physics."""
+        """changes: readings that differ from another one in one thing, in words, and of which kind it is."""
         keys = "reading", "beside", "words", "kind"
         return {
             "statements": self.judged(found),
