@@ -365,39 +365,30 @@ def test_a_profile_is_removed_down_to_its_first_crossing():
 
 
 def test_a_roof_falls_down_to_the_last_crossing():
-    """The profiles above, the third with a second zone; between two depths."""
-    z = np.array([1.0, 2.0, 4.0, 5.0])
-    strain = np.array(
-        [[3.0, 2.0, 0.0, 0.0], [0.5, 3.0, 0.0, 0.0], [3.0, 1.0, 3.0, 0.0], [0.8, 0.2, 0.0, 0.0]]
-    )
-    strain = np.vstack([strain, np.zeros(4)])
+    """The profiles above, the third with a second zone; all of a part, and none."""
+    z, strain = np.array([1.0, 2.0, 4.0, 5.0]), np.array([[3.0, 1, 3, 0], [0.8, 0.2, 0, 0], [0.0, 0, 0, 0]])
     for between, expected in (
-        ((0.0, 5.0), [3.0, 2 + 4 / 3, 4 + 2 / 3, 2 / 3, 0.0]),
-        ((0.0, 1.5), [1.5, 1.5, 1.5, 2 / 3, 0.0]),
-        ((3.5, 4.5), [0.0, 0.0, 4.5, 0.0, 0.0]),
+        ((0, 5), [14 / 3, 2 / 3, 0]),
+        ((0, 1.5), [1.5, 2 / 3, 0]),
+        ((4, 5), [14 / 3, 0, 0]),
     ):
         assert deepest_above(1.0, z, strain, between) == pytest.approx(expected), between
-    assert deepest_above(1.0, z, strain + 1.1, (0.0, 5.0)).tolist() == [5.0] * 5
+    assert deepest_above(-0.1, z, strain, (0.0, 5.0)).tolist() == [5.0] * 3
 
 
-def test_a_roof_falls_in_both_models_alike():
-    """One profile, linear between the Gauss points, in the cells of SAM and at the nodes: zones beyond the
-    limits below 0.2 and 0.6 half sides.
-    """
+def test_a_roof_falls_where_the_strain_is_beyond_its_limit_anywhere_below():
+    """Two zones; along samples of the strain as it is linear between the Gauss points."""
     model, unit, z = ball(), ball().scales, ball().body.points[2]
-    of_z = np.array([0.0, 0.2, 0.3, 0.4, 0.6, 0.7, 0.8, 9.0])
-    peeq = np.interp(z, of_z, [0.0, 0.0, 0.01, 0.0, 0.0, 0.02, 0.0, 0.0])
-    state = replace(model.virgin(), history=History(np.zeros((6, *z.shape)), peeq / unit.strain))
-    points = np.unique(z.round(12))
-    faces = np.append(0.0, (points[1:] + points[:-1]) / 2)
-    faces = np.append(faces, 2 * points[-1] - faces[-1])
-    for bulk in (0.004, 0.015, 0.05):
+
+    def strain(at):
+        return np.interp(at, [0.2, 0.3, 0.4, 0.6, 0.7, 0.8], [0.0, 0.01, 0.0, 0.0, 0.02, 0.0])
+
+    state = replace(model.virgin(), history=History(np.zeros((6, *z.shape)), strain(z) / unit.strain))
+    nodes, fine = np.append(0.0, np.unique(z.round(12))), np.linspace(0.0, 1.0, 100001)
+    for bulk in (0.004, 0.012, 0.05):
         depth = own_depth(model, state, Limits(bulk, 0.05, 0.1 * unit.length, True)) / unit.length
-        strain = np.interp(points, of_z, [0.0, 0.0, 0.01, 0.0, 0.0, 0.02, 0.0, 0.0])
-        nodes = np.append(0.0, points)
-        above = np.interp(fine := np.linspace(0.0, 1.0, 100001), nodes, np.append(0.0, strain)) > bulk
-        expected = fine[above][-1] if above.any() else 0.0
-        assert depth == pytest.approx(np.full((FEW, FEW), expected), abs=2e-5)
+        lowest = fine[np.interp(fine, nodes, strain(nodes)) > bulk].max(initial=0.0)
+        assert depth == pytest.approx(np.full((FEW, FEW), lowest), abs=2e-5)
 
 
 def test_the_state_moves_up_by_the_depth():

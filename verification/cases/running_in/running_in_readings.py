@@ -9,7 +9,7 @@ printed cost several times as much as the printed inputs: they have a quarter of
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import replace
 from functools import partial
 from itertools import combinations, product
 from typing import TYPE_CHECKING, Any
@@ -57,15 +57,6 @@ LOOSER = 0.02  # yield excess that the printed loop may leave, where the scenes 
 FALLEN = -0.02  # of a coefficient that falls, where running-in asks for 0.001
 
 
-@dataclass(frozen=True)
-class Base:
-    """What is combined with roof and filter. label: in names of runs; change: of the printed scene."""
-
-    label: str
-    effort: Effort
-    change: Callable[[Scene], Scene] = lambda scene: scene
-
-
 def fine(scene: Scene) -> Scene:
     """On the finer cells of running-in-cells."""
     cells, window = SIZES["0.457 µm"]
@@ -78,15 +69,15 @@ def looped(scene: Scene, **keys: float) -> Scene:
 
 
 BASES = {
-    PRINTED: Base("printed", WHOLE),
-    SECOND: Base("second", QUARTER, renewed),
-    SMALL: Base("quarter", QUARTER),
-    FINE: Base("fine", QUARTER, fine),
+    PRINTED: Reading("printed-", WHOLE),
+    SECOND: Reading("second-", QUARTER, renewed),
+    SMALL: Reading("quarter-", QUARTER),
+    FINE: Reading("fine-", QUARTER, fine),
 }
 OTHERS = {
-    LOOP: Base("loop", QUARTER, looped),
-    LOOSE: Base("loop-loose", QUARTER, partial(looped, tolerance=LOOSER)),
-    FILM: Base("film", QUARTER, partial(with_keys, section="friction", form="printed")),
+    LOOP: Reading("loop-", QUARTER, looped),
+    LOOSE: Reading("loop-loose-", QUARTER, partial(looped, tolerance=LOOSER)),
+    FILM: Reading("film-", QUARTER, partial(with_keys, section="friction", form="printed")),
 }
 """Alone: the roof stays, and the filter removes all."""
 
@@ -96,20 +87,20 @@ def named(base: str, roof: str, smoothing: str) -> str:
     return f"{base}; {roof}; filter {smoothing}"
 
 
-def combined(scene: Scene, base: Base, roof: str, fills: bool) -> Scene:
+def combined(scene: Scene, base: Reading, roof: str, fills: bool) -> Scene:
     """A printed scene in one reading."""
     return with_keys(base.change(scene), "wear", roof=roof, smoothing_fills=fills)
 
 
 COMBINED = {named(base, *words): (base, *words) for base, *words in product(BASES, ROOFS, FILTERS)}
 READINGS = {
-    name: Reading(
-        f"{BASES[base].label}-{ROOFS[roof]}-{smoothing.split()[0]}-",
-        BASES[base].effort,
-        partial(combined, base=BASES[base], roof=ROOFS[roof], fills=FILTERS[smoothing]),
+    name: replace(
+        BASES[base],
+        label=f"{BASES[base].label}{ROOFS[roof]}-{smoothing.split()[0]}-",
+        change=partial(combined, base=BASES[base], roof=ROOFS[roof], fills=FILTERS[smoothing]),
     )
     for name, (base, roof, smoothing) in COMBINED.items()
-} | {name: Reading(f"{base.label}-", base.effort, base.change) for name, base in OTHERS.items()}
+} | OTHERS
 
 
 def base_of(reading: str) -> str:
@@ -172,23 +163,16 @@ class RunningInReadings(Readings):
         return dict(sorted(super().scenes(context).items(), key=lambda item: item[0][2]))
 
     def measure(self, found: DataFrame) -> dict[str, Measured]:
-        """balance: of wear, raw removal, what is filled and dug; the filter that fills digs as much."""
-        runs, worst, beyond = found[found["converged"]]["run"], 0.0, 0.0
-        for one in runs:
+        """balance: of wear and raw removal, as the filter that fills digs as much; excess: over its goal."""
+        balance, excess = [0.0], [0.0]
+        for one in found[found["converged"]]["run"]:
             if one.scene.wear.smoothing_fills:
                 wear, raw = (one.of_cycles(name) for name in ("wear_of_cycle_m3", "raw_volume_m3"))
-                worst = max(worst, float(np.abs(wear - raw).max() / max(raw.sum(), 1e-30)))
+                balance.append(float(np.abs(wear - raw).max() / max(raw.sum(), 1e-30)))
             if one.scene.solver.method == "paper":
-                excess = one.of_cycles("yield_excess").max() / one.scene.solver.tolerance
-                beyond = max(beyond, float(excess))
-        return {
-            "volume": Measured(
-                float(runs.map(lambda one: study.apart(one.scar.volume, one.history.volume[-1])).max())
-            ),
-            "balance": Measured(worst),
-            "excess": Measured(beyond),
-            "lost": Measured(1.0 - float(found["converged"].mean())),
-        }
+                excess.append(float(one.of_cycles("yield_excess").max() / one.scene.solver.tolerance))
+        lost = 1.0 - float(found["converged"].mean())
+        return {"balance": Measured(max(balance)), "excess": Measured(max(excess)), "lost": Measured(lost)}
 
     def judged(self, found: DataFrame) -> dict[str, list[dict[str, Any]]]:
         """Reading -> what is told of SAID."""
