@@ -390,12 +390,9 @@ def measured(frame: DataFrame, by: Sequence[str], statements: Sequence[Statement
     """
     import pandas as pd
 
-    names, materials = (
-        list(
-            dict.fromkeys(word for each in statements for word in each.how.split()[part] if word not in "-/")
-        )
-        for part in (slice(1), slice(1, None))
-    )
+    words = [each.how.split() for each in statements]
+    names = sorted({name for name, *_ in words})
+    materials = sorted({each for _, *others in words for each in others} - {*"-/"})
     every = pd.MultiIndex.from_product([names, materials])
     wide = frame.pivot(index=list(by), columns="material", values=names).reindex(columns=every)
     return pd.DataFrame({each.words: each.of(wide.astype(float)) for each in statements})

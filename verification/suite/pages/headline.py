@@ -145,12 +145,7 @@ def _in_brief(read: Verdicts, words: Mapping[str, Sequence[Mapping]]) -> str:
     first, *others = _by_median(read)
     second = "".join(f", {more} in a second reading of it" for more in others)
     counts = [sum(map(held, each)) for each in words.values()]
-    tried = (
-        f" In {len(counts)} readings of its words, of roofs, filter, film and plastic loop, {min(counts)} to "
-        f"{max(counts)} of {len(next(iter(words.values())))} hold."
-        if counts
-        else ""
-    )
+    tried = f" In {len(counts)} readings of its words {min(counts)} to {max(counts)} hold." if counts else ""
     return (
         f"{_answer(first, len(read))} With the inputs that the paper prints, {first} of its {len(read)} "
         f"statements about wear and friction of five materials hold{second}. The page says which, "
