@@ -20,9 +20,11 @@ from scipy import fft
 
 from sam.arrays import Array
 from sam.contact.convolution import (
+    FEW_CELLS,
     Convolution,
     Counters,
     Real,
+    between_pairs,
     convolution_onto,
     cropped,
     filtered,
@@ -232,10 +234,15 @@ class SurfaceOperators:
         symbol = self.bodies.stiffness(k)
         symbol = (symbol / symbol.max()).astype(self.bodies.real)
 
+        if few := not mirrored and box.nx * box.ny <= FEW_CELLS:
+            matrix = between_pairs(fft.irfft2(symbol, box.shape).astype(symbol.dtype))
+
         def apply(r: Real) -> Real:
             self.counters.ffts += 2
             if mirrored:
                 return filtered(r, box.shape, symbol)
+            if few:
+                return np.asarray((matrix @ r.ravel()).reshape(box.shape))
             spectrum = transformed(r, box.shape)
             spectrum *= symbol
             return cropped(spectrum, box.shape, box.shape)

@@ -157,7 +157,7 @@ class Model:
             misfit = plan.misfit.mean_stress(self.grid, extent.window, self.faces(extent))
         make = partial(PaperProblem, stop=stated(plan.solver.stop)) if plan.paper else Problem
         problem = make(
-            again.operator if again is not None else self._operator(extent),
+            again.operator if again is not None else self.operator(extent),
             pressure,
             self.material(extent),
             unit=self.unit,
@@ -192,15 +192,17 @@ class Model:
         lags = Lags(extent.window.nx, extent.window.ny, self.grid.hx, self.grid.hy)
         return Cuboids(lags, tuple(self.faces(extent).tolist()), self.plan.pair.body.poisson)
 
-    def _operator(self, extent: Extent) -> BoxOperator:
-        self.counters.tangential_kernels += self.plan.slip.slides
+    def operator(self, extent: Extent, *, once: Counters | None = None) -> BoxOperator:
+        """The operator of a box. once: counters of one beside that of the steps."""
+        counters = self.counters if once is None else once
+        counters.tangential_kernels += self.plan.slip.slides
         nx, ny = extent.window.shape
         exchange, asked = self._exchange(extent.window), self.plan.solver.operator
         box = ExpectedBox(nx, ny, extent.layers, self.tolerance, exchange, asked)
         return BoxOperator(
             self.cuboids(extent),
             self.plan.pair.body.shear,
-            self.counters,
+            counters,
             single=self.tolerance >= SINGLE,
             mirror=self._mirror(extent.window),
             exchange=exchange,

@@ -238,7 +238,8 @@ def _zone(scene: Scene, grid: CellGrid, depths: np.ndarray) -> Zone:
         soft = hardening + _back_hardening(scene, depths) < HARDENS
         wider, deeper = (share * max(ratio - GIVEN_ABOVE, 0.0) for share in GIVEN_SPREAD[soft])
     needed, path = ((1 + wider) * wide, (1 + deeper) * deep), _path_cells(scene, grid)
-    return Zone(hertz_semi_axes(scene), wide, deep, needed, MISES * ratio, path=path)
+    slides = bool(scene.coefficient) or scene.loading.path is not None
+    return Zone(hertz_semi_axes(scene), wide, deep, needed, MISES * ratio, slides, path)
 
 
 def _back_hardening(scene: Scene, depths: np.ndarray) -> float:
@@ -419,7 +420,12 @@ def _sam(scene: Scene, plan: Any) -> Counted:
         "box set-up": sum(box.set_up for each in either for box in each) / 2,
     }
     if rough and (last.nx, last.ny) != grid.shape:  # stress in y = 0, beside the box
-        work["beside"] = 36.0 * depths * last.layers * cells / 2
+        if last.swept and last.large:  # by an operator of its own
+            plane = replace(last, nx=grid.nx, layers=depths)
+            work["box set-up"] += plane.set_up
+            iterations += plane.waves * depths / (last.waves * last.layers)
+        else:
+            work["beside"] = 36.0 * depths * last.layers * cells / 2
     if last.swept:
         work["swept"] = iterations * last.width / 8 * 6.0 * last.layers * last.waves * kept
     else:
