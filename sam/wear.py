@@ -341,7 +341,7 @@ class WearLaw:
         raw = worn_depth(peeq, faces, self.limits, self.interpolate, roof_falls=self.roof_falls)
         depth, roofed, roof = (self._on_grid(each, window) for each in raw[:3])
         whole = Worn(depth, roofed, roof, self._on_grid(raw.at_bottom, window))
-        if self.fills and self.window:
+        if self.fills:
             depth = filtered(whole.depth, self.window, self.order)
         else:
             depth = smoothed(whole.depth, self.window, self.order, all_removed=True)

@@ -105,6 +105,7 @@ falls with it."""
 WEAR_PARTS = {"raw_volume_m3": "raw", "roof_volume_m3": "roof", "filled_volume_m3": "filled"}
 """Of the table cycles where a roof falls or the filter fills, of each cycle: removed before smoothing, the
 sound material among that, what smoothing leaves or raises -> of `CycleEnd`."""
+OF_WEAR = (ROOFED, *WEAR_PARTS)
 LEFT = ("yield_excess", "flow_residual")
 """Of the table cycles of the paper's loops: the largest that a load step of the cycle leaves."""
 TRACK = (
@@ -149,15 +150,7 @@ EXTRA_COLUMNS = {
     "surface": (COUNTER_HEIGHT,),
     "passes": OF_PASSES,
     "track": (TRACK_WORN,),
-    "cycles": (
-        *VERDICT_COLUMNS[:-1],
-        DISSIPATED,
-        FRICTION_SIGN,
-        PERIODS_TO_DECIDE,
-        ROOFED,
-        *WEAR_PARTS,
-        *LEFT,
-    ),
+    "cycles": (*VERDICT_COLUMNS[:-1], DISSIPATED, FRICTION_SIGN, PERIODS_TO_DECIDE, *OF_WEAR, *LEFT),
 }
 """Last columns of a table that only some scenes have."""
 

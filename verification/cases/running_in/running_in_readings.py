@@ -8,7 +8,7 @@ printed cost several times as much as the printed inputs: they have a quarter of
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import combinations, product
@@ -179,12 +179,7 @@ class RunningInReadings(Readings):
         return study.readings_of(found, SAID)
 
     def data(self, found: DataFrame) -> dict[str, Any]:
-        """changes: readings that differ from another one in one thing, in words, and of which kind it is."""
-        keys = "reading", "beside", "words", "kind"
-        return {
-            "statements": self.judged(found),
-            "changes": [dict(zip(keys, each, strict=True)) for each in CHANGES],
-        }
+        return {"statements": self.judged(found)}
 
     def tables(self, found: DataFrame) -> Iterator[SmallTable]:
         said = self.judged(found)
@@ -201,6 +196,7 @@ class RunningInReadings(Readings):
         yield loops(found)
 
     def notes(self, found: DataFrame) -> Iterator[str]:
+        yield " ".join(changes(self.judged(found)))
         never, runs = never_together(found)
         for pair in never:
             yield f"Held each, never both, on {runs} surfaces and readings: {pair[0]}, and {pair[1]}."
@@ -234,6 +230,24 @@ class RunningInReadings(Readings):
                 "The figure compares the worn volume, the median of the surfaces, by whether a sound roof "
                 "falls and whether the filter fills. The second reading has a quarter of the area.",
             )
+
+
+def held(told: Mapping[str, Any]) -> bool:
+    """Whether a statement holds by the median of the surfaces."""
+    return bool(told["by_median"] == study.HELD)
+
+
+def changes(judged: Mapping[str, Sequence[Mapping[str, Any]]]) -> Iterator[str]:
+    """What single changes of the reading, of those that were judged, make hold and fail by the median."""
+    hold = {name: {one["statement"] for one in said if held(one)} for name, said in judged.items()}
+    for name, beside, words, kind in CHANGES:
+        if name in hold and beside in hold:
+            own, other = hold[name], hold[beside]
+            more, less = ("; ".join(sorted(some)) or "none" for some in (own - other, other - own))
+            count = f"{len(own)} in place of {len(other)}"
+            yield f"{words} ({kind}): {count}; then hold: {more}; no longer: {less}."
+    none = [said.words for said in SAID if not any(said.words in each for each in hold.values())]
+    yield f"Under none of {len(hold)} readings holds: {'; '.join(none) or 'none'}."
 
 
 def near(said: Statement, told: Mapping[str, Any]) -> bool:

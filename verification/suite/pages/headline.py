@@ -108,8 +108,6 @@ def headline_of(stored: Stored) -> Headline | None:
         )
     else:
         depends.append(missing(PHYSICS))
-    words = data.get(WORDS, {}).get("statements", {})
-    depends += _of_words(words, data[WORDS]["changes"]) if words else ()
     return Headline(
         " ".join(_of_readings(read, finer, second)) if read else missing(READINGS),
         studies,
@@ -118,7 +116,7 @@ def headline_of(stored: Stored) -> Headline | None:
             (figure, *_row(words, read.get(words, ()), drawn.get(words), tried.get(words)))
             for words, figure in figures.items()
         ],
-        _in_brief(read, words) if read else "",
+        _in_brief(read, data.get(WORDS, {}).get("statements", {})) if read else "",
     )
 
 
@@ -211,23 +209,6 @@ def _of_inputs(chances: Mapping[str, Mapping], data: Mapping) -> Iterator[str]:
             f"At the best of the points {best} hold together (fitted), which is no bound: "
             "nothing between the points was tried."
         )
-
-
-def _of_words(judged: Mapping[str, Sequence[Mapping]], changes: Sequence[Mapping]) -> Iterator[str]:
-    """What single changes of the reading, of those that were judged, make hold and fail by the median."""
-    hold = {name: {each["statement"] for each in said if held(each)} for name, said in judged.items()}
-    for each in changes:
-        if each["reading"] not in hold or each["beside"] not in hold:
-            continue
-        own, other = hold[each["reading"]], hold[each["beside"]]
-        told = (
-            f"{word}: {'; '.join(sorted(some)) or 'none'}"
-            for word, some in (("then hold", own - other), ("no longer", other - own))
-        )
-        yield f"{each['words']} ({each['kind']}): {len(own)} in place of {len(other)}, {', '.join(told)}."
-    every = {each["statement"]: None for said in judged.values() for each in said}
-    none = [words for words in every if not any(words in each for each in hold.values())]
-    yield f"Under none of {len(hold)} readings of its words hold: {'; '.join(none) or 'none'}."
 
 
 def _row(
