@@ -111,7 +111,7 @@ def first_box(model: Model, peak: ElasticPeak) -> Extent:
     extent = first_extent(
         model.grid, peak, limit, anywhere=anywhere, both_ways=both_ways, slides=slides, path=path
     )
-    elsewhere = anywhere and (len(path) > 1 or schedule.renews)
+    elsewhere = anywhere and (len(path) > 1 or schedule.renews or model.plan.period is not None)
     return replace(extent, window=model.grid.whole) if elsewhere else extent
 
 

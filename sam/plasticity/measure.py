@@ -129,7 +129,8 @@ def _residual_stress(model: Model, record: Progressed) -> Array:
     across = window.j0 <= rows.j0 and rows.j0 + rows.ny <= window.j0 + window.ny
     covered = record.extent.layers if across and window.nx == grid.nx else 0
     expected = ExpectedBox(*window.shape, record.extent.layers, model.tolerance)
-    if expected.large and model.plan.solver.operator != "dense":
+    large = expected.large and model.plan.solver.operator != "dense"
+    if large or model.plan.period is not None:
         return _swept_stress(model, record)
     strained, mu = _strained(model, record), model.plan.pair.body.shear
     below = residual_stress(strained, grid.depths[covered:], rows, mu=mu)
@@ -166,6 +167,8 @@ def _strained(model: Model, record: Progressed) -> Strained:
 def _moved(model: Model, record: Progressed, component: int, observed: Window) -> Array:
     """Displacement of a window of the surface by the plastic strain, (nx, ny) in m."""
     source, counters = _strained(model, record), model.counters
+    if model.plan.period is not None:
+        return model.plan.period.moved(source.strain, source.cuboids, component)[observed.slices]
     return surface_displacement(source, observed, counters=counters, component=component)
 
 
@@ -237,7 +240,14 @@ def snapshot(model: Model, record: Progressed, name: str, trial: Trial) -> Snaps
     # the largest plastic strain; cells hold means
     top, interval = None, model.strength.kinks.interval(grid.depths[:layers])
     if material.peeq.any():
-        centres = at_centres(material.peeq, model.faces(extent), interval)
+        around_it = [(0, 0), *[(int(grid.periodic),) * 2] * 2]
+        peeq = np.pad(material.peeq, around_it, mode="wrap")
+        centres = at_centres(peeq, model.faces(extent), interval)
+        if grid.periodic:  # the largest in the middle: it has neighbours on all sides
+            centres = centres[:, 1:-1, 1:-1]
+            place = np.unravel_index(int(centres.argmax()), centres.shape)[1:]
+            to_middle = [n // 2 - int(i) for n, i in zip(grid.shape, place, strict=True)]
+            centres = np.roll(centres, to_middle, axis=(1, 2))
         top = largest(centres, grid.depths[:layers], interval)
 
     # the cells of the box in the row of the largest pressure, where that need not be at the origin
