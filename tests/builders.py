@@ -126,8 +126,7 @@ def running_in(
         friction=film,
         wear={"strain_limit": wear} if isinstance(wear, float) else wear,
         grid={"cells": (24, 24), "extent": (16e-6, 16e-6), "depths": depths, "border": "relief"},
-        solver={"tolerance": 1e-4},
-        **tables,
+        **{"solver": {"tolerance": 1e-4}} | tables,
     )
 
 

@@ -69,8 +69,9 @@ def plan_of(bodies: Bodies) -> Plan:
     if scene.wear is not None and scene.wear.removes:
         limits = limit_by_depth(scene.wear, None if plasticity is None else plasticity.layer_thickness)
         smoothing = scene.wear.smoothing_window, scene.wear.smoothing_order
-        interpolate = scene.wear.interpolate
-        wear = WearLaw(grid.shape, grid.hx, grid.hy, limits, interpolate, *smoothing, grid.periodic)
+        keys = {"roof_falls": scene.wear.roof == "falls", "fills": scene.wear.smoothing_fills}
+        keys["periodic"] = grid.periodic
+        wear = WearLaw(grid.shape, grid.hx, grid.hy, limits, scene.wear.interpolate, *smoothing, **keys)
     rough, last = bodies.patch, schedule.targets[-1].load
     made = Plan(
         grid=grid,

@@ -343,13 +343,17 @@ def cycle_end(model: Model, record: Progressed, cycle: int, new: Array) -> Cycle
         new_strain=float(new.max()),
         yielding=int(np.count_nonzero(new > 0)),
         dissipated=record.dissipated,
+        yield_excess=record.left[0],
+        flow_residual=record.left[1],
     )
     if model.plan.wear is None or wear is None:
         return end
     margin = model.plan.wear.margin(record.state.material.peeq, model.faces(record.extent))
-    ends = len(wear.volumes) == cycle
-    worn, roofed = (wear.volumes[-1], wear.roofed_volumes[-1]) if ends else (0.0, 0.0)
-    return replace(end, moved=moved, worn=wear.depth, margin=margin, wear_of_cycle=worn, roofed=roofed)
+    end = replace(end, moved=moved, worn=wear.depth, margin=margin)
+    if len(wear.volumes) != cycle:
+        return end
+    worn, raw, roofed, roof, filled = wear.of_last_cycle
+    return replace(end, wear_of_cycle=worn, raw=raw, roofed=roofed, roof=roof, filled=filled)
 
 
 def with_loops(model: Model, record: Progressed, target: Target, trial: Trial) -> Progressed:

@@ -177,7 +177,8 @@ def history_table(rows: Sequence[Row]) -> dict[str, list[Any]]:
 @dataclass(frozen=True)
 class CycleEnd:
     """The surface after a cycle: wear_volume so far in m^3; roughness, None if smooth; new_strain,
-    yielding: the largest and in how many cells; dissipated in J; wear_of_cycle, roofed in m^3;
+    yielding: the largest and in how many cells; dissipated in J; wear_of_cycle, roofed, raw, roof, filled
+    in m^3, see `WearState`; yield_excess, flow_residual: the largest that a load step leaves;
     margin: of the cell nearest to its limit; moved, worn: (nx, ny) in m, None without.
     """
 
@@ -192,6 +193,11 @@ class CycleEnd:
     wear_of_cycle: float = 0.0
     margin: float | None = None
     roofed: float = 0.0
+    raw: float = 0.0
+    roof: float = 0.0
+    filled: float = 0.0
+    yield_excess: float = 0.0
+    flow_residual: float = 0.0
     dissipated: float = 0.0
 
 

@@ -151,7 +151,6 @@ class Scene(Section):
             contact = f"{words} needs a contact: remove it, and give force and [counterbody]"
             yield from broken(
                 (there and pressure, "loading.prescribed", contact),
-                (there and paper, method, f"{euler} with {words}"),
                 (there and coated, "body.coating", f"not together with {words}"),
             )
         layered = has("wear.strain_limit_layer") and not has("body.plasticity.layer_thickness")
