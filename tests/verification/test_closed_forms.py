@@ -402,7 +402,7 @@ def test_double_wave_keeps_its_limits():
     )
     assert math.isclose(light.fitted_share, light.light_share, rel_tol=1e-2)
     over = westergaard.DoublyWavyContact(1e-3, 2.0, 5.0, 2 * contact.complete_pressure)
-    (x, wave), n = cosine_wave(16), 16
+    x, wave = cosine_wave(16)
     found = capped.capped_pressure(1e-3 * np.outer(wave, wave), (2.0, 2.0), 5.0, over.mean_pressure)
     np.testing.assert_allclose(found, over.complete(2.0 * x[:, None], 2.0 * x[None, :]), rtol=1e-4)
     assert math.isclose(

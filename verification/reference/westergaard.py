@@ -150,5 +150,5 @@ class DoublyWavyContact(Checked):
 
     def complete(self, x, y) -> np.ndarray:
         """p(x, y) = p_mean + p* cos(2 pi x/lambda) cos(2 pi y/lambda) of complete contact, Pa."""
-        waves = (np.cos(2.0 * math.pi * coordinate("x", c) / self.wavelength) for c in (x, y))
-        return self.mean_pressure + self.complete_pressure * math.prod(waves)
+        u, v = (np.cos(2.0 * math.pi * coordinate("x", c) / self.wavelength) for c in (x, y))
+        return self.mean_pressure + self.complete_pressure * u * v

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""What area a rough surface that repeats has in contact over its load: elastic, as the cells become small, and
-with a yield stress, beside a pressure that is cut off at a hardness.
+"""What area a rough surface that repeats has in contact over its load: elastic, as the cells become small,
+and with a yield stress, beside a pressure that is cut off at a hardness.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -13,24 +12,21 @@ import numpy as np
 
 from sam.scene import Plasticity, Result, Scene
 from sam.scene.surface import heights
-from verification.cases.case import Context, Plot, with_body, with_grid, with_keys, with_loading
+from verification.cases.case import Context, with_body, with_grid, with_keys, with_loading
 from verification.cases.recipes import initial_yield
-from verification.figures.lines import PLAIN, Curve, curves
 from verification.quantities import modulus_of
 from verification.reference.capped import capped_pressure, rms_slope
-from verification.rows import CaseFile
 from verification.runs import models
 from verification.runs.models import SAM
 
-SHARES = (0.01, 0.02, 0.03, 0.04, 0.05)  # asked of the surface to be in contact, elastic
 GUESS = 2.15  # of A E* h'/F, by which pressures are chosen
-SIDE = 80e-6  # of the patch
-ELASTIC: Mapping[str, Mapping[str, Any]] = {
-    "quick": {"seeds": 2, "waves": (4, 16), "cells": (128, 256)},
-    "full": {"seeds": 10, "waves": (4, 64), "cells": (512, 1024)},
+SIDE = 80e-6  # of the patch in m
+WAVES, CELLS = (4, 64), (512, 1024)  # of the elastic patch: longest and shortest wave in its side; cells
+ELASTIC: Mapping[str, tuple[int, tuple[float, ...], tuple[int, ...]]] = {
+    "quick": (2, (0.01, 0.05), ()),
+    "full": (10, (0.01, 0.02, 0.03, 0.04, 0.05), (2048,)),
 }
-"""Seeds, longest and shortest wave in the side, cells in the side: 8 and 16 in the shortest wave."""
-FINEST = 2048
+"""Seeds; shares asked to be in contact; cells of one surface on which the extrapolation is checked."""
 YIELDING: Mapping[str, Mapping[str, Any]] = {
     "quick": {"indices": (1.0, 8.0), "cells": (64,)},
     "full": {"indices": (0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0), "cells": (64, 128)},
@@ -51,12 +47,6 @@ def _slope(scene: Scene) -> float:
     return rms_slope(_heights(scene, 4 * round(SIDE / scene.surface.cutoff_short)), (SIDE, SIDE))
 
 
-def _rough(base: Scene, seed: int, waves: tuple[int, int], n: int) -> Scene:
-    long, short = (SIDE / each for each in waves)
-    scene = with_keys(base, "surface", seed=seed, cutoff_long=long, cutoff_short=short)
-    return with_grid(scene, cells=(n, n), extent=(SIDE, SIDE), depths=(0.0,))
-
-
 def frame(context: Context) -> Iterator[dict[str, Any]]:
     """Rows of elastic surfaces, a row a seed, a grid and a load, then of those that yield."""
     base = context.scene("rough-periodic")
@@ -72,30 +62,33 @@ def _solved(scene: Scene) -> Result:
 
 
 def _elastic(context: Context, base: Scene) -> Iterator[dict[str, Any]]:
-    how = ELASTIC[context.level]
-    coarse, fine = how["cells"]
-    for seed in range(1, how["seeds"] + 1):
-        for k, share in enumerate(SHARES):
-            context.progress(f"{context.case}: seed {seed}", k + 1, len(SHARES))
-            found = {}
-            for n in (coarse, fine, *[FINEST] * (seed == 1 and share == SHARES[-1] and fine > 256)):
-                scene = _rough(base, seed, how["waves"], n)
-                slope = _slope(scene)
-                pressure = share / GUESS * modulus_of(scene) * slope
+    seeds, shares, finer = ELASTIC[context.level]
+    long, short = (SIDE / each for each in WAVES)
+    for seed in range(1, seeds + 1):
+        rough = with_keys(base, "surface", seed=seed, cutoff_long=long, cutoff_short=short)
+        slope, modulus = _slope(rough), modulus_of(base)
+        for k, share in enumerate(shares):
+            context.progress(f"{context.case}: seed {seed}", k + 1, len(shares))
+            pressure, found = share / GUESS * modulus * slope, {}
+            last = seed == 1 and share == shares[-1]
+            for n in (*CELLS, *(finer if last else ())):
+                scene = with_grid(rough, cells=(n, n), extent=(SIDE, SIDE), depths=(0.0,))
                 result = _solved(with_loading(scene, mean_pressure=pressure))
                 found[n] = float(result.quantities["contact_share"]) * GUESS / share
             row = {"sweep": "elastic", "model": "sam", "seed": seed, "asked": share, "slope": slope}
-            limit = 2.0 * found[fine] - found[coarse]  # first order: the outermost cells of spots
-            row |= {
-                "share": limit * share / GUESS,
-                "kappa": limit,
-                "coarse": found[coarse],
-                "fine": found[fine],
-            }
-            if FINEST in found:
-                row |= {"halves": (found[fine] - found[FINEST]) / (found[coarse] - found[fine])}
-                row |= {"finer": 2.0 * found[FINEST] - found[fine]}
+            row |= {f"on {n}": value for n, value in found.items()}
+            row |= {"kappa": (kappa := _limit(*(found[n] for n in CELLS))), "share": kappa * share / GUESS}
+            if last:
+                maps = [_heights(rough, n) for n in CELLS]
+                own = [np.mean(capped_pressure(h, (SIDE, SIDE), modulus, pressure) > 0.0) for h in maps]
+                row["fourier"] = _limit(*own) * GUESS / share
+                row |= {"finer": _limit(found[CELLS[-1]], found[n]) for n in finer}
             yield row
+
+
+def _limit(coarse: float, fine: float) -> float:
+    """Of an area on cells that are halved: first order, as of the outermost cells of spots."""
+    return float(2.0 * fine - coarse)
 
 
 def _yielding(context: Context, base: Scene) -> Iterator[dict[str, Any]]:
@@ -121,9 +114,47 @@ def _yielding(context: Context, base: Scene) -> Iterator[dict[str, Any]]:
                 _heights(on, n), (SIDE, SIDE), modulus, pressure, hardness=HARDNESS * strength
             )
             found.setdefault("cap", []).append(float(np.mean(cap > 0.0)))
-        shares = {name: 2.0 * v[-1] - v[0] if len(v) > 1 else v[0] for name, v in found.items()}
+        shares = {name: _limit(v[0], v[-1]) for name, v in found.items()}
         row = {"sweep": "yielding", "model": "sam", "index": index, "pressure": PRESSURE * index}
         row |= {name: shares[name] / PRESSURE for name in ("elastic", "swift", "perfect", "cap")}
         row |= {f"{name} over elastic": shares[name] / shares["elastic"] for name in ("swift", "perfect")}
         row |= {f"cap over {name}": shares["cap"] / shares[name] for name in ("swift", "perfect")}
         yield row | {f"p-max {name}": found[f"{name} p-max"][-1] for name in ("swift", "perfect")}
+
+
+# what rows take, and the figure
+
+
+def bar(rows: DataFrame, column: str) -> float:
+    """Standard error of the mean over the seeds."""
+    return float(rows[column].std() / np.sqrt(len(rows)))
+
+
+def departs(rows: DataFrame, column: str) -> float:
+    """E* h' over the yield stress from which on the area is a twentieth larger than the elastic one."""
+    return float(np.exp(np.interp(1.05, rows[column], np.log(rows["index"].astype(float)))))
+
+
+def area(file: CaseFile, frame: DataFrame) -> Plot:
+    """A E* h'/F over the share in contact, elastic, and over the yield stress."""
+    label, index = "$A E^* h'/F$", "$E^* h'/\\sigma_y$"
+    elastic, yields = (frame[frame["sweep"] == name] for name in ("elastic", "yielding"))
+    groups = elastic.groupby("asked")
+    mean, ends = groups["kappa"].mean(), groups["kappa"].sem()
+    x, xs = PERCENT * groups["share"].mean().to_numpy(), yields["index"].to_numpy(dtype=float)
+    known = {"Persson": np.sqrt(8 / np.pi), "Bush, Gibson & Thomas": np.sqrt(2 * np.pi)}
+    dotted = [{"marker": "", "linestyle": how, "color": BLACK} for how in (":", "--")]
+    first = {name: Curve(x, np.full(x.size, v), look=look) for (name, v), look in zip(known.items(), dotted)}
+    first["elastic"] = Curve(x, mean.to_numpy(), ends=((mean - ends).to_numpy(), (mean + ends).to_numpy()))
+    second = {
+        LAWS[name]: Curve(xs, yields[name].to_numpy(dtype=float))
+        for name in ("elastic", "perfect", "swift", "cap")
+    }
+    second["F/A = 3 σ_y"] = Curve(xs, xs / HARDNESS, look={"marker": "", "linestyle": "-.", "color": BLACK})
+    drawing = curves(
+        {f"{label}, elastic": first, f"{label}, with a yield stress": second},
+        dict(zip((f"{label}, elastic", f"{label}, with a yield stress"), ("share in contact [%]", index))),
+        None,
+    )
+    text = "The left panel shows the area over the load of elastic surfaces, mean and standard error"
+    return Plot(drawing, "area", "Area over load", text)
