@@ -238,10 +238,13 @@ def _below_spots(scene: Scene, sam: Result, fem: Result) -> Measured:
 
 
 def _strip_width(result: Result, reference: Reference) -> float:
-    """Of a wave in contact, where the line through p^2/cos^2 psi over sin^2 psi ends (Westergaard 1939)."""
+    """Of a wave in contact, where the line through p^2/cos^2 psi over sin^2 psi ends (Westergaard 1939), of the
+    cells but the outermost, through which the edge passes.
+    """
     x, _, p = pressure_map(result)
-    wave = reference.units["wave"]
-    psi, p = np.pi / wave * x[use := p[:, 0] > 0.0], p[use, 0]
+    wave, bears = reference.units["wave"], p[:, 0] > 0.0
+    use = bears & np.roll(bears, 1) & np.roll(bears, -1)
+    psi, p = np.pi / wave * x[use], p[use, 0]
     slope, level = np.polyfit(np.sin(psi) ** 2, (p / np.cos(psi)) ** 2, 1)
     return 2.0 * wave / np.pi * float(np.arcsin(np.sqrt(-level / slope)))
 

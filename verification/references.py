@@ -293,7 +293,7 @@ def double_wave(scene: Scene) -> Reference:
     values = {
         "p-max": float(largest),
         "share": float(np.mean(found > 0.0)),
-        "published-share": exact.fitted_share,
+        "fitted-share": exact.fitted_share,
         "open-share": 1.0 - exact.heavy_share,
         "pressure": exact.complete,
     }
