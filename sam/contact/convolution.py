@@ -438,6 +438,23 @@ class MirroredConvolution(BoxConvolution):
         return filtered(field, self.shape, spectrum)
 
 
+class PeriodicConvolution(BoxConvolution):
+    """The same on all cells of a period, of a kernel that repeats with it; mirrored: as above."""
+
+    def __init__(self, kernel: Real, mirrored: bool, counters: Counters):
+        self.shape, self.counters, self.mirrored = (kernel.shape[0], kernel.shape[1]), counters, mirrored
+        self.spectrum = fft.rfft2(kernel).real
+        if mirrored:
+            self.spectrum = self.spectrum[: self.shape[0] // 2 + 1]
+
+    def _apply(self, field: Real, spectrum: Real) -> NDArray[Any]:
+        if self.mirrored:
+            return filtered(field, self.shape, spectrum)
+        found = transformed(field, self.shape)
+        found *= spectrum
+        return cropped(found, self.shape, self.shape)
+
+
 def _by_parity(field: Real, odd: Parity, *, n: int, half: int, axis: int, inverse: bool = False) -> Real:
     """Transform each field along an axis by its parity; odd: of each entry; n: cells, half are kept."""
     shape = list(field.shape)

@@ -117,7 +117,8 @@ def _coarse_start(operators: SurfaceOperators, gap0: Array, control: Control) ->
     # every second cell, among them the central one
     ox, oy = (nx // 2) % 2, (ny // 2) % 2
     coarse_gap, on_coarse = gap0[ox::2, oy::2] / 2, control.coarser()
-    if min(coarse_gap.shape) < COARSEST or not on_coarse.touches(coarse_gap):
+    fewer = min(coarse_gap.shape) < COARSEST or not operators.bodies.halves(nx, ny)
+    if fewer or not on_coarse.touches(coarse_gap):
         return control.start(gap0)
     shape, bodies = (coarse_gap.shape[0], coarse_gap.shape[1]), operators.bodies.coarser()
     coarse = SurfaceOperators(shape, operators.aspect, operators.counters, bodies=bodies)
@@ -171,6 +172,8 @@ def _growing_box(
     cells, total, grid = start > 0, 0, BoxContact(operators, operators.whole)
     while True:
         box = around(cells)
+        if box.nx * box.ny > operators.bodies.largest_box * cells.size:
+            box = operators.whole
         contact = BoxContact(operators, box)
         p_box, u, iterations = contact.solve(
             gap0[box.slices], control, start[box.slices], tolerance=tolerance, limit=limit

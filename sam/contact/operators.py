@@ -20,8 +20,10 @@ from scipy import fft
 
 from sam.arrays import Array
 from sam.contact.convolution import (
+    BoxConvolution,
     Convolution,
     Counters,
+    MirroredConvolution,
     Real,
     convolution_onto,
     cropped,
@@ -38,6 +40,10 @@ from sam.layered.response import Layers
 WAVES = 64  # wave numbers of a bound: 1024 give one larger by less than 0.02 %, 8 one smaller by 0.8 %
 
 
+Kernel = Callable[..., Array]
+"""nx, ny lags >= 0, component, load (1 to 3) -> displacement by a unit load on the cell at the origin."""
+
+
 class HalfSpaces:
     """Two homogeneous half-spaces; the coupling of a traction is then 2 beta mu."""
 
@@ -48,6 +54,7 @@ class HalfSpaces:
     restart_threshold = (
         0.4  # share of the first residual at which p is projected: 44 and 38; at 0.1 48 and 45
     )
+    largest_box = 1.0  # share of the grid up to which a contact has a box of its own
 
     def normal(self, nx: int, ny: int, aspect: float) -> Array:
         """u_hat_z by p_hat = 1 on the cell at the origin, (nx, ny) lags >= 0. Paper: D_33 of Eq. 5."""
@@ -68,6 +75,25 @@ class HalfSpaces:
     def coarser(self) -> HalfSpaces:
         """The same bodies for cells twice as large."""
         return self
+
+    def halves(self, nx: int, ny: int) -> bool:
+        """Whether every second of (nx, ny) cells is a grid of the same kind."""
+        return True
+
+    def box_operator(
+        self, coefficients: Array, shape: tuple[int, int], mirrored: bool, counters: Counters
+    ) -> BoxConvolution:
+        """p_hat -> u_hat on a box of cells; mirrored: of fields that are, on the kept quarter."""
+        return (MirroredConvolution if mirrored else BoxConvolution)(coefficients, shape, counters)
+
+    def kernel(self, grid: CellGrid, nu: float) -> Kernel:
+        """mu times the displacement of the surface of a half-space, lengths in hx. Paper Eq. 5."""
+
+        def kernel(nx: int, ny: int, *, component: int, load: int) -> Array:
+            lags = Lags(nx, ny, 1.0, grid.hy / grid.hx)
+            return displacement_coefficients(lags, nu, component=component, load=load)
+
+        return kernel
 
 
 HALF_SPACES = HalfSpaces()
@@ -243,20 +269,6 @@ class SurfaceOperators:
         return apply
 
 
-Kernel = Callable[..., Array]
-"""nx, ny lags >= 0, component, load (1 to 3) -> displacement by a unit load on the cell at the origin."""
-
-
-def half_space_kernel(grid: CellGrid, nu: float) -> Kernel:
-    """mu times the displacement of the surface of a half-space, lengths in hx. Paper Eq. 5."""
-
-    def kernel(nx: int, ny: int, *, component: int, load: int) -> Array:
-        lags = Lags(nx, ny, 1.0, grid.hy / grid.hx)
-        return displacement_coefficients(lags, nu, component=component, load=load)
-
-    return kernel
-
-
 def moved_rows(
     grid: CellGrid, field: Array, kernel: Kernel, moved_by: tuple[int, int], *, counters: Counters
 ) -> Array:
@@ -317,7 +329,7 @@ class CoatedPair:
         """Displacement of the counter-body away in the rows at y = 0, (nx, rows) in m."""
         if not (self.compliance and pressure.any()):
             return np.zeros(grid.axis_rows.shape)
-        kernel = half_space_kernel(grid, 0.0)
+        kernel = HALF_SPACES.kernel(grid, 0.0)
         out = 2 * self.compliance * grid.hx * moved_rows(grid, pressure, kernel, (3, 3), counters=counters)
         if traction is None:
             return out

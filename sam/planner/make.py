@@ -9,8 +9,10 @@ from math import ceil, inf
 import numpy as np
 
 from sam.arrays import ROUNDING
+from sam.contact.periodic import PeriodicHalfSpaces
 from sam.elastic.problem import Places, Plan
 from sam.grid.cells import CellGrid, Room
+from sam.grid.rough import MOST_ACROSS, RoughPatch, step_across
 from sam.grid.smooth import EVEN_DEPTH, MOST_CELLS, MOST_LAYERS, PLASTIC_CELLS, GridDemand
 from sam.half_space import ElasticPair
 from sam.moving import Growth, Track
@@ -26,6 +28,7 @@ from sam.tribofilm.law import FilmLaw
 from sam.tribofilm.state import FilmOnCells, VisitLaw
 from sam.wear import WearLaw, limit_by_depth
 
+WHOLE = 1e-6  # of a wave: so much more or less still repeats
 STRONG = 3.0  # coefficient of friction, beyond that in air, that may keep a contact from being found
 
 
@@ -90,6 +93,7 @@ def plan_of(bodies: Bodies) -> Plan:
         wear=wear,
         judging=judging_of(scene),
         dissipates=counts_dissipation(scene),
+        period=period_of(scene),
         coarser=plan(coarse(scene, grid)) if scene.solver.extrapolate else None,
     )
     return replace(made, stages=stages_of(scene, made))
@@ -142,6 +146,13 @@ def _targets_of_cycle(scene: Scene, schedule: Schedule, cycle: int) -> list[Targ
         name, zero = "unloaded" if last else "", Load(0.0, sign, *places[-1], stretch=stretch)
         targets.append(Target(cycle, len(targets) + 1, zero, False, name, elastic_unloading=True))
     return targets
+
+
+def period_of(scene: Scene) -> PeriodicHalfSpaces | None:
+    """Both bodies of a patch that repeats; None if it does not."""
+    if scene.grid is None or scene.grid.periodic is None:
+        return None
+    return PeriodicHalfSpaces(free=scene.loading.lateral == "free")
 
 
 def slip_of(scene: Scene, pair: ElasticPair, grid: CellGrid) -> FullSlip:
@@ -272,8 +283,6 @@ def check_bodies(bodies: Bodies) -> None:
     """Refuse the scene of some bodies, see `check`."""
     scene = bodies.scene
     plasticity, other = scene.body.plasticity, scene.counterbody
-    if scene.grid is not None and scene.grid.periodic is not None:
-        raise UnsupportedScene(f'grid.periodic = "{scene.grid.periodic}": not yet solved, leave it out')
     if other is not None and other.shape == "cylinder":
         raise UnsupportedScene('counterbody.shape = "cylinder": not yet solved')
     _check_coating(scene)
@@ -295,6 +304,8 @@ def check_bodies(bodies: Bodies) -> None:
             raise UnsupportedScene(
                 f"{surface.table}.path = {surface.path!r}: only its digest is at hand, read the scene file"
             )
+    if bodies.patch is not None and bodies.patch.periodic:
+        _check_period(scene, bodies.patch)
     given = scene.grid
     if plasticity is None or given is None or given.extent is None or given.depths or given.layers:
         return
@@ -307,6 +318,37 @@ def check_bodies(bodies: Bodies) -> None:
             f"grid.extent = {extent}: {layers:.3g} layers as thick as a cell, at most {MOST_LAYERS} are "
             f"allowed: raise it, or give grid.layers and grid.depth"
         )
+
+
+def _check_period(scene: Scene, patch: RoughPatch) -> None:
+    """Surfaces that do not repeat, and an approach at which the patch touches all over."""
+    counter = scene.counter_surface
+    stretches = range(scene.loading.cycles if counter is not None and counter.renewed else 1)
+    every = [(patch.surface, patch.of_body)] if patch.surface is not None else []
+    every += [(counter, patch.counter_heights(k, (0.0, 0.0))) for k in stretches if counter is not None]
+    for surface, heights in every:
+        along = surface.feed or surface.wavelength_x, surface.wavelength_y
+        for side, wave in zip(patch.extent, along, strict=True):
+            if wave is not None and abs(side / wave - round(side / wave)) > WHOLE:
+                raise UnsupportedScene(
+                    f"grid.extent = {side:g} m: with grid.periodic a whole multiple of {wave:g} m is allowed, "
+                    f"the {'feed' if surface.feed else 'wavelength'} of the {surface.words}"
+                )
+        step = step_across(heights)
+        if surface.kind == "file" and step > MOST_ACROSS:
+            raise UnsupportedScene(
+                f"{surface.table}.path = {surface.path!r}: with grid.periodic it steps across the border of the "
+                f"patch by {step:.3g} times the rms step between neighbouring cells, at most {MOST_ACROSS:g} are "
+                f"allowed: give {surface.table}.taper"
+            )
+    approach = scene.loading.approach
+    for stretch in stretches if approach is not None else ():
+        summits = patch.of_body + (0.0 if counter is None else patch.counter_heights(stretch, (0.0, 0.0)))
+        if approach >= (most := float(summits.max() - summits.mean())):
+            raise UnsupportedScene(
+                f"loading.approach = {approach:g} m: with grid.periodic less than {most:.4g} m is allowed, the "
+                f"mean of the gap at first touch, at which all of the patch touches: give a force"
+            )
 
 
 def _check_coating(scene: Scene) -> None:

@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: MIT
+"""Coefficients of loads and of strain that repeat with a period, in wave numbers.
+
+Of cells n_x x n_y, lengths in hx, a field has the wave numbers 2 pi (m/n_x, n/n_y) per cell. A coefficient is a
+sum of derivatives of 1/R over a uniform cell, see `sam.kernels.primitives`. In wave numbers, k^2 = k_x^2 +
+k_y^2,
+
+    d_x^a d_y^b d_z^c (1/R) -> 2 pi (i k_x)^a (i k_y)^b (-k)^c e^{-k z}/k,                                  (a)
+    a uniform cell -> sin(k_x hx/2)/(k_x hx/2) sin(k_y hy/2)/(k_y hy/2).
+
+What is sampled at the centres of cells is the sum over k and its aliases, k + 2 pi (i/hx, j/hy). All of them
+but k itself are together smooth between -pi and pi: they are summed at Chebyshev nodes, up to |k_x| of some
+2 pi WINDOW, where a smooth end takes the place of waves that the depth has not removed. The result is within
+1e-8 of the largest coefficient. Where k = 0 it is 0: what a uniform field does is said by the caller.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from math import ceil, erfc, log, pi
+
+import numpy as np
+from numpy.polynomial.chebyshev import chebvander
+
+from sam.arrays import Array
+from sam.kernels.eigenstrain import eigenstrain_table
+from sam.kernels.patches import STRESS, load_table
+
+Radial = Callable[[Array], Sequence[Array]]
+"""k > 0 -> functions of it, which derivatives along x and y multiply."""
+Sums = Sequence[tuple[int, int, int, int, float]]
+"""(entry, a, b, function, factor): terms of the entries."""
+ALIASED = 1e-10  # share of a coefficient that waves are left out at
+NODES = 1e-10  # error of the sum over aliases between its nodes
+# (c, d) in 2 pi/hx: waves count by erfc((|k_x| - c)/d)/2: at the centres of cells, and at Gauss points, where
+# neighbouring aliases differ by a phase of pi, and of .42 pi
+WINDOW = {False: (11.0, 2.8), True: (26.0, 6.6)}
+
+
+def nodes(n: int) -> Array:
+    """Chebyshev nodes in (-1, 1), descending."""
+    return np.cos(pi / n * (np.arange(n, dtype=float) + 0.5))
+
+
+def lagrange(n: int) -> Array:
+    """Lagrange polynomials of the nodes in Chebyshev polynomials, a column each."""
+    polynomials: Array = np.asarray(np.linalg.inv(chebvander(nodes(n), n - 1)), dtype=float)
+    return polynomials
+
+
+def at_nodes(points: Array, n: int) -> Array:
+    """Lagrange polynomials of n nodes at points, (..., n)."""
+    return chebvander(points, n - 1) @ lagrange(n)
+
+
+def nodes_for(tolerance: float, *poles: complex) -> int:
+    """Nodes in [-1, 1] for a function with such singular points: by the ellipse of Bernstein through them."""
+    ellipse = min(abs(w + np.sqrt(w - 1 + 0j) * np.sqrt(w + 1 + 0j)) for w in poles)
+    return ceil(log(1 / tolerance) / log(ellipse))
+
+
+def _of_cell(x: Array, order: int, point: float) -> Array:
+    """(i x)^order without (-i)^(order % 2), times the cell's, at points +- `point` of its centre."""
+    sign = (-1.0) ** ((order + 1) // 2)
+    return np.asarray(sign * x**order * np.sinc(x / (2 * pi)) * np.cos(point * x))
+
+
+def repeated(
+    cells: tuple[int, int], aspect: float, sums: Sums, radial: Radial, *, depth: float, point: float = 0.0
+) -> Array:
+    """Entries of sums of (a), (entries, n_x // 2 + 1, n_y // 2 + 1), real: without (-i)^(odd_x + odd_y).
+
+    Parameters
+    ----------
+    cells
+        (n_x, n_y) of the period.
+    aspect
+        hy/hx.
+    sums, radial
+        The terms, with functions of k among which e^{-k z}/k is.
+    depth
+        The least z in hx.
+    point
+        Means over four points, so far from the centre along x and y, each in a side of the cell.
+    """
+    sides = [2 * pi / n * np.arange(n // 2 + 1) for n in cells]
+    k = np.hypot(sides[0][:, None], sides[1] / aspect)
+    k[0, 0] = 1.0
+    out = np.zeros((1 + max(term[0] for term in sums), *k.shape))
+    functions = radial(k)
+    for entry, a, b, function, factor in sums:
+        of_x, of_y = _of_cell(sides[0], a, point), _of_cell(sides[1], b, point) / aspect**b
+        out[entry] += factor * of_x[:, None] * functions[function] * of_y
+    far = log(1 / ALIASED) / (2 * pi)
+    if depth < 2 * far * max(1.0, aspect):
+        centre, width = WINDOW[point > 0]
+        most = [
+            ceil(min(far * side / depth if depth else np.inf, centre + 4 * width)) for side in (1, aspect)
+        ]
+        shut = [depth < far * side / (centre + 4 * width) for side in (1, aspect)]
+        count = 2 * ceil(nodes_for(NODES, 1j * min(aspect, 1 / aspect), 2.0) / 2)
+        half = pi * nodes(count)[: count // 2]
+        waves = [half[:, None] + 2 * pi * np.arange(-n, n + 1) for n in most]
+        ends = [np.ones(each.shape) for each in waves]
+        for each, end, shuts in zip(waves, ends, shut, strict=True):
+            if shuts:
+                end[:] = np.vectorize(erfc)((np.abs(each) / (2 * pi) - centre) / width) / 2
+        functions = radial(np.hypot(waves[0][:, :, None, None], waves[1] / aspect))
+        for each in functions:
+            each[:, most[0], :, most[1]] = 0.0  # k itself
+        between = [at_nodes(side / pi, count) for side in sides]
+        for entry, a, b, function, factor in sums:
+            of_x = _of_cell(waves[0], a, point) * ends[0]
+            of_y = _of_cell(waves[1], b, point) * ends[1] / aspect**b
+            found = np.einsum("xs,xsyt,yt->xy", of_x, functions[function], of_y, optimize=True)
+            found = np.concatenate([found, (-1) ** a * found[::-1]])
+            found = np.concatenate([found, (-1) ** b * found[:, ::-1]], axis=1)
+            out[entry] += factor * (between[0] @ found @ between[1].T)
+    out[:, 0, 0] = 0.0
+    return out
+
+
+def load_waves(
+    kind: str,
+    names: Sequence[str],
+    cells: tuple[int, int],
+    aspect: float,
+    nu: float,
+    *,
+    load: int,
+    depths: Sequence[float] = (0.0,),
+    point: float = 0.0,
+) -> Array:
+    """Of a unit traction on a cell (load: its direction), the mean over depths in hx of the `kind` "stress" or
+    "displacement" (times mu, in hx), see `repeated`. Paper Eq. 5 and 7.
+    """
+    rows = [(entry, row) for entry, name in enumerate(names) for row in load_table()[kind][f"{name},F{load}"]]
+    powers = sorted({(row[0], row[3]) for _, row in rows})  # z^p (-k)^c
+    sums = [
+        (entry, a, b, powers.index((p, c)), sum(q * nu**k for k, q in enumerate(of_nu)))
+        for entry, (p, a, b, c, of_nu) in rows
+    ]
+
+    def radial(k: Array) -> list[Array]:
+        falls = [np.exp(-k * z) / k for z in depths]
+        return [
+            sum(z**p * fall for z, fall in zip(depths, falls, strict=True)) * (-k) ** c / len(depths)
+            for p, c in powers
+        ]
+
+    return repeated(cells, aspect, sums, radial, depth=min(depths), point=point)
+
+
+@lru_cache(maxsize=4)
+def load_displacement_waves(
+    cells: tuple[int, int], aspect: float, nu: float, component: int, load: int
+) -> Array:
+    """Displacement of the surface, (n_x // 2 + 1, n_y // 2 + 1), as of `load_waves`; read-only."""
+    found = load_waves("displacement", (str(component),), cells, aspect, nu, load=load)[0]
+    found.flags.writeable = False
+    return found
+
+
+def strain_displacement_waves(
+    cells: tuple[int, int], aspect: float, faces: Sequence[float], nu: float, component: int = 3
+) -> Array:
+    """Displacement of the surface by unit strain in the cells of layers, in hx, (6, layers, n_x // 2 + 1,
+    n_y // 2 + 1), as of `repeated`. Paper Eq. 6 and 19.
+    """
+    table = eigenstrain_table()["displacement"]
+    rows = [(e, *row) for e, name in enumerate(STRESS) for row in table[f"{component},{name}"].items()]
+    powers = sorted({(q, c) for _, (_, q, _, _, c), _ in rows})  # the integral of z'^q (-k)^c
+    sums = [
+        (entry, a, b, powers.index((q, c)), sum(x * nu**k for k, x in enumerate(of_nu)))
+        for entry, (_, q, a, b, c), of_nu in rows
+    ]
+    layers = []
+    for top, bottom in zip(faces[:-1], faces[1:], strict=True):
+
+        def radial(k: Array, top: float = top, t: float = bottom - top) -> list[Array]:
+            ends = -np.expm1(-k * t) / k
+            moment = top * ends + (ends - t * np.exp(-k * t)) / k
+            fall = np.exp(-k * top) / k
+            return [fall * (moment if q else ends) * (-k) ** c for q, c in powers]
+
+        layers.append(repeated(cells, aspect, sums, radial, depth=top))
+    return np.stack(layers, axis=1)
+
+
+def in_cells(waves: Array, cells: tuple[int, int], odd_x: Array, odd_y: Array) -> Array:
+    """Coefficients at the lags 0 .. n - 1 of the period, (entries, ..., n_x, n_y), from `repeated` ones."""
+    return np.fft.irfft2(whole_waves(waves, cells[0], odd_x, odd_y), s=cells)
+
+
+def whole_waves(waves: Array, nx: int, odd_x: Array, odd_y: Array) -> Array:
+    """All wave numbers of a real transform, (entries, ..., n_x, n_y // 2 + 1), with their phase."""
+    m, between = np.arange(nx), (1,) * (waves.ndim - 3)
+    sign = np.where(np.multiply.outer(odd_x, m > nx / 2), -1, 1) * ((-1j) ** (odd_x + odd_y))[:, None]
+    return sign.reshape(-1, *between, nx, 1) * waves[..., np.minimum(m, nx - m), :]
