@@ -30,18 +30,19 @@ def setup(problem: str, cells: Any, settings: dict):
     if problem == problems.STEP:
         return lambda: _step(*cells, **settings)
     contact = problems.elastic(problem, cells, **_side(settings))
-    return lambda: _elastic(contact, settings["tolerance"])
+    return lambda: _elastic(contact, settings["tolerance"], periodic=settings.get("periodic", False))
 
 
 def _side(settings: dict) -> dict:
     return {"side": settings["side"]} if "side" in settings else {}
 
 
-def _elastic(contact: problems.Elastic, tolerance: float):
-    from sam import Search, solve_contact
+def _elastic(contact: problems.Elastic, tolerance: float, *, periodic: bool):
+    from sam import PeriodicHalfSpaces, Search, solve_contact
 
-    h = contact.cell
-    return lambda: solve_contact(contact.gap, (h, h), 1.0, contact.force, search=Search(tolerance))
+    given = contact.gap, (contact.cell, contact.cell), 1.0, contact.force
+    how = {"bodies": PeriodicHalfSpaces()} if periodic else {}
+    return lambda: solve_contact(*given, search=Search(tolerance), **how)
 
 
 def scene_of(
