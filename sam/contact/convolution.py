@@ -471,13 +471,23 @@ def _by_parity(field: Real, odd: Parity, *, n: int, half: int, axis: int, invers
 
 
 class Transforms:
-    """Transforms of fields on a box, mirrored in x (with y) and in y; half: the N of the text."""
+    """Transforms of fields on a box, mirrored in x (with y) and in y; half: the N of the text; periodic: of
+    all cells of a period, of which N are half.
+    """
 
     def __init__(
-        self, cells: tuple[int, int], mirror: tuple[bool, bool], *, single: bool, counters: Counters
+        self,
+        cells: tuple[int, int],
+        mirror: tuple[bool, bool],
+        *,
+        single: bool,
+        counters: Counters,
+        periodic: bool = False,
     ):
         self.cells, self.mirror, self.counters = cells, mirror, counters
         self.half = half_length(cells[0]), half_length(cells[1])
+        if periodic:
+            self.half = cells[0] // 2, cells[1] // 2
         self.lengths = 2 * self.half[0], 2 * self.half[1]
         self.real: type[np.floating[Any]] = np.float32 if single else np.float64
         self.complex: type[np.complexfloating[Any, Any]] = np.complex64 if single else np.complex128

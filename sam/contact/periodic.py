@@ -103,6 +103,15 @@ class PeriodicHalfSpaces(HalfSpaces):
         out[3:5] = -tractions.get(2, 0.0), -tractions.get(1, 0.0)
         return out
 
+    def mean_residual(self, strain: Array, nu: float) -> Array:
+        """Stress/mu of a plastic strain uniform in the layers, (6 layers, r); see `sam.plasticity.spectra`."""
+        e, out = strain.reshape(6, -1, strain.shape[-1]), np.zeros_like(strain)
+        if not self.free:
+            s = out.reshape(e.shape)
+            s[0], s[1] = (-2 / (1 - nu) * (e[i] + nu * e[1 - i]) for i in (0, 1))  # and s_i3 = 0
+            s[5] = -2 * e[5]
+        return out
+
     def stresses(
         self,
         tractions: Mapping[int, Array],

@@ -143,11 +143,9 @@ def load_waves(
     ]
 
     def radial(k: Array) -> list[Array]:
-        falls = [np.exp(-k * z) / k for z in depths]
-        return [
-            sum(z**p * fall for z, fall in zip(depths, falls, strict=True)) * (-k) ** c / len(depths)
-            for p, c in powers
-        ]
+        falls, inverse = [np.exp(-k * z) / k for z in depths], -1 / k
+        means = [sum(z**p * fall for z, fall in zip(depths, falls, strict=True)) / len(depths) for p in (0, 1)]
+        return [means[p] * (inverse ** -c if c < 0 else (-k) ** c) for p, c in powers]
 
     return repeated(cells, aspect, sums, radial, depth=min(depths), point=point)
 

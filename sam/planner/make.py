@@ -69,7 +69,8 @@ def plan_of(bodies: Bodies) -> Plan:
     if scene.wear is not None and scene.wear.removes:
         limits = limit_by_depth(scene.wear, None if plasticity is None else plasticity.layer_thickness)
         smoothing = scene.wear.smoothing_window, scene.wear.smoothing_order
-        wear = WearLaw(grid.shape, grid.hx, grid.hy, limits, scene.wear.interpolate, *smoothing)
+        interpolate = scene.wear.interpolate
+        wear = WearLaw(grid.shape, grid.hx, grid.hy, limits, interpolate, *smoothing, grid.periodic)
     rough, last = bodies.patch, schedule.targets[-1].load
     made = Plan(
         grid=grid,
@@ -341,6 +342,11 @@ def _check_period(scene: Scene, patch: RoughPatch) -> None:
                 f"patch by {step:.3g} times the rms step between neighbouring cells, at most {MOST_ACROSS:g} are "
                 f"allowed: give {surface.table}.taper"
             )
+    cells = f"grid.cells = {list(patch.cells)}"
+    if scene.body.plasticity is not None and any(n % 2 for n in patch.cells):
+        raise UnsupportedScene(f"{cells}: with grid.periodic and [body.plasticity] even numbers are allowed")
+    if scene.solver.operator == "dense":
+        raise UnsupportedScene('solver.operator = "dense": with grid.periodic "swept" is allowed, leave it out')
     approach = scene.loading.approach
     for stretch in stretches if approach is not None else ():
         summits = patch.of_body + (0.0 if counter is None else patch.counter_heights(stretch, (0.0, 0.0)))

@@ -108,7 +108,7 @@ def first_box(model: Model, peak: ElasticPeak) -> Extent:
     schedule, anywhere, limit = model.plan.schedule, model.plan.places.anywhere, model.plan.initial_yield
     both_ways, path = schedule.alternates, schedule.path
     extent = first_extent(model.grid, peak, limit, anywhere=anywhere, both_ways=both_ways, path=path)
-    elsewhere = anywhere and (len(path) > 1 or schedule.renews)
+    elsewhere = anywhere and (len(path) > 1 or schedule.renews or model.plan.period is not None)
     return replace(extent, window=model.grid.whole) if elsewhere else extent
 
 

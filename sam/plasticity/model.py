@@ -157,7 +157,7 @@ class Model:
             misfit = plan.misfit.mean_stress(self.grid, extent.window, self.faces(extent))
         make = partial(PaperProblem, stop=stated(plan.solver.stop)) if plan.paper else Problem
         problem = make(
-            again.operator if again is not None else self._operator(extent),
+            again.operator if again is not None else self.operator(extent),
             pressure,
             self.material(extent),
             unit=self.unit,
@@ -184,7 +184,9 @@ class Model:
         grid, factor = self.grid, self.plan.slip.coupling
         if surface is None:
             aspect, coupling = grid.hy / grid.hx, factor * coefficient
-            return SurfaceOperators(grid.shape, aspect, self.counters, coupling=coupling)
+            return SurfaceOperators(
+                grid.shape, aspect, self.counters, coupling=coupling, bodies=self.plan.bodies
+            )
         return surface.with_coupling(factor * coefficient) if factor else surface
 
     def cuboids(self, extent: Extent) -> Cuboids:
@@ -192,11 +194,13 @@ class Model:
         lags = Lags(extent.window.nx, extent.window.ny, self.grid.hx, self.grid.hy)
         return Cuboids(lags, tuple(self.faces(extent).tolist()), self.plan.pair.body.poisson)
 
-    def _operator(self, extent: Extent) -> BoxOperator:
+    def operator(self, extent: Extent) -> BoxOperator:
+        """Stress and displacement of a box; kept, see `spectra_of`."""
         self.counters.tangential_kernels += self.plan.slip.slides
         nx, ny = extent.window.shape
         exchange, asked = self._exchange(extent.window), self.plan.solver.operator
-        box = ExpectedBox(nx, ny, extent.layers, self.tolerance, exchange, asked)
+        repeats = self.plan.period is not None
+        box = ExpectedBox(nx, ny, extent.layers, self.tolerance, exchange, asked, periodic=repeats)
         return BoxOperator(
             self.cuboids(extent),
             self.plan.pair.body.shear,
@@ -205,6 +209,7 @@ class Model:
             mirror=self._mirror(extent.window),
             exchange=exchange,
             swept=box.swept,
+            period=self.plan.period,
         )
 
     def _mirror(self, window: Window) -> tuple[bool, bool]:
