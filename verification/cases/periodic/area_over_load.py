@@ -34,7 +34,6 @@ YIELDING: Mapping[str, Mapping[str, Any]] = {
 """E* h' over the yield stress, and cells in the side: 8 and 16 in the shortest wave."""
 HARDNESS = 3.0  # over the yield stress: Tabor
 PRESSURE = 0.05  # over E* h', of the patch that yields: a tenth of it in contact if elastic
-LAYERS = (0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 10.0, 13.0)  # faces in 1/128 of the side
 
 
 def _heights(scene: Scene, n: int) -> np.ndarray:
@@ -81,14 +80,16 @@ def _elastic(context: Context, base: Scene) -> Iterator[dict[str, Any]]:
             if last:
                 maps = [_heights(rough, n) for n in CELLS]
                 own = [np.mean(capped_pressure(h, (SIDE, SIDE), modulus, pressure) > 0.0) for h in maps]
-                row["fourier"] = _limit(*own) * GUESS / share
+                row["fourier"] = _limit(*own, 1) * GUESS / share
                 row |= {"finer": _limit(found[CELLS[-1]], found[n]) for n in finer}
             yield row
 
 
-def _limit(coarse: float, fine: float) -> float:
-    """Of an area on cells that are halved: first order, as of the outermost cells of spots."""
-    return float(2.0 * fine - coarse)
+def _limit(coarse: float, fine: float, order: int = 2) -> float:
+    """Of an area on cells that are halved: second order where edges are placed within cells, as SAM does, first
+    where points are counted.
+    """
+    return float(fine + (fine - coarse) / (2**order - 1))
 
 
 def _yielding(context: Context, base: Scene) -> Iterator[dict[str, Any]]:
@@ -103,8 +104,7 @@ def _yielding(context: Context, base: Scene) -> Iterator[dict[str, Any]]:
         scene = with_loading(with_keys(base, "surface", sq=sq), mean_pressure=pressure, unload=False)
         found: dict[str, list[float]] = {}
         for n in how["cells"]:
-            faces = tuple(z * SIDE / 128 * max(1, 128 // n) for z in LAYERS)
-            on = with_grid(scene, cells=(n, n), depths=faces)
+            on = with_grid(scene, cells=(n, n))
             for name, law in (("swift", swift), ("perfect", perfect), ("elastic", None)):
                 result = _solved(with_body(on, plasticity=law))
                 found.setdefault(name, []).append(float(result.quantities["contact_share"]))
@@ -114,7 +114,7 @@ def _yielding(context: Context, base: Scene) -> Iterator[dict[str, Any]]:
                 _heights(on, n), (SIDE, SIDE), modulus, pressure, hardness=HARDNESS * strength
             )
             found.setdefault("cap", []).append(float(np.mean(cap > 0.0)))
-        shares = {name: _limit(v[0], v[-1]) for name, v in found.items()}
+        shares = {name: _limit(v[0], v[-1], 1 if name == "cap" else 2) for name, v in found.items()}
         row = {"sweep": "yielding", "model": "sam", "index": index, "pressure": PRESSURE * index}
         row |= {name: shares[name] / PRESSURE for name in ("elastic", "swift", "perfect", "cap")}
         row |= {f"{name} over elastic": shares[name] / shares["elastic"] for name in ("swift", "perfect")}

@@ -46,19 +46,41 @@ def _elastic(contact: problems.Elastic, tolerance: float, *, periodic: bool):
 
 
 def scene_of(
-    n: int, layers: int, tolerance: float, side: float = problems.BOX[0], *, depth: float = problems.BOX[1]
+    n: int,
+    layers: int,
+    tolerance: float,
+    side: float = problems.BOX[0],
+    *,
+    depth: float = problems.BOX[1],
+    periodic: bool = False,
 ):
-    """The elastic-plastic step as a scene; side and depth of the grid in Hertz radii, n cells a side."""
-    from sam.scene import Body, CounterBody, Grid, Loading, Plasticity, Scene, Solver
+    """The elastic-plastic step as a scene; side and depth of the grid in Hertz radii, n cells a side; periodic:
+    the sphere is a summit of the body below a plane, and repeats.
+    """
+    from sam.scene import Body, CounterBody, Grid, HeightMap, Loading, Plasticity, Scene, Solver, Surface
 
     hard = Plasticity(law="linear", yield_stress=problems.YIELD * YOUNG, modulus=problems.HARDENING * YOUNG)
+    extent, other, surface = (
+        (side * RADIUS_M,) * 2,
+        {"shape": "sphere", "radius": problems.RADIUS * RADIUS_M},
+        None,
+    )
+    if periodic:
+        x = ((np.arange(n) + 0.5) / n - 0.5) * side * RADIUS_M
+        summit = -(x[:, None] ** 2 + x**2) / (2 * problems.RADIUS * RADIUS_M)
+        other, surface = {"shape": "flat"}, Surface(kind="file", path=HeightMap(summit, extent))
     return Scene(
         title="One step to three times the yield stress",
         body=Body(young=YOUNG, poisson=problems.POISSON, plasticity=hard),
-        counterbody=CounterBody(shape="sphere", radius=problems.RADIUS * RADIUS_M),
+        counterbody=CounterBody(**other),
+        surface=surface,
         loading=Loading(force=problems.STEP_FORCE * YOUNG * RADIUS_M**2, steps=1, unload=False),
         grid=Grid(
-            cells=(n, n), extent=(side * RADIUS_M, side * RADIUS_M), layers=layers, depth=depth * RADIUS_M
+            cells=None if periodic else (n, n),
+            extent=None if periodic else extent,
+            layers=layers,
+            depth=depth * RADIUS_M,
+            periodic="xy" if periodic else None,
         ),
         solver=Solver(tolerance=tolerance),
     )
