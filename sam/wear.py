@@ -311,9 +311,7 @@ class WearLaw:
         raw = worn_depth(peeq, faces, self.limits, self.interpolate)
         depth, roofed = (self._on_grid(each, window) for each in (raw.depth, raw.roofed))
         whole = Worn(depth, roofed, self._on_grid(raw.at_bottom, window))
-        depth = smoothed(
-            whole.depth, self.window, self.order, all_removed=True, periodic=self.periodic
-        )
+        depth = smoothed(whole.depth, self.window, self.order, all_removed=True, periodic=self.periodic)
         columns = cells.any(axis=0)  # all others are fresh, and stay so
         below, worst, worn = {}, 0.0, depth[window.slices][columns][:, None]
         before, after = cells[:, columns], cells.copy()

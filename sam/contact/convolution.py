@@ -484,7 +484,7 @@ class Transforms:
         counters: Counters,
         periodic: bool = False,
     ):
-        self.cells, self.mirror, self.counters = cells, mirror, counters
+        self.cells, self.mirror, self.counters, self.periodic = cells, mirror, counters, periodic
         self.half = half_length(cells[0]), half_length(cells[1])
         if periodic:
             self.half = cells[0] // 2, cells[1] // 2

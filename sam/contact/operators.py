@@ -76,6 +76,10 @@ class HalfSpaces:
         """The same bodies for cells twice as large."""
         return self
 
+    def own(self, coefficients: Array, aspect: float) -> float:
+        """u_hat_z of p_hat = 1 in its own cell, of `normal` coefficients: a unit of residuals."""
+        return float(coefficients[0, 0])
+
     def halves(self, nx: int, ny: int) -> bool:
         """Whether every second of (nx, ny) cells is a grid of the same kind."""
         return True
@@ -194,7 +198,7 @@ class SurfaceOperators:
         self.coupling = np.broadcast_to(coupling, shape) if np.any(coupling) else None
         self.whole = Window(0, 0, *shape)
         self.coefficients = bodies.normal(*shape, aspect)
-        self.self_influence = float(self.coefficients[0, 0])
+        self.self_influence = bodies.own(self.coefficients, aspect)
 
     def with_coupling(self, coupling: float | Array) -> SurfaceOperators:
         """The operators of the same cells with another coefficient of friction, which share the rest."""

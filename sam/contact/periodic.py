@@ -3,8 +3,8 @@
 
 A mean traction moves a half-space without bound. Displacements are therefore those about their mean, and the
 approach is that of the mean planes of the deformed surfaces: at most the mean of the gap, where all of the
-patch touches. The mean stress is laterally uniform: under a mean pressure p it is -p in 33 and, where the body
-cannot spread, -nu/(1 - nu) p in 11 and 22.
+patch touches. The mean stress is laterally uniform: under a mean pressure p it is -p in 33 and, where the
+body cannot spread, -nu/(1 - nu) p in 11 and 22.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from scipy import fft
 
 from sam.arrays import Array
 from sam.contact.convolution import BoxConvolution, Counters, PeriodicConvolution
-from sam.contact.operators import HalfSpaces, Kernel
+from sam.contact.operators import HALF_SPACES, HalfSpaces, Kernel
 from sam.grid.cells import CellGrid, Window
-from sam.kernels.patches import ODD_X, ODD_Y, STRESS, Cuboids
+from sam.kernels.patches import STRESS, Cuboids, Lags
 from sam.kernels.waves import (
     in_cells,
     load_displacement_waves,
@@ -43,18 +43,16 @@ class Odd(NamedTuple):
         return cls(*(np.array([(name + other).count(axis) % 2 for name in names]) for axis in "12"))
 
 
-def displacement_kernel(
-    cells: tuple[int, int], aspect: float, nu: float, *, component: int, load: int
-) -> Array:
+def displacement_kernel(period: Lags, nu: float, *, component: int, load: int) -> Array:
     """mu times the displacement of the surface at the lags 0 .. n - 1, lengths in hx. Paper Eq. 5."""
-    waves = load_displacement_waves(cells, aspect, nu, component, load)
-    return np.asarray(in_cells(waves[None], cells, *Odd.of((str(component),), str(load)))[0])
+    waves = load_displacement_waves(period, nu, component=component, load=load)
+    return np.asarray(in_cells(waves[None], period.shape, *Odd.of((str(component),), str(load)))[0])
 
 
 @dataclass(frozen=True)
 class PeriodicHalfSpaces(HalfSpaces):
-    """Two homogeneous half-spaces under tractions that repeat; free: whether the mean of the lateral stress is
-    zero at each depth, else the mean of the lateral strain is.
+    """Two homogeneous half-spaces under tractions that repeat; free: whether the mean of the lateral stress
+    is zero at each depth, else the mean of the lateral strain is.
     """
 
     free: bool = False
@@ -62,11 +60,15 @@ class PeriodicHalfSpaces(HalfSpaces):
 
     def normal(self, nx: int, ny: int, aspect: float) -> Array:
         """u_hat_z by p_hat = 1 on the cell at the origin and its images, about its mean."""
-        return displacement_kernel((nx, ny), aspect, 0.0, component=3, load=3)
+        return displacement_kernel(Lags(nx, ny, 1.0, aspect), 0.0, component=3, load=3)
+
+    def own(self, coefficients: Array, aspect: float) -> float:
+        """That of a single cell, whatever the period."""
+        return HALF_SPACES.own(HALF_SPACES.normal(1, 1, aspect), aspect)
 
     def tangential(self, nx: int, ny: int, aspect: float) -> Array:
         """u_hat_z by a traction p_hat = 1 along x with coupling 1, and by its images."""
-        return displacement_kernel((nx, ny), aspect, 0.0, component=3, load=1)
+        return displacement_kernel(Lags(nx, ny, 1.0, aspect), 0.0, component=3, load=1)
 
     def halves(self, nx: int, ny: int) -> bool:
         """Whether every second cell repeats with the same period."""
@@ -84,16 +86,15 @@ class PeriodicHalfSpaces(HalfSpaces):
         """The same of a cell and its images, about the mean."""
 
         def kernel(nx: int, ny: int, *, component: int, load: int) -> Array:
-            aspect = grid.hy / grid.hx
-            return displacement_kernel(grid.shape, aspect, nu, component=component, load=load)[:nx, :ny]
+            period = Lags(*grid.shape, 1.0, grid.hy / grid.hx)
+            return displacement_kernel(period, nu, component=component, load=load)[:nx, :ny]
 
         return kernel
 
     def strain_kernel(self, grid: CellGrid, cuboids: Cuboids, component: int) -> Array:
         """Displacement of the surface by unit strain in layers, (6, layers, nx, ny); cuboids: in hx."""
-        waves = strain_displacement_waves(
-            grid.shape, grid.hy / grid.hx, cuboids.faces, cuboids.nu, component
-        )
+        period = Lags(*grid.shape, 1.0, grid.hy / grid.hx)
+        waves = strain_displacement_waves(period, cuboids.faces, cuboids.nu, component)
         return np.asarray(in_cells(waves, grid.shape, *Odd.of(STRESS, str(component))))
 
     def mean_stress(self, tractions: Mapping[int, float], nu: float) -> Array:
@@ -104,7 +105,7 @@ class PeriodicHalfSpaces(HalfSpaces):
         return out
 
     def mean_residual(self, strain: Array, nu: float) -> Array:
-        """Stress/mu of a plastic strain uniform in the layers, (6 layers, r); see `sam.plasticity.spectra`."""
+        """Stress/mu of a plastic strain uniform in layers, (6 layers, r), see `sam.plasticity.spectra`."""
         e, out = strain.reshape(6, -1, strain.shape[-1]), np.zeros_like(strain)
         if not self.free:
             s = out.reshape(e.shape)
@@ -124,18 +125,17 @@ class PeriodicHalfSpaces(HalfSpaces):
     ) -> Array:
         """See `sam.contact.stress.stresses`."""
         loads = {load: field for load, field in tractions.items() if field.any()}
-        depths = np.asarray(depths, dtype=float)
+        depths, (hx, hy) = np.asarray(depths, dtype=float), cell
         means = self.mean_stress({load: float(field.mean()) for load, field in loads.items()}, nu)
         out = np.empty((6, len(depths), *observed.shape))
         out[:] = means[:, None, None, None]
         counters.tangential_kernels += any(load != 3 for load in loads)
-        transforms = {load: fft.rfft2(field) for load, field in loads.items()}
-        for at, z in enumerate(depths / cell[0]) if loads else ():
+        transforms = [(load, field.shape, fft.rfft2(field)) for load, field in loads.items()]
+        for at, z in enumerate(depths / hx) if loads else ():
             total: Any = 0.0
-            for load, transform in transforms.items():
-                shape = (transform.shape[0], next(iter(loads.values())).shape[1])
-                found = load_waves("stress", STRESS, shape, cell[1] / cell[0], nu, load=load, depths=[z])
-                total = total + whole_waves(found, shape[0], *Odd.of(STRESS, str(load))) * transform
+            for load, (nx, ny), transform in transforms:
+                waves = load_waves("stress", STRESS, Lags(nx, ny, 1.0, hy / hx), nu, load=load, depths=[z])
+                total = total + whole_waves(waves, nx, *Odd.of(STRESS, str(load))) * transform
             counters.ffts += 6
-            out[:, at] += fft.irfft2(total, s=shape)[(..., *observed.slices)]  # paper Eq. 7, first sum
+            out[:, at] += fft.irfft2(total, s=(nx, ny))[(..., *observed.slices)]  # paper Eq. 7, first sum
         return out

@@ -124,8 +124,9 @@ class Plan:
     counter-body that moves; coated: both bodies with a coating; rough: heights of the bodies; plasticity:
     yield curve and profile over depth; tribofilm, wear: the laws; judging: how repeated loading is judged;
     dissipates: whether the energy that each cycle dissipates is asked for; coarser: the plan on half as many
-    cells, from which quantities are extrapolated; period: both bodies where all repeats with the grid; stages: those that run, in the order in which they begin,
-    with their sizes, then those that do not, and why. None of what a scene has not.
+    cells, from which quantities are extrapolated; period: both bodies where all repeats; stages: those that
+    run, in the order in which they begin, with their sizes, then those that do not, and why. None of what a
+    scene has not.
     """
 
     grid: CellGrid

@@ -117,7 +117,7 @@ def step_across(heights: Array) -> float:
     directions: about 1 of heights (nx, ny) that repeat.
     """
     steps = [(heights.take(0, axis) - heights.take(-1, axis), np.diff(heights, axis=axis)) for axis in (0, 1)]
-    rms = [[float(np.sqrt(np.mean(each**2))) for each in both] for both in steps]
+    rms = [[float(np.sqrt(np.square(each).mean())) for each in both] for both in steps]
     return max(across / (inside or across or 1.0) for across, inside in rms)
 
 
@@ -128,7 +128,7 @@ def tapered(heights: Array, share: float) -> Array:
     for axis in (0, 1):
         n = heights.shape[axis]
         s = np.clip(1 - (np.arange(n) + 0.5) / (share * n / 2), 0.0, 1.0)
-        half = np.moveaxis((heights.take(-1, axis) - heights.take(0, axis))[None] / 2, 0, axis)
+        half = np.expand_dims(np.subtract(heights.take(-1, axis), heights.take(0, axis)) / 2, axis)
         at_start = np.expand_dims(s**3 * (10 - 15 * s + 6 * s**2), 1 - axis)
         heights = heights + half * (at_start - np.flip(at_start, axis))
     return heights

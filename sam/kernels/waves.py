@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Coefficients of loads and of strain that repeat with a period, in wave numbers.
 
-Of cells n_x x n_y, lengths in hx, a field has the wave numbers 2 pi (m/n_x, n/n_y) per cell. A coefficient is a
-sum of derivatives of 1/R over a uniform cell, see `sam.kernels.primitives`. In wave numbers, k^2 = k_x^2 +
+Of n_x x n_y cells, lengths in hx, a field has the wave numbers 2 pi (m/n_x, n/n_y) per cell. A coefficient is
+a sum of derivatives of 1/R over a uniform cell, see `sam.kernels.primitives`. In wave numbers, k^2 = k_x^2 +
 k_y^2,
 
-    d_x^a d_y^b d_z^c (1/R) -> 2 pi (i k_x)^a (i k_y)^b (-k)^c e^{-k z}/k,                                  (a)
+    d_x^a d_y^b d_z^c (1/R) -> 2 pi (i k_x)^a (i k_y)^b (-k)^c e^{-k z}/k,                                 (a)
     a uniform cell -> sin(k_x hx/2)/(k_x hx/2) sin(k_y hy/2)/(k_y hy/2).
 
 What is sampled at the centres of cells is the sum over k and its aliases, k + 2 pi (i/hx, j/hy). All of them
@@ -18,19 +18,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import lru_cache
+from itertools import pairwise
 from math import ceil, erfc, log, pi
+from typing import Any
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
+from numpy.typing import NDArray
 
 from sam.arrays import Array
 from sam.kernels.eigenstrain import eigenstrain_table
-from sam.kernels.patches import STRESS, load_table
+from sam.kernels.patches import STRESS, Lags, load_table
 
 Radial = Callable[[Array], Sequence[Array]]
 """k > 0 -> functions of it, which derivatives along x and y multiply."""
 Sums = Sequence[tuple[int, int, int, int, float]]
 """(entry, a, b, function, factor): terms of the entries."""
+Parities = NDArray[np.integer[Any]]
+"""1 for odd, 0 for even, of each entry."""
 ALIASED = 1e-10  # share of a coefficient that waves are left out at
 NODES = 1e-10  # error of the sum over aliases between its nodes
 # (c, d) in 2 pi/hx: waves count by erfc((|k_x| - c)/d)/2: at the centres of cells, and at Gauss points, where
@@ -66,17 +71,13 @@ def _of_cell(x: Array, order: int, point: float) -> Array:
     return np.asarray(sign * x**order * np.sinc(x / (2 * pi)) * np.cos(point * x))
 
 
-def repeated(
-    cells: tuple[int, int], aspect: float, sums: Sums, radial: Radial, *, depth: float, point: float = 0.0
-) -> Array:
+def repeated(period: Lags, sums: Sums, radial: Radial, *, depth: float, point: float = 0.0) -> Array:
     """Entries of sums of (a), (entries, n_x // 2 + 1, n_y // 2 + 1), real: without (-i)^(odd_x + odd_y).
 
     Parameters
     ----------
-    cells
-        (n_x, n_y) of the period.
-    aspect
-        hy/hx.
+    period
+        Its cells, hx = 1.
     sums, radial
         The terms, with functions of k among which e^{-k z}/k is.
     depth
@@ -84,7 +85,7 @@ def repeated(
     point
         Means over four points, so far from the centre along x and y, each in a side of the cell.
     """
-    sides = [2 * pi / n * np.arange(n // 2 + 1) for n in cells]
+    aspect, sides = period.hy, [2 * pi / n * np.arange(n // 2 + 1.0) for n in period.shape]
     k = np.hypot(sides[0][:, None], sides[1] / aspect)
     k[0, 0] = 1.0
     out = np.zeros((1 + max(term[0] for term in sums), *k.shape))
@@ -124,16 +125,15 @@ def repeated(
 def load_waves(
     kind: str,
     names: Sequence[str],
-    cells: tuple[int, int],
-    aspect: float,
+    period: Lags,
     nu: float,
     *,
     load: int,
     depths: Sequence[float] = (0.0,),
     point: float = 0.0,
 ) -> Array:
-    """Of a unit traction on a cell (load: its direction), the mean over depths in hx of the `kind` "stress" or
-    "displacement" (times mu, in hx), see `repeated`. Paper Eq. 5 and 7.
+    """Of a unit traction on a cell (load: its direction), the mean over depths in hx of the `kind` "stress"
+    or "displacement" (times mu, in hx), see `repeated`. Paper Eq. 5 and 7.
     """
     rows = [(entry, row) for entry, name in enumerate(names) for row in load_table()[kind][f"{name},F{load}"]]
     powers = sorted({(row[0], row[3]) for _, row in rows})  # z^p (-k)^c
@@ -144,25 +144,23 @@ def load_waves(
 
     def radial(k: Array) -> list[Array]:
         falls, inverse = [np.exp(-k * z) / k for z in depths], -1 / k
-        means = [sum(z**p * fall for z, fall in zip(depths, falls, strict=True)) / len(depths) for p in (0, 1)]
-        return [means[p] * (inverse ** -c if c < 0 else (-k) ** c) for p, c in powers]
+        means = [
+            sum(z**p * fall for z, fall in zip(depths, falls, strict=True)) / len(depths) for p in (0, 1)
+        ]
+        return [means[p] * (inverse**-c if c < 0 else (-k) ** c) for p, c in powers]
 
-    return repeated(cells, aspect, sums, radial, depth=min(depths), point=point)
+    return repeated(period, sums, radial, depth=min(depths), point=point)
 
 
 @lru_cache(maxsize=4)
-def load_displacement_waves(
-    cells: tuple[int, int], aspect: float, nu: float, component: int, load: int
-) -> Array:
+def load_displacement_waves(period: Lags, nu: float, *, component: int, load: int) -> Array:
     """Displacement of the surface, (n_x // 2 + 1, n_y // 2 + 1), as of `load_waves`; read-only."""
-    found = load_waves("displacement", (str(component),), cells, aspect, nu, load=load)[0]
+    found = load_waves("displacement", (str(component),), period, nu, load=load)[0]
     found.flags.writeable = False
     return found
 
 
-def strain_displacement_waves(
-    cells: tuple[int, int], aspect: float, faces: Sequence[float], nu: float, component: int = 3
-) -> Array:
+def strain_displacement_waves(period: Lags, faces: Sequence[float], nu: float, component: int = 3) -> Array:
     """Displacement of the surface by unit strain in the cells of layers, in hx, (6, layers, n_x // 2 + 1,
     n_y // 2 + 1), as of `repeated`. Paper Eq. 6 and 19.
     """
@@ -174,7 +172,7 @@ def strain_displacement_waves(
         for entry, (_, q, a, b, c), of_nu in rows
     ]
     layers = []
-    for top, bottom in zip(faces[:-1], faces[1:], strict=True):
+    for top, bottom in pairwise(faces):
 
         def radial(k: Array, top: float = top, t: float = bottom - top) -> list[Array]:
             ends = -np.expm1(-k * t) / k
@@ -182,16 +180,18 @@ def strain_displacement_waves(
             fall = np.exp(-k * top) / k
             return [fall * (moment if q else ends) * (-k) ** c for q, c in powers]
 
-        layers.append(repeated(cells, aspect, sums, radial, depth=top))
+        layers.append(repeated(period, sums, radial, depth=top))
     return np.stack(layers, axis=1)
 
 
-def in_cells(waves: Array, cells: tuple[int, int], odd_x: Array, odd_y: Array) -> Array:
+def in_cells(waves: Array, cells: tuple[int, int], odd_x: Parities, odd_y: Parities) -> Array:
     """Coefficients at the lags 0 .. n - 1 of the period, (entries, ..., n_x, n_y), from `repeated` ones."""
     return np.fft.irfft2(whole_waves(waves, cells[0], odd_x, odd_y), s=cells)
 
 
-def whole_waves(waves: Array, nx: int, odd_x: Array, odd_y: Array) -> Array:
+def whole_waves(
+    waves: Array, nx: int, odd_x: Parities, odd_y: Parities
+) -> NDArray[np.complexfloating[Any, Any]]:
     """All wave numbers of a real transform, (entries, ..., n_x, n_y // 2 + 1), with their phase."""
     m, between = np.arange(nx), (1,) * (waves.ndim - 3)
     sign = np.where(np.multiply.outer(odd_x, m > nx / 2), -1, 1) * ((-1j) ** (odd_x + odd_y))[:, None]

@@ -332,28 +332,30 @@ def _check_period(scene: Scene, patch: RoughPatch) -> None:
         for side, wave in zip(patch.extent, along, strict=True):
             if wave is not None and abs(side / wave - round(side / wave)) > WHOLE:
                 raise UnsupportedScene(
-                    f"grid.extent = {side:g} m: with grid.periodic a whole multiple of {wave:g} m is allowed, "
-                    f"the {'feed' if surface.feed else 'wavelength'} of the {surface.words}"
+                    f"grid.extent = {side:g} m: with grid.periodic a whole multiple of {wave:g} m is "
+                    f"allowed, the {'feed' if surface.feed else 'wavelength'} of the {surface.words}"
                 )
         step = step_across(heights)
         if surface.kind == "file" and step > MOST_ACROSS:
             raise UnsupportedScene(
-                f"{surface.table}.path = {surface.path!r}: with grid.periodic it steps across the border of the "
-                f"patch by {step:.3g} times the rms step between neighbouring cells, at most {MOST_ACROSS:g} are "
-                f"allowed: give {surface.table}.taper"
+                f"{surface.table}.path = {surface.path!r}: with grid.periodic it steps across the border "
+                f"of the patch by {step:.3g} times the rms step between neighbouring cells, at most "
+                f"{MOST_ACROSS:g} are allowed: give {surface.table}.taper"
             )
     cells = f"grid.cells = {list(patch.cells)}"
     if scene.body.plasticity is not None and any(n % 2 for n in patch.cells):
         raise UnsupportedScene(f"{cells}: with grid.periodic and [body.plasticity] even numbers are allowed")
     if scene.solver.operator == "dense":
-        raise UnsupportedScene('solver.operator = "dense": with grid.periodic "swept" is allowed, leave it out')
+        raise UnsupportedScene(
+            'solver.operator = "dense": with grid.periodic "swept" is allowed, leave it out'
+        )
     approach = scene.loading.approach
-    for stretch in stretches if approach is not None else ():
+    for stretch in stretches:
         summits = patch.of_body + (0.0 if counter is None else patch.counter_heights(stretch, (0.0, 0.0)))
-        if approach >= (most := float(summits.max() - summits.mean())):
+        if approach is not None and approach >= (most := float(summits.max() - summits.mean())):
             raise UnsupportedScene(
-                f"loading.approach = {approach:g} m: with grid.periodic less than {most:.4g} m is allowed, the "
-                f"mean of the gap at first touch, at which all of the patch touches: give a force"
+                f"loading.approach = {approach:g} m: with grid.periodic less than {most:.4g} m is allowed, "
+                f"the mean of the gap at first touch, at which all of the patch touches: give a force"
             )
 
 

@@ -167,7 +167,9 @@ class Images:
         zeta, ones = z + source if image else np.abs(z - source), np.ones_like(z)
         powers = np.array([ones, source, z, z * source] if image else [ones, zeta])
         weights = np.tensordot(powers, self.weights[image], ([0], [0]))
-        functions = at_nodes(zeta / self.bottom - 1, len(self.table)) @ self.table.reshape(len(self.table), -1)
+        functions = at_nodes(zeta / self.bottom - 1, len(self.table)) @ self.table.reshape(
+            len(self.table), -1
+        )
         out = (weights @ functions.reshape(len(z), 30, -1)).reshape(-1, 36, *self.table.shape[2:])
         if not image:
             out[z < source] *= MIRRORED

@@ -128,25 +128,25 @@ def _residual_stress(model: Model, record: Progressed) -> Array:
     grid, window, rows = model.grid, record.extent.window, model.grid.axis_rows
     across = window.j0 <= rows.j0 and rows.j0 + rows.ny <= window.j0 + window.ny
     covered = record.extent.layers if across and window.nx == grid.nx else 0
-    strained, mu = _strained(model, record), model.plan.pair.body.shear
+    source, mu = strained(model, record.state.material.strain, record.extent), model.plan.pair.body.shear
     if model.plan.period is not None:  # by layers without strain
         operator = model.operator(replace(record.extent, layers=len(grid.depths)))
         deeper = [(0, 0), (0, operator.layers - covered), (0, 0), (0, 0)]
-        response = operator.response(operator.transformed(np.pad(strained.strain, deeper)))
+        response = operator.response(operator.transformed(np.pad(source.strain, deeper)))
         return np.asarray(operator.stress(None, response)[..., rows.slices[1]], dtype=float)
-    below = residual_stress(strained, grid.depths[covered:], rows, mu=mu)
+    below = residual_stress(source, grid.depths[covered:], rows, mu=mu)
     return np.concatenate([np.zeros((6, covered, *below.shape[2:])), below], axis=1)
 
 
-def _strained(model: Model, record: Progressed) -> Strained:
-    """The plastic strain in its box."""
+def strained(model: Model, strain: Array, extent: Extent) -> Strained:
+    """A plastic strain (6, n_layers, nx, ny) in its box."""
     known = None if model.plan.period is None else partial(model.plan.period.strain_kernel, model.grid)
-    return Strained(record.state.material.strain, record.extent.window, model.cuboids(record.extent), known)
+    return Strained(strain, extent.window, model.cuboids(extent), known)
 
 
 def _moved(model: Model, record: Progressed, component: int, observed: Window) -> Array:
     """Displacement of a window of the surface by the plastic strain, (nx, ny) in m."""
-    source, counters = _strained(model, record), model.counters
+    source, counters = strained(model, record.state.material.strain, record.extent), model.counters
     return surface_displacement(source, observed, counters=counters, component=component)
 
 
@@ -156,7 +156,7 @@ def _moved_grid(model: Model, record: Progressed) -> Array:
     """
     if not model.plan.places.anywhere:
         return _moved(model, record, 3, model.grid.whole)
-    built, source = model.built, _strained(model, record)
+    built, source = model.built, strained(model, record.state.material.strain, record.extent)
     if built.onto_grid is None or built.onto_grid[0] != record.extent:
         counted = vars(model.counters).copy()
         built.onto_grid = record.extent, source.onto(model.grid.whole, 3, model.counters)
@@ -218,7 +218,14 @@ def snapshot(model: Model, record: Progressed, name: str, trial: Trial) -> Snaps
     # the largest plastic strain; cells hold means
     top, interval = None, model.strength.kinks.interval(grid.depths[:layers])
     if material.peeq.any():
-        centres = at_centres(material.peeq, model.faces(extent), interval)
+        around_it = [(0, 0), *[(int(grid.periodic),) * 2] * 2]
+        peeq = np.pad(material.peeq, around_it, mode="wrap")
+        centres = at_centres(peeq, model.faces(extent), interval)
+        if grid.periodic:  # the largest in the middle: it has neighbours on all sides
+            centres = centres[:, 1:-1, 1:-1]
+            place = np.unravel_index(int(centres.argmax()), centres.shape)[1:]
+            to_middle = [n // 2 - int(i) for n, i in zip(grid.shape, place, strict=True)]
+            centres = np.roll(centres, to_middle, axis=(1, 2))
         top = largest(centres, grid.depths[:layers], interval)
 
     # the cells of the box in the row of the largest pressure, where that need not be at the origin

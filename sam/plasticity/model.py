@@ -31,7 +31,7 @@ from sam.plasticity.load_step import (
     Problem,
 )
 from sam.plasticity.paper import PaperProblem
-from sam.plasticity.spectra import SINGLE, BoxOperator
+from sam.plasticity.spectra import SINGLE, BoxOperator, PeriodicOperator
 from sam.plasticity.state import Extent
 from sam.scene.section import stated
 from sam.scene.yield_curve import Strength
@@ -201,16 +201,12 @@ class Model:
         exchange, asked = self._exchange(extent.window), self.plan.solver.operator
         repeats = self.plan.period is not None
         box = ExpectedBox(nx, ny, extent.layers, self.tolerance, exchange, asked, periodic=repeats)
-        return BoxOperator(
-            self.cuboids(extent),
-            self.plan.pair.body.shear,
-            self.counters,
-            single=self.tolerance >= SINGLE,
-            mirror=self._mirror(extent.window),
-            exchange=exchange,
-            swept=box.swept,
-            period=self.plan.period,
-        )
+        single, period = self.tolerance >= SINGLE, self.plan.period
+        of_cells = self.cuboids(extent), self.plan.pair.body.shear, self.counters
+        if period is not None:
+            return PeriodicOperator(period, *of_cells, single=single, swept=box.swept)
+        mirror = self._mirror(extent.window)
+        return BoxOperator(*of_cells, single=single, mirror=mirror, exchange=exchange, swept=box.swept)
 
     def _mirror(self, window: Window) -> tuple[bool, bool]:
         """Whether fields are mirrored in x and in y: on a box about the middle, x without friction."""

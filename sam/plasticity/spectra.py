@@ -76,7 +76,7 @@ class CellMeans(CornerFunctions):
 
 
 class CellSpectra(CellMeans):
-    """Their transforms of so many wave numbers, see `real_spectrum`; closed: with the lag of half a period."""
+    """Their transforms of so many wave numbers, see `real_spectrum`; closed: with the lag half a period."""
 
     def __init__(self, lags: Lags, closed: bool):
         super().__init__(_first(lags, (lags.nx + closed, lags.ny + closed)))
@@ -154,11 +154,12 @@ class BoxSpectra:
         self.stored = np.flatnonzero(np.triu(every)) if exchange else slice(None)
         self.waves = every.ravel()[self.stored].size
         self.images: PeriodImages | None = None
-        self.lengths, self.aspect = (2 * self.half[0], 2 * self.half[1]), cuboids.lags.hy
+        lengths = 2 * self.half[0], 2 * self.half[1]
+        self.all_cells = Lags(*lengths, 1.0, cuboids.lags.hy)
         if error:
             if period is None:
-                self.images = PeriodImages(cuboids, cells, self.lengths, error)
-            self.repeated = self.images or Images(cuboids, self.lengths, error)
+                self.images = PeriodImages(cuboids, cells, lengths, error)
+            self.repeated = self.images or Images(cuboids, lengths, error)
             kx, ky = (np.arange(n + 1) * np.pi / n for n in self.half)
             waves = np.array(np.broadcast_arrays(kx[:, None], ky / cuboids.lags.hy)).reshape(2, -1)
             waves = waves[:, self.stored]
@@ -166,13 +167,6 @@ class BoxSpectra:
         else:
             shape = self.waves, 6 * cuboids.layers, 6 * cuboids.layers
             self.layers = kept(repr((cuboids, exchange)), shape, self.real, lambda: self._dense(shape))
-        if period is None:
-            kernel = surface_displacement_coefficients(cuboids)
-            self.strain_to_displacement = self._of_surface(kernel, ODD_X)
-        else:
-            self.strain_to_displacement = self._of_waves(
-                strain_displacement_waves(self.lengths, self.aspect, cuboids.faces, cuboids.nu)
-            )
 
     def _dense(self, shape: tuple[int, int, int]) -> Reals:
         """The matrices between all layers, (waves, 6 layers, 6 layers)."""
@@ -260,9 +254,9 @@ class BoxSpectra:
         cuboids, period = self.cuboids, self.period
         if period is None:
             return self._of_surface(mean_stress_of_load(cuboids, load), ODD_X ^ int(load == 1))
-        cells, nu, points = (self.lengths, self.aspect), cuboids.nu, _points(cuboids.depths)
+        cells, nu, points = self.all_cells, cuboids.nu, _points(cuboids.depths)
         each = [
-            load_waves("stress", STRESS, *cells, nu, load=load, depths=z, point=GAUSS[1] / 2) for z in points
+            load_waves("stress", STRESS, cells, nu, load=load, depths=z, point=GAUSS[1] / 2) for z in points
         ]
         waves = np.stack(each, axis=1)
         waves[:, :, 0, 0] = period.mean_stress({load: 1.0}, nu)[:, None]
@@ -272,6 +266,14 @@ class BoxSpectra:
         """Spectra of (6, n_layers, nx, ny) between layers and surface, (N_x + 1, N_y + 1, 6 n_layers)."""
         rows = [real_spectrum(part, self.half, odd) for part, *odd in zip(kernel, odd_x, ODD_Y, strict=True)]
         return np.ascontiguousarray(np.moveaxis(np.concatenate(rows), 0, -1), dtype=self.real)
+
+    @cached_property
+    def strain_to_displacement(self) -> Reals:
+        """Spectra of the displacement of the surface by strain, (N_x + 1, N_y + 1, 6 n_layers)."""
+        cuboids = self.cuboids
+        if self.period is None:
+            return self._of_surface(surface_displacement_coefficients(cuboids), ODD_X)
+        return self._of_waves(strain_displacement_waves(self.all_cells, cuboids.faces, cuboids.nu))
 
     @cached_property
     def pressure_to_stress(self) -> Reals:
@@ -312,8 +314,10 @@ class BoxOperator:
     `keep` leaves. box: cells as lags, in m, layers from 0; mu in Pa; single: precision, 1e-7 of the largest
     stress, in half the time; mirror: of all fields in x (with y) and y; exchange: of x and y, half of the
     wave numbers give all; swept: error of the stress/mu of a unit strain by sweeps over the layers in place
-    of matrices between all of them; period: the bodies where all repeats with the box.
+    of matrices between all of them.
     """
+
+    period: PeriodicHalfSpaces | None = None
 
     def __init__(
         self,
@@ -325,11 +329,10 @@ class BoxOperator:
         mirror: tuple[bool, bool] = (False, False),
         exchange: bool = False,
         swept: float = 0.0,
-        period: PeriodicHalfSpaces | None = None,
     ):
         lags = box.lags
         self.transforms = Transforms(
-            lags.shape, mirror, single=single, counters=counters, periodic=period is not None
+            lags.shape, mirror, single=single, counters=counters, periodic=self.period is not None
         )
         self.shape, self.layers = lags.shape, box.layers
         self.mu, self.hx, self.counters = mu, lags.hx, counters
@@ -343,7 +346,7 @@ class BoxOperator:
             exchange,
             cells=lags.shape if swept else (0, 0),
             error=swept,
-            period=period,
+            period=self.period,
         )
         self.exchange, self.real = exchange, self.transforms.real
 
@@ -435,3 +438,20 @@ class BoxOperator:
         # paper Eq. 7, first sum
         terms = [part[..., None] * columns[:, :, [i]] for i, part in enumerate(spectra)]
         return np.asarray(terms[0] if len(terms) == 1 else terms[0] + terms[1])
+
+
+class PeriodicOperator(BoxOperator):
+    """The same where all repeats with the box, of an even number of cells each way."""
+
+    def __init__(
+        self,
+        period: PeriodicHalfSpaces,
+        box: Cuboids,
+        mu: float,
+        counters: Counters,
+        *,
+        single: bool,
+        swept: float,
+    ):
+        self.period = period
+        super().__init__(box, mu, counters, single=single, swept=swept)
