@@ -238,8 +238,8 @@ def _below_spots(scene: Scene, sam: Result, fem: Result) -> Measured:
 
 
 def _strip_width(result: Result, reference: Reference) -> float:
-    """Of a wave in contact, where the line through p^2/cos^2 psi over sin^2 psi ends (Westergaard 1939), of the
-    cells but the outermost, through which the edge passes.
+    """Of a wave in contact, where the line through p^2/cos^2 psi over sin^2 psi ends (Westergaard 1939), of
+    the cells but the outermost, through which the edge passes.
     """
     x, _, p = pressure_map(result)
     wave, bears = reference.units["wave"], p[:, 0] > 0.0

@@ -6,18 +6,24 @@ and with a yield stress, beside a pressure that is cut off at a hardness.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sam.scene import Plasticity, Result, Scene
 from sam.scene.surface import heights
-from verification.cases.case import Context, with_body, with_grid, with_keys, with_loading
+from verification.cases.case import Context, Plot, with_body, with_grid, with_keys, with_loading
 from verification.cases.recipes import initial_yield
+from verification.figures.lines import PERCENT, Curve, curves
+from verification.figures.style import BLACK
 from verification.quantities import modulus_of
 from verification.reference.capped import capped_pressure, rms_slope
+from verification.rows import CaseFile
 from verification.runs import models
 from verification.runs.models import SAM
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 GUESS = 2.15  # of A E* h'/F, by which pressures are chosen
 SIDE = 80e-6  # of the patch in m
@@ -28,10 +34,11 @@ ELASTIC: Mapping[str, tuple[int, tuple[float, ...], tuple[int, ...]]] = {
 }
 """Seeds; shares asked to be in contact; cells of one surface on which the extrapolation is checked."""
 YIELDING: Mapping[str, Mapping[str, Any]] = {
-    "quick": {"indices": (1.0, 8.0), "cells": (64,)},
-    "full": {"indices": (0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0), "cells": (64, 128)},
+    "quick": {"indices": (1.0, 3.0, 8.0), "cells": (64,), "points": (128, 256)},
+    "full": {"indices": (1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0), "cells": (64, 128), "points": (256, 512)},
 }
-"""E* h' over the yield stress, and cells in the side: 8 and 16 in the shortest wave."""
+"""E* h' over the yield stress; cells in the side, 8 and 16 in the shortest wave; points of the cut-off."""
+THEORIES = {"Persson": np.sqrt(8 / np.pi), "Bush, Gibson & Thomas": np.sqrt(2 * np.pi)}
 HARDNESS = 3.0  # over the yield stress: Tabor
 PRESSURE = 0.05  # over E* h', of the patch that yields: a tenth of it in contact if elastic
 
@@ -81,13 +88,14 @@ def _elastic(context: Context, base: Scene) -> Iterator[dict[str, Any]]:
                 maps = [_heights(rough, n) for n in CELLS]
                 own = [np.mean(capped_pressure(h, (SIDE, SIDE), modulus, pressure) > 0.0) for h in maps]
                 row["fourier"] = _limit(*own, 1) * GUESS / share
-                row |= {"finer": _limit(found[CELLS[-1]], found[n]) for n in finer}
+                if finer:
+                    row["finer"] = _limit(found[CELLS[-1]], found[finer[0]])
             yield row
 
 
 def _limit(coarse: float, fine: float, order: int = 2) -> float:
-    """Of an area on cells that are halved: second order where edges are placed within cells, as SAM does, first
-    where points are counted.
+    """Of an area on cells that are halved: second order where edges are placed within cells, as SAM does,
+    first where points are counted.
     """
     return float(fine + (fine - coarse) / (2**order - 1))
 
@@ -110,15 +118,16 @@ def _yielding(context: Context, base: Scene) -> Iterator[dict[str, Any]]:
                 found.setdefault(name, []).append(float(result.quantities["contact_share"]))
                 if law:
                     found.setdefault(f"{name} p-max", []).append(result.quantities["p_max_Pa"] / strength)
+        for n in how["points"]:
             cap = capped_pressure(
-                _heights(on, n), (SIDE, SIDE), modulus, pressure, hardness=HARDNESS * strength
+                _heights(scene, n), (SIDE, SIDE), modulus, pressure, hardness=HARDNESS * strength
             )
             found.setdefault("cap", []).append(float(np.mean(cap > 0.0)))
         shares = {name: _limit(v[0], v[-1], 1 if name == "cap" else 2) for name, v in found.items()}
         row = {"sweep": "yielding", "model": "sam", "index": index, "pressure": PRESSURE * index}
         row |= {name: shares[name] / PRESSURE for name in ("elastic", "swift", "perfect", "cap")}
-        row |= {f"{name} over elastic": shares[name] / shares["elastic"] for name in ("swift", "perfect")}
-        row |= {f"cap over {name}": shares["cap"] / shares[name] for name in ("swift", "perfect")}
+        row |= {f"{name}-over-elastic": shares[name] / shares["elastic"] for name in ("swift", "perfect")}
+        row |= {f"cap-over-{name}": shares["cap"] / shares[name] for name in ("swift", "perfect")}
         yield row | {f"p-max {name}": found[f"{name} p-max"][-1] for name in ("swift", "perfect")}
 
 
@@ -137,24 +146,31 @@ def departs(rows: DataFrame, column: str) -> float:
 
 def area(file: CaseFile, frame: DataFrame) -> Plot:
     """A E* h'/F over the share in contact, elastic, and over the yield stress."""
-    label, index = "$A E^* h'/F$", "$E^* h'/\\sigma_y$"
-    elastic, yields = (frame[frame["sweep"] == name] for name in ("elastic", "yielding"))
-    groups = elastic.groupby("asked")
-    mean, ends = groups["kappa"].mean(), groups["kappa"].sem()
-    x, xs = PERCENT * groups["share"].mean().to_numpy(), yields["index"].to_numpy(dtype=float)
-    known = {"Persson": np.sqrt(8 / np.pi), "Bush, Gibson & Thomas": np.sqrt(2 * np.pi)}
-    dotted = [{"marker": "", "linestyle": how, "color": BLACK} for how in (":", "--")]
-    first = {name: Curve(x, np.full(x.size, v), look=look) for (name, v), look in zip(known.items(), dotted)}
-    first["elastic"] = Curve(x, mean.to_numpy(), ends=((mean - ends).to_numpy(), (mean + ends).to_numpy()))
-    second = {
-        LAWS[name]: Curve(xs, yields[name].to_numpy(dtype=float))
-        for name in ("elastic", "perfect", "swift", "cap")
+    elastic, yielding = (frame[frame["sweep"] == name] for name in ("elastic", "yielding"))
+    by_load = elastic.groupby("asked")
+    mean, bars = by_load["kappa"].mean().to_numpy(), by_load["kappa"].sem().to_numpy()
+    x, index = PERCENT * by_load["share"].mean().to_numpy(), yielding["index"].to_numpy(dtype=float)
+    left = {"elastic": Curve(x, mean, ends=(mean - bars, mean + bars))}
+    for (name, level), line in zip(THEORIES.items(), (":", "--"), strict=True):
+        left[name] = Curve(x, np.full(x.size, level), look=_line(line))
+    words = {
+        "perfect": "perfect plasticity",
+        "swift": "Swift's law",
+        "cap": "cut off at 3 σ_y",
+        "elastic": "elastic",
     }
-    second["F/A = 3 σ_y"] = Curve(xs, xs / HARDNESS, look={"marker": "", "linestyle": "-.", "color": BLACK})
-    drawing = curves(
-        {f"{label}, elastic": first, f"{label}, with a yield stress": second},
-        dict(zip((f"{label}, elastic", f"{label}, with a yield stress"), ("share in contact [%]", index))),
-        None,
+    right = {words[name]: Curve(index, yielding[name].to_numpy(dtype=float)) for name in words}
+    right["3 σ_y everywhere"] = Curve(index, index / HARDNESS, look=_line("-."))
+    titles = "$A E^* h'/F$, elastic", "$A E^* h'/F$ with a yield stress"
+    axes = dict(zip(titles, ("share in contact [%]", "$E^* h'/\\sigma_y$"), strict=True))
+    drawing = curves(dict(zip(titles, (left, right), strict=True)), axes, None)
+    text = (
+        f"The left panel shows the area over the load of {elastic['seed'].nunique()} elastic surfaces, mean "
+        "and standard error, beside two theories; the right one that of one surface with less and less "
+        f"yield stress, at a mean pressure of {PRESSURE} E* h'."
     )
-    text = "The left panel shows the area over the load of elastic surfaces, mean and standard error"
-    return Plot(drawing, "area", "Area over load", text)
+    return Plot(drawing, "area", "Area over load, elastic and with a yield stress", text)
+
+
+def _line(style: str) -> dict[str, Any]:
+    return {"marker": "", "linestyle": style, "color": BLACK}

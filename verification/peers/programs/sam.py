@@ -54,8 +54,8 @@ def scene_of(
     depth: float = problems.BOX[1],
     periodic: bool = False,
 ):
-    """The elastic-plastic step as a scene; side and depth of the grid in Hertz radii, n cells a side; periodic:
-    the sphere is a summit of the body below a plane, and repeats.
+    """The elastic-plastic step as a scene; side and depth of the grid in Hertz radii, n cells a side;
+    periodic: the sphere is a summit of the body below a plane, and repeats.
     """
     from sam.scene import Body, CounterBody, Grid, HeightMap, Loading, Plasticity, Scene, Solver, Surface
 
