@@ -254,9 +254,7 @@ class _Iteration:
         self.operators, self.box = operators, box
         self.counters, self.bodies = operators.counters, operators.bodies
         self.self_influence, self.mirrored = operators.self_influence, mirrored
-        self.operator = operators.bodies.box_operator(
-            operators.coefficients, box.shape, mirrored, operators.counters
-        )
+        self.operator = operators.box_operator(box, mirrored)
         self.residuals: list[float] = []
         self.count: Array = np.ones(box.shape)
         if mirrored:

@@ -24,6 +24,7 @@ from sam.contact.convolution import (
     Convolution,
     Counters,
     MirroredConvolution,
+    PeriodicConvolution,
     Real,
     convolution_onto,
     cropped,
@@ -54,15 +55,21 @@ class HalfSpaces:
     restart_threshold = (
         0.4  # share of the first residual at which p is projected: 44 and 38; at 0.1 48 and 45
     )
-    largest_box = 1.0  # share of the grid up to which a contact has a box of its own
+    periodic = False  # whether all repeats with the grid
+
+    def coefficients(
+        self, wanted: Lags, cells: tuple[int, int], nu: float, *, component: int, load: int
+    ) -> Array:
+        """mu times the displacement of the surface of one of them, lengths in hx; cells: of the grid."""
+        return displacement_coefficients(wanted, nu, component=component, load=load)  # paper Eq. 5
 
     def normal(self, nx: int, ny: int, aspect: float) -> Array:
         """u_hat_z by p_hat = 1 on the cell at the origin, (nx, ny) lags >= 0. Paper: D_33 of Eq. 5."""
-        return displacement_coefficients(Lags(nx, ny, 1.0, aspect), nu=0.0)
+        return self.coefficients(Lags(nx, ny, 1.0, aspect), (nx, ny), 0.0, component=3, load=3)
 
     def tangential(self, nx: int, ny: int, aspect: float) -> Array:
         """u_hat_z by a traction p_hat = 1 along x with coupling 1. Paper: D_31 of Eq. 5."""
-        return displacement_coefficients(Lags(nx, ny, 1.0, aspect), nu=0.0, component=3, load=1)
+        return self.coefficients(Lags(nx, ny, 1.0, aspect), (nx, ny), 0.0, component=3, load=1)
 
     def stiffness(self, wave_number: Array) -> Array:
         """p_hat of a unit harmonic of u_hat with a wave number per cell > 0: |k| (Westergaard)."""
@@ -80,22 +87,12 @@ class HalfSpaces:
         """u_hat_z of p_hat = 1 in its own cell, of `normal` coefficients: a unit of residuals."""
         return float(coefficients[0, 0])
 
-    def halves(self, nx: int, ny: int) -> bool:
-        """Whether every second of (nx, ny) cells is a grid of the same kind."""
-        return True
-
-    def box_operator(
-        self, coefficients: Array, shape: tuple[int, int], mirrored: bool, counters: Counters
-    ) -> BoxConvolution:
-        """p_hat -> u_hat on a box of cells; mirrored: of fields that are, on the kept quarter."""
-        return (MirroredConvolution if mirrored else BoxConvolution)(coefficients, shape, counters)
-
     def kernel(self, grid: CellGrid, nu: float) -> Kernel:
-        """mu times the displacement of the surface of a half-space, lengths in hx. Paper Eq. 5."""
+        """The `coefficients` on a grid."""
 
         def kernel(nx: int, ny: int, *, component: int, load: int) -> Array:
             lags = Lags(nx, ny, 1.0, grid.hy / grid.hx)
-            return displacement_coefficients(lags, nu, component=component, load=load)
+            return self.coefficients(lags, grid.shape, nu, component=component, load=load)
 
         return kernel
 
@@ -205,6 +202,18 @@ class SurfaceOperators:
         other = copy(self)
         other.coupling = np.broadcast_to(coupling, self.shape) if np.any(coupling) else None
         return other
+
+    def box_operator(self, box: Window, mirrored: bool) -> BoxConvolution:
+        """p_hat -> u_hat on a box; mirrored: of fields that are, on the kept quarter."""
+        if self.bodies.periodic and box == self.whole and not (mirrored and self.odd):
+            return PeriodicConvolution(self.coefficients, mirrored, self.counters)
+        kind = MirroredConvolution if mirrored else BoxConvolution
+        return kind(self.coefficients, box.shape, self.counters)
+
+    @property
+    def odd(self) -> bool:
+        """Whether the number of cells along x or y is odd."""
+        return any(n % 2 for n in self.shape)
 
     def operator(self, source: Window, observed: Window) -> Operator:
         """p_hat on `source` -> u_hat on `observed`: paper Eq. 5 with D_33."""

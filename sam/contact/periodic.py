@@ -10,43 +10,19 @@ body cannot spread, -nu/(1 - nu) p in 11 and 22.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, NamedTuple
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import fft
 
 from sam.arrays import Array
-from sam.contact.convolution import BoxConvolution, Counters, PeriodicConvolution
-from sam.contact.operators import HALF_SPACES, HalfSpaces, Kernel
+from sam.contact.convolution import Counters
+from sam.contact.operators import HALF_SPACES, HalfSpaces
 from sam.grid.cells import CellGrid, Window
 from sam.kernels.patches import STRESS, Cuboids, Lags
-from sam.kernels.waves import (
-    in_cells,
-    load_displacement_waves,
-    load_waves,
-    strain_displacement_waves,
-    whole_waves,
-)
-
-
-class Odd(NamedTuple):
-    """Of coefficients by a load whether they are odd in x and in y."""
-
-    x: NDArray[np.integer[Any]]
-    y: NDArray[np.integer[Any]]
-
-    @classmethod
-    def of(cls, names: tuple[str, ...], other: str) -> Odd:
-        """names: indices of what is found; other: of what makes it."""
-        return cls(*(np.array([(name + other).count(axis) % 2 for name in names]) for axis in "12"))
-
-
-def displacement_kernel(period: Lags, nu: float, *, component: int, load: int) -> Array:
-    """mu times the displacement of the surface at the lags 0 .. n - 1, lengths in hx. Paper Eq. 5."""
-    waves = load_displacement_waves(period, nu, component=component, load=load)
-    return np.asarray(in_cells(waves[None], period.shape, *Odd.of((str(component),), str(load)))[0])
+from sam.kernels.waves import in_cells, load_waves, strain_displacement_waves, whole_waves
 
 
 @dataclass(frozen=True)
@@ -56,46 +32,25 @@ class PeriodicHalfSpaces(HalfSpaces):
     """
 
     free: bool = False
-    largest_box = 1 / 3  # share of the grid up to which a box padded with zeros takes less time than that
+    periodic = True
 
-    def normal(self, nx: int, ny: int, aspect: float) -> Array:
-        """u_hat_z by p_hat = 1 on the cell at the origin and its images, about its mean."""
-        return displacement_kernel(Lags(nx, ny, 1.0, aspect), 0.0, component=3, load=3)
+    def coefficients(
+        self, wanted: Lags, cells: tuple[int, int], nu: float, *, component: int, load: int
+    ) -> Array:
+        """The same by the load on a cell and its images, about the mean."""
+        period, name = replace(wanted, nx=cells[0], ny=cells[1]), (str(component),)
+        waves = load_waves("displacement", name, period, nu, load=load)  # paper Eq. 5
+        return in_cells(waves, cells, name, load)[0, : wanted.nx, : wanted.ny]
 
     def own(self, coefficients: Array, aspect: float) -> float:
         """That of a single cell, whatever the period."""
         return HALF_SPACES.own(HALF_SPACES.normal(1, 1, aspect), aspect)
 
-    def tangential(self, nx: int, ny: int, aspect: float) -> Array:
-        """u_hat_z by a traction p_hat = 1 along x with coupling 1, and by its images."""
-        return displacement_kernel(Lags(nx, ny, 1.0, aspect), 0.0, component=3, load=1)
-
-    def halves(self, nx: int, ny: int) -> bool:
-        """Whether every second cell repeats with the same period."""
-        return nx % 2 == 0 and ny % 2 == 0
-
-    def box_operator(
-        self, coefficients: Array, shape: tuple[int, int], mirrored: bool, counters: Counters
-    ) -> BoxConvolution:
-        """p_hat -> u_hat on a box of cells; on all of them without padding."""
-        if shape != coefficients.shape or (mirrored and not self.halves(*shape)):
-            return super().box_operator(coefficients, shape, mirrored, counters)
-        return PeriodicConvolution(coefficients, mirrored, counters)
-
-    def kernel(self, grid: CellGrid, nu: float) -> Kernel:
-        """The same of a cell and its images, about the mean."""
-
-        def kernel(nx: int, ny: int, *, component: int, load: int) -> Array:
-            period = Lags(*grid.shape, 1.0, grid.hy / grid.hx)
-            return displacement_kernel(period, nu, component=component, load=load)[:nx, :ny]
-
-        return kernel
-
     def strain_kernel(self, grid: CellGrid, cuboids: Cuboids, component: int) -> Array:
         """Displacement of the surface by unit strain in layers, (6, layers, nx, ny); cuboids: in hx."""
         period = Lags(*grid.shape, 1.0, grid.hy / grid.hx)
         waves = strain_displacement_waves(period, cuboids.faces, cuboids.nu, component)
-        return np.asarray(in_cells(waves, grid.shape, *Odd.of(STRESS, str(component))))
+        return in_cells(waves, grid.shape, STRESS, component)
 
     def mean_stress(self, tractions: Mapping[int, float], nu: float) -> Array:
         """Stress (6,) of mean tractions on the body: load -> Pa."""
@@ -135,7 +90,7 @@ class PeriodicHalfSpaces(HalfSpaces):
             total: Any = 0.0
             for load, (nx, ny), transform in transforms:
                 waves = load_waves("stress", STRESS, Lags(nx, ny, 1.0, hy / hx), nu, load=load, depths=[z])
-                total = total + whole_waves(waves, nx, *Odd.of(STRESS, str(load))) * transform
+                total = total + whole_waves(waves, nx, STRESS, load) * transform
             counters.ffts += 6
             out[:, at] += fft.irfft2(total, s=(nx, ny))[(..., *observed.slices)]  # paper Eq. 7, first sum
         return out

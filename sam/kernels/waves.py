@@ -17,7 +17,6 @@ but k itself are together smooth between -pi and pi: they are summed at Chebyshe
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import lru_cache
 from itertools import pairwise
 from math import ceil, erfc, log, pi
 from typing import Any
@@ -32,10 +31,9 @@ from sam.kernels.patches import STRESS, Lags, load_table
 
 Radial = Callable[[Array], Sequence[Array]]
 """k > 0 -> functions of it, which derivatives along x and y multiply."""
+Power = tuple[int, int]
 Sums = Sequence[tuple[int, int, int, int, float]]
 """(entry, a, b, function, factor): terms of the entries."""
-Parities = NDArray[np.integer[Any]]
-"""1 for odd, 0 for even, of each entry."""
 ALIASED = 1e-10  # share of a coefficient that waves are left out at
 NODES = 1e-10  # error of the sum over aliases between its nodes
 # (c, d) in 2 pi/hx: waves count by erfc((|k_x| - c)/d)/2: at the centres of cells, and at Gauss points, where
@@ -73,40 +71,25 @@ def _of_cell(x: Array, order: int, point: float) -> Array:
 
 def repeated(period: Lags, sums: Sums, radial: Radial, *, depth: float, point: float = 0.0) -> Array:
     """Entries of sums of (a), (entries, n_x // 2 + 1, n_y // 2 + 1), real: without (-i)^(odd_x + odd_y).
-
-    Parameters
-    ----------
-    period
-        Its cells, hx = 1.
-    sums, radial
-        The terms, with functions of k among which e^{-k z}/k is.
-    depth
-        The least z in hx.
-    point
-        Means over four points, so far from the centre along x and y, each in a side of the cell.
+    period: its cells, hx = 1; radial: the functions of k in the sums; depth: the least z in hx; point: means
+    over four points, so far from the centre along x and y in sides of the cell.
     """
     aspect, sides = period.hy, [2 * pi / n * np.arange(n // 2 + 1.0) for n in period.shape]
     k = np.hypot(sides[0][:, None], sides[1] / aspect)
     k[0, 0] = 1.0
-    out = np.zeros((1 + max(term[0] for term in sums), *k.shape))
-    functions = radial(k)
+    out, functions = np.zeros((1 + max(term[0] for term in sums), *k.shape)), radial(k)
     for entry, a, b, function, factor in sums:
         of_x, of_y = _of_cell(sides[0], a, point), _of_cell(sides[1], b, point) / aspect**b
         out[entry] += factor * of_x[:, None] * functions[function] * of_y
     far = log(1 / ALIASED) / (2 * pi)
     if depth < 2 * far * max(1.0, aspect):
         centre, width = WINDOW[point > 0]
-        most = [
-            ceil(min(far * side / depth if depth else np.inf, centre + 4 * width)) for side in (1, aspect)
-        ]
-        shut = [depth < far * side / (centre + 4 * width) for side in (1, aspect)]
+        widest = centre + 4 * width
+        most = [ceil(min(far * side / depth if depth else widest, widest)) for side in (1, aspect)]
         count = 2 * ceil(nodes_for(NODES, 1j * min(aspect, 1 / aspect), 2.0) / 2)
         half = pi * nodes(count)[: count // 2]
         waves = [half[:, None] + 2 * pi * np.arange(-n, n + 1) for n in most]
-        ends = [np.ones(each.shape) for each in waves]
-        for each, end, shuts in zip(waves, ends, shut, strict=True):
-            if shuts:
-                end[:] = np.vectorize(erfc)((np.abs(each) / (2 * pi) - centre) / width) / 2
+        ends = [np.vectorize(erfc)((np.abs(each) / (2 * pi) - centre) / width) / 2 for each in waves]
         functions = radial(np.hypot(waves[0][:, :, None, None], waves[1] / aspect))
         for each in functions:
             each[:, most[0], :, most[1]] = 0.0  # k itself
@@ -122,6 +105,15 @@ def repeated(period: Lags, sums: Sums, radial: Radial, *, depth: float, point: f
     return out
 
 
+def _sums(
+    rows: Sequence[tuple[int, Power, tuple[int, int], tuple[float, ...]]], nu: float
+) -> tuple[list[Power], Sums]:
+    """The powers (p, c) of z^p (-k)^c in rows (entry, (p, c), (a, b), factor in powers of nu), and sums."""
+    powers = sorted({power for _, power, _, _ in rows})
+    sums = [(e, *ab, powers.index(pc), sum(x * nu**k for k, x in enumerate(q))) for e, pc, ab, q in rows]
+    return powers, sums
+
+
 def load_waves(
     kind: str,
     names: Sequence[str],
@@ -135,12 +127,8 @@ def load_waves(
     """Of a unit traction on a cell (load: its direction), the mean over depths in hx of the `kind` "stress"
     or "displacement" (times mu, in hx), see `repeated`. Paper Eq. 5 and 7.
     """
-    rows = [(entry, row) for entry, name in enumerate(names) for row in load_table()[kind][f"{name},F{load}"]]
-    powers = sorted({(row[0], row[3]) for _, row in rows})  # z^p (-k)^c
-    sums = [
-        (entry, a, b, powers.index((p, c)), sum(q * nu**k for k, q in enumerate(of_nu)))
-        for entry, (p, a, b, c, of_nu) in rows
-    ]
+    rows = [(e, row) for e, name in enumerate(names) for row in load_table()[kind][f"{name},F{load}"]]
+    powers, sums = _sums([(e, (p, c), (a, b), of_nu) for e, (p, a, b, c, of_nu) in rows], nu)
 
     def radial(k: Array) -> list[Array]:
         falls, inverse = [np.exp(-k * z) / k for z in depths], -1 / k
@@ -152,25 +140,13 @@ def load_waves(
     return repeated(period, sums, radial, depth=min(depths), point=point)
 
 
-@lru_cache(maxsize=4)
-def load_displacement_waves(period: Lags, nu: float, *, component: int, load: int) -> Array:
-    """Displacement of the surface, (n_x // 2 + 1, n_y // 2 + 1), as of `load_waves`; read-only."""
-    found = load_waves("displacement", (str(component),), period, nu, load=load)[0]
-    found.flags.writeable = False
-    return found
-
-
 def strain_displacement_waves(period: Lags, faces: Sequence[float], nu: float, component: int = 3) -> Array:
     """Displacement of the surface by unit strain in the cells of layers, in hx, (6, layers, n_x // 2 + 1,
     n_y // 2 + 1), as of `repeated`. Paper Eq. 6 and 19.
     """
     table = eigenstrain_table()["displacement"]
     rows = [(e, *row) for e, name in enumerate(STRESS) for row in table[f"{component},{name}"].items()]
-    powers = sorted({(q, c) for _, (_, q, _, _, c), _ in rows})  # the integral of z'^q (-k)^c
-    sums = [
-        (entry, a, b, powers.index((q, c)), sum(x * nu**k for k, x in enumerate(of_nu)))
-        for entry, (_, q, a, b, c), of_nu in rows
-    ]
+    powers, sums = _sums([(e, (q, c), (a, b), of_nu) for e, (_, q, a, b, c), of_nu in rows], nu)
     layers = []
     for top, bottom in pairwise(faces):
 
@@ -184,15 +160,21 @@ def strain_displacement_waves(period: Lags, faces: Sequence[float], nu: float, c
     return np.stack(layers, axis=1)
 
 
-def in_cells(waves: Array, cells: tuple[int, int], odd_x: Parities, odd_y: Parities) -> Array:
-    """Coefficients at the lags 0 .. n - 1 of the period, (entries, ..., n_x, n_y), from `repeated` ones."""
-    return np.fft.irfft2(whole_waves(waves, cells[0], odd_x, odd_y), s=cells)
+def in_cells(waves: Array, cells: tuple[int, int], names: Sequence[str], other: int) -> Array:
+    """Coefficients at the lags 0 .. n - 1 of the period, (entries, ..., n_x, n_y), from `repeated` ones; see
+    `whole_waves`.
+    """
+    return np.asarray(np.fft.irfft2(whole_waves(waves, cells[0], names, other), s=cells))
 
 
 def whole_waves(
-    waves: Array, nx: int, odd_x: Parities, odd_y: Parities
+    waves: Array, nx: int, names: Sequence[str], other: int
 ) -> NDArray[np.complexfloating[Any, Any]]:
-    """All wave numbers of a real transform, (entries, ..., n_x, n_y // 2 + 1), with their phase."""
+    """All wave numbers of a real transform, (entries, ..., n_x, n_y // 2 + 1), with their phase. names:
+    indices of the entries, other: of what they are due to.
+    """
+    odd_x, odd_y = ([(name + str(other)).count(axis) % 2 for name in names] for axis in "12")
     m, between = np.arange(nx), (1,) * (waves.ndim - 3)
-    sign = np.where(np.multiply.outer(odd_x, m > nx / 2), -1, 1) * ((-1j) ** (odd_x + odd_y))[:, None]
-    return sign.reshape(-1, *between, nx, 1) * waves[..., np.minimum(m, nx - m), :]
+    sign = np.where(np.multiply.outer(odd_x, m > nx / 2), -1, 1)
+    phase = (-1j) ** np.add(odd_x, odd_y)
+    return (phase[:, None] * sign).reshape(-1, *between, nx, 1) * waves[..., np.minimum(m, nx - m), :]

@@ -322,41 +322,37 @@ def check_bodies(bodies: Bodies) -> None:
 
 
 def _check_period(scene: Scene, patch: RoughPatch) -> None:
-    """Surfaces that do not repeat, and an approach at which the patch touches all over."""
-    counter = scene.counter_surface
-    stretches = range(scene.loading.cycles if counter is not None and counter.renewed else 1)
-    every = [(patch.surface, patch.of_body)] if patch.surface is not None else []
-    every += [(counter, patch.counter_heights(k, (0.0, 0.0))) for k in stretches if counter is not None]
-    for surface, heights in every:
-        along = surface.feed or surface.wavelength_x, surface.wavelength_y
-        for side, wave in zip(patch.extent, along, strict=True):
-            if wave is not None and abs(side / wave - round(side / wave)) > WHOLE:
-                raise UnsupportedScene(
-                    f"grid.extent = {side:g} m: with grid.periodic a whole multiple of {wave:g} m is "
-                    f"allowed, the {'feed' if surface.feed else 'wavelength'} of the {surface.words}"
+    """Surfaces that do not repeat, an approach at which the patch touches all over, and cells and operators
+    that there are not.
+    """
+    counter, approach, wrong = scene.counter_surface, scene.loading.approach, list[str]()
+    for stretch in range(scene.loading.cycles if counter is not None and counter.renewed else 1):
+        opposite = np.zeros(patch.cells) if counter is None else patch.counter_heights(stretch, (0.0, 0.0))
+        for surface, heights in ((patch.surface, patch.of_body), (counter, opposite)):
+            if surface is None:
+                continue
+            along = surface.feed or surface.wavelength_x, surface.wavelength_y
+            wrong += [
+                f"grid.extent = {side:g} m: a whole multiple of {wave:g} m, a wave of the {surface.words},"
+                for side, wave in zip(patch.extent, along, strict=True)
+                if wave is not None and abs(side / wave - round(side / wave)) > WHOLE
+            ]
+            if surface.kind == "file" and (step := step_across(heights)) > MOST_ACROSS:
+                wrong.append(
+                    f"{surface.table}.path = {surface.path!r}: a step across the border of "
+                    f"{MOST_ACROSS:g} times the rms step between neighbouring cells, not {step:.3g}, or "
+                    f"{surface.table}.taper"
                 )
-        step = step_across(heights)
-        if surface.kind == "file" and step > MOST_ACROSS:
-            raise UnsupportedScene(
-                f"{surface.table}.path = {surface.path!r}: with grid.periodic it steps across the border "
-                f"of the patch by {step:.3g} times the rms step between neighbouring cells, at most "
-                f"{MOST_ACROSS:g} are allowed: give {surface.table}.taper"
-            )
-    cells = f"grid.cells = {list(patch.cells)}"
+        gap = patch.of_body + opposite
+        if approach is not None and approach >= (most := float(gap.max() - gap.mean())):
+            words = "the mean of the gap at first touch, at which all of the patch touches,"
+            wrong.append(f"loading.approach = {approach:g} m: less than {most:.4g} m, {words}")
     if scene.body.plasticity is not None and any(n % 2 for n in patch.cells):
-        raise UnsupportedScene(f"{cells}: with grid.periodic and [body.plasticity] even numbers are allowed")
+        wrong.append(f"grid.cells = {list(patch.cells)}: with [body.plasticity] even numbers of cells")
     if scene.solver.operator == "dense":
-        raise UnsupportedScene(
-            'solver.operator = "dense": with grid.periodic "swept" is allowed, leave it out'
-        )
-    approach = scene.loading.approach
-    for stretch in stretches:
-        summits = patch.of_body + (0.0 if counter is None else patch.counter_heights(stretch, (0.0, 0.0)))
-        if approach is not None and approach >= (most := float(summits.max() - summits.mean())):
-            raise UnsupportedScene(
-                f"loading.approach = {approach:g} m: with grid.periodic less than {most:.4g} m is allowed, "
-                f"the mean of the gap at first touch, at which all of the patch touches: give a force"
-            )
+        wrong.append('solver.operator = "dense": "swept"')
+    if wrong:
+        raise UnsupportedScene("; ".join(f"{each} is allowed with grid.periodic" for each in wrong))
 
 
 def _check_coating(scene: Scene) -> None:

@@ -91,12 +91,9 @@ def _surface(scene: Scene, plan: Plan) -> Iterator[Stage]:
     words = "normal displacement under pressure"
     if plan.period is not None:
         words += ", about its mean: the approach is that of the mean planes of the deformed surfaces"
-        repeats = 'grid.periodic = "xy": all repeats, '
-        yield _stage("padding", f"{repeats}in the wave numbers of the patch")
-        yield _stage("edge of the patch", f"{repeats}all cells count")
-        if plan.plasticity is not None:
-            yield _stage("images of the period", f"{repeats}nothing is to be taken off")
-            yield _stage("box around the contact", f"{repeats}the box is the patch")
+        left = ["padding", "edge of the patch"]
+        left += ["images of the period", "box around the contact"] * (plan.plasticity is not None)
+        yield from (_stage(each, 'grid.periodic = "xy": all repeats beside the patch') for each in left)
     yield _stage("surface coefficients", touched, words, coefficients=cells)
     if plan.coated is None:
         yield _stage("layered coefficients", "no [body.coating]")

@@ -287,17 +287,9 @@ class BoxSpectra:
 
 
 @lru_cache(maxsize=CACHED_BOXES)
-def spectra_of(
-    cuboids: Cuboids,
-    single: bool,
-    exchange: bool,
-    *,
-    cells: tuple[int, int],
-    error: float,
-    period: PeriodicHalfSpaces | None,
-) -> BoxSpectra:
+def spectra_of(cuboids: Cuboids, single: bool, exchange: bool, **keys: Any) -> BoxSpectra:
     """Spectra by content: boxes with equal transforms, layers (in cells) and Poisson's ratio share them."""
-    return BoxSpectra(cuboids, single, exchange, cells=cells, error=error, period=period)
+    return BoxSpectra(cuboids, single, exchange, **keys)
 
 
 class InWaves(NamedTuple):
@@ -340,13 +332,9 @@ class BoxOperator:
         aspect = float(f"{lags.hy / lags.hx:.12g}")
         in_cells = tuple(float(f"{z / lags.hx:.12g}") for z in box.faces)
         in_cells_of_hx = Cuboids(Lags(*self.transforms.half, 1.0, aspect), in_cells, box.nu)
+        cells = lags.shape if swept else (0, 0)
         self.spectra = spectra_of(
-            in_cells_of_hx,
-            single,
-            exchange,
-            cells=lags.shape if swept else (0, 0),
-            error=swept,
-            period=self.period,
+            in_cells_of_hx, single, exchange, cells=cells, error=swept, period=self.period
         )
         self.exchange, self.real = exchange, self.transforms.real
 
@@ -443,15 +431,6 @@ class BoxOperator:
 class PeriodicOperator(BoxOperator):
     """The same where all repeats with the box, of an even number of cells each way."""
 
-    def __init__(
-        self,
-        period: PeriodicHalfSpaces,
-        box: Cuboids,
-        mu: float,
-        counters: Counters,
-        *,
-        single: bool,
-        swept: float,
-    ):
+    def __init__(self, period: PeriodicHalfSpaces, *of_cells: Any, **keys: Any):
         self.period = period
-        super().__init__(box, mu, counters, single=single, swept=swept)
+        super().__init__(*of_cells, **keys)
