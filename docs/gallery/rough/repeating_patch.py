@@ -13,7 +13,13 @@ import samfem
 
 steel = {"young": "210 GPa", "poisson": 0.3}
 yields = {"law": "linear", "yield_stress": "0.8 GPa", "modulus": "5 GPa"}
-rough = {"kind": "self-affine", "sq": "0.08 um", "cutoff_long": "32 um", "cutoff_short": "12 um", "hurst": 0.8}
+rough = {
+    "kind": "self-affine",
+    "sq": "0.08 um",
+    "cutoff_long": "32 um",
+    "cutoff_short": "12 um",
+    "hurst": 0.8,
+}
 runs = {
     name: samfem.solve(
         samfem.Scene(

@@ -156,11 +156,11 @@ def area(file: CaseFile, frame: DataFrame) -> Plot:
     words = {
         "perfect": "perfect plasticity",
         "swift": "Swift's law",
-        "cap": "cut off at 3 σ_y",
+        "cap": "cut off at 3 $\\sigma_y$",
         "elastic": "elastic",
     }
     right = {words[name]: Curve(index, yielding[name].to_numpy(dtype=float)) for name in words}
-    right["3 σ_y everywhere"] = Curve(index, index / HARDNESS, look=_line("-."))
+    right["3 $\\sigma_y$ everywhere"] = Curve(index, index / HARDNESS, look=_line("-."))
     titles = "$A E^* h'/F$, elastic", "$A E^* h'/F$ with a yield stress"
     axes = dict(zip(titles, ("share in contact [%]", "$E^* h'/\\sigma_y$"), strict=True))
     drawing = curves(dict(zip(titles, (left, right), strict=True)), axes, None)
