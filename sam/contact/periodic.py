@@ -20,7 +20,7 @@ from scipy import fft
 from sam.arrays import Array
 from sam.contact.convolution import Counters
 from sam.contact.operators import HALF_SPACES, HalfSpaces
-from sam.grid.cells import CellGrid, Window
+from sam.grid.cells import Window
 from sam.kernels.patches import STRESS, Cuboids, Lags
 from sam.kernels.waves import in_cells, load_waves, strain_displacement_waves, whole_waves
 
@@ -46,11 +46,12 @@ class PeriodicHalfSpaces(HalfSpaces):
         """That of a single cell, whatever the period."""
         return HALF_SPACES.own(HALF_SPACES.normal(1, 1, aspect), aspect)
 
-    def strain_kernel(self, grid: CellGrid, cuboids: Cuboids, component: int) -> Array:
-        """Displacement of the surface by unit strain in layers, (6, layers, nx, ny); cuboids: in hx."""
-        period = Lags(*grid.shape, 1.0, grid.hy / grid.hx)
-        waves = strain_displacement_waves(period, cuboids.faces, cuboids.nu, component)
-        return in_cells(waves, grid.shape, STRESS, component)
+    def moved(self, strain: Array, cells: Cuboids, component: int) -> Array:
+        """Displacement of the surface by plastic strain, (6, layers, nx, ny), in m. Paper Eq. 6."""
+        lags, faces = cells.lags, cells.depths / cells.lags.hx
+        waves = strain_displacement_waves(lags.in_units_of(lags.hx), faces.tolist(), cells.nu, component)
+        total = (whole_waves(waves, lags.nx, STRESS, component) * fft.rfft2(strain)).sum(axis=(0, 1))
+        return np.asarray(lags.hx * fft.irfft2(total, s=lags.shape))
 
     def mean_stress(self, tractions: Mapping[int, float], nu: float) -> Array:
         """Stress (6,) of mean tractions on the body: load -> Pa."""

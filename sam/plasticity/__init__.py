@@ -11,7 +11,7 @@ from __future__ import annotations
 from sam.plasticity.box import ExpectedBox, Zone, expected_sides, held, or_whole
 from sam.plasticity.flow import SHEAR, contraction
 from sam.plasticity.history import onward
-from sam.plasticity.measure import at_centres, strained, surface_displacement
+from sam.plasticity.measure import Strained, at_centres, surface_displacement
 from sam.plasticity.model import Model
 from sam.plasticity.points import POINTS, stress_at_points
 from sam.plasticity.progress import Progressed
@@ -28,6 +28,7 @@ __all__ = [
     "MaterialFields",
     "Model",
     "Progressed",
+    "Strained",
     "Zone",
     "at_centres",
     "contraction",
@@ -35,7 +36,6 @@ __all__ = [
     "held",
     "onward",
     "or_whole",
-    "strained",
     "stress_at_points",
     "surface_displacement",
 ]

@@ -13,9 +13,7 @@ layers, a parabola through the higher one and its neighbours is up to .5 % too h
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -128,25 +126,26 @@ def _residual_stress(model: Model, record: Progressed) -> Array:
     grid, window, rows = model.grid, record.extent.window, model.grid.axis_rows
     across = window.j0 <= rows.j0 and rows.j0 + rows.ny <= window.j0 + window.ny
     covered = record.extent.layers if across and window.nx == grid.nx else 0
-    source, mu = strained(model, record.state.material.strain, record.extent), model.plan.pair.body.shear
+    strained, mu = _strained(model, record), model.plan.pair.body.shear
     if model.plan.period is not None:  # by layers without strain
         operator = model.operator(replace(record.extent, layers=len(grid.depths)))
         deeper = [(0, 0), (0, operator.layers - covered), (0, 0), (0, 0)]
-        response = operator.response(operator.transformed(np.pad(source.strain, deeper)))
+        response = operator.response(operator.transformed(np.pad(strained.strain, deeper)))
         return np.asarray(operator.stress(None, response)[..., rows.slices[1]], dtype=float)
-    below = residual_stress(source, grid.depths[covered:], rows, mu=mu)
+    below = residual_stress(strained, grid.depths[covered:], rows, mu=mu)
     return np.concatenate([np.zeros((6, covered, *below.shape[2:])), below], axis=1)
 
 
-def strained(model: Model, strain: Array, extent: Extent) -> Strained:
-    """A plastic strain (6, n_layers, nx, ny) in its box."""
-    known = None if model.plan.period is None else partial(model.plan.period.strain_kernel, model.grid)
-    return Strained(strain, extent.window, model.cuboids(extent), known)
+def _strained(model: Model, record: Progressed) -> Strained:
+    """The plastic strain in its box."""
+    return Strained(record.state.material.strain, record.extent.window, model.cuboids(record.extent))
 
 
 def _moved(model: Model, record: Progressed, component: int, observed: Window) -> Array:
     """Displacement of a window of the surface by the plastic strain, (nx, ny) in m."""
-    source, counters = strained(model, record.state.material.strain, record.extent), model.counters
+    source, counters = _strained(model, record), model.counters
+    if model.plan.period is not None:
+        return model.plan.period.moved(source.strain, source.cuboids, component)[observed.slices]
     return surface_displacement(source, observed, counters=counters, component=component)
 
 
@@ -156,7 +155,7 @@ def _moved_grid(model: Model, record: Progressed) -> Array:
     """
     if not model.plan.places.anywhere:
         return _moved(model, record, 3, model.grid.whole)
-    built, source = model.built, strained(model, record.state.material.strain, record.extent)
+    built, source = model.built, _strained(model, record)
     if built.onto_grid is None or built.onto_grid[0] != record.extent:
         counted = vars(model.counters).copy()
         built.onto_grid = record.extent, source.onto(model.grid.whole, 3, model.counters)
@@ -370,14 +369,11 @@ AT_ONCE = 1e6  # coefficients, 8 MB of them; ten times as many are no faster
 
 @dataclass(frozen=True)
 class Strained:
-    """Plastic strain (6, n_layers, nx, ny) in a box of cells, whose window is on the grid, in m; repeated:
-    coefficients of the surface displacement where all repeats with the grid.
-    """
+    """Plastic strain (6, n_layers, nx, ny) in a box of cells, whose window is on the grid, in m."""
 
     strain: Array
     window: Window
     cuboids: Cuboids
-    repeated: Callable[[Cuboids, int], Array] | None = None
 
     def part(self) -> Strained | None:
         """The smallest box that holds all of the strain; None without any."""
@@ -388,8 +384,7 @@ class Strained:
         window = Window(int(self.window.i0 + i0), int(self.window.j0 + j0), i1 - i0 + 1, j1 - j0 + 1)
         lags = replace(self.cuboids.lags, nx=window.nx, ny=window.ny)
         cuboids = replace(self.cuboids, lags=lags, faces=self.cuboids.faces[k0 : k1 + 2])
-        strain = self.strain[:, k0 : k1 + 1, i0 : i1 + 1, j0 : j1 + 1]
-        return Strained(strain, window, cuboids, self.repeated)
+        return Strained(self.strain[:, k0 : k1 + 1, i0 : i1 + 1, j0 : j1 + 1], window, cuboids)
 
     def seen_from(self, observed: Window) -> Cuboids:
         """Its cuboids with the lags to another window of the grid, in the unit of hx."""
@@ -397,16 +392,9 @@ class Strained:
         faces = tuple(float(z / cells.hx) for z in self.cuboids.faces)
         return replace(self.cuboids, lags=Lags(*lags, 1.0, cells.hy / cells.hx), faces=faces)
 
-    def coefficients(self, observed: Window, component: int) -> Array:
-        """Displacement of the surface by unit strain at the lags to another window, (6, layers, nx, ny)."""
-        seen = self.seen_from(observed)
-        if self.repeated is None:
-            return surface_displacement_coefficients(seen, component=component)
-        return self.repeated(seen, component)[..., : seen.lags.nx, : seen.lags.ny]
-
     def onto(self, observed: Window, component: int, counters: Counters) -> Convolution:
         """Its strain -> the displacement of a window of the surface, in hx. Paper Eq. 6."""
-        kernels = self.coefficients(observed, component)[None]
+        kernels = surface_displacement_coefficients(self.seen_from(observed), component=component)[None]
         signs = [parity(name, component) for name in STRESS for _ in range(self.cuboids.layers)]
         return Convolution(kernels, signs, self.window, observed, counters=counters)
 
@@ -437,7 +425,7 @@ def surface_displacement(
     hx = part.cuboids.lags.hx
     if observed.ny > FEW_ROWS:
         return np.asarray(hx * part.onto(observed, component, counters).summed(part.strain)[0])
-    kernels = part.coefficients(observed, component)
+    kernels = surface_displacement_coefficients(part.seen_from(observed), component=component)
     odd = np.array([[component == 1], [component == 2]], dtype=int)
     rows = row_sums(
         kernels[None, :, None], part.strain, part.window, observed, odd_out=odd, odd_in=ODD

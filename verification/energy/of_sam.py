@@ -22,9 +22,10 @@ from sam.plasticity import (
     CellFields,
     Extent,
     MaterialFields,
+    Model,
     Progressed,
+    Strained,
     contraction,
-    strained,
     stress_at_points,
     surface_displacement,
 )
@@ -147,8 +148,7 @@ def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
         both = np.zeros((2, grid.nx, grid.ny))
         both[0, *window.slices] = residual.displacement
         if scene.coefficient:
-            source = strained(model, mean.strain, extent)
-            both[1, *window.slices] = surface_displacement(source, window, counters=Counters(), component=1)
+            both[1, *window.slices] = _moved_along(model, mean.strain, extent)
         if grid.periodic:
             free = scene.loading.lateral == "free"
             both += _mean_moved(scene, mean.strain, np.diff(model.faces(extent)), free)[:, None, None]
@@ -176,6 +176,14 @@ def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
     within = flowed + between - _work(*zip(*means, strict=True))
     parts = {"stored": stored, "dissipated": dissipated, "flowed": flowed, "back": back, "within": within}
     return residuals, parts
+
+
+def _moved_along(model: Model, strain: np.ndarray, extent: Extent) -> np.ndarray:
+    """u_x of the surface of a box by plastic strain in it, (nx, ny) in m. Paper Eq. 6."""
+    cells, window = model.cuboids(extent), extent.window
+    if model.plan.period is not None:
+        return model.plan.period.moved(strain, cells, 1)
+    return surface_displacement(Strained(strain, window, cells), window, counters=Counters(), component=1)
 
 
 def _mean_moved(scene: Scene, strain: np.ndarray, thick: np.ndarray, free: bool) -> np.ndarray:
