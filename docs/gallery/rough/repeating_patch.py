@@ -2,8 +2,8 @@
 """
 A rough patch that repeats: elastic or yielding
 ===============================================
-A patch that repeats has no border and stands for a large surface. Elastic, its spots grow in proportion to the mean
-pressure; where the steel yields they are larger, and carry less.
+A patch that repeats has no border and stands for a large surface. Elastic, its spots grow in proportion to
+the mean pressure; where the steel yields they are larger.
 """
 
 import matplotlib.pyplot as plt
