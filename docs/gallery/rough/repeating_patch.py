@@ -40,12 +40,12 @@ figure, panels = plt.subplots(1, 3, figsize=(9, 3), layout="constrained")
 for panel, (name, run) in zip(panels, runs.items(), strict=False):
     pressure = run.tables["surface"].pivot(index="y_m", columns="x_m", values="p_Pa")
     spots = np.tile(1e-9 * pressure.replace(0, np.nan).to_numpy(), (2, 2))
-    image = panel.imshow(spots, origin="lower", extent=(0, 128, 0, 128), vmin=0, vmax=5)
+    image = panel.imshow(spots, origin="lower", extent=(0, 128, 0, 128), vmin=0, vmax=4)
     panel.set(xlabel="x [µm]", title=f"{name}, two periods")
     history = run.tables["history"]
     area = 100 * history["contact_area_m2"] / 64e-6**2
     panels[2].plot(1e-6 * history["force_N"] / 64e-6**2, area, "o-", label=name)
-figure.colorbar(image, ax=panels[:2], label="contact pressure [GPa]", location="bottom")
+figure.colorbar(image, ax=panels[:2], label="contact pressure [GPa]", shrink=0.8)
 panels[2].set(xlabel="mean pressure [MPa]", ylabel="area in contact [%]", xlim=(0, None), ylim=(0, None))
 panels[2].legend()
 plt.show()
