@@ -20,12 +20,15 @@ from scipy import fft
 
 from sam.arrays import Array
 from sam.contact.convolution import (
+    FEW_CELLS,
     BoxConvolution,
     Convolution,
     Counters,
+    DirectConvolution,
     MirroredConvolution,
     PeriodicConvolution,
     Real,
+    between_pairs,
     convolution_onto,
     cropped,
     filtered,
@@ -207,8 +210,8 @@ class SurfaceOperators:
         """p_hat -> u_hat on a box; mirrored: of fields that are, on the kept quarter."""
         if self.bodies.periodic and box == self.whole and not (mirrored and self.odd):
             return PeriodicConvolution(self.coefficients, mirrored, self.counters)
-        kind = MirroredConvolution if mirrored else BoxConvolution
-        return kind(self.coefficients, box.shape, self.counters)
+        few = DirectConvolution if box.nx * box.ny <= FEW_CELLS else BoxConvolution
+        return (MirroredConvolution if mirrored else few)(self.coefficients, box.shape, self.counters)
 
     @property
     def odd(self) -> bool:
@@ -271,10 +274,15 @@ class SurfaceOperators:
         symbol = self.bodies.stiffness(k)
         symbol = (symbol / symbol.max()).astype(self.bodies.real)
 
+        if few := not mirrored and box.nx * box.ny <= FEW_CELLS:
+            matrix = between_pairs(fft.irfft2(symbol, box.shape).astype(symbol.dtype))
+
         def apply(r: Real) -> Real:
             self.counters.ffts += 2
             if mirrored:
                 return filtered(r, box.shape, symbol)
+            if few:
+                return np.asarray((matrix @ r.ravel()).reshape(box.shape))
             spectrum = transformed(r, box.shape)
             spectrum *= symbol
             return cropped(spectrum, box.shape, box.shape)

@@ -194,15 +194,16 @@ class Model:
         lags = Lags(extent.window.nx, extent.window.ny, self.grid.hx, self.grid.hy)
         return Cuboids(lags, tuple(self.faces(extent).tolist()), self.plan.pair.body.poisson)
 
-    def operator(self, extent: Extent) -> BoxOperator:
-        """Stress and displacement of a box; kept, see `spectra_of`."""
-        self.counters.tangential_kernels += self.plan.slip.slides
+    def operator(self, extent: Extent, *, once: Counters | None = None) -> BoxOperator:
+        """The operator of a box. once: counters of one beside that of the steps."""
+        counters = self.counters if once is None else once
+        counters.tangential_kernels += self.plan.slip.slides
         nx, ny = extent.window.shape
         exchange, asked = self._exchange(extent.window), self.plan.solver.operator
         repeats = self.plan.period is not None
         box = ExpectedBox(nx, ny, extent.layers, self.tolerance, exchange, asked, periodic=repeats)
         single, period = self.tolerance >= SINGLE, self.plan.period
-        of_cells = self.cuboids(extent), self.plan.pair.body.shear, self.counters
+        of_cells = self.cuboids(extent), self.plan.pair.body.shear, counters
         if period is not None:
             return PeriodicOperator(period, *of_cells, single=single, swept=box.swept)
         mirror = self._mirror(extent.window)

@@ -277,13 +277,16 @@ class BoxSpectra:
 
     @cached_property
     def pressure_to_stress(self) -> Reals:
-        """Spectra of the stress of a pressure, (N_x + 1, N_y + 1, 6 n_layers)."""
-        return self._of_load(3)
+        """Spectra of the stress of a pressure, (N_x + 1, N_y + 1, 6 n_layers, 1)."""
+        return self._of_load(3)[..., None]
 
     @cached_property
-    def traction_to_stress(self) -> Reals:
-        """The same of a traction along x, odd in x: its phase is -i, and (-i)^2 is left where both are."""
-        return self._of_load(1) * np.repeat((-1.0) ** ODD_X, self.cuboids.layers).astype(self.real)
+    def loads_to_stress(self) -> Reals:
+        """The same, (..., 2), also of a traction along x, odd in x: its phase is -i, and (-i)^2 is left where
+        both are.
+        """
+        spectrum = self._of_load(1) * np.repeat((-1.0) ** ODD_X, self.cuboids.layers).astype(self.real)
+        return np.concatenate([self.pressure_to_stress, spectrum[..., None]], axis=-1)
 
 
 @lru_cache(maxsize=CACHED_BOXES)
@@ -403,9 +406,8 @@ class BoxOperator:
         traction: Array | None = None,
     ) -> Reals:
         """Stress of pressure, traction (Pa) and plastic strain, (6, n_layers, nx, ny) in Pa: paper Eq. 7."""
-        loads = [(p, k) for k, p in enumerate((pressure, traction)) if p is not None and p.any()]
-        if loads:
-            columns = self._of_loads(loads)
+        if pressure is not None and pressure.any():
+            columns = self._of_loads(pressure[None] if traction is None else np.stack([pressure, traction]))
             if response is not None:
                 columns += response.columns  # paper Eq. 4: elastic and residual stress
         elif response is not None:
@@ -418,14 +420,12 @@ class BoxOperator:
             stress += self.keep(self.spectra.images.fields(response.images.astype(self.real)))
         return stress
 
-    def _of_loads(self, loads: list[tuple[Array, int]]) -> Reals:
-        """Transform of the stress of loads in Pa, each with 0 (pressure) or 1 (traction, odd in x)."""
-        which = np.array([k for _, k in loads])
-        columns = self.transforms.columns(np.stack([load for load, _ in loads]), which, np.zeros_like(which))
-        spectra = [self.spectra.traction_to_stress if k else self.spectra.pressure_to_stress for k in which]
-        # paper Eq. 7, first sum
-        terms = [part[..., None] * columns[:, :, [i]] for i, part in enumerate(spectra)]
-        return np.asarray(terms[0] if len(terms) == 1 else terms[0] + terms[1])
+    def _of_loads(self, loads: Array) -> Reals:
+        """Transform of the stress of a pressure, or of one and a traction (odd in x), (r, nx, ny) in Pa."""
+        which = np.arange(len(loads))
+        columns = self.transforms.columns(loads, which, np.zeros_like(which))
+        spectra = self.spectra.loads_to_stress if len(loads) > 1 else self.spectra.pressure_to_stress
+        return np.asarray(spectra @ columns)  # paper Eq. 7, first sum
 
 
 class PeriodicOperator(BoxOperator):

@@ -43,8 +43,8 @@ TIME = {
     models.FEM_3D: {"solve": 0.0712, "multigrid": 7.6e-8},
 }  # fmt: skip
 # Of a patch that repeats, whose coefficients are made in wave numbers, a depth at a time: share of the work
-# of stresses, of their memory, and what takes as long for any patch, in units of a solve; and of the memory of
-# fields, whose transforms are a quarter as long.
+# of stresses, of their memory, and what takes as long for any patch, in units of a solve; and share of the
+# memory of fields, whose transforms are a quarter as long.
 PERIODIC_FIELDS = 0.6
 PERIODIC_WORK, PERIODIC_MEMORY, PERIODIC_SOLVES = 0.4, 1 / 7, 2.5
 SETTLES = 0.5  # power of the cycles that count: later ones strain and wear less
@@ -250,7 +250,8 @@ def _zone(scene: Scene, grid: CellGrid, depths: np.ndarray) -> Zone:
         soft = hardening + _back_hardening(scene, depths) < HARDENS
         wider, deeper = (share * max(ratio - GIVEN_ABOVE, 0.0) for share in GIVEN_SPREAD[soft])
     needed, path = ((1 + wider) * wide, (1 + deeper) * deep), _path_cells(scene, grid)
-    return Zone(hertz_semi_axes(scene), wide, deep, needed, MISES * ratio, path=path)
+    slides = bool(scene.coefficient) or scene.loading.path is not None
+    return Zone(hertz_semi_axes(scene), wide, deep, needed, MISES * ratio, slides, path)
 
 
 def _back_hardening(scene: Scene, depths: np.ndarray) -> float:
@@ -435,7 +436,12 @@ def _sam(scene: Scene, plan: Any) -> Counted:
         "box set-up": sum(box.set_up for each in either for box in each) / 2,
     }
     if rough and (last.nx, last.ny) != grid.shape:  # stress in y = 0, beside the box
-        work["beside"] = 36.0 * depths * last.layers * cells / 2
+        if last.swept and last.large:  # by an operator of its own
+            plane = replace(last, nx=grid.nx, layers=depths)
+            work["box set-up"] += plane.set_up
+            iterations += plane.waves * depths / (last.waves * last.layers)
+        else:
+            work["beside"] = 36.0 * depths * last.layers * cells / 2
     if last.swept:
         work["swept"] = iterations * last.width / 8 * 6.0 * last.layers * last.waves * kept
     else:
