@@ -576,6 +576,7 @@ QUANTITIES: Mapping[str, Quantity] = {
         "share of the patch in contact, against a fit",
         of=lambda result, _: result.quantities["contact_share"],
     ),
+    "fitted-share": _scalar("contact_share", "share of the patch in contact, against a published fit"),
     "open-share": Quantity(
         "share of the patch not in contact", of=lambda result, _: 1.0 - result.quantities["contact_share"]
     ),

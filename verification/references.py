@@ -275,7 +275,8 @@ def wave(scene: Scene) -> Reference:
         "strip-width": 2.0 * exact.half_width,
         "pressure": lambda x, y: exact.pressure(x) + 0.0 * y,
     }
-    return Reference(values, {"a": exact.half_width, "p0": p0, "wave": exact.wavelength})
+    units = {"a": exact.half_width, "p0": p0, "approach": exact.approach, "wave": exact.wavelength}
+    return Reference(values, units, {("line", "p_Pa"): exact.pressure, ("line", "gap_m"): exact.gap})
 
 
 def double_wave(scene: Scene) -> Reference:
@@ -293,6 +294,7 @@ def double_wave(scene: Scene) -> Reference:
     values = {
         "p-max": float(largest),
         "share": float(np.mean(found > 0.0)),
+        "area": float(np.mean(found > 0.0)) * lx * ly,
         "fitted-share": exact.fitted_share,
         "open-share": 1.0 - exact.heavy_share,
         "pressure": exact.complete,

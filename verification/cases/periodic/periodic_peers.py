@@ -11,7 +11,7 @@ import numpy as np
 
 from verification.cases.case import Context
 from verification.peers import problems
-from verification.peers.elastic import ROUGH_ERROR, TIGHT, distance
+from verification.peers.elastic import ROUGH_ERROR, distance, solution
 from verification.peers.plastic import GRIDS, SETTINGS, TOLERANCE, profile_error
 from verification.peers.running import (
     SAM,
@@ -23,7 +23,6 @@ from verification.peers.running import (
     missing,
     pythons_of,
     rows_of,
-    run,
 )
 
 if TYPE_CHECKING:
@@ -38,7 +37,11 @@ ROUNDS = {"quick": 1, "full": 5}
 def frame(context: Context) -> Iterator[dict[str, Any]]:
     """A row a measurement, and a row a grid for how far both are apart."""
     pythons, rounds = pythons_of(interpreter(), {TAMAAS: ""}), ROUNDS[context.level]
-    tight = {(program, n): _tight(program, n, pythons) for program in pythons for n in SIZES}
+    tight = {
+        (program, n): solution(problems.ROUGH, n, python, program, periodic=True)
+        for program, python in pythons.items()
+        for n in SIZES
+    }
     for n in SIZES:
         ours, theirs = tight[SAM, n], tight[TAMAAS, n]
         row = {"sweep": "elastic-apart", "n": n, "h": 1.0 / n, "pressure": distance(ours, theirs)}
@@ -72,14 +75,6 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
 
 def _error(tight: np.ndarray, one: Measurement) -> float:
     return distance(one.fields["pressure"], tight)
-
-
-def _tight(program: str, n: int, pythons: dict) -> np.ndarray:
-    one = Measurement(Job(problems.ROUGH, n, {**TIGHT[program], "periodic": True}))
-    run(program, one, pythons[program])
-    if "pressure" not in one.fields:
-        raise RuntimeError(f"{program} on {n} x {n} cells: {one.failure or 'no pressure'}")
-    return one.fields["pressure"]
 
 
 def tamaas_over_sam(rows: DataFrame, column: str) -> float:
