@@ -47,7 +47,8 @@ class TestProblems:
         assert scene.grid.extent[0] == pytest.approx(6 * a, rel=1e-12) and scene.loading.steps == 1
 
     def test_periodic_step_is_the_sphere_as_a_summit(self):
-        free, repeats = (ours.scene_of(8, 4, 1e-3, periodic=each) for each in (False, True))
+        free = ours.scene_of(8, 4, 1e-3)
+        repeats = ours.repeated(free)
         assert repeats.patch == (free.grid.cells, free.grid.extent) and repeats.grid.periodic == "xy"
         x = (np.arange(8) + 0.5) / 8 * free.grid.extent[0] - free.grid.extent[0] / 2
         summit = -np.add.outer(x**2, x**2) / (2 * free.counterbody.radius)

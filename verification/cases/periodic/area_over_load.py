@@ -116,8 +116,6 @@ def _yielding(context: Context, base: Scene) -> Iterator[dict[str, Any]]:
             for name, law in (("swift", swift), ("perfect", perfect), ("elastic", None)):
                 result = _solved(with_body(on, plasticity=law))
                 found.setdefault(name, []).append(float(result.quantities["contact_share"]))
-                if law:
-                    found.setdefault(f"{name} p-max", []).append(result.quantities["p_max_Pa"] / strength)
         for n in how["points"]:
             cap = capped_pressure(
                 _heights(scene, n), (SIDE, SIDE), modulus, pressure, hardness=HARDNESS * strength
@@ -128,7 +126,7 @@ def _yielding(context: Context, base: Scene) -> Iterator[dict[str, Any]]:
         row |= {name: shares[name] / PRESSURE for name in ("elastic", "swift", "perfect", "cap")}
         row |= {f"{name}-over-elastic": shares[name] / shares["elastic"] for name in ("swift", "perfect")}
         row |= {f"cap-over-{name}": shares["cap"] / shares[name] for name in ("swift", "perfect")}
-        yield row | {f"p-max {name}": found[f"{name} p-max"][-1] for name in ("swift", "perfect")}
+        yield row
 
 
 # what rows take, and the figure

@@ -46,50 +46,41 @@ def _elastic(contact: problems.Elastic, tolerance: float, *, periodic: bool):
 
 
 def scene_of(
-    n: int,
-    layers: int,
-    tolerance: float,
-    side: float = problems.BOX[0],
-    *,
-    depth: float = problems.BOX[1],
-    periodic: bool = False,
+    n: int, layers: int, tolerance: float, side: float = problems.BOX[0], *, depth: float = problems.BOX[1]
 ):
-    """The elastic-plastic step as a scene; side and depth of the grid in Hertz radii, n cells a side;
-    periodic: the sphere is a summit of the body below a plane, and repeats.
-    """
-    from sam.scene import Body, CounterBody, Grid, HeightMap, Loading, Plasticity, Scene, Solver, Surface
+    """The elastic-plastic step as a scene; side and depth of the grid in Hertz radii, n cells a side."""
+    from sam.scene import Body, CounterBody, Grid, Loading, Plasticity, Scene, Solver
 
     hard = Plasticity(law="linear", yield_stress=problems.YIELD * YOUNG, modulus=problems.HARDENING * YOUNG)
-    extent, other, surface = (
-        (side * RADIUS_M,) * 2,
-        {"shape": "sphere", "radius": problems.RADIUS * RADIUS_M},
-        None,
-    )
-    if periodic:
-        x = ((np.arange(n) + 0.5) / n - 0.5) * side * RADIUS_M
-        summit = -(x[:, None] ** 2 + x**2) / (2 * problems.RADIUS * RADIUS_M)
-        other, surface = {"shape": "flat"}, Surface(kind="file", path=HeightMap(summit, extent))
     return Scene(
         title="One step to three times the yield stress",
         body=Body(young=YOUNG, poisson=problems.POISSON, plasticity=hard),
-        counterbody=CounterBody(**other),
-        surface=surface,
+        counterbody=CounterBody(shape="sphere", radius=problems.RADIUS * RADIUS_M),
         loading=Loading(force=problems.STEP_FORCE * YOUNG * RADIUS_M**2, steps=1, unload=False),
         grid=Grid(
-            cells=None if periodic else (n, n),
-            extent=None if periodic else extent,
-            layers=layers,
-            depth=depth * RADIUS_M,
-            periodic="xy" if periodic else None,
+            cells=(n, n), extent=(side * RADIUS_M, side * RADIUS_M), layers=layers, depth=depth * RADIUS_M
         ),
         solver=Solver(tolerance=tolerance),
     )
 
 
-def _step(n: int, layers: int, **how):
+def repeated(scene):
+    """The scene with its sphere as a summit of the body below a plane, which repeats."""
+    from sam.scene import CounterBody, HeightMap, Surface
+
+    (n, _), (side, _), radius = scene.grid.cells, scene.grid.extent, scene.counterbody.radius
+    x = ((np.arange(n) + 0.5) / n - 0.5) * side
+    surface = Surface(kind="file", path=HeightMap(-np.add.outer(x**2, x**2) / (2 * radius), (side, side)))
+    grid = scene.grid.model_copy(update={"cells": None, "extent": None, "periodic": "xy"})
+    other = CounterBody(shape="flat")
+    return scene.model_copy(update={"counterbody": other, "surface": surface, "grid": grid})
+
+
+def _step(n: int, layers: int, *, periodic: bool = False, **how):
     from verification.runs import models
 
     scene = scene_of(n, layers, **how)
+    scene = repeated(scene) if periodic else scene
     return lambda: models.solve(scene, models.SAM)
 
 
