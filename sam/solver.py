@@ -189,7 +189,7 @@ def _status(rows: Sequence[Row], peak: Contact, plan: Plan) -> Status:
     """All steps count for convergence, the contact at the peak (on the full grid) for the fit too."""
     if not all(row.converged for row in rows):
         return Status.NOT_CONVERGED
-    return fit_of(peak, plan.rough is not None)
+    return fit_of(peak, plan.rough is not None, plan.grid.line)
 
 
 def _warnings(plan: Plan, peak: Snapshot) -> tuple[str, ...]:

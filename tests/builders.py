@@ -45,6 +45,7 @@ SHAPES = {
     "punch": {"shape": "punch", "radius": 5e-6},
     "rounded-punch": {"shape": "rounded-punch", "flat_radius": 5e-6, "radius": 50e-6},
     "flat": {"shape": "flat"},
+    "cylinder": {"shape": "cylinder", "radius": RADIUS, "length": 1e-3},
 }
 """An example of each shape."""
 LENGTHS = {"approach", "depth", "depths", "extent", "film_thickness", "flat_radius", "radius", "thickness"}

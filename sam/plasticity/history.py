@@ -171,7 +171,8 @@ def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, T
         extent = grown(record.extent, trial, model.grid)
         if extent != record.extent:
             return attempt(model, _enlarged(model, record, extent), load)
-        place, reached = model.place(load), edge_reached(trial, cut_beside=model.plan.places.anywhere)
+        place, cut = model.place(load), model.plan.places.anywhere
+        reached = edge_reached(trial, model.grid, cut_beside=cut)
         if reached.beside or reached.below:
             return _ended(record, Status.PLASTIC_ZONE_AT_GRID_EDGE, place, reached), None
         if model.leaves_grid(record.extent.window, trial.pressure):

@@ -25,6 +25,7 @@ from sam.scene.units import (
     MeshCells,
     Number,
     Order,
+    Rows,
     SmoothingWindow,
     StrainLimit,
     refused,
@@ -52,10 +53,10 @@ class Grid(Section):
     stresses are returned, with plasticity the faces of the layers, the first at 0; or `layers` equal layers
     down to `depth`. border: of a rough patch; "relief": its heights fall off there, so that the contact ends
     before the patch does. periodic: "xy": cells and heights repeat beside the patch in both directions; "y":
-    below a cylinder they repeat along its axis.
+    below a cylinder they repeat along its axis. Below a smooth cylinder there is one cell along y.
     """
 
-    cells: Annotated[tuple[Cells, Cells], list_of(2, 2)] | None = None
+    cells: Annotated[tuple[Cells, Rows], list_of(2, 2)] | None = None
     extent: Annotated[tuple[Length, Length], list_of(2, 2)] | None = None
     depths: Annotated[tuple[Depth, ...], AfterValidator(_ascending), list_of(1, MOST_DEPTHS)] | None = None
     layers: Count | None = None

@@ -50,7 +50,8 @@ QUANTITIES = _names(
     "mises_max_depth_m peeq_max peeq_max_depth_m residual_uz_center_m residual_mises_max_Pa p_max_bare_Pa "
     "mises_max_substrate_Pa mises_max_bare_Pa mises_max_film_Pa p_max_change mises_max_change "
     "friction_coefficient pressure_centroid_x_m tangential_displacement_center_m residual_ux_center_m "
-    "plastic_shear_center_m wear_volume_m3 peeq_p95 contact_spots contact_share mean_gap_m"
+    "plastic_shear_center_m wear_volume_m3 peeq_p95 contact_spots contact_share mean_gap_m "
+    "contact_half_width_m"
 )
 """Names of the scalar results, unit in the name; a quantity that does not apply to a scene is None."""
 STRAINED = 0.01

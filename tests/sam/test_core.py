@@ -41,10 +41,10 @@ from sam.half_space import ElasticConstants, ElasticPair
 from sam.kernels.patches import Cuboids, Lags, stress_coefficients
 from sam.layered.patches import normal_compliance
 from sam.layered.response import Layers
+from sam.plasticity.cell_means import NEAR, mean_stress_of_load
 from sam.plasticity.flow import Material
 from sam.plasticity.load_step import GivenPressure
 from sam.plasticity.paper import PaperProblem
-from sam.plasticity.spectra import NEAR, mean_stress_of_load
 from sam.plasticity.state import MaterialFields, Trial
 from sam.results import quantities
 from sam.results.snapshots import Box, Sliding
