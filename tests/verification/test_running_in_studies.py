@@ -13,7 +13,7 @@ from made_results import Made, context, of_frame, red
 from made_studies import GOOD, SCENES, framed_physics, over_inputs, over_physics, studied
 
 from fem_reference.spatial import WornCycle
-from sam.scene import GridFields, Plasticity, resolved
+from sam.scene import GridFields, Plasticity, Status, resolved
 from verification.cases import all_cases
 from verification.cases.cyclic import running_in_kinematic as kinematic
 from verification.cases.running_in import (
@@ -200,7 +200,7 @@ class TestReadings:
             cycles |= {"peeq_max": np.ones(LAST)}
             scene = one.change(SCENES[B if material == words.C else material])
             runs[label, material, 2] = Run(scene, replace(result, tables=result.tables | {"cycles": cycles}))
-        return framed(runs, PARTS, self.CASE.numbers)
+        return framed(runs, PARTS, self.CASE.numbers).assign(coarse=False)
 
     def test_every_reading_is_another_scene(self, tmp_path):
         labels, scenes = zip(*self.CASE.scenes(context(self.CASE.name, tmp_path)).values(), strict=True)
@@ -225,6 +225,14 @@ class TestReadings:
         assert words.near(words.SAID[0], {"values": (0.82,)}) and not words.near(
             words.SAID[0], {"values": (0.8,)}
         )
+
+    def test_a_contact_of_few_cells_is_judged_and_counted(self, tmp_path, monkeypatch):
+        own = result_of(as_the_paper_says()[BULK], status=Status.UNDER_RESOLVED)
+        key = words.CHANGES[0][0], BULK, 2
+        monkeypatch.setattr(type(self.CASE), "runs", lambda case, context: {key: Run(SCENES[BULK], own)})
+        found = self.CASE.solve(context(self.CASE.name, tmp_path))
+        assert found["run"].iloc[0].result.status is Status.CONVERGED
+        assert f"judged all the same: {key[0]}: 1." in " ".join(self.CASE.notes(found))
 
     def test_wear_that_does_not_balance_and_a_loop_beyond_its_tolerance_turn_rows_red(self):
         name = words.named(words.PRINTED, "roof stays", "fills")

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sam.scene import Scene
+from sam.scene import Scene, Status
 from verification.cases.case import Context, Measured, Plot, SmallTable, with_keys
 from verification.cases.running_in import study
 from verification.cases.running_in.running_in import SIZES, meshed, renewed
@@ -162,6 +162,16 @@ class RunningInReadings(Readings):
     def scenes(self, context: Context) -> dict[tuple, tuple[str, Scene]]:
         return dict(sorted(super().scenes(context).items(), key=lambda item: item[0][2]))
 
+    def solve(self, context: Context) -> Any:
+        """coarse: contacts of too few cells for a result, as the filter that fills leaves; judged too."""
+        runs = self.runs(context)
+        coarse = [one.result.status is Status.UNDER_RESOLVED for one in runs.values()]
+        kept = {
+            key: replace(one, result=replace(one.result, status=Status.CONVERGED)) if few else one
+            for (key, one), few in zip(runs.items(), coarse, strict=True)
+        }
+        return study.framed(kept, study.PARTS, self.numbers).assign(coarse=coarse)
+
     def measure(self, found: DataFrame) -> dict[str, Measured]:
         """balance: of wear and raw removal, as the filter that fills digs as much; excess: over its goal."""
         balance, excess = [0.0], [0.0]
@@ -197,6 +207,9 @@ class RunningInReadings(Readings):
 
     def notes(self, found: DataFrame) -> Iterator[str]:
         yield " ".join(changes(self.judged(found)))
+        few = found[found["coarse"]].groupby("reading", sort=False).size()
+        counts = "; ".join(f"{name}: {count}" for name, count in few.items()) or "none"
+        yield f"Runs with too few cells in a contact at the end, judged all the same: {counts}."
         never, runs = never_together(found)
         for pair in never:
             yield f"Held each, never both, on {runs} surfaces and readings: {pair[0]}, and {pair[1]}."
