@@ -36,7 +36,7 @@ LEVELS = ("quick", "full")
 FOLDER = Path(__file__).resolve().parent / "cases"
 FAMILIES = (
     *("hertz", "plastic", "sliding", "cyclic", "moving", "line", "published", "energy"),
-    *("coated", "rough", "film", "running_in"),
+    *("coated", "rough", "periodic", "film", "running_in"),
     *("limits", "cost", "peers", "certificates", "robustness"),
 )
 """Folders of cases, in the order of the report."""

@@ -181,9 +181,9 @@ class LineProblem:
             matrix = response.tangent if i == 0 else solid.stiffness
             right[i * count :][:count] -= matrix @ self.body(jump, i)
         right = np.where(free, right, 0.0)
-        self._columns = {
-            key: c for key, c in self._columns.items() if active[key[0]] and key[1] in (0.0, ratio)
-        }
+        for node, traction in list(self._columns):
+            if not active[node] or traction not in (0.0, ratio):
+                del self._columns[node, traction]
         G = np.array([self._column(node, 0.0, solve) for node in nodes]).reshape(nodes.size, self.size)
         C = G
         if ratio and nodes.size:

@@ -456,6 +456,23 @@ class MirroredConvolution(BoxConvolution):
         return filtered(field, self.shape, spectrum)
 
 
+class PeriodicConvolution(BoxConvolution):
+    """The same on all cells of a period, of a kernel that repeats with it; mirrored: as above."""
+
+    def __init__(self, kernel: Real, mirrored: bool, counters: Counters):
+        self.shape, self.counters, self.mirrored = (kernel.shape[0], kernel.shape[1]), counters, mirrored
+        self.spectrum = fft.rfft2(kernel).real
+        if mirrored:
+            self.spectrum = self.spectrum[: self.shape[0] // 2 + 1]
+
+    def _apply(self, field: Real, spectrum: Real) -> NDArray[Any]:
+        if self.mirrored:
+            return filtered(field, self.shape, spectrum)
+        found = transformed(field, self.shape)
+        found *= spectrum
+        return cropped(found, self.shape, self.shape)
+
+
 def _by_parity(field: Real, odd: Parity, *, n: int, half: int, axis: int, inverse: bool = False) -> Real:
     """Transform each field along an axis by its parity; odd: of each entry; n: cells, half are kept."""
     shape = list(field.shape)
@@ -472,17 +489,25 @@ def _by_parity(field: Real, odd: Parity, *, n: int, half: int, axis: int, invers
 
 
 class Transforms:
-    """Transforms of fields on a box, mirrored in x (with y) and in y; half: the N of the text; wraps: the box
-    repeats along y without a gap, which changes no transform.
+    """Transforms of fields on a box, mirrored in x (with y) and in y; half: the N of the text; periodic: of
+    all cells of a period, of which N are half; wraps: padded, but what is given repeats along y.
     """
 
     wraps = False
 
     def __init__(
-        self, cells: tuple[int, int], mirror: tuple[bool, bool], *, single: bool, counters: Counters
+        self,
+        cells: tuple[int, int],
+        mirror: tuple[bool, bool],
+        *,
+        single: bool,
+        counters: Counters,
+        periodic: bool = False,
     ):
-        self.cells, self.mirror, self.counters = cells, mirror, counters
+        self.cells, self.mirror, self.counters, self.periodic = cells, mirror, counters, periodic
         self.half = half_length(cells[0]), half_length(cells[1])
+        if periodic:
+            self.half = cells[0] // 2, cells[1] // 2
         self.lengths = 2 * self.half[0], 2 * self.half[1]
         self.real: type[np.floating[Any]] = np.float32 if single else np.float64
         self.complex: type[np.complexfloating[Any, Any]] = np.complex64 if single else np.complex128

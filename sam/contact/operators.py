@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -21,8 +21,12 @@ from scipy import fft
 from sam.arrays import Array
 from sam.contact.convolution import (
     FEW_CELLS,
+    BoxConvolution,
     Convolution,
     Counters,
+    DirectConvolution,
+    MirroredConvolution,
+    PeriodicConvolution,
     Real,
     between_pairs,
     convolution_onto,
@@ -40,6 +44,10 @@ from sam.layered.response import Layers
 WAVES = 64  # wave numbers of a bound: 1024 give one larger by less than 0.02 %, 8 one smaller by 0.8 %
 
 
+Kernel = Callable[..., Array]
+"""nx, ny lags >= 0, component, load (1 to 3) -> displacement by a unit load on the cell at the origin."""
+
+
 class HalfSpaces:
     """Two homogeneous half-spaces; the coupling of a traction is then 2 beta mu."""
 
@@ -50,14 +58,21 @@ class HalfSpaces:
     restart_threshold = (
         0.4  # share of the first residual at which p is projected: 44 and 38; at 0.1 48 and 45
     )
+    periodic = False  # whether all repeats with the grid
+
+    def coefficients(
+        self, wanted: Lags, cells: tuple[int, int], nu: float, *, component: int, load: int
+    ) -> Array:
+        """mu times the displacement of the surface of one of them, lengths in hx; cells: of the grid."""
+        return displacement_coefficients(wanted, nu, component=component, load=load)  # paper Eq. 5
 
     def normal(self, nx: int, ny: int, aspect: float) -> Array:
         """u_hat_z by p_hat = 1 on the cell at the origin, (nx, ny) lags >= 0. Paper: D_33 of Eq. 5."""
-        return displacement_coefficients(Lags(nx, ny, 1.0, aspect), nu=0.0)
+        return self.coefficients(Lags(nx, ny, 1.0, aspect), (nx, ny), 0.0, component=3, load=3)
 
     def tangential(self, nx: int, ny: int, aspect: float) -> Array:
         """u_hat_z by a traction p_hat = 1 along x with coupling 1. Paper: D_31 of Eq. 5."""
-        return displacement_coefficients(Lags(nx, ny, 1.0, aspect), nu=0.0, component=3, load=1)
+        return self.coefficients(Lags(nx, ny, 1.0, aspect), (nx, ny), 0.0, component=3, load=1)
 
     def stiffness(self, wave_number: Array) -> Array:
         """p_hat of a unit harmonic of u_hat with a wave number per cell > 0: |k| (Westergaard)."""
@@ -71,9 +86,18 @@ class HalfSpaces:
         """The same bodies for cells twice as large."""
         return self
 
-    def scale(self, coefficients: Array, aspect: float) -> float:
-        """Displacement of p_hat = 1 in its own cell, in which residuals are told."""
+    def own(self, coefficients: Array, aspect: float) -> float:
+        """u_hat_z of p_hat = 1 in its own cell, of `normal` coefficients: a unit of residuals."""
         return float(coefficients[0, 0])
+
+    def kernel(self, grid: CellGrid, nu: float) -> Kernel:
+        """The `coefficients` on a grid."""
+
+        def kernel(nx: int, ny: int, *, component: int, load: int) -> Array:
+            lags = Lags(nx, ny, 1.0, grid.hy / grid.hx)
+            return self.coefficients(lags, grid.shape, nu, component=component, load=load)
+
+        return kernel
 
 
 HALF_SPACES = HalfSpaces()
@@ -82,25 +106,19 @@ HALF_SPACES = HalfSpaces()
 class RepeatedAlongY(HalfSpaces):
     """The same below pressures that repeat along y after the grid, the bodies of a line contact."""
 
-    def normal(self, nx: int, ny: int, aspect: float) -> Array:
-        """As of half-spaces, zero at |x| = ny aspect/2 below a line force at x = 0."""
-        return displacement_coefficients(Lags(nx, ny, 1.0, aspect, period=ny), nu=0.0)
+    def coefficients(
+        self, wanted: Lags, cells: tuple[int, int], nu: float, *, component: int, load: int
+    ) -> Array:
+        """The same, along the load zero at |x| = ny aspect/2 below a line force at x = 0."""
+        repeated = replace(wanted, period=cells[1])
+        return displacement_coefficients(repeated, nu, component=component, load=load)  # paper Eq. 5
 
-    def tangential(self, nx: int, ny: int, aspect: float) -> Array:
-        """As of half-spaces."""
-        return displacement_coefficients(Lags(nx, ny, 1.0, aspect, period=ny), nu=0.0, component=3, load=1)
-
-    def scale(self, coefficients: Array, aspect: float) -> float:
+    def own(self, coefficients: Array, aspect: float) -> float:
         """Of one cell that does not repeat, which depends on no reference."""
-        return float(HALF_SPACES.normal(1, 1, aspect)[0, 0])
+        return HALF_SPACES.own(HALF_SPACES.normal(1, 1, aspect), aspect)
 
 
 LINE = RepeatedAlongY()
-
-
-def half_spaces(grid: CellGrid) -> HalfSpaces:
-    """The homogeneous bodies below a grid."""
-    return LINE if grid.line else HALF_SPACES
 
 
 class CoatedBodies(HalfSpaces):
@@ -198,13 +216,25 @@ class SurfaceOperators:
         self.coupling = np.broadcast_to(coupling, shape) if np.any(coupling) else None
         self.whole = Window(0, 0, *shape)
         self.coefficients = bodies.normal(*shape, aspect)
-        self.self_influence = bodies.scale(self.coefficients, aspect)
+        self.self_influence = bodies.own(self.coefficients, aspect)
 
     def with_coupling(self, coupling: float | Array) -> SurfaceOperators:
         """The operators of the same cells with another coefficient of friction, which share the rest."""
         other = copy(self)
         other.coupling = np.broadcast_to(coupling, self.shape) if np.any(coupling) else None
         return other
+
+    def box_operator(self, box: Window, mirrored: bool) -> BoxConvolution:
+        """p_hat -> u_hat on a box; mirrored: of fields that are, on the kept quarter."""
+        if self.bodies.periodic and box == self.whole and not (mirrored and self.odd):
+            return PeriodicConvolution(self.coefficients, mirrored, self.counters)
+        few = DirectConvolution if box.nx * box.ny <= FEW_CELLS else BoxConvolution
+        return (MirroredConvolution if mirrored else few)(self.coefficients, box.shape, self.counters)
+
+    @property
+    def odd(self) -> bool:
+        """Whether the number of cells along x or y is odd."""
+        return any(n % 2 for n in self.shape)
 
     def operator(self, source: Window, observed: Window) -> Operator:
         """p_hat on `source` -> u_hat on `observed`: paper Eq. 5 with D_33."""
@@ -278,20 +308,6 @@ class SurfaceOperators:
         return apply
 
 
-Kernel = Callable[..., Array]
-"""nx, ny lags >= 0, component, load (1 to 3) -> displacement by a unit load on the cell at the origin."""
-
-
-def half_space_kernel(grid: CellGrid, nu: float) -> Kernel:
-    """mu times the displacement of the surface of a half-space, lengths in hx. Paper Eq. 5."""
-
-    def kernel(nx: int, ny: int, *, component: int, load: int) -> Array:
-        lags = Lags(nx, ny, 1.0, grid.hy / grid.hx, grid.period)
-        return displacement_coefficients(lags, nu, component=component, load=load)
-
-    return kernel
-
-
 def moved_rows(
     grid: CellGrid, field: Array, kernel: Kernel, moved_by: tuple[int, int], *, counters: Counters
 ) -> Array:
@@ -352,7 +368,7 @@ class CoatedPair:
         """Displacement of the counter-body away in the rows at y = 0, (nx, rows) in m."""
         if not (self.compliance and pressure.any()):
             return np.zeros(grid.axis_rows.shape)
-        kernel = half_space_kernel(grid, 0.0)
+        kernel = HALF_SPACES.kernel(grid, 0.0)
         out = 2 * self.compliance * grid.hx * moved_rows(grid, pressure, kernel, (3, 3), counters=counters)
         if traction is None:
             return out

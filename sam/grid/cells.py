@@ -43,8 +43,8 @@ class Room:
 @dataclass(frozen=True)
 class CellGrid:
     """nx x ny cells of hx x hy in m about the origin. depths: (nz,) of output in m; faces: (nz +
-    1,) of layers, or None; border: cells at each end that count for no maximum; room: as chosen;
-    line: all repeats along y, of a line contact, with one cell the same at every y.
+    1,) of layers, or None; border: cells at each end that count for no maximum; room: as chosen; periodic:
+    whether all repeats beside it; line: along y alone, of a line contact, with one cell the same at every y.
     """
 
     nx: int
@@ -55,12 +55,18 @@ class CellGrid:
     faces: Array | None = None
     border: tuple[int, int] = (0, 0)
     room: Room = Room()
+    periodic: bool = False
     line: bool = False
 
     @property
     def period(self) -> int:
-        """Cells along y after which all repeats, 0 if it does not."""
+        """Cells along y after which all repeats below a cylinder, 0 of others."""
         return self.ny if self.line else 0
+
+    @property
+    def wraps(self) -> tuple[bool, bool]:
+        """Whether the last cell is a neighbour of the first, along x and along y."""
+        return self.periodic, self.periodic or self.line
 
     @property
     def shape(self) -> tuple[int, int]:

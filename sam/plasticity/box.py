@@ -164,7 +164,7 @@ def edge_reached(trial: Trial, grid: CellGrid, *, cut_beside: bool) -> Sides:
 @dataclass(frozen=True)
 class ExpectedBox:
     """A box of plastic strain; tolerance: of the iteration; exchange: of x and y; operator: see `Solver`;
-    faces: of the layers in hx, for `pairs`.
+    faces: of the layers in hx, for `pairs`; periodic: all cells of a period.
     """
 
     nx: int
@@ -174,6 +174,7 @@ class ExpectedBox:
     exchange: bool = False
     operator: str | None = None
     faces: tuple[float, ...] = ()
+    periodic: bool = False
 
     @property
     def width(self) -> int:
@@ -184,6 +185,8 @@ class ExpectedBox:
     def waves(self) -> int:
         """Wave numbers that are kept: (N_x + 1)(N_y + 1), or k_x <= k_y of them."""
         nx, ny = half_length(self.nx) + 1, half_length(self.ny) + 1
+        if self.periodic:
+            nx, ny = self.nx // 2 + 1, self.ny // 2 + 1
         return nx * (nx + 1) // 2 if self.exchange else nx * ny
 
     @property
@@ -200,12 +203,14 @@ class ExpectedBox:
     def swept(self) -> float:
         """The error of the operator where it is swept, or 0."""
         swept = self.operator == "swept" or (self.operator is None and self.large)
-        return SWEPT_SHARE * self.tolerance if swept else 0.0
+        return SWEPT_SHARE * self.tolerance if swept or self.periodic else 0.0
 
     @property
     def words(self) -> str:
         """Which operator, and why."""
         matrices = f"matrices between all {self.layers} layers"
+        if self.periodic:
+            return "swept over the layers, in the wave numbers of the patch"
         if self.operator is not None:
             return f'solver.operator = "{self.operator}"'
         return f"swept: {matrices} would take {self.matrices / 1e9:.3g} GB" if self.swept else matrices

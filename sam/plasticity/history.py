@@ -111,7 +111,7 @@ def first_box(model: Model, peak: ElasticPeak) -> Extent:
     extent = first_extent(
         model.grid, peak, limit, anywhere=anywhere, both_ways=both_ways, slides=slides, path=path
     )
-    elsewhere = anywhere and (len(path) > 1 or schedule.renews)
+    elsewhere = anywhere and (len(path) > 1 or schedule.renews or model.plan.period is not None)
     return replace(extent, window=model.grid.whole) if elsewhere else extent
 
 
@@ -237,6 +237,7 @@ def committed(model: Model, record: Progressed, trial: Trial, film: TribofilmSta
         tribofilm=film,
         recalled=recalled,
         dissipated=record.dissipated + dissipated_by(model, record, trial),
+        left=(max(record.left[0], trial.yield_excess), max(record.left[1], trial.flow_residual)),
         outside=record.outside if state.material is record.state.material else None,
     )
 
@@ -329,7 +330,7 @@ def _cycle_ended(model: Model, record: Progressed, cycle: int, trial: Trial) -> 
     history = replace(history, ends=(*history.ends, cycle_end(model, record, cycle, new)))
     if model.plan.track is not None:
         history = replace(history, passes=(*history.passes, pass_end(model, record, model.plan.track, cycle)))
-    return replace(record, history=history, dissipated=0.0), trial
+    return replace(record, history=history, dissipated=0.0, left=(0.0, 0.0)), trial
 
 
 def _worn(model: Model, record: Progressed, trial: Trial) -> tuple[Progressed, Trial]:

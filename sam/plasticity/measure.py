@@ -129,7 +129,8 @@ def _residual_stress(model: Model, record: Progressed) -> Array:
     across = window.j0 <= rows.j0 and rows.j0 + rows.ny <= window.j0 + window.ny
     covered = record.extent.layers if across and window.nx == grid.nx else 0
     expected = ExpectedBox(*window.shape, record.extent.layers, model.tolerance)
-    if expected.large and model.plan.solver.operator != "dense":
+    large = expected.large and model.asked_operator != "dense"
+    if large or model.plan.period is not None:
         return _swept_stress(model, record)
     strained, mu = _strained(model, record), model.plan.pair.body.shear
     below = residual_stress(strained, grid.depths[covered:], rows, mu=mu)
@@ -166,6 +167,8 @@ def _strained(model: Model, record: Progressed) -> Strained:
 def _moved(model: Model, record: Progressed, component: int, observed: Window) -> Array:
     """Displacement of a window of the surface by the plastic strain, (nx, ny) in m."""
     source, counters = _strained(model, record), model.counters
+    if model.plan.period is not None:
+        return model.plan.period.moved(source.strain, source.cuboids, component)[observed.slices]
     return surface_displacement(source, observed, counters=counters, component=component)
 
 
@@ -237,11 +240,14 @@ def snapshot(model: Model, record: Progressed, name: str, trial: Trial) -> Snaps
     # the largest plastic strain; cells hold means
     top, interval = None, model.strength.kinks.interval(grid.depths[:layers])
     if material.peeq.any():
-        peeq = material.peeq
-        if grid.line:  # no end along y
-            highest = int(peeq.max(axis=(0, 1)).argmax())
-            peeq = np.roll(peeq, window.ny // 2 - highest, axis=2)
+        wraps = grid.wraps
+        peeq = np.pad(material.peeq, [(0, 0), *((int(wrap),) * 2 for wrap in wraps)], mode="wrap")
         centres = at_centres(peeq, model.faces(extent), interval)
+        for axis, wrap in enumerate(wraps, start=1):
+            if wrap:  # the largest in the middle: it has neighbours on all sides
+                centres = centres.take(range(1, centres.shape[axis] - 1), axis)
+                place = np.unravel_index(int(centres.argmax()), centres.shape)[axis]
+                centres = np.roll(centres, centres.shape[axis] // 2 - int(place), axis)
         top = largest(centres, grid.depths[:layers], interval)
 
     # the cells of the box in the row of the largest pressure, where that need not be at the origin
@@ -337,13 +343,17 @@ def cycle_end(model: Model, record: Progressed, cycle: int, new: Array) -> Cycle
         new_strain=float(new.max()),
         yielding=int(np.count_nonzero(new > 0)),
         dissipated=record.dissipated,
+        yield_excess=record.left[0],
+        flow_residual=record.left[1],
     )
     if model.plan.wear is None or wear is None:
         return end
     margin = model.plan.wear.margin(record.state.material.peeq, model.faces(record.extent))
-    ends = len(wear.volumes) == cycle
-    worn, roofed = (wear.volumes[-1], wear.roofed_volumes[-1]) if ends else (0.0, 0.0)
-    return replace(end, moved=moved, worn=wear.depth, margin=margin, wear_of_cycle=worn, roofed=roofed)
+    end = replace(end, moved=moved, worn=wear.depth, margin=margin)
+    if len(wear.volumes) != cycle:
+        return end
+    worn, raw, roofed, roof, filled = wear.of_last_cycle
+    return replace(end, wear_of_cycle=worn, raw=raw, roofed=roofed, roof=roof, filled=filled)
 
 
 def with_loops(model: Model, record: Progressed, target: Target, trial: Trial) -> Progressed:

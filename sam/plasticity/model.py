@@ -16,7 +16,7 @@ import numpy as np
 from sam.arrays import Array, Mask
 from sam.contact.box import BoxContact
 from sam.contact.convolution import Convolution, Counters
-from sam.contact.operators import SurfaceOperators, half_spaces
+from sam.contact.operators import SurfaceOperators
 from sam.contact.stress import surface_strain
 from sam.elastic.problem import ElasticProblem, Plan
 from sam.grid.cells import CellGrid, Window
@@ -31,7 +31,7 @@ from sam.plasticity.load_step import (
     Problem,
 )
 from sam.plasticity.paper import PaperProblem
-from sam.plasticity.spectra import SINGLE, BoxOperator
+from sam.plasticity.spectra import SINGLE, BoxOperator, PeriodicOperator
 from sam.plasticity.state import Extent
 from sam.scene.section import stated
 from sam.scene.yield_curve import Strength
@@ -185,7 +185,7 @@ class Model:
         if surface is None:
             aspect, coupling = grid.hy / grid.hx, factor * coefficient
             return SurfaceOperators(
-                grid.shape, aspect, self.counters, coupling=coupling, bodies=half_spaces(grid)
+                grid.shape, aspect, self.counters, coupling=coupling, bodies=self.plan.bodies
             )
         return surface.with_coupling(factor * coefficient) if factor else surface
 
@@ -194,22 +194,25 @@ class Model:
         lags = Lags(*extent.window.shape, self.grid.hx, self.grid.hy, self.grid.period)
         return Cuboids(lags, tuple(self.faces(extent).tolist()), self.plan.pair.body.poisson)
 
+    @property
+    def asked_operator(self) -> str | None:
+        """See `Solver.operator`; below a cylinder nothing is swept."""
+        return "dense" if self.grid.line else self.plan.solver.operator
+
     def operator(self, extent: Extent, *, once: Counters | None = None) -> BoxOperator:
         """The operator of a box. once: counters of one beside that of the steps."""
         counters = self.counters if once is None else once
         counters.tangential_kernels += self.plan.slip.slides
         nx, ny = extent.window.shape
-        exchange, asked = self._exchange(extent.window), self.plan.solver.operator
-        box = ExpectedBox(nx, ny, extent.layers, self.tolerance, exchange, asked)
-        return BoxOperator(
-            self.cuboids(extent),
-            self.plan.pair.body.shear,
-            counters,
-            single=self.tolerance >= SINGLE,
-            mirror=self._mirror(extent.window),
-            exchange=exchange,
-            swept=0.0 if self.grid.line else box.swept,
-        )
+        exchange, asked = self._exchange(extent.window), self.asked_operator
+        repeats = self.plan.period is not None
+        box = ExpectedBox(nx, ny, extent.layers, self.tolerance, exchange, asked, periodic=repeats)
+        single, period = self.tolerance >= SINGLE, self.plan.period
+        of_cells = self.cuboids(extent), self.plan.pair.body.shear, counters
+        if period is not None:
+            return PeriodicOperator(period, *of_cells, single=single, swept=box.swept)
+        mirror = self._mirror(extent.window)
+        return BoxOperator(*of_cells, single=single, mirror=mirror, exchange=exchange, swept=box.swept)
 
     def _mirror(self, window: Window) -> tuple[bool, bool]:
         """Whether fields are mirrored in x and in y: on a box about the middle, x without friction."""

@@ -16,7 +16,6 @@ only real matrices for wave numbers >= 0 are stored.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
@@ -25,17 +24,25 @@ from numpy.typing import NDArray
 
 from sam.arrays import Array
 from sam.contact.convolution import Counters, Transforms, real_spectrum
+from sam.contact.periodic import PeriodicHalfSpaces
 from sam.kernels.eigenstrain import EXCHANGED, surface_displacement_coefficients
-from sam.kernels.layer_stress import CornerFunctions, LayerStress, four_points, functions_of, mesh
-from sam.kernels.patches import ODD_X, ODD_Y, Cuboids, Lags, stress_coefficients
+from sam.kernels.layer_stress import LayerStress, functions_of
+from sam.kernels.patches import ODD_X, ODD_Y, STRESS, Cuboids, Lags
 from sam.kernels.store import kept
-from sam.plasticity.images import PeriodImages
+from sam.kernels.waves import load_waves, strain_displacement_waves
+from sam.plasticity.cell_means import (
+    CellMeans,
+    CellSpectra,
+    Parities,
+    first_lags,
+    gauss_depths,
+    mean_stress_of_load,
+)
+from sam.plasticity.images import Images, PeriodImages
 from sam.plasticity.swept import GAUSS, SweptLayers
 
 Reals = NDArray[Any]
 """Real numbers in the precision of the operator, single or double."""
-Parities = NDArray[np.integer[Any]]
-"""1 for odd, 0 for even, of each component."""
 TWICE = ((np.outer(ODD_X, ODD_X) + np.outer(ODD_Y, ODD_Y)) % 2 == 1).ravel()  # 6 I + J, where (-i)^2 is left
 ODD_LAGS = [(x, y) for x, y in zip(*(np.not_equal.outer(o, o).ravel() for o in (ODD_X, ODD_Y)), strict=True)]
 """Of 6 I + J, whether the coefficient is odd in the lag in x and in y."""
@@ -44,111 +51,12 @@ EVEN = np.zeros(1, int), np.zeros(1, int)  # parities in x and y of pressure and
 CACHED_BOXES = 4  # spectra that are kept: the boxes of a history, or of both grids of an extrapolation
 # tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough
 SINGLE = 5e-5
-NEAR = 4  # cells: up to there stresses are means over the observed cell
-
-
-def _points(faces: Array) -> Array:
-    """Depths of the Gauss points of each layer, (n_layers, 2)."""
-    return ((faces[1:] + faces[:-1])[:, None] + np.diff(faces)[:, None] * GAUSS) / 2
-
-
-class CellMeans(CornerFunctions):
-    """The same functions as means over the cell in x and y: by Gauss points up to NEAR cells away."""
-
-    def __init__(self, lags: Lags):
-        self.shape, self.near = lags.shape, (min(NEAR, lags.nx), min(NEAR, lags.ny))
-        self.line = lags.period == 1
-        points = four_points((lags.hx * GAUSS[1] / 2, lags.hy * GAUSS[1] / 2))
-        far = mesh(replace(lags, nx=lags.nx + 1, ny=lags.ny + 1), first=-1)
-        if self.line:
-            far, points = (far[0][..., 1:3], far[1][..., 1:3]), [points[0], points[2]]
-        super().__init__(lags.shape, far, mesh(_first(lags, self.near), points))
-
-    def planes(self, corners: Array, odd: tuple[int, int]) -> Array:
-        """Means over the cells, (..., nx, ny)."""
-        far, near = self._differences(corners)
-        out = np.empty((*corners.shape[:-1], *self.shape))
-        _plane_mean(far[..., 0, :, :1] if self.line else far[..., 0, :, :], out)
-        np.mean(near[..., :-1, :-1], axis=-3, out=out[..., : self.near[0], : self.near[1]])
-        return out
-
-
-class CellSpectra(CornerFunctions):
-    """Their transforms of so many wave numbers, see `real_spectrum`."""
-
-    def __init__(self, lags: Lags):
-        self.means = functions_of(lags, CellMeans)
-        self.x, self.y, self.line, self.shape = self.means.x, self.means.y, self.means.line, lags.shape
-        self.itself = np.ones((lags.nx + 1, lags.ny + 1))
-
-    def planes(self, corners: Array, odd: tuple[int, int]) -> Array:
-        """(..., nx + 1, ny + 1)."""
-        return np.asarray(real_spectrum(self.means.planes(corners, odd), self.shape, odd))
-
-
-def _first(lags: Lags, counts: tuple[int, int]) -> Lags:
-    """So many of the lags."""
-    return replace(lags, nx=counts[0], ny=counts[1])
-
-
-def mean_stress_of_load(cuboids: Cuboids, load: int = 3) -> Array:
-    """Mean stress/Pa in cuboids, (6, n_layers, nx, ny), of pressure (3) or traction (1) on one cell."""
-    lags, nu = cuboids.lags, cuboids.nu
-    points, (nx, ny) = _points(cuboids.depths), lags.shape
-    depths, shape = points.ravel(), (6, *points.shape)
-    further = replace(lags, nx=nx + 1, ny=ny + 1)
-    far = stress_coefficients(further, depths, nu, load=load).reshape(*shape, *further.shape)
-    out = np.empty((6, len(points), nx, ny))
-    kernel = _with_lag_before(far.mean(axis=2), ODD_X ^ int(load == 1), ODD_Y)
-    _plane_mean(kernel[..., 1:2] if lags.period == 1 else kernel, out)
-    near = min(NEAR, nx), min(NEAR, ny)
-    few = replace(_first(lags, near), period=lags.period == 1)
-    shifts = [(lags.hx * x / 2, lags.hy * y / 2) for x in GAUSS for y in GAUSS]
-    at = [stress_coefficients(few, depths, nu, load=load, shift=shift) for shift in shifts]
-    means = np.mean(at, axis=0).reshape(*shape, *near).mean(axis=2)
-    if lags.period < 2:
-        out[..., : near[0], : near[1]] = means
-        return out
-    # of the cell alone; what its repetitions add is smooth over a cell
-    space, alone = replace(few, nx=near[0] + 1, ny=near[1] + 1, period=0), np.empty_like(means)
-    far = stress_coefficients(space, depths, nu, load=load).reshape(*shape, *space.shape)
-    _plane_mean(_with_lag_before(far.mean(axis=2), ODD_X ^ int(load == 1), ODD_Y), alone)
-    means, sign = means - alone, np.where(ODD_Y, -1.0, 1.0).reshape(6, 1, 1, 1)
-    for k in range(near[1]):
-        out[..., : near[0], k % lags.period :: lags.period] += means[..., k : k + 1]
-        if k:
-            out[..., : near[0], -k % lags.period :: lags.period] += sign * means[..., k : k + 1]
-    return out
-
-
-def _plane_mean(kernel: Array, out: Array) -> None:
-    """Mean over the cell in x and y, K + (d_x^2 K + d_y^2 K)/24, from lags -1 .. n at lags 0 .. n - 1; of
-    plane strain from one lag in y.
-    """
-    if kernel.shape[-1] == 1:
-        kernel = np.repeat(kernel, 3, axis=-1)
-    (nx, ny), row, flat = out.shape[-2:], kernel.shape[-1], kernel.reshape(-1)
-    # sums of neighbours in one go; those over the border are not kept
-    pairs = flat[row:] + flat[1 : 1 - row]  # one further in x and one further in y
-    mean = 20 * flat  # 24 - 4
-    inner = mean[row + 1 : -row]
-    inner += pairs[row + 1 :]
-    inner += pairs[: -row - 1]
-    np.multiply(mean.reshape(kernel.shape)[..., 1 : nx + 1, 1 : ny + 1], 1 / 24, out=out)
-
-
-def _with_lag_before(kernel: Array, odd_x: Parities, odd_y: Parities) -> Array:
-    """Lags -1 .. n from lags 0 .. n, of kernels (len(odd_x), ..., n_x + 1, n_y + 1) of these parities."""
-    sign_x, sign_y = (
-        np.where(odd, -1.0, 1.0).reshape(-1, *[1] * (kernel.ndim - 1)) for odd in (odd_x, odd_y)
-    )
-    kernel = np.concatenate([sign_x * kernel[..., 1:2, :], kernel], axis=-2)
-    return np.concatenate([sign_y * kernel[..., 1:2], kernel], axis=-1)
 
 
 class BoxSpectra:
     """Real transforms of coefficients of cuboids, with mu = 1; stored: of which wave numbers; images: of the
-    strain in (nx, ny) `cells` where its stress is swept, to an error of it.
+    strain in (nx, ny) `cells` where its stress is swept, to an error of it; period: where all repeats with
+    the transforms, and nothing is to be taken off.
     """
 
     def __init__(
@@ -159,15 +67,21 @@ class BoxSpectra:
         *,
         cells: tuple[int, int] = (0, 0),
         error: float = 0.0,
+        period: PeriodicHalfSpaces | None = None,
     ):
+        self.period = period
         self.cuboids, self.half = cuboids, cuboids.lags.shape
         self.real = np.float32 if single else np.float64
         every = np.ones((self.half[0] + 1, self.half[1] + 1), dtype=bool)
         self.stored = np.flatnonzero(np.triu(every)) if exchange else slice(None)
         self.waves = every.ravel()[self.stored].size
         self.images: PeriodImages | None = None
+        lengths = 2 * self.half[0], 2 * self.half[1]
+        self.all_cells = Lags(*lengths, 1.0, cuboids.lags.hy)
         if error:
-            self.images = PeriodImages(cuboids, cells, (2 * self.half[0], 2 * self.half[1]), error)
+            if period is None:
+                self.images = PeriodImages(cuboids, cells, lengths, error)
+            self.repeated = self.images or Images(cuboids, lengths, error)
             kx, ky = (np.arange(n + 1) * np.pi / n for n in self.half)
             waves = np.array(np.broadcast_arrays(kx[:, None], ky / cuboids.lags.hy)).reshape(2, -1)
             waves = waves[:, self.stored]
@@ -175,7 +89,6 @@ class BoxSpectra:
         else:
             shape = self.waves, 6 * cuboids.layers, 6 * cuboids.layers
             self.layers = kept(repr((cuboids, exchange)), shape, self.real, lambda: self._dense(shape))
-        self.strain_to_displacement = self._of_surface(surface_displacement_coefficients(cuboids), ODD_X)
 
     def _dense(self, shape: tuple[int, int, int]) -> Reals:
         """The matrices between all layers, (waves, 6 layers, 6 layers)."""
@@ -199,7 +112,12 @@ class BoxSpectra:
         some = np.append(faces[:-1][sources], faces[1:][sources][-1])
         square = lags.nx == lags.ny and lags.hx == lags.hy and not lags.period
         return LayerStress(
-            *(CellSpectra(lags), _points(faces)[observed], some, self.cuboids.nu),
+            *(
+                CellSpectra(lags, self.period is not None),
+                gauss_depths(faces)[observed],
+                some,
+                self.cuboids.nu,
+            ),
             scale=SIGN,
             exchanged=square,
         )
@@ -223,20 +141,22 @@ class BoxSpectra:
         """The spectrum of a coefficient, (36, N_x + 1, N_y + 1), with that of its periodic images, (6, 6,
         waves).
         """
-        if self.images is None:
-            raise ValueError("only what is swept has a period")
         (top, bottom), (upper, lower) = (self.cuboids.faces[i : i + 2] for i in (observed, source))
-        more = self.images.between(image, (top, bottom), (upper, lower), lags=self.half)
+        more = self.repeated.between(image, (top, bottom), (upper, lower), lags=self.half)
+        nx, ny = np.add(self.half, self.period is not None)
         out = spectrum.reshape(36, -1)[:, self.stored].copy()
         for row, odd in enumerate(ODD_LAGS):
-            periodic = real_spectrum(more[row, : self.half[0], : self.half[1]], self.half, odd)
+            periodic = real_spectrum(more[row, :nx, :ny], self.half, odd)
             out[row] += SIGN[row] * periodic.ravel()[self.stored]
         return out.reshape(6, 6, -1)
 
     def stress(self, strain: Reals) -> Reals:
         """Stress/mu of strain in wave numbers, both (waves, 6 layers, r): paper Eq. 7, second sum."""
         if isinstance(self.layers, SweptLayers):
-            return self.layers(strain)
+            out = self.layers(strain)
+            if self.period is not None:
+                out[0] = self.period.mean_residual(strain[0], self.cuboids.nu)
+            return out
         if strain.shape[-1] == 1:  # bound by the memory of the matrices: einsum reads them faster than matmul
             return np.asarray(np.einsum("pij,pj->pi", self.layers, strain[..., 0])[..., None])
         return np.asarray(self.layers @ strain)
@@ -244,12 +164,30 @@ class BoxSpectra:
     @cached_property
     def own_stress(self) -> Array:
         """Stress/mu of plastic strain in its own cell, (6, 6, n_layers)."""
-        faces, means = self.cuboids.depths, functions_of(_first(self.cuboids.lags, (1, 1)), CellMeans)
-        stress = LayerStress(means, _points(faces), faces, self.cuboids.nu)
+        faces, means = self.cuboids.depths, functions_of(first_lags(self.cuboids.lags, (1, 1)), CellMeans)
+        stress = LayerStress(means, gauss_depths(faces), faces, self.cuboids.nu)
         out = np.zeros((len(faces) - 1, 36, len(faces) - 1, 1, 1))
         for i, row in enumerate(out):
             stress.of(i, row)
         return out.diagonal(axis1=0, axis2=2).reshape(6, 6, -1)
+
+    def _of_waves(self, waves: Array) -> Reals:
+        """Spectra (6, n_layers, N_x + 1, N_y + 1) as `_of_surface` has them."""
+        rows = waves.reshape(-1, *waves.shape[2:])
+        return np.ascontiguousarray(np.moveaxis(rows, 0, -1), dtype=self.real)
+
+    def _of_load(self, load: int) -> Reals:
+        """Spectra of the stress of a load, (N_x + 1, N_y + 1, 6 n_layers)."""
+        cuboids, period = self.cuboids, self.period
+        if period is None:
+            return self._of_surface(mean_stress_of_load(cuboids, load), ODD_X ^ int(load == 1))
+        cells, nu, points = self.all_cells, cuboids.nu, gauss_depths(cuboids.depths)
+        each = [
+            load_waves("stress", STRESS, cells, nu, load=load, depths=z, point=GAUSS[1] / 2) for z in points
+        ]
+        waves = np.stack(each, axis=1)
+        waves[:, :, 0, 0] = period.mean_stress({load: 1.0}, nu)[:, None]
+        return self._of_waves(waves)
 
     def _of_surface(self, kernel: Array, odd_x: Parities) -> Reals:
         """Spectra of (6, n_layers, nx, ny) between layers and surface, (N_x + 1, N_y + 1, 6 n_layers)."""
@@ -257,26 +195,31 @@ class BoxSpectra:
         return np.ascontiguousarray(np.moveaxis(np.concatenate(rows), 0, -1), dtype=self.real)
 
     @cached_property
+    def strain_to_displacement(self) -> Reals:
+        """Spectra of the displacement of the surface by strain, (N_x + 1, N_y + 1, 6 n_layers)."""
+        cuboids = self.cuboids
+        if self.period is None:
+            return self._of_surface(surface_displacement_coefficients(cuboids), ODD_X)
+        return self._of_waves(strain_displacement_waves(self.all_cells, cuboids.faces, cuboids.nu))
+
+    @cached_property
     def pressure_to_stress(self) -> Reals:
         """Spectra of the stress of a pressure, (N_x + 1, N_y + 1, 6 n_layers, 1)."""
-        return self._of_surface(mean_stress_of_load(self.cuboids), ODD_X)[..., None]
+        return self._of_load(3)[..., None]
 
     @cached_property
     def loads_to_stress(self) -> Reals:
         """The same, (..., 2), also of a traction along x, odd in x: its phase is -i, and (-i)^2 is left where
         both are.
         """
-        spectrum = self._of_surface(mean_stress_of_load(self.cuboids, load=1), ODD_X ^ 1)
-        spectrum = spectrum * np.repeat((-1.0) ** ODD_X, self.cuboids.layers).astype(self.real)
+        spectrum = self._of_load(1) * np.repeat((-1.0) ** ODD_X, self.cuboids.layers).astype(self.real)
         return np.concatenate([self.pressure_to_stress, spectrum[..., None]], axis=-1)
 
 
 @lru_cache(maxsize=CACHED_BOXES)
-def spectra_of(
-    cuboids: Cuboids, single: bool, exchange: bool, *, cells: tuple[int, int], error: float
-) -> BoxSpectra:
+def spectra_of(cuboids: Cuboids, single: bool, exchange: bool, **keys: Any) -> BoxSpectra:
     """Spectra by content: boxes with equal transforms, layers (in cells) and Poisson's ratio share them."""
-    return BoxSpectra(cuboids, single, exchange, cells=cells, error=error)
+    return BoxSpectra(cuboids, single, exchange, **keys)
 
 
 class InWaves(NamedTuple):
@@ -296,6 +239,8 @@ class BoxOperator:
     of matrices between all of them.
     """
 
+    period: PeriodicHalfSpaces | None = None
+
     def __init__(
         self,
         box: Cuboids,
@@ -308,7 +253,9 @@ class BoxOperator:
         swept: float = 0.0,
     ):
         lags = box.lags
-        self.transforms = Transforms(lags.shape, mirror, single=single, counters=counters)
+        self.transforms = Transforms(
+            lags.shape, mirror, single=single, counters=counters, periodic=self.period is not None
+        )
         self.transforms.wraps = lags.period == lags.ny > 1
         self.shape, self.layers = lags.shape, box.layers
         self.mu, self.hx, self.counters = mu, lags.hx, counters
@@ -316,8 +263,9 @@ class BoxOperator:
         aspect = float(f"{lags.hy / lags.hx:.12g}")
         in_cells = tuple(float(f"{z / lags.hx:.12g}") for z in box.faces)
         in_cells_of_hx = Cuboids(Lags(*self.transforms.half, 1.0, aspect, lags.period), in_cells, box.nu)
+        cells = lags.shape if swept else (0, 0)
         self.spectra = spectra_of(
-            in_cells_of_hx, single, exchange, cells=lags.shape if swept else (0, 0), error=swept
+            in_cells_of_hx, single, exchange, cells=cells, error=swept, period=self.period
         )
         self.exchange, self.real = exchange, self.transforms.real
 
@@ -406,3 +354,11 @@ class BoxOperator:
         columns = self.transforms.columns(loads, which, np.zeros_like(which))
         spectra = self.spectra.loads_to_stress if len(loads) > 1 else self.spectra.pressure_to_stress
         return np.asarray(spectra @ columns)  # paper Eq. 7, first sum
+
+
+class PeriodicOperator(BoxOperator):
+    """The same where all repeats with the box, of an even number of cells each way."""
+
+    def __init__(self, period: PeriodicHalfSpaces, *of_cells: Any, **keys: Any):
+        self.period = period
+        super().__init__(*of_cells, **keys)

@@ -118,16 +118,17 @@ def contact_area(contact: Contact, grid: CellGrid) -> float:
     of two neighbours tells where between them the edge is (Johnson 1985, Sec. 4.2), h being the
     distance of lines of centres along it, in other cells than square ones of a second pass.
     Straight lines join these places in squares of four centres, arcs add to corners; at an end of
-    the grid it is halfway.
+    the grid it is halfway, unless that repeats.
     """
     if contact.area is not None:
         return contact.area
     hx, hy = grid.hx, grid.hy
     compliance = 2 / np.pi * (hx * np.arcsinh(hy / hx) + hy * np.arcsinh(hx / hy))  # times E*, Love 1929
-    p, gap = np.pad(contact.pressure, 1), np.pad(contact.gap, 1, constant_values=np.inf)
-    if grid.line:  # each row of squares once
-        p[:, -1], gap[:, -1] = p[:, 1], gap[:, 1]
-        p, gap = p[:, 1:], gap[:, 1:]
+    p, gap = contact.pressure, contact.gap
+    for axis, wraps in enumerate(grid.wraps):  # of neighbours across a border each pair once
+        width = [(int(not wraps), 1) if each == axis else (0, 0) for each in (0, 1)]
+        p = np.pad(p, width, mode="wrap") if wraps else np.pad(p, width)
+        gap = np.pad(gap, width, mode="wrap") if wraps else np.pad(gap, width, constant_values=np.inf)
     unit, mean = HALFWAY * contact.compliance / compliance, np.array(2 / (1 / hx + 1 / hy))
     along_x, along_y = _shares(p, gap, unit * mean), _shares(p.T, gap.T, unit * mean).T
     if hx != hy:
@@ -176,7 +177,8 @@ def history_table(rows: Sequence[Row]) -> dict[str, list[Any]]:
 @dataclass(frozen=True)
 class CycleEnd:
     """The surface after a cycle: wear_volume so far in m^3; roughness, None if smooth; new_strain,
-    yielding: the largest and in how many cells; dissipated in J; wear_of_cycle, roofed in m^3;
+    yielding: the largest and in how many cells; dissipated in J; wear_of_cycle, roofed, raw, roof, filled
+    in m^3, see `WearState`; yield_excess, flow_residual: the largest that a load step leaves;
     margin: of the cell nearest to its limit; moved, worn: (nx, ny) in m, None without.
     """
 
@@ -191,6 +193,11 @@ class CycleEnd:
     wear_of_cycle: float = 0.0
     margin: float | None = None
     roofed: float = 0.0
+    raw: float = 0.0
+    roof: float = 0.0
+    filled: float = 0.0
+    yield_excess: float = 0.0
+    flow_residual: float = 0.0
     dissipated: float = 0.0
 
 

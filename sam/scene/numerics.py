@@ -141,8 +141,9 @@ class Wear(Section):
     strain_limit: accumulated plastic strain beyond which it is removed (inf: never); strain_limit_layer:
     another one inside of body.plasticity.layer_thickness. smoothing_window: odd number of cells of a
     Savitzky-Golay filter of the worn depth, 0: none; smoothing_order: of its polynomials. interpolate: depths
-    between the layers by linear interpolation of the strain; else whole layers are removed. Bosman & Schipper
-    2011, section 5.
+    between the layers by linear interpolation of the strain; else whole layers are removed. roof: whether
+    sound material above material beyond its limit stays, or goes with it. smoothing_fills: the filter may
+    leave, or raise, what is removed, as its printed form does. Bosman & Schipper 2011, sections 1 and 5.
     """
 
     strain_limit: StrainLimit
@@ -150,6 +151,9 @@ class Wear(Section):
     smoothing_window: SmoothingWindow = 5
     smoothing_order: Order = 2
     interpolate: bool = True
+    roof: Literal["stays", "falls"] = "stays"
+    smoothing_fills: bool = False
+    unwritten: ClassVar[tuple[str, ...]] = ("roof", "smoothing_fills")
 
     @property
     def removes(self) -> bool:
@@ -162,7 +166,11 @@ class Wear(Section):
         """A smoothing window without a middle."""
         window = given.get("smoothing_window")
         even = isinstance(window, int) and window > 0 and window % 2 == 0
-        return broken((even, "smoothing_window", "an odd number of cells, or 0 for none"))
+        fills = given.get("smoothing_fills") is True and window == 0
+        return broken(
+            (even, "smoothing_window", "an odd number of cells, or 0 for none"),
+            (fills, "smoothing_fills", "false with smoothing_window = 0: nothing is smoothed"),
+        )
 
     def excesses(self) -> Iterator[Conflict]:
         """A polynomial that the window does not determine."""

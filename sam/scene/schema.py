@@ -151,7 +151,6 @@ class Scene(Section):
             contact = f"{words} needs a contact: remove it, and give force and [counterbody]"
             yield from broken(
                 (there and pressure, "loading.prescribed", contact),
-                (there and paper, method, f"{euler} with {words}"),
                 (there and coated, "body.coating", f"not together with {words}"),
             )
         layered = has("wear.strain_limit_layer") and not has("body.plasticity.layer_thickness")
@@ -217,6 +216,10 @@ class Scene(Section):
                 f"with {axis} and a rough surface {NOT_YET}",
             ),
             (line and at("grid.border") == "relief", "grid.border", f'"free" with {axis}'),
+            *(
+                (has(f"{table}.taper") and not repeats, f"{table}.taper", f"only together with {patch}")
+                for table in ("surface", "counterbody.surface")
+            ),
             (along and not line, "grid.periodic", f'"y" only together with {axis}'),
             (repeats and line, "grid.periodic", f'"y" with {axis}'),
             (line and has("loading.approach"), "loading.approach", datum),

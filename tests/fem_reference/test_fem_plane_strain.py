@@ -13,7 +13,7 @@ from fem_reference.common.bodies import Elastic
 from fem_reference.common.elasticity import mises, stiffness_tensor
 from fem_reference.common.far_field import flamant, stretched
 from fem_reference.plane_strain import UnsupportedScene, check, load_steps, plan, solve
-from fem_reference.plane_strain.elements import PlaneSolid, edge_weights
+from fem_reference.plane_strain.elements import PlaneSolid
 from fem_reference.plane_strain.recovery import stresses
 from sam.scene import Scene
 from verification.runs.models import FEM_LINE, cheapest_reference
@@ -117,12 +117,6 @@ def test_patch_of_elements():
     assert np.abs(solid.internal_force(stress)[inside]).max() < 1e-14
     stiff = np.linalg.eigvalsh(solid.stiffness.toarray())
     assert (stiff < 1e-12 * stiff[-1]).sum() == 3
-
-
-def test_edge_weights():
-    """The widths of nodes integrate quadratics on unequal edges."""
-    x = np.array([0.0, 0.5, 1.0, 2.5, 4.0])
-    assert [edge_weights(x) @ x**k for k in (0, 1, 2)] == pytest.approx([4.0, 8.0, 64.0 / 3.0], rel=1e-14)
 
 
 def test_two_cylinders():
@@ -248,13 +242,6 @@ def test_rolling_leaves_a_track():
         ({"counterbody": {"shape": "sphere", "radius": RADIUS}}, "counterbody.shape = .sphere.: .*cylinder"),
         ({"grid": {"periodic": "y"}}, "grid.periodic = .y."),
         ({"body": {"young": 1e9, "poisson": 0.5}}, "body.poisson = 0.5"),
-        (
-            {
-                "fem": {"box": 3.0, "cells_per_radius": 2},
-                "body": STEEL | {"plasticity": {"law": "perfect", "yield_stress": 4e7}},
-            },
-            "fem.box = 3",
-        ),
     ],
 )
 def test_refused_by_name(tables, words):

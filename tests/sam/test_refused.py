@@ -113,6 +113,8 @@ body.coating = {} -> body.coating.thickness is missing & body.coating.young is m
 surface.kind = 'file' -> surface.path is missing & takes path
 friction = {} -> friction.coefficient is missing & from 0 to 10
 loading.unload = true; wear.strain_limit = 0.01 -> wear & only together with [body.plasticity]
+wear = {strain_limit = 1, smoothing_window = 0, smoothing_fills = true} -> wear.smoothing_fills & = 0: nothing
+wear = {strain_limit = 0.01, roof = 'gone'} -> wear.roof & "stays" or "falls"
 solver.method = 'paper' -> = & needs [body.plasticity]
 solver.stop = 'stress' -> = & together with method = "paper"
 solver.tolerance = 0 -> = & from 1e-14 to 0.1
@@ -310,6 +312,7 @@ renew = true; crop = ['5 um', '6 um'] -> @renew = true: & false: no second part
 crop = ['9 um', '9 um'] -> = & 8e-06 m
 form = 'cone' | 3 -> @form & "quadratic"
 resample = 'spline' -> = & "fourier"
+taper = 0.1 -> = & only together with grid.periodic = "xy"
 ## SLIDING
 -counterbody.surface -> loading.path & nothing moves
 counterbody.slip = 0 -> counterbody.slip & nothing moves on a plane

@@ -60,7 +60,7 @@ LABELS = {
     "loading.steps": "{} load steps",
 }
 """What every figure says of a value, or of the values of an axis."""
-UNITS = {"%": 1e2, "nm": 1e9, "µm": 1e6, "µm³": 1e18, "GPa": 1e-9}
+UNITS = {"%": 1e2, "nm": 1e9, "µm": 1e6, "µm²": 1e12, "µm³": 1e18, "GPa": 1e-9}
 """Unit at the end of a label -> factor of a column in SI."""
 
 

@@ -42,8 +42,13 @@ TIME = {
     },
     models.FEM: {"solve": 0.129, "factors": 3.01e-7, "points": 0.0},
     models.FEM_3D: {"solve": 0.0712, "multigrid": 7.6e-8},
-    models.FEM_LINE: {"solve": 0.1, "solves": 4e-7},
+    models.FEM_LINE: {"solve": 0.1, "solves": 4.5e-7},
 }  # fmt: skip
+# Of a patch that repeats, whose coefficients are made in wave numbers, a depth at a time: share of the work
+# of stresses, of their memory, and what takes as long for any patch, in units of a solve; and share of the
+# memory of fields, whose transforms are a quarter as long.
+PERIODIC_FIELDS = 0.6
+PERIODIC_WORK, PERIODIC_MEMORY, PERIODIC_SOLVES = 0.4, 1 / 7, 2.5
 SETTLES = 0.5  # power of the cycles that count: later ones strain and wear less
 RENEWED = 0.65  # the same where each cycle meets another counter-surface: 231 to 1401 iterations in 25 cycles
 MULTIGRID = 1.5  # power of the unknowns: 12,000 to 68,000 take 8 to 20 us for each and iteration
@@ -79,7 +84,7 @@ NEWTON_STEEPER = 1.1
 CUT_ABOVE = 5.3  # ratio: 4.7 takes 7 iterations and no cut, 6 takes 31 and one cut a step
 NEWTON_CUT = 5.4  # times the ratio: 31 at 6, 55 at 10
 NEWTON_COATED = 3.7  # of a coated body, as at the ratio of the ladder
-LINE_SOLVES = 12  # linear solves of an iteration of Newton's method in which a section yields: 8 to 14
+LINE_SOLVES = 10  # linear solves of an iteration of Newton's method in which a section yields: 8 to 12
 FACTORS = 2.7  # units of work of an iteration: ten in a step of the ladder, with its search for the contact
 # of a step with back-stresses, and for each: 1.41 with one and 2.16 with three, as many points flowing
 WITH_BACK_STRESSES, EACH_BACK_STRESS = 1.05, 0.37
@@ -167,7 +172,8 @@ def plastic_boxes(scene: Scene, plan: Any, beyond: float = 0.0) -> list[Expected
         if worn and scene.loading.cycles > 1 and sides[0] != grid.shape:
             sides.append(grid.shape)  # where summits are worn others touch
         layers, operator, in_cells = max(len(faces) - 1, 1), scene.solver.operator, tuple(faces / grid.hx)
-        return [ExpectedBox(*each, layers, tolerance, False, operator, in_cells) for each in sides]
+        repeats = plan.period is not None
+        return [ExpectedBox(*each, layers, tolerance, False, operator, in_cells, repeats) for each in sides]
     depths = (faces[1:] + faces[:-1]) / 2
     if scene.loading.misfit_sphere:
         return [_box_of_sphere(scene, grid, depths, beyond)]
@@ -196,7 +202,13 @@ def _rough_sides(scene: Scene, plan: Any) -> tuple[int, int]:
     from sam.plasticity import or_whole
 
     grid, force = plan.grid, scene.loading.force
-    if not force or scene.counterbody is None or len(plan.schedule.path) > 1 or plan.schedule.renews:
+    if (
+        plan.period is not None
+        or not force
+        or scene.counterbody is None
+        or len(plan.schedule.path) > 1
+        or plan.schedule.renews
+    ):
         return grid.shape
     area = grid.nx * grid.ny * grid.cell_area
     plane = scene.counterbody.shape == "flat"
@@ -391,6 +403,10 @@ def _sam(scene: Scene, plan: Any) -> Counted:
         "patch contact" if rough else "contact": contacts,
         "patch" if rough else "stresses": loads * coefficients,
     }
+    if plan.period is not None:
+        memory["patch"] = 48.0 * cells
+        memory["patch stresses"] = PERIODIC_MEMORY * memory.get("patch stresses", 0.0)
+        work |= {"solve": 1.0 + PERIODIC_SOLVES, "patch": PERIODIC_WORK * work["patch"]}
     if plan.coated is not None and steps:  # and the same contact without it
         memory["layered"] = block
         tables, layered = loads * (1 + depths), loads * (cells + coefficients)
@@ -417,7 +433,7 @@ def _sam(scene: Scene, plan: Any) -> Counted:
     memory = {  # the stresses of the elastic body are gone when the boxes come
         "surface": memory["surface"],
         "boxes": float(sum(box.width * box.coefficients for box in held(boxes))),
-        "fields": 8.0 * last.cells,
+        "fields": 8.0 * last.cells * (PERIODIC_FIELDS if last.periodic else 1.0),
         "set-up": 8.0 * last.set_up / last.layers,
         "chunks": 1.0,
     }

@@ -68,8 +68,10 @@ class SurfaceMap:
 
 
 def surface_map(run: Run) -> SurfaceMap | None:
-    """The surface of a run; None of an axisymmetric one, which has no map."""
-    if run.model == "fem-axisymmetric":
+    """The surface of a run; None of an axisymmetric one and of a line contact, which have no map."""
+    counter = run.summary["scene"].get("counterbody") or {}
+    line = counter.get("shape") == "cylinder" and not is_rough(run.summary["scene"])
+    if line or run.model == "fem-axisymmetric":
         return None
     mesh = mesh_of(run.folder, SURFACE)
     if run.model == "sam":
@@ -150,7 +152,7 @@ def section_of(run: Run, surface: SurfaceMap | None) -> Section:
         place = float(surface.x[i if j == row else surface.p[:, row].argmax()])
         return Section(y, place, spots_of(surface.x, surface.p[:, row]), "cut")
     x, p = peak(run.tables["line"], "x_m", "p_Pa")
-    if surface is None:
+    if x[0] >= 0.0:  # half of a model
         radius = contact_size(run.quantities)
         return Section(0.0, 0.0, [(-radius, radius)] if radius else [], "plane")
     spots = spots_of(x, p)
