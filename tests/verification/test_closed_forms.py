@@ -20,6 +20,7 @@ from verification.reference import (
     flat_punch,
     hamilton,
     hertz,
+    hertz_line,
     mindlin_cheng,
     point_loads,
     rounded_punch,
@@ -180,6 +181,35 @@ def test_stress_equals_the_quadrature_of_point_loads(point_stress, closed):
                 atol=1e-10,
                 err_msg=f"{(x, y, z, nu)}",
             )
+
+
+def test_line_contact_is_the_quadrature_of_line_forces_and_the_benchmark_of_nafems():
+    """Flamant's stress under pressure and traction, and the logarithm of a line force, over a half-width; the
+    half-width and the pressure of NAFEMS R0094-1; von Mises' first yield at nu = 0.3.
+    """
+    line, friction = hertz_line.LineContact(math.pi / 2, 1.0, 2.0, 1.0), 0.3
+    assert (line.contact_radius, line.peak_pressure) == pytest.approx((1.0, 1.0), rel=1e-15)
+    angle, w = np.polynomial.legendre.leggauss(200)  # s = sin(angle) has the root of the edges
+    s, w = np.sin(angle * math.pi / 2), w * (np.cos(angle * math.pi / 2) ** 2 * math.pi / 2)
+    for x, z in ((0.0, 0.5), (-0.7, 0.2), (0.4, 1.0), (1.5, 0.3), (1.0, 0.4)):
+        along = x - s
+        radial = -2 / math.pi * (z + friction * along) / (along**2 + z**2) ** 2
+        xx, zz, xz = ((w * radial * part).sum() for part in (along**2, z**2, along * z))
+        found = line.stress(x, z, 0.3, friction=friction)
+        assert found == pytest.approx([xx, 0.3 * (xx + zz), zz, 0, xz, 0], abs=1e-10)
+    # the surface at 3, far from the edge, and at the datum half of the length from the middle
+    uz = -2 / (math.pi * line.modulus) * (w * np.log(np.abs(3.0 - s))).sum()
+    datum = -2 / (math.pi * line.modulus) * math.pi / 2 * math.log(line.length / 2)
+    gap = 3.0**2 / 2 - line.approach + uz - datum
+    t = 3.0  # Johnson 1985, section 5.6: outside, (a^2/2R) (t sqrt(t^2 - 1) - arccosh t)
+    assert gap == pytest.approx((t * math.sqrt(t * t - 1) - math.acosh(t)) / 2, rel=1e-10)
+    modulus = hertz.effective_modulus(70e9, 0.3, 210e9, 0.3)
+    nafems = hertz_line.LineContact(35e3, 0.05, modulus, 1e-3)
+    assert nafems.contact_radius == pytest.approx(6.2146e-3, rel=1e-5)
+    assert nafems.at_pressure(3585.4e6).force == pytest.approx(35e3, rel=5e-5)
+    largest, depth = nafems.largest_von_mises(0.3)
+    assert nafems.peak_pressure / largest == pytest.approx(1.794, rel=3e-4)
+    assert depth / nafems.contact_radius == pytest.approx(0.704, abs=1e-3)
 
 
 def test_axis_stress_is_the_textbook_form():

@@ -49,6 +49,7 @@ from verification.reference.convergence import extrapolate
 from verification.references import REFERENCES, coated_contact, contact_of
 from verification.rows import CaseFile
 from verification.runs.sampling import peak, pressure_map, rows_of
+from verification.runs.tables import contact_size
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -151,7 +152,7 @@ def _pressure_maps(found: Solved) -> Drawing:
     a, p0 = elastic.contact_radius, elastic.peak_pressure
     if not found.scene.body.plasticity:
         return compared_pressure(sam, fem.tables, a, p0)
-    edge = fem.quantities["contact_radius_m"] / a
+    edge = contact_size(fem.quantities) / a
     return compared_pressure(sam, fem.tables, a, p0, reach=1.2 * max(edge, 1.0), edge=edge, power=1)
 
 
@@ -220,7 +221,7 @@ def _strain_planes(found: Solved) -> Plot:
     """Plastic strain in y = 0 of SAM and the three-dimensional elements, to the depth that is compared."""
     both = planes(found)
     a, fem = found.reference.units["a"], found.results["fem"]
-    edge = fem.quantities["contact_radius_m"] / a if found.scene.counterbody else 1.0
+    edge = contact_size(fem.quantities) / a if found.scene.counterbody else 1.0
     drawing = compared_planes(both["sam"], both["fem"], ("SAM", "FEM"), edge, strip=SHALLOWEST)
     words = (
         "The maps compare the plastic strain in y = 0 by SAM and by FEM; the body is pulled along +x. "

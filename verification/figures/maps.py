@@ -23,6 +23,7 @@ from verification.compare.measures import Plane
 from verification.figures.places import edges_of
 from verification.figures.style import BLACK, GREY, Drawing, new_figure, style
 from verification.runs.sampling import Tables, plane_field, plane_field_on, pressure_map, pressure_on
+from verification.runs.tables import contact_size
 
 SHOWN_SHARE = 0.995
 """Share of the points whose difference lies within the colour limits."""
@@ -321,7 +322,7 @@ def compared_peeq(sam: Result, fem: Result, a: float) -> Drawing:
     elastic contact radius in m; the bar over the maps is the contact of FEM.
     """
     pair, peaks = _both(sam, fem, "peeq", (a, 1.0 / PERCENT))
-    pair = replace(pair, semi_axes=(edge := fem.quantities["contact_radius_m"] / a, edge))
+    pair = replace(pair, semi_axes=(edge := contact_size(fem.quantities) / a, edge))
     return plane_maps(pair, peaks, iso_levels(max(peak.value for peak in peaks)))
 
 
@@ -363,7 +364,7 @@ def sliding_sections(sam: Result, fem: Result, units: tuple[float, float], thick
     use_x, use_z = np.abs(x) <= 1.5 * a, (z >= thickness * (1.0 - 1e-9)) & (z <= 1.4 * a)
     x, z, own = x[use_x], z[use_z], own[np.ix_(use_x, use_z)]
     fields = own / p0, in_body(fem, x, z, thickness) / p0
-    edge = fem.quantities["contact_radius_m"] / a
+    edge = contact_size(fem.quantities) / a
     pair = FieldPair(x / a, z / a, *fields, ("SAM", "FEM"), PLANE_AXES, VON_MISES, (edge, edge))
     return plane_maps(pair, [peak_at(x / a, z / a, field) for field in fields], VON_MISES_LEVELS)
 
