@@ -45,6 +45,7 @@ from verification.uncertainty.solving import (
     Solved,
     alone,
     assessed,
+    cell_size,
     coarser,
     cost_of,
     depths_of_maxima,
@@ -130,8 +131,9 @@ def chosen_scene(scene: Scene, model: str, choice: Choice) -> Scene:
     if model == models.SAM:
         grid = sam.choose_grid(scene)
         a, b = sam.hertz_semi_axes(scene)
-        factor = sqrt(a * b / (grid.hx * grid.hy)) / choice.cells
-        cells = tuple(min(coarser(count, factor) + 2 * (factor < 1), MOST_CELLS) for count in grid.shape)
+        factor = (sqrt(a * b / (grid.hx * grid.hy)) if grid.ny > 1 else a / grid.hx) / choice.cells
+        more = (min(coarser(count, factor) + 2 * (factor < 1), MOST_CELLS) for count in grid.shape)
+        cells = tuple(n if count > 1 else 1 for n, count in zip(more, grid.shape, strict=True))
         given = (scene.grid or Grid()).model_copy(update={"cells": cells})
         changed = changed.model_copy(update={"grid": given})
     else:
@@ -414,7 +416,7 @@ class Search:
             grid = scene.grid.model_copy(update={"depths": tuple(depths)})
             scene = in_one_step(scene.model_copy(update={"grid": grid}))
         grid = sam.plan(scene).on(room or Room()).grid
-        return Member(scene, f"{grid.nx} cells", grid.nx, sqrt(grid.hx * grid.hy))
+        return Member(scene, f"{grid.nx} cells", grid.nx, cell_size(grid))
 
     def solution(self, choice: Choice, depths: Sequence[float] | None = None) -> Solution:
         """The scene on some cells, solved once; depths: as those of `member`."""

@@ -195,13 +195,19 @@ def cells_to_edge(scene: Scene, fine: Result, family: Family) -> float:
     if fine.model != models.SAM:
         moved = scene.body.plasticity is not None or scene.body.coating is not None
         return family.cells[0].number if moved else np.inf
-    return sqrt(area / np.pi) / family.cells[0].size
+    wide = fine.quantities.get("contact_half_width_m") or sqrt(area / np.pi)
+    return wide / family.cells[0].size
 
 
 def coarser(count: int, factor: float) -> int:
     """A number of cells over a factor, odd if the number is: a cell centre then stays on the apex."""
     odd = count % 2
     return 2 * floor((count / factor - odd) / 2 + 0.5) + odd
+
+
+def cell_size(grid: CellGrid) -> float:
+    """Size of a cell in m; of a row along x below a cylinder its width, as all is the same along y."""
+    return grid.hx if grid.ny == 1 else sqrt(grid.hx * grid.hy)
 
 
 def step_counts(count: int) -> tuple[int, int, int]:
@@ -254,7 +260,7 @@ def _cell_members(scene: Scene, model: str, room: Room, depths: Sequence[float] 
             for each, n in of
         ]
     grid = sam.plan(scene).on(room).grid
-    first = Member(scene, f"{grid.nx} cells", grid.nx, sqrt(grid.hx * grid.hy))
+    first = Member(scene, f"{grid.nx} cells", grid.nx, cell_size(grid))
     return [first, *(_of_grid(other, grid, RATIO**k, depths) for k in (1, 2))]
 
 
@@ -267,7 +273,7 @@ def in_one_step(scene: Scene) -> Scene:
 
 def _of_grid(scene: Scene, grid: CellGrid, factor: float, depths: Sequence[float] | None) -> Member:
     """The scene on a grid with larger cells over the same sides; depths: as those of `family`."""
-    nx, ny = (max(coarser(count, factor), 3) for count in grid.shape)
+    nx, ny = (max(coarser(count, factor), min(count, 3)) for count in grid.shape)
     sides = grid.nx * grid.hx, grid.ny * grid.hy
     change: dict[str, object] = {"cells": (nx, ny)}
     if scene.patch_surface is None:
@@ -276,7 +282,7 @@ def _of_grid(scene: Scene, grid: CellGrid, factor: float, depths: Sequence[float
         change |= {"depths": _faces(scene, grid.faces, nx / grid.nx), "layers": None, "depth": None}
     elif depths is not None:
         change |= {"depths": tuple(depths), "layers": None, "depth": None}
-    size = sqrt(sides[0] * sides[1] / (nx * ny))
+    size = sides[0] / nx if ny == 1 else sqrt(sides[0] * sides[1] / (nx * ny))
     return Member(_changed(scene, "grid", **change), f"{nx} cells", nx, size)
 
 
@@ -298,7 +304,7 @@ def wider(member: Member) -> Member:
     """
     grid, change = sam.plan(member.scene).grid, {}
     if member.scene.patch_surface is None:
-        cells = [n + 2 * ceil(n * (WIDER - 1) / 2) for n in grid.shape]
+        cells = [n + 2 * ceil(n * (WIDER - 1) / 2) * (n > 1) for n in grid.shape]
         change = {"cells": tuple(cells), "extent": (cells[0] * grid.hx, cells[1] * grid.hy)}
     if (faces := grid.faces) is not None:
         last = faces[-1] - faces[-2]
