@@ -81,6 +81,15 @@ def test_a_face_at_a_kink_of_the_yield_stress_stays():
     assert all(0.4e-6 in member.scene.grid.depths for member in family(scene, SAM).cells[1:])
 
 
+def test_a_row_of_cells_below_a_cylinder_stays_one_whose_size_is_its_width():
+    cylinder = {"shape": "cylinder", "radius": 1e-2, "length": 1e-2}
+    scene = Scene(body=STEEL | {"plasticity": PERFECT}, counterbody=cylinder, loading={"force": 12250.0})
+    cells = family(scene, SAM).cells
+    sizes = [member.size * member.number / cells[0].size / cells[0].number for member in cells]
+    assert sizes == pytest.approx([1, 1, 1], rel=1e-12)  # over the same side
+    assert [member.scene.grid.cells[1] for member in cells[1:]] == [1, 1]
+
+
 def test_the_mesh_and_the_box_of_the_finite_elements():
     found = family(Scene(**YIELDING), FEM)
     assert [member.number for member in found.cells] == [16, 9, 5]
