@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache
+from typing import cast
 
 import numpy as np
 
@@ -77,7 +78,7 @@ def _pressed(
 
 def hertz_sphere(scene: Scene) -> Reference:
     """Hertz (1882), Huber (1904)."""
-    exact, nu = contact_of(scene), scene.body.poisson
+    exact, nu = cast(CircularContact, contact_of(scene)), scene.body.poisson
     a, p0 = exact.contact_radius, exact.peak_pressure
     largest, depth = largest_von_mises(p0, a, nu)
     share = exact.modulus * (1.0 - nu**2) / scene.body.young
@@ -98,7 +99,7 @@ def hertz_line(scene: Scene) -> Reference:
     """Hertz's line contact with the stresses of McEwen (1949), with friction those of its pressure in full
     slip, which moves between bodies of unlike moduli.
     """
-    exact, nu = contact_of(scene), scene.body.poisson
+    exact, nu = cast(LineContact, contact_of(scene)), scene.body.poisson
     a, p0, friction = exact.contact_radius, exact.peak_pressure, scene.coefficient
     largest, depth = exact.largest_von_mises(nu)
 
@@ -113,8 +114,9 @@ def hertz_line(scene: Scene) -> Reference:
         "stress": lambda x, _, z: exact.stress(x, z, nu, friction=friction) / p0,
         "pressure": lambda x, _: exact.pressure(x),
     }
-    found = _pressed(exact, axis, values, p0=p0)
-    return replace(found, curves={key: of for key, of in found.curves.items() if key[1] != "uz_m"})
+    share = exact.modulus * (1.0 - nu**2) / scene.body.young
+    found = _pressed(exact, axis, values, p0=p0, share=share)
+    return replace(found, curves={**found.curves, ("line", "gap_m"): exact.gap})
 
 
 def hertz_ellipse(scene: Scene) -> Reference:

@@ -57,6 +57,15 @@ class LineContact(Checked):
         s = coordinate("x", x) / self.contact_radius
         return self.peak_pressure * np.sqrt(np.maximum((1.0 - s) * (1.0 + s), 0.0))
 
+    def gap(self, x) -> np.ndarray:
+        """Gap in m; 0 inside, outside (a^2/2R) (t sqrt(t^2 - 1) - arccosh t), t = |x|/a (Johnson, section 5.6)."""
+        t = np.maximum(np.abs(coordinate("x", x)) / self.contact_radius, 1.0)
+        return self.contact_radius**2 / (2.0 * self.radius) * (t * np.sqrt(t * t - 1.0) - np.arccosh(t))
+
+    def displacement(self, x) -> np.ndarray:
+        """u_z of both surfaces together, m, counted as the approach."""
+        return self.approach - coordinate("x", x) ** 2 / (2.0 * self.radius) + self.gap(x)
+
     def stress(self, x, z, nu: float, *, friction: float = 0.0) -> np.ndarray:
         """Stresses (..., 6) in Pa in the half-space, under the pressure and the traction friction * p along x
         (Johnson 4.49 and 7.8); x, z in m, broadcast. m, n: McEwen's functions of the place over a.
