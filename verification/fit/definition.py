@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from itertools import pairwise, product
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, cast
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field, ValidationError
@@ -29,9 +30,9 @@ from sam.scene import (
     parse_toml,
     problems,
     read_limited,
-    resolved,
     scene_of,
     spelling,
+    tables_of,
     unit_of_key,
 )
 from verification.fit.measured import Points, faults, read_points
@@ -154,7 +155,7 @@ class Test:
 
     def at(self, values: Variables) -> Scene:
         """Its scene with values of unknown keys. Raises SceneError where they do not go together."""
-        tables = resolved(self.scene)
+        tables = tables_of(self.scene)
         for key, value in values.items():
             _put(tables, key, value)
         return Scene(**tables)
@@ -211,30 +212,29 @@ def _made(table: Mapping[str, Any], folder: Path | None, source: str, context: d
     unknown = [_parameter(key, bounds, scene, found) for key, bounds in fit.unknown.items()]
     if found:
         raise SceneError(found, source)
-    inputs: dict[str, bytes] = {}
-    made = []
-    for k, (test, frame) in enumerate(zip(fit.tests, frames, strict=True)):
-        where = f"{source}: tests[{k}]"
-        if frame is not None:
-            content = frame.to_csv(index=False).encode()
-        elif test.file is not None:
-            try:
-                place = Path(test.file) if folder is None else below(folder, test.file, "fit")
-                content = inputs[test.file] = read_limited(place, LARGEST)
-            except InputError as error:
-                raise SceneError([Problem("file", spelling(test.file), str(error))], where) from None
-        else:
-            content = b""
-        made.append(_test(k, test, scene, content, where))
+    contents = [
+        _content(test, frame, folder, f"{source}: tests[{k}]")
+        for k, (test, frame) in enumerate(zip(fit.tests, frames, strict=True))
+    ]
+    made = [
+        _test(f"test {k + 1}", test, scene, _points(test, content, f"{source}: tests[{k}]"))
+        for k, (test, content) in enumerate(zip(fit.tests, contents, strict=True))
+    ]
+    inputs = {test.file: content for test, content in zip(fit.tests, contents, strict=True) if test.file}
     model = fit.model or _cheapest(made[0].scene)
     ours = [each for each in unknown if each.name in OF_THE_MACHINE]
     ours = [part for each in ours for part in _of_tests(each, made)]
     theirs = tuple(each for each in unknown if each.name not in OF_THE_MACHINE)
     if not theirs:
         raise SceneError([Problem("unknown", "no key of the scene", 'such as "body.plasticity.B"')], source)
-    for test in made:
-        for end in ("low", "start", "high"):
+    for test, end in product(made, ("low", "start", "high")):
+        try:
             models.check(test.at({each.name: getattr(each, end) for each in theirs}), model)
+        except models.ModelError as error:
+            words = f"narrower bounds, or tests within the range of the model: {error}"
+            raise SceneError(
+                [Problem("unknown", f"the {end} values, with {test.name}", words)], source
+            ) from None
     return Definition(fit.title, model, tuple(made), theirs, tuple(ours), inputs)
 
 
@@ -262,19 +262,18 @@ def _scene(given: Any, folder: Path | None, source: str) -> Scene:
 def _parameter(key: str, bounds: tuple[Any, ...], scene: Scene, found: list[Problem]) -> Parameter:
     """An unknown; what is wrong with it is added to `found`."""
     unit = OF_THE_MACHINE.get(key) or unit_of_key(Scene, key.removesuffix(".0"))
-    numbers = [_number(value, unit) for value in bounds]
-    ascending = None not in numbers and all(a < b for a, b in zip(numbers, numbers[1:], strict=False))
-    if not ascending:
+    numbers = [number for value in bounds if (number := _number(value, unit)) is not None]
+    if len(numbers) < len(bounds) or not all(a < b for a, b in pairwise(numbers)):
         like = f"strings in units of {unit}" if unit else "numbers"
         words = f"[least, largest] or [least, start, largest], {like}, ascending"
         found.append(Problem(f"unknown.{key}", spelling(list(bounds)), words))
         return Parameter(key, 1.0, 1.0, 1.0)
-    low, high = cast(float, numbers[0]), cast(float, numbers[-1])
+    low, high = numbers[0], numbers[-1]
     middle = float(np.sqrt(low * high)) if low > 0.0 else (low + high) / 2.0
-    made = Parameter(key, low, cast(float, numbers[1]) if len(numbers) == 3 else middle, high)
+    made = Parameter(key, low, numbers[1] if len(numbers) == 3 else middle, high)
     if key not in OF_THE_MACHINE:
         try:
-            _put(resolved(scene), key, low)
+            _put(tables_of(scene), key, low)
         except (KeyError, TypeError, IndexError):
             words = f"a number of the scene, which it must have, or one of {', '.join(OF_THE_MACHINE)}"
             found.append(Problem("unknown", key, f'{words}: such as "body.plasticity.B"'))
@@ -296,44 +295,59 @@ def _put(tables: dict[str, Any], key: str, value: float) -> None:
     for part in above:
         inner = inner[part]
     place: Any = int(name) if isinstance(inner, list) else name
-    if isinstance(inner[place], bool) or not isinstance(inner[place], int | float):
+    if isinstance(inner[place], bool) or not isinstance(inner[place], int | float | str):
         raise TypeError(key)
     inner[place] = value
 
 
 def _with_load(scene: Scene, force: float, **ball: float | None) -> Scene:
     """The scene with a force and what is given of its ball."""
-    tables = resolved(scene)
+    tables = tables_of(scene)
     steps = scene.loading.steps if scene.loading.steps > 1 else STEPS
     unload = {"unload": True, "unload_steps": scene.loading.unload_steps or max(steps // 2, 2)}
     tables["loading"] = {"force": force, "steps": steps, **unload}
     if scene.fem == Fem():
-        tables["fem"]["cells_per_radius"] = CELLS
+        tables["fem"] = {"cells_per_radius": CELLS}
     tables["counterbody"] |= {key: value for key, value in ball.items() if value is not None}
     return Scene(**tables)
 
 
-def _test(k: int, test: Measured, scene: Scene, content: bytes, source: str) -> Test:
-    """A test with its points. Raises SceneError."""
+def _content(test: Measured, frame: Any, folder: Path | None, source: str) -> bytes:
+    """The table of a test as CSV. Raises SceneError."""
+    if frame is not None:
+        return frame.to_csv(index=False).encode()  # type: ignore[no-any-return]
+    if test.file is None:
+        return b""
+    try:
+        return read_limited(Path(test.file) if folder is None else below(folder, test.file, "fit"), LARGEST)
+    except InputError as error:
+        raise SceneError([Problem("file", spelling(test.file), str(error))], source) from None
+
+
+def _points(test: Measured, content: bytes, source: str) -> tuple[Points, str]:
+    """The points of a test, and what is said of where they are. Raises SceneError."""
     if test.kind == "depth":
-        points = Points(np.zeros(1), np.array([test.depth], dtype=float), np.zeros(1, bool))
-    else:
-        points = read_points(content, test.kind, test.units, f"{source} ({test.file})")
+        return Points(np.zeros(1), np.array([test.depth], dtype=float), np.zeros(1, bool)), source
+    source = f"{source} ({test.file})"
+    return read_points(content, test.kind, test.units, source), source
+
+
+def _test(name: str, test: Measured, scene: Scene, measured: tuple[Points, str]) -> Test:
+    """A test. Raises SceneError for points that cannot be of it."""
+    points, source = measured
     if scene.counterbody is None or scene.counterbody.shape != "sphere":
-        raise SceneError([Problem("counterbody.shape", "no sphere", 'shape = "sphere"')], source)
-    ball = {"radius": test.radius, "young": test.young, "poisson": test.poisson}
+        raise SceneError([Problem("counterbody.shape", "another", '"sphere"')], source)
     force = test.force or float(points.x.max(initial=0.0))
     if not 0.0 < force < 1e9:
-        raise SceneError([Problem("force", f"{force:g} N", "positive when the ball is pressed on")], source)
-    own = _with_load(scene, force, **ball)
-    assert own.counterbody is not None and own.counterbody.radius is not None
-    radius = own.counterbody.radius
-    elastic = float((0.75 * force / contact_modulus(own)) ** (2.0 / 3.0) * radius ** (-1.0 / 3.0))
-    found = faults(points, test.kind, radius, elastic) if test.kind != "depth" else []
-    if found:
-        raise SceneError(found, f"{source} ({test.file})")
+        raise SceneError([Problem("force", f"{force:g} N", "positive where the ball is pressed on")], source)
+    own = _with_load(scene, force, radius=test.radius, young=test.young, poisson=test.poisson)
+    ball = own.counterbody
+    assert ball is not None and ball.radius is not None
+    elastic = float((0.75 * force / contact_modulus(own)) ** (2.0 / 3.0) * ball.radius ** (-1.0 / 3.0))
+    if found := [] if test.kind == "depth" else faults(points, test.kind, ball.radius, elastic):
+        raise SceneError(found, source)
     noise = test.noise if test.noise_share is None else test.noise_share * float(np.abs(points.depth).max())
-    return Test(f"test {k + 1}", test.kind, own, points, noise)
+    return Test(name, test.kind, own, points, noise)
 
 
 def _cheapest(scene: Scene) -> str:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the model says of a test: its solves, from the store what that holds, read at the points of the test."""
+"""What the model says of a test at its points, by solves, or from the store."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from verification.runs.store import Store, solve_or_reuse
 HISTORY = ("force_N", "approach_m", "contact_area_m2")
 
 
-class FitError(ValueError):
+class FitError(models.ModelError):
     """A fit that cannot be made; the message says why and what to change."""
 
 
@@ -118,10 +118,8 @@ def _depths(test: Test, result: Result) -> np.ndarray:
         again = np.flatnonzero(cycle == 2)
         down = np.concatenate([again[: int(np.argmax(force[again])) + 1][::-1], first[-1:]])
     found = np.empty(test.points.x.size)
-    start = np.zeros(1)
-    found[~back] = _along(
-        *(np.concatenate([start, each[up]]) for each in (force, depth)), test.points.x[~back]
-    )
+    force_up, depth_up = (np.concatenate([[0.0], each[up]]) for each in (force, depth))
+    found[~back] = _along(force_up, depth_up, test.points.x[~back])
     found[back] = _along(force[down][::-1], depth[down][::-1], test.points.x[back])
     return found
 

@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: MIT
+"""The command fit: from measured dents to the parameters of a scene, a yield curve and a page.
+
+Every model solve is kept in the store as it ends, so that a fit that was interrupted goes on where it was,
+and writes the same bytes.
+"""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from samfem.refusals import check_folder
+from verification.figures import drawing_of_fit
+from verification.fit import Definition, Fitted, Solves, fit as fitted_to, read_definition
+from verification.fit.words import PARAMETERS, classical, content, findings, parameter_rows, shown
+from verification.runs.files import json_text, write_atomically
+from verification.runs.lock import locked
+from verification.runs.store import Store, default_store, kept_coefficients
+from verification.runs.tables import csv_text
+from verification.text.console import Progress, print_table
+
+if TYPE_CHECKING:
+    from sam.scene import Progress as Told
+
+RECORD, PAGE = "fit.json", "fit.html"
+FILES = (
+    RECORD,
+    PAGE,
+    "parameters.csv",
+    "yield-curve.csv",
+    "residuals.csv",
+    "scene.toml",
+    "fit.png",
+    "fit.csv",
+)
+CURVE = ("peeq", "yield_stress_Pa", "low_Pa", "high_Pa")
+
+
+def fit(path: Path, *, out: Path | None, use_store: bool) -> int:
+    """Fit the tests of a file, print the parameters and what stays open, and write the folder. Returns 0."""
+    definition, folder = read_definition(path), out or Path(f"{path.stem}-fit")
+    check_folder(folder, FILES, "fit")
+    with locked(folder), Progress() as told:
+        found, solves = answer(definition, default_store() if use_store else None, told)
+        write(found, solves, folder)
+    print_table(("parameter", "value", "90 % confidence"), shown(found))
+    for words in findings(found):
+        print(words)
+    print(folder / PAGE)
+    return 0
+
+
+def answer(definition: Definition, store: Store | None, told: Told) -> tuple[Fitted, int]:
+    """The fit, and how many model solves it took, those of the store included."""
+    solves = Solves(definition.model, store, told)
+    with kept_coefficients():
+        found = fitted_to(definition, solves)
+    return found, len(solves.known)
+
+
+def write(found: Fitted, solves: int, folder: Path) -> None:
+    """The tables, the scene, the figure and the page; the record last."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in FILES:
+        (folder / name).unlink(missing_ok=True)
+    tables = {"parameters.csv": csv_text(PARAMETERS, parameter_rows(found))}
+    rows = [
+        (test.name, *row)
+        for test, residuals, sigma in zip(found.definition.tests, found.residuals, found.sigma, strict=True)
+        for row in zip(test.points.x, test.points.depth, sigma * residuals, residuals, strict=True)
+    ]
+    tables["residuals.csv"] = csv_text(("test", "x", "depth_m", "residual_m", "residual_over_sigma"), rows)
+    scene = found.scene()
+    if scene.body.plasticity is not None:
+        tables["yield-curve.csv"] = csv_text(CURVE, zip(*found.yield_curve(), strict=True))
+    tables["scene.toml"] = scene.to_toml()
+    for name, text in tables.items():
+        write_atomically(folder / name, text.encode())
+    from verification.figures.style import save  # noqa: PLC0415 - loads matplotlib
+
+    picture = save(drawing_of_fit(found), folder / "fit")[0].read_bytes()
+    record = content(found, solves)
+    write_atomically(folder / PAGE, page(found, record, picture).encode())
+    write_atomically(folder / RECORD, json_text(record).encode())
+
+
+def page(found: Fitted, record: dict[str, Any], picture: bytes) -> str:
+    """The page (HTML), with its figure inside."""
+    names = [p.name for p in found.parameters]
+    linked = [
+        (name, *(f"{each:.3f}" for each in row)) for name, row in zip(names, found.correlations, strict=True)
+    ]
+    tests = [tuple(each.values()) for each in record["tests"]]
+    parts = [
+        ("Parameters", _table(("parameter", "value", "90 % confidence"), shown(found))),
+        (
+            "What to know",
+            "".join(f"<p>{escape(words)}</p>" for words in findings(found)) or "<p>Nothing.</p>",
+        ),
+        (
+            "Tests, residuals and yield curve",
+            f'<img src="data:image/png;base64,{b64encode(picture).decode()}">',
+        ),
+        ("Correlations", _table(("", *names), linked)),
+        ("Residuals", _table(tuple(record["tests"][0]), tests)),
+        ("Classical numbers", _table(("", "value", "where it is wrong"), classical(found))),
+        ("Scene", f"<pre>{escape(found.scene().to_toml())}</pre>"),
+    ]
+    title = escape(found.definition.title or "Fit")
+    style = (
+        "body{font:15px sans-serif;max-width:62em;margin:2em auto}td,th{padding:.2em .8em;text-align:left}"
+    )
+    body = "".join(f"<h2>{head}</h2>{text}" for head, text in parts)
+    head = f'<!doctype html><html lang="en"><meta charset="utf-8"><title>{title}</title>'
+    said = f"Model {record['model']}, {record['model_solves']} solves, a/R up to {record['a_over_R']:.2g}."
+    return f"{head}<style>{style} img{{width:100%}}</style><h1>{title}</h1><p>{said}</p>{body}</html>\n"
+
+
+def _table(head: tuple[str, ...], rows: Any) -> str:
+    first = "".join(f"<th>{escape(each)}</th>" for each in head)
+    body = "".join(
+        "<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in row) + "</tr>" for row in rows
+    )
+    return f"<table><tr>{first}</tr>{body}</table>"
