@@ -35,7 +35,7 @@ from sam.scene import (
     tables_of,
     unit_of_key,
 )
-from verification.fit.measured import Points, faults, read_points
+from verification.fit.measured import LARGEST, Points, faults, read_points
 from verification.runs import models
 from verification.runs.model_range import contact_modulus
 from verification.runs.study import refused
@@ -48,7 +48,6 @@ STEPS = 12
 """Load steps to the peak, and half as many back, where the scene has no number of them."""
 CELLS = 8
 """Elements in the contact radius, where the scene has no table [fem]; both are halved for the coarse grid."""
-LARGEST = 2**26  # bytes of a table
 Length = Annotated[float, Number("a length", 1e-12, 1e3, "m", "1 um")]
 Force = Annotated[float, Number("a force", 1e-12, 1e9, "N", "10 N")]
 Pressure = Annotated[float, Number("a pressure", 1e3, 1e15, "Pa", "210 GPa")]

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import gzip
 import io
 import re
 from collections.abc import Sequence
@@ -10,20 +11,28 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sam.scene import Problem, SceneError, in_unit
+from sam.scene import Problem, SceneError, in_unit, printable
 
 COLUMNS = {
     "force": ("N", ("force", "load", "p", "f")),
     "depth": ("m", ("depth", "approach", "displacement", "uz", "h", "d")),
     "height": ("m", ("height", "z")),
     "x": ("m", ("x", "r", "radius", "position")),
+    "strain": ("", ("strain", "e")),
+    "stress": ("Pa", ("stress", "s")),
 }
 """What a column is -> its SI unit, and the names that it may have before its unit."""
-KINDS = {"curve": ("force", "depth"), "profile": ("x", "depth")}
+KINDS = {"curve": ("force", "depth"), "profile": ("x", "depth"), "tensile": ("strain", "stress")}
+EXAMPLES = {"N": "mN", "m": "um", "Pa": "MPa", "": "percent"}
+"""SI unit of a column -> the one in an example."""
+PLAIN = {"": 1.0, "1": 1.0, "%": 0.01, "percent": 0.01}
+LARGEST = 2**26  # bytes of a table
 FEWEST = 8  # points of a branch or a profile
 FOOT = 0.25  # share of the largest force at which a curve from the first touch has begun
 DEEPEST = 0.3  # depth over the radius of the ball: beyond any contact that the model takes
+STIFF = 5.0  # times less deep than Hertz: more than a wrong modulus explains
 FALLING = 0.05  # share of the largest force by which loading may fall between neighbours: noise
+GZIP = b"\x1f\x8b"
 _HEAD = re.compile(r"\s*([A-Za-z]+)[\s_]*[\[(]?\s*([^\])\s]*)\s*[\])]?\s*")
 
 
@@ -43,26 +52,21 @@ def read_points(content: bytes, kind: str, units: Sequence[str], source: str) ->
 
     Raises SceneError with what is wrong with the file.
     """
-    columns = read_columns(content, units, source)
-    wanted = KINDS[kind]
-    if "height" in columns and "depth" not in columns:
-        columns["depth"] = -columns.pop("height")
-    if missing := [name for name in wanted if name not in columns]:
-        example = ", ".join(f"{name}_{'mN' if COLUMNS[name][0] == 'N' else 'um'}" for name in wanted)
-        raise refused(source, "columns", ", ".join(columns), f"a column {missing[0]}: such as {example}")
-    x, depth = (columns[name] for name in wanted)
+    x, depth = read_columns(content, kind, units, source)
     if kind == "profile":
         return Points(np.abs(x), depth, np.zeros(x.size, bool))
     return Points(x, depth, np.arange(x.size) > np.argmax(x))
 
 
-def read_columns(content: bytes, units: Sequence[str], source: str) -> dict[str, np.ndarray]:
-    """The columns of a CSV file in SI by what they are (keys of COLUMNS)."""
+def read_columns(content: bytes, kind: str, units: Sequence[str], source: str) -> list[np.ndarray]:
+    """The columns of KINDS in a CSV file, which may be compressed by gzip, in SI; otherwise as `read_points`."""
     import pandas as pd
 
     try:
+        if content.startswith(GZIP):
+            content = gzip.GzipFile(fileobj=io.BytesIO(content)).read(LARGEST)
         frame = pd.read_csv(io.BytesIO(content), comment="#", skipinitialspace=True)
-    except (ValueError, UnicodeDecodeError) as error:
+    except (OSError, EOFError, ValueError) as error:
         raise refused(source, "", "", f"no table of numbers: {error}") from None
     if units and len(units) != len(frame.columns):
         raise refused(source, "units", str(len(units)), f"as many as there are columns, {len(frame.columns)}")
@@ -71,60 +75,72 @@ def read_columns(content: bytes, units: Sequence[str], source: str) -> dict[str,
         parts = _HEAD.fullmatch(head)
         word, unit = (parts[1].lower(), units[k] if units else parts[2]) if parts else ("", "")
         name = next((name for name, (_, words) in COLUMNS.items() if word in words), "")
-        if not name:
-            continue
-        factor = in_unit(f"1 {unit}", COLUMNS[name][0]) if unit else None
-        if factor is None:
-            kind = "force, such as mN" if COLUMNS[name][0] == "N" else "length, such as um"
-            where = "in the name of the column (depth_um), or units in the test"
-            raise refused(source, f"column {head}", unit or "no unit", f"a unit of {kind}, {where}")
-        values = pd.to_numeric(frame.iloc[:, k], errors="coerce").to_numpy(float)
-        if not np.isfinite(values).all():
-            row = int(np.argmin(np.isfinite(values)))
-            raise refused(source, f"{head}, row {row + 1}", str(frame.iloc[row, k]), "a number in each row")
-        found[name] = values * float(factor)
-    return found
+        if name:
+            values = pd.to_numeric(frame.iloc[:, k], errors="coerce").to_numpy(float)
+            if not np.isfinite(values).all():
+                row = int(np.argmin(np.isfinite(values)))
+                raise refused(
+                    source, f"{head}, row {row + 1}", str(frame.iloc[row, k]), "a number in each row"
+                )
+            found[name] = values * _factor(COLUMNS[name][0], unit, head, source)
+    if "height" in found and "depth" not in found:
+        found["depth"] = -found.pop("height")
+    if missing := [name for name in KINDS[kind] if name not in found]:
+        example = ", ".join(f"{name}_{EXAMPLES[COLUMNS[name][0]]}" for name in KINDS[kind])
+        said = ", ".join(map(str, frame.columns))
+        raise refused(source, "columns", printable(said[:60]), f"a column {missing[0]}: such as {example}")
+    return [found[name] for name in KINDS[kind]]
+
+
+def _factor(si: str, unit: str, head: str, source: str) -> float:
+    """How many SI units the unit of a column is."""
+    factor = in_unit(f"1 {unit}", si) if si and unit else PLAIN.get(unit) if not si else None
+    if factor is None:
+        words = f"a unit such as {EXAMPLES[si]} in the name of the column, or units in the test"
+        raise refused(source, f"column {printable(head)}", printable(unit) or "without unit", words)
+    return float(factor)
 
 
 def faults(points: Points, kind: str, radius: float, elastic: float) -> list[Problem]:
     """What points say that cannot be of a ball of this radius in m; elastic: the approach of Hertz in m at
-    the largest force, the least that is possible without a compliance that is too low.
+    the largest force.
     """
-    deepest, count = float(np.abs(points.depth).max(initial=0.0)), points.x.size
-    if count < FEWEST:
-        return [Problem("points", str(count), f"at least {FEWEST}")]
+    if points.x.size < FEWEST:
+        return [Problem("points", str(points.x.size), f"at least {FEWEST}")]
     if kind == "profile":
-        if points.x.max() > 4.0 * radius or points.x.max() < 1e-3 * radius:
-            words = f"at most four radii of the ball, {radius:g} m: is the unit of length another?"
-            return [Problem("x", f"up to {points.x.max():.3g} m", words)]
-        return []
-    up, found = ~points.unloading, []
-    force, largest = points.x[up], points.x.max()
-    if largest <= 0.0:
-        return [
-            Problem(
-                "force", f"at most {largest:.3g} N", "positive when the ball is pressed on: change the sign"
-            )
-        ]
-    if deepest > DEEPEST * radius or points.depth.max() < elastic / 5.0:
-        words = f"{elastic:.3g} m (elastic) to {DEEPEST:g} radii, {DEEPEST * radius:.3g} m"
-        what = f"up to {points.depth.max():.3g} m"
-        return [Problem("depth", what, f"{words}: is a unit, the sign or the radius another?")]
-    if up.sum() < FEWEST:
-        found.append(Problem("loading", f"{up.sum()} points", f"at least {FEWEST} before the largest force"))
-    elif force.min() > FOOT * largest:
-        words = f"points from the first touch on, below {FOOT:g} of the largest force"
-        found.append(Problem("force", f"from {force.min():.3g} N", words))
-    elif (np.maximum.accumulate(force) - force).max() > FALLING * largest:
-        words = "one loading and one unloading in the order in which they were measured"
-        found.append(Problem("force", "falls and rises again before its peak", words))
-    elif abs(np.interp(0.0, force[:FEWEST], points.depth[up][:FEWEST])) > 0.5 * deepest:
-        words = "near zero where the force is zero: count it from the first touch, or make zero unknown"
-        found.append(Problem("depth", f"{points.depth[up][0]:.3g} m at the first point", words))
-    if points.unloading.any() and points.unloading.sum() < FEWEST:
-        words = f"at least {FEWEST} points of it, or none"
-        found.append(Problem("unloading", f"{points.unloading.sum()} points", words))
-    return found
+        reach, words = points.x.max(), f"of {1e-3 * radius:.3g} to {4.0 * radius:.3g} m: is its unit another?"
+        fits = 1e-3 * radius < reach < 4.0 * radius
+        return [] if fits else [Problem("x", f"up to {reach:.3g} m", words)]
+    largest, deepest = float(points.x.max()), float(points.depth.max())
+    if not elastic / STIFF < deepest < DEEPEST * radius:
+        words = f"from {elastic:.3g} m (Hertz) to {DEEPEST * radius:.3g} m: is a unit, the sign or the radius another?"
+        return [Problem("depth", f"at most {deepest:.3g} m", words)]
+    up = ~points.unloading
+    force, depth, back = points.x[up], points.depth[up], int(points.unloading.sum())
+    first = float(np.interp(0.0, force[:FEWEST], depth[:FEWEST]))
+    rules = (
+        (up.sum() < FEWEST, "loading", f"{up.sum()} points", f"at least {FEWEST} up to the largest force"),
+        (
+            force.min() > FOOT * largest,
+            "force",
+            f"from {force.min():.3g} N",
+            f"points from the first touch on, some below {FOOT:g} of the largest force",
+        ),
+        (
+            (np.maximum.accumulate(force) - force).max() > FALLING * largest,
+            "force",
+            "falls before its peak",
+            "one loading and one unloading, in the order in which they were measured",
+        ),
+        (
+            abs(first) > FOOT * deepest,
+            "depth",
+            f"{first:.3g} m where the force is the least",
+            "near zero there: count it from the first touch",
+        ),
+        (0 < back < FEWEST, "unloading", f"{back} points", f"at least {FEWEST}, or none"),
+    )
+    return [Problem(*problem) for wrong, *problem in rules if wrong]
 
 
 def refused(source: str, key: str, value: str, allowed: str) -> SceneError:
