@@ -15,34 +15,33 @@ from typing import TYPE_CHECKING, Any
 from samfem.refusals import check_folder
 from verification.figures import drawing_of_fit
 from verification.fit import Definition, Fitted, Solves, fit as fitted_to, read_definition
+from verification.fit.tensile import Tensile, read_tensile
 from verification.fit.words import PARAMETERS, classical, content, findings, parameter_rows, shown
 from verification.runs.files import json_text, write_atomically
 from verification.runs.lock import locked
 from verification.runs.store import Store, default_store, kept_coefficients
 from verification.runs.tables import csv_text
 from verification.text.console import Progress, print_table
+from verification.text.readable import with_prefix
 
 if TYPE_CHECKING:
     from sam.scene import Progress as Told
 
 RECORD, PAGE = "fit.json", "fit.html"
-FILES = (
-    RECORD,
-    PAGE,
-    "parameters.csv",
-    "yield-curve.csv",
-    "residuals.csv",
-    "scene.toml",
-    "fit.png",
-    "fit.csv",
-)
+CURVES = "yield-curve.csv"
+FILES = (RECORD, PAGE, CURVES, "parameters.csv", "residuals.csv", "scene.toml", "fit.png", "fit.csv")
 CURVE = ("peeq", "yield_stress_Pa", "low_Pa", "high_Pa")
 
 
 def fit(path: Path, *, out: Path | None, use_store: bool) -> int:
-    """Fit the tests of a file, print the parameters and what stays open, and write the folder. Returns 0."""
-    definition, folder = read_definition(path), out or Path(f"{path.stem}-fit")
+    """Fit the tests of a file, print the parameters and what stays open, and write the folder; of a tensile
+    test (CSV) its law. Returns 0.
+    """
+    folder = out or Path(f"{path.name.partition('.')[0]}-fit")
     check_folder(folder, FILES, "fit")
+    if path.name.lower().endswith((".csv", ".csv.gz")):
+        return _tensile(read_tensile(path), folder)
+    definition = read_definition(path)
     with locked(folder), Progress() as told:
         found, solves = answer(definition, default_store() if use_store else None, told)
         write(found, solves, folder)
@@ -50,6 +49,32 @@ def fit(path: Path, *, out: Path | None, use_store: bool) -> int:
     for words in findings(found):
         print(words)
     print(folder / PAGE)
+    return 0
+
+
+def _tensile(law: Tensile, folder: Path) -> int:
+    """Print and write the law of a tensile test."""
+    names = "B", "C", "n"
+    swift = dict(zip(names, law.swift, strict=True))
+    rows = [
+        ("E", with_prefix(law.young, "Pa"), "slope of the elastic line"),
+        ("yield stress", with_prefix(law.yield_stress, "Pa"), "engineering, 0.2 % offset"),
+        (
+            "exponent",
+            f"{law.exponent:.3f}",
+            "of yield stress (E strain/yield stress)^n, true and total strain",
+        ),
+        *((name, f"{value:.4g}", "of Swift's law in a scene, B in Pa") for name, value in swift.items()),
+    ]
+    with locked(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+        content = {"young": law.young, "yield_stress": law.yield_stress, "exponent": law.exponent, **swift}
+        write_atomically(folder / RECORD, json_text(content).encode())
+        write_atomically(
+            folder / CURVES, csv_text(CURVE[:2], zip(law.peeq, law.stress, strict=True)).encode()
+        )
+    print_table(("", "value", "definition"), rows)
+    print(folder / CURVES)
     return 0
 
 
@@ -75,7 +100,7 @@ def write(found: Fitted, solves: int, folder: Path) -> None:
     tables["residuals.csv"] = csv_text(("test", "x", "depth_m", "residual_m", "residual_over_sigma"), rows)
     scene = found.scene()
     if scene.body.plasticity is not None:
-        tables["yield-curve.csv"] = csv_text(CURVE, zip(*found.yield_curve(), strict=True))
+        tables[CURVES] = csv_text(CURVE, zip(*found.yield_curve(), strict=True))
     tables["scene.toml"] = scene.to_toml()
     for name, text in tables.items():
         write_atomically(folder / name, text.encode())

@@ -314,7 +314,7 @@ def _with_load(scene: Scene, force: float, **ball: float | None) -> Scene:
 def _content(test: Measured, frame: Any, folder: Path | None, source: str) -> bytes:
     """The table of a test as CSV. Raises SceneError."""
     if frame is not None:
-        return frame.to_csv(index=False).encode()  # type: ignore[no-any-return]
+        return frame.to_csv(index=False).encode()
     if test.file is None:
         return b""
     try:

@@ -4,7 +4,7 @@
 Of a test k the model gives depths d_k(theta) at the forces, or the places, of its points; it is solved on two
 grids, with half the cells and load steps (c) and as the scene says (f). What is compared with the points is
 
-    d(theta) = d_c(theta) + [d_f(theta_0) - d_c(theta_0)] + zero + compliance F,                            (a)
+    d(theta) = d_c(theta) + [d_f(theta_0) - d_c(theta_0)] + zero + compliance F,                           (a)
 
 with theta_0 moved to the best theta until that no longer moves. Derivatives of d_c are differences at the
 start, then Broyden's updates, and differences again at the end. With the residuals r over their standard
@@ -35,9 +35,9 @@ from verification.fit.solves import Answer, Answers, FitError
 CONFIDENCE = 0.9
 QUANTILE = float(norm.ppf(0.5 + CONFIDENCE / 2.0))
 ENDS = ("low", "start", "high")
-STEP = 0.03  # of a variable for a difference: 3 % of a positive parameter
-ROUNDS = 3  # times that theta_0 is moved, at most
-SETTLED = 0.2  # standard deviations by which the parameters may still move with theta_0
+STEP = 0.1  # of a variable for a difference, as large as the mesh moves with the parameters
+ROUNDS = 4  # times that theta_0 is moved, at most
+SETTLED = 0.3  # standard deviations by which the parameters may still move with theta_0
 MOST_EVALUATIONS = 12  # of the coarse model in a round
 DETERMINED = 0.35  # of a logarithm: a half-width of 42 %; of others the same share of their bounds
 NAMED = 0.3  # weight of a parameter in a combination, from which on it is named
@@ -112,8 +112,8 @@ class Fitted:
 
     @cached_property
     def open_combinations(self) -> list[tuple[float, dict[str, float]]]:
-        """What is not determined: half-width in logarithms, and the parameters of a singular vector with their
-        weights, the widest first.
+        """What is not determined: half-width in logarithms, and the parameters of a singular vector with
+        their weights, the widest first.
         """
         n = len(self.definition.of_scene)
         values, vectors = np.linalg.eigh(self.covariance[:n, :n])
@@ -203,7 +203,7 @@ class _Search:
     def best(
         self, x: np.ndarray, bounds: tuple[np.ndarray, np.ndarray], jacobian: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """The least squares with this correction, and the derivatives there as Broyden's updates have them."""
+        """The least squares with this correction, and the derivatives there by Broyden's updates."""
         last: dict[str, np.ndarray] = {}
 
         def updated(at: np.ndarray) -> np.ndarray:

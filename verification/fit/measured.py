@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Measured tests: force over depth, the profile of a dent, or its depth alone; and what is wrong with them."""
+"""Points of measured tests: force over depth, or the profile of a dent; and what is wrong with them."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def read_points(content: bytes, kind: str, units: Sequence[str], source: str) ->
 
 
 def read_columns(content: bytes, kind: str, units: Sequence[str], source: str) -> list[np.ndarray]:
-    """The columns of KINDS in a CSV file, which may be compressed by gzip, in SI; otherwise as `read_points`."""
+    """The columns of KINDS in a CSV file, or one compressed by gzip, in SI; otherwise as `read_points`."""
     import pandas as pd
 
     try:
@@ -113,7 +113,7 @@ def faults(points: Points, kind: str, radius: float, elastic: float) -> list[Pro
         return [] if fits else [Problem("x", f"up to {reach:.3g} m", words)]
     largest, deepest = float(points.x.max()), float(points.depth.max())
     if not elastic / STIFF < deepest < DEEPEST * radius:
-        words = f"from {elastic:.3g} m (Hertz) to {DEEPEST * radius:.3g} m: is a unit, the sign or the radius another?"
+        words = f"from {elastic:.3g} m (Hertz) to {DEEPEST * radius:.3g} m: another unit, sign or radius?"
         return [Problem("depth", f"at most {deepest:.3g} m", words)]
     up = ~points.unloading
     force, depth, back = points.x[up], points.depth[up], int(points.unloading.sum())

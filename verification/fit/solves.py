@@ -66,7 +66,7 @@ class Solves:
     def _once(self, scene: Scene) -> Result:
         key = scene.model_dump_json()
         if key not in self.known:
-            self.told("model solves", len(self.known), 0)
+            self.told(f"{len(self.known)} model solves", 0, 0)
             try:
                 models.check(scene, self.model)
                 result, _ = solve_or_reuse(self.store, scene, self.model)
@@ -125,7 +125,7 @@ def _depths(test: Test, result: Result) -> np.ndarray:
 
 
 def _along(force: np.ndarray, depth: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Depth over force, monotone in force^(2/3), in which Hertz's approach is a line; its ends beyond them."""
+    """Depth over force, monotone in force^(2/3), in which Hertz's approach is a line; ends hold beyond."""
     curve = PchipInterpolator(force ** (2.0 / 3.0), depth)
     return np.asarray(curve(np.clip(at, force[0], force[-1]) ** (2.0 / 3.0)))
 

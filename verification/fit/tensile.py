@@ -100,7 +100,7 @@ def tensile(
 
 
 def read_tensile(path: str | Path) -> Tensile:
-    """The law of the test in a CSV file with columns such as strain_percent, stress_MPa. Raises SceneError."""
+    """The law of the test in a CSV file with columns as strain_percent, stress_MPa. Raises SceneError."""
     try:
         content = read_limited(path, LARGEST)
     except InputError as error:

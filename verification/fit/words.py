@@ -37,7 +37,7 @@ def parameter_rows(fitted: Fitted) -> list[tuple[Any, ...]]:
     return rows
 
 
-def shown(fitted: Fitted) -> list[tuple[str, ...]]:
+def shown(fitted: Fitted) -> list[tuple[str, str, str]]:
     """The parameters for a person: name, value, confidence interval."""
     rows = []
     for p in fitted.parameters:
@@ -72,7 +72,7 @@ def findings(fitted: Fitted) -> Iterator[str]:
         size = float(np.sqrt((residuals**2).mean()))
         if test.noise is not None and residuals.size > 1 and size > TOO_LARGE:
             yield (
-                f"The residuals of {test.name} are {size:.1f} times the stated noise: the noise is larger, the "
+                f"The residuals of {test.name} are {size:.1f} times the stated noise: the noise is more, the "
                 "law is another, or the material piles up or sinks in beyond what small strains describe."
             )
     if not fitted.settled:
@@ -97,7 +97,9 @@ def classical(fitted: Fitted) -> Iterator[tuple[str, str, str]]:
             continue
         young, depth = oliver_pharr(test)
         fitted_young = fitted.scene().body.young
-        why = f"{100 * (young / fitted_young - 1):+.1f} % of that of the fit: no pile-up, a power law of the upper half"
+        why = (
+            f"{100 * (young / fitted_young - 1):+.1f} % of the fit: no pile-up, a power law of the upper half"
+        )
         yield f"E of {test.name} by Oliver & Pharr", with_prefix(young, "Pa"), why
         radius = sqrt(depth * (2.0 * ball.radius - depth))
         hardness, strain = force / (pi * radius**2), TABOR_STRAIN * radius / ball.radius
@@ -115,9 +117,10 @@ def classical(fitted: Fitted) -> Iterator[tuple[str, str, str]]:
 
 
 def oliver_pharr(test: Test) -> tuple[float, float]:
-    """E of the body in Pa and the contact depth in m, by W. C. Oliver & G. M. Pharr, J. Mater. Res. 7 (1992)
-    1564: F = c (d - d_f)^m of the upper half of the unloading, S = dF/dd at its top, contact depth d - 3/4 F/S,
-    E* = S sqrt(pi)/(2 sqrt(A)), A that of the ball at the contact depth.
+    """E of the body in Pa and the contact depth in m, by Oliver & Pharr, J. Mater. Res. 7 (1992) 1564.
+
+    F = c (d - d_f)^m of the upper half of the unloading, S = dF/dd at its top, contact depth d - 3/4 F/S,
+    E* = S sqrt(pi)/(2 sqrt(A)), A of the ball at the contact depth.
     """
     from scipy.optimize import least_squares  # noqa: PLC0415 - with the fit only
 
@@ -181,7 +184,7 @@ def _of_further(best: Further) -> str:
     wide = ", ".join(f"{np.expm1(each):.0%}" for each in best.half_widths)
     return (
         f"Of the further tests that were looked at, a ball of radius {with_prefix(best.radius, 'm')} under "
-        f"{with_prefix(best.force, 'N')} would narrow the parameters of the scene most, to half-widths of {wide}."
+        f"{with_prefix(best.force, 'N')} would narrow the parameters most, to half-widths of {wide}."
     )
 
 
