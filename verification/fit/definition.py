@@ -116,7 +116,7 @@ class Fit(Section):
 
 @dataclass(frozen=True)
 class Parameter:
-    """An unknown with its bounds and start, in SI; sought by its logarithm where it is positive."""
+    """An unknown with its bounds and start, in SI; where it is positive ln(value/start) is sought."""
 
     name: str
     low: float
@@ -130,11 +130,11 @@ class Parameter:
 
     def sought(self, value: Any) -> Any:
         """The variable of the least squares at a value."""
-        return np.log(value) if self.logarithmic else np.asarray(value) / self.scale
+        return np.log(value / self.start) if self.logarithmic else np.asarray(value) / self.scale
 
     def value(self, sought: Any) -> Any:
         """Back from there."""
-        return np.exp(sought) if self.logarithmic else np.asarray(sought) * self.scale
+        return self.start * np.exp(sought) if self.logarithmic else np.asarray(sought) * self.scale
 
     @property
     def scale(self) -> float:

@@ -197,7 +197,7 @@ class _Search:
             before = x
             pairs = zip(self.depths(x, fine=True), self.depths(x), strict=True)
             self.correction = [fine - coarse for fine, coarse in pairs]
-            self.estimate(x)
+            jacobian = jacobian * self.estimate(x)[:, None]
         return x, False
 
     def best(
@@ -288,11 +288,15 @@ class _Search:
         wide = np.array([float(p.sought(p.high) - p.sought(p.low)) for p in self.parameters])
         return np.asarray(np.linalg.inv(jacobian.T @ jacobian + np.diag(12.0 / wide**2)))
 
-    def estimate(self, x: np.ndarray) -> None:
-        """The standard deviations that are not given, by the residuals of their tests."""
+    def estimate(self, x: np.ndarray) -> np.ndarray:
+        """Find the standard deviations that are not given, by the residuals of their tests; at each point the
+        old one over the new.
+        """
+        before = self.sigma.copy()
         for k, part in enumerate(np.split(self.residuals(x), self.ends)):
             if self.definition.tests[k].noise is None:
                 self.sigma[k] *= np.sqrt((part**2).sum() / max(part.size - x.size, 1))
+        return np.repeat(before / self.sigma, [t.points.x.size for t in self.definition.tests])
 
     def branches(self) -> list[np.ndarray]:
         """The correction of each branch of each test over sigma, zero at the points of all others."""

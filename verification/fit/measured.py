@@ -33,7 +33,7 @@ DEEPEST = 0.3  # depth over the radius of the ball: beyond any contact that the 
 STIFF = 5.0  # times less deep than Hertz: more than a wrong modulus explains
 FALLING = 0.05  # share of the largest force by which loading may fall between neighbours: noise
 GZIP = b"\x1f\x8b"
-_HEAD = re.compile(r"\s*([A-Za-z]+)[\s_]*[\[(]?\s*([^\])\s]*)\s*[\])]?\s*")
+_HEAD = re.compile(r"\s*([A-Za-z]+)[\s_]*[\[(]?\s*([^\])\s_]*)\s*[\])]?\s*")
 
 
 @dataclass(frozen=True)

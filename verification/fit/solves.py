@@ -16,6 +16,7 @@ from verification.runs import models
 from verification.runs.model_range import errors
 from verification.runs.store import Store, solve_or_reuse
 
+LEAST_CELLS = 4  # in the contact radius: with fewer a result is not resolved
 HISTORY = ("force_N", "approach_m", "contact_area_m2")
 
 
@@ -81,7 +82,8 @@ class Solves:
 
 def coarser(scene: Scene) -> Scene:
     """The scene with half the load steps, and half the cells where it says how many."""
-    load, grid, cells = scene.loading, scene.grid, max(scene.fem.cells_per_radius // 2, 2)
+    load, grid, cells = scene.loading, scene.grid, scene.fem.cells_per_radius
+    cells = min(cells, max(cells // 2, LEAST_CELLS))
     steps = {"steps": max(load.steps // 2, 1), "unload_steps": max((load.unload_steps or 2) // 2, 1)}
     change: dict[str, Any] = {"loading": load.model_copy(update=steps)}
     change["fem"] = scene.fem.model_copy(update={"cells_per_radius": cells})
