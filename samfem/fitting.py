@@ -80,7 +80,7 @@ def _tensile(law: Tensile, folder: Path) -> int:
 
 def answer(definition: Definition, store: Store | None, told: Told) -> tuple[Fitted, int]:
     """The fit, and how many model solves it took, those of the store included."""
-    solves = Solves(definition.model, store, told)
+    solves = Solves(definition.model, store, told)  # type: ignore[arg-type]  # mypy drops the None of its field
     with kept_coefficients():
         found = fitted_to(definition, solves)
     return found, len(solves.known)

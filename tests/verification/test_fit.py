@@ -119,6 +119,7 @@ def test_oliver_and_pharr_read_the_modulus_of_an_elastic_curve_within_their_own_
 def test_the_command_solves_stores_and_writes_the_same_bytes_when_it_is_run_again(
     folder, samfem, monkeypatch
 ):
+    monkeypatch.setenv("SAMFEM_STORE", str(folder / "store"))
     force = np.linspace(0.02, 1.0, 12)
     frame = pd.DataFrame({"Load (mN)": 1e3 * force, "depth [nm]": 1e9 * hertz(force, 180e9)})
     frame.to_csv(folder / "curve.csv", index=False)

@@ -36,9 +36,9 @@ CONFIDENCE = 0.9
 QUANTILE = float(norm.ppf(0.5 + CONFIDENCE / 2.0))
 ENDS = ("low", "start", "high")
 STEP = 0.1  # of a variable for a difference, as large as the mesh moves with the parameters
-ROUNDS = 4  # times that theta_0 is moved, at most
+ROUNDS = 3  # times that theta_0 is moved, at most
 SETTLED = 0.3  # standard deviations by which the parameters may still move with theta_0
-MOST_EVALUATIONS = 12  # of the coarse model in a round
+FIRST, LATER = 6, 2  # evaluations of the coarse model before theta_0 and after each, that of the start included
 DETERMINED = 0.35  # of a logarithm: a half-width of 42 %; of others the same share of their bounds
 NAMED = 0.3  # weight of a parameter in a combination, from which on it is named
 FACTORS = ((0.1, 1.0), (8.0, 1.0), (1.0, 0.3), (1.0, 3.0))
@@ -187,21 +187,18 @@ class _Search:
 
     def climb(self, x: np.ndarray, bounds: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, bool]:
         """The best variables, and whether theta_0 has settled there."""
-        jacobian, before = self.jacobian(x), None
+        x, jacobian = self.best(x, bounds, self.jacobian(x), FIRST)
         for _ in range(ROUNDS):
-            x, jacobian = self.best(x, bounds, jacobian)
-            if before is not None:
-                size = np.sqrt(np.diag(self.of_noise(jacobian)))
-                if (np.abs(x - before) <= SETTLED * size).all():
-                    return x, True
-            before = x
             pairs = zip(self.depths(x, fine=True), self.depths(x), strict=True)
             self.correction = [fine - coarse for fine, coarse in pairs]
-            jacobian = jacobian * self.estimate(x)[:, None]
+            before, jacobian = x, jacobian * self.estimate(x)[:, None]
+            x, jacobian = self.best(x, bounds, jacobian, LATER)
+            if (np.abs(x - before) <= SETTLED * np.sqrt(np.diag(self.of_noise(jacobian)))).all():
+                return x, True
         return x, False
 
     def best(
-        self, x: np.ndarray, bounds: tuple[np.ndarray, np.ndarray], jacobian: np.ndarray
+        self, x: np.ndarray, bounds: tuple[np.ndarray, np.ndarray], jacobian: np.ndarray, most: int
     ) -> tuple[np.ndarray, np.ndarray]:
         """The least squares with this correction, and the derivatives there by Broyden's updates."""
         last: dict[str, np.ndarray] = {}
@@ -215,11 +212,14 @@ class _Search:
             last.update(x=at.copy(), r=found, J=new)
             return new
 
-        room = np.nextafter(bounds[0], np.inf), np.nextafter(bounds[1], -np.inf)
-        how: dict[str, Any] = {"bounds": bounds, "x_scale": "jac", "max_nfev": MOST_EVALUATIONS}
-        how |= {"ftol": 1e-3, "xtol": 1e-4, "gtol": 1e-6}
-        answer = least_squares(self.residuals, np.clip(x, *room), updated, **how)
-        return answer.x, updated(answer.x)
+        inside = np.clip(x, np.nextafter(bounds[0], np.inf), np.nextafter(bounds[1], -np.inf))
+        shift = inside - 1.0  # the trust region begins with the norm of the variables
+        how: dict[str, Any] = {"bounds": tuple(end - shift for end in bounds), "max_nfev": most}
+        how |= {"method": "dogbox", "x_scale": "jac", "ftol": 1e-3, "xtol": 1e-6, "gtol": 1e-6}
+        answer = least_squares(
+            lambda at: self.residuals(at + shift), inside - shift, lambda at: updated(at + shift), **how
+        )
+        return answer.x + shift, updated(answer.x + shift)
 
     def result(self, x: np.ndarray, *, settled: bool, ahead: bool) -> Fitted:
         """The fit, with what is known of its parameters."""
