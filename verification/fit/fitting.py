@@ -38,7 +38,10 @@ ENDS = ("low", "start", "high")
 STEP = 0.1  # of a variable for a difference, as large as the mesh moves with the parameters
 ROUNDS = 3  # times that theta_0 is moved, at most
 SETTLED = 0.3  # standard deviations by which the parameters may still move with theta_0
-FIRST, LATER = 6, 2  # evaluations of the coarse model before theta_0 and after each, that of the start included
+FIRST, LATER = (
+    6,
+    2,
+)  # evaluations of the coarse model before theta_0 and after each, that of the start included
 DETERMINED = 0.35  # of a logarithm: a half-width of 42 %; of others the same share of their bounds
 NAMED = 0.3  # weight of a parameter in a combination, from which on it is named
 FACTORS = ((0.1, 1.0), (8.0, 1.0), (1.0, 0.3), (1.0, 3.0))

@@ -2,8 +2,8 @@
 """
 A modulus from force over depth
 ===============================
-Depths under a ball, made here by the closed form of Hertz with noise, are fitted: the modulus comes from the curve
-together with the zero of the depth, both with their confidence.
+Depths under a ball, made here by the closed form of Hertz with noise, are fitted: the modulus comes from the
+curve together with the zero of the depth, both with their confidence.
 """
 
 import matplotlib.pyplot as plt
