@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Fits of measured tests: closed forms in place of the model give back what made the data, with the
-confidence that their noise leaves; bad data end in words; tensile tests give what their authors read from them.
+confidence that their noise leaves; bad data end in words; tensile tests give what their authors read.
 """
 
 import json
