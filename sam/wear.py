@@ -145,12 +145,12 @@ def weights(window: int, order: int) -> Array:
     return w
 
 
-def filtered(field: Array, window: int, order: int) -> Array:
-    """The smoothed field (nx, ny), mirrored at the border: its sum and its symmetry stay, bit by
+def filtered(field: Array, window: int, order: int, *, periodic: bool = False) -> Array:
+    """The smoothed field (nx, ny), mirrored at the border or repeated: its sum and its symmetry stay, bit by
     bit.
     """
     w, half = weights(window, order), window // 2
-    padded = np.pad(field, half, mode="symmetric")
+    padded = np.pad(field, half, mode="wrap" if periodic else "symmetric")
     out = np.zeros(field.shape)
     for k in range(half + 1):
         for other in range(k + 1):
@@ -172,7 +172,9 @@ def _four(padded: Array, half: int, k: int, l: int) -> Array:  # noqa: E741
     return (at(k, l) + at(-k, -l)) + (at(k, -l) + at(-k, l))
 
 
-def smoothed(depth: Array, window: int, order: int, all_removed: bool = False) -> Array:
+def smoothed(
+    depth: Array, window: int, order: int, all_removed: bool = False, *, periodic: bool = False
+) -> Array:
     """Smoothed worn depth (nx, ny) in m, never below 0: smoothing adds no material. window = 0: as it is. The
     filter keeps the volume (see `filtered`). Around a scar its weights of order >= 2 ask for negative depths;
     these are set to 0, so the worn volume grows by what they held. Flanks within half a window of the raw
@@ -185,7 +187,7 @@ def smoothed(depth: Array, window: int, order: int, all_removed: bool = False) -
     check_depth(depth)
     if window == 0 or not depth.any():
         return depth
-    return np.maximum(filtered(depth, window, order), depth if all_removed else 0.0)
+    return np.maximum(filtered(depth, window, order, periodic=periodic), depth if all_removed else 0.0)
 
 
 def check_depth(depth: Array) -> None:
@@ -283,6 +285,7 @@ class WearLaw:
     interpolate: bool
     window: int
     order: int
+    periodic: bool = False
 
     def fresh(self) -> WearState:
         """The surface before the first cycle."""
@@ -308,7 +311,7 @@ class WearLaw:
         raw = worn_depth(peeq, faces, self.limits, self.interpolate)
         depth, roofed = (self._on_grid(each, window) for each in (raw.depth, raw.roofed))
         whole = Worn(depth, roofed, self._on_grid(raw.at_bottom, window))
-        depth = smoothed(whole.depth, self.window, self.order, all_removed=True)
+        depth = smoothed(whole.depth, self.window, self.order, all_removed=True, periodic=self.periodic)
         columns = cells.any(axis=0)  # all others are fresh, and stay so
         below, worst, worn = {}, 0.0, depth[window.slices][columns][:, None]
         before, after = cells[:, columns], cells.copy()

@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sam.arrays import Array, Mask
-from sam.contact.convolution import BoxConvolution, MirroredConvolution, Real, mirror_half, unfolded
+from sam.contact.convolution import Real, mirror_half, unfolded
 from sam.contact.operators import SurfaceOperators
 from sam.grid.cells import Window
 
@@ -254,8 +254,7 @@ class _Iteration:
         self.operators, self.box = operators, box
         self.counters, self.bodies = operators.counters, operators.bodies
         self.self_influence, self.mirrored = operators.self_influence, mirrored
-        convolution = MirroredConvolution if mirrored else BoxConvolution
-        self.operator = convolution(operators.coefficients, box.shape, operators.counters)
+        self.operator = operators.box_operator(box, mirrored)
         self.residuals: list[float] = []
         self.count: Array = np.ones(box.shape)
         if mirrored:

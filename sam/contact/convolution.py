@@ -45,6 +45,8 @@ Real = NDArray[np.floating[Any]]
 """Real numbers in single or double precision."""
 SHORT = 25000  # products a row, 110 values times 220 wave numbers: up to here they beat a fast transform
 
+FEW_CELLS = 625  # of a box: up to here the matrix of all pairs beats transforms (25 us against 60 of 25 x 25)
+
 
 class _Sum(NamedTuple):
     """Which of the sums of the module's text, or of their inverses."""
@@ -428,6 +430,22 @@ def filtered(kept: Real, cells: tuple[int, int], spectrum: Real) -> Real:
     return kept
 
 
+class DirectConvolution(BoxConvolution):
+    """The same for few cells, by the matrix of all pairs."""
+
+    def _spectrum(self, kernel: Real, half: tuple[int, int]) -> Real:
+        return between_pairs(kernel)
+
+    def _apply(self, field: Real, spectrum: Real) -> NDArray[Any]:
+        return (spectrum @ field.ravel()).reshape(field.shape)
+
+
+def between_pairs(kernel: Real) -> Real:
+    """The matrix (cells, cells) of an even kernel at lags >= 0, (nx, ny), between the cells of a box."""
+    x, y = (np.abs(np.subtract.outer(*[np.arange(n)] * 2)) for n in kernel.shape)
+    return np.asarray(kernel[x[:, None, :, None], y[:, None]].reshape(kernel.size, kernel.size))
+
+
 class MirroredConvolution(BoxConvolution):
     """The same for fields that are mirrored in x and in y, given on the quarter from the middle outward."""
 
@@ -436,6 +454,23 @@ class MirroredConvolution(BoxConvolution):
 
     def _apply(self, field: Real, spectrum: Real) -> NDArray[Any]:
         return filtered(field, self.shape, spectrum)
+
+
+class PeriodicConvolution(BoxConvolution):
+    """The same on all cells of a period, of a kernel that repeats with it; mirrored: as above."""
+
+    def __init__(self, kernel: Real, mirrored: bool, counters: Counters):
+        self.shape, self.counters, self.mirrored = (kernel.shape[0], kernel.shape[1]), counters, mirrored
+        self.spectrum = fft.rfft2(kernel).real
+        if mirrored:
+            self.spectrum = self.spectrum[: self.shape[0] // 2 + 1]
+
+    def _apply(self, field: Real, spectrum: Real) -> NDArray[Any]:
+        if self.mirrored:
+            return filtered(field, self.shape, spectrum)
+        found = transformed(field, self.shape)
+        found *= spectrum
+        return cropped(found, self.shape, self.shape)
 
 
 def _by_parity(field: Real, odd: Parity, *, n: int, half: int, axis: int, inverse: bool = False) -> Real:
@@ -454,13 +489,23 @@ def _by_parity(field: Real, odd: Parity, *, n: int, half: int, axis: int, invers
 
 
 class Transforms:
-    """Transforms of fields on a box, mirrored in x (with y) and in y; half: the N of the text."""
+    """Transforms of fields on a box, mirrored in x (with y) and in y; half: the N of the text; periodic: of
+    all cells of a period, of which N are half.
+    """
 
     def __init__(
-        self, cells: tuple[int, int], mirror: tuple[bool, bool], *, single: bool, counters: Counters
+        self,
+        cells: tuple[int, int],
+        mirror: tuple[bool, bool],
+        *,
+        single: bool,
+        counters: Counters,
+        periodic: bool = False,
     ):
-        self.cells, self.mirror, self.counters = cells, mirror, counters
+        self.cells, self.mirror, self.counters, self.periodic = cells, mirror, counters, periodic
         self.half = half_length(cells[0]), half_length(cells[1])
+        if periodic:
+            self.half = cells[0] // 2, cells[1] // 2
         self.lengths = 2 * self.half[0], 2 * self.half[1]
         self.real: type[np.floating[Any]] = np.float32 if single else np.float64
         self.complex: type[np.complexfloating[Any, Any]] = np.complex64 if single else np.complex128

@@ -38,6 +38,8 @@ from sam.schedule import Approach
 COARSEST = 48  # a grid smaller than this in x or y starts from uniform pressure: 27; 24 29, 8 33
 COARSE_TOLERANCE = 1e-1  # of a start, the finer grid corrects what is left: 27; 1e-3 29, 1e-6 32
 COARSE_LIMIT = 60  # iterations of a start, which is as good as it then is
+# Share of a periodic grid up to which a box, padded with zeros, takes less time than all of its cells.
+LARGEST_PADDED = 1 / 3
 MARGIN = 3  # cells around the estimated contact that may come into contact; 1 and 8 the same
 
 
@@ -117,7 +119,8 @@ def _coarse_start(operators: SurfaceOperators, gap0: Array, control: Control) ->
     # every second cell, among them the central one
     ox, oy = (nx // 2) % 2, (ny // 2) % 2
     coarse_gap, on_coarse = gap0[ox::2, oy::2] / 2, control.coarser()
-    if min(coarse_gap.shape) < COARSEST or not on_coarse.touches(coarse_gap):
+    fewer = min(coarse_gap.shape) < COARSEST or (operators.bodies.periodic and operators.odd)
+    if fewer or not on_coarse.touches(coarse_gap):
         return control.start(gap0)
     shape, bodies = (coarse_gap.shape[0], coarse_gap.shape[1]), operators.bodies.coarser()
     coarse = SurfaceOperators(shape, operators.aspect, operators.counters, bodies=bodies)
@@ -171,6 +174,8 @@ def _growing_box(
     cells, total, grid = start > 0, 0, BoxContact(operators, operators.whole)
     while True:
         box = around(cells)
+        if operators.bodies.periodic and box.nx * box.ny > LARGEST_PADDED * cells.size:
+            box = operators.whole
         contact = BoxContact(operators, box)
         p_box, u, iterations = contact.solve(
             gap0[box.slices], control, start[box.slices], tolerance=tolerance, limit=limit

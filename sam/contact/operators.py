@@ -20,9 +20,15 @@ from scipy import fft
 
 from sam.arrays import Array
 from sam.contact.convolution import (
+    FEW_CELLS,
+    BoxConvolution,
     Convolution,
     Counters,
+    DirectConvolution,
+    MirroredConvolution,
+    PeriodicConvolution,
     Real,
+    between_pairs,
     convolution_onto,
     cropped,
     filtered,
@@ -38,6 +44,10 @@ from sam.layered.response import Layers
 WAVES = 64  # wave numbers of a bound: 1024 give one larger by less than 0.02 %, 8 one smaller by 0.8 %
 
 
+Kernel = Callable[..., Array]
+"""nx, ny lags >= 0, component, load (1 to 3) -> displacement by a unit load on the cell at the origin."""
+
+
 class HalfSpaces:
     """Two homogeneous half-spaces; the coupling of a traction is then 2 beta mu."""
 
@@ -48,14 +58,21 @@ class HalfSpaces:
     restart_threshold = (
         0.4  # share of the first residual at which p is projected: 44 and 38; at 0.1 48 and 45
     )
+    periodic = False  # whether all repeats with the grid
+
+    def coefficients(
+        self, wanted: Lags, cells: tuple[int, int], nu: float, *, component: int, load: int
+    ) -> Array:
+        """mu times the displacement of the surface of one of them, lengths in hx; cells: of the grid."""
+        return displacement_coefficients(wanted, nu, component=component, load=load)  # paper Eq. 5
 
     def normal(self, nx: int, ny: int, aspect: float) -> Array:
         """u_hat_z by p_hat = 1 on the cell at the origin, (nx, ny) lags >= 0. Paper: D_33 of Eq. 5."""
-        return displacement_coefficients(Lags(nx, ny, 1.0, aspect), nu=0.0)
+        return self.coefficients(Lags(nx, ny, 1.0, aspect), (nx, ny), 0.0, component=3, load=3)
 
     def tangential(self, nx: int, ny: int, aspect: float) -> Array:
         """u_hat_z by a traction p_hat = 1 along x with coupling 1. Paper: D_31 of Eq. 5."""
-        return displacement_coefficients(Lags(nx, ny, 1.0, aspect), nu=0.0, component=3, load=1)
+        return self.coefficients(Lags(nx, ny, 1.0, aspect), (nx, ny), 0.0, component=3, load=1)
 
     def stiffness(self, wave_number: Array) -> Array:
         """p_hat of a unit harmonic of u_hat with a wave number per cell > 0: |k| (Westergaard)."""
@@ -68,6 +85,19 @@ class HalfSpaces:
     def coarser(self) -> HalfSpaces:
         """The same bodies for cells twice as large."""
         return self
+
+    def own(self, coefficients: Array, aspect: float) -> float:
+        """u_hat_z of p_hat = 1 in its own cell, of `normal` coefficients: a unit of residuals."""
+        return float(coefficients[0, 0])
+
+    def kernel(self, grid: CellGrid, nu: float) -> Kernel:
+        """The `coefficients` on a grid."""
+
+        def kernel(nx: int, ny: int, *, component: int, load: int) -> Array:
+            lags = Lags(nx, ny, 1.0, grid.hy / grid.hx)
+            return self.coefficients(lags, grid.shape, nu, component=component, load=load)
+
+        return kernel
 
 
 HALF_SPACES = HalfSpaces()
@@ -168,13 +198,25 @@ class SurfaceOperators:
         self.coupling = np.broadcast_to(coupling, shape) if np.any(coupling) else None
         self.whole = Window(0, 0, *shape)
         self.coefficients = bodies.normal(*shape, aspect)
-        self.self_influence = float(self.coefficients[0, 0])
+        self.self_influence = bodies.own(self.coefficients, aspect)
 
     def with_coupling(self, coupling: float | Array) -> SurfaceOperators:
         """The operators of the same cells with another coefficient of friction, which share the rest."""
         other = copy(self)
         other.coupling = np.broadcast_to(coupling, self.shape) if np.any(coupling) else None
         return other
+
+    def box_operator(self, box: Window, mirrored: bool) -> BoxConvolution:
+        """p_hat -> u_hat on a box; mirrored: of fields that are, on the kept quarter."""
+        if self.bodies.periodic and box == self.whole and not (mirrored and self.odd):
+            return PeriodicConvolution(self.coefficients, mirrored, self.counters)
+        few = DirectConvolution if box.nx * box.ny <= FEW_CELLS else BoxConvolution
+        return (MirroredConvolution if mirrored else few)(self.coefficients, box.shape, self.counters)
+
+    @property
+    def odd(self) -> bool:
+        """Whether the number of cells along x or y is odd."""
+        return any(n % 2 for n in self.shape)
 
     def operator(self, source: Window, observed: Window) -> Operator:
         """p_hat on `source` -> u_hat on `observed`: paper Eq. 5 with D_33."""
@@ -232,29 +274,20 @@ class SurfaceOperators:
         symbol = self.bodies.stiffness(k)
         symbol = (symbol / symbol.max()).astype(self.bodies.real)
 
+        if few := not mirrored and box.nx * box.ny <= FEW_CELLS:
+            matrix = between_pairs(fft.irfft2(symbol, box.shape).astype(symbol.dtype))
+
         def apply(r: Real) -> Real:
             self.counters.ffts += 2
             if mirrored:
                 return filtered(r, box.shape, symbol)
+            if few:
+                return np.asarray((matrix @ r.ravel()).reshape(box.shape))
             spectrum = transformed(r, box.shape)
             spectrum *= symbol
             return cropped(spectrum, box.shape, box.shape)
 
         return apply
-
-
-Kernel = Callable[..., Array]
-"""nx, ny lags >= 0, component, load (1 to 3) -> displacement by a unit load on the cell at the origin."""
-
-
-def half_space_kernel(grid: CellGrid, nu: float) -> Kernel:
-    """mu times the displacement of the surface of a half-space, lengths in hx. Paper Eq. 5."""
-
-    def kernel(nx: int, ny: int, *, component: int, load: int) -> Array:
-        lags = Lags(nx, ny, 1.0, grid.hy / grid.hx)
-        return displacement_coefficients(lags, nu, component=component, load=load)
-
-    return kernel
 
 
 def moved_rows(
@@ -317,7 +350,7 @@ class CoatedPair:
         """Displacement of the counter-body away in the rows at y = 0, (nx, rows) in m."""
         if not (self.compliance and pressure.any()):
             return np.zeros(grid.axis_rows.shape)
-        kernel = half_space_kernel(grid, 0.0)
+        kernel = HALF_SPACES.kernel(grid, 0.0)
         out = 2 * self.compliance * grid.hx * moved_rows(grid, pressure, kernel, (3, 3), counters=counters)
         if traction is None:
             return out

@@ -12,7 +12,8 @@ import numpy as np
 from sam.arrays import Array
 from sam.contact.convolution import Counters
 from sam.contact.normal import Contact, Search, around, no_contact, solve_contact
-from sam.contact.operators import HALF_SPACES, CoatedPair, SurfaceOperators
+from sam.contact.operators import HALF_SPACES, CoatedPair, HalfSpaces, SurfaceOperators
+from sam.contact.periodic import PeriodicHalfSpaces
 from sam.contact.stress import DEPTHS_AT_ONCE
 from sam.elastic.misfit import MisfitSphere
 from sam.grid.cells import CellGrid, Room, Sides, Window
@@ -123,8 +124,9 @@ class Plan:
     counter-body that moves; coated: both bodies with a coating; rough: heights of the bodies; plasticity:
     yield curve and profile over depth; tribofilm, wear: the laws; judging: how repeated loading is judged;
     dissipates: whether the energy that each cycle dissipates is asked for; coarser: the plan on half as many
-    cells, from which quantities are extrapolated; stages: those that run, in the order in which they begin,
-    with their sizes, then those that do not, and why. None of what a scene has not.
+    cells, from which quantities are extrapolated; period: both bodies where all repeats; stages: those that
+    run, in the order in which they begin, with their sizes, then those that do not, and why. None of what a
+    scene has not.
     """
 
     grid: CellGrid
@@ -149,12 +151,20 @@ class Plan:
     judging: Judging | None = None
     dissipates: bool = False
     coarser: Plan | None = None
+    period: PeriodicHalfSpaces | None = None
     stages: tuple[Stage, ...] = ()
 
     @property
     def left_out(self) -> list[LeftOut]:
         """The stages that the scene does not need, with reasons."""
         return left_out_of(self.stages)
+
+    @property
+    def bodies(self) -> HalfSpaces:
+        """Both bodies, as the contact asks for them."""
+        if self.coated is not None:
+            return self.coated.bodies(self.grid)
+        return HALF_SPACES if self.period is None else self.period
 
     @property
     def unloads(self) -> bool:
@@ -240,7 +250,7 @@ class ElasticProblem:
             return self.untouched(load, gap)
         mu = slip.coefficient if coefficient is None else coefficient
         coupling = load.sign * (slip.coupling * mu)
-        bodies = HALF_SPACES if plan.coated is None else plan.coated.bodies(grid)
+        bodies = plan.bodies
         if plan.given is not None:
             operators = SurfaceOperators(
                 grid.shape, grid.hy / grid.hx, self.counters, coupling=coupling, bodies=bodies

@@ -11,7 +11,7 @@ import numpy as np
 
 from sam.arrays import Array
 from sam.contact.normal import Contact
-from sam.contact.operators import half_space_kernel, moved_rows
+from sam.contact.operators import moved_rows
 from sam.contact.stress import stresses, von_mises, yielding
 from sam.elastic.problem import ElasticProblem, Loaded, depths_at_once
 from sam.grid.cells import Window
@@ -26,20 +26,24 @@ def stress_at(state: Loaded, depths: Array, window: Window) -> Array:
     problem, tractions = state.problem, {3: state.contact.pressure}
     if (traction := state.traction) is not None:
         tractions[1] = traction
+    plan = problem.plan
+    cell, nu = (plan.grid.hx, plan.grid.hy), plan.pair.body.poisson
+    if plan.period is not None:
+        return plan.period.stresses(tractions, cell, depths, window, nu=nu, counters=problem.counters)
     stress = stresses(
         tractions,
-        (problem.plan.grid.hx, problem.plan.grid.hy),
+        cell,
         depths,
         window,
-        nu=problem.plan.pair.body.poisson,
-        layered=None if problem.plan.coated is None else problem.plan.coated.layered,
+        nu=nu,
+        layered=None if plan.coated is None else plan.coated.layered,
         counters=problem.counters,
     )
-    if problem.plan.misfit is None or not state.load.misfit:
+    if plan.misfit is None or not state.load.misfit:
         return stress
-    (i, j), grid = window.slices, problem.plan.grid
+    (i, j), grid = window.slices, plan.grid
     at = grid.x[i, None], grid.y[j], np.asarray(depths)[:, None, None]
-    return stress + state.load.misfit * problem.plan.misfit.stress(*at)
+    return stress + state.load.misfit * plan.misfit.stress(*at)
 
 
 def plane_stress(state: Loaded) -> Array:
@@ -113,7 +117,8 @@ def sliding_of(state: Loaded) -> Sliding | None:
         ux = ux + moved_rows(grid, traction, layered, (1, 1), counters=counters)
         return Sliding(traction, ux, zero, zero, zero)
     pair = problem.plan.pair
-    kernel = half_space_kernel(grid, pair.body.poisson)
+    bodies = problem.plan.bodies
+    kernel = bodies.kernel(grid, pair.body.poisson)
     ux = grid.hx * moved_rows(grid, pressure, kernel, (1, 3), counters=counters) / pair.body.shear
     ux = ux + grid.hx * moved_rows(grid, traction, kernel, (1, 1), counters=counters) / pair.body.shear
     # nu = 0 leaves out the factor 1 - 2 nu of D_31, which is a difference where the contact has it
@@ -123,7 +128,7 @@ def sliding_of(state: Loaded) -> Sliding | None:
         extra = pair.body.tangential_compliance - 2 * share * pair.tangential_mismatch
     uz = zero
     if extra:
-        kernel = half_space_kernel(grid, 0.0)
+        kernel = bodies.kernel(grid, 0.0)
         uz = extra * (grid.hx * moved_rows(grid, traction, kernel, (3, 1), counters=counters))
     return Sliding(traction, ux, zero, uz, zero)
 

@@ -43,7 +43,8 @@ class Room:
 @dataclass(frozen=True)
 class CellGrid:
     """nx x ny cells of hx x hy in m about the origin. depths: (nz,) of output in m; faces: (nz +
-    1,) of layers, or None; border: cells at each end that count for no maximum; room: as chosen.
+    1,) of layers, or None; border: cells at each end that count for no maximum; room: as chosen; periodic:
+    whether all repeats beside it.
     """
 
     nx: int
@@ -54,6 +55,7 @@ class CellGrid:
     faces: Array | None = None
     border: tuple[int, int] = (0, 0)
     room: Room = Room()
+    periodic: bool = False
 
     @property
     def shape(self) -> tuple[int, int]:

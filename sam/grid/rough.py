@@ -38,6 +38,7 @@ FINEST = 0.25  # cells between the even levels
 GROWTH = 1.2  # ratio of the distances between deeper levels
 DEPTH_SHARE = 1 / 8  # of the shorter side: the deepest level, unless the plastic zone goes deeper
 LAYER_GROWTH = 1.25  # ratio of the thicknesses of layers
+MOST_ACROSS = 3.0  # of `step_across`: self-affine patches that repeat have 0.6 to 1.6
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,7 @@ class RoughPatch:
     relief: bool = False
     counter: CounterSurface | None = None
     strip: Strip | None = None
+    periodic: bool = False
 
     @classmethod
     def of(
@@ -65,7 +67,8 @@ class RoughPatch:
         if strip is not None:
             return cls(surface, strip.cells, strip.extent, relief, counter, strip)
         cells, extent = patch_of(stated(leading(surface, counter)), given)
-        return cls(surface, cells, extent, relief, counter)
+        periodic = given is not None and given.periodic is not None
+        return cls(surface, cells, extent, relief, counter, periodic=periodic)
 
     def heights(self) -> Array:
         """Heights of a rough body at the cell centres, (nx, ny) in m, positive out of it; read-only."""
@@ -77,6 +80,12 @@ class RoughPatch:
             return self.strip.at(number, place)
         stretch = stated(self.counter).stretch(number)
         return _heights(stretch, self.cells, self.extent, self.relief)
+
+    def changed_by_taper(self, surface: Surface) -> tuple[float, float]:
+        """Rms change of the heights of a surface by its taper, and their rms deviation, in m."""
+        before = surface.model_copy(update={"taper": None})
+        as_is, other = (_heights(each, self.cells, self.extent, False) for each in (before, surface))
+        return float(np.sqrt(np.mean((other - as_is) ** 2))), float(as_is.std())
 
     @property
     def of_body(self) -> Array:
@@ -95,10 +104,34 @@ class RoughPatch:
 def _heights(surface: Surface, cells: tuple[int, int], extent: tuple[float, float], relief: bool) -> Array:
     x, y = (((np.arange(n) + 0.5) / n - 0.5) * side for n, side in zip(cells, extent, strict=True))
     values = heights(surface, x, y, extent)
+    if surface.taper:
+        values = tapered(values, surface.taper)
     if relief:
         values = with_relief(values, (x, y), extent, mean_deviation(surface, extent))
     values.flags.writeable = False
     return values
+
+
+def step_across(heights: Array) -> float:
+    """Rms step across the border of a patch over that between neighbouring cells, the larger of both
+    directions: about 1 of heights (nx, ny) that repeat.
+    """
+    steps = [(heights.take(0, axis) - heights.take(-1, axis), np.diff(heights, axis=axis)) for axis in (0, 1)]
+    rms = [[float(np.sqrt(np.square(each).mean())) for each in both] for both in steps]
+    return max(across / (inside or across or 1.0) for across, inside in rms)
+
+
+def tapered(heights: Array, share: float) -> Array:
+    """Heights (nx, ny) that repeat: in a share of each side, half of it at both ends, half of the step across
+    the border is added or taken off, as s^3 (10 - 15 s + 6 s^2) of the way s to the border.
+    """
+    for axis in (0, 1):
+        n = heights.shape[axis]
+        s = np.clip(1 - (np.arange(n) + 0.5) / (share * n / 2), 0.0, 1.0)
+        half = np.expand_dims(np.subtract(heights.take(-1, axis), heights.take(0, axis)) / 2, axis)
+        at_start = np.expand_dims(s**3 * (10 - 15 * s + 6 * s**2), 1 - axis)
+        heights = heights + half * (at_start - np.flip(at_start, axis))
+    return heights
 
 
 @dataclass(frozen=True)
@@ -125,10 +158,11 @@ class RoughDemand:
                 else _faces(plasticity, cell, deepest * room.below, self.reach * room.below)
             )
             depths = chosen if self.film is None else depths_with_film(chosen, self.film)
-        border = (0, 0) if patch.relief else border_cells((nx, ny))
+        border = (0, 0) if patch.relief or patch.periodic else border_cells((nx, ny))
         if plasticity is not None:
-            return CellGrid(nx, ny, hx, hy, (depths[1:] + depths[:-1]) / 2, depths, border, room)
-        return CellGrid(nx, ny, hx, hy, depths, border=border, room=room)
+            between = (depths[1:] + depths[:-1]) / 2
+            return CellGrid(nx, ny, hx, hy, between, depths, border, room, patch.periodic)
+        return CellGrid(nx, ny, hx, hy, depths, border=border, room=room, periodic=patch.periodic)
 
 
 def _depths(cell: float, deepest: float) -> Array:

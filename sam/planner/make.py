@@ -9,8 +9,10 @@ from math import ceil, inf
 import numpy as np
 
 from sam.arrays import ROUNDING
+from sam.contact.periodic import PeriodicHalfSpaces
 from sam.elastic.problem import Places, Plan
 from sam.grid.cells import CellGrid, Room
+from sam.grid.rough import MOST_ACROSS, RoughPatch, step_across
 from sam.grid.smooth import EVEN_DEPTH, MOST_CELLS, MOST_LAYERS, PLASTIC_CELLS, GridDemand
 from sam.half_space import ElasticPair
 from sam.moving import Growth, Track
@@ -26,6 +28,7 @@ from sam.tribofilm.law import FilmLaw
 from sam.tribofilm.state import FilmOnCells, VisitLaw
 from sam.wear import WearLaw, limit_by_depth
 
+WHOLE = 1e-6  # of a wave: so much more or less still repeats
 STRONG = 3.0  # coefficient of friction, beyond that in air, that may keep a contact from being found
 
 
@@ -66,7 +69,8 @@ def plan_of(bodies: Bodies) -> Plan:
     if scene.wear is not None and scene.wear.removes:
         limits = limit_by_depth(scene.wear, None if plasticity is None else plasticity.layer_thickness)
         smoothing = scene.wear.smoothing_window, scene.wear.smoothing_order
-        wear = WearLaw(grid.shape, grid.hx, grid.hy, limits, scene.wear.interpolate, *smoothing)
+        interpolate = scene.wear.interpolate
+        wear = WearLaw(grid.shape, grid.hx, grid.hy, limits, interpolate, *smoothing, grid.periodic)
     rough, last = bodies.patch, schedule.targets[-1].load
     made = Plan(
         grid=grid,
@@ -90,6 +94,7 @@ def plan_of(bodies: Bodies) -> Plan:
         wear=wear,
         judging=judging_of(scene),
         dissipates=counts_dissipation(scene),
+        period=period_of(scene),
         coarser=plan(coarse(scene, grid)) if scene.solver.extrapolate else None,
     )
     return replace(made, stages=stages_of(scene, made))
@@ -142,6 +147,13 @@ def _targets_of_cycle(scene: Scene, schedule: Schedule, cycle: int) -> list[Targ
         name, zero = "unloaded" if last else "", Load(0.0, sign, *places[-1], stretch=stretch)
         targets.append(Target(cycle, len(targets) + 1, zero, False, name, elastic_unloading=True))
     return targets
+
+
+def period_of(scene: Scene) -> PeriodicHalfSpaces | None:
+    """Both bodies of a patch that repeats; None if it does not."""
+    if scene.grid is None or scene.grid.periodic is None:
+        return None
+    return PeriodicHalfSpaces(free=scene.loading.lateral == "free")
 
 
 def slip_of(scene: Scene, pair: ElasticPair, grid: CellGrid) -> FullSlip:
@@ -272,8 +284,6 @@ def check_bodies(bodies: Bodies) -> None:
     """Refuse the scene of some bodies, see `check`."""
     scene = bodies.scene
     plasticity, other = scene.body.plasticity, scene.counterbody
-    if scene.grid is not None and scene.grid.periodic is not None:
-        raise UnsupportedScene(f'grid.periodic = "{scene.grid.periodic}": not yet solved, leave it out')
     if other is not None and other.shape == "cylinder":
         raise UnsupportedScene('counterbody.shape = "cylinder": not yet solved')
     _check_coating(scene)
@@ -295,6 +305,8 @@ def check_bodies(bodies: Bodies) -> None:
             raise UnsupportedScene(
                 f"{surface.table}.path = {surface.path!r}: only its digest is at hand, read the scene file"
             )
+    if bodies.patch is not None and bodies.patch.periodic:
+        _check_period(scene, bodies.patch)
     given = scene.grid
     if plasticity is None or given is None or given.extent is None or given.depths or given.layers:
         return
@@ -307,6 +319,40 @@ def check_bodies(bodies: Bodies) -> None:
             f"grid.extent = {extent}: {layers:.3g} layers as thick as a cell, at most {MOST_LAYERS} are "
             f"allowed: raise it, or give grid.layers and grid.depth"
         )
+
+
+def _check_period(scene: Scene, patch: RoughPatch) -> None:
+    """Surfaces that do not repeat, an approach at which the patch touches all over, and cells and operators
+    that there are not.
+    """
+    counter, approach, wrong = scene.counter_surface, scene.loading.approach, list[str]()
+    for stretch in range(scene.loading.cycles if counter is not None and counter.renewed else 1):
+        opposite = np.zeros(patch.cells) if counter is None else patch.counter_heights(stretch, (0.0, 0.0))
+        for surface, heights in ((patch.surface, patch.of_body), (counter, opposite)):
+            if surface is None:
+                continue
+            along = surface.feed or surface.wavelength_x, surface.wavelength_y
+            wrong += [
+                f"grid.extent = {side:g} m: a whole multiple of {wave:g} m, a wave of the {surface.words},"
+                for side, wave in zip(patch.extent, along, strict=True)
+                if wave is not None and abs(side / wave - round(side / wave)) > WHOLE
+            ]
+            if surface.kind == "file" and (step := step_across(heights)) > MOST_ACROSS:
+                wrong.append(
+                    f"{surface.table}.path = {surface.path!r}: a step across the border of "
+                    f"{MOST_ACROSS:g} times the rms step between neighbouring cells, not {step:.3g}, or "
+                    f"{surface.table}.taper"
+                )
+        gap = patch.of_body + opposite
+        if approach is not None and approach >= (most := float(gap.max() - gap.mean())):
+            words = "the mean of the gap at first touch, at which all of the patch touches,"
+            wrong.append(f"loading.approach = {approach:g} m: less than {most:.4g} m, {words}")
+    if scene.body.plasticity is not None and any(n % 2 for n in patch.cells):
+        wrong.append(f"grid.cells = {list(patch.cells)}: with [body.plasticity] even numbers of cells")
+    if scene.solver.operator == "dense":
+        wrong.append('solver.operator = "dense": "swept"')
+    if wrong:
+        raise UnsupportedScene("; ".join(f"{each} is allowed with grid.periodic" for each in wrong))
 
 
 def _check_coating(scene: Scene) -> None:

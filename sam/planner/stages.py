@@ -21,6 +21,7 @@ LEFT_ORDER = (
     "tangential kernels; coupling; contact search; surface coefficients; volume grid; eigenstrain kernels; "
     "plastic loop; layered coefficients; bare comparison; stresses in the film; stresses in the substrate; "
     "chemical film; worn geometry; stress outside the plane y = 0; surface heights; counter-surface heights; "
+    "padding; edge of the patch; images of the period; box around the contact; "
     f"unloading; unloading steps; cycles after the first; back-stresses; {VERDICT}; strain limit of the layer"
 ).split("; ")
 """The order in which stages that do not run are told."""
@@ -87,7 +88,13 @@ def _surface(scene: Scene, plan: Plan) -> Iterator[Stage]:
         words = "solver.extrapolate: all that follows on half as many cells first"
         yield _stage("coarser grid", "", words, cells=[plan.coarser.grid.nx, plan.coarser.grid.ny])
     touched = UNTOUCHED if plan.misfit is not None else ""
-    yield _stage("surface coefficients", touched, "normal displacement under pressure", coefficients=cells)
+    words = "normal displacement under pressure"
+    if plan.period is not None:
+        words += ", about its mean: the approach is that of the mean planes of the deformed surfaces"
+        left = ["padding", "edge of the patch"]
+        left += ["images of the period", "box around the contact"] * (plan.plasticity is not None)
+        yield from (_stage(each, 'grid.periodic = "xy": all repeats beside the patch') for each in left)
+    yield _stage("surface coefficients", touched, words, coefficients=cells)
     if plan.coated is None:
         yield _stage("layered coefficients", "no [body.coating]")
     else:
@@ -162,6 +169,9 @@ def _plastic(scene: Scene, plan: Plan) -> Iterator[Stage]:
         where = "the misfit strain" if plan.misfit is not None else where
         words = f"method {plan.solver.method}, {where} inside it{plasticity.of_layer}"
         steps = {"steps": plan.steps} | ({"unload_steps": plan.unload_steps} if plan.unloads else {})
+        if plan.period is not None:
+            held = "stress" if plan.period.free else "strain"
+            words += f"; the mean of the lateral {held} is zero at each depth"
         yield Stage("plastic loop", True, words, steps)
     if cycles > 1:
         why_not = elastic * (plasticity is None)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import ceil, floor
+from math import floor
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,9 +31,11 @@ from sam.plasticity.swept import neighbours
 GROWTH = 8
 # Cells or layers by which it grows at least: two boxes in P also with 1 and with 6.
 LEAST_GROWTH = 3
-# Elastic von Mises stress over the yield stress above which the plastic zone spreads beside the contact: with
-# 9 the first box of S is 33 cells wide in place of 37, with 1 it stays; the applications do not change.
-CONTAINED = 3.0
+# Share of the width of the zone of elastic stress by which that of plastic strain reaches further on either
+# side: of the largest von Mises stress in yield stresses, less CONTAINED, one over SPREAD, and FURTHEST at
+# most; a cell more if it slides or moves. Of 88 spheres (p0 = 1.8 to 7 yield stresses, 4 to 16 cells in
+# the radius, friction up to 0.4, on a path) six take a second box, five of perfect plasticity from 3.5 on.
+CONTAINED, SPREAD, FURTHEST = 1.6, 30, 1 / 12
 # Contact half-widths that the first guess of the depth of the plastic zone has at most: with 1.2 S takes two
 # boxes and 29 applications, with 2.5 it stays.
 DEEPEST = 1.8
@@ -44,8 +46,7 @@ SWEPT_SHARE = 0.05  # of the tolerance of the plastic iteration, the error of th
 # Cells that are free beside the zone of a body that nothing touches: with two strained ones a box grows.
 FREE_BESIDE = 3
 # Share of a rough patch up to which a box is smaller than that, as fields beside a box have coefficients of
-# their own: with 0.67 of 64 x 64 cells, 25 cycles take 34 s in place of 43 s; those of 0.9 of 512 x 512 cells
-# and 32 layers would take minutes.
+# their own: with 0.67 of 64 x 64 cells, 25 cycles take 34 s in place of 43 s.
 MOST_OF_PATCH = 0.8
 
 
@@ -56,10 +57,12 @@ def first_extent(
     *,
     anywhere: bool,
     both_ways: bool = False,
+    slides: bool = False,
     path: Sequence[tuple[float, float]] = ((0.0, 0.0),),
 ) -> Extent:
     """Box around the contact and the cells that would yield; limit: yield stress (nz,) in Pa;
-    anywhere: below a rough surface, just around the contact; path: places of the load in m.
+    anywhere: below a rough surface, just around the contact; slides: with a traction, or along the path,
+    places of the load in m.
     """
     exceeds = yielding(peak.mises, limit[:, None])
     if anywhere:
@@ -70,20 +73,23 @@ def first_extent(
     box = around(peak.contact.pressure > 0)
     half_width = min(box.nx * grid.hx, box.ny * grid.hy) / 2
     deep = np.flatnonzero(exceeds.any(axis=1) & (grid.depths <= DEEPEST * half_width))
-    # As far beside the contact as the elastic zone, at most a sixth of the contact: the plastic zone is
-    # narrower, until it spreads.
-    spreads = (peak.mises > CONTAINED * limit[:, None]).any()
-    least = ceil(box.nx / 8) if spreads else 0
     columns, end = np.flatnonzero(exceeds.any(axis=0)), box.i0 + box.nx
-    margins = np.clip([box.i0 + 2 - columns[0], columns[-1] + 3 - end], least, max(box.nx // 6, least))
-    widest = int(margins.max())
+    ratio = float((peak.mises / limit[:, None]).max())
+    free = beside(int(columns[-1] + 1 - columns[0]), ratio, slides)
+    margins = np.clip([box.i0 + free - columns[0], columns[-1] + 1 + free - end], 0, box.nx // 3)
+    across, widest = int(margins.min()), int(margins.max())
     before, after = (widest, widest) if both_ways else margins
     swept = np.array(path) / (grid.hx, grid.hy)
     left, low = np.floor(swept.min(axis=0)).astype(int)
     right, high = np.ceil(swept.max(axis=0)).astype(int)
-    i0, j0 = max(int(box.i0 - before + left), 0), max(int(box.j0 - widest + low), 0)
-    i1, j1 = min(int(end + after + right), grid.nx), min(int(box.j0 + box.ny + widest + high), grid.ny)
+    i0, j0 = max(int(box.i0 - before + left), 0), max(int(box.j0 - across + low), 0)
+    i1, j1 = min(int(end + after + right), grid.nx), min(int(box.j0 + box.ny + across + high), grid.ny)
     return Extent(Window(i0, j0, i1 - i0, j1 - j0), _layers(deep, grid))
+
+
+def beside(columns: int, ratio: float, slides: bool) -> int:
+    """Cells of a first box beside a zone of elastic stress of so many: of plastic strain and two free."""
+    return 2 + floor(columns * min(max((ratio - CONTAINED) / SPREAD, 0), FURTHEST)) + slides
 
 
 def _about_zone(exceeds: Mask, grid: CellGrid) -> Extent:
@@ -155,7 +161,7 @@ def edge_reached(trial: Trial, *, cut_beside: bool) -> Sides:
 @dataclass(frozen=True)
 class ExpectedBox:
     """A box of plastic strain; tolerance: of the iteration; exchange: of x and y; operator: see `Solver`;
-    faces: of the layers in hx, for `pairs`.
+    faces: of the layers in hx, for `pairs`; periodic: all cells of a period.
     """
 
     nx: int
@@ -165,6 +171,7 @@ class ExpectedBox:
     exchange: bool = False
     operator: str | None = None
     faces: tuple[float, ...] = ()
+    periodic: bool = False
 
     @property
     def width(self) -> int:
@@ -175,6 +182,8 @@ class ExpectedBox:
     def waves(self) -> int:
         """Wave numbers that are kept: (N_x + 1)(N_y + 1), or k_x <= k_y of them."""
         nx, ny = half_length(self.nx) + 1, half_length(self.ny) + 1
+        if self.periodic:
+            nx, ny = self.nx // 2 + 1, self.ny // 2 + 1
         return nx * (nx + 1) // 2 if self.exchange else nx * ny
 
     @property
@@ -183,15 +192,22 @@ class ExpectedBox:
         return self.width * 36 * self.layers**2 * self.waves
 
     @property
+    def large(self) -> bool:
+        """Whether sweeps take less time and memory."""
+        return self.matrices > MOST_BYTES
+
+    @property
     def swept(self) -> float:
         """The error of the operator where it is swept, or 0."""
-        swept = self.operator == "swept" or (self.operator is None and self.matrices > MOST_BYTES)
-        return SWEPT_SHARE * self.tolerance if swept else 0.0
+        swept = self.operator == "swept" or (self.operator is None and self.large)
+        return SWEPT_SHARE * self.tolerance if swept or self.periodic else 0.0
 
     @property
     def words(self) -> str:
         """Which operator, and why."""
         matrices = f"matrices between all {self.layers} layers"
+        if self.periodic:
+            return "swept over the layers, in the wave numbers of the patch"
         if self.operator is not None:
             return f'solver.operator = "{self.operator}"'
         return f"swept: {matrices} would take {self.matrices / 1e9:.3g} GB" if self.swept else matrices
@@ -223,7 +239,8 @@ class ExpectedBox:
 @dataclass(frozen=True)
 class Zone:
     """A smooth contact, and the zone beyond yield below it: wide, deep of elastic stress, needed of
-    plastic strain, in semi-axes; ratio of stress to yield stress; path in cells.
+    plastic strain, in semi-axes; ratio of stress to yield stress; slides: as for `first_extent`; path in
+    cells.
     """
 
     axes: tuple[float, float]
@@ -231,6 +248,7 @@ class Zone:
     deep: float
     needed: tuple[float, float]
     ratio: float
+    slides: bool = False
     path: tuple[int, int] = (0, 0)
 
 
@@ -240,9 +258,9 @@ def expected_sides(grid: CellGrid, depths: np.ndarray, zone: Zone) -> list[tuple
     for axis, h, n, path in zip(zone.axes, (grid.hx, grid.hy), (grid.nx, grid.ny), zone.path, strict=True):
         contact = 2 * floor(axis / h) + n % 2
         contact += 2 * margin_around(contact)
-        some = ceil(contact / 8) if zone.ratio > CONTAINED else 0
-        beside = min(max(floor(zone.wide * axis / h) + 2 - contact // 2, some), max(contact // 6, some))
-        box.append(min(contact + 2 * beside + path, n))
+        columns = 2 * floor(zone.wide * axis / h) + 1
+        more = columns // 2 + beside(columns, zone.ratio, zone.slides) - contact // 2
+        box.append(min(contact + 2 * min(max(more, 0), contact // 3) + path, n))
         # a cell yields with the first of its points; the last two cells of a box stay free
         needed.append(min(2 * floor(zone.needed[0] * axis / h + 2 * OFFSET) + 5 + path, n))
     deep, half_width = zone.deep * min(zone.axes), min(box[0] * grid.hx, box[1] * grid.hy) / 2

@@ -107,8 +107,11 @@ def first_box(model: Model, peak: ElasticPeak) -> Extent:
     """The first box of a history; the whole grid below a rough patch that touches elsewhere later."""
     schedule, anywhere, limit = model.plan.schedule, model.plan.places.anywhere, model.plan.initial_yield
     both_ways, path = schedule.alternates, schedule.path
-    extent = first_extent(model.grid, peak, limit, anywhere=anywhere, both_ways=both_ways, path=path)
-    elsewhere = anywhere and (len(path) > 1 or schedule.renews)
+    slides = model.plan.slip.slides or len(path) > 1
+    extent = first_extent(
+        model.grid, peak, limit, anywhere=anywhere, both_ways=both_ways, slides=slides, path=path
+    )
+    elsewhere = anywhere and (len(path) > 1 or schedule.renews or model.plan.period is not None)
     return replace(extent, window=model.grid.whole) if elsewhere else extent
 
 
@@ -183,7 +186,7 @@ def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, T
             tested = law.tested(before, film, strain, pressure=pressure, sign=trial.load.sign)
         film_stays = tested is None or film is None or tested.film.failed is film.film.failed
         film = tested
-        if film_stays and until <= model.tolerance:
+        if film_stays and trial.history[-1] <= model.tolerance:
             after, extent = _beside(model, committed(model, record, trial, film), trial)
             if extent != record.extent:
                 return attempt(model, _enlarged(model, record, extent), load)

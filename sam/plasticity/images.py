@@ -19,7 +19,7 @@ of one family:
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import ceil, factorial, log, pi
+from math import ceil, factorial, pi
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebint, chebvander
@@ -28,6 +28,7 @@ from numpy.polynomial.legendre import leggauss
 from sam.arrays import Array
 from sam.kernels.eigenstrain import ENTRIES, FOURTH, MIRRORED, blocks, eigenstrain_table
 from sam.kernels.patches import ODD_X, ODD_Y, Cuboids
+from sam.kernels.waves import at_nodes, lagrange, nodes, nodes_for
 from sam.plasticity.swept import GAUSS, Reals
 
 NEAR = 2  # periods: images further away are summed at fewer nodes
@@ -74,32 +75,10 @@ def _weights(nu: float) -> tuple[Array, Array]:
     return full, image.reshape(4, 36, 30)
 
 
-def _nodes(n: int) -> Array:
-    """Chebyshev nodes in (-1, 1), descending."""
-    return np.cos(pi / n * (np.arange(n, dtype=float) + 0.5))
-
-
-def _lagrange(n: int) -> Array:
-    """Lagrange polynomials of the nodes in Chebyshev polynomials, a column each."""
-    polynomials: Array = np.asarray(np.linalg.inv(chebvander(_nodes(n), n - 1)), dtype=float)
-    return polynomials
-
-
-def _at(points: Array, n: int) -> Array:
-    """Lagrange polynomials of n nodes at points, (..., n)."""
-    return chebvander(points, n - 1) @ _lagrange(n)
-
-
 def _means(faces: Array, n: int) -> Array:
     """Means over cells of the Lagrange polynomials of n nodes between first and last face, (cells, n)."""
     t = (2 * faces - faces[0] - faces[-1]) / (faces[-1] - faces[0])
-    return np.diff(chebvander(t, n) @ chebint(_lagrange(n)), axis=0) / np.diff(t)[:, None]
-
-
-def _number(tolerance: float, *poles: complex) -> int:
-    """Nodes in [-1, 1] for a function with such singular points: by the ellipse of Bernstein through them."""
-    ellipse = min(abs(w + np.sqrt(w - 1 + 0j) * np.sqrt(w + 1 + 0j)) for w in poles)
-    return ceil(log(1 / tolerance) / log(ellipse))
+    return np.diff(chebvander(t, n) @ chebint(lagrange(n)), axis=0) / np.diff(t)[:, None]
 
 
 def _factors(matrix: Array, tolerance: float) -> tuple[Array, Array]:
@@ -116,43 +95,35 @@ def _factors(matrix: Array, tolerance: float) -> tuple[Array, Array]:
     return left, left.T @ matrix
 
 
-class PeriodImages:
-    """Images of a box of cells (nx, ny), repeated with a period in cells, for its layers and aspect.
+class Images:
+    """Images of a cell, repeated with a period in cells, at lags up to half of it and one cell, or more.
 
-    cuboids: faces in hx, `lags.hx` = 1, `lags.hy` the aspect (`lags.shape` is not used); period: more than
-    cells, best twice as many; tolerance: error of the stress/mu in the norm of the whole operator, about 2.
+    cuboids: faces in hx, `lags.hx` = 1, `lags.hy` the aspect (`lags.shape` is not used); tolerance: error of
+    the stress/mu in the norm of the whole operator, about 2; lags: largest in cells.
     """
 
-    def __init__(self, cuboids: Cuboids, cells: tuple[int, int], period: tuple[int, int], tolerance: float):
-        faces, self.bottom, self.weights = cuboids.depths, cuboids.faces[-1], _weights(cuboids.nu)
+    def __init__(
+        self, cuboids: Cuboids, period: tuple[int, int], tolerance: float, lags: tuple[int, int] = (0, 0)
+    ):
+        self.bottom, self.weights = cuboids.faces[-1], _weights(cuboids.nu)
         self.cell = np.array([1.0, cuboids.lags.hy])
-        self.period, sides = np.multiply(period, self.cell), np.multiply(cells, self.cell)
-        self.reach = np.maximum(self.period / 2 + self.cell, sides)  # largest lags of the table
+        self.period = np.multiply(period, self.cell)
+        self.reach = np.maximum(self.period / 2 + self.cell, np.multiply(lags, self.cell))
         near, far = (self._numbers(tolerance, m) for m in (1, NEAR + 1))
         images, weight = self._images()
         is_near = np.abs(images).max(axis=1) <= NEAR
         of_far = self._sums(images[~is_near], weight[~is_near], far)
-        in_z, in_x, in_y = (_at(_nodes(near[k]), far[k]) for k in (2, 0, 1))
+        in_z, in_x, in_y = (at_nodes(nodes(near[k]), far[k]) for k in (2, 0, 1))
         self.table = in_x @ np.tensordot(in_z, of_far, 1) @ in_y.T
         self.table += self._sums(images[is_near], weight[is_near], near)
-        gap, half, thick = self.period - sides, sides / 2, (faces[-1] - faces[0]) / 2
-        numbers = [_number(tolerance, 1j * gap.min() / thick)]
-        for k in (0, 1):
-            poles = self.period[k] / half[k] - 1, 1j * gap[1 - k] / half[k]
-            numbers.append(2 * ceil(_number(tolerance, *poles) / 2))
-        edges = faces, *((np.arange(n + 1) - n / 2) * h for n, h in zip(cells, self.cell, strict=True))
-        self.means = [_means(of_axis, n) for of_axis, n in zip(edges, numbers, strict=True)]
-        self.integrals = [mean * np.diff(e)[:, None] for mean, e in zip(self.means, edges, strict=True)]
-        depths = (faces[0] + faces[-1]) / 2 + thick * _nodes(numbers[0])
-        self.factors = [_factors(m, tolerance) for m in self._matrices(depths, half, numbers[1:])]
 
     def _numbers(self, tolerance: float, nearest: int) -> list[int]:
         """Nodes in x, y and zeta of sums over images from the so many-th on; even in x and y."""
         away = nearest * self.period
         clear = away - self.reach
         poles = [(away[k] / self.reach[k], 1j * clear[1 - k] / self.reach[k]) for k in (0, 1)]
-        in_plane = [2 * ceil(_number(tolerance, *each) / 2) for each in poles]
-        return [*in_plane, _number(tolerance, 1j * clear.min() / self.bottom - 1)]
+        in_plane = [2 * ceil(nodes_for(tolerance, *each) / 2) for each in poles]
+        return [*in_plane, nodes_for(tolerance, 1j * clear.min() / self.bottom - 1)]
 
     def _images(self) -> tuple[Array, Array]:
         """Images (n, 2) in periods, and their weights by (d); in groups about as long as wide."""
@@ -168,8 +139,8 @@ class PeriodImages:
 
     def _sums(self, images: Array, weight: Array, numbers: list[int]) -> Array:
         """Sums of F_nm over images at nodes of the lags and of zeta, (zeta, 30, x, y)."""
-        x, y = (reach * _nodes(n)[: n // 2] for reach, n in zip(self.reach, numbers[:2], strict=True))
-        zeta = self.bottom * (1 + _nodes(numbers[2]))[:, None, None]
+        x, y = (reach * nodes(n)[: n // 2] for reach, n in zip(self.reach, numbers[:2], strict=True))
+        zeta = self.bottom * (1 + nodes(numbers[2]))[:, None, None]
         sums = np.zeros((3, 5, len(zeta), len(x), len(y)), complex)
         some = max(1, AT_ONCE // sums[0, 0].size)
         powers, polynomials = np.arange(5).reshape(5, 1, 1, 1, 1), _polynomials().reshape(15, 5)
@@ -196,19 +167,58 @@ class PeriodImages:
         zeta, ones = z + source if image else np.abs(z - source), np.ones_like(z)
         powers = np.array([ones, source, z, z * source] if image else [ones, zeta])
         weights = np.tensordot(powers, self.weights[image], ([0], [0]))
-        functions = _at(zeta / self.bottom - 1, len(self.table)) @ self.table.reshape(len(self.table), -1)
+        functions = at_nodes(zeta / self.bottom - 1, len(self.table)) @ self.table.reshape(
+            len(self.table), -1
+        )
         out = (weights @ functions.reshape(len(z), 30, -1)).reshape(-1, 36, *self.table.shape[2:])
         if not image:
             out[z < source] *= MIRRORED
         return out
 
+    def between(
+        self, image: bool, observed: tuple[float, float], source: tuple[float, float], lags: tuple[int, int]
+    ) -> Array:
+        """What images add to the coefficients at lags 0 .. N, N <= half of the period, from upper and lower
+        face of both layers, of the image part or the full space: (36, lags_x + 1, lags_y + 1). In the plane a
+        mean over observed and source cell by three Gauss points each, in depth two and four.
+        """
+        points, weights = leggauss(4)
+        z, depths = (np.mean(f) + np.diff(f) / 2 * at for f, at in ((observed, GAUSS), (source, points)))
+        z, depths, weight = np.repeat(z, 4), np.tile(depths, 2), np.tile(weights, 2) * np.diff(source) / 4
+        stress = np.tensordot(weight, self._stress(image, z, depths), 1)
+        points, weights = leggauss(3)
+        off, weight = np.add.outer(points, points).ravel() / 2, np.outer(weights, weights).ravel() / 4
+        in_x, in_y = (
+            np.tensordot(weight, at_nodes((np.arange(n + 1) + off[:, None]) * h / reach, count), 1)
+            for n, h, reach, count in zip(lags, self.cell, self.reach, stress.shape[1:], strict=True)
+        )
+        return in_x @ stress @ in_y.T * self.cell.prod()
+
+
+class PeriodImages(Images):
+    """Images of the strain in a box of cells (nx, ny); period: more than cells, best twice as many."""
+
+    def __init__(self, cuboids: Cuboids, cells: tuple[int, int], period: tuple[int, int], tolerance: float):
+        super().__init__(cuboids, period, tolerance, cells)
+        faces, sides = cuboids.depths, np.multiply(cells, self.cell)
+        gap, half, thick = self.period - sides, sides / 2, (faces[-1] - faces[0]) / 2
+        numbers = [nodes_for(tolerance, 1j * gap.min() / thick)]
+        for k in (0, 1):
+            poles = self.period[k] / half[k] - 1, 1j * gap[1 - k] / half[k]
+            numbers.append(2 * ceil(nodes_for(tolerance, *poles) / 2))
+        edges = faces, *((np.arange(n + 1) - n / 2) * h for n, h in zip(cells, self.cell, strict=True))
+        self.means = [_means(of_axis, n) for of_axis, n in zip(edges, numbers, strict=True)]
+        self.integrals = [mean * np.diff(e)[:, None] for mean, e in zip(self.means, edges, strict=True)]
+        depths = (faces[0] + faces[-1]) / 2 + thick * nodes(numbers[0])
+        self.factors = [_factors(m, tolerance) for m in self._matrices(depths, half, numbers[1:])]
+
     def _matrices(self, depths: Array, half: Array, numbers: list[int]) -> Iterator[Array]:
         """Stress at the nodes by moments, of fields even (odd) in x and in y: at the nodes x, y > 0."""
         sides, folded = (6, len(depths), numbers[0] // 2, numbers[1] // 2), []
         for k in (0, 1):
-            x = half[k] * _nodes(numbers[k])[: sides[k + 2]]
+            x = half[k] * nodes(numbers[k])[: sides[k + 2]]
             lags = np.array([np.subtract.outer(x, x).ravel(), np.add.outer(x, x).ravel()])
-            minus, plus = _at(lags / self.reach[k], self.table.shape[k + 2])
+            minus, plus = at_nodes(lags / self.reach[k], self.table.shape[k + 2])
             folded.append((minus + plus, minus - plus))
         for odd_x, odd_y in np.ndindex(2, 2):
             out = np.empty((*sides, *sides))
@@ -248,25 +258,6 @@ class PeriodImages:
         z, x, y = (mean.astype(values.dtype) for mean in self.means)
         part = (z @ values.reshape(6, values.shape[1], -1)).reshape(6, -1, *values.shape[2:])
         return x @ part @ y.T
-
-    def between(
-        self, image: bool, observed: tuple[float, float], source: tuple[float, float], lags: tuple[int, int]
-    ) -> Array:
-        """What images add to the coefficients at lags 0 .. N, N <= half of the period, from upper and lower
-        face of both layers, of the image part or the full space: (36, lags_x + 1, lags_y + 1). In the plane a
-        mean over observed and source cell by three Gauss points each, in depth two and four.
-        """
-        points, weights = leggauss(4)
-        z, depths = (np.mean(f) + np.diff(f) / 2 * at for f, at in ((observed, GAUSS), (source, points)))
-        z, depths, weight = np.repeat(z, 4), np.tile(depths, 2), np.tile(weights, 2) * np.diff(source) / 4
-        stress = np.tensordot(weight, self._stress(image, z, depths), 1)
-        points, weights = leggauss(3)
-        off, weight = np.add.outer(points, points).ravel() / 2, np.outer(weights, weights).ravel() / 4
-        in_x, in_y = (
-            np.tensordot(weight, _at((np.arange(n + 1) + off[:, None]) * h / reach, count), 1)
-            for n, h, reach, count in zip(lags, self.cell, self.reach, stress.shape[1:], strict=True)
-        )
-        return in_x @ stress @ in_y.T * self.cell.prod()
 
     @property
     def nbytes(self) -> int:

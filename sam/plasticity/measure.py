@@ -29,10 +29,12 @@ from sam.kernels.eigenstrain import surface_displacement_coefficients
 from sam.kernels.layer_stress import residual_stress_coefficients
 from sam.kernels.patches import ODD_X, ODD_Y, STRESS, Cuboids, Lags, parity
 from sam.moving import Track
+from sam.plasticity.box import ExpectedBox
 from sam.plasticity.load_step import ContactPressure, PressureSource, Problem
 from sam.plasticity.model import Model
 from sam.plasticity.progress import Outside, Progressed
-from sam.plasticity.state import Extent, Trial, filled
+from sam.plasticity.spectra import spectra_of
+from sam.plasticity.state import Extent, Trial, filled, surrounded
 from sam.results.history import CycleEnd, LoopRow, Moved, PassEnd, counted
 from sam.results.snapshots import Box, Cut, Snapshot, row_of_largest
 from sam.scene.result import BACK_STRESS, unfinished
@@ -126,9 +128,35 @@ def _residual_stress(model: Model, record: Progressed) -> Array:
     grid, window, rows = model.grid, record.extent.window, model.grid.axis_rows
     across = window.j0 <= rows.j0 and rows.j0 + rows.ny <= window.j0 + window.ny
     covered = record.extent.layers if across and window.nx == grid.nx else 0
+    expected = ExpectedBox(*window.shape, record.extent.layers, model.tolerance)
+    large = expected.large and model.plan.solver.operator != "dense"
+    if large or model.plan.period is not None:
+        return _swept_stress(model, record)
     strained, mu = _strained(model, record), model.plan.pair.body.shear
     below = residual_stress(strained, grid.depths[covered:], rows, mu=mu)
     return np.concatenate([np.zeros((6, covered, *below.shape[2:])), below], axis=1)
+
+
+def _swept_stress(model: Model, record: Progressed) -> Array:
+    """The same everywhere in these rows by sweeps, which take less time where a box is large: means over the
+    cells, from which those at their centres differ by h^2/24 times the second derivatives. Error: .1 % of
+    the largest two cells beside strained ones, .001 % beside a patch with zones of tens of cells.
+    """
+    grid, rows, box = model.grid, model.grid.axis_rows, record.extent.window
+    j0, j1 = min(box.j0, rows.j0 - 1), max(box.j0 + box.ny, rows.j0 + rows.ny + 1)
+    extent = Extent(Window(0, j0, grid.nx, j1 - j0), len(grid.depths))
+    operator = model.operator(extent, once=Counters())
+    strain = surrounded(record.state.material.strain, record.extent.inside(extent), extent.shape)
+    spectra_of.cache_clear()  # large, and not asked for again
+    response = operator.response(operator.transformed(operator.keep(strain)))
+    first = rows.j0 - 1 - j0
+    means = operator.whole(operator.stress(None, response))[..., first : first + rows.ny + 2].astype(float)
+    centres = means[..., 1:-1].copy()
+    for axis, edges in enumerate((grid.layer_faces, np.arange(grid.nx + 1.0), np.arange(rows.ny + 3.0)), 1):
+        bend = np.moveaxis(_bend(np.moveaxis(means, axis, 0), edges), 0, axis)
+        ends = [(int(k == axis < 3),) * 2 for k in range(4)]
+        centres -= np.pad(bend, ends, mode="edge")[..., slice(1, -1) if axis < 3 else slice(None)] / 24
+    return centres
 
 
 def _strained(model: Model, record: Progressed) -> Strained:
@@ -139,6 +167,8 @@ def _strained(model: Model, record: Progressed) -> Strained:
 def _moved(model: Model, record: Progressed, component: int, observed: Window) -> Array:
     """Displacement of a window of the surface by the plastic strain, (nx, ny) in m."""
     source, counters = _strained(model, record), model.counters
+    if model.plan.period is not None:
+        return model.plan.period.moved(source.strain, source.cuboids, component)[observed.slices]
     return surface_displacement(source, observed, counters=counters, component=component)
 
 
@@ -210,7 +240,14 @@ def snapshot(model: Model, record: Progressed, name: str, trial: Trial) -> Snaps
     # the largest plastic strain; cells hold means
     top, interval = None, model.strength.kinks.interval(grid.depths[:layers])
     if material.peeq.any():
-        centres = at_centres(material.peeq, model.faces(extent), interval)
+        around_it = [(0, 0), *[(int(grid.periodic),) * 2] * 2]
+        peeq = np.pad(material.peeq, around_it, mode="wrap")
+        centres = at_centres(peeq, model.faces(extent), interval)
+        if grid.periodic:  # the largest in the middle: it has neighbours on all sides
+            centres = centres[:, 1:-1, 1:-1]
+            place = np.unravel_index(int(centres.argmax()), centres.shape)[1:]
+            to_middle = [n // 2 - int(i) for n, i in zip(grid.shape, place, strict=True)]
+            centres = np.roll(centres, to_middle, axis=(1, 2))
         top = largest(centres, grid.depths[:layers], interval)
 
     # the cells of the box in the row of the largest pressure, where that need not be at the origin

@@ -31,7 +31,7 @@ from sam.plasticity.load_step import (
     Problem,
 )
 from sam.plasticity.paper import PaperProblem
-from sam.plasticity.spectra import SINGLE, BoxOperator
+from sam.plasticity.spectra import SINGLE, BoxOperator, PeriodicOperator
 from sam.plasticity.state import Extent
 from sam.scene.section import stated
 from sam.scene.yield_curve import Strength
@@ -157,7 +157,7 @@ class Model:
             misfit = plan.misfit.mean_stress(self.grid, extent.window, self.faces(extent))
         make = partial(PaperProblem, stop=stated(plan.solver.stop)) if plan.paper else Problem
         problem = make(
-            again.operator if again is not None else self._operator(extent),
+            again.operator if again is not None else self.operator(extent),
             pressure,
             self.material(extent),
             unit=self.unit,
@@ -184,7 +184,9 @@ class Model:
         grid, factor = self.grid, self.plan.slip.coupling
         if surface is None:
             aspect, coupling = grid.hy / grid.hx, factor * coefficient
-            return SurfaceOperators(grid.shape, aspect, self.counters, coupling=coupling)
+            return SurfaceOperators(
+                grid.shape, aspect, self.counters, coupling=coupling, bodies=self.plan.bodies
+            )
         return surface.with_coupling(factor * coefficient) if factor else surface
 
     def cuboids(self, extent: Extent) -> Cuboids:
@@ -192,20 +194,20 @@ class Model:
         lags = Lags(extent.window.nx, extent.window.ny, self.grid.hx, self.grid.hy)
         return Cuboids(lags, tuple(self.faces(extent).tolist()), self.plan.pair.body.poisson)
 
-    def _operator(self, extent: Extent) -> BoxOperator:
-        self.counters.tangential_kernels += self.plan.slip.slides
+    def operator(self, extent: Extent, *, once: Counters | None = None) -> BoxOperator:
+        """The operator of a box. once: counters of one beside that of the steps."""
+        counters = self.counters if once is None else once
+        counters.tangential_kernels += self.plan.slip.slides
         nx, ny = extent.window.shape
         exchange, asked = self._exchange(extent.window), self.plan.solver.operator
-        box = ExpectedBox(nx, ny, extent.layers, self.tolerance, exchange, asked)
-        return BoxOperator(
-            self.cuboids(extent),
-            self.plan.pair.body.shear,
-            self.counters,
-            single=self.tolerance >= SINGLE,
-            mirror=self._mirror(extent.window),
-            exchange=exchange,
-            swept=box.swept,
-        )
+        repeats = self.plan.period is not None
+        box = ExpectedBox(nx, ny, extent.layers, self.tolerance, exchange, asked, periodic=repeats)
+        single, period = self.tolerance >= SINGLE, self.plan.period
+        of_cells = self.cuboids(extent), self.plan.pair.body.shear, counters
+        if period is not None:
+            return PeriodicOperator(period, *of_cells, single=single, swept=box.swept)
+        mirror = self._mirror(extent.window)
+        return BoxOperator(*of_cells, single=single, mirror=mirror, exchange=exchange, swept=box.swept)
 
     def _mirror(self, window: Window) -> tuple[bool, bool]:
         """Whether fields are mirrored in x and in y: on a box about the middle, x without friction."""

@@ -25,11 +25,13 @@ from numpy.typing import NDArray
 
 from sam.arrays import Array
 from sam.contact.convolution import Counters, Transforms, real_spectrum
+from sam.contact.periodic import PeriodicHalfSpaces
 from sam.kernels.eigenstrain import EXCHANGED, surface_displacement_coefficients
 from sam.kernels.layer_stress import CornerFunctions, LayerStress, four_points, mesh
-from sam.kernels.patches import ODD_X, ODD_Y, Cuboids, Lags, stress_coefficients
+from sam.kernels.patches import ODD_X, ODD_Y, STRESS, Cuboids, Lags, stress_coefficients
 from sam.kernels.store import kept
-from sam.plasticity.images import PeriodImages
+from sam.kernels.waves import load_waves, strain_displacement_waves
+from sam.plasticity.images import Images, PeriodImages
 from sam.plasticity.swept import GAUSS, SweptLayers
 
 Reals = NDArray[Any]
@@ -74,15 +76,16 @@ class CellMeans(CornerFunctions):
 
 
 class CellSpectra(CellMeans):
-    """Their transforms of so many wave numbers, see `real_spectrum`."""
+    """Their transforms of so many wave numbers, see `real_spectrum`; closed: with the lag half a period."""
 
-    def __init__(self, lags: Lags):
-        super().__init__(lags)
+    def __init__(self, lags: Lags, closed: bool):
+        super().__init__(_first(lags, (lags.nx + closed, lags.ny + closed)))
+        self.half = lags.shape
         self.itself = np.ones((lags.nx + 1, lags.ny + 1))
 
     def planes(self, corners: Array, odd: tuple[int, int]) -> Array:
         """(..., nx + 1, ny + 1)."""
-        return np.asarray(real_spectrum(super().planes(corners, odd), self.shape, odd))
+        return np.asarray(real_spectrum(super().planes(corners, odd), self.half, odd))
 
 
 def _first(lags: Lags, counts: tuple[int, int]) -> Lags:
@@ -130,7 +133,8 @@ def _with_lag_before(kernel: Array, odd_x: Parities, odd_y: Parities) -> Array:
 
 class BoxSpectra:
     """Real transforms of coefficients of cuboids, with mu = 1; stored: of which wave numbers; images: of the
-    strain in (nx, ny) `cells` where its stress is swept, to an error of it.
+    strain in (nx, ny) `cells` where its stress is swept, to an error of it; period: where all repeats with
+    the transforms, and nothing is to be taken off.
     """
 
     def __init__(
@@ -141,15 +145,21 @@ class BoxSpectra:
         *,
         cells: tuple[int, int] = (0, 0),
         error: float = 0.0,
+        period: PeriodicHalfSpaces | None = None,
     ):
+        self.period = period
         self.cuboids, self.half = cuboids, cuboids.lags.shape
         self.real = np.float32 if single else np.float64
         every = np.ones((self.half[0] + 1, self.half[1] + 1), dtype=bool)
         self.stored = np.flatnonzero(np.triu(every)) if exchange else slice(None)
         self.waves = every.ravel()[self.stored].size
         self.images: PeriodImages | None = None
+        lengths = 2 * self.half[0], 2 * self.half[1]
+        self.all_cells = Lags(*lengths, 1.0, cuboids.lags.hy)
         if error:
-            self.images = PeriodImages(cuboids, cells, (2 * self.half[0], 2 * self.half[1]), error)
+            if period is None:
+                self.images = PeriodImages(cuboids, cells, lengths, error)
+            self.repeated = self.images or Images(cuboids, lengths, error)
             kx, ky = (np.arange(n + 1) * np.pi / n for n in self.half)
             waves = np.array(np.broadcast_arrays(kx[:, None], ky / cuboids.lags.hy)).reshape(2, -1)
             waves = waves[:, self.stored]
@@ -157,7 +167,6 @@ class BoxSpectra:
         else:
             shape = self.waves, 6 * cuboids.layers, 6 * cuboids.layers
             self.layers = kept(repr((cuboids, exchange)), shape, self.real, lambda: self._dense(shape))
-        self.strain_to_displacement = self._of_surface(surface_displacement_coefficients(cuboids), ODD_X)
 
     def _dense(self, shape: tuple[int, int, int]) -> Reals:
         """The matrices between all layers, (waves, 6 layers, 6 layers)."""
@@ -181,7 +190,7 @@ class BoxSpectra:
         some = np.append(faces[:-1][sources], faces[1:][sources][-1])
         square = lags.nx == lags.ny and lags.hx == lags.hy
         return LayerStress(
-            *(CellSpectra(lags), _points(faces)[observed], some, self.cuboids.nu),
+            *(CellSpectra(lags, self.period is not None), _points(faces)[observed], some, self.cuboids.nu),
             scale=SIGN,
             exchanged=square,
         )
@@ -205,20 +214,22 @@ class BoxSpectra:
         """The spectrum of a coefficient, (36, N_x + 1, N_y + 1), with that of its periodic images, (6, 6,
         waves).
         """
-        if self.images is None:
-            raise ValueError("only what is swept has a period")
         (top, bottom), (upper, lower) = (self.cuboids.faces[i : i + 2] for i in (observed, source))
-        more = self.images.between(image, (top, bottom), (upper, lower), lags=self.half)
+        more = self.repeated.between(image, (top, bottom), (upper, lower), lags=self.half)
+        nx, ny = np.add(self.half, self.period is not None)
         out = spectrum.reshape(36, -1)[:, self.stored].copy()
         for row, odd in enumerate(ODD_LAGS):
-            periodic = real_spectrum(more[row, : self.half[0], : self.half[1]], self.half, odd)
+            periodic = real_spectrum(more[row, :nx, :ny], self.half, odd)
             out[row] += SIGN[row] * periodic.ravel()[self.stored]
         return out.reshape(6, 6, -1)
 
     def stress(self, strain: Reals) -> Reals:
         """Stress/mu of strain in wave numbers, both (waves, 6 layers, r): paper Eq. 7, second sum."""
         if isinstance(self.layers, SweptLayers):
-            return self.layers(strain)
+            out = self.layers(strain)
+            if self.period is not None:
+                out[0] = self.period.mean_residual(strain[0], self.cuboids.nu)
+            return out
         if strain.shape[-1] == 1:  # bound by the memory of the matrices: einsum reads them faster than matmul
             return np.asarray(np.einsum("pij,pj->pi", self.layers, strain[..., 0])[..., None])
         return np.asarray(self.layers @ strain)
@@ -233,29 +244,55 @@ class BoxSpectra:
             stress.of(i, row)
         return out.diagonal(axis1=0, axis2=2).reshape(6, 6, -1)
 
+    def _of_waves(self, waves: Array) -> Reals:
+        """Spectra (6, n_layers, N_x + 1, N_y + 1) as `_of_surface` has them."""
+        rows = waves.reshape(-1, *waves.shape[2:])
+        return np.ascontiguousarray(np.moveaxis(rows, 0, -1), dtype=self.real)
+
+    def _of_load(self, load: int) -> Reals:
+        """Spectra of the stress of a load, (N_x + 1, N_y + 1, 6 n_layers)."""
+        cuboids, period = self.cuboids, self.period
+        if period is None:
+            return self._of_surface(mean_stress_of_load(cuboids, load), ODD_X ^ int(load == 1))
+        cells, nu, points = self.all_cells, cuboids.nu, _points(cuboids.depths)
+        each = [
+            load_waves("stress", STRESS, cells, nu, load=load, depths=z, point=GAUSS[1] / 2) for z in points
+        ]
+        waves = np.stack(each, axis=1)
+        waves[:, :, 0, 0] = period.mean_stress({load: 1.0}, nu)[:, None]
+        return self._of_waves(waves)
+
     def _of_surface(self, kernel: Array, odd_x: Parities) -> Reals:
         """Spectra of (6, n_layers, nx, ny) between layers and surface, (N_x + 1, N_y + 1, 6 n_layers)."""
         rows = [real_spectrum(part, self.half, odd) for part, *odd in zip(kernel, odd_x, ODD_Y, strict=True)]
         return np.ascontiguousarray(np.moveaxis(np.concatenate(rows), 0, -1), dtype=self.real)
 
     @cached_property
-    def pressure_to_stress(self) -> Reals:
-        """Spectra of the stress of a pressure, (N_x + 1, N_y + 1, 6 n_layers)."""
-        return self._of_surface(mean_stress_of_load(self.cuboids), ODD_X)
+    def strain_to_displacement(self) -> Reals:
+        """Spectra of the displacement of the surface by strain, (N_x + 1, N_y + 1, 6 n_layers)."""
+        cuboids = self.cuboids
+        if self.period is None:
+            return self._of_surface(surface_displacement_coefficients(cuboids), ODD_X)
+        return self._of_waves(strain_displacement_waves(self.all_cells, cuboids.faces, cuboids.nu))
 
     @cached_property
-    def traction_to_stress(self) -> Reals:
-        """The same of a traction along x, odd in x: its phase is -i, and (-i)^2 is left where both are."""
-        spectrum = self._of_surface(mean_stress_of_load(self.cuboids, load=1), ODD_X ^ 1)
-        return spectrum * np.repeat((-1.0) ** ODD_X, self.cuboids.layers).astype(self.real)
+    def pressure_to_stress(self) -> Reals:
+        """Spectra of the stress of a pressure, (N_x + 1, N_y + 1, 6 n_layers, 1)."""
+        return self._of_load(3)[..., None]
+
+    @cached_property
+    def loads_to_stress(self) -> Reals:
+        """The same, (..., 2), also of a traction along x, odd in x: its phase is -i, and (-i)^2 is left where
+        both are.
+        """
+        spectrum = self._of_load(1) * np.repeat((-1.0) ** ODD_X, self.cuboids.layers).astype(self.real)
+        return np.concatenate([self.pressure_to_stress, spectrum[..., None]], axis=-1)
 
 
 @lru_cache(maxsize=CACHED_BOXES)
-def spectra_of(
-    cuboids: Cuboids, single: bool, exchange: bool, *, cells: tuple[int, int], error: float
-) -> BoxSpectra:
+def spectra_of(cuboids: Cuboids, single: bool, exchange: bool, **keys: Any) -> BoxSpectra:
     """Spectra by content: boxes with equal transforms, layers (in cells) and Poisson's ratio share them."""
-    return BoxSpectra(cuboids, single, exchange, cells=cells, error=error)
+    return BoxSpectra(cuboids, single, exchange, **keys)
 
 
 class InWaves(NamedTuple):
@@ -275,6 +312,8 @@ class BoxOperator:
     of matrices between all of them.
     """
 
+    period: PeriodicHalfSpaces | None = None
+
     def __init__(
         self,
         box: Cuboids,
@@ -287,15 +326,18 @@ class BoxOperator:
         swept: float = 0.0,
     ):
         lags = box.lags
-        self.transforms = Transforms(lags.shape, mirror, single=single, counters=counters)
+        self.transforms = Transforms(
+            lags.shape, mirror, single=single, counters=counters, periodic=self.period is not None
+        )
         self.shape, self.layers = lags.shape, box.layers
         self.mu, self.hx, self.counters = mu, lags.hx, counters
         # rounded, so that equal boxes in other units are one entry
         aspect = float(f"{lags.hy / lags.hx:.12g}")
         in_cells = tuple(float(f"{z / lags.hx:.12g}") for z in box.faces)
         in_cells_of_hx = Cuboids(Lags(*self.transforms.half, 1.0, aspect), in_cells, box.nu)
+        cells = lags.shape if swept else (0, 0)
         self.spectra = spectra_of(
-            in_cells_of_hx, single, exchange, cells=lags.shape if swept else (0, 0), error=swept
+            in_cells_of_hx, single, exchange, cells=cells, error=swept, period=self.period
         )
         self.exchange, self.real = exchange, self.transforms.real
 
@@ -364,9 +406,8 @@ class BoxOperator:
         traction: Array | None = None,
     ) -> Reals:
         """Stress of pressure, traction (Pa) and plastic strain, (6, n_layers, nx, ny) in Pa: paper Eq. 7."""
-        loads = [(p, k) for k, p in enumerate((pressure, traction)) if p is not None and p.any()]
-        if loads:
-            columns = self._of_loads(loads)
+        if pressure is not None and pressure.any():
+            columns = self._of_loads(pressure[None] if traction is None else np.stack([pressure, traction]))
             if response is not None:
                 columns += response.columns  # paper Eq. 4: elastic and residual stress
         elif response is not None:
@@ -379,11 +420,17 @@ class BoxOperator:
             stress += self.keep(self.spectra.images.fields(response.images.astype(self.real)))
         return stress
 
-    def _of_loads(self, loads: list[tuple[Array, int]]) -> Reals:
-        """Transform of the stress of loads in Pa, each with 0 (pressure) or 1 (traction, odd in x)."""
-        which = np.array([k for _, k in loads])
-        columns = self.transforms.columns(np.stack([load for load, _ in loads]), which, np.zeros_like(which))
-        spectra = [self.spectra.traction_to_stress if k else self.spectra.pressure_to_stress for k in which]
-        # paper Eq. 7, first sum
-        terms = [part[..., None] * columns[:, :, [i]] for i, part in enumerate(spectra)]
-        return np.asarray(terms[0] if len(terms) == 1 else terms[0] + terms[1])
+    def _of_loads(self, loads: Array) -> Reals:
+        """Transform of the stress of a pressure, or of one and a traction (odd in x), (r, nx, ny) in Pa."""
+        which = np.arange(len(loads))
+        columns = self.transforms.columns(loads, which, np.zeros_like(which))
+        spectra = self.spectra.loads_to_stress if len(loads) > 1 else self.spectra.pressure_to_stress
+        return np.asarray(spectra @ columns)  # paper Eq. 7, first sum
+
+
+class PeriodicOperator(BoxOperator):
+    """The same where all repeats with the box, of an even number of cells each way."""
+
+    def __init__(self, period: PeriodicHalfSpaces, *of_cells: Any, **keys: Any):
+        self.period = period
+        super().__init__(*of_cells, **keys)

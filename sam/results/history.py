@@ -118,13 +118,16 @@ def contact_area(contact: Contact, grid: CellGrid) -> float:
     of two neighbours tells where between them the edge is (Johnson 1985, Sec. 4.2), h being the
     distance of lines of centres along it, in other cells than square ones of a second pass.
     Straight lines join these places in squares of four centres, arcs add to corners; at an end of
-    the grid it is halfway.
+    the grid it is halfway, unless that repeats.
     """
     if contact.area is not None:
         return contact.area
     hx, hy = grid.hx, grid.hy
     compliance = 2 / np.pi * (hx * np.arcsinh(hy / hx) + hy * np.arcsinh(hx / hy))  # times E*, Love 1929
-    p, gap = np.pad(contact.pressure, 1), np.pad(contact.gap, 1, constant_values=np.inf)
+    if grid.periodic:
+        p, gap = (np.pad(field, (0, 1), mode="wrap") for field in (contact.pressure, contact.gap))
+    else:
+        p, gap = np.pad(contact.pressure, 1), np.pad(contact.gap, 1, constant_values=np.inf)
     unit, mean = HALFWAY * contact.compliance / compliance, np.array(2 / (1 / hx + 1 / hy))
     along_x, along_y = _shares(p, gap, unit * mean), _shares(p.T, gap.T, unit * mean).T
     if hx != hy:

@@ -10,6 +10,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sam.arrays import Array
 from sam.contact.normal import FEWEST_IN_SPOT, Contact
@@ -82,11 +83,9 @@ class RoughRecord:
         """Contact spots, which join at the sides of cells and may be cut by the edge of the patch; the share
         of the patch in contact; the mean of the gap over the patch.
         """
-        from scipy import ndimage  # noqa: PLC0415 - for rough scenes alone
-
         mean = float(contact.gap.mean())
         return {
-            "contact_spots": float(ndimage.label(contact.pressure > 0)[1]),
+            "contact_spots": float(spots_of(contact.pressure, grid.periodic).max()),
             "contact_share": contact_area(contact, grid) / (grid.nx * grid.hx * grid.ny * grid.hy),
             "mean_gap_m": mean if np.isfinite(mean) else None,
         }
@@ -104,11 +103,18 @@ class RoughRecord:
                     f"{min(cells):.3g} cells in the shortest wavelength of the {surface.words}: with "
                     f"fewer than {WELL_RESOLVED:g} the largest pressure depends on where the cells lie{finer}"
                 )
-        if coarse := too_few_cells(contact.pressure):
+        if coarse := too_few_cells(contact.pressure, grid.periodic):
             out.append(f"{coarse}{finer}")
         if self.patch.relief and (made := in_the_fall_off(contact.pressure)):
             out.append("; ".join(filter(None, (made, self.remedies.larger_patch))))
-        if touching[[0, -1], :].any() or touching[:, [0, -1]].any():
+        for surface in (self.patch.surface, self.patch.counter):
+            if surface is not None and surface.taper is not None:
+                changed, sq = self.patch.changed_by_taper(surface)
+                out.append(
+                    f"{surface.table}.taper = {surface.taper:g}: so that they repeat, heights are changed by "
+                    f"{changed:.4g} m (rms), {100 * changed / sq:.3g} % of their rms deviation"
+                )
+        if not grid.periodic and (touching[[0, -1], :].any() or touching[:, [0, -1]].any()):
             words, (bx, by) = (
                 "the contact touches the edge of the grid, where the half-space is cut",
                 grid.border,
@@ -123,11 +129,26 @@ class RoughRecord:
         return tuple(out)
 
 
-def too_few_cells(pressure: Array) -> str:
-    """What to know about spots (nx, ny) in Pa that few cells resolve, joined at their sides."""
+def spots_of(pressure: Array, periodic: bool) -> NDArray[np.intp]:
+    """The number of the spot of each cell (nx, ny), joined at their sides, 0 beside them; periodic: also
+    across the border.
+    """
     from scipy import ndimage  # noqa: PLC0415 - for rough scenes alone
 
-    spots, _ = ndimage.label(pressure > 0)
+    spots, count = ndimage.label(pressure > 0)
+    if not periodic:
+        return np.asarray(spots)
+    from scipy import sparse  # noqa: PLC0415
+
+    ends = np.concatenate([[spots[0], spots[-1]], [spots[:, 0], spots[:, -1]]], axis=1)
+    ends = ends[:, (ends > 0).all(axis=0)]
+    pairs = sparse.coo_matrix((np.ones(ends.shape[1]), tuple(ends)), shape=(count + 1, count + 1))
+    return np.asarray(sparse.csgraph.connected_components(pairs, directed=False)[1][spots])
+
+
+def too_few_cells(pressure: Array, periodic: bool = False) -> str:
+    """What to know about spots (nx, ny) in Pa that few cells resolve, joined at their sides."""
+    spots = spots_of(pressure, periodic)
     if not spots.any():
         return ""
     cells = np.bincount(spots.ravel())[1:]

@@ -179,7 +179,7 @@ class Loading(Section):
     ("ball") or exp(-x^2) ("gauss"). surface: "free", or "held" by the tractions of the infinite body.
 
     lateral: of a periodic patch of a body that yields; the mean strain along x and y grows with the plastic
-    strain so that no mean stress remains ("free"), or is held at zero ("held").
+    strain so that no mean stress remains ("free"), or is held at zero ("held", if not given).
     """
 
     force: Force | None = None

@@ -203,6 +203,10 @@ class Scene(Section):
                 "grid.border",
                 f'"free" with {patch}: it has no border',
             ),
+            *(
+                (has(f"{table}.taper") and not repeats, f"{table}.taper", f"only together with {patch}")
+                for table in ("surface", "counterbody.surface")
+            ),
             (along and not line, "grid.periodic", f'"y" only together with {axis}'),
             (repeats and line, "grid.periodic", f'"y" with {axis}'),
             (line and has("loading.approach"), "loading.approach", datum),

@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 from rounding import EPS
 
-from sam.contact import convolution
+from sam.contact import convolution, operators
 from sam.contact.box import ApproachControl, BoxContact, ForceControl
 from sam.contact.convolution import (
     BoxConvolution,
     Convolution,
     Counters,
+    DirectConvolution,
     MirroredConvolution,
     RowConvolution,
     back,
@@ -307,18 +308,29 @@ def test_half_of_the_wave_numbers_gives_all_where_x_and_y_may_be_exchanged(n):
 
 @pytest.mark.parametrize("size", SIZES)
 def test_mirrored_displacements(size):
-    """A quarter of the box against all of it, in double and in single precision."""
+    """A quarter of the box, and all pairs of its cells, against all of it, in double and single precision."""
     kernel = displacement_coefficients(Lags(*size, 1.0, 0.9), nu=0.0)
-    whole, quarter = BoxConvolution(kernel, size, Counters()), MirroredConvolution(kernel, size, Counters())
+    kinds = BoxConvolution, MirroredConvolution, DirectConvolution
+    whole, quarter, pairs = (kind(kernel, size, Counters()) for kind in kinds)
     pressure = np.random.default_rng(2).random(size)
     pressure = pressure + pressure[::-1]
     pressure = pressure + pressure[:, ::-1]
     kept = tuple(mirror_half(n) for n in size)
     expected = whole(pressure)
     for real, bound in ((float, ROUNDING), (np.float32, 2e-6)):
-        found = quarter(pressure[kept].astype(real)), whole(pressure.astype(real))[kept]
+        every = [each(pressure.astype(real))[kept] for each in (whole, pairs)]
+        found = quarter(pressure[kept].astype(real)), *every
         assert all(each.dtype == real for each in found)
         assert np.abs(found - expected[kept]).max() <= bound * expected.max()
+
+
+def test_the_preconditioner_of_few_cells_is_that_by_transforms(monkeypatch):
+    """On a box of unequal sides with rectangular cells, in single precision."""
+    grid, r = SurfaceOperators((9, 12), 0.8, Counters()), np.random.default_rng(3).standard_normal((9, 12))
+    few = grid.preconditioner(grid.whole, False)(r)
+    monkeypatch.setattr(operators, "FEW_CELLS", 0)
+    expected = grid.preconditioner(grid.whole, False)(r)
+    np.testing.assert_allclose(few, expected, rtol=0, atol=2e-6 * abs(expected).max())
 
 
 def test_a_contact_on_a_quarter_is_that_of_the_box():

@@ -9,7 +9,8 @@ import pytest
 from sam.kernels.eigenstrain import MIRRORED, own_stress
 from sam.kernels.layer_stress import CornerFunctions, LayerStress
 from sam.kernels.patches import Cuboids, Lags
-from sam.plasticity.images import PeriodImages, _nodes
+from sam.kernels.waves import nodes as nodes_of
+from sam.plasticity.images import PeriodImages
 from sam.plasticity.spectra import GAUSS, ODD_X, ODD_Y
 
 CELLS, SIDES = (16, 16), np.array([16.0, 20.0])  # cells of 1 x 1.25
@@ -76,7 +77,7 @@ def summed(faces, nu, period, place):
 def test_equal_to_a_sum_over_images(faces, nu, period, tolerance):
     of = images(faces, nu, period, tolerance)
     values = of.values(of.moments(np.kron(STRAIN, np.ones((8, 8)))))
-    nodes = [_nodes(n) for n in values.shape[1:]]
+    nodes = [nodes_of(n) for n in values.shape[1:]]
     middle, half = (faces[-1] + faces[0]) / 2, (faces[-1] - faces[0]) / 2
     for k in ((0, 0, 0), (-1, 1, nodes[2].size // 2)):
         z, x, y = (node[i] for node, i in zip(nodes, k, strict=True))
@@ -90,7 +91,7 @@ def test_moments_and_fields_are_exact_for_polynomials():
     means = [np.diff(e ** (k + 1)) / np.diff(e) / (k + 1) for k, e in zip((2, 3, 1), edges, strict=True)]
     mean = np.einsum("c,z,x,y->czxy", np.arange(6.0), *means)
     nodes = [
-        (e[0] + e[-1]) / 2 + (e[-1] - e[0]) / 2 * _nodes(m.shape[1])
+        (e[0] + e[-1]) / 2 + (e[-1] - e[0]) / 2 * nodes_of(m.shape[1])
         for e, m in zip(edges, of.means, strict=True)
     ]
     at_nodes = np.einsum("c,z,x,y->czxy", np.arange(6.0), nodes[0] ** 2, nodes[1] ** 3, nodes[2])

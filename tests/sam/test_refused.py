@@ -297,6 +297,7 @@ renew = true; crop = ['5 um', '6 um'] -> @renew = true: & false: no second part
 crop = ['9 um', '9 um'] -> = & 8e-06 m
 form = 'cone' | 3 -> @form & "quadratic"
 resample = 'spline' -> = & "fourier"
+taper = 0.1 -> = & only together with grid.periodic = "xy"
 ## SLIDING
 -counterbody.surface -> loading.path & nothing moves
 counterbody.slip = 0 -> counterbody.slip & nothing moves on a plane

@@ -89,7 +89,7 @@ class Small:
 
     def __call__(self, context):
         self.runs += 1
-        context.scene("hertz-sphere")
+        context.scene("starts/sliding")
         result = context.solve(models.SAM, COARSE, "sam")
         if self.problem:
             raise RuntimeError(self.problem)
@@ -136,7 +136,7 @@ def test_a_case_runs_once_and_its_files_come_back_byte_for_byte(tmp_path, small,
     assert first["solves"] == {"solved": 1, "reused": 0, "cases": 0, "stale": 0, "damaged": 0}
     assert second["solves"] == {"solved": 0, "reused": 1, "cases": 1, "stale": 0, "damaged": 0}
     assert first["gates"] == second["gates"] and second["provenance"]["input_sha256"].keys() == {
-        "hertz-sphere.toml"
+        "starts/sliding.toml"
     }
     pages = [(tmp_path / name / "index.html").read_text(encoding="utf-8") for name in ("out", "again")]
     assert "1 solved, 0 taken" in pages[0] and "0 solved, 1 taken from the store" in pages[1]

@@ -235,7 +235,7 @@ class Context:
             return scene
         with resources.as_file(resources.files("verification").joinpath("scenes", f"{name}.toml")) as path:
             scene, inputs = read_scene(path)
-        self.inputs |= inputs
+        self.inputs |= {f"{name.removesuffix(path.stem)}{file}": content for file, content in inputs.items()}
         return scene
 
     def solve(self, model: str, scene: Scene, label: str, *, demand: bool = True) -> Result:

@@ -42,6 +42,11 @@ TIME = {
     models.FEM: {"solve": 0.129, "factors": 3.01e-7, "points": 0.0},
     models.FEM_3D: {"solve": 0.0712, "multigrid": 7.6e-8},
 }  # fmt: skip
+# Of a patch that repeats, whose coefficients are made in wave numbers, a depth at a time: share of the work
+# of stresses, of their memory, and what takes as long for any patch, in units of a solve; and share of the
+# memory of fields, whose transforms are a quarter as long.
+PERIODIC_FIELDS = 0.6
+PERIODIC_WORK, PERIODIC_MEMORY, PERIODIC_SOLVES = 0.4, 1 / 7, 2.5
 SETTLES = 0.5  # power of the cycles that count: later ones strain and wear less
 RENEWED = 0.65  # the same where each cycle meets another counter-surface: 231 to 1401 iterations in 25 cycles
 MULTIGRID = 1.5  # power of the unknowns: 12,000 to 68,000 take 8 to 20 us for each and iteration
@@ -163,7 +168,8 @@ def plastic_boxes(scene: Scene, plan: Any, beyond: float = 0.0) -> list[Expected
         if worn and scene.loading.cycles > 1 and sides[0] != grid.shape:
             sides.append(grid.shape)  # where summits are worn others touch
         layers, operator, in_cells = max(len(faces) - 1, 1), scene.solver.operator, tuple(faces / grid.hx)
-        return [ExpectedBox(*each, layers, tolerance, False, operator, in_cells) for each in sides]
+        repeats = plan.period is not None
+        return [ExpectedBox(*each, layers, tolerance, False, operator, in_cells, repeats) for each in sides]
     depths = (faces[1:] + faces[:-1]) / 2
     if scene.loading.misfit_sphere:
         return [_box_of_sphere(scene, grid, depths, beyond)]
@@ -192,7 +198,13 @@ def _rough_sides(scene: Scene, plan: Any) -> tuple[int, int]:
     from sam.plasticity import or_whole
 
     grid, force = plan.grid, scene.loading.force
-    if not force or scene.counterbody is None or len(plan.schedule.path) > 1 or plan.schedule.renews:
+    if (
+        plan.period is not None
+        or not force
+        or scene.counterbody is None
+        or len(plan.schedule.path) > 1
+        or plan.schedule.renews
+    ):
         return grid.shape
     area = grid.nx * grid.ny * grid.cell_area
     plane = scene.counterbody.shape == "flat"
@@ -238,7 +250,8 @@ def _zone(scene: Scene, grid: CellGrid, depths: np.ndarray) -> Zone:
         soft = hardening + _back_hardening(scene, depths) < HARDENS
         wider, deeper = (share * max(ratio - GIVEN_ABOVE, 0.0) for share in GIVEN_SPREAD[soft])
     needed, path = ((1 + wider) * wide, (1 + deeper) * deep), _path_cells(scene, grid)
-    return Zone(hertz_semi_axes(scene), wide, deep, needed, MISES * ratio, path=path)
+    slides = bool(scene.coefficient) or scene.loading.path is not None
+    return Zone(hertz_semi_axes(scene), wide, deep, needed, MISES * ratio, slides, path)
 
 
 def _back_hardening(scene: Scene, depths: np.ndarray) -> float:
@@ -384,6 +397,10 @@ def _sam(scene: Scene, plan: Any) -> Counted:
         "patch contact" if rough else "contact": contacts,
         "patch" if rough else "stresses": loads * coefficients,
     }
+    if plan.period is not None:
+        memory["patch"] = 48.0 * cells
+        memory["patch stresses"] = PERIODIC_MEMORY * memory.get("patch stresses", 0.0)
+        work |= {"solve": 1.0 + PERIODIC_SOLVES, "patch": PERIODIC_WORK * work["patch"]}
     if plan.coated is not None and steps:  # and the same contact without it
         memory["layered"] = block
         tables, layered = loads * (1 + depths), loads * (cells + coefficients)
@@ -410,7 +427,7 @@ def _sam(scene: Scene, plan: Any) -> Counted:
     memory = {  # the stresses of the elastic body are gone when the boxes come
         "surface": memory["surface"],
         "boxes": float(sum(box.width * box.coefficients for box in held(boxes))),
-        "fields": 8.0 * last.cells,
+        "fields": 8.0 * last.cells * (PERIODIC_FIELDS if last.periodic else 1.0),
         "set-up": 8.0 * last.set_up / last.layers,
         "chunks": 1.0,
     }
@@ -419,7 +436,12 @@ def _sam(scene: Scene, plan: Any) -> Counted:
         "box set-up": sum(box.set_up for each in either for box in each) / 2,
     }
     if rough and (last.nx, last.ny) != grid.shape:  # stress in y = 0, beside the box
-        work["beside"] = 36.0 * depths * last.layers * cells / 2
+        if last.swept and last.large:  # by an operator of its own
+            plane = replace(last, nx=grid.nx, layers=depths)
+            work["box set-up"] += plane.set_up
+            iterations += plane.waves * depths / (last.waves * last.layers)
+        else:
+            work["beside"] = 36.0 * depths * last.layers * cells / 2
     if last.swept:
         work["swept"] = iterations * last.width / 8 * 6.0 * last.layers * last.waves * kept
     else:

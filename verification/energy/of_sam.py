@@ -15,13 +15,14 @@ import sam
 from sam import Load, choose_grid, model_of
 from sam.contact import Convolution, Counters, convolution_onto
 from sam.grid import CellGrid, Window
-from sam.kernels import Lags, displacement_coefficients, parity
+from sam.kernels import parity
 from sam.plasticity import (
     POINTS,
     SHEAR,
     CellFields,
     Extent,
     MaterialFields,
+    Model,
     Progressed,
     Strained,
     contraction,
@@ -111,15 +112,17 @@ def _balance(scene: Scene, grid: CellGrid, states: list[Committed]) -> Balance:
 def _moved(scene: Scene, grid: CellGrid, pressure: np.ndarray, friction: np.ndarray) -> np.ndarray:
     """(u_z, u_x) of the surface of the elastic body, (2, nx, ny) in m. Paper Eq. 5."""
     body, whole = scene.body, Window(0, 0, grid.nx, grid.ny)
-    mu, lags = body.young / (2 * (1 + body.poisson)), Convolution.lags_needed(whole, whole)
+    bodies, mu, lags = (
+        sam.plan(scene).bodies,
+        body.young / (2 * (1 + body.poisson)),
+        Convolution.lags_needed(whole, whole),
+    )
     out = np.zeros((2, grid.nx, grid.ny))
     for row, component in enumerate((3, 1)):
         for load, field in ((3, pressure), (1, friction)):
             if not field.any():
                 continue
-            kernel = displacement_coefficients(
-                Lags(*lags, 1.0, grid.hy / grid.hx), body.poisson, component=component, load=load
-            )
+            kernel = bodies.kernel(grid, body.poisson)(*lags, component=component, load=load)
             signs = [parity(str(component), load)]
             out[row] += grid.hx / mu * convolution_onto(kernel[None], signs, whole, whole)(field)[0]
     return out
@@ -145,13 +148,18 @@ def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
         both = np.zeros((2, grid.nx, grid.ny))
         both[0, *window.slices] = residual.displacement
         if scene.coefficient:
-            source = Strained(mean.strain, window, model.cuboids(extent))
-            both[1, *window.slices] = surface_displacement(source, window, counters=Counters(), component=1)
+            both[1, *window.slices] = _moved_along(model, mean.strain, extent)
+        if grid.periodic:
+            free = scene.loading.lateral == "free"
+            both += _mean_moved(scene, mean.strain, np.diff(model.faces(extent)), free)[:, None, None]
         residuals.append(both)
         pressed = problem.stress(state.pressure[window.slices] / problem.unit, state.load)
         stress = problem.operator.whole(pressed) + residual.stress
-        at_points = stress_at_points(stress, points.strain, m)
-        apart = at_points - stress_at_points(stress, 0 * points.strain, m)  # from what is linear in a cell
+        at_points, smooth = (
+            stress_at_points(stress, strain, m, periodic=grid.periodic)
+            for strain in (points.strain, 0 * points.strain)
+        )
+        apart = at_points - smooth  # from what is linear in a cell
         stresses.append(at_points * volume / POINTS)
         means.append((stress * volume, mean.strain))
         between[k] = np.sum(volume * contraction(apart, apart).mean(axis=0) / (4 * m))
@@ -168,6 +176,23 @@ def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
     within = flowed + between - _work(*zip(*means, strict=True))
     parts = {"stored": stored, "dissipated": dissipated, "flowed": flowed, "back": back, "within": within}
     return residuals, parts
+
+
+def _moved_along(model: Model, strain: np.ndarray, extent: Extent) -> np.ndarray:
+    """u_x of the surface of a box by plastic strain in it, (nx, ny) in m. Paper Eq. 6."""
+    cells, window = model.cuboids(extent), extent.window
+    if model.plan.period is not None:
+        return model.plan.period.moved(strain, cells, 1)
+    return surface_displacement(Strained(strain, window, cells), window, counters=Counters(), component=1)
+
+
+def _mean_moved(scene: Scene, strain: np.ndarray, thick: np.ndarray, free: bool) -> np.ndarray:
+    """(u_z, u_x) of the mean plane of a periodic patch by its mean plastic strain, (6, layers, nx, ny), in m:
+    the solver gives displacements about it, but the mean of the tractions does work on it.
+    """
+    e, nu = strain.mean(axis=(2, 3)), scene.body.poisson
+    along_z = e[2] + (0.0 if free else nu / (1 - nu)) * (e[0] + e[1])
+    return -np.array([along_z @ thick, 2 * e[4] @ thick])
 
 
 def _work(stresses, strains) -> np.ndarray:

@@ -29,7 +29,7 @@ from sam.scene.units import (
 
 _SELF_AFFINE = ("cutoff_long", "cutoff_short", "hurst", "seed")
 KINDS = {
-    "file": (("path",), ("extent", "unit", "missing", "form", "crop", "resample")),
+    "file": (("path",), ("extent", "unit", "missing", "form", "crop", "resample", "taper")),
     "hard-turned": (("ra", "feed", "nose_radius", "feed_share", *_SELF_AFFINE), ("anisotropy",)),
     "self-affine": (_SELF_AFFINE, ("ra", "sq", "anisotropy")),
     "sinusoid": (("amplitude",), ("wavelength_x", "wavelength_y")),
@@ -84,7 +84,8 @@ class Surface(Section):
     given): "tilt", "sphere" or "quadratic" is taken off; missing ("refuse" if not given): "harmonic" fills
     missing points; crop: [lx, ly], or [x, y, lx, ly], the part of that size with its middle at (x, y) from
     the middle of the map, rounded to whole cells; resample: "fourier" lets grid.cells be any, which else are
-    those of the file. The other kinds are made on any grid, see sam.scene.surface.generators. "self-affine":
+    those of the file; taper: on a periodic patch, the share of each side in which heights are blended so that
+    they repeat. The other kinds are made on any grid, see sam.scene.surface.generators. "self-affine":
     ra or sq, cutoff_long, cutoff_short, hurst, anisotropy (1 if not given), seed; "hard-turned": ra, feed,
     nose_radius and feed_share as well; "sinusoid": amplitude, wavelength_x and wavelength_y (one alone: a
     wave).
@@ -101,6 +102,7 @@ class Surface(Section):
     form: Literal["none", "tilt", "sphere", "quadratic"] | None = None
     crop: Annotated[tuple[Coordinate, ...], BeforeValidator(_two_or_four)] | None = None
     resample: Literal["fourier"] | None = None
+    taper: Share | None = None
     ra: Length | None = None
     sq: Length | None = None
     feed: Length | None = None
@@ -114,6 +116,7 @@ class Surface(Section):
     amplitude: Length | None = None
     wavelength_x: Length | None = None
     wavelength_y: Length | None = None
+    unwritten: ClassVar[tuple[str, ...]] = ("taper",)
 
     @model_validator(mode="after")
     def _as_read(self) -> Self:
