@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 from samfem.refusals import check_folder
 from verification.figures import drawing_of_fit
+from verification.figures.style import save
 from verification.fit import Definition, Fitted, Solves, fit as fitted_to, read_definition
 from verification.fit.tensile import Tensile, read_tensile
-from verification.fit.words import PARAMETERS, classical, content, findings, parameter_rows, shown
+from verification.fit.words import PARAMETERS, content, parameter_rows, shown
 from verification.runs.files import json_text, write_atomically
 from verification.runs.lock import locked
 from verification.runs.store import Store, default_store, kept_coefficients
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 RECORD, PAGE = "fit.json", "fit.html"
 CURVES = "yield-curve.csv"
 FILES = (RECORD, PAGE, CURVES, "parameters.csv", "residuals.csv", "scene.toml", "fit.png", "fit.csv")
+SHOWN = ["parameter", "value", "90 % confidence"]
+STYLE = "<style>body{font:15px sans-serif;max-width:62em;margin:2em auto} img{width:100%}</style>"
 CURVE = ("peeq", "yield_stress_Pa", "low_Pa", "high_Pa")
 
 
@@ -44,10 +47,9 @@ def fit(path: Path, *, out: Path | None, use_store: bool) -> int:
     definition = read_definition(path)
     with locked(folder), Progress() as told:
         found, solves = answer(definition, default_store() if use_store else None, told)
-        write(found, solves, folder)
-    print_table(("parameter", "value", "90 % confidence"), shown(found))
-    for words in findings(found):
-        print(words)
+        record = write(found, solves, folder)
+    print_table(SHOWN, shown(found))
+    print(*record["findings"], sep="\n")
     print(folder / PAGE)
     return 0
 
@@ -86,8 +88,8 @@ def answer(definition: Definition, store: Store | None, told: Told) -> tuple[Fit
     return found, len(solves.known)
 
 
-def write(found: Fitted, solves: int, folder: Path) -> None:
-    """The tables, the scene, the figure and the page; the record last."""
+def write(found: Fitted, solves: int, folder: Path) -> dict[str, Any]:
+    """The tables, the scene, the figure and the page; the record last, which is returned."""
     folder.mkdir(parents=True, exist_ok=True)
     for name in FILES:
         (folder / name).unlink(missing_ok=True)
@@ -104,49 +106,29 @@ def write(found: Fitted, solves: int, folder: Path) -> None:
     tables["scene.toml"] = scene.to_toml()
     for name, text in tables.items():
         write_atomically(folder / name, text.encode())
-    from verification.figures.style import save  # noqa: PLC0415 - loads matplotlib
-
     picture = save(drawing_of_fit(found), folder / "fit")[0].read_bytes()
     record = content(found, solves)
     write_atomically(folder / PAGE, page(found, record, picture).encode())
     write_atomically(folder / RECORD, json_text(record).encode())
+    return record
 
 
 def page(found: Fitted, record: dict[str, Any], picture: bytes) -> str:
     """The page (HTML), with its figure inside."""
+    from pandas import DataFrame
+
     names = [p.name for p in found.parameters]
-    linked = [
-        (name, *(f"{each:.3f}" for each in row)) for name, row in zip(names, found.correlations, strict=True)
-    ]
-    tests = [tuple(each.values()) for each in record["tests"]]
-    parts = [
-        ("Parameters", _table(("parameter", "value", "90 % confidence"), shown(found))),
-        (
-            "What to know",
-            "".join(f"<p>{escape(words)}</p>" for words in findings(found)) or "<p>Nothing.</p>",
-        ),
-        (
-            "Tests, residuals and yield curve",
-            f'<img src="data:image/png;base64,{b64encode(picture).decode()}">',
-        ),
-        ("Correlations", _table(("", *names), linked)),
-        ("Residuals", _table(tuple(record["tests"][0]), tests)),
-        ("Classical numbers", _table(("", "value", "where it is wrong"), classical(found))),
-        ("Scene", f"<pre>{escape(found.scene().to_toml())}</pre>"),
-    ]
+    parts = {
+        "Parameters": DataFrame(shown(found), columns=SHOWN).to_html(index=False),
+        "What to know": "".join(f"<p>{escape(words)}</p>" for words in record["findings"]),
+        "Tests and yield curve": f'<img src="data:image/png;base64,{b64encode(picture).decode()}">',
+        "Correlations": DataFrame(found.correlations, names, names).round(3).to_html(),
+        "Residuals": DataFrame(record["tests"]).to_html(index=False),
+        "Classical numbers": DataFrame(record["classical"]).to_html(index=False),
+        "Scene": f"<pre>{escape(found.scene().to_toml())}</pre>",
+    }
     title = escape(found.definition.title or "Fit")
-    style = (
-        "body{font:15px sans-serif;max-width:62em;margin:2em auto}td,th{padding:.2em .8em;text-align:left}"
-    )
-    body = "".join(f"<h2>{head}</h2>{text}" for head, text in parts)
-    head = f'<!doctype html><html lang="en"><meta charset="utf-8"><title>{title}</title>'
+    body = "".join(f"<h2>{head}</h2>{text}" for head, text in parts.items())
+    head = f'<!doctype html><html lang="en"><meta charset="utf-8"><title>{title}</title>{STYLE}'
     said = f"Model {record['model']}, {record['model_solves']} solves, a/R up to {record['a_over_R']:.2g}."
-    return f"{head}<style>{style} img{{width:100%}}</style><h1>{title}</h1><p>{said}</p>{body}</html>\n"
-
-
-def _table(head: tuple[str, ...], rows: Any) -> str:
-    first = "".join(f"<th>{escape(each)}</th>" for each in head)
-    body = "".join(
-        "<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in row) + "</tr>" for row in rows
-    )
-    return f"<table><tr>{first}</tr>{body}</table>"
+    return f"{head}<h1>{title}</h1><p>{said}</p>{body}</html>\n"

@@ -6,7 +6,7 @@ Python to what is fitted, or to every error of it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from itertools import pairwise, product
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
@@ -52,7 +52,6 @@ Length = Annotated[float, Number("a length", 1e-12, 1e3, "m", "1 um")]
 Force = Annotated[float, Number("a force", 1e-12, 1e9, "N", "10 N")]
 Pressure = Annotated[float, Number("a pressure", 1e3, 1e15, "Pa", "210 GPa")]
 Poisson = Annotated[float, Number("a number", 0.0, 0.5)]
-Share = Annotated[float, Number("a share of the largest depth", 1e-6, 0.5, example="1 %", percent=True)]
 
 
 def _bounds(value: object) -> tuple[Any, ...]:
@@ -71,8 +70,8 @@ class Measured(Section):
 
     file: CSV in the folder of the fit; units: of its columns, where their names have none; radius, young,
     poisson: of the ball, where not that of the scene; force: the largest, of a curve that of its points;
-    depth: of a dent, in place of a file; noise: one standard deviation of a depth, a length; noise_share: or
-    a share of the largest depth; estimated from the residuals where neither is given.
+    depth: of a dent, in place of a file; noise: one standard deviation of a depth; estimated from
+    the residuals if not given.
     """
 
     of_scene: ClassVar[bool] = False
@@ -86,7 +85,6 @@ class Measured(Section):
     force: Force | None = None
     depth: Length | None = None
     noise: Length | None = None
-    noise_share: Share | None = None
 
     @classmethod
     def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Conflict]:
@@ -96,7 +94,7 @@ class Measured(Section):
         yield from ((key, f'required with kind = "{kind}"') for key in needed if key not in given)
         if kind != "depth" and "depth" in given:
             yield "depth", 'only with kind = "depth": a curve and a profile have their depths in the file'
-        if kind == "depth" and "noise" not in given and "noise_share" not in given:
+        if kind == "depth" and "noise" not in given:
             yield "noise", 'required of a single depth: one standard deviation, such as "20 nm"'
 
 
@@ -173,7 +171,6 @@ class Definition:
     tests: tuple[Test, ...]
     of_scene: tuple[Parameter, ...]
     of_machine: tuple[Parameter, ...] = ()
-    inputs: Mapping[str, bytes] = field(default_factory=dict)
 
 
 def read_definition(path: str | Path) -> Definition:
@@ -185,25 +182,24 @@ def read_definition(path: str | Path) -> Definition:
         raise SceneError([Problem("", "", str(error))], str(path)) from None
     table = parse_toml(content, str(path))
     check_kind(table, "fit", str(path))
-    made = _made(table, path.parent, str(path), {"spelling": "file"})
-    return replace(made, inputs={path.name: content, **made.inputs})
+    return _made(table, path.parent, str(path))
 
 
 def definition_of(given: Mapping[str, Any]) -> Definition:
     """The fit that Python gives: the keys of its file, in SI or with units; scene: also a Scene; a test may
     have its table as `data`, a DataFrame, in place of a file. Raises SceneError.
     """
-    return _made(given, None, "fit", {})
+    return _made(given, None, "fit")
 
 
-def _made(table: Mapping[str, Any], folder: Path | None, source: str, context: dict[str, str]) -> Definition:
+def _made(table: Mapping[str, Any], folder: Path | None, source: str) -> Definition:
     tests = [dict(test) if isinstance(test, Mapping) else test for test in table.get("tests", ())]
     frames = [test.pop("data", None) if isinstance(test, dict) else None for test in tests]
     for k, (test, frame) in enumerate(zip(tests, frames, strict=True)):
         if frame is not None:
             test.setdefault("file", f"data {k + 1}")
     try:
-        fit = Fit.model_validate({**table, "tests": tests}, context=context)
+        fit = Fit.model_validate({**table, "tests": tests}, context={"spelling": "file"} if folder else {})
     except ValidationError as error:
         raise SceneError(problems(error), source) from None
     scene = _scene(fit.scene, folder, source)
@@ -211,15 +207,10 @@ def _made(table: Mapping[str, Any], folder: Path | None, source: str, context: d
     unknown = [_parameter(key, bounds, scene, found) for key, bounds in fit.unknown.items()]
     if found:
         raise SceneError(found, source)
-    contents = [
-        _content(test, frame, folder, f"{source}: tests[{k}]")
+    made = [
+        _test(k, test, scene, _points(test, frame, folder, f"{source}: tests[{k}]"))
         for k, (test, frame) in enumerate(zip(fit.tests, frames, strict=True))
     ]
-    made = [
-        _test(f"test {k + 1}", test, scene, _points(test, content, f"{source}: tests[{k}]"))
-        for k, (test, content) in enumerate(zip(fit.tests, contents, strict=True))
-    ]
-    inputs = {test.file: content for test, content in zip(fit.tests, contents, strict=True) if test.file}
     model = fit.model or _cheapest(made[0].scene)
     ours = [each for each in unknown if each.name in OF_THE_MACHINE]
     ours = [part for each in ours for part in _of_tests(each, made)]
@@ -234,7 +225,7 @@ def _made(table: Mapping[str, Any], folder: Path | None, source: str, context: d
             raise SceneError(
                 [Problem("unknown", f"the {end} values, with {test.name}", words)], source
             ) from None
-    return Definition(fit.title, model, tuple(made), theirs, tuple(ours), inputs)
+    return Definition(fit.title, model, tuple(made), theirs, tuple(ours))
 
 
 def _of_tests(parameter: Parameter, tests: list[Test]) -> list[Parameter]:
@@ -311,27 +302,20 @@ def _with_load(scene: Scene, force: float, **ball: float | None) -> Scene:
     return Scene(**tables)
 
 
-def _content(test: Measured, frame: Any, folder: Path | None, source: str) -> bytes:
-    """The table of a test as CSV. Raises SceneError."""
-    if frame is not None:
-        return frame.to_csv(index=False).encode()
-    if test.file is None:
-        return b""
-    try:
-        return read_limited(Path(test.file) if folder is None else below(folder, test.file, "fit"), LARGEST)
-    except InputError as error:
-        raise SceneError([Problem("file", spelling(test.file), str(error))], source) from None
-
-
-def _points(test: Measured, content: bytes, source: str) -> tuple[Points, str]:
-    """The points of a test, and what is said of where they are. Raises SceneError."""
+def _points(test: Measured, frame: Any, folder: Path | None, source: str) -> tuple[Points, str]:
+    """The points of a test, and what messages name. Raises SceneError."""
     if test.kind == "depth":
         return Points(np.zeros(1), np.array([test.depth], dtype=float), np.zeros(1, bool)), source
-    source = f"{source} ({test.file})"
-    return read_points(content, test.kind, test.units, source), source
+    name, content = str(test.file), b"" if frame is None else frame.to_csv(index=False).encode()
+    if frame is None:
+        try:
+            content = read_limited(Path(name) if folder is None else below(folder, name, "fit"), LARGEST)
+        except InputError as error:
+            raise SceneError([Problem("file", spelling(name), str(error))], source) from None
+    return read_points(content, test.kind, test.units, f"{source} ({name})"), f"{source} ({name})"
 
 
-def _test(name: str, test: Measured, scene: Scene, measured: tuple[Points, str]) -> Test:
+def _test(k: int, test: Measured, scene: Scene, measured: tuple[Points, str]) -> Test:
     """A test. Raises SceneError for points that cannot be of it."""
     points, source = measured
     if scene.counterbody is None or scene.counterbody.shape != "sphere":
@@ -345,8 +329,7 @@ def _test(name: str, test: Measured, scene: Scene, measured: tuple[Points, str])
     elastic = float((0.75 * force / contact_modulus(own)) ** (2.0 / 3.0) * ball.radius ** (-1.0 / 3.0))
     if found := [] if test.kind == "depth" else faults(points, test.kind, ball.radius, elastic):
         raise SceneError(found, source)
-    noise = test.noise if test.noise_share is None else test.noise_share * float(np.abs(points.depth).max())
-    return Test(name, test.kind, own, points, noise)
+    return Test(f"test {k + 1}", test.kind, own, points, test.noise)
 
 
 def _cheapest(scene: Scene) -> str:

@@ -8,12 +8,12 @@ grids, with half the cells and load steps (c) and as the scene says (f). What is
 
 with theta_0 moved to the best theta until that no longer moves. Derivatives of d_c are differences at the
 start, then Broyden's updates, and differences again at the end. With the residuals r over their standard
-deviations, J = dr/dtheta and W, 12 over the squares of the widths of the bounds (a uniform density), the
-covariance is
+deviations, J = dr/dtheta and W, far less than the inverse squares of the widths of the bounds, so that what is
+not determined has a variance beyond them, the covariance is
 
     C = (J^T J + W)^-1 + sum_b (G e_b) (G e_b)^T,        G = (J^T J + W)^-1 J^T,                           (b)
 
-where e_b is half the bracket of (a), in standard deviations, on a branch b of a test and zero elsewhere: the
+where e_b is the bracket of (a), in standard deviations, on a branch b of a test and zero elsewhere: the
 numerical errors of loading and unloading of each test are taken as independent.
 """
 
@@ -35,7 +35,7 @@ from verification.fit.solves import Answer, Answers, FitError
 CONFIDENCE = 0.9
 QUANTILE = float(norm.ppf(0.5 + CONFIDENCE / 2.0))
 ENDS = ("low", "start", "high")
-STEP = 0.1  # of a variable for a difference, as large as the mesh moves with the parameters
+STEP = 0.1  # of the width of the bounds for a difference: a smaller one shows the moving mesh
 ROUNDS = 3  # times that theta_0 is moved, at most
 SETTLED = 0.3  # standard deviations by which the parameters may still move with theta_0
 FIRST, LATER = (
@@ -46,7 +46,10 @@ DETERMINED = 0.35  # of a logarithm: a half-width of 42 %; of others the same sh
 NAMED = 0.3  # weight of a parameter in a combination, from which on it is named
 FACTORS = ((0.1, 1.0), (8.0, 1.0), (1.0, 0.3), (1.0, 3.0))
 """(force, radius) of the further tests that are looked at, over those of the first."""
-NUMERICAL = 0.5  # share of the change between the grids that is taken as the standard error of the finer
+NUMERICAL = (
+    1.0  # of the change between the grids: as the edge falls between elements, the finer may be as far off
+)
+LOOSE = 100.0  # widths of the bounds: a standard deviation that says that nothing is known
 DRAWS, SEED = 400, 1
 
 
@@ -134,10 +137,11 @@ class Fitted:
         values = self.values if values is None else values
         return self.definition.tests[0].at({p.name: values[p.name] for p in self.definition.of_scene})
 
-    def yield_curve(self, *, layer: bool = False) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    def yield_curve(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Plastic strain up to the largest reached, yield stress in Pa there, and its band, (n,) each: the
-        least and largest at CONFIDENCE, of parameters within their bounds.
+        least and largest at CONFIDENCE, of parameters within their bounds. Of the layer, where it is sought.
         """
+        layer = any(".layer." in p.name for p in self.parameters)
         strain = np.concatenate([[0.0], np.geomspace(1e-4, 1.0, 40) * self.strain])
 
         def curve(sought: np.ndarray) -> np.ndarray:
@@ -280,7 +284,8 @@ class _Search:
         """Derivatives of the residuals, (points, p), by differences; those of the machine need no solve."""
         base, rest, columns = self.depths(x), self.machine(x), []
         for k, p in enumerate(self.parameters):
-            other, step = x.copy(), STEP if p.sought(p.high) - x[k] > STEP else -STEP
+            other, step = x.copy(), STEP * float(p.sought(p.high) - p.sought(p.low))
+            step *= 1.0 if p.sought(p.high) - x[k] > step else -1.0
             other[k] += step
             new, old = (self.depths(other), base) if k < self.n else (self.machine(other), rest)
             columns.append(self.whitened([(f - g) / step for f, g in zip(new, old, strict=True)]))
@@ -289,7 +294,7 @@ class _Search:
     def of_noise(self, jacobian: np.ndarray) -> np.ndarray:
         """The first term of (b)."""
         wide = np.array([float(p.sought(p.high) - p.sought(p.low)) for p in self.parameters])
-        return np.asarray(np.linalg.inv(jacobian.T @ jacobian + np.diag(12.0 / wide**2)))
+        return np.asarray(np.linalg.inv(jacobian.T @ jacobian + np.diag((LOOSE * wide) ** -2.0)))
 
     def estimate(self, x: np.ndarray) -> np.ndarray:
         """Find the standard deviations that are not given, by the residuals of their tests; at each point the
