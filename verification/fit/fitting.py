@@ -8,8 +8,8 @@ grids, with half the cells and load steps (c) and as the scene says (f). What is
 
 with theta_0 moved to the best theta until that no longer moves. Derivatives of d_c are differences at the
 start, then Broyden's updates, and differences again at the end. With the residuals r over their standard
-deviations, J = dr/dtheta and W, far less than the inverse squares of the widths of the bounds, so that what is
-not determined has a variance beyond them, the covariance is
+deviations, J = dr/dtheta and W, far less than the inverse squares of the widths of the bounds, so that a
+variable that is not determined has a variance beyond them, the covariance is
 
     C = (J^T J + W)^-1 + sum_b (G e_b) (G e_b)^T,        G = (J^T J + W)^-1 J^T,                           (b)
 
