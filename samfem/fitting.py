@@ -49,8 +49,7 @@ def fit(path: Path, *, out: Path | None, use_store: bool) -> int:
         found, solves = answer(definition, default_store() if use_store else None, told)
         record = write(found, solves, folder)
     print_table(SHOWN, shown(found))
-    print(*record["findings"], sep="\n")
-    print(folder / PAGE)
+    print(*record["findings"], folder / PAGE, sep="\n")
     return 0
 
 
