@@ -79,7 +79,7 @@ $(DOCS_INSTALLED): $(INSTALLED) requirements-docs.lock
 # SAM beside Tamaas, ContactMechanics and aspher, which have an environment of their own and are no dependency. aspher is
 # compiled (a C++17 compiler; Eigen's headers: apt-get install libeigen3-dev); where that fails the page says so.
 peers: $(INSTALLED) $(PEERS)/.installed
-	SAMFEM_PEERS=$(PEERS)/bin/python $(BIN)/samfem verify peers --level full --out $(PEERS_OUT)
+	SAMFEM_PEERS=$(PEERS)/bin/python $(BIN)/samfem verify peers periodic-peers --level full --out $(PEERS_OUT)
 
 $(PEERS)/.installed: requirements-peers.lock requirements-aspher.lock
 	$(PYTHON) -m venv $(PEERS)

@@ -6,6 +6,7 @@ from typing import Any
 
 _WHERE = {
     "Load": "sam.schedule",
+    "PeriodicHalfSpaces": "sam.contact.periodic",
     "Plan": "sam.elastic.problem",
     "Search": "sam.contact.normal",
     "UnsupportedScene": "sam.planner.make",

@@ -165,13 +165,14 @@ class Track:
         if not i.size:
             return False
         first, last = (window.i0 + i.min(), window.j0 + j.min()), (window.i0 + i.max(), window.j0 + j.max())
-        return bool(min(first) == 0 or last[0] == grid.nx - 1 or last[1] == grid.ny - 1)
+        in_x = first[0] == 0 or last[0] == grid.nx - 1
+        return bool(in_x or (not grid.line and (first[1] == 0 or last[1] == grid.ny - 1)))
 
     def groove(self, grid: CellGrid, uz: Array) -> Groove:
         """The groove of a surface that was displaced by plastic strain, (nx, ny) in m."""
         way = (grid.x - self.start[0]) * self.direction[0]
         along, order = uz[:, self.touched(grid.y, grid.hy)].mean(axis=1), np.argsort(way)
-        across = uz[self.middle_column(grid)]
+        across = uz[self.middle_column(grid)] if not grid.line else np.full(1, nan)
         way, along = way[order], along[order]
         peak = refined_peak(way, along)
         return Groove.of(way, along, self.steady(way), self.length, across=across, peak=peak)

@@ -34,7 +34,9 @@ from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.result import (
     DISSIPATED,
     FRICTION_SIGN,
+    LEFT,
     ROOFED,
+    WEAR_PARTS,
     Progress,
     of_load,
     residual_table,
@@ -187,7 +189,7 @@ def _status(rows: Sequence[Row], peak: Contact, plan: Plan) -> Status:
     """All steps count for convergence, the contact at the peak (on the full grid) for the fit too."""
     if not all(row.converged for row in rows):
         return Status.NOT_CONVERGED
-    return fit_of(peak, plan.rough is not None)
+    return fit_of(peak, plan.rough is not None, plan.grid.line)
 
 
 def _warnings(plan: Plan, peak: Snapshot) -> tuple[str, ...]:
@@ -290,4 +292,9 @@ def _tables(plan: Plan, history: History, verdicts: Sequence[Verdict]) -> dict[s
             tables["cycles"] |= verdict_columns(cycles, verdicts, plan.judging.period)
         if plan.wear is not None:
             tables["cycles"][ROOFED] = of_ends(cycles, ends, "roofed")
+            if plan.wear.roof_falls or plan.wear.fills:
+                parts = {column: of_ends(cycles, ends, name) for column, name in WEAR_PARTS.items()}
+                tables["cycles"] |= parts
+        if plan.paper:
+            tables["cycles"] |= {name: of_ends(cycles, ends, name) for name in LEFT}
     return tables

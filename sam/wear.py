@@ -5,7 +5,8 @@ below it moves up.
 Nelias, Boucly & Brunet 2006; Bosman & Schipper 2011, section 5: a crack runs along the border of the volume
 that both reaches the surface and is strained beyond the limit; what it encloses becomes a wear particle in
 the cycle that strained it. What is above the limit under a sound roof does not reach the surface: it stays,
-and is counted.
+and is counted. Or the roof falls, as the crack "will then grow toward the surface enclosing a volume which
+will form a wear particle" (section 1): each column goes down to the deepest point that is above the limit.
 
 The worn depth is smoothed by local polynomials (Savitzky & Golay 1964). In a window of n x n cells, a
 polynomial of total degree <= m is fitted by least squares; its value in the middle is the smoothed value.
@@ -15,7 +16,8 @@ With p_i, the polynomials of degree i = 0 ... m that are orthonormal over the n 
 
 The total degree is bounded, not the degree in each direction (the filter along x and then along y would take
 i, j <= m): those polynomials are the same in a turned frame, and the negative weights at the corners of the
-window are smaller.
+window are smaller. The filter keeps the volume. As printed it therefore also leaves, or raises above the old
+surface, what it digs from the flanks; by default it takes nowhere less than the raw depth.
 
 Layers are counted from the current surface: when it wears, the material moves up through them. New layer k of
 a column worn by w holds the mean of what was between z_k + w and z_{k+1} + w, the old layers being uniform;
@@ -24,9 +26,11 @@ arithmetic,
 
     sum_k h_k new_k + integral over 0 ... w of old = sum_k h_k old_k                                       (b)
 
-for each column and component, to rounding. Means of plastic strains are free of volume change again, and the
-accumulated strain stays at least their norm. A shift by a fraction t of a uniform layer h smears like a
-diffusion, with second moment t (1 - t) h^2 per remap (first-order upwind); whole layers move without it.
+for each column and component, to rounding. A column that is raised (w < 0) has fresh material on top, and
+what it pushes below the deepest face is gone with the integral. Means of plastic strains are free of volume
+change again, and the accumulated strain stays at least their norm. A shift by a fraction t of a uniform layer
+h smears like a diffusion, with second moment t (1 - t) h^2 per remap (first-order upwind); whole layers move
+without it.
 """
 
 from __future__ import annotations
@@ -68,22 +72,27 @@ def limit_by_depth(wear: Wear, layer_thickness: float | None) -> StrainLimits:
 
 
 class Worn(NamedTuple):
-    """What is removed of each column, (nx, ny): depth in m; above its limit; whether it is all."""
+    """What is removed of each column, (nx, ny): depth in m; above its limit below sound material, in m, which
+    stays, or falls with so much of that; whether it is all.
+    """
 
     depth: Array
     roofed: Array
+    roof: Array
     at_bottom: Mask
 
 
-def worn_depth(alpha: Array, faces: Array, limits: StrainLimits, interpolate: bool) -> Worn:
-    """What is removed: all above its limit. alpha: accumulated plastic strain (n_layers, nx, ny), mean of
-    each cell; faces: (n_layers + 1,) in m from the current surface, 0, downwards. interpolate: the strain is
-    linear between the centres of the layers. At the surface it is extrapolated from the two uppermost ones,
-    never below 0 (a single layer: constant); from the lowest centre to the deepest face it is constant. The
-    depth is the first crossing with the limit, which steps where the layer ends: a crossing at the step is
-    found exactly. Error O(dz^2). Without, whole layers are removed whose mean is above the limit at their
-    centre: error O(dz). Raises ValueError for faces that do not fit the layers or do not descend from 0, and
-    for alpha that is not finite.
+def worn_depth(
+    alpha: Array, faces: Array, limits: StrainLimits, interpolate: bool, *, roof_falls: bool = False
+) -> Worn:
+    """What is removed: all above its limit that reaches the surface, or with the roof. alpha: accumulated
+    plastic strain (n_layers, nx, ny), mean of each cell; faces: (n_layers + 1,) in m from the current
+    surface, 0, downwards. interpolate: the strain is linear between the centres of the layers. At the
+    surface it is extrapolated from the two uppermost ones, never below 0 (a single layer: constant); from the
+    lowest centre to the deepest face it is constant. The depth is the first crossing with the limit, or the
+    last, which steps where the layer ends: a crossing at the step is found exactly. Error O(dz^2). Without,
+    whole layers are removed whose mean is above the limit at their centre: error O(dz). Raises ValueError for
+    faces that do not fit the layers or do not descend from 0, and for alpha that is not finite.
     """
     faces = np.asarray(faces, dtype=float)
     if faces.shape != (len(alpha) + 1,) or faces[0] != 0 or not np.all(np.diff(faces) > 0):
@@ -93,7 +102,7 @@ def worn_depth(alpha: Array, faces: Array, limits: StrainLimits, interpolate: bo
     centres = (faces[:-1] + faces[1:]) / 2
     if not interpolate:
         start = alpha - np.minimum(limits(centres), UNREACHED)[:, None, None]
-        return _from_surface(start, start, np.diff(faces))
+        return _from_surface(start, start, np.diff(faces), roof_falls)
     surface, thickness = alpha[0], limits.thickness
     if len(alpha) > 1:
         surface = np.maximum(alpha[0] - (alpha[1] - alpha[0]) * (centres[0] / (centres[1] - centres[0])), 0.0)
@@ -104,10 +113,10 @@ def worn_depth(alpha: Array, faces: Array, limits: StrainLimits, interpolate: bo
         there = strain[k - 1] + share * (strain[k] - strain[k - 1])
         nodes, strain = np.insert(nodes, k, thickness), np.insert(strain, k, there, axis=0)
     limit = np.minimum(limits((nodes[:-1] + nodes[1:]) / 2), UNREACHED)[:, None, None]
-    return _from_surface(strain[:-1] - limit, strain[1:] - limit, np.diff(nodes))
+    return _from_surface(strain[:-1] - limit, strain[1:] - limit, np.diff(nodes), roof_falls)
 
 
-def _from_surface(start: Array, end: Array, lengths: Array) -> Worn:
+def _from_surface(start: Array, end: Array, lengths: Array, roof_falls: bool) -> Worn:
     """Columns of segments (n, nx, ny) of linear excess; of exactly 0 removes nothing."""
     open_top, full = start > 0, (start > 0) & (end >= 0)
     crossing = (open_top != (end > 0)) & ~full
@@ -116,7 +125,14 @@ def _from_surface(start: Array, end: Array, lengths: Array) -> Worn:
     reached = np.ones_like(full)
     np.logical_and.accumulate(full[:-1], axis=0, out=reached[1:])
     removed = np.where(reached & open_top, above, 0.0)
-    return Worn(removed.sum(axis=0), (above - removed).sum(axis=0), np.asarray(full.all(axis=0)))
+    depth, roofed = removed.sum(axis=0), (above - removed).sum(axis=0)
+    if not roof_falls:
+        return Worn(depth, roofed, np.zeros_like(depth), np.asarray(full.all(axis=0)))
+    lower = np.cumsum(lengths)[:, None, None]
+    deepest = np.where((end > 0) | full, lower, lower - lengths[:, None, None] + above)
+    falling = np.where(above > 0, deepest, 0.0).max(axis=0)
+    roof = np.where(roofed > 0, falling - above.sum(axis=0), 0.0)
+    return Worn(np.where(roofed > 0, falling, depth), roofed, roof, falling == lower[-1])
 
 
 @cache
@@ -197,11 +213,12 @@ def check_depth(depth: Array) -> None:
 
 
 def remapped(field: Array, faces: Array, depth: Array) -> tuple[Array, Array]:
-    """A field (..., n_layers, nx, ny) with each column moved up by its depth (nx, ny) in m, and its
-    integral over that; unworn columns keep every bit. ValueError for a negative depth.
+    """A field (..., n_layers, nx, ny) with each column moved up by its depth (nx, ny) in m, down where that
+    is negative, and the integral of what is gone; unworn columns keep every bit. ValueError for a depth
+    that is not finite.
     """
-    check_depth(depth)
-    worn, leading = depth > 0, field.shape[:-3]
+    check_depth(np.abs(depth))
+    worn, leading = depth != 0, field.shape[:-3]
     removed = np.zeros((*leading, *depth.shape))
     if worn.any():
         columns = field[..., worn]
@@ -217,11 +234,14 @@ def _moved_up(state: Array, faces: Array, depth: Array) -> tuple[Array, Array]:
     """The new columns (n, n_layers, m) of (b), worn by depth (m,), and integrals (n, m) of what is gone."""
     new = np.empty_like(state)
     above, below = faces[:-1, None], faces[1:, None]
+    raised = bool((depth < 0).any())
     for k, (top, bottom) in enumerate(pairwise(faces)):
-        # nothing moves down: only the layers from k on
-        overlap = np.minimum(bottom + depth, below[k:]) - np.maximum(top + depth, above[k:])
-        np.einsum("cjm,jm->cm", state[:, k:], np.maximum(overlap, 0.0) / (bottom - top), out=new[:, k])
+        j = 0 if raised else k  # where nothing moves down: only the layers from k on
+        overlap = np.minimum(bottom + depth, below[j:]) - np.maximum(top + depth, above[j:])
+        np.einsum("cjm,jm->cm", state[:, j:], np.maximum(overlap, 0.0) / (bottom - top), out=new[:, k])
     gone = np.clip(depth - above, 0.0, below - above)
+    if raised:
+        gone += np.clip(below - (faces[-1] + depth), 0.0, below - above)
     return new, np.einsum("cjm,jm->cm", state, gone)
 
 
@@ -238,8 +258,9 @@ T = TypeVar("T", bound=np.generic)
 
 @dataclass(frozen=True, eq=False)
 class WearState:
-    """Wear so far on the grid: depth (nx, ny) in m; by cycle volumes in m3: removed, raw (before
-    smoothing) and roofed (which stays); columns removed to the bottom; residuals of the remap.
+    """Wear so far on the grid: depth (nx, ny) in m; by cycle volumes in m3: removed, raw (before smoothing),
+    roofed and roof (see `Worn`) and filled (which smoothing leaves or raises); columns removed to the bottom;
+    residuals of the remap.
     """
 
     cell_area: float
@@ -247,6 +268,8 @@ class WearState:
     volumes: tuple[float, ...] = ()
     raw_volumes: tuple[float, ...] = ()
     roofed_volumes: tuple[float, ...] = ()
+    roof_volumes: tuple[float, ...] = ()
+    filled_volumes: tuple[float, ...] = ()
     bottom_columns: tuple[int, ...] = ()
     residuals: tuple[float, ...] = ()
 
@@ -259,6 +282,12 @@ class WearState:
     def volume(self) -> float:
         """Removed so far, in m3."""
         return sum(self.volumes)
+
+    @property
+    def of_last_cycle(self) -> tuple[float, float, float, float, float]:
+        """In m3: removed, raw, roofed, roof, filled."""
+        raw, roofed, roof = self.raw_volumes[-1], self.roofed_volumes[-1], self.roof_volumes[-1]
+        return self.volumes[-1], raw, roofed, roof, self.filled_volumes[-1]
 
     @property
     def raw_volume(self) -> float:
@@ -276,7 +305,9 @@ class WearState:
 
 @dataclass(frozen=True)
 class WearLaw:
-    """Wear of a grid of `shape` (nx, ny) cells hx, hy in m, at limits of the plastic strain."""
+    """Wear of a grid of `shape` (nx, ny) cells hx, hy in m, at limits of the plastic strain. fills: the
+    filter may leave or raise what is removed.
+    """
 
     shape: tuple[int, int]
     hx: float
@@ -286,6 +317,8 @@ class WearLaw:
     window: int
     order: int
     periodic: bool = False
+    roof_falls: bool = False
+    fills: bool = False
 
     def fresh(self) -> WearState:
         """The surface before the first cycle."""
@@ -308,10 +341,13 @@ class WearLaw:
         """Wear after one more cycle; below the new surface the cells of a window that are not fresh,
         (n_layers, nx, ny), and the fields (..., n) of these. peeq: the accumulated strain that decides.
         """
-        raw = worn_depth(peeq, faces, self.limits, self.interpolate)
-        depth, roofed = (self._on_grid(each, window) for each in (raw.depth, raw.roofed))
-        whole = Worn(depth, roofed, self._on_grid(raw.at_bottom, window))
-        depth = smoothed(whole.depth, self.window, self.order, all_removed=True, periodic=self.periodic)
+        raw = worn_depth(peeq, faces, self.limits, self.interpolate, roof_falls=self.roof_falls)
+        depth, roofed, roof = (self._on_grid(each, window) for each in raw[:3])
+        whole = Worn(depth, roofed, roof, self._on_grid(raw.at_bottom, window))
+        if self.fills:
+            depth = filtered(whole.depth, self.window, self.order, periodic=self.periodic)
+        else:
+            depth = smoothed(whole.depth, self.window, self.order, all_removed=True, periodic=self.periodic)
         columns = cells.any(axis=0)  # all others are fresh, and stay so
         below, worst, worn = {}, 0.0, depth[window.slices][columns][:, None]
         before, after = cells[:, columns], cells.copy()
@@ -339,6 +375,8 @@ def with_cycle(state: WearState, raw: Worn, depth: Array, residual: float) -> We
         volumes=(*state.volumes, state.volume_of(depth)),
         raw_volumes=(*state.raw_volumes, state.volume_of(raw.depth)),
         roofed_volumes=(*state.roofed_volumes, state.volume_of(raw.roofed)),
+        roof_volumes=(*state.roof_volumes, state.volume_of(raw.roof)),
+        filled_volumes=(*state.filled_volumes, state.volume_of(np.maximum(raw.depth - depth, 0.0))),
         bottom_columns=(*state.bottom_columns, int(raw.at_bottom.sum())),
         residuals=(*state.residuals, residual),
     )

@@ -43,7 +43,7 @@ from verification.text.readable import with_time
 
 COMPARISON, VERDICT = "compare.csv", "verdict.json"
 WRITTEN = (COMPARISON, VERDICT, COMPANION)
-PARTS = {models.SAM: "sam", models.FEM: "fem", models.FEM_3D: "fem"}
+PARTS = dict.fromkeys(models.MODELS, "fem") | {models.SAM: "sam"}
 
 
 @dataclass(frozen=True)

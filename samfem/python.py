@@ -287,7 +287,7 @@ def solve(
     scene
         A scene, or the path of its file.
     model
-        One of `MODELS`: "sam", "fem-axisymmetric", "fem-3d".
+        One of `MODELS`: "sam", "fem-axisymmetric", "fem-3d", "fem-plane-strain".
     out
         Folder to write the run to; nothing is written without it.
     progress

@@ -36,6 +36,7 @@ from verification.runs.meshes import not_written
 from verification.runs.model_range import refusal
 from verification.runs.provenance import collect
 from verification.runs.store import Reuse, Store, default_store, kept_coefficients, solve_or_reuse
+from verification.runs.tables import contact_size
 from verification.text.console import Progress, table_lines
 from verification.text.readable import in_working_unit, with_prefix, with_time
 from verification.uncertainty import asked_of as with_uncertainty, unknown
@@ -339,7 +340,7 @@ def _texts(values: Mapping[str, float], found: Mapping[str, float], readable: bo
     """Values of quantities as text; lengths that are rounding beside the contact radius as 0."""
     if not readable:
         return {name: f"{value:.6g}" for name, value in values.items()}
-    least = ROUNDING * (found.get("contact_radius_m") or 0.0)
+    least = ROUNDING * contact_size(found)
     noise = {name for name, value in values.items() if name.endswith("_m") and abs(value) < least}
     return {
         name: in_working_unit(name, value * (name not in noise), beside=found.get(name))[1]

@@ -45,6 +45,7 @@ SHAPES = {
     "punch": {"shape": "punch", "radius": 5e-6},
     "rounded-punch": {"shape": "rounded-punch", "flat_radius": 5e-6, "radius": 50e-6},
     "flat": {"shape": "flat"},
+    "cylinder": {"shape": "cylinder", "radius": RADIUS, "length": 1e-3},
 }
 """An example of each shape."""
 LENGTHS = {"approach", "depth", "depths", "extent", "film_thickness", "flat_radius", "radius", "thickness"}
@@ -125,8 +126,7 @@ def running_in(
         friction=film,
         wear={"strain_limit": wear} if isinstance(wear, float) else wear,
         grid={"cells": (24, 24), "extent": (16e-6, 16e-6), "depths": depths, "border": "relief"},
-        solver={"tolerance": 1e-4},
-        **tables,
+        **{"solver": {"tolerance": 1e-4}} | tables,
     )
 
 

@@ -237,6 +237,18 @@ def _below_spots(scene: Scene, sam: Result, fem: Result) -> Measured:
     return Measured(max((relative_l2(p.value, p.expected) for p in pairs), default=np.nan))
 
 
+def _strip_width(result: Result, reference: Reference) -> float:
+    """Of a wave in contact, where the line through p^2/cos^2 psi over sin^2 psi ends (Westergaard 1939), of
+    the cells but the outermost, through which the edge passes.
+    """
+    x, _, p = pressure_map(result)
+    wave, bears = reference.units["wave"], p[:, 0] > 0.0
+    use = bears & np.roll(bears, 1) & np.roll(bears, -1)
+    psi, p = np.pi / wave * x[use], p[use, 0]
+    slope, level = np.polyfit(np.sin(psi) ** 2, (p / np.cos(psi)) ** 2, 1)
+    return 2.0 * wave / np.pi * float(np.arcsin(np.sqrt(-level / slope)))
+
+
 def _residual(scene: Scene, sam: Result, fem: Result) -> Measured:
     (x, own), (u, other) = (rows_of(each.tables["line"], UNLOADED, "x_m", "uz_m") for each in (sam, fem))
     return Measured(own, np.interp(x, u, other), unit="m")
@@ -559,6 +571,16 @@ QUANTITIES: Mapping[str, Quantity] = {
         between=_largest(_below_film),
     ),
     "area": _scalar("contact_area_m2", "contact area", "m²"),
+    "share": _scalar("contact_share", "share of the patch in contact"),
+    "published-share": Quantity(
+        "share of the patch in contact, against a fit",
+        of=lambda result, _: result.quantities["contact_share"],
+    ),
+    "fitted-share": _scalar("contact_share", "share of the patch in contact, against a published fit"),
+    "open-share": Quantity(
+        "share of the patch not in contact", of=lambda result, _: 1.0 - result.quantities["contact_share"]
+    ),
+    "strip-width": Quantity("width of the strip in contact", "m", _strip_width),
     "friction": _scalar("friction_coefficient", "coefficient of friction of the whole contact"),
     "spots": Quantity(
         "contact spots of the three asperities that bear more than 5 % of the force",

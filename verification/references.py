@@ -14,6 +14,7 @@ import numpy as np
 
 from sam.scene import Scene
 from verification.quantities import Reference, contact_of, modulus_of
+from verification.reference.capped import capped_pressure
 from verification.reference.coated_changes import (
     film_contact,
     largest_bare_mises,
@@ -35,6 +36,7 @@ from verification.reference.misfit_sphere import GrowingSphere
 from verification.reference.rounded_punch import RoundedPunch
 from verification.reference.shakedown import upper_bound
 from verification.reference.stress import von_mises
+from verification.reference.westergaard import DoublyWavyContact, WavyContact
 
 
 def elliptic_contact(scene: Scene) -> EllipticContact:
@@ -256,6 +258,50 @@ def growing_sphere(scene: Scene, shares: tuple[float, ...] = (1.0,)) -> GrowingS
     return GrowingSphere(body.young, body.poisson, law, *sphere, shares, *constants)
 
 
+def _wavy(scene: Scene) -> tuple[float, float, float, float]:
+    """Amplitude and wavelength in m, E* and mean pressure in Pa of a wavy patch below a plane."""
+    surface, (lx, ly) = scene.surface, scene.patch[1]
+    return surface.amplitude, surface.wavelength_x, modulus_of(scene), scene.force / (lx * ly)
+
+
+def wave(scene: Scene) -> Reference:
+    """Westergaard (1939). The largest pressure is that in the centre of the cell next to the crest."""
+    exact = WavyContact(*_wavy(scene))
+    (nx, _), (lx, _) = scene.patch
+    p0, beside = exact.complete_pressure, 0.0 if nx % 2 else 0.5 * lx / nx
+    values = {
+        "p-max": float(exact.pressure(beside)),
+        "approach": exact.approach,
+        "strip-width": 2.0 * exact.half_width,
+        "pressure": lambda x, y: exact.pressure(x) + 0.0 * y,
+    }
+    units = {"a": exact.half_width, "p0": p0, "approach": exact.approach, "wave": exact.wavelength}
+    return Reference(values, units, {("line", "p_Pa"): exact.pressure, ("line", "gap_m"): exact.gap})
+
+
+def double_wave(scene: Scene) -> Reference:
+    """Johnson, Greenwood & Higginson (1985): both limits, a fit, and the area in Fourier series; the largest
+    pressure as of `wave`.
+    """
+    exact = DoublyWavyContact(*_wavy(scene))
+    (nx, ny), (lx, ly) = scene.patch
+    x, y = ((np.arange(n) + 0.5) * side / n - 0.5 * side for n, side in ((nx, lx), (ny, ly)))
+    beside, light = (x[nx // 2], y[ny // 2]), exact.summit
+    waves = [np.cos(2.0 * math.pi * c / exact.wavelength) for c in (x, y)]
+    surface = exact.amplitude * np.outer(*waves)
+    found = capped_pressure(surface, (lx, ly), exact.modulus, exact.mean_pressure, tolerance=1e-6)
+    largest = exact.complete(*beside) if exact.load_ratio >= 1.0 else light.pressure(math.hypot(*beside))
+    values = {
+        "p-max": float(largest),
+        "share": float(np.mean(found > 0.0)),
+        "area": float(np.mean(found > 0.0)) * lx * ly,
+        "fitted-share": exact.fitted_share,
+        "open-share": 1.0 - exact.heavy_share,
+        "pressure": exact.complete,
+    }
+    return Reference(values, {"a": light.contact_radius, "p0": exact.complete_pressure})
+
+
 REFERENCES: Mapping[str, Callable[[Scene], Reference]] = {
     "hertz-sphere": hertz_sphere,
     "hertz-ellipse": hertz_ellipse,
@@ -266,5 +312,7 @@ REFERENCES: Mapping[str, Callable[[Scene], Reference]] = {
     "travelling-load": travelling_load,
     "coated-traction": coated_traction,
     "film-changes": film_changes,
+    "wave": wave,
+    "double-wave": double_wave,
 }
 """Name in a case file -> the answer for a scene."""

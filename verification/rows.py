@@ -36,7 +36,7 @@ LEVELS = ("quick", "full")
 FOLDER = Path(__file__).resolve().parent / "cases"
 FAMILIES = (
     *("hertz", "plastic", "sliding", "cyclic", "moving", "published", "energy"),
-    *("coated", "rough", "film", "running_in"),
+    *("coated", "rough", "periodic", "film", "running_in"),
     *("limits", "cost", "peers", "certificates", "robustness"),
 )
 """Folders of cases, in the order of the report."""
@@ -154,7 +154,7 @@ class SweepFile(BaseModel):
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
-    models: tuple[Literal["sam", "fem", "fem-3d"], ...]
+    models: tuple[Literal["sam", "fem", "fem-3d", "fem-plane-strain"], ...]
     axes: dict[str, list | dict[str, dict[str, Any]]] = Field(min_length=1)
     quick: dict[str, list | dict[str, dict[str, Any]]] = {}
     columns: dict[str, Literal["value", "between", "relative", "absolute", "relative_l2"]]
@@ -211,7 +211,7 @@ class CaseFile(BaseModel):
     vary: dict[str, Any] = {}
     values: dict[str, float] = {}
     quick: dict[str, Any] = {}
-    models: tuple[Literal["sam", "fem", "fem-3d"], ...] = ()
+    models: tuple[Literal["sam", "fem", "fem-3d", "fem-plane-strain"], ...] = ()
     runs: dict[str, dict[str, Any]] = {}
     variants: dict[str, dict[str, Any]] = {}
     reference: str = ""

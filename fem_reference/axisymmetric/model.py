@@ -20,11 +20,9 @@ from fem_reference.common.contact import Equilibrium
 from fem_reference.common.hertz import hertz_pressure
 from fem_reference.common.model import HERTZ_GROWTH, PLASTIC_GROWTH, ContactModel, material
 from fem_reference.common.plasticity import History
+from fem_reference.common.recovery import REACH, edge_radius
 from fem_reference.common.refusals import FEWEST_ELEMENTS
 from fem_reference.common.schedule import Load
-
-REACH = 1.3
-"""Nodes up to so many contact radii fix the edge: with 32 elements in it Hertz's is met to 7e-5."""
 
 
 @dataclass(frozen=True)
@@ -154,22 +152,6 @@ class Model(ContactModel):
 def axis_pressure(r: Array, p: Array, area: Array) -> float:
     """Pressure at r = 0 by least squares with a parabola: weights of area cancel its alternation."""
     return float(np.polynomial.polynomial.polyfit(r**2, p, 1, w=np.sqrt(area))[0])
-
-
-def edge_radius(r: Array, gap: Array, last: int, reach: float = REACH) -> float:
-    """Contact radius from the gap outside, which opens with (r - a)^(3/2) at the edge of any smooth contact.
-
-    Value at zero gap of a parabola r(gap^(2/3)) through the nodes up to `reach` r[last], without the first;
-    within one element of the last node in contact. r, gap: (n,) nodes by radius; last: number of the last
-    one in contact.
-    """
-    use = np.flatnonzero(r <= reach * r[last])
-    use = np.union1d(use[use > last + 1], np.arange(last + 2, last + 6))  # a contact of one or two elements
-    if use[-1] >= r.size:
-        return float(r[last])
-    opening = np.cbrt(gap[use]) ** 2
-    radius = np.polynomial.polynomial.polyfit(opening, r[use], 2)[0]
-    return float(np.clip(radius, r[max(last - 2, 0)], r[last + 2]))
 
 
 def build(plan: AxisymmetricPlan) -> Model:

@@ -14,13 +14,12 @@ from fem_reference.axisymmetric.model import Model, build
 from fem_reference.axisymmetric.planner import AxisymmetricPlan, plan
 from fem_reference.axisymmetric.recovery import Stresses
 from fem_reference.common import solution
-from fem_reference.common.arrays import Array
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.elasticity import mises
 from fem_reference.common.far_field import WORDS, kind_of
 from fem_reference.common.loading import Step
 from fem_reference.common.solution import Quantities
-from fem_reference.common.tables import columns, stacked
+from fem_reference.common.tables import columns, plane_mesh, stacked
 from sam.scene.checkpoint import Checkpoint, Keep
 from sam.scene.result import AXIS, LINE, PLANE, FieldMesh, GridFields, Progress, Result, Table
 from sam.scene.schema import Scene
@@ -59,24 +58,10 @@ def plane_table(state: str, s: Stresses) -> Table:
 
 def field_mesh(model: Model, equilibrium: Equilibrium, s: Stresses) -> FieldMesh:
     """The body in the plane y = 0: pressure at the corner nodes, stresses and strains in the elements."""
-    unit, mesh = model.scales, model.body.basis.mesh
-    points = mesh.p
-    pressure = np.zeros(points.shape[1])
-    on_surface = np.flatnonzero(points[1] == 0.0)
-    on_surface = on_surface[np.argsort(points[0, on_surface])]
-    pressure[on_surface] = model.nodal_pressure(equilibrium)[::2] * unit.pressure
-    u = model.problem.body(equilibrium.u, 0) * unit.displacement
-    ur, uz = (u[dofs] for dofs in model.body.basis.nodal_dofs)
-    stress = s.in_elements(s.gauss)
-    cell_data = {"mises_Pa": mises(stress), "stress_Pa": six(stress)}
+    cells = {"stress": s.in_elements(s.gauss)}
     if s.plastic_strain is not None:
-        cell_data |= {"peeq": s.in_elements(s.peeq), "plastic_strain": six(s.in_elements(s.plastic_strain))}
-    return FieldMesh(
-        points=np.stack([points[0], np.zeros(points.shape[1]), points[1]], axis=1) * unit.length,
-        cells={"quad": mesh.t.T.copy()},
-        point_data={"p_Pa": pressure, "uz_m": uz, "displacement_m": np.stack([ur, 0 * ur, uz], axis=1)},
-        cell_data=cell_data,
-    )
+        cells |= {"peeq": s.in_elements(s.peeq)[None], "strain": s.in_elements(s.plastic_strain)}
+    return plane_mesh(model, equilibrium, model.surface, cells)
 
 
 def surface_grid(model: Model, equilibrium: Equilibrium) -> GridFields:
@@ -89,13 +74,6 @@ def surface_grid(model: Model, equilibrium: Equilibrium) -> GridFields:
         points["gap_m"] = np.asarray(line["gap_m"])
     flat = {name: values[..., None, None] for name, values in points.items()}
     return GridFields(np.asarray(line["x_m"]), np.zeros(1), np.zeros(1), flat)
-
-
-def six(tensor: Array) -> Array:
-    """(n, 6), order 11 22 33 23 13 12, of (rr, tt, zz, rz) (4, n) in the plane y = 0."""
-    rr, tt, zz, rz = tensor
-    zero = np.zeros_like(rr)
-    return np.stack([rr, tt, zz, zero, rz, zero], axis=1)
 
 
 def solve(

@@ -159,11 +159,14 @@ class Equilibrium:
 
 @dataclass(frozen=True)
 class Response:
-    """What bodies do at given displacements: internal force (size,), its derivative, history."""
+    """What bodies do at given displacements: internal force (size,), its derivative, history; start: history
+    at the beginning of the step, where a search along the step needs it.
+    """
 
     force: Array
     tangent: sp.csr_matrix
     history: History | None
+    start: History | None = field(default=None, kw_only=True)
 
 
 class Problem(Protocol):

@@ -64,6 +64,53 @@ def slanted(load: tuple[float, float], body: Elastic, points: Array) -> Array:
     return u + cerruti(load[1], body, points) if load[1] else u
 
 
+def flamant(forces: tuple[float, float], body: Elastic, points: Array, datum: float) -> Array:
+    """Displacements (u_x, u_z) in plane strain of the half-space z >= 0 under the line forces P along +z and
+    Q along +x at the origin of its surface.
+
+    The integrals of `boussinesq` and `cerruti` along the line, without their infinite constants; with r^2 =
+    x^2 + z^2, t the angle from the z axis and G = E / (2 (1 + nu)):
+
+        u_x = P / (2 pi G) [ x z/r^2 - (1 - 2 nu) t ] - Q / (2 pi G) [ z^2/r^2 + 2 (1 - nu) ln(r/datum) ]
+        u_z = P / (2 pi G) [ z^2/r^2 - 2 (1 - nu) ln(r/datum) ] + Q / (2 pi G) [ x z/r^2 + (1 - 2 nu) t ]
+
+    On the surface the displacement along each force is zero at the distance `datum` (Johnson 1985, Eq. 2.19
+    and 2.22). forces: (P, Q) per length; points: x, z (2, n), not both zero. Returns (2, n).
+    """
+    (x, z), nu = points, body.poisson
+    square, angle = x**2 + z**2, np.arctan2(x, z)
+    deep, mixed, soft = z**2 / square, x * z / square, (1.0 - 2.0 * nu) * angle
+    rise = (1.0 - nu) * np.log(square / datum**2)
+    down, along = (force * (1.0 + nu) / (np.pi * body.young) for force in forces)
+    return np.stack(
+        [down * (mixed - soft) - along * (deep + rise), down * (deep - rise) + along * (mixed + soft)]
+    )
+
+
+def stretched(body: Elastic, points: Array) -> tuple[Array, Array]:
+    """Displacements (u_x, u_z), each (2, ...), in plane strain far from a plastic strain near the origin of
+    the surface, of which e_xx + nu e_yy has the integral one over the area; and further ones per depth of it.
+
+    By reciprocity with a force far away, which stresses the free surface along it alone (s_yy = nu s_xx), the
+    strain acts as a dipole E/(1 - nu^2) of forces along x; and as du_x/dz = -du_z/dx on the surface, its
+    depth as twice the derivative of the forces along z. Of `flamant`, these are minus the derivative along x
+    of Q's, and minus the second one of P's:
+
+        u_x = 2 (1 - nu) x/r^2 - 2 x z^2/r^4        4 x z/r^4 (1 + nu - 2 x^2/r^2)
+        u_z = 2 x^2 z/r^4 - 2 (1 - nu) z/r^2        2 z^2/r^4 (1 - 4 x^2/r^2) + 2 (1 - nu)/r^2 (1 - 2 x^2/r^2)
+
+    over pi (1 - nu). points: x, z (2, ...), not both zero. Second order in depth over distance.
+    """
+    (x, z), soft = points, 1.0 - body.poisson
+    square = x**2 + z**2
+    X, Z = x**2 / square, z**2 / square
+    u = 2.0 * np.stack([x * (soft - Z), z * (X - soft)]) / square
+    deeper = np.stack(
+        [2.0 * x * z / square * (2.0 - soft - 2.0 * X), Z * (1.0 - 4.0 * X) + soft * (1.0 - 2.0 * X)]
+    )
+    return u / (np.pi * soft), 2.0 * deeper / (np.pi * soft * square)
+
+
 WORDS = {
     "half-space": "displacements of the point force on the outer boundary",
     "coated half-space": "displacements of the point force on the layered half-space on the outer boundary",

@@ -29,9 +29,10 @@ UNLOADED_RADIUS = 0.01
 class Scales:
     """Units in which a contact problem is the same, to the last digit, whatever the units of the scene.
 
-    length (m): contact radius (Hertz's of a sphere, punches), radius (misfit sphere); displacement (m);
-    modulus (Pa): contact modulus E*. peak_force: in these units, 4/3 (sphere), 2 (punches), 1 (misfit sphere,
-    whose share of the full strain takes the place of the force) or 0.
+    length (m): contact radius (Hertz's of a sphere, punches), half-width (cylinder), radius (misfit sphere);
+    displacement (m); modulus (Pa): contact modulus E*. peak_force: in these units, 4/3 (sphere), pi/4 times
+    the length in half-widths (cylinder), 2 (punches), 1 (misfit sphere, whose share of the full strain takes
+    the place of the force) or 0.
     """
 
     length: float
@@ -89,9 +90,10 @@ def contact_radius(force: float, modulus: float, radius: float) -> float:
 def scales(scene: Scene) -> Scales:
     """Units for a sphere (a, a^2/R) or a punch (a, F/(2 E* a), Johnson 1985, Eq. 3.36), at the peak force.
 
-    For an ellipsoid R^2 = Rx Ry; for a given pressure of Hertz its own radius a, and pi a p0/(2 E*) (Eq.
-    3.42); for a misfit sphere its radius, and that times the strain at its centre. Without force both are
-    arbitrary, as nothing is deformed: see UNLOADED_RADIUS.
+    For a cylinder (a, a^2/R) with the half-width a = (4 F R/(pi length E*))^(1/2) (Eq. 4.43). For an
+    ellipsoid R^2 = Rx Ry; for a given pressure of Hertz its own radius a, and pi a p0/(2 E*) (Eq. 3.42); for
+    a misfit sphere its radius, and that times the strain at its centre. Without force both are arbitrary, as
+    nothing is deformed: see UNLOADED_RADIUS.
     """
     loading, modulus = scene.loading, contact_modulus(scene)
     if loading.misfit_sphere:
@@ -106,6 +108,10 @@ def scales(scene: Scene) -> Scales:
         radius = radius_under_force(counter, force / modulus) if counter.shape == ROUNDED else radius
         displacement = force / (2.0 * modulus * radius) if force > 0.0 else radius
         return Scales(radius, displacement, modulus, 2.0 if force > 0.0 else 0.0)
+    if counter.length is not None:
+        length = np.sqrt(4.0 / np.pi * force / counter.length * radius / modulus) or UNLOADED_RADIUS * radius
+        share = length / counter.length  # of the force, on a length of one half-width
+        return Scales(length, length**2 / radius, modulus, np.pi / 4.0 / share if force > 0.0 else 0.0)
     length = contact_radius(force, modulus, radius) if force > 0.0 else UNLOADED_RADIUS * radius
     return Scales(length, length**2 / radius, modulus, 4.0 / 3.0 if force > 0.0 else 0.0)
 

@@ -48,6 +48,14 @@ def uniform_then_growing(
     return np.concatenate([uniform, grow(uniform[-1], box, size, growth)])
 
 
+def two_sided(low: float, high: float, size: float, box: float, *, growth: float = GROWTH) -> Array:
+    """Lines uniform from low <= 0 to high >= 0, with 0, then growing over `box` on both sides."""
+    below, above = (int(np.ceil(round(reach / size, 9))) for reach in (-low, high))
+    core = size * np.arange(-below, above + 1)
+    outside = grow(0.0, box, size, growth)
+    return np.concatenate([core[0] - outside[::-1], core, core[-1] + outside])
+
+
 @dataclass(frozen=True)
 class Sizes:
     """Largest size of an element at a distance: `fine` to the first limit, then `coarse`."""

@@ -12,6 +12,7 @@ import numpy as np
 
 from fem_reference.common.arrays import Array
 from fem_reference.common.contact import Equilibrium
+from fem_reference.common.elasticity import mises
 from fem_reference.common.loading import Step, Strained
 from fem_reference.common.model import ContactModel
 from fem_reference.common.plasticity import History
@@ -22,6 +23,7 @@ from sam.scene.result import (
     FRICTION_SIGN,
     HISTORY,
     LOOPS,
+    FieldMesh,
     Table,
     residual_table,
 )
@@ -43,6 +45,36 @@ def columns(names: Sequence[str], values: Sequence[Any]) -> dict[str, Any]:
     """Table from its columns in file order; a single number or text is repeated in every row."""
     rows = max(np.size(value) for value in values)
     return {name: np.broadcast_to(value, rows).copy() for name, value in zip(names, values, strict=True)}
+
+
+def plane_mesh(
+    model: ContactModel, state: Equilibrium, surface: Array, cells: Mapping[str, Array]
+) -> FieldMesh:
+    """The half-space in the plane y = 0: pressure and displacement at the corner nodes, fields in elements.
+
+    surface: (n_surface,) places of the surface nodes; cells: means of the elements, "stress" (4, n) in Pa,
+    and of a body that yields "peeq" (1, n) and "strain" (4, n), the plastic one as a tensor.
+    """
+    unit, mesh = model.scales, model.body.basis.mesh
+    x, z = mesh.p
+    pressure = np.interp(x, surface, model.nodal_pressure(state)) * (z == 0.0) * unit.pressure
+    u = model.displacements(state) * unit.displacement
+    ux, uz = (u[dofs] for dofs in model.body.basis.nodal_dofs)
+
+    def six(tensor: Array) -> Array:
+        out = np.zeros((tensor.shape[1], 6))
+        out[:, AXISYMMETRIC] = tensor.T
+        return out
+
+    data = {"mises_Pa": mises(cells["stress"]), "stress_Pa": six(cells["stress"])}
+    if "peeq" in cells:
+        data |= {"peeq": cells["peeq"][0], "plastic_strain": six(cells["strain"])}
+    return FieldMesh(
+        points=np.stack([x, np.zeros(x.size), z], axis=1) * unit.length,
+        cells={"quad": mesh.t.T.copy()},
+        point_data={"p_Pa": pressure, "uz_m": uz, "displacement_m": np.stack([ux, 0 * ux, uz], axis=1)},
+        cell_data=data,
+    )
 
 
 def stacked(tables: Sequence[Table]) -> dict[str, Any]:

@@ -18,6 +18,7 @@ from fem_reference.common.contact import Equilibrium
 from fem_reference.common.loading import Step, climb
 from fem_reference.common.model import UNYIELDING
 from fem_reference.common.plasticity import J2, CurveInUnits
+from fem_reference.common.recovery import edge_radius
 from fem_reference.finite_strain.contact import SphereContact
 from fem_reference.finite_strain.material import Hencky
 from sam.scene.schema import Scene
@@ -37,7 +38,7 @@ class SphereModel(flat.Model):
         if not state.active.any():
             return 0.0
         last = int(np.flatnonzero(state.active)[-1])
-        return flat.edge_radius(self.problem.place(state.u), state.gap, last)
+        return edge_radius(self.problem.place(state.u), state.gap, last)
 
     def starting_set(self, force: float, previous: Equilibrium) -> Bools:
         """Nodes of the previous step: a node too many moves an element at the edge too far."""

@@ -11,7 +11,6 @@ from functools import cached_property
 import numpy as np
 
 from fem_reference.common.arrays import Array
-from fem_reference.common.mesh_lines import grow
 
 GROWTH = 1.7
 """Ratio of neighbouring elements outside the uniform part; 1.4 changes scalar results by up to 5e-3."""
@@ -44,11 +43,3 @@ class Lines:
             for line in (self.x, self.y)
         )
         return np.outer(x, y)
-
-
-def two_sided(low: float, high: float, size: float, box: float, *, growth: float = GROWTH) -> Array:
-    """Lines uniform from low <= 0 to high >= 0, with 0, then growing over `box` on both sides."""
-    below, above = (int(np.ceil(round(reach / size, 9))) for reach in (-low, high))
-    core = size * np.arange(-below, above + 1)
-    outside = grow(0.0, box, size, growth)
-    return np.concatenate([core[0] - outside[::-1], core, core[-1] + outside])

@@ -13,7 +13,7 @@ import numpy as np
 from fem_reference.common.arrays import Array
 from fem_reference.common.bodies import coating_of, expected_radius, yielded_radius
 from fem_reference.common.hertz import Scales, contact_modulus, kinks_of, plastic_radius, required, scales
-from fem_reference.common.mesh_lines import Sizes, coated_depths, grow, uniform_then_growing
+from fem_reference.common.mesh_lines import Sizes, coated_depths, grow, two_sided, uniform_then_growing
 from fem_reference.common.plan import Plan, planned, slide, stages_of
 from fem_reference.common.refusals import (
     box_problems,
@@ -23,7 +23,7 @@ from fem_reference.common.refusals import (
     running_in_problems,
     shape_problems,
 )
-from fem_reference.spatial.lines import GROWTH, Lines, two_sided
+from fem_reference.spatial.lines import GROWTH, Lines
 from sam.scene.result import LeftOut, Stage
 from sam.scene.schema import Scene
 from sam.scene.section import Problem, spelling
@@ -244,8 +244,8 @@ def choose_lines(scene: Scene) -> tuple[Lines, tuple[float, float, float]]:
     reach = WIDTH * grown
     half = scene.constant_friction and not sliding.places[:, 1].any()
     core = min(low_x, 0.0) - reach * a, max(high_x, 0.0) + reach * a, max(high_y, 0.0) + reach * b
-    x = two_sided(core[0], core[1], a / cells, box)
-    y = two_sided(min(low_y, 0.0) - reach * b, core[2], b / cells, box)
+    x = two_sided(core[0], core[1], a / cells, box, growth=GROWTH)
+    y = two_sided(min(low_y, 0.0) - reach * b, core[2], b / cells, box, growth=GROWTH)
     size, depth, coating = min(a, b) / cells, DEPTH * grown * min(a, b), coating_of(scene, scales(scene))
     if coating is None:
         z = uniform_then_growing(size, depth, box, growth=GROWTH, marks=kinks_of(scene, scales(scene)))

@@ -7,7 +7,8 @@ limit, or by a depth that is given. Strains are small and the mesh stays: the ga
 state of every column of Gauss points moves up by it. Then the unloaded body is in equilibrium again.
 
 Along a column the state is linear between the Gauss points, and the strain at the surface is extrapolated
-from the first two. The strain below a node is the mean of the four columns next to it.
+from the first two. The strain below a node is the mean of the four columns next to it. Where a roof falls, a
+node is lowered by the largest depth at which the strain below it is above the limit there.
 """
 
 from __future__ import annotations
@@ -56,19 +57,23 @@ class WornCycle:
 
 @dataclass(frozen=True)
 class Limits:
-    """Plastic strains beyond which material is removed: `layer` down to `thickness` (m), `bulk` below."""
+    """Plastic strains beyond which material is removed: `layer` down to `thickness` (m), `bulk` below; and
+    whether sound material above it falls.
+    """
 
     bulk: float
     layer: float
     thickness: float
+    roof_falls: bool = False
 
 
 def limits_of(scene: Scene) -> Limits:
     """The strain limits of a scene with [wear]."""
     wear, plasticity = required(scene.wear), required(scene.body.plasticity)
+    falls = wear.roof == "falls"
     if wear.strain_limit_layer is None or plasticity.layer_thickness is None:
-        return Limits(wear.strain_limit, wear.strain_limit, 0.0)
-    return Limits(wear.strain_limit, wear.strain_limit_layer, plasticity.layer_thickness)
+        return Limits(wear.strain_limit, wear.strain_limit, 0.0, falls)
+    return Limits(wear.strain_limit, wear.strain_limit_layer, plasticity.layer_thickness, falls)
 
 
 def worn_cycles(scene: Scene, depths: Sequence[Array] | None = None) -> list[WornCycle]:
@@ -77,8 +82,8 @@ def worn_cycles(scene: Scene, depths: Sequence[Array] | None = None) -> list[Wor
     Parameters
     ----------
     scene : Scene
-        A rough body that yields below a rigid counter-body. Of its [wear] only the strain limits are read:
-        nothing is smoothed.
+        A rough body that yields below a rigid counter-body. Of its [wear] only the strain limits and the
+        roof are read: nothing is smoothed.
     depths : sequence of (nx, ny) arrays, optional
         Depth in m to remove from the cells at the end of each cycle, in place of the model's own.
 
@@ -129,6 +134,12 @@ def own_depth(model: RoughModel, state: Equilibrium, limits: Limits) -> Array:
     below = 0.5 * (beside[:, 1:-1:2] + beside[:, 2:-1:2])
     patch = np.isfinite(model.initial_gap)[1:-1, 1:-1]
     z, strain = points[2, columns[0, 0]] * model.scales.length, below[patch]
+    if limits.roof_falls:
+        parts = (limits.layer, 0.0, limits.thickness), (limits.bulk, limits.thickness, z[-1])
+        lowest = [deepest_above(limit, z, strain, between) for limit, *between in parts]
+        if (lowest[1] == z[-1]).any():
+            raise ValueError("the lowest point of a column is above the strain limit")
+        return np.maximum(*lowest).reshape(model.heights.shape)
     layer, bulk = (depth_above(limit, z, strain) for limit in (limits.layer, limits.bulk))
     depth = np.where(layer < limits.thickness, layer, np.maximum(bulk, limits.thickness))
     return depth.reshape(model.heights.shape)
@@ -141,9 +152,7 @@ def depth_above(limit: float, z: Array, strain: Array) -> Array:
 
     Raises ValueError where all of a profile is above the limit.
     """
-    slope = (strain[:, 1] - strain[:, 0]) / (z[1] - z[0])
-    surface = np.maximum(strain[:, 0] - slope * z[0], 0.0)
-    z, strain = np.append(0.0, z), np.column_stack([surface, strain])
+    z, strain = from_surface(z, strain)
     below, depth = strain <= limit, np.zeros(len(strain))
     if not below.any(axis=1).all():
         raise ValueError("all of a column is above the strain limit")
@@ -151,6 +160,31 @@ def depth_above(limit: float, z: Array, strain: Array) -> Array:
     last = np.argmax(below[rows], axis=1)
     upper, lower = strain[rows, last - 1], strain[rows, last]
     depth[rows] = z[last - 1] + (upper - limit) / (upper - lower) * (z[last] - z[last - 1])
+    return depth
+
+
+def from_surface(z: Array, strain: Array) -> tuple[Array, Array]:
+    """Depths and profiles with the surface, z = 0, before them."""
+    slope = (strain[:, 1] - strain[:, 0]) / (z[1] - z[0])
+    surface = np.maximum(strain[:, 0] - slope * z[0], 0.0)
+    return np.append(0.0, z), np.column_stack([surface, strain])
+
+
+def deepest_above(limit: float, z: Array, strain: Array, between: Sequence[float]) -> Array:
+    """(n,) largest depth from the first to the second of `between` at which profiles, as in `depth_above`,
+    are above the limit, 0 where none is.
+    """
+    z, strain = from_surface(z, strain)
+    inner = z[(z > between[0]) & (z < between[1])]
+    nodes, depth = np.array([between[0], *inner, between[1]]), np.zeros(len(strain))
+    excess = interp1d(z, strain)(nodes) - limit
+    rows = np.flatnonzero((excess > 0.0).any(axis=1))
+    last = len(nodes) - 1 - np.argmax(excess[rows, ::-1] > 0.0, axis=1)
+    after = np.minimum(last + 1, len(nodes) - 1)  # of the last node, itself
+    upper, lower = excess[rows, last], excess[rows, after]
+    depth[rows] = nodes[last] + upper / np.where(after > last, upper - lower, 1.0) * (
+        nodes[after] - nodes[last]
+    )
     return depth
 
 

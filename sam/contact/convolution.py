@@ -490,8 +490,10 @@ def _by_parity(field: Real, odd: Parity, *, n: int, half: int, axis: int, invers
 
 class Transforms:
     """Transforms of fields on a box, mirrored in x (with y) and in y; half: the N of the text; periodic: of
-    all cells of a period, of which N are half.
+    all cells of a period, of which N are half; wraps: padded, but what is given repeats along y.
     """
+
+    wraps = False
 
     def __init__(
         self,

@@ -29,7 +29,7 @@ from sam.arrays import Array, Mask
 from sam.contact.box import ApproachControl, BoxContact, Control, ForceControl, gap_of_contact
 from sam.contact.convolution import Counters
 from sam.contact.operators import HALF_SPACES, HalfSpaces, SurfaceOperators
-from sam.grid.cells import Window
+from sam.grid.cells import Window, at_edge
 from sam.scene import Status
 from sam.scene.result import unfinished
 from sam.schedule import Approach
@@ -317,20 +317,29 @@ def no_contact(gap0: Array, given: float | Approach = 0.0) -> Contact:
 
 # cells in the contact radius; with fewer the largest pressure is off by up to 4 %, from here on by 1 %
 FEWEST_CELLS = 3.0
-FEWEST_IN_SPOT = round(pi * FEWEST_CELLS**2)
 
 
-def fit_of(contact: Contact, rough: bool = False) -> Status:
-    """CONVERGED, or what is wrong with a contact on the full grid; rough: all spots count together."""
+def fewest_in_spot(pressure: Array) -> int:
+    """Cells that a spot of a pressure, (nx, ny), needs: of a circle, or in a row."""
+    return round(pi * FEWEST_CELLS**2) if pressure.shape[1] > 1 else round(2 * FEWEST_CELLS)
+
+
+def fit_of(contact: Contact, rough: bool = False, line: bool = False) -> Status:
+    """CONVERGED, or what is wrong with a contact on the full grid; rough: all spots count together; line: all
+    repeats along y.
+    """
     if not contact.converged:
         return Status.NOT_CONVERGED
     touching = contact.pressure > 0
     if not touching.any():
         return Status.CONVERGED
     if rough:
-        return Status.CONVERGED if touching.sum() >= FEWEST_IN_SPOT else Status.UNDER_RESOLVED
-    if touching[[0, -1], :].any() or touching[:, [0, -1]].any():
+        return (
+            Status.CONVERGED if touching.sum() >= fewest_in_spot(contact.pressure) else Status.UNDER_RESOLVED
+        )
+    if at_edge(touching, line):
         return Status.CONTACT_AT_GRID_EDGE
-    if min(touching.any(axis=1).sum(), touching.any(axis=0).sum()) < 2 * FEWEST_CELLS:
+    across = [touching.any(axis=1 - axis).sum() for axis in range(1 if line else 2)]
+    if min(across) < 2 * FEWEST_CELLS:
         return Status.UNDER_RESOLVED
     return Status.CONVERGED

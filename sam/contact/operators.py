@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -101,6 +101,24 @@ class HalfSpaces:
 
 
 HALF_SPACES = HalfSpaces()
+
+
+class RepeatedAlongY(HalfSpaces):
+    """The same below pressures that repeat along y after the grid, the bodies of a line contact."""
+
+    def coefficients(
+        self, wanted: Lags, cells: tuple[int, int], nu: float, *, component: int, load: int
+    ) -> Array:
+        """The same, along the load zero at |x| = ny aspect/2 below a line force at x = 0."""
+        repeated = replace(wanted, period=cells[1])
+        return displacement_coefficients(repeated, nu, component=component, load=load)  # paper Eq. 5
+
+    def own(self, coefficients: Array, aspect: float) -> float:
+        """Of one cell that does not repeat, which depends on no reference."""
+        return HALF_SPACES.own(HALF_SPACES.normal(1, 1, aspect), aspect)
+
+
+LINE = RepeatedAlongY()
 
 
 class CoatedBodies(HalfSpaces):

@@ -22,7 +22,7 @@ MIRRORED = 1e-9  # of the largest traction: within the tolerance of a contact
 
 def stresses(
     tractions: Mapping[int, Array],
-    cell: tuple[float, float],
+    cell: tuple[float, float] | tuple[float, float, int],
     depths: ArrayLike,
     observed: Window,
     *,
@@ -38,7 +38,7 @@ def stresses(
         Direction of the load (1, 2, 3: q_x, q_y, p, on the body, p > 0 compressive) -> (nx, ny) in Pa on the
         whole grid. A direction that is left out costs nothing.
     cell
-        (hx, hy), sides of a cell in m.
+        (hx, hy), sides of a cell in m; third the cells along y after which the tractions repeat, if they do.
     depths
         (nz,) in m.
     observed
@@ -55,7 +55,7 @@ def stresses(
     Array
         (6, nz, nx, ny) in Pa; components 11 22 33 23 13 12, tension positive.
     """
-    (hx, hy), depths = cell, np.asarray(depths, dtype=float)
+    (hx, hy, *period), depths = cell, np.asarray(depths, dtype=float)
     total = np.zeros((len(STRESS), len(depths), *observed.shape))
     for load, field in tractions.items():
         source = _loaded(field)
@@ -70,7 +70,7 @@ def stresses(
         for k in range(0, len(depths), DEPTHS_AT_ONCE):
             some = depths[k : k + DEPTHS_AT_ONCE]
             if layered is None:
-                in_cells = Lags(*lags, 1.0, hy / hx)
+                in_cells = Lags(*lags, 1.0, hy / hx, *period)
                 kernels = stress_coefficients(in_cells, some / hx, nu, load=load, names=names)
             else:
                 kernels = layered.stress(Lags(*lags, hx, hy), some, load=load, names=names)

@@ -12,7 +12,7 @@ import numpy as np
 from sam.arrays import Array
 from sam.contact.convolution import Counters
 from sam.contact.normal import Contact, Search, around, no_contact, solve_contact
-from sam.contact.operators import HALF_SPACES, CoatedPair, HalfSpaces, SurfaceOperators
+from sam.contact.operators import HALF_SPACES, LINE, CoatedPair, HalfSpaces, SurfaceOperators
 from sam.contact.periodic import PeriodicHalfSpaces
 from sam.contact.stress import DEPTHS_AT_ONCE
 from sam.elastic.misfit import MisfitSphere
@@ -164,6 +164,8 @@ class Plan:
         """Both bodies, as the contact asks for them."""
         if self.coated is not None:
             return self.coated.bodies(self.grid)
+        if self.grid.line:
+            return LINE
         return HALF_SPACES if self.period is None else self.period
 
     @property

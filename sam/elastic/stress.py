@@ -32,7 +32,7 @@ def stress_at(state: Loaded, depths: Array, window: Window) -> Array:
         return plan.period.stresses(tractions, cell, depths, window, nu=nu, counters=problem.counters)
     stress = stresses(
         tractions,
-        cell,
+        (*cell, plan.grid.period),
         depths,
         window,
         nu=nu,

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sam.arrays import Array
+from sam.arrays import Array, Mask
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Room:
 class CellGrid:
     """nx x ny cells of hx x hy in m about the origin. depths: (nz,) of output in m; faces: (nz +
     1,) of layers, or None; border: cells at each end that count for no maximum; room: as chosen; periodic:
-    whether all repeats beside it.
+    whether all repeats beside it; line: along y alone, of a line contact, with one cell the same at every y.
     """
 
     nx: int
@@ -56,6 +56,17 @@ class CellGrid:
     border: tuple[int, int] = (0, 0)
     room: Room = Room()
     periodic: bool = False
+    line: bool = False
+
+    @property
+    def period(self) -> int:
+        """Cells along y after which all repeats below a cylinder, 0 of others."""
+        return self.ny if self.line else 0
+
+    @property
+    def wraps(self) -> tuple[bool, bool]:
+        """Whether the last cell is a neighbour of the first, along x and along y."""
+        return self.periodic, self.periodic or self.line
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -101,6 +112,11 @@ class CellGrid:
         columns = 2 - self.nx % 2
         first = (self.nx - columns) // 2
         return slice(first, first + columns)
+
+
+def at_edge(cells: Mask, line: bool = False) -> bool:
+    """Whether outermost cells are true, of (nx, ny); line: along y there are none, see `CellGrid`."""
+    return bool(cells[[0, -1]].any() or (not line and cells[:, [0, -1]].any()))
 
 
 def _centres(n: int, h: float) -> Array:

@@ -67,7 +67,7 @@ class RoughPatch:
         if strip is not None:
             return cls(surface, strip.cells, strip.extent, relief, counter, strip)
         cells, extent = patch_of(stated(leading(surface, counter)), given)
-        periodic = given is not None and given.periodic is not None
+        periodic = given is not None and given.periodic == "xy"
         return cls(surface, cells, extent, relief, counter, periodic=periodic)
 
     def heights(self) -> Array:
@@ -112,11 +112,11 @@ def _heights(surface: Surface, cells: tuple[int, int], extent: tuple[float, floa
     return values
 
 
-def step_across(heights: Array) -> float:
-    """Rms step across the border of a patch over that between neighbouring cells, the larger of both
+def step_across(heights: Array, axes: tuple[int, ...] = (0, 1)) -> float:
+    """Rms step across the border of a patch over that between neighbouring cells, the larger of some
     directions: about 1 of heights (nx, ny) that repeat.
     """
-    steps = [(heights.take(0, axis) - heights.take(-1, axis), np.diff(heights, axis=axis)) for axis in (0, 1)]
+    steps = [(heights.take(0, axis) - heights.take(-1, axis), np.diff(heights, axis=axis)) for axis in axes]
     rms = [[float(np.sqrt(np.square(each).mean())) for each in both] for both in steps]
     return max(across / (inside or across or 1.0) for across, inside in rms)
 
@@ -136,13 +136,16 @@ def tapered(heights: Array, share: float) -> Array:
 
 @dataclass(frozen=True)
 class RoughDemand:
-    """What the grid of a rough scene is chosen from; reach: of `point_load_reach` in m."""
+    """What the grid of a rough scene is chosen from; reach: of `point_load_reach` in m; line: below a
+    cylinder, all repeats along y.
+    """
 
     patch: RoughPatch
     given: Grid | None
     plasticity: Plasticity | None
     film: float | None = None
     reach: float = 0.0
+    line: bool = False
 
     def grid(self, room: Room) -> CellGrid:
         """The cells of the patch; depths that are not given are fine near the surface, for small contacts."""
@@ -151,7 +154,7 @@ class RoughDemand:
         hx, hy = lx / nx, ly / ny
         depths = given_depths(self.given)
         if depths is None:
-            cell, deepest = min(hx, hy), DEPTH_SHARE * min(lx, ly)
+            cell, deepest = hx if ny == 1 else min(hx, hy), DEPTH_SHARE * (lx if self.line else min(lx, ly))
             chosen = (
                 _depths(cell, deepest)
                 if plasticity is None
@@ -159,10 +162,10 @@ class RoughDemand:
             )
             depths = chosen if self.film is None else depths_with_film(chosen, self.film)
         border = (0, 0) if patch.relief or patch.periodic else border_cells((nx, ny))
-        if plasticity is not None:
-            between = (depths[1:] + depths[:-1]) / 2
-            return CellGrid(nx, ny, hx, hy, between, depths, border, room, patch.periodic)
-        return CellGrid(nx, ny, hx, hy, depths, border=border, room=room, periodic=patch.periodic)
+        border = (border[0], 0) if self.line else border
+        faces = None if plasticity is None else depths
+        depths = depths if faces is None else (faces[1:] + faces[:-1]) / 2
+        return CellGrid(nx, ny, hx, hy, depths, faces, border, room, patch.periodic, self.line)
 
 
 def _depths(cell: float, deepest: float) -> Array:

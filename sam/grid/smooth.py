@@ -39,6 +39,9 @@ PLASTIC_CELLS = 65  # with plasticity: 16 cells in the Hertz radius
 # the track: the groove of Swift steel at p0 = 4 sigma_y is 3.6 % shallower with 6 in the radius than with 12,
 # with 8 it is 1.7 %.
 MOVING_CELLS = 41
+# The same of a line contact, whose cells are a row; (elastic, plastic, plastic and moving)
+LINE_CELLS = 513, 129, 65
+DEEPER_BELOW_LINE = 1.5  # times the depth of layers: perfect plasticity rolled at 3 yield stresses needs 1.2
 MOST_CELLS = 1025  # along a side of a chosen grid; an elastic solve then takes about a minute
 CHOSEN = 0.6  # of the largest cell allowed: 5 in a rounded edge, its largest pressure within 0.4 %
 MOST_LAYERS = 2000  # of a volume grid; memory and time of the box grow with their square
@@ -64,7 +67,8 @@ class PlasticDemand:
 @dataclass(frozen=True)
 class GridDemand:
     """What the grid of a smooth scene is chosen from. axes: estimated semi-axes in m; extent: sides
-    in contact radii; wider: factor on them; farthest: |x|, |y| of a load in m; film: thickness.
+    in contact radii; wider: factor on them; farthest: |x|, |y| of a load in m; film: thickness;
+    length: of a line contact along y in m, 0 of others; its cells are a row along x.
     """
 
     given: Grid | None
@@ -76,6 +80,7 @@ class GridDemand:
     film: float | None = None
     moves: bool = False
     largest_cell: float = inf
+    length: float = 0.0
 
     @cached_property
     def usual(self) -> int:
@@ -83,6 +88,8 @@ class GridDemand:
         given = self.given.extent if self.given else None
         sides = given or tuple(self.wider * self.extent * radius for radius in self.axes)
         least = 2 * ceil(max(sides) / (CHOSEN * self.largest_cell) / 2 - 0.5) + 1
+        if self.length:
+            return LINE_CELLS[0 if self.plastic is None else 1 + self.moves]
         if self.plastic is None:
             return max(DEFAULT_CELLS, least)
         return max(MOVING_CELLS if self.moves else PLASTIC_CELLS, least)
@@ -108,13 +115,17 @@ class GridDemand:
             longer.append(self.usual if stretch == 1 else 2 * int(np.ceil(stretch * self.usual / 2)) + 1)
         nx, ny = (given.cells if given and given.cells else None) or longer
         lx, ly = self.sides((longer[0], longer[1]))
+        if line := self.length > 0:
+            ny, ly = 1, self.length
         hx, hy = lx / nx, ly / ny
         depths = given_depths(given)
         if plastic is None:
-            return CellGrid(nx, ny, hx, hy, self._output_depths() if depths is None else depths, room=room)
+            depths = self._output_depths() if depths is None else depths
+            return CellGrid(nx, ny, hx, hy, depths, room=room, line=line)
         if depths is None:
-            depths = _layer_faces(min(hx, hy), min(self.axes), plastic, room.below)
-        return CellGrid(nx, ny, hx, hy, (depths[1:] + depths[:-1]) / 2, depths, room=room)
+            cell, deeper = (hx, DEEPER_BELOW_LINE) if line else (min(hx, hy), 1.0)
+            depths = _layer_faces(cell, min(self.axes), plastic, deeper * room.below)
+        return CellGrid(nx, ny, hx, hy, (depths[1:] + depths[:-1]) / 2, depths, room=room, line=line)
 
     def _output_depths(self) -> Array:
         """Depths in m at which the stress of an elastic body is returned."""
@@ -140,6 +151,14 @@ def point_load_reach(force: float, poisson: float, bulk_yield: float, radius: fl
     F/(2 pi z^2) (Johnson 1985, Eq. 3.19), at most FARTHEST radii: there a large zone ends.
     """
     reach = sqrt((3.5 - poisson) * force / (2 * pi * bulk_yield))
+    return min(reach, FARTHEST * radius)
+
+
+def line_load_reach(force: float, poisson: float, bulk_yield: float, radius: float) -> float:
+    """The same of a line force in N/m in plane strain: (1 - nu + nu^2)^(1/2) 2 F'/(pi z) (Johnson 1985, Eq.
+    2.15).
+    """
+    reach = sqrt(1 - poisson + poisson**2) * 2 * force / (pi * bulk_yield)
     return min(reach, FARTHEST * radius)
 
 

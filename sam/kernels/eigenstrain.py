@@ -27,7 +27,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sam.arrays import Array
-from sam.kernels.patches import STRESS, Cuboids
+from sam.kernels import line
+from sam.kernels.patches import FURTHER, STRESS, Cuboids, Lags, repeated
 from sam.kernels.primitives import Corners, primitive
 
 PAIRS = tuple((int(name[0]) - 1, int(name[1]) - 1) for name in STRESS)
@@ -152,7 +153,16 @@ def surface_displacement_coefficients(cuboids: Cuboids, *, component: int = 3) -
     """Displacement at (i hx, j hy, 0) by a unit eigenstrain in the cuboids at the origin, (6, n,
     nx, ny). Paper Eq. 19 is component 3 (> 0 into the body), printed twice too large.
     """
+    if cuboids.lags.period > 1:
+        odd = np.array([[displacement_parity(component, j)[1] < 0] for j in range(6)])
+
+        def alone(lags: Lags) -> Array:
+            return surface_displacement_coefficients(replace(cuboids, lags=lags), component=component)
+
+        return repeated(cuboids.lags, odd, FURTHER[1], alone)
     x, y = cuboids.lags.corners()
+    if cuboids.lags.period == 1:
+        return line.surface_displacement(x, cuboids.depths, cuboids.nu, component=component)[..., None]
     source = cuboids.depths[:, None, None]
     terms, matrix = _matrix("displacement", tuple(f"{component},{j}" for j in STRESS), cuboids.nu)
     basis = _table_basis(terms, Corners(x[:, None], y[None, :], source), source)

@@ -8,6 +8,7 @@ Most of the work of a grid with equal layers is shared between pairs of layers, 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from itertools import islice
 from math import floor, log10, prod
 
@@ -15,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sam.arrays import Array, Mask
+from sam.kernels import line
 from sam.kernels.eigenstrain import (
     EXCHANGED_ROWS,
     FOURTH,
@@ -25,7 +27,7 @@ from sam.kernels.eigenstrain import (
     image_orders,
     own_stress,
 )
-from sam.kernels.patches import Cuboids, Lags
+from sam.kernels.patches import FURTHER, Cuboids, Lags, apart
 
 Numbers = NDArray[np.intp]
 """Numbers of pairs of layers."""
@@ -44,7 +46,9 @@ def residual_stress_coefficients(
     z_observed, faces = np.atleast_1d(np.asarray(z, float)), cuboids.depths
     if np.any(z_observed < 0) or np.isin(z_observed, faces[faces > 0]).any():
         raise ValueError("z_observed must be >= 0 and not on a face inside the body, where the stress jumps")
-    functions = CornerFunctions(cuboids.lags.shape, mesh(cuboids.lags, four_points(off)))
+    functions = functions_of(
+        cuboids.lags, lambda lags: CornerFunctions(lags.shape, mesh(lags, four_points(off)))
+    )
     layers = LayerStress(functions, z_observed[:, None], faces, cuboids.nu)
     out = np.empty((36, z_observed.size, cuboids.layers, *cuboids.lags.shape))
     for k in range(z_observed.size):
@@ -71,8 +75,10 @@ def mesh(lags: Lags, points: Points = ((0.0, 0.0),), *, first: int = 0) -> tuple
 
 class CornerFunctions:
     """The functions that coefficients are sums of, at the corners of cells; meshes: of corners,
-    (points, X, Y), over whose points the mean is taken.
+    (points, X, Y), over whose points the mean is taken. line: all is the same at every y.
     """
+
+    line = False
 
     def __init__(self, shape: tuple[int, int], *meshes: tuple[Array, Array]):
         self.meshes = [x.shape for x, _ in meshes]
@@ -115,6 +121,33 @@ class CornerFunctions:
         return np.asarray(cells[..., :-1, :-1].mean(axis=-3))
 
 
+class RepeatedFunctions(CornerFunctions):
+    """Functions of cells that repeat along y, by those of cells alone and of strips; alone: makes either."""
+
+    def __init__(self, lags: Lags, alone: Callable[[Lags], CornerFunctions]):
+        self.lags, (space, strip) = lags, apart(lags)
+        self.cells = alone(replace(space, ny=(FURTHER[1][-1] + 1) * lags.period + 1))
+        self.strip = alone(strip)
+        self.x, self.y = (
+            np.concatenate(both) for both in ((self.cells.x, self.strip.x), (self.cells.y, self.strip.y))
+        )
+        self.itself = np.zeros(lags.shape)
+        self.itself[0, :: lags.period] = 1.0
+
+    def planes(self, corners: Array, odd: tuple[int, int]) -> Array:
+        """Of the cells: (..., nx, ny)."""
+        of_cells, of_strip = np.split(corners, [self.cells.x.size], axis=-1)
+        cells, period = self.cells.planes(of_cells, odd), self.lags.period
+        plane, sign = self.strip.planes(of_strip, odd), np.array(odd[1])
+        found = line.repeated(lambda ny: cells, plane, period, odd=sign, up_to=FURTHER[1])
+        return np.asarray(found[..., np.arange(self.lags.ny) % period])
+
+
+def functions_of(lags: Lags, alone: Callable[[Lags], CornerFunctions]) -> CornerFunctions:
+    """The functions of cells that may repeat along y; alone: those of cells that do not, or of strips."""
+    return RepeatedFunctions(lags, alone) if lags.period > 1 else alone(lags)
+
+
 class LayerStress:
     """Stress in observed layers by eigenstrains in layers of cuboids, both of any thickness, from functions
     of corners. points: (observed layers, g) depths, the answer is the mean over these g; faces: (n + 1,) as
@@ -138,7 +171,9 @@ class LayerStress:
     ):
         self.functions, self.points, self.faces = functions, points, faces
         self.exchanged, factors = exchanged, np.ones(36) if scale is None else scale
-        self.blocks = [block.times(factors) for block in blocks(nu, exchanged)]
+        self.blocks = [
+            block.times(factors) for block in blocks(nu, exchanged) if not (functions.line and block.odd[1])
+        ]
         self.rows = np.concatenate([block.rows for block in self.blocks])
         self.own = (factors * own_stress(nu).ravel())[self.rows]
         self.mirrored = MIRRORED[self.rows]
@@ -153,7 +188,9 @@ class LayerStress:
         self.full = _Shared(offsets, digits, self._full_space_sums, at_once)
 
     def of(self, layer: int, out: Array) -> None:
-        """Stress/mu in one of the observed layers into `out`, (36, n, X, Y); each once, in order."""
+        """Stress/mu in one of the observed layers into `out`, (36, n, X, Y); each once, in order. In plane
+        strain what is odd in y is left as it is.
+        """
         for k, (image, stress) in enumerate(zip(self._image(layer), self._full_space(layer), strict=True)):
             stress += image
             self._every(stress, out[:, k])

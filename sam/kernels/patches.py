@@ -16,27 +16,34 @@ of (length x traction / mu). Loads: tractions on the body F = (q_x, q_y, p), p >
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
-from math import pi
+from functools import cache, partial
+from math import ceil, pi
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sam.arrays import Array
+from sam.kernels import line
 from sam.kernels.primitives import Corners, primitive
+
+FURTHER = (6, 9, 13, 18), (3, 5, 7, 10)  # periods summed, of displacements to 2e-8, of stresses to 1e-6
+LONG = 1e12  # cells hx: stresses of plane strain to 3e-13 of the largest
 
 
 @dataclass(frozen=True)
 class Lags:
-    """Offsets (i hx, j hy), 0 <= i < nx and 0 <= j < ny, from a loaded cell to an observed one."""
+    """Offsets (i hx, j hy), 0 <= i < nx and 0 <= j < ny, from a loaded cell to an observed one; period: cells
+    along y after which loads repeat, 0 if they do not. With 1 all is the same at every y: plane strain.
+    """
 
     nx: int
     ny: int
     hx: float
     hy: float
+    period: int = 0
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -54,14 +61,14 @@ class Lags:
 
     def corners(self, first: int = 0) -> tuple[Array, Array]:
         """x and y of the corners of the cells at the lags first .. n - 1: half-integers times the cell, none
-        of them 0.
+        of them 0; in plane strain of a cell so long that stresses below it are those of plane strain.
 
         >>> Lags(2, 1, 1.0, 3.0).corners()
         (array([-0.5,  0.5,  1.5]), array([-1.5,  1.5]))
         """
         i = np.arange(first, self.nx + 1, dtype=float)
         j = np.arange(first, self.ny + 1, dtype=float)
-        return (i - 0.5) * self.hx, (j - 0.5) * self.hy
+        return (i - 0.5) * self.hx, (j - 0.5) * (LONG * self.hx if self.period == 1 else self.hy)
 
 
 @dataclass(frozen=True)
@@ -155,6 +162,20 @@ def _corners(lags: Lags, z: ArrayLike, shift: tuple[float, float] = (0.0, 0.0)) 
     return Corners((x + shift[0])[:, None], (y + shift[1])[None, :], depth), depth
 
 
+def apart(lags: Lags) -> tuple[Lags, Lags]:
+    """Of cells that repeat along y: lags of one alone in x, as far as cells are felt, and of a strip."""
+    near = min(lags.nx, ceil(line.BESIDE * lags.period * lags.hy / lags.hx) + 1)
+    return replace(lags, nx=near, period=0), replace(lags, ny=1, hy=lags.period * lags.hy, period=1)
+
+
+def repeated(lags: Lags, odd: Array, further: Sequence[int], alone: Callable[[Lags], Array]) -> Array:
+    """Coefficients of a cell that repeats along y; alone: those of one that does not, or of a strip."""
+    space, strip = apart(lags)
+    plane = alone(strip)
+    found = line.repeated(lambda ny: alone(replace(space, ny=ny)), plane, lags.period, odd=odd, up_to=further)
+    return found[..., np.arange(lags.ny) % lags.period]
+
+
 def stress_coefficients(
     lags: Lags,
     z: ArrayLike,
@@ -179,13 +200,22 @@ def stress_coefficients(
     names
         Components of the stress, of `STRESS`.
     shift
-        (x, y) by which every observed point is moved, in the unit of hx.
+        (x, y) by which every observed point is moved, in the unit of hx; none where loads repeat.
 
     Returns
     -------
     Array
         (len(names), nz, nx, ny), without a unit: stress per traction.
     """
+    if lags.period > 1:
+        odd = np.array([[parity(name, load)[1] < 0] for name in names])
+        at = [
+            repeated(
+                lags, odd, FURTHER[1], partial(stress_coefficients, z=each, nu=nu, load=load, names=names)
+            )
+            for each in np.atleast_1d(z)
+        ]
+        return np.concatenate(at, axis=1)
     corners, depth = _corners(lags, z, shift)
     table = load_table()["stress"]
     # paper Eq. 20 (load 3) and Eq. 21 (load 1), with the factor 1/(2 pi) that is not printed
@@ -209,7 +239,7 @@ def displacement_coefficients(
     component, load
         Directions of the displacement and of the traction on the body: 1, 2 or 3 (> 0 into the body).
     z
-        Depth >= 0 in the unit of hx.
+        Depth >= 0 in the unit of hx. Where loads repeat 0, and u along the load is zero at |x| = period hy/2.
 
     Returns
     -------
@@ -225,6 +255,12 @@ def displacement_coefficients(
     >>> bool(np.isclose(center, 2 * np.log(1 + np.sqrt(2)) / np.pi, rtol=1e-14))
     True
     """
+    if lags.period == 1:
+        reference = lags.hy / 2
+        return line.displacement(lags.corners()[0], nu, reference, component=component, load=load)[:, None]
+    if lags.period > 1:
+        alone = partial(displacement_coefficients, nu=nu, component=component, load=load)
+        return repeated(lags, np.zeros((), int), FURTHER[0], alone)
     corners, depth = _corners(lags, z)
     rows = load_table()["displacement"][f"{component},F{load}"]
     return _corner_sum(rows, nu, corners, depth)[0] / (2 * pi)  # paper Eq. 5, D_ij

@@ -17,6 +17,8 @@ but k itself are together smooth between -pi and pi: they are summed at Chebyshe
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 from math import ceil, erfc, log, pi
 from typing import Any
@@ -32,7 +34,7 @@ from sam.kernels.patches import STRESS, Lags, load_table
 Radial = Callable[[Array], Sequence[Array]]
 """k > 0 -> functions of it, which derivatives along x and y multiply."""
 Power = tuple[int, int]
-Sums = Sequence[tuple[int, int, int, int, float]]
+Sums = tuple[tuple[int, int, int, int, float], ...]
 """(entry, a, b, function, factor): terms of the entries."""
 ALIASED = 1e-10  # share of a coefficient that waves are left out at
 NODES = 1e-10  # error of the sum over aliases between its nodes
@@ -81,28 +83,39 @@ def repeated(period: Lags, sums: Sums, radial: Radial, *, depth: float, point: f
     for entry, a, b, function, factor in sums:
         of_x, of_y = _of_cell(sides[0], a, point), _of_cell(sides[1], b, point) / aspect**b
         out[entry] += factor * of_x[:, None] * functions[function] * of_y
-    far = log(1 / ALIASED) / (2 * pi)
-    if depth < 2 * far * max(1.0, aspect):
-        centre, width = WINDOW[point > 0]
-        widest = centre + 4 * width
-        most = [ceil(min(far * side / depth if depth else widest, widest)) for side in (1, aspect)]
-        count = 2 * ceil(nodes_for(NODES, 1j * min(aspect, 1 / aspect), 2.0) / 2)
-        half = pi * nodes(count)[: count // 2]
-        waves = [half[:, None] + 2 * pi * np.arange(-n, n + 1) for n in most]
-        ends = [np.vectorize(erfc)((np.abs(each) / (2 * pi) - centre) / width) / 2 for each in waves]
-        functions = radial(np.hypot(waves[0][:, :, None, None], waves[1] / aspect))
-        for each in functions:
-            each[:, most[0], :, most[1]] = 0.0  # k itself
-        between = [at_nodes(side / pi, count) for side in sides]
-        for entry, a, b, function, factor in sums:
-            of_x = _of_cell(waves[0], a, point) * ends[0]
-            of_y = _of_cell(waves[1], b, point) * ends[1] / aspect**b
-            found = np.einsum("xs,xsyt,yt->xy", of_x, functions[function], of_y, optimize=True)
-            found = np.concatenate([found, (-1) ** a * found[::-1]])
-            found = np.concatenate([found, (-1) ** b * found[:, ::-1]], axis=1)
-            out[entry] += factor * (between[0] @ found @ between[1].T)
+    count, aliases = _aliases(aspect, sums, radial, depth=depth, point=point)
+    between = [at_nodes(side / pi, count) for side in sides] if aliases else []
+    for (entry, _, _, _, factor), found in zip(sums, aliases, strict=False):
+        out[entry] += factor * (between[0] @ found @ between[1].T)
     out[:, 0, 0] = 0.0
     return out
+
+
+@lru_cache(maxsize=8)
+def _aliases(
+    aspect: float, sums: Sums, radial: Radial, *, depth: float, point: float
+) -> tuple[int, list[Array]]:
+    """Of each term the sum over all aliases but k itself at so many nodes: for a period of any length."""
+    count = 2 * ceil(nodes_for(NODES, 1j * min(aspect, 1 / aspect), 2.0) / 2)
+    out, far = list[Array](), log(1 / ALIASED) / (2 * pi)
+    if depth >= 2 * far * max(1.0, aspect):
+        return count, out
+    centre, width = WINDOW[point > 0]
+    widest = centre + 4 * width
+    most = [ceil(min(far * side / depth if depth else widest, widest)) for side in (1, aspect)]
+    half = pi * nodes(count)[: count // 2]
+    waves = [half[:, None] + 2 * pi * np.arange(-n, n + 1) for n in most]
+    ends = [np.vectorize(erfc)((np.abs(each) / (2 * pi) - centre) / width) / 2 for each in waves]
+    functions = radial(np.hypot(waves[0][:, :, None, None], waves[1] / aspect))
+    for each in functions:
+        each[:, most[0], :, most[1]] = 0.0  # k itself
+    for _, a, b, function, _ in sums:
+        of_x = _of_cell(waves[0], a, point) * ends[0]
+        of_y = _of_cell(waves[1], b, point) * ends[1] / aspect**b
+        found = np.einsum("xs,xsyt,yt->xy", of_x, functions[function], of_y, optimize=True)
+        found = np.concatenate([found, (-1) ** a * found[::-1]])
+        out.append(np.concatenate([found, (-1) ** b * found[:, ::-1]], axis=1))
+    return count, out
 
 
 def _sums(
@@ -111,7 +124,37 @@ def _sums(
     """The powers (p, c) of z^p (-k)^c in rows (entry, (p, c), (a, b), factor in powers of nu), and sums."""
     powers = sorted({power for _, power, _, _ in rows})
     sums = [(e, *ab, powers.index(pc), sum(x * nu**k for k, x in enumerate(q))) for e, pc, ab, q in rows]
-    return powers, sums
+    return powers, tuple(sums)
+
+
+@dataclass(frozen=True)
+class _OfLoad:
+    """Means of z^p (-k)^c e^{-k z}/k over depths."""
+
+    powers: tuple[Power, ...]
+    depths: tuple[float, ...]
+
+    def __call__(self, k: Array) -> list[Array]:
+        falls, inverse = [np.exp(-k * z) / k for z in self.depths], -1 / k
+        means = [
+            sum(z**p * fall for z, fall in zip(self.depths, falls, strict=True)) / len(falls) for p in (0, 1)
+        ]
+        return [means[p] * (inverse**-c if c < 0 else (-k) ** c) for p, c in self.powers]
+
+
+@dataclass(frozen=True)
+class _OfStrain:
+    """Integrals of z^q (-k)^c e^{-k z}/k over a layer of thickness t below the depth `top`."""
+
+    powers: tuple[Power, ...]
+    top: float
+    t: float
+
+    def __call__(self, k: Array) -> list[Array]:
+        ends = -np.expm1(-k * self.t) / k
+        moment = self.top * ends + (ends - self.t * np.exp(-k * self.t)) / k
+        fall = np.exp(-k * self.top) / k
+        return [fall * (moment if q else ends) * (-k) ** c for q, c in self.powers]
 
 
 def load_waves(
@@ -130,14 +173,7 @@ def load_waves(
     rows = [(e, row) for e, name in enumerate(names) for row in load_table()[kind][f"{name},F{load}"]]
     powers, sums = _sums([(e, (p, c), (a, b), of_nu) for e, (p, a, b, c, of_nu) in rows], nu)
 
-    def radial(k: Array) -> list[Array]:
-        falls, inverse = [np.exp(-k * z) / k for z in depths], -1 / k
-        means = [
-            sum(z**p * fall for z, fall in zip(depths, falls, strict=True)) / len(depths) for p in (0, 1)
-        ]
-        return [means[p] * (inverse**-c if c < 0 else (-k) ** c) for p, c in powers]
-
-    return repeated(period, sums, radial, depth=min(depths), point=point)
+    return repeated(period, sums, _OfLoad(tuple(powers), tuple(depths)), depth=min(depths), point=point)
 
 
 def strain_displacement_waves(period: Lags, faces: Sequence[float], nu: float, component: int = 3) -> Array:
@@ -147,17 +183,13 @@ def strain_displacement_waves(period: Lags, faces: Sequence[float], nu: float, c
     table = eigenstrain_table()["displacement"]
     rows = [(e, *row) for e, name in enumerate(STRESS) for row in table[f"{component},{name}"].items()]
     powers, sums = _sums([(e, (q, c), (a, b), of_nu) for e, (_, q, a, b, c), of_nu in rows], nu)
-    layers = []
-    for top, bottom in pairwise(faces):
-
-        def radial(k: Array, top: float = top, t: float = bottom - top) -> list[Array]:
-            ends = -np.expm1(-k * t) / k
-            moment = top * ends + (ends - t * np.exp(-k * t)) / k
-            fall = np.exp(-k * top) / k
-            return [fall * (moment if q else ends) * (-k) ** c for q, c in powers]
-
-        layers.append(repeated(period, sums, radial, depth=top))
-    return np.stack(layers, axis=1)
+    return np.stack(
+        [
+            repeated(period, sums, _OfStrain(tuple(powers), top, bottom - top), depth=top)
+            for top, bottom in pairwise(faces)
+        ],
+        axis=1,
+    )
 
 
 def in_cells(waves: Array, cells: tuple[int, int], names: Sequence[str], other: int) -> Array:

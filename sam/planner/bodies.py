@@ -27,6 +27,7 @@ from sam.grid.smooth import (
     PlasticDemand,
     contact_radius,
     elliptic_contact,
+    line_load_reach,
     mean_compliance,
     point_load_reach,
     room_for_bare,
@@ -138,15 +139,24 @@ class Bodies:
             return self.smooth_demand
         plastic = None
         if scene.loading.approach is None:
-            plastic = self._plastic_demand(min(patch.extent) / 2 / FARTHEST)
+            widest = patch.extent[0] if self._line else min(patch.extent)
+            plastic = self._plastic_demand(widest / 2 / FARTHEST)
         reach = 0.0 if plastic is None else plastic.reach
-        return RoughDemand(patch, scene.grid, scene.body.plasticity, film, reach)
+        return RoughDemand(patch, scene.grid, scene.body.plasticity, film, reach, self._line)
+
+    @property
+    def _line(self) -> bool:
+        """Whether the counter-body is a cylinder."""
+        return self.scene.counterbody is not None and self.scene.counterbody.length is not None
 
     @cached_property
     def smooth_demand(self) -> GridDemand:
         """What the grid of a smooth scene is chosen from: the contact and the plastic zone to be expected."""
         scene, coating, other = self.scene, self.scene.body.coating, self.scene.counterbody
         (a, b), wider, farthest = self.axes, 1.0, (0.0, 0.0)
+        length = 0.0 if other is None else other.length or 0.0
+        if length:
+            b = a
         if a == 0.0:
             a, b = (SMALLEST * r for r in stated(stated(other).radii))
         elif coating is not None:
@@ -164,6 +174,7 @@ class Bodies:
             None if coating is None else coating.thickness,
             moves=scene.moves,
             largest_cell=self.largest_cell,
+            length=length,
         )
 
     @cached_property
@@ -190,12 +201,14 @@ class Bodies:
         plasticity, poisson = self.scene.body.plasticity, self.scene.body.poisson
         if plasticity is None:
             return None
-        force = self.force if self.given is None else self.given.peak_force
-        strength = plasticity.strength()
+        force, other = self.force if self.given is None else self.given.peak_force, self.scene.counterbody
+        strength, reach_of = plasticity.strength(), point_load_reach
+        if other is not None and other.length is not None:
+            force, reach_of = force / other.length, line_load_reach
 
         def reach(z: float) -> float:
             limit = float(strength.stress(z, np.zeros(1))[0])
-            return point_load_reach(force, poisson, limit, radius)
+            return reach_of(force, poisson, limit, radius)
 
         within = min(reach(np.nextafter(strength.thickness, 0.0)), strength.thickness)
         return PlasticDemand(max(reach(np.inf), within), strength.kinks.depths)
@@ -243,6 +256,14 @@ def _force_on_rounded_edge(bodies: Bodies, other: CounterBody, approach: float) 
     return min(force, _fully_plastic(bodies, 0.2 * beyond / punch.radius) * pi * (punch.flat + beyond) ** 2)
 
 
+def _by_line(bodies: Bodies, other: CounterBody) -> tuple[float, float]:
+    """The half-width (Johnson 1985, Eq. 4.43) and half of the length."""
+    length = stated(other.length)
+    line_force = bodies.force / length
+    half_width = sqrt(4 * line_force * stated(other.radius) / (pi * bodies.pair.contact_modulus))
+    return half_width, length / 2
+
+
 def _half_of_patch(bodies: Bodies, _: CounterBody) -> tuple[float, float]:
     lx, ly = bodies.scene.patch[1]
     return lx / 2, ly / 2
@@ -280,6 +301,7 @@ SHAPES = {
         largest_cell=lambda bodies, other: _rounded_punch(other).largest_cell(bodies.axes[0]),
     ),
     "flat": Opposite(lambda other: Uniform(), _half_of_patch),
+    "cylinder": Opposite(lambda other: Paraboloid((stated(other.radius), inf)), _by_line),
 }
 """The shapes of a scene."""
 
@@ -288,7 +310,8 @@ def hertz_semi_axes(scene: Scene) -> tuple[float, float]:
     """Contact semi-axes (a along x, b along y) in m by Hertz or what takes his place, for the body without
     coating.
 
-    The radius twice for a punch and for a given Hertz pressure; half the sides of the patch for a plane.
+    The radius twice for a punch and for a given Hertz pressure; half the sides of the patch for a plane; half
+    the width and half the length for a cylinder.
 
     Parameters
     ----------

@@ -69,8 +69,9 @@ def plan_of(bodies: Bodies) -> Plan:
     if scene.wear is not None and scene.wear.removes:
         limits = limit_by_depth(scene.wear, None if plasticity is None else plasticity.layer_thickness)
         smoothing = scene.wear.smoothing_window, scene.wear.smoothing_order
-        interpolate = scene.wear.interpolate
-        wear = WearLaw(grid.shape, grid.hx, grid.hy, limits, interpolate, *smoothing, grid.periodic)
+        keys = {"roof_falls": scene.wear.roof == "falls", "fills": scene.wear.smoothing_fills}
+        keys["periodic"] = grid.periodic
+        wear = WearLaw(grid.shape, grid.hx, grid.hy, limits, scene.wear.interpolate, *smoothing, **keys)
     rough, last = bodies.patch, schedule.targets[-1].load
     made = Plan(
         grid=grid,
@@ -151,7 +152,7 @@ def _targets_of_cycle(scene: Scene, schedule: Schedule, cycle: int) -> list[Targ
 
 def period_of(scene: Scene) -> PeriodicHalfSpaces | None:
     """Both bodies of a patch that repeats; None if it does not."""
-    if scene.grid is None or scene.grid.periodic is None:
+    if scene.grid is None or scene.grid.periodic != "xy":
         return None
     return PeriodicHalfSpaces(free=scene.loading.lateral == "free")
 
@@ -189,6 +190,8 @@ def track_of(scene: Scene, axes: tuple[float, float]) -> Track:
     curvatures = (0.0, 0.0) if plane else None
     if other.radii is not None:
         curvatures = 1 / other.radii[0], 1 / other.radii[1]
+    elif other.length is not None:
+        curvatures = 1 / stated(other.radius), 0.0
     carries = 1.0
     if plane:  # summits carry it, of the counter-body alone or of both
         carries = stated(strip).slip if scene.surface is None else 0.0
@@ -284,8 +287,6 @@ def check_bodies(bodies: Bodies) -> None:
     """Refuse the scene of some bodies, see `check`."""
     scene = bodies.scene
     plasticity, other = scene.body.plasticity, scene.counterbody
-    if other is not None and other.shape == "cylinder":
-        raise UnsupportedScene('counterbody.shape = "cylinder": not yet solved')
     _check_coating(scene)
     if other is not None and other.radii is None and min(bodies.axes) == 0.0:
         raise UnsupportedScene(
@@ -305,7 +306,7 @@ def check_bodies(bodies: Bodies) -> None:
             raise UnsupportedScene(
                 f"{surface.table}.path = {surface.path!r}: only its digest is at hand, read the scene file"
             )
-    if bodies.patch is not None and bodies.patch.periodic:
+    if bodies.patch is not None and scene.grid is not None and scene.grid.periodic is not None:
         _check_period(scene, bodies.patch)
     given = scene.grid
     if plasticity is None or given is None or given.extent is None or given.depths or given.layers:
@@ -323,8 +324,9 @@ def check_bodies(bodies: Bodies) -> None:
 
 def _check_period(scene: Scene, patch: RoughPatch) -> None:
     """Surfaces that do not repeat, an approach at which the patch touches all over, and cells and operators
-    that there are not.
+    that there are not; below a cylinder what does not repeat along y.
     """
+    axes = (0, 1) if patch.periodic else (1,)
     counter, approach, wrong = scene.counter_surface, scene.loading.approach, list[str]()
     for stretch in range(scene.loading.cycles if counter is not None and counter.renewed else 1):
         opposite = np.zeros(patch.cells) if counter is None else patch.counter_heights(stretch, (0.0, 0.0))
@@ -334,10 +336,10 @@ def _check_period(scene: Scene, patch: RoughPatch) -> None:
             along = surface.feed or surface.wavelength_x, surface.wavelength_y
             wrong += [
                 f"grid.extent = {side:g} m: a whole multiple of {wave:g} m, a wave of the {surface.words},"
-                for side, wave in zip(patch.extent, along, strict=True)
+                for side, wave in ((patch.extent[axis], along[axis]) for axis in axes)
                 if wave is not None and abs(side / wave - round(side / wave)) > WHOLE
             ]
-            if surface.kind == "file" and (step := step_across(heights)) > MOST_ACROSS:
+            if surface.kind == "file" and (step := step_across(heights, axes)) > MOST_ACROSS:
                 wrong.append(
                     f"{surface.table}.path = {surface.path!r}: a step across the border of "
                     f"{MOST_ACROSS:g} times the rms step between neighbouring cells, not {step:.3g}, or "
@@ -347,7 +349,7 @@ def _check_period(scene: Scene, patch: RoughPatch) -> None:
         if approach is not None and approach >= (most := float(gap.max() - gap.mean())):
             words = "the mean of the gap at first touch, at which all of the patch touches,"
             wrong.append(f"loading.approach = {approach:g} m: less than {most:.4g} m, {words}")
-    if scene.body.plasticity is not None and any(n % 2 for n in patch.cells):
+    if patch.periodic and scene.body.plasticity is not None and any(n % 2 for n in patch.cells):
         wrong.append(f"grid.cells = {list(patch.cells)}: with [body.plasticity] even numbers of cells")
     if scene.solver.operator == "dense":
         wrong.append('solver.operator = "dense": "swept"')

@@ -137,12 +137,14 @@ def _moving(scene: Scene, path: Path, plan: Plan) -> Stage:
     step = path.length / strokes.count
     way = "to and fro, the load stays on" if path.to_and_fro else "one way, unloaded at its end"
     plane = plan.track is not None and plan.track.plane
-    in_steps = "" if plane else f" in steps of {step / min(plan.axes):.3g} of the contact radius;"
+    line, radius = grid.line, plan.axes[0] if grid.line else min(plan.axes)
+    of = "half-width of the contact" if line else "contact radius"
+    in_steps = "" if plane else f" in steps of {step / radius:.3g} of the {of};"
     words = (
         f"the gap moves over the body, {way};{in_steps} no mirror image in x, no exchange of x and y, no "
         "pressure of an earlier pass"
     )
-    if plan.plasticity is not None and not plane:
+    if plan.plasticity is not None and not (plane or line):
         groove, strain = (c * (step / min(plan.axes)) ** n for c, n in (LEFT_OF_GROOVE, LEFT_OF_STRAIN))
         words += f"; the steps leave about {groove:.0f} % of the groove, {strain:.0f} % of the plastic strain"
     sides = zip(path.start, path.end, plan.axes, (grid.hx, grid.hy), strict=True)
@@ -231,6 +233,8 @@ def _output(scene: Scene, plan: Plan) -> Iterator[Stage]:
     elif plan.places.beside:
         words = "the load ends beside y = 0: the largest von Mises stress lies below it"
         yield _stage(stage, "", words, cells=[grid.nx, 1], depths=depths)
+    elif grid.line:
+        yield _stage(stage, "a line contact: the same at every y")
     else:
         yield _stage(stage, "smooth, sliding along x: the largest von Mises stress lies in y = 0")
     why_not = "no [friction]" if scene.friction is None else "friction.coefficient = 0"
@@ -265,6 +269,8 @@ def _length(scene: Scene) -> str:
         return "cells and the sides of the patch"
     if scene.loading.misfit_sphere:
         return "radius of the sphere"
+    if scene.counterbody is not None and scene.counterbody.length is not None:
+        return "half-width of the contact"
     return "Hertz radius" if scene.body.coating is None else "estimated contact radius"
 
 

@@ -17,7 +17,7 @@ from sam.contact.convolution import half_length
 from sam.contact.normal import around, margin_around
 from sam.contact.stress import yielding
 from sam.elastic.stress import ElasticPeak
-from sam.grid.cells import CellGrid, Sides, Window
+from sam.grid.cells import CellGrid, Sides, Window, at_edge
 from sam.plasticity.points import OFFSET
 from sam.plasticity.spectra import CACHED_BOXES, SINGLE
 from sam.plasticity.state import Extent, Trial
@@ -67,11 +67,13 @@ def first_extent(
     exceeds = yielding(peak.mises, limit[:, None])
     if anywhere:
         layers = _layers(np.flatnonzero(exceeds.any(axis=1)), grid)
-        return Extent(or_whole(around(peak.contact.pressure > 0), grid), layers)
+        box = around(peak.contact.pressure > 0)
+        box = replace(box, j0=0, ny=grid.ny) if grid.line else box  # no end along y
+        return Extent(or_whole(box, grid), layers)
     if not peak.contact.pressure.any():
         return _about_zone(exceeds, grid)
     box = around(peak.contact.pressure > 0)
-    half_width = min(box.nx * grid.hx, box.ny * grid.hy) / 2
+    half_width = (box.nx * grid.hx if grid.line else min(box.nx * grid.hx, box.ny * grid.hy)) / 2
     deep = np.flatnonzero(exceeds.any(axis=1) & (grid.depths <= DEEPEST * half_width))
     columns, end = np.flatnonzero(exceeds.any(axis=0)), box.i0 + box.nx
     ratio = float((peak.mises / limit[:, None]).max())
@@ -151,10 +153,11 @@ def widened(first: int, count: int, limit: int, reached: tuple[bool, bool]) -> t
     return start, stop - start
 
 
-def edge_reached(trial: Trial, *, cut_beside: bool) -> Sides:
+def edge_reached(trial: Trial, grid: CellGrid, *, cut_beside: bool) -> Sides:
     """Sides at which plastic strain fills the outermost cells; a rough patch is cut beside anyway."""
     strained = _strained(trial)
-    beside = strained[:, [0, -1]].any() or strained[:, :, [0, -1]].any()
+    columns: Mask = np.asarray(strained.any(axis=0))
+    beside = at_edge(columns, grid.line)
     return Sides(bool(beside and not cut_beside), bool(strained[-1].any()))
 
 

@@ -171,7 +171,8 @@ def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, T
         extent = grown(record.extent, trial, model.grid)
         if extent != record.extent:
             return attempt(model, _enlarged(model, record, extent), load)
-        place, reached = model.place(load), edge_reached(trial, cut_beside=model.plan.places.anywhere)
+        place, cut = model.place(load), model.plan.places.anywhere
+        reached = edge_reached(trial, model.grid, cut_beside=cut)
         if reached.beside or reached.below:
             return _ended(record, Status.PLASTIC_ZONE_AT_GRID_EDGE, place, reached), None
         if model.leaves_grid(record.extent.window, trial.pressure):
@@ -236,6 +237,7 @@ def committed(model: Model, record: Progressed, trial: Trial, film: TribofilmSta
         tribofilm=film,
         recalled=recalled,
         dissipated=record.dissipated + dissipated_by(model, record, trial),
+        left=(max(record.left[0], trial.yield_excess), max(record.left[1], trial.flow_residual)),
         outside=record.outside if state.material is record.state.material else None,
     )
 
@@ -328,7 +330,7 @@ def _cycle_ended(model: Model, record: Progressed, cycle: int, trial: Trial) -> 
     history = replace(history, ends=(*history.ends, cycle_end(model, record, cycle, new)))
     if model.plan.track is not None:
         history = replace(history, passes=(*history.passes, pass_end(model, record, model.plan.track, cycle)))
-    return replace(record, history=history, dissipated=0.0), trial
+    return replace(record, history=history, dissipated=0.0, left=(0.0, 0.0)), trial
 
 
 def _worn(model: Model, record: Progressed, trial: Trial) -> tuple[Progressed, Trial]:

@@ -129,7 +129,7 @@ def _residual_stress(model: Model, record: Progressed) -> Array:
     across = window.j0 <= rows.j0 and rows.j0 + rows.ny <= window.j0 + window.ny
     covered = record.extent.layers if across and window.nx == grid.nx else 0
     expected = ExpectedBox(*window.shape, record.extent.layers, model.tolerance)
-    large = expected.large and model.plan.solver.operator != "dense"
+    large = expected.large and model.asked_operator != "dense"
     if large or model.plan.period is not None:
         return _swept_stress(model, record)
     strained, mu = _strained(model, record), model.plan.pair.body.shear
@@ -240,14 +240,14 @@ def snapshot(model: Model, record: Progressed, name: str, trial: Trial) -> Snaps
     # the largest plastic strain; cells hold means
     top, interval = None, model.strength.kinks.interval(grid.depths[:layers])
     if material.peeq.any():
-        around_it = [(0, 0), *[(int(grid.periodic),) * 2] * 2]
-        peeq = np.pad(material.peeq, around_it, mode="wrap")
+        wraps = grid.wraps
+        peeq = np.pad(material.peeq, [(0, 0), *((int(wrap),) * 2 for wrap in wraps)], mode="wrap")
         centres = at_centres(peeq, model.faces(extent), interval)
-        if grid.periodic:  # the largest in the middle: it has neighbours on all sides
-            centres = centres[:, 1:-1, 1:-1]
-            place = np.unravel_index(int(centres.argmax()), centres.shape)[1:]
-            to_middle = [n // 2 - int(i) for n, i in zip(grid.shape, place, strict=True)]
-            centres = np.roll(centres, to_middle, axis=(1, 2))
+        for axis, wrap in enumerate(wraps, start=1):
+            if wrap:  # the largest in the middle: it has neighbours on all sides
+                centres = centres.take(range(1, centres.shape[axis] - 1), axis)
+                place = np.unravel_index(int(centres.argmax()), centres.shape)[axis]
+                centres = np.roll(centres, centres.shape[axis] // 2 - int(place), axis)
         top = largest(centres, grid.depths[:layers], interval)
 
     # the cells of the box in the row of the largest pressure, where that need not be at the origin
@@ -343,13 +343,17 @@ def cycle_end(model: Model, record: Progressed, cycle: int, new: Array) -> Cycle
         new_strain=float(new.max()),
         yielding=int(np.count_nonzero(new > 0)),
         dissipated=record.dissipated,
+        yield_excess=record.left[0],
+        flow_residual=record.left[1],
     )
     if model.plan.wear is None or wear is None:
         return end
     margin = model.plan.wear.margin(record.state.material.peeq, model.faces(record.extent))
-    ends = len(wear.volumes) == cycle
-    worn, roofed = (wear.volumes[-1], wear.roofed_volumes[-1]) if ends else (0.0, 0.0)
-    return replace(end, moved=moved, worn=wear.depth, margin=margin, wear_of_cycle=worn, roofed=roofed)
+    end = replace(end, moved=moved, worn=wear.depth, margin=margin)
+    if len(wear.volumes) != cycle:
+        return end
+    worn, raw, roofed, roof, filled = wear.of_last_cycle
+    return replace(end, wear_of_cycle=worn, raw=raw, roofed=roofed, roof=roof, filled=filled)
 
 
 def with_loops(model: Model, record: Progressed, target: Target, trial: Trial) -> Progressed:
@@ -413,7 +417,7 @@ class Strained:
         """Its cuboids with the lags to another window of the grid, in the unit of hx."""
         lags, cells = Convolution.lags_needed(self.window, observed), self.cuboids.lags
         faces = tuple(float(z / cells.hx) for z in self.cuboids.faces)
-        return replace(self.cuboids, lags=Lags(*lags, 1.0, cells.hy / cells.hx), faces=faces)
+        return replace(self.cuboids, lags=Lags(*lags, 1.0, cells.hy / cells.hx, cells.period), faces=faces)
 
     def onto(self, observed: Window, component: int, counters: Counters) -> Convolution:
         """Its strain -> the displacement of a window of the surface, in hx. Paper Eq. 6."""

@@ -191,15 +191,20 @@ class Model:
 
     def cuboids(self, extent: Extent) -> Cuboids:
         """The cells of a box, in m."""
-        lags = Lags(extent.window.nx, extent.window.ny, self.grid.hx, self.grid.hy)
+        lags = Lags(*extent.window.shape, self.grid.hx, self.grid.hy, self.grid.period)
         return Cuboids(lags, tuple(self.faces(extent).tolist()), self.plan.pair.body.poisson)
+
+    @property
+    def asked_operator(self) -> str | None:
+        """See `Solver.operator`; below a cylinder nothing is swept."""
+        return "dense" if self.grid.line else self.plan.solver.operator
 
     def operator(self, extent: Extent, *, once: Counters | None = None) -> BoxOperator:
         """The operator of a box. once: counters of one beside that of the steps."""
         counters = self.counters if once is None else once
         counters.tangential_kernels += self.plan.slip.slides
         nx, ny = extent.window.shape
-        exchange, asked = self._exchange(extent.window), self.plan.solver.operator
+        exchange, asked = self._exchange(extent.window), self.asked_operator
         repeats = self.plan.period is not None
         box = ExpectedBox(nx, ny, extent.layers, self.tolerance, exchange, asked, periodic=repeats)
         single, period = self.tolerance >= SINGLE, self.plan.period

@@ -70,12 +70,12 @@ def whole(transforms: Transforms, kept: CellFields) -> CellFields:
 @dataclass(frozen=True)
 class Linear:
     """Fields that are linear in each of (nx, ny) cells, by differences between neighbours; periodic: those at
-    opposite sides are neighbours too.
+    opposite sides are neighbours too, along x and along y.
     """
 
     cells: tuple[int, int]
     mirror: tuple[bool, bool] = (False, False)
-    periodic: bool = False
+    periodic: tuple[bool, bool] = (False, False)
 
     def at_points(self, values: Array, cells: Mask) -> Array:
         """Of means of cells, kept tensors (6, ..., nx, ny): at the points of some of them, (6, 4, n)."""
@@ -96,7 +96,7 @@ class Linear:
         if count > 1:
             np.subtract(v[..., 2:], v[..., :-2], out=out[..., 1:-1])
             out[..., 0], out[..., -1] = 2 * (v[..., 1] - v[..., 0]), 2 * (v[..., -1] - v[..., -2])
-        if self.periodic and count > 1:
+        if self.periodic[axis] and count > 1:
             out[..., 0], out[..., -1] = v[..., 1] - v[..., -1], v[..., 0] - v[..., -2]
         if self.mirror[axis]:
             sign = np.where(ODD_X if axis == -2 else ODD_Y, -1.0, 1.0).reshape(6, *[1] * (v.ndim - 2))
@@ -111,7 +111,7 @@ class Linear:
         if v.shape[-1] > 1:
             np.add(v[..., 2:], v[..., :-2], out=out[..., 1:-1])
             out[..., 0], out[..., -1] = 2 * (v[..., 1] + v[..., 0]), 2 * (v[..., -1] + v[..., -2])
-        if self.periodic and v.shape[-1] > 1:
+        if self.periodic[axis] and v.shape[-1] > 1:
             out[..., 0], out[..., -1] = v[..., 1] + v[..., -1], v[..., 0] + v[..., -2]
         return reach
 
@@ -120,7 +120,7 @@ def stress_at_points(stress: Array, strain: Array, m: float, *, periodic: bool =
     """The stress (e) at the points of all cells of a box, (6, 4, n_layers, nx, ny) in Pa, of the stress of
     the cells, (6, n_layers, nx, ny), and plastic strain at the points; m: of the return map (a).
     """
-    linear = Linear((stress.shape[-2], stress.shape[-1]), periodic=periodic)
+    linear = Linear((stress.shape[-2], stress.shape[-1]), periodic=(periodic, periodic))
     every = np.ones(stress.shape[1:], dtype=bool)
     smooth = linear.at_points(stress + 2 * m * strain.mean(axis=1), every)
     return smooth.reshape(strain.shape) - 2 * m * strain
@@ -166,7 +166,8 @@ class CellFlow:
 
     def __init__(self, material: Material, before: CellFields, transforms: Transforms, m: float):
         self.material, self.before, self.m, self.cells = material, before, m, before.cells
-        self.linear = Linear(transforms.cells, transforms.mirror, transforms.periodic)
+        wraps = transforms.periodic, transforms.periodic or transforms.wraps
+        self.linear = Linear(transforms.cells, transforms.mirror, wraps)
         # the least yield stress at the points of each cell
         unstrained = material.yield_stress(np.zeros((1, 1, 1)))
         self.least = np.broadcast_to(unstrained, before.cells.shape).copy()

@@ -175,7 +175,7 @@ class Progressed:
     the surface remembers; last, change: the trial committed last; cuts: loads to the first target;
     parts: committed of it; recalled: p_hat of earlier steps by load; outside: None where to be
     computed; longer: the longer iteration; cycle_start, periods: what strain counts from;
-    dissipated: J.
+    dissipated: J in the cycle; left: the largest yield excess and flow residual of its steps.
     """
 
     state: State
@@ -196,6 +196,7 @@ class Progressed:
     cycle_start: CycleStart | None = None
     periods: Periods = field(default_factory=Periods)
     dissipated: float = 0.0
+    left: tuple[float, float] = (0.0, 0.0)
 
     @property
     def ended(self) -> bool:

@@ -16,7 +16,6 @@ only real matrices for wave numbers >= 0 are stored.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
@@ -27,17 +26,23 @@ from sam.arrays import Array
 from sam.contact.convolution import Counters, Transforms, real_spectrum
 from sam.contact.periodic import PeriodicHalfSpaces
 from sam.kernels.eigenstrain import EXCHANGED, surface_displacement_coefficients
-from sam.kernels.layer_stress import CornerFunctions, LayerStress, four_points, mesh
-from sam.kernels.patches import ODD_X, ODD_Y, STRESS, Cuboids, Lags, stress_coefficients
+from sam.kernels.layer_stress import LayerStress, functions_of
+from sam.kernels.patches import ODD_X, ODD_Y, STRESS, Cuboids, Lags
 from sam.kernels.store import kept
 from sam.kernels.waves import load_waves, strain_displacement_waves
+from sam.plasticity.cell_means import (
+    CellMeans,
+    CellSpectra,
+    Parities,
+    first_lags,
+    gauss_depths,
+    mean_stress_of_load,
+)
 from sam.plasticity.images import Images, PeriodImages
 from sam.plasticity.swept import GAUSS, SweptLayers
 
 Reals = NDArray[Any]
 """Real numbers in the precision of the operator, single or double."""
-Parities = NDArray[np.integer[Any]]
-"""1 for odd, 0 for even, of each component."""
 TWICE = ((np.outer(ODD_X, ODD_X) + np.outer(ODD_Y, ODD_Y)) % 2 == 1).ravel()  # 6 I + J, where (-i)^2 is left
 ODD_LAGS = [(x, y) for x, y in zip(*(np.not_equal.outer(o, o).ravel() for o in (ODD_X, ODD_Y)), strict=True)]
 """Of 6 I + J, whether the coefficient is odd in the lag in x and in y."""
@@ -46,89 +51,6 @@ EVEN = np.zeros(1, int), np.zeros(1, int)  # parities in x and y of pressure and
 CACHED_BOXES = 4  # spectra that are kept: the boxes of a history, or of both grids of an extrapolation
 # tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough
 SINGLE = 5e-5
-NEAR = 4  # cells: up to there stresses are means over the observed cell
-
-
-def _points(faces: Array) -> Array:
-    """Depths of the Gauss points of each layer, (n_layers, 2)."""
-    return ((faces[1:] + faces[:-1])[:, None] + np.diff(faces)[:, None] * GAUSS) / 2
-
-
-class CellMeans(CornerFunctions):
-    """The same functions as means over the cell in x and y: by Gauss points up to NEAR cells away."""
-
-    def __init__(self, lags: Lags):
-        self.shape, self.near = lags.shape, (min(NEAR, lags.nx), min(NEAR, lags.ny))
-        points = four_points((lags.hx * GAUSS[1] / 2, lags.hy * GAUSS[1] / 2))
-        super().__init__(
-            lags.shape,
-            mesh(replace(lags, nx=lags.nx + 1, ny=lags.ny + 1), first=-1),
-            mesh(_first(lags, self.near), points),
-        )
-
-    def planes(self, corners: Array, odd: tuple[int, int]) -> Array:
-        """Means over the cells, (..., nx, ny)."""
-        far, near = self._differences(corners)
-        out = np.empty((*corners.shape[:-1], *self.shape))
-        _plane_mean(far[..., 0, :, :], out)
-        np.mean(near[..., :-1, :-1], axis=-3, out=out[..., : self.near[0], : self.near[1]])
-        return out
-
-
-class CellSpectra(CellMeans):
-    """Their transforms of so many wave numbers, see `real_spectrum`; closed: with the lag half a period."""
-
-    def __init__(self, lags: Lags, closed: bool):
-        super().__init__(_first(lags, (lags.nx + closed, lags.ny + closed)))
-        self.half = lags.shape
-        self.itself = np.ones((lags.nx + 1, lags.ny + 1))
-
-    def planes(self, corners: Array, odd: tuple[int, int]) -> Array:
-        """(..., nx + 1, ny + 1)."""
-        return np.asarray(real_spectrum(super().planes(corners, odd), self.half, odd))
-
-
-def _first(lags: Lags, counts: tuple[int, int]) -> Lags:
-    """So many of the lags."""
-    return replace(lags, nx=counts[0], ny=counts[1])
-
-
-def mean_stress_of_load(cuboids: Cuboids, load: int = 3) -> Array:
-    """Mean stress/Pa in cuboids, (6, n_layers, nx, ny), of pressure (3) or traction (1) on one cell."""
-    lags, nu = cuboids.lags, cuboids.nu
-    points, (nx, ny) = _points(cuboids.depths), lags.shape
-    depths, shape = points.ravel(), (6, *points.shape)
-    further = replace(lags, nx=nx + 1, ny=ny + 1)
-    far = stress_coefficients(further, depths, nu, load=load).reshape(*shape, *further.shape)
-    out = np.empty((6, len(points), nx, ny))
-    _plane_mean(_with_lag_before(far.mean(axis=2), ODD_X ^ int(load == 1), ODD_Y), out)
-    near = min(NEAR, nx), min(NEAR, ny)
-    few = _first(lags, near)
-    shifts = [(lags.hx * x / 2, lags.hy * y / 2) for x in GAUSS for y in GAUSS]
-    at = [stress_coefficients(few, depths, nu, load=load, shift=shift) for shift in shifts]
-    out[..., : near[0], : near[1]] = np.mean(at, axis=0).reshape(*shape, *near).mean(axis=2)
-    return out
-
-
-def _plane_mean(kernel: Array, out: Array) -> None:
-    """Mean over the cell in x and y, K + (d_x^2 K + d_y^2 K)/24, from lags -1 .. n at lags 0 .. n - 1."""
-    (nx, ny), row, flat = out.shape[-2:], kernel.shape[-1], kernel.reshape(-1)
-    # sums of neighbours in one go; those over the border are not kept
-    pairs = flat[row:] + flat[1 : 1 - row]  # one further in x and one further in y
-    mean = 20 * flat  # 24 - 4
-    inner = mean[row + 1 : -row]
-    inner += pairs[row + 1 :]
-    inner += pairs[: -row - 1]
-    np.multiply(mean.reshape(kernel.shape)[..., 1 : nx + 1, 1 : ny + 1], 1 / 24, out=out)
-
-
-def _with_lag_before(kernel: Array, odd_x: Parities, odd_y: Parities) -> Array:
-    """Lags -1 .. n from lags 0 .. n, of kernels (len(odd_x), ..., n_x + 1, n_y + 1) of these parities."""
-    sign_x, sign_y = (
-        np.where(odd, -1.0, 1.0).reshape(-1, *[1] * (kernel.ndim - 1)) for odd in (odd_x, odd_y)
-    )
-    kernel = np.concatenate([sign_x * kernel[..., 1:2, :], kernel], axis=-2)
-    return np.concatenate([sign_y * kernel[..., 1:2], kernel], axis=-1)
 
 
 class BoxSpectra:
@@ -172,7 +94,7 @@ class BoxSpectra:
         """The matrices between all layers, (waves, 6 layers, 6 layers)."""
         layers, exchange = self.cuboids.layers, not isinstance(self.stored, slice)
         out = np.empty(shape, dtype=self.real)
-        spectrum = np.empty((36, layers, *np.add(self.half, 1)), dtype=self.real)
+        spectrum = np.zeros((36, layers, *np.add(self.half, 1)), dtype=self.real)
         rows = spectrum.reshape(6, 6 * layers, *spectrum.shape[2:])
         stress = self._layer_stress(slice(None), slice(None))
         for i in range(layers):
@@ -188,9 +110,14 @@ class BoxSpectra:
         """Spectra of the means over the cells of some layers by strain in some, with their sign."""
         faces, lags = self.cuboids.depths, self.cuboids.lags
         some = np.append(faces[:-1][sources], faces[1:][sources][-1])
-        square = lags.nx == lags.ny and lags.hx == lags.hy
+        square = lags.nx == lags.ny and lags.hx == lags.hy and not lags.period
         return LayerStress(
-            *(CellSpectra(lags, self.period is not None), _points(faces)[observed], some, self.cuboids.nu),
+            *(
+                CellSpectra(lags, self.period is not None),
+                gauss_depths(faces)[observed],
+                some,
+                self.cuboids.nu,
+            ),
             scale=SIGN,
             exchanged=square,
         )
@@ -237,9 +164,9 @@ class BoxSpectra:
     @cached_property
     def own_stress(self) -> Array:
         """Stress/mu of plastic strain in its own cell, (6, 6, n_layers)."""
-        faces, means = self.cuboids.depths, CellMeans(_first(self.cuboids.lags, (1, 1)))
-        stress = LayerStress(means, _points(faces), faces, self.cuboids.nu)
-        out = np.empty((len(faces) - 1, 36, len(faces) - 1, 1, 1))
+        faces, means = self.cuboids.depths, functions_of(first_lags(self.cuboids.lags, (1, 1)), CellMeans)
+        stress = LayerStress(means, gauss_depths(faces), faces, self.cuboids.nu)
+        out = np.zeros((len(faces) - 1, 36, len(faces) - 1, 1, 1))
         for i, row in enumerate(out):
             stress.of(i, row)
         return out.diagonal(axis1=0, axis2=2).reshape(6, 6, -1)
@@ -254,7 +181,7 @@ class BoxSpectra:
         cuboids, period = self.cuboids, self.period
         if period is None:
             return self._of_surface(mean_stress_of_load(cuboids, load), ODD_X ^ int(load == 1))
-        cells, nu, points = self.all_cells, cuboids.nu, _points(cuboids.depths)
+        cells, nu, points = self.all_cells, cuboids.nu, gauss_depths(cuboids.depths)
         each = [
             load_waves("stress", STRESS, cells, nu, load=load, depths=z, point=GAUSS[1] / 2) for z in points
         ]
@@ -329,12 +256,13 @@ class BoxOperator:
         self.transforms = Transforms(
             lags.shape, mirror, single=single, counters=counters, periodic=self.period is not None
         )
+        self.transforms.wraps = lags.period == lags.ny > 1
         self.shape, self.layers = lags.shape, box.layers
         self.mu, self.hx, self.counters = mu, lags.hx, counters
         # rounded, so that equal boxes in other units are one entry
         aspect = float(f"{lags.hy / lags.hx:.12g}")
         in_cells = tuple(float(f"{z / lags.hx:.12g}") for z in box.faces)
-        in_cells_of_hx = Cuboids(Lags(*self.transforms.half, 1.0, aspect), in_cells, box.nu)
+        in_cells_of_hx = Cuboids(Lags(*self.transforms.half, 1.0, aspect, lags.period), in_cells, box.nu)
         cells = lags.shape if swept else (0, 0)
         self.spectra = spectra_of(
             in_cells_of_hx, single, exchange, cells=cells, error=swept, period=self.period

@@ -12,7 +12,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from sam.arrays import Array
 from sam.contact.normal import Contact
-from sam.grid.cells import CellGrid, Sides, Window
+from sam.grid.cells import CellGrid, Sides, Window, at_edge
 from sam.results.snapshots import Snapshot
 from sam.scene import Status
 from sam.scene.result import CYCLES, HISTORY, LOOPS, PATH_HISTORY, Attempt
@@ -103,7 +103,7 @@ def row_of(
 def counted(contact: Contact, grid: CellGrid) -> Window:
     """The cells that count for maxima: all but a border, once the contact touches the edge."""
     touching, (bx, by) = contact.pressure > 0, grid.border
-    if not (touching[[0, -1], :].any() or touching[:, [0, -1]].any()):
+    if not at_edge(touching, grid.line):
         bx = by = 0
     return Window(bx, by, grid.nx - 2 * bx, grid.ny - 2 * by)
 
@@ -124,10 +124,11 @@ def contact_area(contact: Contact, grid: CellGrid) -> float:
         return contact.area
     hx, hy = grid.hx, grid.hy
     compliance = 2 / np.pi * (hx * np.arcsinh(hy / hx) + hy * np.arcsinh(hx / hy))  # times E*, Love 1929
-    if grid.periodic:
-        p, gap = (np.pad(field, (0, 1), mode="wrap") for field in (contact.pressure, contact.gap))
-    else:
-        p, gap = np.pad(contact.pressure, 1), np.pad(contact.gap, 1, constant_values=np.inf)
+    p, gap = contact.pressure, contact.gap
+    for axis, wraps in enumerate(grid.wraps):  # of neighbours across a border each pair once
+        width = [(int(not wraps), 1) if each == axis else (0, 0) for each in (0, 1)]
+        p = np.pad(p, width, mode="wrap") if wraps else np.pad(p, width)
+        gap = np.pad(gap, width, mode="wrap") if wraps else np.pad(gap, width, constant_values=np.inf)
     unit, mean = HALFWAY * contact.compliance / compliance, np.array(2 / (1 / hx + 1 / hy))
     along_x, along_y = _shares(p, gap, unit * mean), _shares(p.T, gap.T, unit * mean).T
     if hx != hy:
@@ -176,7 +177,8 @@ def history_table(rows: Sequence[Row]) -> dict[str, list[Any]]:
 @dataclass(frozen=True)
 class CycleEnd:
     """The surface after a cycle: wear_volume so far in m^3; roughness, None if smooth; new_strain,
-    yielding: the largest and in how many cells; dissipated in J; wear_of_cycle, roofed in m^3;
+    yielding: the largest and in how many cells; dissipated in J; wear_of_cycle, roofed, raw, roof, filled
+    in m^3, see `WearState`; yield_excess, flow_residual: the largest that a load step leaves;
     margin: of the cell nearest to its limit; moved, worn: (nx, ny) in m, None without.
     """
 
@@ -191,6 +193,11 @@ class CycleEnd:
     wear_of_cycle: float = 0.0
     margin: float | None = None
     roofed: float = 0.0
+    raw: float = 0.0
+    roof: float = 0.0
+    filled: float = 0.0
+    yield_excess: float = 0.0
+    flow_residual: float = 0.0
     dissipated: float = 0.0
 
 

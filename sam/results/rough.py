@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sam.arrays import Array
-from sam.contact.normal import FEWEST_IN_SPOT, Contact
-from sam.grid.cells import CellGrid
+from sam.contact.normal import Contact, fewest_in_spot
+from sam.grid.cells import CellGrid, at_edge
 from sam.grid.gap import Place
 from sam.grid.rough import RoughPatch
 from sam.results.history import contact_area
@@ -85,7 +85,7 @@ class RoughRecord:
         """
         mean = float(contact.gap.mean())
         return {
-            "contact_spots": float(spots_of(contact.pressure, grid.periodic).max()),
+            "contact_spots": float(spots_of(contact.pressure, grid.wraps).max()),
             "contact_share": contact_area(contact, grid) / (grid.nx * grid.hx * grid.ny * grid.hy),
             "mean_gap_m": mean if np.isfinite(mean) else None,
         }
@@ -103,7 +103,7 @@ class RoughRecord:
                     f"{min(cells):.3g} cells in the shortest wavelength of the {surface.words}: with "
                     f"fewer than {WELL_RESOLVED:g} the largest pressure depends on where the cells lie{finer}"
                 )
-        if coarse := too_few_cells(contact.pressure, grid.periodic):
+        if coarse := too_few_cells(contact.pressure, grid.wraps):
             out.append(f"{coarse}{finer}")
         if self.patch.relief and (made := in_the_fall_off(contact.pressure)):
             out.append("; ".join(filter(None, (made, self.remedies.larger_patch))))
@@ -114,7 +114,7 @@ class RoughRecord:
                     f"{surface.table}.taper = {surface.taper:g}: so that they repeat, heights are changed by "
                     f"{changed:.4g} m (rms), {100 * changed / sq:.3g} % of their rms deviation"
                 )
-        if not grid.periodic and (touching[[0, -1], :].any() or touching[:, [0, -1]].any()):
+        if not grid.periodic and at_edge(touching, grid.line):
             words, (bx, by) = (
                 "the contact touches the edge of the grid, where the half-space is cut",
                 grid.border,
@@ -129,40 +129,42 @@ class RoughRecord:
         return tuple(out)
 
 
-def spots_of(pressure: Array, periodic: bool) -> NDArray[np.intp]:
-    """The number of the spot of each cell (nx, ny), joined at their sides, 0 beside them; periodic: also
-    across the border.
+def spots_of(pressure: Array, wraps: tuple[bool, bool]) -> NDArray[np.intp]:
+    """The number of the spot of each cell (nx, ny), joined at their sides, 0 beside them; wraps: also across
+    the border along x and along y.
     """
     from scipy import ndimage  # noqa: PLC0415 - for rough scenes alone
 
     spots, count = ndimage.label(pressure > 0)
-    if not periodic:
+    if not any(wraps):
         return np.asarray(spots)
     from scipy import sparse  # noqa: PLC0415
 
-    ends = np.concatenate([[spots[0], spots[-1]], [spots[:, 0], spots[:, -1]]], axis=1)
+    borders = [[spots.take(0, axis), spots.take(-1, axis)] for axis in (0, 1) if wraps[axis]]
+    ends = np.concatenate(borders, axis=1)
     ends = ends[:, (ends > 0).all(axis=0)]
     pairs = sparse.coo_matrix((np.ones(ends.shape[1]), tuple(ends)), shape=(count + 1, count + 1))
     return np.asarray(sparse.csgraph.connected_components(pairs, directed=False)[1][spots])
 
 
-def too_few_cells(pressure: Array, periodic: bool = False) -> str:
+def too_few_cells(pressure: Array, wraps: tuple[bool, bool] = (False, False)) -> str:
     """What to know about spots (nx, ny) in Pa that few cells resolve, joined at their sides."""
-    spots = spots_of(pressure, periodic)
+    spots = spots_of(pressure, wraps)
     if not spots.any():
         return ""
     cells = np.bincount(spots.ravel())[1:]
     share = np.bincount(spots.ravel(), pressure.ravel())[1:] / pressure.sum()
     judged = share >= LEAST_SHARE
     judged[spots[np.unravel_index(pressure.argmax(), pressure.shape)] - 1] = True
-    few = judged & (cells < FEWEST_IN_SPOT)
+    least = fewest_in_spot(pressure)
+    few = judged & (cells < least)
     if not few.any():
         return ""
     counts = ", ".join(map(str, sorted(cells[few], reverse=True)))
     return (
         f"too few cells in {few.sum()} of {judged.sum()} spots with {100 * LEAST_SHARE:g} % of the load or "
         f"more, or with the largest pressure ({counts} cells; together {100 * share[few].sum():.3g} % of the "
-        f"load): with fewer than {FEWEST_IN_SPOT} the largest pressure of a spot is off by some percent"
+        f"load): with fewer than {least} the largest pressure of a spot is off by some percent"
     )
 
 

@@ -25,6 +25,7 @@ from sam.scene.units import (
     MeshCells,
     Number,
     Order,
+    Rows,
     SmoothingWindow,
     StrainLimit,
     refused,
@@ -52,10 +53,10 @@ class Grid(Section):
     stresses are returned, with plasticity the faces of the layers, the first at 0; or `layers` equal layers
     down to `depth`. border: of a rough patch; "relief": its heights fall off there, so that the contact ends
     before the patch does. periodic: "xy": cells and heights repeat beside the patch in both directions; "y":
-    below a cylinder they repeat along its axis.
+    below a cylinder they repeat along its axis. Below a smooth cylinder there is one cell along y.
     """
 
-    cells: Annotated[tuple[Cells, Cells], list_of(2, 2)] | None = None
+    cells: Annotated[tuple[Cells, Rows], list_of(2, 2)] | None = None
     extent: Annotated[tuple[Length, Length], list_of(2, 2)] | None = None
     depths: Annotated[tuple[Depth, ...], AfterValidator(_ascending), list_of(1, MOST_DEPTHS)] | None = None
     layers: Count | None = None
@@ -140,8 +141,9 @@ class Wear(Section):
     strain_limit: accumulated plastic strain beyond which it is removed (inf: never); strain_limit_layer:
     another one inside of body.plasticity.layer_thickness. smoothing_window: odd number of cells of a
     Savitzky-Golay filter of the worn depth, 0: none; smoothing_order: of its polynomials. interpolate: depths
-    between the layers by linear interpolation of the strain; else whole layers are removed. Bosman & Schipper
-    2011, section 5.
+    between the layers by linear interpolation of the strain; else whole layers are removed. roof: whether
+    sound material above material beyond its limit stays, or goes with it. smoothing_fills: the filter may
+    leave, or raise, what is removed, as its printed form does. Bosman & Schipper 2011, sections 1 and 5.
     """
 
     strain_limit: StrainLimit
@@ -149,6 +151,9 @@ class Wear(Section):
     smoothing_window: SmoothingWindow = 5
     smoothing_order: Order = 2
     interpolate: bool = True
+    roof: Literal["stays", "falls"] = "stays"
+    smoothing_fills: bool = False
+    unwritten: ClassVar[tuple[str, ...]] = ("roof", "smoothing_fills")
 
     @property
     def removes(self) -> bool:
@@ -161,7 +166,11 @@ class Wear(Section):
         """A smoothing window without a middle."""
         window = given.get("smoothing_window")
         even = isinstance(window, int) and window > 0 and window % 2 == 0
-        return broken((even, "smoothing_window", "an odd number of cells, or 0 for none"))
+        fills = given.get("smoothing_fills") is True and window == 0
+        return broken(
+            (even, "smoothing_window", "an odd number of cells, or 0 for none"),
+            (fills, "smoothing_fills", "false with smoothing_window = 0: nothing is smoothed"),
+        )
 
     def excesses(self) -> Iterator[Conflict]:
         """A polynomial that the window does not determine."""

@@ -50,7 +50,8 @@ QUANTITIES = _names(
     "mises_max_depth_m peeq_max peeq_max_depth_m residual_uz_center_m residual_mises_max_Pa p_max_bare_Pa "
     "mises_max_substrate_Pa mises_max_bare_Pa mises_max_film_Pa p_max_change mises_max_change "
     "friction_coefficient pressure_centroid_x_m tangential_displacement_center_m residual_ux_center_m "
-    "plastic_shear_center_m wear_volume_m3 peeq_p95 contact_spots contact_share mean_gap_m"
+    "plastic_shear_center_m wear_volume_m3 peeq_p95 contact_spots contact_share mean_gap_m "
+    "contact_half_width_m"
 )
 """Names of the scalar results, unit in the name; a quantity that does not apply to a scene is None."""
 STRAINED = 0.01
@@ -100,7 +101,14 @@ FRICTION_SIGN = "friction_sign"
 DISSIPATED = "dissipated_J"
 """Of the table cycles, where there are back-stresses or repeated loading is judged."""
 ROOFED = "roofed_volume_m3"
-"""Of the table cycles of a scene with [wear]: beyond the strain limit, and kept by sound material above."""
+"""Of the table cycles of a scene with [wear]: beyond the strain limit below sound material, which keeps it or
+falls with it."""
+WEAR_PARTS = {"raw_volume_m3": "raw", "roof_volume_m3": "roof", "filled_volume_m3": "filled"}
+"""Of the table cycles where a roof falls or the filter fills, of each cycle: removed before smoothing, the
+sound material among that, what smoothing leaves or raises -> of `CycleEnd`."""
+OF_WEAR = (ROOFED, *WEAR_PARTS)
+LEFT = ("yield_excess", "flow_residual")
+"""Of the table cycles of the paper's loops: the largest that a load step of the cycle leaves."""
 TRACK = (
     "x_m",
     "uz_m",
@@ -143,7 +151,7 @@ EXTRA_COLUMNS = {
     "surface": (COUNTER_HEIGHT,),
     "passes": OF_PASSES,
     "track": (TRACK_WORN,),
-    "cycles": (*VERDICT_COLUMNS[:-1], DISSIPATED, FRICTION_SIGN, PERIODS_TO_DECIDE, ROOFED),
+    "cycles": (*VERDICT_COLUMNS[:-1], DISSIPATED, FRICTION_SIGN, PERIODS_TO_DECIDE, *OF_WEAR, *LEFT),
 }
 """Last columns of a table that only some scenes have."""
 

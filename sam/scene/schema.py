@@ -151,7 +151,6 @@ class Scene(Section):
             contact = f"{words} needs a contact: remove it, and give force and [counterbody]"
             yield from broken(
                 (there and pressure, "loading.prescribed", contact),
-                (there and paper, method, f"{euler} with {words}"),
                 (there and coated, "body.coating", f"not together with {words}"),
             )
         layered = has("wear.strain_limit_layer") and not has("body.plasticity.layer_thickness")
@@ -190,7 +189,14 @@ class Scene(Section):
         patch, axis = 'grid.periodic = "xy"', 'counterbody.shape = "cylinder"'
         summits = 'counterbody.shape = "flat", whose summits or those of the body repeat'
         datum = f"a force with {axis}: the approach of a line contact has no absolute value"
-        absent = (("body.coating", has("body.coating")), ("loading.path", repeats and has("loading.path")))
+        rough = has("surface") or has("counterbody.surface")
+        absent = (
+            ("body.coating", has("body.coating")),
+            ("loading.path", repeats and has("loading.path")),
+            ("friction.path", line and has("friction.path")),
+        )
+        cells, swept = at("grid.cells"), at("solver.operator") == "swept"
+        rows = cells[1] if isinstance(cells, list | tuple) and len(cells) == 2 else 0
         loop, plastic = at("solver.method") == "paper", has("body.plasticity")
         yield from broken(
             *(
@@ -203,6 +209,13 @@ class Scene(Section):
                 "grid.border",
                 f'"free" with {patch}: it has no border',
             ),
+            (line and rough and rows > 1 and not along, "grid.periodic", f'"y" with {axis} on cells along y'),
+            (
+                line and rough and has("loading.path"),
+                "loading.path",
+                f"with {axis} and a rough surface {NOT_YET}",
+            ),
+            (line and at("grid.border") == "relief", "grid.border", f'"free" with {axis}'),
             *(
                 (has(f"{table}.taper") and not repeats, f"{table}.taper", f"only together with {patch}")
                 for table in ("surface", "counterbody.surface")
@@ -210,6 +223,13 @@ class Scene(Section):
             (along and not line, "grid.periodic", f'"y" only together with {axis}'),
             (repeats and line, "grid.periodic", f'"y" with {axis}'),
             (line and has("loading.approach"), "loading.approach", datum),
+            (
+                line and not rough and rows > 1,
+                "grid.cells",
+                f"one cell along y with a smooth {axis}: all is the same there",
+            ),
+            (not line and 0 < rows < 3, "grid.cells", f"3 or more cells along y, 1 only with {axis}"),
+            (line and swept, "solver.operator", f'"dense" with {axis}'),
             (
                 (repeats or line) and loop,
                 "solver.method",
@@ -347,6 +367,11 @@ class Scene(Section):
         yield from broken(
             (step > radius * (1 + ROUNDING), "loading.path.steps", long),
             (turns, "loading.path.end", "the y of start with [friction]: the traction acts along x"),
+            (
+                other.length is not None and (path.start[1], path.end[1]) != (0.0, 0.0),
+                "loading.path.end",
+                'y = 0 as in start with counterbody.shape = "cylinder": it moves along x',
+            ),
             (rolls, "counterbody.slip", slides),
         )
         extent = None if self.grid is None or other.shape == "flat" else self.grid.extent
@@ -359,6 +384,9 @@ class Scene(Section):
     def _excesses_of_patch(self) -> Iterator[Conflict]:
         """A grid that does not suit the surfaces, or surfaces that do not suit each other."""
         first, strip = self.patch_surface, self.counter_strip
+        length, extent = self.counterbody and self.counterbody.length, self.grid and self.grid.extent
+        if length and extent and not isclose(extent[1], length, rel_tol=ROUNDING):
+            yield "grid.extent", f"{length:.9g} m along y, the length of the cylinder"
         if first is None:
             return
         rough = self.surface if strip is not None else first

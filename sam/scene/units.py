@@ -226,6 +226,7 @@ STRAIN = Number("a number", 0.0, 1000.0)
 FRACTION = Number("a number", 1e-14, 0.1)
 BOX = Number("a number (in Hertz radii)", 3.0, 1000.0)
 COUNT = Number("a whole number", 1, 1000, whole=True)
+ROWS = Number("a whole number", 1, 4097, whole=True)
 CELLS = Number("a whole number", 3, 4097, whole=True)
 MESH_CELLS = Number("a whole number", 2, 256, whole=True)
 
@@ -254,6 +255,7 @@ Box = Annotated[float, BOX]
 Count = Annotated[int, COUNT]
 PerRadius = Annotated[float, Number("a number of steps in a contact radius", 1.0, 1000.0)]
 Cells = Annotated[int, CELLS]
+Rows = Annotated[int, ROWS]
 Seed = Annotated[int, Number("a whole number", 0, 2**63 - 1, whole=True)]
 MeshCells = Annotated[int, MESH_CELLS]
 StrainLimit = Annotated[

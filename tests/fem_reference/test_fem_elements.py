@@ -18,12 +18,11 @@ from fem_reference.axisymmetric.planner import Core, punch_lines, smooth_lines
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.elasticity import mises, stiffness_tensor
 from fem_reference.common.far_field import boussinesq, cerruti, slanted
-from fem_reference.common.mesh_lines import Sizes, coated_depths, grow
+from fem_reference.common.mesh_lines import Sizes, coated_depths, grow, two_sided
 from fem_reference.common.plasticity import J2, History
 from fem_reference.common.recovery import continued
 from fem_reference.spatial import area as areas
 from fem_reference.spatial.hexahedra import HexSolid
-from fem_reference.spatial.lines import two_sided
 from fem_reference.spatial.multigrid import rigid_modes
 from fem_reference.spatial.surface import hertz_forces
 from sam.scene.yield_curve import Linear

@@ -18,7 +18,14 @@ from fem_reference.common.plasticity import History
 from fem_reference.common.schedule import Load
 from fem_reference.spatial import worn_cycles
 from fem_reference.spatial.rough import build, on_mesh
-from fem_reference.spatial.worn import Limits, columns_of_points, depth_above, moved_up, own_depth
+from fem_reference.spatial.worn import (
+    Limits,
+    columns_of_points,
+    deepest_above,
+    depth_above,
+    moved_up,
+    own_depth,
+)
 from sam.scene import COUNTER_HEIGHT, CounterSurface, FrictionMap, HeightMap, Scene, load_scene
 from verification.compare.comparison import compare_scene
 from verification.scenes.asperities import CELLS, height_map
@@ -355,6 +362,33 @@ def test_a_profile_is_removed_down_to_its_first_crossing():
     assert depth_above(1.0, z, strain) == pytest.approx([3.0, 0.0, 2.0, 0.0, 2.0 / 3.0])
     with pytest.raises(ValueError, match="all of a column"):
         depth_above(1.0, z, np.array([[3.0, 2.0, 1.5]]))
+
+
+def test_a_roof_falls_down_to_the_last_crossing():
+    """The profiles above, the third with a second zone; all of a part, and none."""
+    z, strain = np.array([1.0, 2.0, 4.0, 5.0]), np.array([[3.0, 1, 3, 0], [0.8, 0.2, 0, 0], [0.0, 0, 0, 0]])
+    for between, expected in (
+        ((0, 5), [14 / 3, 2 / 3, 0]),
+        ((0, 1.5), [1.5, 2 / 3, 0]),
+        ((4, 5), [14 / 3, 0, 0]),
+    ):
+        assert deepest_above(1.0, z, strain, between) == pytest.approx(expected), between
+    assert deepest_above(-0.1, z, strain, (0.0, 5.0)).tolist() == [5.0] * 3
+
+
+def test_a_roof_falls_where_the_strain_is_beyond_its_limit_anywhere_below():
+    """Two zones; along samples of the strain as it is linear between the Gauss points."""
+    model, unit, z = ball(), ball().scales, ball().body.points[2]
+
+    def strain(at):
+        return np.interp(at, [0.2, 0.3, 0.4, 0.6, 0.7, 0.8], [0.0, 0.01, 0.0, 0.0, 0.02, 0.0])
+
+    state = replace(model.virgin(), history=History(np.zeros((6, *z.shape)), strain(z) / unit.strain))
+    nodes, fine = np.append(0.0, np.unique(z.round(12))), np.linspace(0.0, 1.0, 100001)
+    for bulk in (0.004, 0.012, 0.05):
+        depth = own_depth(model, state, Limits(bulk, 0.05, 0.1 * unit.length, True)) / unit.length
+        lowest = fine[np.interp(fine, nodes, strain(nodes)) > bulk].max(initial=0.0)
+        assert depth == pytest.approx(np.full((FEW, FEW), lowest), abs=2e-5)
 
 
 def test_the_state_moves_up_by_the_depth():

@@ -241,4 +241,4 @@ def test_an_approach_is_less_than_the_mean_gap():
 def test_spots_go_on_across_the_border():
     p = np.zeros((6, 7))
     p[0, 2] = p[-1, 2] = p[-1, 1] = p[3, 0] = p[3, -1] = p[2, 4] = 1.0
-    assert spots_of(p, True).max() == 3 and spots_of(p, False).max() == 5
+    assert spots_of(p, (True, True)).max() == 3 and spots_of(p, (False, False)).max() == 5

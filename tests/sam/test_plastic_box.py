@@ -15,11 +15,12 @@ from sam.kernels.eigenstrain import displacement_parity, surface_displacement_co
 from sam.kernels.layer_stress import LayerStress, residual_stress_coefficients
 from sam.kernels.patches import ODD_X, ODD_Y, STRESS, Cuboids, Lags, parity
 from sam.kernels.store import CoefficientStore, kept, using
+from sam.plasticity.cell_means import CellMeans, gauss_depths, mean_stress_of_load
 from sam.plasticity.flow import Material, contraction, deviator, equivalent_strain, mises
 from sam.plasticity.load_step import PARTS, ROOT, preconditioned, stiffness_of_parts
 from sam.plasticity.measure import Strained, at_centres, largest, residual_stress, surface_displacement
 from sam.plasticity.points import POINTS, CellFlow, Linear, stress_at_points, whole
-from sam.plasticity.spectra import BoxOperator, BoxSpectra, CellMeans, _points, mean_stress_of_load
+from sam.plasticity.spectra import BoxOperator, BoxSpectra
 from sam.plasticity.state import CellFields, MaterialFields, filled
 from sam.scene.yield_curve import Layered, Linear as LinearLaw, Swift
 
@@ -34,7 +35,7 @@ def cuboids(nx=NX, ny=NY, faces=FACES, aspect=ASPECT) -> Cuboids:
 
 def mean_stress(nx, ny, faces):
     """Of each layer in turn, the mean over its cells: (6, 6, n_layers, nx, ny)."""
-    layers = LayerStress(CellMeans(Lags(nx, ny, 1.0, ASPECT)), _points(faces), faces, NU)
+    layers = LayerStress(CellMeans(Lags(nx, ny, 1.0, ASPECT)), gauss_depths(faces), faces, NU)
     for layer in range(len(faces) - 1):
         out = np.empty((36, len(faces) - 1, nx, ny))
         layers.of(layer, out)
@@ -101,12 +102,12 @@ def test_equal_layers_share_what_each_pair_alone_gives():
     faces = np.concatenate([[0.0, 0.3], 0.7 + np.arange(7.0)])
     shared = np.array(list(mean_stress(5, 4, faces)))
     alone = np.empty_like(shared)
-    for i, point in enumerate(_points(faces)):
+    for i, point in enumerate(gauss_depths(faces)):
         for j in range(len(faces) - 1):
             pair = LayerStress(CellMeans(Lags(5, 4, 1.0, ASPECT)), point[None], faces[j : j + 2], NU)
             pair.of(0, alone[i, :, :, j].reshape(36, 1, 5, 4))
     assert np.abs(shared - alone).max() < 1e-13 * np.abs(alone).max()
-    layers = LayerStress(CellMeans(Lags(5, 4, 1.0, ASPECT)), _points(faces), faces, NU)
+    layers = LayerStress(CellMeans(Lags(5, 4, 1.0, ASPECT)), gauss_depths(faces), faces, NU)
     assert len(layers.image.first) == 2 * 6 - 1 + 8 * 8 - 6 * 6
     assert len(layers.full.first) == 6 + 8 * 8 - 6 * 6
 
@@ -116,7 +117,7 @@ def test_one_of_two_coefficients_gives_the_other_with_x_and_y_exchanged():
     both, half = (np.empty((36, LAYERS, 5, 5)) for _ in range(2))
     for out, exchanged in ((both, False), (half, True)):
         means = CellMeans(Lags(5, 5, 1.0, 1.0))
-        LayerStress(means, _points(FACES)[1:2], FACES, NU, exchanged=exchanged).of(0, out)
+        LayerStress(means, gauss_depths(FACES)[1:2], FACES, NU, exchanged=exchanged).of(0, out)
     assert np.abs(half - both).max() < 1e-13 * np.abs(both).max()
 
 

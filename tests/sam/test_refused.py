@@ -53,6 +53,7 @@ BATH SPHERE friction.: law = 'chemical-film'; low = 0.1; high = 0.4; film_thickn
     track = '314 mm'; contact_width = '300 um'; speed = '1 m/s'
 LAYER SWIFT body.plasticity.: layer_thickness = '1 um'; layer.law = 'swift'; layer.B = '945 MPa'; \
     layer.C = 20; layer.n = 0.121
+CYLINDER SPHERE counterbody.: shape = 'cylinder'; length = '1 mm'
 PATH SPHERE loading.path.: start = ['-9 um', '0 um']; end = ['9 um', '0 um']; steps = 4
 GIVEN SPHERE: -counterbody; -loading.force; loading.prescribed = 'hertz'; loading.p0 = '4 GPa'; \
     loading.radius = '6 um'
@@ -112,6 +113,8 @@ body.coating = {} -> body.coating.thickness is missing & body.coating.young is m
 surface.kind = 'file' -> surface.path is missing & takes path
 friction = {} -> friction.coefficient is missing & from 0 to 10
 loading.unload = true; wear.strain_limit = 0.01 -> wear & only together with [body.plasticity]
+wear = {strain_limit = 1, smoothing_window = 0, smoothing_fills = true} -> wear.smoothing_fills & = 0: nothing
+wear = {strain_limit = 0.01, roof = 'gone'} -> wear.roof & "stays" or "falls"
 solver.method = 'paper' -> = & needs [body.plasticity]
 solver.stop = 'stress' -> = & together with method = "paper"
 solver.tolerance = 0 -> = & from 1e-14 to 0.1
@@ -130,6 +133,17 @@ radius = '1 mm'; radius_x = '1 mm' -> = & takes radius: remove it
 shape = 'punch'; radius = '1 mm'; young = '1 GPa' -> @poisson is & $TOGETHER
 shape = 'punch'; radius = '1 mm'; poisson = 0.2 -> @young is & $TOGETHER
 slip = 0.5 -> = & only together with loading.path
+## CYLINDER
+-loading.force; loading.approach = '1 um' -> = & the approach of a line contact has no absolute value
+grid.cells = [65, 4] -> = & one cell along y with a smooth
+grid.extent = ['1 mm', '2 mm'] -> = & 0.001 m along y, the length of the cylinder
+grid.periodic = 'xy' -> = & "y" with
+solver.operator = 'swept' -> = & "dense" with
+$FILM -> body.coating & with counterbody.shape = "cylinder"
+loading.path.start = ['0 um', '0 um']; loading.path.end = ['9 um', '1 um']; loading.path.steps = 99 -> \
+    loading.path.end = & y = 0 as in start
+surface.kind = 'sinusoid'; surface.amplitude = '1 nm'; surface.wavelength_x = '9 um'; \
+    grid.extent = ['1 mm', '1 mm']; grid.cells = [900, 4] -> grid.periodic is missing & "y" with
 ## SPHERE loading.
 force = '-1 N' -> = & or 0
 steps = 0 -> = & a whole number from 1 to 1000
@@ -168,8 +182,9 @@ film_poisson = 0.5 -> = & less than 0.5
 contact_width = '314 mm' -> = & less than track, 0.314 m
 ## SPHERE grid.
 border = 'relief' -> = & only together with [surface]
+cells = [65, 1] -> = & 3 or more cells along y
 cells = [65] | 65 -> = & a list of 2
-cells = [65, 5000] -> @cells[1] = 5000 & from 3 to 4097
+cells = [65, 5000] -> @cells[1] = 5000 & from 1 to 4097
 extent = ['1 um', 2] -> @extent[1] = 2 & $LENGTH
 depths = ['1 um', '0 um'] -> = & strictly ascending
 depths = [] -> = & a list of 1 to 1001

@@ -38,6 +38,12 @@ def column(*values):
 def removed(alpha, faces, limits, interpolate=True):
     """(depth, roofed, at_bottom) of one column."""
     found = worn_depth(column(*alpha), np.array(faces, dtype=float), limits, interpolate)
+    return found.depth[0, 0], found.roofed[0, 0], found.at_bottom[0, 0]
+
+
+def fallen(alpha, faces, limits, interpolate=True):
+    """(depth, roofed, roof, at_bottom) of one column whose roof falls."""
+    found = worn_depth(column(*alpha), np.array(faces, dtype=float), limits, interpolate, roof_falls=True)
     return tuple(part[0, 0] for part in found)
 
 
@@ -140,6 +146,21 @@ def test_zones_under_a_roof_stay_and_are_counted():
     assert removed([0, 0, 1, 1, 1], range(6), limits, False) == (0, 3, False)
 
 
+def test_a_roof_falls_with_what_is_under_it():
+    """The columns of the test before, and a layer that may strain ten times as much over metal beyond its
+    limit down to z = 4: all of it goes, 2 as the roof. Without a roof nothing changes.
+    """
+    limits, layered = StrainLimits(0.5, 0.5, 0), StrainLimits(0.002, 0.02, 2.0)
+    assert fallen([1, 0, 1, 1, 0], range(6), limits) == pytest.approx((4, 2, 1, False))
+    assert fallen([0, 0, 1, 1, 0], range(6), limits) == pytest.approx((4, 2, 2, False))
+    assert fallen([1, 0, 1, 1, 0], range(6), limits, False) == (4, 2, 1, False)
+    assert fallen([0, 0, 1, 1, 1], range(6), limits, False) == (5, 3, 2, True)
+    assert fallen([0.004] * 4 + [0.0], range(6), layered) == pytest.approx((4, 2, 2, False))
+    assert fallen([0.001] * 5, range(6), layered) == (0, 0, 0, False)
+    open_above = fallen([1, 0.2, 0.1], range(4), limits)
+    assert open_above == (removed([1, 0.2, 0.1], range(4), limits)[0], 0, 0, False)
+
+
 PROFILES = st.integers(2, 6).flatmap(
     lambda n: st.tuples(
         st.lists(st.floats(0, 1), min_size=n, max_size=n), st.lists(st.floats(0.1, 3), min_size=n, max_size=n)
@@ -161,12 +182,16 @@ def test_depth_and_roof_equal_a_walk_down_the_profile(profile, bulk, layer, thic
     z = (np.arange(20000) + 0.5) / 20000 * faces[-1]
     above = np.interp(z, [0, *centres], [surface, *alpha]) > np.where(z < thickness, layer, bulk)
     walked = (len(z) if above.all() else int(np.argmin(above))) * faces[-1] / len(z)
+    lowest = (int(np.flatnonzero(above)[-1]) + 1 if above.any() else 0) * faces[-1] / len(z)
     depth, roofed, _ = removed(alpha, faces, limits)
+    falls, under, roof, _ = fallen(alpha, faces, limits)
     within = 2 * (2 + len(alpha)) * faces[-1] / len(z)
     nodes = np.array([0, *sorted([*centres, thickness])])
     margins = np.interp(nodes, [0, *centres], [surface, *alpha])[:, None] - [bulk, layer]
     assume(np.abs(margins).min() > 1e-3)  # nearer, samples may miss a crossing
     assert (depth, depth + roofed) == pytest.approx((walked, above.mean() * faces[-1]), abs=within)
+    assert (falls, under) == pytest.approx((lowest, roofed), abs=within)
+    assert falls == pytest.approx(depth + under + roof, abs=1e-12)
 
 
 # smoothing
@@ -229,8 +254,9 @@ def test_bad_faces_windows_orders_and_depths_are_refused():
     for bad in (-1e-9, math.nan, math.inf):
         with pytest.raises(ValueError, match="depth"):
             smoothed(np.array([[0.0, bad]]), 3, 2)
-        with pytest.raises(ValueError, match="depth"):
-            remapped(np.zeros((6, 2, 1, 2)), np.array([0.0, 1, 2]), np.array([[0.0, bad]]))
+        if bad != -1e-9:  # a column may be raised
+            with pytest.raises(ValueError, match="depth"):
+                remapped(np.zeros((6, 2, 1, 2)), np.array([0.0, 1, 2]), np.array([[0.0, bad]]))
 
 
 # symmetry
@@ -260,15 +286,16 @@ def test_a_symmetric_field_stays_symmetric_bit_by_bit(cells, window, order):
 # remap
 
 
-def state(seed, faces, nx=5, ny=4):
+def state(seed, faces, nx=5, ny=4, raised=()):
     """Random deviatoric plastic strain, an accumulated one above its norm, and depths of which some are 0,
-    some huge.
+    some huge; raised: further shares of the deepest face.
     """
     rng = np.random.default_rng(seed)
     strain = rng.standard_normal((6, len(faces) - 1, nx, ny))
     strain[2] = -strain[0] - strain[1]
     alpha = norm(strain) * (1 + rng.random(strain.shape[1:]))
-    depth = rng.choice([0, 1e-9, 0.03, 0.4, 1.3], (nx, ny)) * rng.random((nx, ny)) * faces[-1]
+    shares = [0, 1e-9, 0.03, 0.4, 1.3, *raised]
+    depth = rng.choice(shares, (nx, ny)) * rng.random((nx, ny)) * faces[-1]
     return strain, alpha, depth
 
 
@@ -289,13 +316,13 @@ LAYERS = st.lists(st.floats(0.05, 5), min_size=1, max_size=8)
 
 
 @settings(max_examples=30, deadline=None)
-@given(st.integers(0, 10**6), LAYERS)
-def test_remap_conserves_and_creates_nothing(seed, thicknesses):
+@given(st.integers(0, 10**6), LAYERS, st.sampled_from([(), (-1e-9, -0.03, -1.3)]))
+def test_remap_conserves_and_creates_nothing(seed, thicknesses, raised):
     """And equals differences of the integral over depth, which is linear over each layer: these are sums of
     up to eight layers, and lose the ratio of depth to layer.
     """
     faces = np.concatenate([[0], np.cumsum(thicknesses)]) * UM
-    strain, alpha, depth = state(seed, faces)
+    strain, alpha, depth = state(seed, faces, raised=raised)
     new_strain, removed_strain = remapped(strain, faces, depth)
     new_alpha, removed_alpha = remapped(alpha, faces, depth)
     assert_closed(strain, new_strain, removed_strain, faces)
@@ -307,11 +334,12 @@ def test_remap_conserves_and_creates_nothing(seed, thicknesses):
     assert np.abs(new_strain[:3].sum(axis=0)).max() <= 2 * rounding * np.abs(strain).max()
     still = depth == 0
     assert np.array_equal(new_alpha[:, still], alpha[:, still]) and not removed_alpha[still].any()
-    assert not new_alpha[:, depth >= faces[-1]].any()
+    assert not new_alpha[:, np.abs(depth) >= faces[-1]].any()
     for before, after in ((alpha, new_alpha), (strain[4], new_strain[4])):
         for i, j in np.ndindex(2, 2):
             integral = np.concatenate([[0], np.cumsum(before[:, i, j] * np.diff(faces))])
-            expected = np.diff(np.interp(faces + depth[i, j], faces, integral)) / np.diff(faces)
+            at = np.interp(faces + depth[i, j], faces, integral)  # above the old surface: nothing
+            expected = np.diff(at) / np.diff(faces)
             bound = len(faces) * rounding * np.abs(before).max()
             assert after[:, i, j] == pytest.approx(expected, abs=bound)
 
@@ -350,10 +378,12 @@ def test_closing_residual_sees_what_is_lost():
     assert closing_residual(0 * alpha, 0 * alpha, 0 * removed, GRADED) == 0
 
 
+@pytest.mark.parametrize("fills", [False, True])
 @pytest.mark.parametrize("share", [0.5, 0.0])
-def test_of_the_cells_that_have_yielded_is_left_what_is_left_of_all(share):
+def test_of_the_cells_that_have_yielded_is_left_what_is_left_of_all(share, fills):
     """The fields of these cells alone, in a row, against the remap of the whole box; also if none has."""
-    rng, law = np.random.default_rng(6), WearLaw((9, 7), 1.0, 1.0, StrainLimits(0.5, 0.5, 0.0), True, 3, 1)
+    limits = StrainLimits(0.5, 0.5, 0.0)
+    rng, law = np.random.default_rng(6), WearLaw((9, 7), 1.0, 1.0, limits, True, 3, 2, fills=fills)
     cells, faces = rng.random((4, 5, 3)) < share, np.array([0.0, 0.4, 1.0, 1.7, 3.0])
     field = np.where(cells, rng.random((2, *cells.shape)), 0.0)
     window, values = Window(2, 3, 5, 3), field[:, cells]
@@ -364,13 +394,14 @@ def test_of_the_cells_that_have_yielded_is_left_what_is_left_of_all(share):
     assert np.array_equal(left, expected.any(axis=0)) and np.array_equal(below["peeq"], expected[:, left])
     assert wear.residuals == (closing_residual(field, expected, removed, faces),)
     assert removed.any() == (left != cells).any() == bool(share)
+    assert (wear.depth < 0).any() == (fills and bool(share))
 
 
 # cycles
 
 
-@pytest.mark.parametrize("interpolate", [True, False])
-def test_the_books_close_over_25_cycles(interpolate):
+@pytest.mark.parametrize("interpolate, fills", [(True, False), (False, False), (True, True)])
+def test_the_books_close_over_25_cycles(interpolate, fills):
     """Heights of 0.3 um lose their rounding in each cycle; the volume of some um depth is held against it.
 
     Of the remap: four roundings of the depth, up to five thicknesses, for each overlap, and sums over 14
@@ -383,13 +414,15 @@ def test_the_books_close_over_25_cycles(interpolate):
     worn = WearState.empty(original.shape, UM, 0.8 * UM)
     for _ in range(25):
         alpha = alpha + 0.02 * shape * (1 + rng.random(alpha.shape))
-        raw = worn_depth(alpha, GRADED, StrainLimits(0.005, 0.02, 0.5 * UM), interpolate)
-        depth = smoothed(raw.depth, 5, 2)
+        raw = worn_depth(alpha, GRADED, StrainLimits(0.005, 0.02, 0.5 * UM), interpolate, roof_falls=fills)
+        depth = (filtered if fills else smoothed)(raw.depth, 5, 2)
         found, removed = remapped(alpha, GRADED, depth)
         worn = with_cycle(worn, raw, depth, closing_residual(alpha, found, removed, GRADED))
         current, alpha = current - depth, found
     for each in (worn.volumes, worn.raw_volumes, worn.roofed_volumes, worn.bottom_columns):
         assert len(each) == 25
+    dug = np.array(worn.volumes) - worn.raw_volumes + worn.filled_volumes  # of the flanks
+    assert dug == close(worn.filled_volumes, 200 * EPS) if fills else (dug > worn.filled_volumes).any()
     assert worn.volume > 0 and max(worn.residuals) <= (4 * 5 + 14) * EPS
     assert abs(worn.imbalance(original, current)) <= 25 * EPS * worn.volume
     assert worn.depth == pytest.approx(original - current, abs=25 * EPS * np.abs(current).max())
@@ -416,9 +449,11 @@ def test_material_that_smoothing_leaves_is_removed_again(all_removed):
 
 
 def test_a_cycle_of_the_wear_state():
-    raw = Worn(np.array([[1e-7, 3e-8]]), np.array([[0, 3e-7]]), np.array([[True, False]]))
+    roofs = np.array([[0, 3e-7]]), np.array([[1e-8, 0]])
+    raw = Worn(np.array([[1e-7, 3e-8]]), *roofs, np.array([[True, False]]))
     worn = with_cycle(WearState.empty((1, 2), 2 * UM, 3 * UM), raw, np.array([[5e-8, 4e-8]]), 1e-16)
     assert worn.volumes == close((5.4e-19,)) and worn.raw_volumes == close((7.8e-19,))
-    assert worn.roofed_volumes == close((1.8e-18,))
+    assert worn.roofed_volumes == close((1.8e-18,)) and worn.roof_volumes == close((6e-20,))
+    assert worn.filled_volumes == close((3e-19,)) and worn.of_last_cycle[0] == close(5.4e-19)
     assert worn.bottom_columns == (1,) and worn.residuals == (1e-16,)
     assert with_cycle(worn, raw, raw.depth, 0.0).raw_volume == close(2 * 7.8e-19)

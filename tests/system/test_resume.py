@@ -76,6 +76,13 @@ TO_AND_FRO = judged(
     friction={"coefficient": 0.2, "direction": "alternating"},
 )
 RUBBED = judged(loading={"cycles": 2}, friction={"coefficient": 0.2}, fem={"cells_per_radius": 2, "box": 3})
+FALLING = running_in(
+    cycles=3,
+    steps=1,
+    plasticity=RUN_IN_STEEL | {"layer_thickness": 0.2e-6},
+    wear={"strain_limit": 0.002, "strain_limit_layer": 0.004, "roof": "falls", "smoothing_fills": True},
+    solver={"method": "paper", "tolerance": 1e-3},
+)
 RUN_IN_BACK = RUN_IN_STEEL | {"kinematic": CHABOCHE}
 
 
@@ -105,6 +112,7 @@ CASES = {
     "SAM, judged, path and alternating traction": (SAM, TO_AND_FRO, None),
     "SAM, judged, film and wear": (SAM, running_in(cycles=4, steps=1, plasticity=RUN_IN_BACK), None),
     "SAM, judged, paper": (SAM, sphere(cycles=4, steps=1, solver=PAPER | {"verdict": True}), None),
+    "SAM, paper, film, a roof falls, the filter fills": (SAM, FALLING, None),
     "FEM, judged": (FEM, judged(), None),
     "FEM, three dimensions, back-stresses": (FEM_3D, RUBBED, None),
     "FEM, cut steps": (FEM, sphere(PERFECT, force=0.0685, steps=2), None),

@@ -166,7 +166,9 @@ def test_progress_is_told_and_else_silent(capsys):
 
 
 def test_wrong_input_is_refused_by_name(tmp_path):
-    with pytest.raises(samfem.ModelError, match="'fem-2d', allowed: sam, fem-axisymmetric, fem-3d"):
+    with pytest.raises(
+        samfem.ModelError, match="'fem-2d', allowed: sam, fem-axisymmetric, fem-3d, fem-plane"
+    ):
         samfem.solve(parsed(), "fem-2d")
     with pytest.raises(samfem.FolderError, match="no result"):
         samfem.read(tmp_path)

@@ -22,7 +22,10 @@ CASES = all_cases()
 def test_gates_and_cases_belong_together():
     assert {gate.case for gate in load_rows()} == set(CASES)
     assert all(set(case.levels) <= set(LEVELS) for case in CASES.values())
-    assert [name for name, case in CASES.items() if not case.levels] == ["peers"]  # needs other programs
+    assert [name for name, case in CASES.items() if not case.levels] == [
+        "periodic-peers",
+        "peers",
+    ]  # need other programs
     assert set(costs_at("quick")) == {name for name, case in CASES.items() if "quick" in case.levels}
 
 

@@ -15,6 +15,7 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk, ellipkm1
 
 from verification.reference import (
+    capped,
     elliptic,
     flat_punch,
     hamilton,
@@ -377,6 +378,61 @@ def test_wave_mean_gap_is_the_mean_of_the_gap_and_full_contact_is_its_limit():
     np.testing.assert_allclose(
         almost.pressure(x), full.pressure(x) - math.pi, atol=1e-5
     )  # sqrt(1e-12) at the valley
+
+
+def cosine_wave(n):
+    x = (np.arange(n) + 0.5) / n - 0.5
+    return x, np.cos(2 * np.pi * x)
+
+
+def test_double_wave_keeps_its_limits():
+    """Without intensity at its edge what opens a round crack has no moment over sqrt(b^2 - r^2)."""
+    contact = westergaard.DoublyWavyContact(
+        1e-3, 2.0, 5.0, 0.9999 * math.sqrt(2) * math.pi * 5.0 * 1e-3 / 2.0
+    )
+    b = math.sqrt((1 - contact.heavy_share) * contact.wavelength**2 / (2 * math.pi))  # two in a wave
+    t, w = gauss(40)
+    r = b * np.sin(0.5 * np.pi * t)  # moment of the mean over a circle about the hollow at (lambda/2, 0)
+    angles = 2 * np.pi * np.arange(8) / 8
+    ring = contact.complete(1.0 + np.outer(r, np.cos(angles)), np.outer(r, np.sin(angles))).mean(axis=1)
+    assert abs(np.sum(w * r * ring)) < 1e-4 * np.sum(w * r * np.abs(ring))  # next order in b
+    light = westergaard.DoublyWavyContact(1e-3, 2.0, 5.0, 1e-6 * contact.complete_pressure)
+    assert math.isclose(
+        light.light_share, 2 * math.pi * (light.summit.contact_radius / 2.0) ** 2, rel_tol=1e-12
+    )
+    assert math.isclose(light.fitted_share, light.light_share, rel_tol=1e-2)
+    over = westergaard.DoublyWavyContact(1e-3, 2.0, 5.0, 2 * contact.complete_pressure)
+    x, wave = cosine_wave(16)
+    found = capped.capped_pressure(1e-3 * np.outer(wave, wave), (2.0, 2.0), 5.0, over.mean_pressure)
+    np.testing.assert_allclose(found, over.complete(2.0 * x[:, None], 2.0 * x[None, :]), rtol=1e-4)
+    assert math.isclose(
+        capped.rms_slope(1e-3 * np.outer(wave, wave), (2.0, 2.0)),
+        1e-3 * math.pi / math.sqrt(2),
+        rel_tol=1e-12,
+    )
+
+
+def test_capped_pressure_is_westergaards_and_keeps_to_its_bounds():
+    wave = westergaard.WavyContact(1e-3, 1.0, 1.0, 0.3e-3 * math.pi)
+    x, cosine = cosine_wave(128)
+    heights = 1e-3 * np.repeat(cosine[:, None], 2, axis=1)
+    p = capped.capped_pressure(heights, (1.0, 2 / 128), 1.0, wave.mean_pressure)
+    np.testing.assert_allclose(p[:, 0], wave.pressure(x), atol=0.03 * p.max())  # the edge falls within a cell
+    assert math.isclose(p.max(), wave.pressure(x).max(), rel_tol=3e-4)
+    hardness = 0.6 * p.max()
+    p = capped.capped_pressure(
+        heights, (1.0, 2 / 128), 1.0, wave.mean_pressure, hardness=hardness, tolerance=1e-7
+    )
+    assert p.min() == 0 and p.max() == hardness and math.isclose(p.mean(), wave.mean_pressure, rel_tol=1e-12)
+    k = 2 * np.pi * np.arange(1, 64)  # displacements summed wave by wave
+    u = sum(4 / q * (p[:, 0] @ np.cos(q * x)) / 128 * np.cos(q * x) for q in k)
+    gap, free = u - heights[:, 0], (p[:, 0] > 0) & (p[:, 0] < hardness)
+    gap -= gap[free].mean()
+    np.testing.assert_allclose(gap[free], 0, atol=2e-8)
+    assert gap[p[:, 0] == hardness].max() < -1e-5 and gap[p[:, 0] == 0].min() > 0
+    for mean, message in ((-1.0, "between 0 and the hardness"), (hardness, "between")):
+        with pytest.raises(ValueError, match=message):
+            capped.capped_pressure(heights, (1.0, 2 / 128), 1.0, mean, hardness=hardness)
 
 
 def test_punch_is_flat_and_superposes():

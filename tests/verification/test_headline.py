@@ -22,6 +22,7 @@ from verification.suite.pages.headline import (
     NOT_RUN,
     PHYSICS,
     READINGS,
+    WORDS,
     headline_of,
 )
 from verification.suite.pages.stored import read_stored
@@ -69,6 +70,11 @@ def studies():
         record(case.name, *(part(found) for part in (case.data, case.tables, case.notes, case.setup)))
         for case, found in ((all_cases()[study.CASES[0].name], found) for study, found in made)
     ]
+
+
+def test_the_readings_of_the_words_are_counted(readings):
+    found = headline_of(read_stored(stored(readings, record(WORDS, readings["data"]))))
+    assert found.brief.endswith(" In 2 readings of its words 15 to 16 hold.")
 
 
 def test_each_statement_has_a_row_with_what_decides_it_and_where_it_holds(readings, studies):

@@ -46,6 +46,15 @@ class TestProblems:
         assert (a, p0) == pytest.approx((ours.RADIUS_M, 3 * scene.body.plasticity.yield_stress), rel=1e-12)
         assert scene.grid.extent[0] == pytest.approx(6 * a, rel=1e-12) and scene.loading.steps == 1
 
+    def test_periodic_step_is_the_sphere_as_a_summit(self):
+        free = ours.scene_of(8, 4, 1e-3)
+        repeats = ours.repeated(free)
+        assert repeats.patch == (free.grid.cells, free.grid.extent) and repeats.grid.periodic == "xy"
+        x = (np.arange(8) + 0.5) / 8 * free.grid.extent[0] - free.grid.extent[0] / 2
+        summit = -np.add.outer(x**2, x**2) / (2 * free.counterbody.radius)
+        assert np.allclose(repeats.surface.path.values, summit, rtol=1e-12, atol=0.0)
+        assert (repeats.loading, repeats.body) == (free.loading, free.body)
+
     @pytest.mark.parametrize(("n", "size"), [(512, 32), (96, 48), (97, 97)])
     def test_coarsest_grid_of_aspher_divides(self, n, size):
         assert aspher.coarsest(n, 32) == size

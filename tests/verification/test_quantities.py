@@ -3,12 +3,15 @@
 shifted or transposed is seen.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from made_results import Made, square_mesh
 
 from verification.judging import error_of
 from verification.quantities import QUANTITIES, Reference, Values
+from verification.reference.westergaard import WavyContact
 from verification.runs.models import FEM, SAM
 
 X, Y, Z = np.linspace(-3.0, 3.0, 13), np.linspace(-2.0, 2.0, 9), np.linspace(0.0, 4.0, 9)
@@ -77,3 +80,17 @@ def test_a_field_counts_as_far_as_its_reference_says():
     assert error("pressure", punch, inside) < 1e-14
     values = QUANTITIES["pressure"].of(punch, inside)
     assert isinstance(values, Values) and values.places[0].max() == 1.0 and values.values.size == 11
+
+
+def test_the_width_of_a_strip_is_where_its_pressure_ends_and_its_outermost_cells_do_not_count():
+    wave = WavyContact(1e-3, 1.0, 1.0, 0.2e-3 * np.pi)
+    x = (np.arange(96) + 0.5) / 96 - 0.5
+    p = np.repeat(wave.pressure(x)[:, None], 3, axis=1)
+    p[[*np.flatnonzero(p[:, 0])[[0, -1]]]] *= 0.5
+    result = Made({}, {}, square_mesh(x, p, np.arange(3.0) / 96), model=SAM)
+    reference = Reference({"strip-width": 2 * wave.half_width}, {"wave": 1.0})
+    assert error("strip-width", result, reference) < 1e-12
+    p[40] *= 1.01
+    assert (
+        error("strip-width", replace(result, fields=square_mesh(x, p, np.arange(3.0) / 96)), reference) > 1e-4
+    )

@@ -8,17 +8,18 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
-from made_histories import as_the_paper_says, history, result_of
+from made_histories import as_the_paper_says, at_rest, history, result_of
 from made_results import Made, context, of_frame, red
 from made_studies import GOOD, SCENES, framed_physics, over_inputs, over_physics, studied
 
 from fem_reference.spatial import WornCycle
-from sam.scene import GridFields, Plasticity, resolved
+from sam.scene import GridFields, Plasticity, Status, resolved
 from verification.cases import all_cases
 from verification.cases.cyclic import running_in_kinematic as kinematic
 from verification.cases.running_in import (
     running_in_converged as converged,
     running_in_fem as fem,
+    running_in_readings as words,
     running_in_sensitivity as inputs_study,
     running_in_way as way,
     running_in_wear as wear,
@@ -31,12 +32,14 @@ from verification.cases.running_in.study import (
     LAST,
     MODULI,
     NAMES,
+    PARTS,
     RECOVERY,
     SHARES,
     STATEMENTS,
     A,
     B,
     Run,
+    framed,
 )
 from verification.figures.check import findings
 from verification.scenes.asperities import SIDE
@@ -176,6 +179,65 @@ class TestPhysics:
             "1, 2"
         )
         assert "missing" in red(self.CASE.name, self.CASE.measure(found.iloc[1:]))
+
+
+class TestReadings:
+    CASE = all_cases()["running-in-readings"]
+
+    def found(self, name: str, wrong: float = 0.0, excess: float = 1e-3):
+        """As the paper says, with curve C as B, in one reading; nothing wears later in the others. wrong: of
+        wear that fills; excess: of the printed loop.
+        """
+        runs, said = {}, as_the_paper_says()
+        for reading, case in np.ndindex(len(words.READINGS), len(words.NAMES)):
+            (label, one), material = list(words.READINGS.items())[reading], list(words.NAMES)[case]
+            own = said[B if material == words.C else material]
+            result = result_of(own if label == name else at_rest(own))
+            cycles = dict(result.tables["cycles"])
+            cycles |= {"raw_volume_m3": cycles["wear_of_cycle_m3"] * (1 + wrong)}
+            cycles |= {"filled_volume_m3": np.ones(LAST), "roof_volume_m3": np.ones(LAST)}
+            cycles |= {"yield_excess": np.full(LAST, excess), "flow_residual": np.ones(LAST)}
+            cycles |= {"peeq_max": np.ones(LAST)}
+            scene = one.change(SCENES[B if material == words.C else material])
+            runs[label, material, 2] = Run(scene, replace(result, tables=result.tables | {"cycles": cycles}))
+        return framed(runs, PARTS, self.CASE.numbers).assign(coarse=False)
+
+    def test_every_reading_is_another_scene(self, tmp_path):
+        labels, scenes = zip(*self.CASE.scenes(context(self.CASE.name, tmp_path)).values(), strict=True)
+        assert len({repr(resolved(each)) for each in scenes}) == len(set(labels)) == len(scenes)
+        assert [each.surface.seed for each in scenes] == sorted(each.surface.seed for each in scenes)
+
+    def test_statements_hold_where_the_runs_are_as_the_paper_says(self):
+        """All but that the largest pressure of hardening falls, which the made runs do not tell; so no two of
+        the others exclude each other.
+        """
+        name = words.CHANGES[0][0]
+        found = self.found(name)
+        assert red(self.CASE.name, self.CASE.measure(found), whole=True) == set()
+        verdicts = [one["by_agreement"] for one in self.CASE.judged(found)[name]]
+        assert len(words.SAID) == 20 and verdicts == ["held"] * 19 + ["failed"]
+        tables = readable(self.CASE, found)
+        assert tables[-1].rows[0][:6] == (words.LOOP, "bulk", "1", "1.0e-03", "1.0e+00", "1")
+        told = "A roof that falls (physics): 19 in place of 10; then hold"
+        first, *_ = list(self.CASE.notes(found))
+        assert told in first and len(first.split("in place of")) == len(words.CHANGES) + 1
+        assert words.never_together(found) == ([], len(words.READINGS) - 4)
+        assert words.near(words.SAID[0], {"values": (0.82,)}) and not words.near(
+            words.SAID[0], {"values": (0.8,)}
+        )
+
+    def test_a_contact_of_few_cells_is_judged_and_counted(self, tmp_path, monkeypatch):
+        own = result_of(as_the_paper_says()[BULK], status=Status.UNDER_RESOLVED)
+        key = words.CHANGES[0][0], BULK, 2
+        monkeypatch.setattr(type(self.CASE), "runs", lambda case, context: {key: Run(SCENES[BULK], own)})
+        found = self.CASE.solve(context(self.CASE.name, tmp_path))
+        assert found["run"].iloc[0].result.status is Status.CONVERGED
+        assert f"judged all the same: {key[0]}: 1." in " ".join(self.CASE.notes(found))
+
+    def test_wear_that_does_not_balance_and_a_loop_beyond_its_tolerance_turn_rows_red(self):
+        name = words.named(words.PRINTED, "roof stays", "fills")
+        assert red(self.CASE.name, self.CASE.measure(self.found(name, wrong=1e-9))) == {"balance"}
+        assert red(self.CASE.name, self.CASE.measure(self.found(name, excess=1.1e-3))) == {"excess"}
 
 
 class TestConverged:

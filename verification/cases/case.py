@@ -17,7 +17,7 @@ from verification.figures import space
 from verification.judging import Measured
 from verification.rows import LEVELS, CaseFile
 from verification.runs.files import plain, write_atomically, write_run
-from verification.runs.models import FEM, FEM_3D, SAM
+from verification.runs.models import FEM, FEM_3D, FEM_LINE, SAM
 from verification.runs.provenance import collect, without_places
 from verification.runs.store import Reuse, Store, solve_or_reuse
 from verification.text.console import number
@@ -325,6 +325,7 @@ def with_mesh(scene: Scene, cells_per_radius: int) -> Scene:
 __all__ = [
     "FEM",
     "FEM_3D",
+    "FEM_LINE",
     "LEVELS",
     "SAM",
     "Case",

@@ -15,6 +15,7 @@ import numpy as np
 
 from sam.scene import Coating, CounterBody, CounterSurface, Friction, Grid, Loading, Path, Plasticity, Scene
 from verification.cases.case import with_body, with_grid, with_keys, with_loading, with_mesh
+from verification.quantities import modulus_of
 from verification.reference.coated_sphere import CoatedContact
 from verification.reference.hertz import CircularContact, effective_modulus
 from verification.references import coated_contact, contact_of, growing_sphere, rounded_contact
@@ -305,6 +306,13 @@ def cells_of_asperities(scene: Scene, cells: int) -> Scene:
     return scene.model_copy(update={"grid": Grid(depths=tuple(map(float, faces)))})
 
 
+def load_ratio(scene: Scene, share: float) -> Scene:
+    """The mean pressure on a wavy surface over that of complete contact."""
+    surface = scene.surface
+    waves = math.hypot(1.0 / surface.wavelength_x, 1.0 / (surface.wavelength_y or math.inf))
+    return with_loading(scene, mean_pressure=share * math.pi * modulus_of(scene) * surface.amplitude * waves)
+
+
 RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {
     "layer": with_layer,
     "p0-over-yield": at_ratio,
@@ -332,6 +340,11 @@ RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {
     "film-dragged": film_dragged,
     "on-counterbody": on_counterbody,
     "asperities": cells_of_asperities,
+    "load-ratio": load_ratio,
+    "contact-fraction": lambda scene, share: load_ratio(scene, math.sin(0.5 * math.pi * share) ** 2),
+    "wave-cells": lambda scene, n: with_grid(
+        scene, cells=(n, 8), extent=(scene.surface.wavelength_x, 8 * scene.surface.wavelength_x / n)
+    ),
 }
 """Name in a case file -> what it does to the scene, in the order in which those of a case are applied."""
 

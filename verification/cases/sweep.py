@@ -28,13 +28,13 @@ from verification.quantities import QUANTITIES, Quantity, Reference, Solved
 from verification.reference.convergence import Power, extrapolate, fit_power
 from verification.references import REFERENCES, hertz_sphere
 from verification.rows import CaseFile, Claim, SweepFile, Take
-from verification.runs.models import FEM, FEM_3D, SAM
+from verification.runs.models import FEM, FEM_3D, FEM_LINE, SAM
 from verification.text.console import number
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-MODELS = {"sam": SAM, "fem": FEM, "fem-3d": FEM_3D}
+MODELS = {"sam": SAM, "fem": FEM, "fem-3d": FEM_3D, FEM_LINE: FEM_LINE}
 BOTH = "sam/fem"
 MOST = 60
 """Lines of a table for the page."""
@@ -50,6 +50,7 @@ LABELS = {
     "sam": "SAM",
     "fem": "FEM",
     "fem-3d": "FEM, 3D",
+    FEM_LINE: "FEM, plane strain",
     "swift": "Swift's law",
     "linear": "linear hardening",
     "perfect": "perfect plasticity",
@@ -59,7 +60,7 @@ LABELS = {
     "loading.steps": "{} load steps",
 }
 """What every figure says of a value, or of the values of an axis."""
-UNITS = {"%": 1e2, "nm": 1e9, "µm": 1e6, "µm³": 1e18, "GPa": 1e-9}
+UNITS = {"%": 1e2, "nm": 1e9, "µm": 1e6, "µm²": 1e12, "µm³": 1e18, "GPa": 1e-9}
 """Unit at the end of a label -> factor of a column in SI."""
 
 

@@ -123,6 +123,7 @@ GAPS = {
         np.clip(np.hypot(x, y) - other.flat_radius, 0.0, None) ** 2 / (2 * other.radius)
     ),
     "flat": lambda other, x, y: np.zeros(x.shape),
+    "cylinder": lambda other, x, y: x**2 / (2 * other.radius) + 0 * y,
 }
 """The gap in m of each shape of counter-body, written once more."""
 

@@ -24,15 +24,17 @@ from scipy.interpolate import RectBivariateSpline, RegularGridInterpolator
 from sam.scene import PEAK, UNLOADED, Compare, Problem, Scene, SceneError, problems, spelling
 from verification.compare.measures import Spot, patch_pressure, spots
 from verification.compare.own_data import OwnData
-from verification.compare.rows import Limit, Pair, Solution, field_row, judged, number, scalar_row
+from verification.compare.rows import Limit, Pair, Solution, field_row, judged, scalar_row
 from verification.compare.verdicts import CHANGES, CLAIM
 from verification.judging import Measured, RowStatus, Verdict
 from verification.runs.sampling import gridded, rows_of
+from verification.runs.tables import contact_size
 from verification.text.console import unknown
 
 RISE = 1.5  # of an elastic contact of Hertz, the steepest of those that are compared
 GROOVE = ("groove_depth_m", "groove_deepest_m")
 CENTRE, SPOT = "pressure_centroid_x_m on the line", "load of the spot"
+SIDES = {"cylinder", "spatial"}  # kinds of scenes that are compared on both sides of the axis
 WITHIN = 2.0  # contact radii: the part of line, axis and plane that is compared
 INSIDE_EDGE = 0.8  # of a punch's radius: its pressure is compared up to there
 # of the radius of a plastic contact: likewise, as the pressure falls within a cell at its edge
@@ -96,7 +98,8 @@ def pair_of(scene: Scene, sam: Solution, fem: Solution) -> Pair:
     """Two results of a scene, and the tables of rows that they have."""
     kinds, film = _kinds(scene), scene.body.coating.thickness if scene.body.coating else 0.0
     if "smooth" in kinds:  # FEM in three dimensions gives values on both sides of the axis
-        if np.min(fem.tables.get("line", {}).get("x_m", [0.0]), initial=0.0) < 0.0:
+        sides = np.min(fem.tables.get("line", {}).get("x_m", [0.0]), initial=0.0) < 0.0
+        if sides and "cylinder" not in kinds:
             kinds.add("spatial")
         if not math.isfinite(_radius(fem)):
             kinds.add("unknown-radius")
@@ -156,8 +159,8 @@ def _single(pair: Pair, name: str) -> Verdict:
 
 def _radius(*solutions: Solution) -> float:
     """The contact radius of the first that has one; data of a user may have none."""
-    radii = (number(solved.quantities.get("contact_radius_m")) for solved in solutions)
-    return next((radius for radius in radii if math.isfinite(radius)), math.nan)
+    radii = (contact_size(solved.quantities) for solved in solutions)
+    return next((radius for radius in radii if math.isfinite(radius) and radius), math.nan)
 
 
 # fields of smooth bodies: from two results the values at the same places, and their weights
@@ -198,7 +201,7 @@ def _pressure_at(solved: Solution, at: np.ndarray) -> np.ndarray:
     """
     r, p = _on_line(solved.tables, "p_Pa")
     last = int(np.flatnonzero(p)[-1])
-    end = np.fmax(number(solved.quantities.get("contact_radius_m")), r[last])
+    end = np.fmax(contact_size(solved.quantities), r[last])
     if end == r[last]:
         end = (r[last] + r[min(last + 1, r.size - 1)]) / 2
     knots, squares = np.append(r[: last + 1], end), np.append(p[: last + 1], 0.0) ** 2
@@ -222,11 +225,15 @@ def _reach(pair: Pair, limit: float, state: str = PEAK, *, side: int = 1) -> flo
 
 
 def _pressure(pair: Pair):
-    """p over the disc: weight 2 pi r dr; against the three-dimensional model along y = 0."""
+    """p over the disc: weight 2 pi r dr; of a line contact, and against the three-dimensional model, along
+    y = 0.
+    """
     if "spatial" in pair.kinds:
         return _along(pair, "p_Pa", pair.radius * 1.2)
     known = "unknown-radius" not in pair.kinds  # else its edge is known to the distance of two places
     reach = INSIDE_EDGE if "punch" in pair.kinds else 1.2 if known and not pair.plastic else INSIDE_FLOW
+    if "cylinder" in pair.kinds:
+        return _along(pair, "p_Pa", pair.radius * reach)
     r = np.linspace(0.0, _reach(pair, pair.radius * reach), 481)
     return _pressure_at(pair.sam, r), _pressure_at(pair.fem, r), r
 
@@ -240,7 +247,7 @@ def _along(pair: Pair, name: str, limit: float, state: str = PEAK):
 
 def _displacement(pair: Pair, state: str = PEAK):
     limit = WITHIN * pair.radius
-    if "spatial" in pair.kinds:
+    if pair.kinds & SIDES:
         return _along(pair, "uz_m", limit, state)
     r = np.linspace(0.0, _reach(pair, limit, state), 481)
     lines = (_on_line(solved.tables, "uz_m", state) for solved in pair.both)
@@ -274,7 +281,7 @@ def _plane(pair: Pair, column: str):
     use &= depth >= max(zs.min(), pair.top)
     if "punch" in pair.kinds:
         use &= np.hypot(r - pair.radius, depth) > EDGE_ZONE * pair.radius
-    if "spatial" not in pair.kinds:
+    if not pair.kinds & SIDES:
         grid = (grid + grid[::-1]) / 2
     if pair.plastic:
         between = RectBivariateSpline(xs, zs, grid, s=0).ev(r[use], depth[use])

@@ -64,7 +64,7 @@ ADVISED = {ELASTIC: "p_max_Pa", COATED: "p_max_Pa"} | dict.fromkeys((YIELDING, D
 CELLS_SHARE, STEPS_SHARE = 1 / 4.5, 1 / 9
 FEWEST_CELLS = 4.2  # in the contact radius of the coarsest of three grids: below four it has no uncertainty
 # From each of the first three grids to the next, so that rounding to whole cells leaves 1.3; elements: more.
-RATIOS = {models.SAM: 1.4, models.FEM: RATIO, models.FEM_3D: RATIO}
+RATIOS = {models.SAM: 1.4, models.FEM: RATIO, models.FEM_3D: RATIO, models.FEM_LINE: RATIO}
 FEWEST_STEPS = 6  # 4, 3 and 2 steps may agree by chance: linear hardening, 0.29 of the error
 MOST_STEPS = 1000
 MOST_CELLS = 4097

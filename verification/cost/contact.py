@@ -6,7 +6,7 @@ chosen, and beside a result by the closed form of Hertz.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import pi, prod, sqrt
+from math import inf, pi, prod, sqrt
 from typing import Any
 
 from sam.scene import Scene
@@ -16,16 +16,23 @@ from verification.text.readable import with_prefix
 
 YIELDS_AT = 1.6
 """p0 over the yield stress at first yield below a sphere: 1.61 (nu = 0.3; Johnson 1985, section 6.1)."""
+YIELDS_AT_LINE = 1.79  # below a cylinder, by von Mises (nu = 0.3)
 
 
 def hertz_of(scene: Scene) -> dict[str, float]:
-    """Names of quantities -> their values by Hertz, where a smooth sphere or ellipsoid touches a body
-    without coating; else nothing.
+    """Names of quantities -> their values by Hertz, where a smooth sphere, ellipsoid or cylinder touches a
+    body without coating; else nothing.
     """
     other, loading, body = scene.counterbody, scene.loading, scene.body
-    if other is None or other.radii is None or scene.patch_surface is not None or body.coating is not None:
+    if other is None or scene.patch_surface is not None or body.coating is not None or loading.force == 0.0:
         return {}
-    if loading.force == 0.0:
+    if other.length is not None:  # Johnson 1985, Eq. 4.43 and 4.45
+        from sam import hertz_semi_axes
+
+        a = hertz_semi_axes(scene)[0]
+        area = {"contact_area_m2": 2 * a * other.length, "contact_half_width_m": a}
+        return area | {"p_max_Pa": 2 * loading.force / (pi * a * other.length)}
+    if other.radii is None:
         return {}
     from verification.reference.elliptic import EllipticContact
 
@@ -66,20 +73,17 @@ def expected_contact(scene: Scene) -> dict[str, Any]:
     (a, b), p0 = hertz_semi_axes(scene), estimates.peak_pressure(scene)
     found = {"p0_Pa": p0, "a_m": a, "b_m": b, **beyond(p0)}
     size = f"a = {with_prefix(a, 'm')}"
-    if a != b:
+    if a != b and (other is None or other.length is None):
         size = f"a x b = {with_prefix(a, 'm')} x {with_prefix(b, 'm')}"
     if other is None:
         words = f"given pressure: p0 = {with_prefix(p0, 'Pa')}, {size}{_over(found, 'p0')}"
-    elif other.radii is None:
+    elif other.radii is None and other.length is None:
         mean = p0 / 1.5
         found = {"p_mean_Pa": mean, "a_m": a, "b_m": b, **beyond(mean)}
         words = f"{other.shape}: mean pressure {with_prefix(mean, 'Pa')}, contact radius {size}"
         words += _over(found, "mean pressure")
     else:
-        found["a_over_R"] = max(a / other.radii[0], b / other.radii[1])
-        bare = "" if scene.body.coating is None else " (without coating)"
-        words = f"Hertz{bare}: p0 = {with_prefix(p0, 'Pa')}, {size}, a/R = {found['a_over_R']:.2g}"
-        words += _over(found, "p0")
+        words = _of_hertz(scene, found, size)
     if scene.loading.approach is not None:
         found["force_N"] = expected_force(scene)
         words += f", force about {with_prefix(found['force_N'], 'N')}"
@@ -89,12 +93,23 @@ def expected_contact(scene: Scene) -> dict[str, Any]:
     return found | {"words": words}
 
 
-def _over(found: Mapping[str, Any], what: str) -> str:
+def _of_hertz(scene: Scene, found: dict[str, Any], size: str) -> str:
+    """The words of a sphere, an ellipsoid or a cylinder; found: adds a/R."""
+    other, line = scene.counterbody, scene.counterbody.length is not None
+    rx, ry = (other.radius, inf) if line else other.radii
+    found["a_over_R"] = max(found["a_m"] / rx, found["b_m"] / ry)
+    bare = "" if scene.body.coating is None else " (without coating)"
+    size = f"half-width {size}" if line else size
+    words = f"Hertz{bare}: p0 = {with_prefix(found['p0_Pa'], 'Pa')}, {size}, a/R = {found['a_over_R']:.2g}"
+    return words + _over(found, "p0", YIELDS_AT_LINE if line else YIELDS_AT)
+
+
+def _over(found: Mapping[str, Any], what: str, yields_at: float = YIELDS_AT) -> str:
     """How large a stress is beside the yield stress; of an elastic body that it is."""
     if "over_yield" not in found:
         return ", elastic body"
     ratio = found["over_yield"]
-    first = f" (yields from {YIELDS_AT})" if what == "p0" else ""
+    first = f" (yields from {yields_at})" if what == "p0" else ""
     return f", {what} = {ratio:.2g} yield stresses{first}"
 
 

@@ -32,6 +32,7 @@ MEMORY = {  # chunks: what is worked through piece by piece
     },
     models.FEM: {"unknowns": 545.0, "steps": 226.0, "points": 152.0},
     models.FEM_3D: {"unknowns": 1780.0, "states": 1.0},
+    models.FEM_LINE: {"unknowns": 650.0, "states": 1.0},
 }  # fmt: skip
 TIME = {
     models.SAM: {
@@ -41,6 +42,7 @@ TIME = {
     },
     models.FEM: {"solve": 0.129, "factors": 3.01e-7, "points": 0.0},
     models.FEM_3D: {"solve": 0.0712, "multigrid": 7.6e-8},
+    models.FEM_LINE: {"solve": 0.1, "solves": 4.5e-7},
 }  # fmt: skip
 # Of a patch that repeats, whose coefficients are made in wave numbers, a depth at a time: share of the work
 # of stresses, of their memory, and what takes as long for any patch, in units of a solve; and share of the
@@ -82,6 +84,7 @@ NEWTON_STEEPER = 1.1
 CUT_ABOVE = 5.3  # ratio: 4.7 takes 7 iterations and no cut, 6 takes 31 and one cut a step
 NEWTON_CUT = 5.4  # times the ratio: 31 at 6, 55 at 10
 NEWTON_COATED = 3.7  # of a coated body, as at the ratio of the ladder
+LINE_SOLVES = 10  # linear solves of an iteration of Newton's method in which a section yields: 8 to 12
 FACTORS = 2.7  # units of work of an iteration: ten in a step of the ladder, with its search for the contact
 # of a step with back-stresses, and for each: 1.41 with one and 2.16 with three, as many points flowing
 WITH_BACK_STRESSES, EACH_BACK_STRESS = 1.05, 0.37
@@ -134,7 +137,8 @@ def estimate(scene: Scene, model: str, made: Any = None) -> Estimate:
 def counted(scene: Scene, model: str, made: Any = None) -> Counted:
     """What is counted of a scene in a model; made: the plan of the model, if that is at hand."""
     made = models.plan(scene, model) if made is None else made
-    return {models.SAM: _sam, models.FEM: _axisymmetric, models.FEM_3D: _spatial}[model](scene, made)
+    of_models = {models.SAM: _sam, models.FEM: _axisymmetric, models.FEM_3D: _spatial}
+    return {**of_models, models.FEM_LINE: _line}[model](scene, made)
 
 
 def steps_of(scene: Scene) -> int:
@@ -251,7 +255,9 @@ def _zone(scene: Scene, grid: CellGrid, depths: np.ndarray) -> Zone:
         wider, deeper = (share * max(ratio - GIVEN_ABOVE, 0.0) for share in GIVEN_SPREAD[soft])
     needed, path = ((1 + wider) * wide, (1 + deeper) * deep), _path_cells(scene, grid)
     slides = bool(scene.coefficient) or scene.loading.path is not None
-    return Zone(hertz_semi_axes(scene), wide, deep, needed, MISES * ratio, slides, path)
+    axes = hertz_semi_axes(scene)
+    axes = (axes[0], axes[0]) if grid.line else axes
+    return Zone(axes, wide, deep, needed, MISES * ratio, slides, path)
 
 
 def _back_hardening(scene: Scene, depths: np.ndarray) -> float:
@@ -327,8 +333,8 @@ def peak_pressure(scene: Scene) -> float:
         return _largest_mises(scene) / MISES
     from sam import expected_force, hertz_semi_axes
 
-    area = np.pi * np.prod(hertz_semi_axes(scene))
-    return 1.5 * expected_force(scene) / area if area else 0.0
+    area, line = np.pi * np.prod(hertz_semi_axes(scene)), scene.counterbody.length is not None
+    return (1.0 if line else 1.5) * expected_force(scene) / area if area else 0.0
 
 
 def _largest_mises(scene: Scene) -> float:
@@ -475,6 +481,23 @@ def _spatial(scene: Scene, plan: Any) -> Counted:
     return Counted(
         {"unknowns": 8.0 * unknowns, "states": _held_states(scene, plan)},
         {"solve": 1.0, "multigrid": unknowns**MULTIGRID * steps_of(scene) * iterations},
+    )
+
+
+def _line(scene: Scene, plan: Any) -> Counted:
+    """Of the plane-strain model: linear solves with one factorisation, one for each node that comes into
+    contact, and those of Newton's method.
+    """
+    steps = steps_of(scene)
+    solves = (2.0 if plan.half else 4.0) * plan.cells_per_radius + 2.0 * steps
+    if flows(scene):
+        solves += LINE_SOLVES * newton_iterations(scene) * steps * scene.loading.cycles
+    states = _held_states(scene, plan)
+    if flows(scene) and not scene.moves:
+        states = 8.0 * steps * scene.loading.cycles * (plan.unknowns + 7 * plan.points)
+    return Counted(
+        {"unknowns": 8.0 * plan.unknowns, "states": states},
+        {"solve": 1.0, "solves": solves * plan.unknowns},
     )
 
 

@@ -150,10 +150,10 @@ class Plan:
 
 
 def plan(scene: Scene, model: str | None = None) -> Plan:
-    """The plan of every model; model: the one that the attributes are about, by default the first that can
-    represent the scene.
+    """The plan of every model for its kind of contact; model: the one that the attributes are about, by
+    default the first that can represent the scene.
     """
-    entries = [_model(scene, name) for name in models.MODELS]
+    entries = [_model(scene, name) for name in models.models_for(scene)]
     usable = [entry["model"] for entry in entries if entry["available"]]
     advice, of_model = advice_of(scene, usable), model_range(scene)
     contact = expected_contact(scene)
@@ -166,7 +166,7 @@ def plan(scene: Scene, model: str | None = None) -> Plan:
         "model_range": of_model,
         "warnings": [*_off(of_model, contact.get("a_over_R")), *_warnings(entries)],
     }
-    return Plan(content, model or (usable or list(models.MODELS))[0])
+    return Plan(content, model or (usable or [models.SAM])[0])
 
 
 def _resolution(scene: Scene, model: str, made: Any) -> dict[str, Any]:
@@ -180,7 +180,9 @@ def _resolution(scene: Scene, model: str, made: Any) -> dict[str, Any]:
     if model == models.SAM:
         from sam import hertz_semi_axes
 
-        cells = sqrt(prod(hertz_semi_axes(scene)) / (made.grid.hx * made.grid.hy))
+        axes = hertz_semi_axes(scene)
+        cells = sqrt(prod(axes) / (made.grid.hx * made.grid.hy))
+        cells = axes[0] / made.grid.hx if made.grid.line else cells
     method = ON_TWO_GRIDS if model == models.SAM and scene.solver.extrapolate else model
     of_kind = [row for row in table() if row.kind == kind_of(scene)]
 

@@ -28,6 +28,7 @@ from verification.figures.style import (
 )
 from verification.runs.files import FIGURES
 from verification.runs.sampling import peak
+from verification.runs.tables import contact_size
 
 MICRO, GIGA = 1e6, 1e-9
 WITHIN = 2.0
@@ -71,7 +72,7 @@ def curves(runs: Mapping[str, Solution], table: str) -> Drawing:
     What data lack is not drawn, and everything only as far as SAM's, or the first with a contact radius.
     """
     place = {"line": "x_m", "axis": "z_m"}[table]
-    radius = next((size for run in runs.values() if (size := run.quantities.get("contact_radius_m"))), 0.0)
+    radius = next((size for run in runs.values() if (size := contact_size(run.quantities))), 0.0)
     data, panels = Columns("panel", "model", place, "value"), dict[str, dict[str, Curve]]()
     for label, (column, factor) in PANELS[table].items():
         panels[label] = {}

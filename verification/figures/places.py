@@ -15,6 +15,7 @@ from sam.scene.surface import border_cells
 from verification.runs.files import Run, mesh_of
 from verification.runs.meshes import SURFACE
 from verification.runs.sampling import Tables, gridded, peak, plane_field_on
+from verification.runs.tables import contact_size
 
 BODIES = {"sam": "body.vtr", "fem-3d": "fields.vtu"}
 """Model -> the mesh of a run with what its cells have strained."""
@@ -67,8 +68,10 @@ class SurfaceMap:
 
 
 def surface_map(run: Run) -> SurfaceMap | None:
-    """The surface of a run; None of an axisymmetric one, which has no map."""
-    if run.model == "fem-axisymmetric":
+    """The surface of a run; None of an axisymmetric one and of a line contact, which have no map."""
+    counter = run.summary["scene"].get("counterbody") or {}
+    line = counter.get("shape") == "cylinder" and not is_rough(run.summary["scene"])
+    if line or run.model == "fem-axisymmetric":
         return None
     mesh = mesh_of(run.folder, SURFACE)
     if run.model == "sam":
@@ -102,7 +105,7 @@ def is_circular(run: Run) -> bool:
     loading, other = scene["loading"], scene.get("counterbody") or {}
     if loading.get("prescribed"):
         return loading.get("path") is None
-    if is_rough(scene) or other.get("shape") == "flat":
+    if is_rough(scene) or other.get("shape") in ("flat", "cylinder"):
         return False
     return other.get("shape") != "ellipsoid" or other["radius_x"] == other["radius_y"]
 
@@ -149,8 +152,8 @@ def section_of(run: Run, surface: SurfaceMap | None) -> Section:
         place = float(surface.x[i if j == row else surface.p[:, row].argmax()])
         return Section(y, place, spots_of(surface.x, surface.p[:, row]), "cut")
     x, p = peak(run.tables["line"], "x_m", "p_Pa")
-    if surface is None:
-        radius = run.quantities["contact_radius_m"] or 0.0
+    if x[0] >= 0.0:  # half of a model
+        radius = contact_size(run.quantities)
         return Section(0.0, 0.0, [(-radius, radius)] if radius else [], "plane")
     spots = spots_of(x, p)
     return Section(0.0, float(np.mean(spots)) if spots else 0.0, spots, "plane")

@@ -38,6 +38,7 @@ from verification.figures.running_in import six_panels
 from verification.figures.style import EXACT, FEM, SAM, Drawing, marked, save, sheet
 from verification.runs.files import FIGURES, Run, of_last_load, read_run
 from verification.runs.sampling import peak
+from verification.runs.tables import contact_size
 
 MICRO, GIGA = 1e6, 1e-9
 PARTS = {"loading": "-o", "unloading": "--s", "constant force": ":^", "unloaded in one step": "s"}
@@ -162,7 +163,7 @@ def axis(run: Run, section: Section) -> Drawing:
         "von Mises [GPa]": "mises_Pa",
     }
     found = {label: below(run, section, column) for label, column in columns.items()}
-    reach = 2.0 * run.quantities["contact_radius_m"] if section.source == "plane" else np.inf
+    reach = 2.0 * contact_size(run.quantities) if section.source == "plane" else np.inf
     found = {label: (MICRO * z[z <= reach], GIGA * v[z <= reach]) for label, (z, v) in found.items()}
     horizontal = "$z$ [$\\mu$m]"
     if section.source == "cut":

@@ -58,9 +58,9 @@ ROUGH_ERROR = 1e-4
 HERTZ_ERROR = 5e-6
 
 
-def solution(problem: str, n: int, python: Path, program: str = SAM) -> np.ndarray:
+def solution(problem: str, n: int, python: Path, program: str = SAM, **settings: Any) -> np.ndarray:
     """The pressure on these cells with a tight tolerance. RuntimeError when there is none."""
-    measurement = Measurement(Job(problem, n, TIGHT[program]))
+    measurement = Measurement(Job(problem, n, {**TIGHT[program], **settings}))
     run(program, measurement, python)
     if measurement.failure or "pressure" not in measurement.fields:
         raise RuntimeError(

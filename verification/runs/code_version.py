@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from pathlib import Path
 
-from verification.runs.models import FEM, FEM_3D, SAM
+from verification.runs.models import FEM, FEM_3D, FEM_LINE, SAM
 from verification.runs.provenance import installed
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -28,12 +28,14 @@ PLACES = {
     SAM: ("sam", *_OF_RESULTS),
     FEM: ("fem_reference", "sam/scene", *_OF_RESULTS),
     FEM_3D: ("fem_reference", "sam/scene", *_OF_RESULTS),
+    FEM_LINE: ("fem_reference", "sam/scene", *_OF_RESULTS),
 }
 """Files and folders, below the root, that decide the result of a model."""
 PACKAGES = {
     SAM: ("numpy", "scipy"),
     FEM: ("numpy", "scipy", "scikit-fem"),
     FEM_3D: ("numpy", "scipy", "scikit-fem", "pyamg"),
+    FEM_LINE: ("numpy", "scipy", "scikit-fem"),
 }
 OF_CASES = ("sam", "fem_reference", "verification", "samfem")
 NOT_OF_CASES = (

@@ -14,8 +14,13 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from sam.scene import Checkpoint, Keep, Progress, Result, Scene
 
-SAM, FEM, FEM_3D = "sam", "fem-axisymmetric", "fem-3d"
-MODELS = {SAM: "sam", FEM: "fem_reference", FEM_3D: "fem_reference.spatial"}
+SAM, FEM, FEM_3D, FEM_LINE = "sam", "fem-axisymmetric", "fem-3d", "fem-plane-strain"
+MODELS = {
+    SAM: "sam",
+    FEM: "fem_reference",
+    FEM_3D: "fem_reference.spatial",
+    FEM_LINE: "fem_reference.plane_strain",
+}
 
 
 class ModelError(ValueError):
@@ -34,16 +39,22 @@ def check(scene: Scene, model: str) -> None:
         raise ModelError(reason)
 
 
+def models_for(scene: Scene) -> tuple[str, ...]:
+    """The models that are made for the kind of contact of a scene, the cheapest reference first."""
+    line = scene.counterbody is not None and scene.counterbody.shape == "cylinder"
+    return (SAM, FEM_LINE) if line else (SAM, FEM, FEM_3D)
+
+
 def cheapest_reference(scene: Scene) -> str:
     """The cheapest finite-element model that can represent the scene.
 
     Raises ModelError with the reasons of every model that cannot, and the keys to change, if none can.
     """
-    reasons = {model: reason for model in MODELS if (reason := _refusal(scene, model))}
-    for model in (FEM, FEM_3D):
-        if model not in reasons:
+    reasons = {model: _refusal(scene, model) for model in models_for(scene)}
+    for model, reason in reasons.items():
+        if model != SAM and not reason:
             return model
-    lines = [f"  {model}: {reason}" for model, reason in reasons.items()]
+    lines = [f"  {model}: {reason}" for model, reason in reasons.items() if reason]
     head = "no finite-element model can represent this scene; change all that one of them names:"
     raise ModelError("\n".join([head, *lines]))
 

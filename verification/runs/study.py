@@ -276,7 +276,7 @@ class Study(Section):
 
     title: str = ""
     scene: str
-    model: Literal["sam", "fem-axisymmetric", "fem-3d"] = models.SAM
+    model: Literal["sam", "fem-axisymmetric", "fem-3d", "fem-plane-strain"] = models.SAM
     mode: Literal["grid", "zip", "morris", "sobol", "uniform"] = "grid"
     samples: Annotated[int, _SAMPLES] | None = None
     seed: Annotated[int, _SEED] | None = None

@@ -23,6 +23,11 @@ TEXT_COLUMNS = ("state", "note", "verdict", "quantity", "flag")
 _QUOTED = re.compile(rb'"[^"]*"')
 
 
+def contact_size(quantities: Mapping[str, float | None]) -> float:
+    """Radius of a contact, or half-width of one below a cylinder, in m; 0 without one."""
+    return quantities.get("contact_radius_m") or quantities.get("contact_half_width_m") or 0.0
+
+
 def csv_text(columns: Sequence[str], rows: Iterable[Sequence]) -> str:
     """Rows as CSV: floats with the shortest digits that read back the same, None and NaN as empty cells."""
     text = io.StringIO()

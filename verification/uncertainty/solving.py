@@ -18,6 +18,7 @@ from sam.grid import CellGrid, Room
 from sam.scene import COLUMNS, Grid, Problem, Result, Scene, SceneError, Status, spelling
 from verification.runs import models
 from verification.runs.files import Run
+from verification.runs.tables import contact_size
 from verification.uncertainty.rule import EDGE, FACTOR, STEP_FACTOR, bound, converging, of_edge, order_seen
 
 Solve = Callable[[Scene, str], Result]
@@ -29,6 +30,7 @@ NOT_CONVERGING = "not converging: the last refinement changed more than the one 
 ORDERS = dict.fromkeys(
     (
         *("force_N", "approach_m", "contact_area_m2", "contact_radius_m", "friction_coefficient"),
+        "contact_half_width_m",
         *("p_max_Pa", "p_center_Pa", "mises_max_Pa", "peeq_max", "peeq_p95", "residual_uz_center_m"),
         *("p_max_bare_Pa", "mises_max_bare_Pa", "mises_max_substrate_Pa", "mises_max_film_Pa"),
         *("p_max_change", "mises_max_change", "tangential_displacement_center_m", "residual_ux_center_m"),
@@ -37,7 +39,7 @@ ORDERS = dict.fromkeys(
     2.0,
 ) | {"wear_volume_m3": 1.0}
 """Quantity -> order in the cells; that in the load steps is 1, of backward Euler, for all."""
-EDGES = {"contact_area_m2": 0.3, "contact_radius_m": 0.15}
+EDGES = {"contact_area_m2": 0.3, "contact_radius_m": 0.15, "contact_half_width_m": 0.15}
 OUTLINE_FACTOR = 2.0
 """Of a contact of SAM with one outline, by quantity: EDGE of the rule, and the factor in place of FACTOR. The
 area errs to either side, more so on the coarser grids, and differences of grids are already larger than the
@@ -436,7 +438,7 @@ def under_resolved(scene: Scene, fine: Result, found: Family) -> str:
         return ""
     if fine.model != models.SAM:
         return too_coarse(found, fine.model, found.cells[0].number)
-    radius = scene.loading.radius or fine.quantities["contact_radius_m"] or 0.0
+    radius = scene.loading.radius or contact_size(fine.quantities)
     return too_coarse(found, fine.model, radius / found.cells[0].size)
 
 

@@ -61,7 +61,7 @@ def roughness(heights: Array, hx: float, hy: float) -> Roughness:
     mean = np.nanmean if np.isnan(heights).any() else np.mean
     h = heights - mean(heights)
     sq = float(np.sqrt(mean(h**2)))
-    slope_x, slope_y = np.gradient(h, hx, hy)
+    slope_x, slope_y = np.gradient(h, hx, hy) if h.shape[1] > 1 else (np.gradient(h, hx, axis=0), 0 * h)
     return Roughness(
         sa=float(mean(np.abs(h))),
         sq=sq,

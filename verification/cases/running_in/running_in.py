@@ -310,15 +310,17 @@ and 26 cells in the shortest wave of 12 um, where wear-converged asks for 24.
 """
 
 
+def meshed(scene: Scene, cells: int, window: int) -> Scene:
+    """The scene on so many cells a side, and with so many in the window of smoothing."""
+    return with_keys(with_grid(scene, cells=(cells, cells)), "wear", smoothing_window=window)
+
+
 class RunningInCells(Readings):
     """All materials on a quarter of the printed area, on both sizes of cells, which stand for
     readings.
     """
 
     def readings(self, context: Context) -> dict[str, Reading]:
-        def meshed(scene: Scene, cells: int, window: int) -> Scene:
-            return with_keys(with_grid(scene, cells=(cells, cells)), "wear", smoothing_window=window)
-
         effort = Effort(LAST, steps=3, cells=32)
         return {
             size: Reading(f"cells-{cells}-", effort, partial(meshed, cells=cells, window=window))

@@ -384,21 +384,24 @@ STATEMENTS = tuple(
 )
 
 
-def measured(frame: DataFrame, by: Sequence[str]) -> DataFrame:
+def measured(frame: DataFrame, by: Sequence[str], statements: Sequence[Statement] = STATEMENTS) -> DataFrame:
     """The measure of each statement (columns, by their words) on each surface, of which `by` are
     the parts of a key; NaN where it says nothing, or a run is missing or did not converge.
     """
     import pandas as pd
 
-    every = pd.MultiIndex.from_product([MEASURES, NAMES])
-    wide = frame.pivot(index=list(by), columns="material", values=[*MEASURES]).reindex(columns=every)
-    return pd.DataFrame({each.words: each.of(wide.astype(float)) for each in STATEMENTS})
+    words = [each.how.split() for each in statements]
+    names = sorted({name for name, *_ in words})
+    materials = sorted({each for _, *others in words for each in others} - {*"-/"})
+    every = pd.MultiIndex.from_product([names, materials])
+    wide = frame.pivot(index=list(by), columns="material", values=names).reindex(columns=every)
+    return pd.DataFrame({each.words: each.of(wide.astype(float)) for each in statements})
 
 
 HELD, FAILED, OPEN = "held", "failed", "not decided"
 
 
-def judged(measures: DataFrame) -> list[dict[str, Any]]:
+def judged(measures: DataFrame, statements: Sequence[Statement] = STATEMENTS) -> list[dict[str, Any]]:
     """What pages are told of each statement, of its measures on surfaces, see `measured`.
 
     by_agreement: held or failed where eight surfaces of ten agree; one on which it says nothing
@@ -406,7 +409,7 @@ def judged(measures: DataFrame) -> list[dict[str, Any]]:
     surfaces without a value.
     """
     found = []
-    for said in STATEMENTS:
+    for said in statements:
         values = tuple(measures[said.words].tolist())
         spread, of, holds = Spread.of(values), len(values), sum(map(said.holds, values))
         needed, median, agreed = max(AGREED * of, 1), OPEN, OPEN
@@ -444,14 +447,16 @@ def statements_table(readings: Mapping[str, Sequence[Mapping[str, Any]]]) -> Sma
     )
 
 
-def readings_of(frame: DataFrame) -> dict[str, list[dict[str, Any]]]:
+def readings_of(
+    frame: DataFrame, statements: Sequence[Statement] = STATEMENTS
+) -> dict[str, list[dict[str, Any]]]:
     """Reading -> what is told of the statements; none without all materials, or with fewer cycles than
     they ask for.
     """
     return {
-        reading: judged(measured(own, ["surface"]))
+        reading: judged(measured(own, ["surface"], statements), statements)
         for reading, own in frame.groupby("reading", sort=False)
-        if own["material"].nunique() == len(NAMES) and own["run"].iloc[0].scene.loading.cycles >= LAST
+        if own["material"].nunique() >= len(NAMES) and own["run"].iloc[0].scene.loading.cycles >= LAST
     }
 
 

@@ -15,6 +15,7 @@ import pyvista as pv
 from sam.scene import PEAK, UNLOADED
 from verification.figures.places import Section, plane_of, section_of, surface_map
 from verification.runs.files import Run, mesh_of
+from verification.runs.tables import contact_size
 
 MICRO = 1e6
 FILES = {PEAK: "surface.vtr", UNLOADED: "surface-unloaded.vtr"}
@@ -49,20 +50,20 @@ class Found:
         """The surface in a state, flat, with every field in its unit at the nodes and in the cells, RAISED
         too where it is known; None where there is none, or nothing that says what of it to draw.
         """
-        path, radius = self.run.folder / FILES[state], self.run.quantities["contact_radius_m"]
+        path, radius = self.run.folder / FILES[state], contact_size(self.run.quantities)
         if not path.exists() or (self.run.model == "fem-axisymmetric" and not radius):
             return None
-        grid = _mesh(self.run.folder, path.name).copy()
-        for name in list(grid.point_data):
-            if grid.point_data[name].ndim > 1:
-                if name.endswith("displacement_m"):
-                    grid.point_data[RAISED] = grid.point_data[name][:, 2]
-                del grid.point_data[name]
+        grid = _with_scalars(_mesh(self.run.folder, path.name).copy())
         if self.run.model == "fem-axisymmetric":  # nodes along r, turned around the axis on a square
             x = np.linspace(-REACH * radius, REACH * radius, POINTS)
             whole, r = pv.RectilinearGrid(x, x, [0.0]), np.hypot(x[:, None], x).ravel()
             for name, values in grid.point_data.items():
                 whole.point_data[name] = np.interp(r, grid.x, values.reshape(-1, grid.x.size)[0])
+            grid = whole
+        elif grid.y.size == 1:  # a section, which is the same at every y
+            whole = pv.RectilinearGrid(grid.x, REACH * radius * np.array([-1.0, 1.0]), [0.0])
+            for name, values in grid.point_data.items():
+                whole.point_data[name] = np.tile(values, 2)
             grid = whole
         elif grid.y[0] == 0.0:  # half a model: the other half is its mirror image
             whole = pv.RectilinearGrid(grid.x, np.append(-grid.y[:0:-1], grid.y), [0.0])
@@ -99,6 +100,12 @@ class Found:
             grid = pv.StructuredGrid(r * np.cos(turn), r * np.sin(turn), z)
             grid["peeq"] = np.broadcast_to(values[right][:, None, :], r.shape).ravel(order="F")
             return grid
+        if self.run.model == "fem-plane-strain":
+            x, depth, values = self.plane("peeq")
+            beside = REACH * MICRO * contact_size(self.run.quantities) * np.array([-1.0, 1.0])
+            grid = pv.StructuredGrid(*np.meshgrid(x, beside, -depth, indexing="ij"))
+            grid["peeq"] = np.repeat(values[:, None], 2, axis=1).ravel(order="F")
+            return grid
         path = self.run.folder / ("body.vtr" if self.run.model == "sam" else "fields.vtu")
         if not path.exists():
             return None
@@ -106,6 +113,16 @@ class Found:
         for name in set(body.cell_data.keys()) - {"peeq"}:
             del body.cell_data[name]
         return body.cell_data_to_point_data().cast_to_unstructured_grid().scale(MICRO)
+
+
+def _with_scalars(grid: pv.RectilinearGrid) -> pv.RectilinearGrid:
+    """The grid without its vectors and tensors, with RAISED in place of a displacement."""
+    for name in list(grid.point_data):
+        if grid.point_data[name].ndim > 1:
+            if name.endswith("displacement_m"):
+                grid.point_data[RAISED] = grid.point_data[name][:, 2]
+            del grid.point_data[name]
+    return grid
 
 
 def drawn_at(sheet: pv.StructuredGrid, height: np.ndarray, values: np.ndarray) -> pv.StructuredGrid:

@@ -30,18 +30,19 @@ def setup(problem: str, cells: Any, settings: dict):
     if problem == problems.STEP:
         return lambda: _step(*cells, **settings)
     contact = problems.elastic(problem, cells, **_side(settings))
-    return lambda: _elastic(contact, settings["tolerance"])
+    return lambda: _elastic(contact, settings["tolerance"], periodic=settings.get("periodic", False))
 
 
 def _side(settings: dict) -> dict:
     return {"side": settings["side"]} if "side" in settings else {}
 
 
-def _elastic(contact: problems.Elastic, tolerance: float):
-    from sam import Search, solve_contact
+def _elastic(contact: problems.Elastic, tolerance: float, *, periodic: bool):
+    from sam import PeriodicHalfSpaces, Search, solve_contact
 
-    h = contact.cell
-    return lambda: solve_contact(contact.gap, (h, h), 1.0, contact.force, search=Search(tolerance))
+    given = contact.gap, (contact.cell, contact.cell), 1.0, contact.force
+    how = {"bodies": PeriodicHalfSpaces()} if periodic else {}
+    return lambda: solve_contact(*given, search=Search(tolerance), **how)
 
 
 def scene_of(
@@ -63,10 +64,23 @@ def scene_of(
     )
 
 
-def _step(n: int, layers: int, **how):
+def repeated(scene):
+    """The scene with its sphere as a summit of the body below a plane, which repeats."""
+    from sam.scene import CounterBody, HeightMap, Surface
+
+    (n, _), (side, _), radius = scene.grid.cells, scene.grid.extent, scene.counterbody.radius
+    x = ((np.arange(n) + 0.5) / n - 0.5) * side
+    surface = Surface(kind="file", path=HeightMap(-np.add.outer(x**2, x**2) / (2 * radius), (side, side)))
+    grid = scene.grid.model_copy(update={"cells": None, "extent": None, "periodic": "xy"})
+    other = CounterBody(shape="flat")
+    return scene.model_copy(update={"counterbody": other, "surface": surface, "grid": grid})
+
+
+def _step(n: int, layers: int, *, periodic: bool = False, **how):
     from verification.runs import models
 
     scene = scene_of(n, layers, **how)
+    scene = repeated(scene) if periodic else scene
     return lambda: models.solve(scene, models.SAM)
 
 

@@ -2,9 +2,9 @@
 """Tamaas (Frérot, Anciaux, Rey, Pham-Ba & Molinari, J. Open Source Softw. 5 (2020) 2121), by its documented
 interface.
 
-Elastic contact: its solver after Polonsky & Keer with the non-periodic operator "dcfft". Elastic-plastic: its
-volume integral method, periodic in x and y; `hardening` is d sigma_y / d peeq (measured: (mises -
-sigma_y)/peeq of its result is that number).
+Elastic contact: its solver after Polonsky & Keer with the non-periodic operator "dcfft", or its own where a
+job is periodic. Elastic-plastic: its volume integral method, periodic in x and y; `hardening` is d sigma_y /
+d peeq (measured: (mises - sigma_y)/peeq of its result is that number).
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ def setup(problem: str, cells: Any, settings: dict):
     if problem == problems.STEP:
         return lambda: _step(*cells, **settings)
     contact = problems.elastic(problem, cells)
-    return lambda: _elastic(contact, settings["tolerance"])
+    return lambda: _elastic(contact, **settings)
 
 
-def _elastic(contact: problems.Elastic, tolerance: float):
+def _elastic(contact: problems.Elastic, tolerance: float, *, periodic: bool = False):
     import tamaas
 
     kind = tamaas.PolonskyKeerRey.pressure
@@ -46,9 +46,10 @@ def _elastic(contact: problems.Elastic, tolerance: float):
         tamaas.model_type.basic_2d, [contact.side] * 2, list(contact.gap.shape)
     )
     model.E, model.nu = 1.0, 0.0
-    tamaas.ModelFactory.registerNonPeriodic(model, "dcfft")
     solver = tamaas.PolonskyKeerRey(model, -contact.gap, tolerance, kind, kind)
-    solver.setIntegralOperator("dcfft")
+    if not periodic:
+        tamaas.ModelFactory.registerNonPeriodic(model, "dcfft")
+        solver.setIntegralOperator("dcfft")
     solver.max_iter = MOST
 
     def solve():

@@ -23,7 +23,7 @@ CORE = {
     "sam.grid": "gap",
     "sam.kernels": "eigenstrain layer_stress patches primitives",
     "sam.layered": "patches response",
-    "sam.plasticity": "flow load_step measure paper points spectra state",
+    "sam.plasticity": "cell_means flow load_step measure paper points spectra state",
     "sam.scene": "body verdict yield_curve",
     "sam.scene.surface": "counter",
     "sam.tribofilm": "law state",

@@ -14,7 +14,7 @@ from verification.suite.pages.stored import ShownCase, Stored
 
 PAGE = "running-in"
 READINGS, INPUTS, PHYSICS = "running-in", "running-in-sensitivity", "running-in-physics"
-FINER = "running-in-cells"
+FINER, WORDS = "running-in-cells", "running-in-readings"
 STUDIES = {
     READINGS: "The comparison of both readings",
     INPUTS: "The study over the inputs",
@@ -38,7 +38,7 @@ MEANING = (
     "coefficient of friction, Sa: roughness, in brackets the cycle. Friction falls, or lies below another, "
     "where it does by 0.001, a third of a per cent of 0.3; what lies below another as a ratio, by 0.1 %. "
     "Printed inputs: those that the paper prints, and ours where it prints none: surface, size of the "
-    "layers' deviation, smoothing; the plastic loop is not the printed one, which is refused with wear. "
+    "layers' deviation, smoothing; the plastic loop is not the printed one, see running-in-readings. "
     "Second reading: a layer that hardens weakly, and a rough counter-surface that is new in each cycle. "
     "Both: the verdict by the median of the surfaces, and on how many of them the statement holds; `none "
     "on 2`: on two of them it says nothing. Share of points: of the study over inputs, each on another "
@@ -47,8 +47,8 @@ MEANING = (
     "points. Holds under: of the ways to "
     "harden and to load. Bulk: steel without a layer, removed above a plastic strain of 0.2 %; curve A, "
     "curve B, hardening only: with a nano-crystalline layer as after polishing, mild wear or harder towards "
-    "the surface, removed above 2 % (5 % where it is said). That curve C is very close to curve B is not "
-    "judged: curve C runs on one surface."
+    "the surface, removed above 2 % (5 % where it is said). That curve C is very close to curve B is judged "
+    "in running-in-readings."
 )
 """Of the columns and the words of the table."""
 Verdicts = Mapping[str, Sequence[Mapping[str, Any]]]
@@ -116,7 +116,7 @@ def headline_of(stored: Stored) -> Headline | None:
             (figure, *_row(words, read.get(words, ()), drawn.get(words), tried.get(words)))
             for words, figure in figures.items()
         ],
-        _in_brief(read) if read else "",
+        _in_brief(read, data.get(WORDS, {}).get("statements", {})) if read else "",
     )
 
 
@@ -139,13 +139,15 @@ def _answer(held_first: int, count: int) -> str:
     return "Yes." if held_first == count else "In part." if held_first else "No."
 
 
-def _in_brief(read: Verdicts) -> str:
+def _in_brief(read: Verdicts, words: Mapping[str, Sequence[Mapping]]) -> str:
     first, *others = _by_median(read)
     second = "".join(f", {more} in a second reading of it" for more in others)
+    counts = [sum(map(held, each)) for each in words.values()]
+    tried = f" In {len(counts)} readings of its words {min(counts)} to {max(counts)} hold." if counts else ""
     return (
         f"{_answer(first, len(read))} With the inputs that the paper prints, {first} of its {len(read)} "
         f"statements about wear and friction of five materials hold{second}. The page says which, "
-        "on how many rough surfaces, and what finer cells change."
+        f"on how many rough surfaces, and what finer cells change.{tried}"
     )
 
 

@@ -1,0 +1,264 @@
+# SPDX-License-Identifier: MIT
+"""The plane-strain model: line forces, elements, Hertz's line contact, full slip, yield, passes; what it
+refuses.
+"""
+
+import numpy as np
+import pytest
+from skfem import MeshQuad
+
+import fem_reference
+import fem_reference.spatial
+from fem_reference.common.bodies import Elastic
+from fem_reference.common.elasticity import mises, stiffness_tensor
+from fem_reference.common.far_field import flamant, stretched
+from fem_reference.plane_strain import UnsupportedScene, check, load_steps, plan, solve
+from fem_reference.plane_strain.elements import PlaneSolid
+from fem_reference.plane_strain.recovery import stresses
+from sam.scene import Scene
+from verification.runs.models import FEM_LINE, cheapest_reference
+
+RADIUS, LENGTH, YOUNG, YIELD = 0.01, 0.02, 210e9, 400e6
+STEEL = {"young": YOUNG, "poisson": 0.3}
+
+
+def force_of(pressure, modulus=YOUNG / 0.91):
+    """Force in N and half-width in m of Hertz's line contact with a largest pressure in Pa."""
+    a = 2.0 * RADIUS * pressure / modulus
+    return 0.5 * np.pi * a * pressure * LENGTH, a
+
+
+def line(ratio=1.0, *, cells=8, friction=0.0, slip=None, plasticity=None, path=None, **loading):
+    """A rigid cylinder on steel; ratio: largest pressure over YIELD."""
+    force, a = force_of(ratio * YIELD)
+    tables = {
+        "body": STEEL | ({"plasticity": plasticity} if plasticity else {}),
+        "counterbody": {"shape": "cylinder", "radius": RADIUS, "length": LENGTH},
+        "loading": {"force": force, **loading},
+        "fem": {"cells_per_radius": cells},
+    }
+    if path is not None:
+        tables["loading"]["path"] = {"start": [-path * a, 0], "end": [path * a, 0], "step_per_radius": 2}
+        tables["counterbody"]["slip"] = 0.0 if slip is None else slip
+    if friction:
+        tables["friction"] = {"law": "constant", "coefficient": friction}
+    return Scene(**tables)
+
+
+def hertz(x, z, traction=0.0):
+    """(xx, zz, xz) below a pressure sqrt(1 - x^2) and a traction along x in its ratio: McEwen, Phil. Mag. 40
+    (1949) 454; Johnson 1985, Eq. (4.49) and (7.8).
+    """
+    root, c = np.hypot(1 - x**2 + z**2, 2 * x * z), 1 - x**2 + z**2
+    m, n = np.sqrt((root + c) / 2), np.sign(x) * np.sqrt((root - c) / 2)
+    share = (z**2 + n**2) / (m**2 + n**2)
+    xx, zz, xz = 2 * z - m * (1 + share), m * (share - 1), n * (z**2 - m**2) / (m**2 + n**2)
+    along = n * (2 - (z**2 - m**2) / (m**2 + n**2)) - 2 * x
+    return np.array([xx + traction * along, zz + traction * xz, xz + traction * xx])
+
+
+def test_line_force_stress():
+    """The strain of the displacements gives the one radial stress of Flamant, -2 (P cos t + Q sin t)/(pi r);
+    what line forces displace is zero at the datum.
+    """
+    body, (down, along), step = Elastic(3.0, 0.3), (2.0, -0.7), 1e-5
+    r, t = np.array([0.5, 1.0, 3.0, 20.0]), np.array([0.3, -1.2, 1.5, -0.4])
+    at = np.stack([r * np.sin(t), r * np.cos(t)])
+    slopes = [
+        (
+            flamant((down, along), body, at + shift[:, None], 5.0)
+            - flamant((down, along), body, at - shift[:, None], 5.0)
+        )
+        / (2 * step)
+        for shift in step * np.eye(2)
+    ]
+    strain = np.stack([slopes[0][0], np.zeros(4), slopes[1][1], slopes[0][1] + slopes[1][0]])
+    xx, yy, zz, xz = stiffness_tensor(3.0, 0.3) @ strain
+    radial = -2.0 * (down * np.cos(t) + along * np.sin(t)) / (np.pi * r)
+    expected = radial * np.array([np.sin(t) ** 2, np.cos(t) ** 2, np.sin(t) * np.cos(t)])
+    np.testing.assert_allclose([xx, zz, xz], expected, atol=1e-8)
+    np.testing.assert_allclose(yy, 0.3 * radial, atol=1e-8)
+    edge = np.array([[5.0, -5.0], [0.0, 0.0]])
+    assert np.abs(flamant((down, 0.0), body, edge, 5.0)[1]).max() < 1e-15
+    assert np.abs(flamant((0.0, along), body, edge, 5.0)[0]).max() < 1e-15
+
+
+def test_strain_far_away():
+    """By flat plastic strain, and by its depth: derivatives of line forces along the surface."""
+    body, at = Elastic(3.0, 0.3), np.array([[2.0, -1.0, 0.3], [0.0, 0.7, 1.5]])
+
+    def moved(forces, shift):
+        return flamant(forces, body, at - np.array([[shift], [0.0]]), 1.0)
+
+    unit, step = 3.0 / (1.0 - 0.3**2), 1e-4
+    flat, deeper = stretched(body, at)
+    along = (moved((0.0, unit), step) - moved((0.0, unit), -step)) / (2 * step)
+    down = [moved((unit, 0.0), shift) for shift in (-step, 0.0, step)]
+    np.testing.assert_allclose(flat, along, rtol=1e-6)
+    np.testing.assert_allclose(deeper, -(down[0] - 2 * down[1] + down[2]) / step**2, rtol=1e-6, atol=1e-6)
+
+
+def test_patch_of_elements():
+    """Any linear displacement of a patch of unequal, slanted elements is of one stress in balance; nothing
+    but rigid motions is free of stress.
+    """
+    mesh = MeshQuad.init_tensor(np.array([0.0, 0.4, 1.0, 2.5]), np.array([0.0, 0.7, 1.0]))
+    p = mesh.p + np.array([[0.3], [-0.2]]) * mesh.p[0] * mesh.p[1]
+    solid = PlaneSolid(MeshQuad(p, mesh.t), Elastic(2.0, 0.3))
+    gradient = np.array([[0.1, -0.4], [0.3, 0.2]])
+    u, places = np.zeros(solid.size), solid.basis.doflocs
+    for component, name in enumerate(("u^1", "u^2")):
+        dofs = solid.basis.get_dofs(elements=True).all(name)
+        u[dofs] = gradient[component] @ places[:, dofs]
+    stress = solid.stress(u)
+    expected = stiffness_tensor(2.0, 0.3) @ [0.1, 0.0, 0.2, -0.1]
+    np.testing.assert_allclose(stress, np.broadcast_to(expected[:, None, None], stress.shape), atol=1e-14)
+    inside = np.setdiff1d(np.arange(solid.size), solid.basis.get_dofs().all())
+    assert np.abs(solid.internal_force(stress)[inside]).max() < 1e-14
+    stiff = np.linalg.eigvalsh(solid.stiffness.toarray())
+    assert (stiff < 1e-12 * stiff[-1]).sum() == 3
+
+
+def test_two_cylinders():
+    """NAFEMS R0094-1: steel cylinder on aluminium, half-width 6.2146 mm, largest pressure 3585.4 MPa."""
+    scene = Scene(
+        body={"young": 70e9, "poisson": 0.3},
+        counterbody={"shape": "cylinder", "radius": 0.05, "length": 1e-3, **STEEL},
+        loading={"force": 35e3},
+        fem={"box": 20, "cells_per_radius": 10},
+    )
+    result = solve(scene)
+    found = [result.quantities[name] for name in ("contact_half_width_m", "p_max_Pa", "contact_area_m2")]
+    assert found == pytest.approx([6.2146e-3, 3585.4e6, 2 * 6.2146e-6], rel=1e-3)
+    assert result.status == "converged" and max(result.certificate.values()) < 1e-9
+
+
+PERFECT = {"law": "perfect", "yield_stress": YIELD}
+KINEMATIC = PERFECT | {"kinematic": {"modulus": [20e9], "recovery": [0.0]}}
+
+
+def boxed(scene, box):
+    return scene.model_copy(update={"fem": scene.fem.model_copy(update={"box": box})})
+
+
+def elastic(cells, friction=0.0, box=40.0):
+    model, (step,) = load_steps(boxed(line(cells=cells, friction=friction), box))
+    return model, step.state
+
+
+def test_hertz_line_converges():
+    """Largest pressure and the stresses at the Gauss points below the contact, of second order in the mesh;
+    the von Mises stress that yields first, p0/1.794 at nu = 0.3.
+    """
+    errors = []
+    for cells in (5, 10, 20):
+        model, state = elastic(cells)
+        s = stresses(model, state)
+        p0, a = 0.5 * model.scales.pressure, model.scales.length
+        x, z = np.meshgrid(s.x[s.x < 2 * a] / a, s.z[s.z < 2 * a] / a, indexing="ij")
+        found, exact = s.gauss[:, : len(x), : len(x[0])] / p0, hertz(x, z)
+        below = z > 0.4  # the edge of the contact is singular
+        off = np.sqrt(((found[[0, 2, 3]] - exact) ** 2)[:, below].sum() / (exact[:, below] ** 2).sum())
+        errors.append((model.nodal_pressure(state).max() * 2.0 - 1.0, off))
+        first = max(mises(s.axis).max(), mises(s.gauss).max()) / p0
+    orders = np.log2(np.abs(np.array(errors[:-1]) / np.array(errors[1:])))
+    assert orders.min() > 1.5
+    assert 1.0 / first == pytest.approx(1.794, rel=2e-3)
+
+
+def test_full_slip_is_askew():
+    """With friction the pressure below a rigid cylinder is as (b + x)^(1/2 - k) (c - x)^(1/2 + k),
+    tan(pi k) = mu (1 - 2 nu)/(2 (1 - nu)) (Johnson 1985, Sec. 8.2). On a half-width (1 - 4 k^2)^(-1/2) times
+    Hertz's its middle lies 2 k and its resultant 8/3 k half-widths behind the apex.
+    """
+    model, state = elastic(10, friction=0.8)
+    k = np.arctan(0.8 * 0.4 / 1.4) / np.pi
+    start, end = model.edges(state)
+    wide = 0.5 * (end - start)
+    assert wide * np.sqrt(1.0 - 4.0 * k**2) == pytest.approx(1.0, rel=5e-3)
+    assert 0.5 * (start + end) / wide == pytest.approx(-2.0 * k, rel=0.03)
+    assert model.centroid(state) / wide == pytest.approx(-8.0 / 3.0 * k, rel=5e-3)
+
+
+@pytest.mark.parametrize(("ratio", "yields"), [(1.785, False), (1.803, True)])
+def test_first_yield(ratio, yields):
+    """At p0 = 1.794 Y, nu = 0.3."""
+    steps = load_steps(line(ratio, cells=12, plasticity=PERFECT))[1]
+    assert steps[-1].state.yielded is yields
+
+
+def test_flow_does_not_lock():
+    """The mean pressure of a body that flows freely stays below that of a rigid-plastic one, (2 + pi) k, and
+    rises towards it; the volume changes elastically alone.
+    """
+    model, steps = load_steps(line(6.0, cells=3, plasticity=PERFECT, steps=6))
+    mean = [np.pi / 4.0 * 6.0 * step.state.force / model.scales.peak_force for step in steps]
+    mean = [force / model.half_width(step.state) for force, step in zip(mean, steps, strict=True)]
+    assert 2.3 < mean[-1] < (2.0 + np.pi) / np.sqrt(3.0) and mean == sorted(mean)
+    state = steps[-1].state
+    volume = model.body.strain(state.u)[:3].sum(axis=0)
+    bulk = model.stress(state)[:3].sum(axis=0) * (1.0 - 2.0 * 0.3) / (1.0 - 0.3**2)
+    np.testing.assert_allclose(volume, bulk, atol=1e-9)
+    assert np.abs(state.history.plastic_strain[:3].sum(axis=0)).max() < 1e-9
+
+
+def test_far_field_of_plastic_strain():
+    """The residual stresses do not depend on the box: across every line x = const those along x, of a
+    symmetric section, have no resultant, and the largest is the same with half of the box.
+    """
+    found = []
+    for box in (12.0, 24.0):
+        scene = boxed(line(3.0, cells=4, plasticity=PERFECT, steps=2, unload=True), box)
+        model, steps = load_steps(scene)
+        state = steps[-1].state
+        assert steps[-1].unloads and not state.active.any() and state.residual < 1e-9
+        s, height = stresses(model, state), np.repeat(np.diff(model.plan.z), 2) / 2.0
+        forces = s.gauss[0] @ height / (np.abs(s.gauss[0]) @ height)
+        found.append((np.abs(forces[s.x < 2.0 * model.scales.length]).max(), mises(s.gauss).max()))
+    (near, coarse), (far, fine) = found
+    assert far < 0.5 * near < 0.05 and coarse == pytest.approx(fine, rel=0.01)
+
+
+def test_rolling_leaves_a_track():
+    """A rolling cylinder: passes add less and less to a body with back-stresses; a result resumed after any
+    step is equal; nothing is left of an elastic body, whose contact moves with the apex.
+    """
+    scene = line(2.1, cells=4, plasticity=KINEMATIC, path=2.5, steps=2, cycles=2, unload=True)
+    kept = []
+    result = solve(scene, checkpoint=kept.append)
+    assert result.status == "converged" and result.quantities["groove_deepest_m"] > 0.0
+    first, second = result.tables["passes"]["new_strain_max"]
+    assert 0.0 <= second < 0.5 * first
+    again = solve(scene, start=kept[-4])
+    assert again.quantities == result.quantities
+    model, steps = load_steps(line(1.0, cells=4, path=1.0))
+    for step in steps:
+        assert model.centroid(step.state) == pytest.approx(step.state.load.x, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("tables", "words"),
+    [
+        ({"counterbody": {"shape": "sphere", "radius": RADIUS}}, "counterbody.shape = .sphere.: .*cylinder"),
+        ({"grid": {"periodic": "y"}}, "grid.periodic = .y."),
+        ({"body": {"young": 1e9, "poisson": 0.5}}, "body.poisson = 0.5"),
+    ],
+)
+def test_refused_by_name(tables, words):
+    """Every key that stands in the way, its value and what is allowed."""
+    given = {
+        "body": STEEL,
+        "counterbody": {"shape": "cylinder", "radius": RADIUS, "length": LENGTH},
+        "loading": {"force": force_of(10 * YIELD)[0]},
+    }
+    with pytest.raises(UnsupportedScene, match=words):
+        check(Scene(**given | tables))
+
+
+def test_other_models_refuse_a_cylinder():
+    """By its shape; the plane-strain model is the reference of a cylinder."""
+    for package in (fem_reference, fem_reference.spatial):
+        with pytest.raises(UnsupportedScene, match=r'counterbody\.shape = "cylinder"'):
+            package.check(line())
+    assert cheapest_reference(line()) == FEM_LINE and plan(line()).half
+    assert not plan(line(friction=0.1)).half

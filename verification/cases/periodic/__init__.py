@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Patches that repeat: wavy and rough surfaces."""

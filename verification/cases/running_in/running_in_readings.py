@@ -1,0 +1,327 @@
+# SPDX-License-Identifier: MIT
+"""Running-in in the readings of the paper's words that stand beside the printed inputs: a sound roof that
+falls, a filter that fills what it removed, both, the plastic loop as printed and the film by Eq. 12 to 14.
+
+READINGS and SAID were written down before any of their runs. The second reading, finer cells and the loop as
+printed cost several times as much as the printed inputs: they have a quarter of the area, and three surfaces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from itertools import combinations, product
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sam.scene import Scene, Status
+from verification.cases.case import Context, Measured, Plot, SmallTable, with_keys
+from verification.cases.running_in import study
+from verification.cases.running_in.running_in import SIZES, meshed, renewed
+from verification.cases.running_in.study import (
+    CUBIC,
+    DUCTILE,
+    HARDENING,
+    LAST,
+    A,
+    B,
+    Effort,
+    Reading,
+    Readings,
+    Run,
+    Statement,
+)
+from verification.compare.running_in_measures import Spread
+from verification.figures.lines import over_cycles
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+C = "curve-c"
+NAMES = study.NAMES | {C: "curve C"}
+STEPS = 3  # each way
+WHOLE = Effort(LAST, STEPS, 64, tuple(NAMES), tuple(range(1, 11)))
+QUARTER = Effort(LAST, STEPS, 32, tuple(NAMES), (2, 4, 6))
+ROOFS, FILTERS = {"roof stays": "stays", "roof falls": "falls"}, {"removes all": False, "fills": True}
+"""In words -> keys of [wear]."""
+PRINTED, SECOND, SMALL = "printed inputs", "second reading", "printed inputs, quarter"
+FINE, LOOP, LOOSE, FILM = (
+    "cells of 0.457 µm, quarter",
+    "printed loop",
+    "printed loop, 2 %",
+    "film by Eq. 12 to 14",
+)
+LOOSER = 0.02  # yield excess that the printed loop may leave, where the scenes have 0.001
+FALLEN = -0.02  # of a coefficient that falls, where running-in asks for 0.001
+
+
+def fine(scene: Scene) -> Scene:
+    """On the finer cells of running-in-cells."""
+    cells, window = SIZES["0.457 µm"]
+    return meshed(scene, cells, window)
+
+
+def looped(scene: Scene, **keys: float) -> Scene:
+    """By the loops as printed."""
+    return with_keys(scene, "solver", method="paper", stop="stress", **keys)
+
+
+BASES = {
+    PRINTED: Reading("printed-", WHOLE),
+    SECOND: Reading("second-", QUARTER, renewed),
+    SMALL: Reading("quarter-", QUARTER),
+    FINE: Reading("fine-", QUARTER, fine),
+}
+OTHERS = {
+    LOOP: Reading("loop-", QUARTER, looped),
+    LOOSE: Reading("loop-loose-", QUARTER, partial(looped, tolerance=LOOSER)),
+    FILM: Reading("film-", QUARTER, partial(with_keys, section="friction", form="printed")),
+}
+"""Alone: the roof stays, and the filter removes all."""
+
+
+def named(base: str, roof: str, smoothing: str) -> str:
+    """A reading in words."""
+    return f"{base}; {roof}; filter {smoothing}"
+
+
+def combined(scene: Scene, base: Reading, roof: str, fills: bool) -> Scene:
+    """A printed scene in one reading."""
+    return with_keys(base.change(scene), "wear", roof=roof, smoothing_fills=fills)
+
+
+COMBINED = {named(base, *words): (base, *words) for base, *words in product(BASES, ROOFS, FILTERS)}
+READINGS = {
+    name: replace(
+        BASES[base],
+        label=f"{BASES[base].label}{ROOFS[roof]}-{smoothing.split()[0]}-",
+        change=partial(combined, base=BASES[base], roof=ROOFS[roof], fills=FILTERS[smoothing]),
+    )
+    for name, (base, roof, smoothing) in COMBINED.items()
+} | OTHERS
+
+
+def base_of(reading: str) -> str:
+    """What a reading combines with roof and filter, or is alone."""
+    return COMBINED.get(reading, (reading,))[0]
+
+
+IMPLIED = ("bulk: hardly any wear later", "curve A: friction below that of bulk")
+"""By others: that bulk is worn in six cycles, and that A and hardening are below bulk in friction."""
+TABLE = """\
+15 | curve C: wears like curve B | V(25), ratio | 0.8 | 1.25 | volume curve-c / curve-b
+15 | curve C: friction of curve B | μ(25), ratio | 0.9 | 1.1 | friction curve-c / curve-b
+13–17 | friction: bulk above all layers | largest over bulk | -inf | 0.999 \
+| friction curve-a curve-b curve-b-ductile hardening / bulk
+17 | hardening, 2 %, is best: wears less than soft layers | V(25), ratio | -inf | 0.999 \
+| volume hardening / curve-a curve-b
+17 | hardening, 2 %, is best: its largest pressure falls | p_max(25)/p_max(1) | -inf | 0.999 \
+| pressed hardening
+"""
+SAID = tuple(
+    Statement(*said[:4], FALLEN, said.how) if said.how.startswith("fallen") else said
+    for said in study.STATEMENTS
+    if said.words not in IMPLIED
+) + tuple(
+    Statement(figure, words, measure, float(low), float(high), how)
+    for figure, words, measure, low, high, how in study.parts_of(TABLE)
+)
+PLAIN = "roof stays", "removes all"
+CHANGES = (
+    (named(PRINTED, "roof falls", "removes all"), named(PRINTED, *PLAIN), "A roof that falls", "physics"),
+    (named(PRINTED, "roof stays", "fills"), named(PRINTED, *PLAIN), "A filter that fills", "numerics"),
+    (named(SECOND, *PLAIN), named(SMALL, *PLAIN), "The second reading", "physics"),
+    (named(FINE, *PLAIN), named(SMALL, *PLAIN), "Finer cells", "numerics"),
+    (LOOP, named(SMALL, *PLAIN), "The plastic loop as printed", "numerics"),
+    (LOOSE, named(SMALL, *PLAIN), "That loop, stopped 20 times earlier", "numerics"),
+    (FILM, named(SMALL, *PLAIN), "The film by Eq. 12 to 14 as printed", "physics"),
+)
+"""Reading, the one beside it, the one thing that differs, and what kind of thing that is."""
+NEAR = 0.1  # of its threshold: how near the median of a measure is that finer cells may decide
+
+
+def cycles_of(one: Run, column: str) -> np.ndarray:
+    """A column of cycles.csv, zero where the scene has none."""
+    return one.of_cycles(column) if column in one.result.tables["cycles"] else np.zeros(LAST)
+
+
+class RunningInReadings(Readings):
+    """Every material in every reading, a surface after the other."""
+
+    numbers: Mapping[str, Callable[[Run], float]] = {
+        "pressed": lambda one: one.history.p_max[-1] / one.history.p_max[0],
+        "roofs": lambda one: float(np.sum(cycles_of(one, "roof_volume_m3"))),
+        "filled": lambda one: float(np.mean(cycles_of(one, "filled_volume_m3")[study.STEADY :])),
+    }
+
+    def readings(self, context: Context) -> Mapping[str, Reading]:
+        return READINGS
+
+    def scenes(self, context: Context) -> dict[tuple, tuple[str, Scene]]:
+        return dict(sorted(super().scenes(context).items(), key=lambda item: item[0][2]))
+
+    def solve(self, context: Context) -> Any:
+        """coarse: contacts of too few cells for a result, as the filter that fills leaves; judged too."""
+        runs = self.runs(context)
+        coarse = [one.result.status is Status.UNDER_RESOLVED for one in runs.values()]
+        kept = {
+            key: replace(one, result=replace(one.result, status=Status.CONVERGED)) if few else one
+            for (key, one), few in zip(runs.items(), coarse, strict=True)
+        }
+        return study.framed(kept, study.PARTS, self.numbers).assign(coarse=coarse)
+
+    def measure(self, found: DataFrame) -> dict[str, Measured]:
+        """balance: of wear and raw removal, as the filter that fills digs as much; excess: over its goal."""
+        balance, excess = [0.0], [0.0]
+        for one in found[found["converged"]]["run"]:
+            if one.scene.wear.smoothing_fills:
+                wear, raw = (one.of_cycles(name) for name in ("wear_of_cycle_m3", "raw_volume_m3"))
+                balance.append(float(np.abs(wear - raw).max() / max(raw.sum(), 1e-30)))
+            if one.scene.solver.method == "paper":
+                excess.append(float(one.of_cycles("yield_excess").max() / one.scene.solver.tolerance))
+        lost = 1.0 - float(found["converged"].mean())
+        return {"balance": Measured(max(balance)), "excess": Measured(max(excess)), "lost": Measured(lost)}
+
+    def judged(self, found: DataFrame) -> dict[str, list[dict[str, Any]]]:
+        """Reading -> what is told of SAID."""
+        return study.readings_of(found, SAID)
+
+    def data(self, found: DataFrame) -> dict[str, Any]:
+        return {"statements": self.judged(found)}
+
+    def tables(self, found: DataFrame) -> Iterator[SmallTable]:
+        said = self.judged(found)
+        if not said:
+            return
+        yield from study.together(said)
+        for base in (*BASES, *OTHERS):
+            own = {name: each for name, each in said.items() if base_of(name) == base}
+            if own:
+                yield study.statements_table(own)
+        groups = found.groupby(["material", "reading"], sort=False)["run"]
+        yield study.runs_table("Runs", {f"{NAMES[case]}, {name}": runs for (case, name), runs in groups})
+        yield late_wear(found)
+        yield loops(found)
+
+    def notes(self, found: DataFrame) -> Iterator[str]:
+        yield " ".join(changes(self.judged(found)))
+        few = found[found["coarse"]].groupby("reading", sort=False).size()
+        counts = "; ".join(f"{name}: {count}" for name, count in few.items()) or "none"
+        yield f"Runs with too few cells in a contact at the end, judged all the same: {counts}."
+        never, runs = never_together(found)
+        for pair in never:
+            yield f"Held each, never both, on {runs} surfaces and readings: {pair[0]}, and {pair[1]}."
+        coarse, changed = self.judged(found), []
+        for name, own in coarse.items():
+            base, *words = COMBINED.get(name, ("",))
+            if base == SMALL and (fine := coarse.get(named(FINE, *words))):
+                for said, one, other in zip(SAID, own, fine, strict=True):
+                    if near(said, one) and one["by_median"] != other["by_median"]:
+                        changed.append(
+                            f"{said.words} ({', '.join(words)}: {one['by_median']}, {other['by_median']})"
+                        )
+        words = "; ".join(changed) or "none"
+        yield f"Statements within {NEAR:.0%} of what is asked that are otherwise on finer cells: {words}."
+
+    def figures(self, found: DataFrame) -> Iterator[Plot]:
+        panels: dict[tuple[str, str], dict[tuple[str, str], np.ndarray]] = {}
+        good = found[found["converged"] & found["reading"].isin(COMBINED)]
+        for (reading, case), runs in good.groupby(["reading", "material"], sort=False)["run"]:
+            base, roof, smoothing = COMBINED[reading]
+            if base in (PRINTED, SECOND) and case != C:
+                lines = [np.append(0.0, CUBIC * one.history.volume) for one in runs]
+                panels.setdefault((f"{base} [µm³]", NAMES[case]), {})[roof, f"filter {smoothing}"] = (
+                    np.median(lines, axis=0)
+                )
+        if panels:
+            yield Plot(
+                over_cycles(panels, ("roof", "filter")),
+                "volume",
+                "Worn volume over the cycles in each reading",
+                "The figure compares the worn volume, the median of the surfaces, by whether a sound roof "
+                "falls and whether the filter fills. The second reading has a quarter of the area.",
+            )
+
+
+def held(told: Mapping[str, Any]) -> bool:
+    """Whether a statement holds by the median of the surfaces."""
+    return bool(told["by_median"] == study.HELD)
+
+
+def changes(judged: Mapping[str, Sequence[Mapping[str, Any]]]) -> Iterator[str]:
+    """What single changes of the reading, of those that were judged, make hold and fail by the median."""
+    hold = {name: {one["statement"] for one in said if held(one)} for name, said in judged.items()}
+    for name, beside, words, kind in CHANGES:
+        if name in hold and beside in hold:
+            own, other = hold[name], hold[beside]
+            more, less = ("; ".join(sorted(some)) or "none" for some in (own - other, other - own))
+            count = f"{len(own)} in place of {len(other)}"
+            yield f"{words} ({kind}): {count}; then hold: {more}; no longer: {less}."
+    none = [said.words for said in SAID if not any(said.words in each for each in hold.values())]
+    yield f"Under none of {len(hold)} readings holds: {'; '.join(none) or 'none'}."
+
+
+def near(said: Statement, told: Mapping[str, Any]) -> bool:
+    """Whether the median of a measure is within NEAR of a bound of what is asked."""
+    median = Spread.of(told["values"]).median
+    ends = [end for end in (said.low, said.high) if np.isfinite(end)]
+    return any(abs(median - end) <= NEAR * abs(end) for end in ends)
+
+
+def late_wear(found: DataFrame) -> SmallTable:
+    """Wear per cycle late, and what the filter fills: whether linear wear is the filter's."""
+    rows = []
+    for name, own in found[found["converged"]].groupby("reading", sort=False):
+        cells = []
+        for case in (A, B, DUCTILE):
+            runs = own[own["material"] == case]
+            cells += [Spread.of(CUBIC * runs[each]).text for each in ("steady", "filled")]
+        ratio = own.pivot(index="surface", columns="material", values="steady").reindex(columns=[DUCTILE, B])
+        cells.append(Spread.of([study.ratio(*each) for each in ratio.to_numpy(float)]).text)
+        roofs = own[own["material"] == HARDENING]["roofs"]
+        rows.append((name, *cells, Spread.of(CUBIC * roofs).text))
+    columns = ["reading"]
+    columns += [f"{NAMES[case]}: {what}" for case in (A, B, DUCTILE) for what in ("wear per cycle", "filled")]
+    columns += ["5 % over 2 %", "roofs of hardening only, 25 cycles"]
+    return SmallTable(
+        "Wear and filling per cycle, mean of cycles 11 to 25 [µm³], median and range", columns, rows
+    )
+
+
+def loops(found: DataFrame) -> SmallTable:
+    """What the printed loop leaves in a cycle, and its strain and wear over those of the exact one."""
+    exact = found[found["reading"] == named(SMALL, *PLAIN)]
+    rows = []
+    for name, case, seed, one in found.loc[
+        found["converged"] & found["reading"].isin((LOOP, LOOSE)), [*study.PARTS, "run"]
+    ].itertuples(index=False):
+        same = exact[(exact["material"] == case) & (exact["surface"] == seed) & exact["converged"]]["run"]
+        for k in (1, study.EARLY, LAST) if len(same) else ():
+            pairs = ("peeq_max", "wear_volume_m3", "wear_of_cycle_m3", "friction_coefficient")
+            over = [
+                study.ratio(*(each.of_cycles(column)[k - 1] for each in (one, same.iloc[0])))
+                for column in pairs
+            ]
+            left = [f"{one.of_cycles(column)[k - 1]:.1e}" for column in ("yield_excess", "flow_residual")]
+            rows.append((name, NAMES[case], str(k), *left, *(f"{value:.3g}" for value in over)))
+    columns = "reading|case|cycle|yield excess|flow residual|strain|V|V of the cycle|μ".split("|")
+    return SmallTable(
+        "The loop as printed: what it leaves, and its numbers over those of the exact loop", columns, rows
+    )
+
+
+def never_together(found: DataFrame) -> tuple[list[tuple[str, str]], int]:
+    """Pairs of SAID of which each held on some surface in some reading, and both nowhere; on how many."""
+    measures = study.measured(found[found["reading"].map(base_of) != FINE], ["reading", "surface"], SAID)
+    held = np.array([[said.holds(value) for value in measures[said.words]] for said in SAID])
+    pairs = [
+        (one.words, other.words)
+        for (i, one), (j, other) in combinations(enumerate(SAID), 2)
+        if held[i].any() and held[j].any() and not (held[i] & held[j]).any()
+    ]
+    return pairs, held.shape[1]
+
+
+CASES = (RunningInReadings("running-in-readings"),)
