@@ -27,7 +27,20 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from sam.scene import HeightMap, Scene, SceneError
-    from samfem.python import Comparison, Run, Sweep, compare, load, plan, plot, read, solve, sweep
+    from samfem.python import (
+        Comparison,
+        Run,
+        Sweep,
+        compare,
+        fit,
+        load,
+        plan,
+        plot,
+        read,
+        solve,
+        sweep,
+        tensile,
+    )
     from samfem.refusals import SeveralError
     from verification.cost.plan import Plan
     from verification.runs.files import FolderError
@@ -47,12 +60,14 @@ __all__ = [
     "Sweep",
     "__version__",
     "compare",
+    "fit",
     "load",
     "plan",
     "plot",
     "read",
     "solve",
     "sweep",
+    "tensile",
 ]
 
 

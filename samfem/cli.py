@@ -53,6 +53,7 @@ COMMANDS = {
     "export": "samfem.viewing",
     "store": "samfem.housekeeping",
     "sweep": "samfem.sweeping",
+    "fit": "samfem.fitting",
     "view": "samfem.viewing",
     "new": "samfem.starting",
     "examples": "samfem.starting",
@@ -60,7 +61,7 @@ COMMANDS = {
     "completion": "samfem.starting",
 }
 """Command -> module that runs it, by a function of its name with the options as keywords."""
-OF_REPORT = ("samfem.publishing", "samfem.viewing")
+OF_REPORT = ("samfem.publishing", "samfem.viewing", "samfem.fitting")
 """Those of the modules that need the extra of that name, as do these options of the others:"""
 DRAWN = ("figures", "report", "junit")
 
@@ -229,6 +230,11 @@ def _of_scenes(command: Command) -> None:
     fresh = "solve every scene, and keep none in the store"
     add("--no-store", dest="use_store", action="store_false", help=fresh)
     add("--anyway", **ON, help=ANYWAY)
+
+    add = command("fit", "find parameters of a body from measured dents").add_argument
+    add("path", metavar="FIT", type=Path, help="fit file (TOML)")
+    add("--out", **FOLDER, help=f"folder of the parameters, {REPLACED} ./<name of FIT>-fit")
+    add("--no-store", dest="use_store", action="store_false", help=fresh)
 
 
 def _tolerance(text: str) -> tuple[str, float | str]:

@@ -17,6 +17,8 @@ from subprocess import PIPE
 from tempfile import TemporaryDirectory, TemporaryFile
 from typing import TYPE_CHECKING, Any, Literal, overload
 
+import numpy as np
+
 from samfem.clash import foreign_package
 
 if TYPE_CHECKING:
@@ -26,6 +28,8 @@ if TYPE_CHECKING:
 
     from verification.compare.own_data import OwnData
     from verification.cost.plan import Plan
+    from verification.fit import Fitted
+    from verification.fit.tensile import Tensile
 
 if _words := foreign_package():
     raise ImportError(_words)
@@ -428,6 +432,62 @@ def sweep(
             said.seek(0)
             raise FolderError(said.read().decode(errors="replace").strip())
         return _sweep_in(folder, keep=out is not None)
+
+
+def fit(
+    definition: Mapping[str, object] | str | Path,
+    out: str | Path | None = None,
+    *,
+    progress: bool | Progress | None = None,
+) -> Fitted:
+    """The parameters of a body from measured dents, as `samfem fit` finds them; from the store what it holds.
+
+    Parameters
+    ----------
+    definition
+        Path of the fit, or a mapping with the keys of its file, in SI or with units; "scene": a `Scene`, its
+        tables or a path; a test may have its table as "data", a DataFrame.
+    out
+        Folder to write what the command writes; nothing is written without it.
+    progress
+        As of `solve`.
+
+    Raises
+    ------
+    SceneError, ModelError, FolderError
+        For data or bounds that cannot be, a model that was not solved, a folder that holds something else.
+    """
+    from samfem.fitting import FILES, answer, write  # noqa: PLC0415 - loads the solvers
+    from samfem.refusals import check_folder  # noqa: PLC0415
+    from verification.fit import definition_of, read_definition  # noqa: PLC0415 - loads scipy
+    from verification.runs.store import default_store  # noqa: PLC0415 - only here
+
+    wanted = read_definition(definition) if isinstance(definition, str | Path) else definition_of(definition)
+    if out is not None:
+        check_folder(Path(out), FILES, "fit")
+    with followed(progress) as told:
+        found, solves = answer(wanted, default_store(), told)
+    if out is not None:
+        write(found, solves, Path(out))
+    return found
+
+
+def tensile(strain: Sequence[float], stress: Sequence[float]) -> Tensile:
+    """Yield stress, exponent, Swift's constants and a table of a tensile test, see `Tensile`.
+
+    Parameters
+    ----------
+    strain, stress
+        (n,) engineering strain (1, not %) and stress in Pa, as measured.
+
+    Raises
+    ------
+    SceneError
+        For too few points, or a curve without elastic line.
+    """
+    from verification.fit.tensile import tensile as law_of  # noqa: PLC0415 - loads scipy
+
+    return law_of(np.asarray(strain), np.asarray(stress))
 
 
 def read(folder: str | Path) -> Run | Comparison | Sweep:

@@ -25,6 +25,7 @@ KINDS = {
     "rows": ("verification case", "verify"),
     "cases": ("verification case", "verify"),
     "vary": ("study", "sweep"),
+    "unknown": ("fit", "fit"),
     "body": ("scene", "solve"),
 }
 """Table that a file has -> its kind, and the command that takes it."""

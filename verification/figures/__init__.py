@@ -31,6 +31,7 @@ def _late(module: str, function: str) -> Callable[..., Any]:
 
 
 compare_figures = _late("compared", "compare_figures")
+drawing_of_fit = _late("fit", "drawing_of_fit")
 drawing_of_sweep = _late("sweep", "drawing_of_sweep")
 drawings_of_comparison: Callable[..., dict[str, Any]] = _late("compared", "drawings_of")
 drawings_of_run: Callable[..., dict[str, Any]] = _late("run", "drawings_of")
@@ -40,6 +41,7 @@ sweep_figure = _late("sweep", "sweep_figure")
 
 __all__ = [
     "compare_figures",
+    "drawing_of_fit",
     "drawing_of_sweep",
     "drawings_of_comparison",
     "drawings_of_run",
