@@ -58,7 +58,7 @@ class LineContact(Checked):
         return self.peak_pressure * np.sqrt(np.maximum((1.0 - s) * (1.0 + s), 0.0))
 
     def gap(self, x) -> np.ndarray:
-        """Gap in m: 0 inside, a^2/(2 R) (t sqrt(t^2 - 1) - arccosh t) at t = |x|/a > 1 (Johnson, section 5.6)."""
+        """Gap in m, 0 inside; a^2/(2 R) (t sqrt(t^2 - 1) - arccosh t) at t = |x|/a > 1 (Johnson, 5.6)."""
         t = np.maximum(np.abs(coordinate("x", x)) / self.contact_radius, 1.0)
         return self.contact_radius**2 / (2.0 * self.radius) * (t * np.sqrt(t * t - 1.0) - np.arccosh(t))
 
