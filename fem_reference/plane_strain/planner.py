@@ -35,8 +35,8 @@ GROWTH = 1.4
 FIRST_YIELD = 0.558
 """Largest von Mises stress over p0 on the axis below a cylinder, nu = 0.3, that sets meshes."""
 FULL = 2.3
-"""Mean pressure over the yield stress beyond which the contact grows with the force; with friction it is less,
-about by 1 + friction: linear hardening of E/20 in full slip at 0.4 and p0 = 3 yield stresses grows by a third.
+"""Mean pressure over the yield stress beyond which the contact grows with the force; with friction less, about
+by 1 + friction: at 0.4 a body that hardens linearly by E/20 is a third wider than Hertz, p0 = 3 yield stresses.
 """
 
 
