@@ -35,8 +35,8 @@ GROWTH = 1.4
 FIRST_YIELD = 0.558
 """Largest von Mises stress over p0 on the axis below a cylinder, nu = 0.3, that sets meshes."""
 FULL = 2.3
-"""Mean pressure over the yield stress beyond which the contact grows with the force; with friction less, about
-by 1 + friction: at 0.4 a body that hardens linearly by E/20 is a third wider than Hertz, p0 = 3 yield stresses.
+"""Mean pressure over the yield stress beyond which the contact grows with the force; with friction less by
+about 1 + friction: at 0.4 a body that hardens by E/20 is a third wider than Hertz, p0 = 3 yield stresses.
 """
 
 
