@@ -84,8 +84,8 @@ def test_cell_means_are_means():
     """Against 6 x 6 x 6 Gauss points over the observed cell.
 
     Next to the source its edges make the field logarithmic: two points a direction leave 5 % there (which
-    moves the largest plastic strain of a contact by less than 1e-4). Beyond the near field second differences
-    are used: 1e-3 of the value.
+    moves the largest plastic strain of a contact by less than 1e-4). Beyond the near field these
+    leave 1e-3 of the value.
     """
     t, w = (each / 2 for each in np.polynomial.legendre.leggauss(6))
     mean = 0.0

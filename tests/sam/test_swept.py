@@ -122,17 +122,18 @@ def test_layers_near_each_other_have_the_coefficients_of_cells(faces, error):
 
 
 @pytest.mark.parametrize(
-    ("faces", "kind"),
+    ("faces", "n", "error", "kind"),
     [
-        (EVEN, {}),
-        (GRADED, {"mirror": (False, True)}),
-        (np.arange(19.0) / 2, {"mirror": (True, True), "exchange": True}),
+        (EVEN, 8, 1e-4, {}),
+        (GRADED, 8, 1e-4, {"mirror": (False, True)}),
+        (np.arange(19.0) / 2, 8, 1e-4, {"mirror": (True, True), "exchange": True}),
+        (np.arange(14.0), 16, 1e-6, {}),
+        (np.append(0.0, np.cumsum(0.4 * 1.25 ** np.arange(8))), 16, 1e-6, {}),
     ],
-    ids=["even", "graded", "many"],
+    ids=["even", "graded", "many", "even, small error", "graded, small error"],
 )
-def test_swept_stress_is_that_of_the_matrices(faces, kind):
+def test_swept_stress_is_that_of_the_matrices(faces, n, error, kind):
     """To the stated error, without images of the period and with the waves shorter than the cells."""
-    n, error = 8, 1e-4
     box = Cuboids(Lags(n, n, 1.0, 1.0 if "exchange" in kind else ASPECT), tuple(faces), 0.3)
     dense, swept = (BoxOperator(box, 1.0, Counters(), swept=each, **kind) for each in (0.0, error))
     strain = dense.keep(np.random.default_rng(1).standard_normal((6, len(faces) - 1, n, n)))
