@@ -21,13 +21,14 @@ found = samfem.fit(
         "scene": {
             "body": {"young": "210 GPa", "poisson": 0.3},
             "counterbody": {"shape": "sphere", "radius": "1 mm"},
+            "solver": {"uncertainty": True},
         },
         "tests": [{"data": pd.DataFrame({"force_N": force, "depth_m": depth}), "noise": "1 nm"}],
         "unknown": {"body.young": ["100 GPa", "400 GPa"], "zero": ["-100 nm", "100 nm"]},
     }
 )
-low, high = found.intervals["body.young"]
-print(f"E = {found.values['body.young'] / 1e9:.1f} GPa, 90 %: {low / 1e9:.1f} to {high / 1e9:.1f} GPa")
+print("E in GPa, 90 %:", np.round(np.divide(found.intervals["body.young"], 1e9), 1))
+print(samfem.solve(found.scene()))
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(7, 3.2), layout="constrained")
 left.plot(1e9 * depth, force, ".", label="measured")
