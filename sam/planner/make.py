@@ -348,7 +348,9 @@ def _check_period(scene: Scene, patch: RoughPatch) -> None:
         gap = patch.of_body + opposite
         if approach is not None and approach >= (most := float(gap.max() - gap.mean())):
             words = "the mean of the gap at first touch, at which all of the patch touches,"
-            wrong.append(f"loading.approach = {approach:g} m: less than {most:.4g} m, {words}")
+            wrong.append(
+                f"loading.approach = {approach:g} m: to give a force, or less than {most:.4g} m, {words}"
+            )
     if patch.periodic and scene.body.plasticity is not None and any(n % 2 for n in patch.cells):
         wrong.append(f"grid.cells = {list(patch.cells)}: with [body.plasticity] even numbers of cells")
     if scene.solver.operator == "dense":

@@ -84,3 +84,6 @@ class TestSampling:
             np.array([-1.0, 0.0, 0.7]), np.array([0.0, 0.5, 1.0]), {"plane": plane}, "mises_Pa"
         )
         assert np.isnan(field[:, 0]).all() and np.allclose(field[:, 1:], [4.5, 7.0], rtol=1e-12)
+        whole = plane | {"x_m": 2.0 * (r - 1.5), "mises_Pa": 2.0 + r}  # of a section that is not symmetric
+        field = plane_field_on(np.array([-1.0, 0.7]), np.array([0.5]), {"plane": whole}, "mises_Pa")
+        assert np.allclose(field[:, 0], [3.0, 3.85], rtol=1e-12)

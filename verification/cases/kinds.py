@@ -356,11 +356,13 @@ def of_kind(kind: str, found: Solved) -> Plot:
 
 
 def _orders(file: CaseFile, frame: DataFrame) -> Plot:
-    """The errors of each sweep over the size of the cells, with the orders that rows take of them."""
+    """The errors of each refinement over the size of the cells, with the orders that rows take of them."""
     panels: dict[str, dict[str, tuple]] = {}
     fits: list[str] = []
     for (name, model), rows in frame[frame["model"] != BOTH].groupby(["sweep", "model"], sort=False):
         sweep, title = file.sweeps[name], LABELS[model]
+        if not sweep.size:
+            continue
         errors = [column for column, how in sweep.columns.items() if how not in ("value", "between")]
         curves = {
             words_of(file, c): (rows["h"].to_numpy(), rows[c].to_numpy(), fitted(file, rows, c))

@@ -91,18 +91,19 @@ def spots_of(surface: Mapping[str, Sequence]) -> list[list]:
     return columns
 
 
-def plane_field_on(x: np.ndarray, z: np.ndarray, axisymmetric: Tables, column: str) -> np.ndarray:
-    """The same of the axisymmetric model at (x, z), (nx, nz), linear between its Gauss points; NaN in the
-    strip between the surface and the first of them.
+def plane_field_on(x: np.ndarray, z: np.ndarray, fem: Tables, column: str) -> np.ndarray:
+    """The same of the axisymmetric or the plane-strain model at (x, z), (nx, nz), linear between its Gauss
+    points; NaN in the strip between the surface and the first of them. Half of a section is mirrored.
     """
     reach = 1.5 * max(np.abs(x).max(), z.max())
-    r, depth, field = peak(axisymmetric["plane"], "x_m", "z_m", column)
-    near = (r < reach) & (depth < reach)
-    points, values = np.stack([r, depth], axis=1)[near], field[near]
-    mirrored = points[:, 0] < 0.2 * reach  # enough to close the gap at the axis
-    points = np.vstack([points, points[mirrored] * [-1.0, 1.0]]) / reach
-    linear = LinearNDInterpolator(points, np.append(values, values[mirrored]))
-    return linear(np.abs(x)[:, None] / reach, z[None, :] / reach)
+    along, depth, field = peak(fem["plane"], "x_m", "z_m", column)
+    near = (np.abs(along) < reach) & (depth < reach)
+    points, values = np.stack([along, depth], axis=1)[near], field[near]
+    if along.min() >= 0.0:
+        mirrored = points[:, 0] < 0.2 * reach  # enough to close the gap at the axis
+        points = np.vstack([points, points[mirrored] * [-1.0, 1.0]])
+        x, values = np.abs(x), np.append(values, values[mirrored])
+    return LinearNDInterpolator(points / reach, values)(x[:, None] / reach, z[None, :] / reach)
 
 
 def surface_nodes(fem: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
