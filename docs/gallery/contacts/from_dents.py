@@ -36,5 +36,5 @@ left.plot(1e9 * (depth + found.sigma[0] * found.residuals[0]), force, label="fit
 left.set(xlabel="depth [nm]", ylabel="force [N]")
 left.legend()
 right.plot(force, found.residuals[0], ".")
-right.set(xlabel="force [N]", ylabel="model less measured [standard deviations]")
+right.set(xlabel="force [N]", ylabel="residual over noise")
 plt.show()
