@@ -20,7 +20,7 @@ from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from sam.arrays import Array
 from sam.contact.convolution import Counters, Transforms, real_spectrum
@@ -49,8 +49,9 @@ ODD_LAGS = [(x, y) for x, y in zip(*(np.not_equal.outer(o, o).ravel() for o in (
 SIGN = np.where(TWICE, -1.0, 1.0)  # of what is stored
 EVEN = np.zeros(1, int), np.zeros(1, int)  # parities in x and y of pressure and u_z
 CACHED_BOXES = 4  # spectra that are kept: the boxes of a history, or of both grids of an extrapolation
-# tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough
-SINGLE = 5e-5
+# tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough: for
+# contact and transforms too, and for the matrices between layers alone
+SINGLE, ROUNDED = 5e-5, 1e-6
 
 
 class BoxSpectra:
@@ -67,6 +68,7 @@ class BoxSpectra:
         *,
         cells: tuple[int, int] = (0, 0),
         error: float = 0.0,
+        rounded: bool = False,
         period: PeriodicHalfSpaces | None = None,
     ):
         self.period = period
@@ -88,13 +90,14 @@ class BoxSpectra:
             self.layers: Reals | SweptLayers = SweptLayers(self, waves, cuboids, error=error, real=self.real)
         else:
             shape = self.waves, 6 * cuboids.layers, 6 * cuboids.layers
-            self.layers = kept(repr((cuboids, exchange)), shape, self.real, lambda: self._dense(shape))
+            real = np.float32 if rounded else self.real
+            self.layers = kept(repr((cuboids, exchange)), shape, real, lambda: self._dense(shape, real))
 
-    def _dense(self, shape: tuple[int, int, int]) -> Reals:
+    def _dense(self, shape: tuple[int, int, int], real: DTypeLike) -> Reals:
         """The matrices between all layers, (waves, 6 layers, 6 layers)."""
         layers, exchange = self.cuboids.layers, not isinstance(self.stored, slice)
-        out = np.empty(shape, dtype=self.real)
-        spectrum = np.zeros((36, layers, *np.add(self.half, 1)), dtype=self.real)
+        out = np.empty(shape, dtype=real)
+        spectrum = np.zeros((36, layers, *np.add(self.half, 1)), dtype=real)
         rows = spectrum.reshape(6, 6 * layers, *spectrum.shape[2:])
         stress = self._layer_stress(slice(None), slice(None))
         for i in range(layers):
@@ -157,9 +160,12 @@ class BoxSpectra:
             if self.period is not None:
                 out[0] = self.period.mean_residual(strain[0], self.cuboids.nu)
             return out
+        strain = strain.astype(self.layers.dtype, copy=False)
         if strain.shape[-1] == 1:  # bound by the memory of the matrices: einsum reads them faster than matmul
-            return np.asarray(np.einsum("pij,pj->pi", self.layers, strain[..., 0])[..., None])
-        return np.asarray(self.layers @ strain)
+            product = np.einsum("pij,pj->pi", self.layers, strain[..., 0])[..., None]
+        else:
+            product = self.layers @ strain
+        return np.asarray(product, dtype=self.real)
 
     @cached_property
     def own_stress(self) -> Array:
@@ -251,6 +257,7 @@ class BoxOperator:
         mirror: tuple[bool, bool] = (False, False),
         exchange: bool = False,
         swept: float = 0.0,
+        rounded: bool = False,
     ):
         lags = box.lags
         self.transforms = Transforms(
@@ -265,7 +272,7 @@ class BoxOperator:
         in_cells_of_hx = Cuboids(Lags(*self.transforms.half, 1.0, aspect, lags.period), in_cells, box.nu)
         cells = lags.shape if swept else (0, 0)
         self.spectra = spectra_of(
-            in_cells_of_hx, single, exchange, cells=cells, error=swept, period=self.period
+            in_cells_of_hx, single, exchange, cells=cells, error=swept, rounded=rounded, period=self.period
         )
         self.exchange, self.real = exchange, self.transforms.real
 
