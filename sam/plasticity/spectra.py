@@ -170,12 +170,23 @@ class BoxSpectra:
     @cached_property
     def own_stress(self) -> Array:
         """Stress/mu of plastic strain in its own cell, (6, 6, n_layers)."""
-        faces, means = self.cuboids.depths, functions_of(first_lags(self.cuboids.lags, (1, 1)), CellMeans)
-        stress = LayerStress(means, gauss_depths(faces), faces, self.cuboids.nu)
-        out = np.zeros((len(faces) - 1, 36, len(faces) - 1, 1, 1))
-        for i, row in enumerate(out):
-            stress.of(i, row)
-        return out.diagonal(axis1=0, axis2=2).reshape(6, 6, -1)
+        if isinstance(self.layers, SweptLayers):
+            faces = self.cuboids.depths
+            means = functions_of(first_lags(self.cuboids.lags, (1, 1)), CellMeans)
+            stress = LayerStress(means, gauss_depths(faces), faces, self.cuboids.nu)
+            out = np.zeros((36, len(faces) - 1, 1, 1))
+            for i in range(len(faces) - 1):
+                own = slice(i, i + 1)
+                stress.of(i, out[:, own], own)
+            return out.reshape(6, 6, -1)
+        # the transform back at no lag; wave numbers but 0 and N stand for their opposite too
+        weight = np.outer(*(np.where(np.arange(n + 1) % n, 1 / n, 0.5 / n) for n in self.half))
+        exchange = not isinstance(self.stored, slice)
+        weight[np.diag_indices(len(weight) if exchange else 0)] /= 2
+        diagonal = self.layers.reshape(self.waves, 6, self.cuboids.layers, 6, -1)
+        found = np.einsum("p,pikjk->ijk", weight.ravel()[self.stored], diagonal)
+        found *= np.where(np.any(ODD_LAGS, axis=1), 0.0, SIGN).reshape(6, 6, 1)
+        return found + found[EXCHANGED][:, EXCHANGED] if exchange else found
 
     def _of_waves(self, waves: Array) -> Reals:
         """Spectra (6, n_layers, N_x + 1, N_y + 1) as `_of_surface` has them."""
