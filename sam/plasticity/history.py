@@ -154,23 +154,15 @@ def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, T
     committed state until box and film stay; None and a record that has ended if the grid cannot
     hold it.
     """
-    law, track, film = model.plan.tribofilm, model.plan.track, record.tribofilm
-    if law is not None and film is not None and track is not None:
-        film = law.entered(film, track.clock(record.targets[0].cycle, load))
-    before = film
+    before = film = _film_before(model, record, load)
     guess, start = record.guess(load), start_of(model, record, load)
 
     def changed(trial: Trial) -> Problem | None:
         """The problem with the friction that a trial makes, None if the film stays as it is."""
         nonlocal film
-        if law is None or film is None or before is None:
-            return None
-        pressure, tried = np.zeros((model.grid.nx, model.grid.ny)), film.film.failed
-        pressure[record.extent.window.slices] = trial.pressure * model.unit
-        strain = record.state.material.strain + trial.increment.strain
-        strain = model.surface_strain(record.extent, trial.stress, strain)
-        film = law.tested(before, film, strain, pressure=pressure, sign=trial.load.sign)
-        return None if film.film.failed is tried else model.problem(record.extent, film, record.wear)
+        tried, film = film, _film_after(model, record, before, film, trial)
+        stays = tried is None or film is None or film.film.failed is tried.film.failed
+        return None if stays else model.problem(record.extent, film, record.wear)
 
     while True:
         problem = replace(model.problem(record.extent, film, record.wear), longer=record.longer)
@@ -195,6 +187,27 @@ def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, T
             return after, trial
         guess, start = trial.change(record.state), trial.pressure  # the paper's loops, with more friction
         del trial  # its fields are large
+
+
+def _film_before(model: Model, record: Progressed, load: Load) -> TribofilmState | None:
+    """The film at the beginning of a step."""
+    law, track, film = model.plan.tribofilm, model.plan.track, record.tribofilm
+    if law is None or film is None or track is None:
+        return film
+    return law.entered(film, track.clock(record.targets[0].cycle, load))
+
+
+def _film_after(
+    model: Model, record: Progressed, before: TribofilmState | None, film: TribofilmState | None, trial: Trial
+) -> TribofilmState | None:
+    """The film at the end of a trial that was made with the friction of `film`, from that before the step."""
+    law, extent, pressure = model.plan.tribofilm, record.extent, np.zeros((model.grid.nx, model.grid.ny))
+    if law is None or film is None or before is None:
+        return film
+    pressure[extent.window.slices] = trial.pressure * model.unit
+    plastic = record.state.material.strain + trial.increment.strain
+    strain = model.surface_strain(extent, trial.stress, plastic)
+    return law.tested(before, film, strain, pressure=pressure, sign=trial.load.sign)
 
 
 def _enlarged(model: Model, record: Progressed, extent: Extent) -> Progressed:

@@ -118,9 +118,9 @@ LONG_ITERATIONS = 600
 # the contact is found too large. An evaluation takes as long as tens of contact iterations: none is repeated
 # for a better contact.
 CONTACT_SHARE = 1e-2
-# Tolerance of the iterate with which the tribofilm is tested first, before that of the solved step: running-in,
-# 64 x 64 cells, two cycles, takes 125 operator applications with 0.01, 102 with 0.1, 81 with 1 and 10, and the
-# friction is the same to 2e-6.
+# Tolerance of the iterate with which the tribofilm is tested first, before that of the solved step: a
+# running-in on 64 x 64 cells, two cycles, takes 125 operator applications with 0.01, 102 with 0.1, 81 with 1
+# and 10; the friction is the same to 2e-6.
 FIRST_TEST = 1.0
 
 
@@ -219,7 +219,6 @@ class Problem:
             x = guess.ratio * spread(increment.points.strain.mean(axis=1), increment.cells, flow.cells)
         displacement = residual.displacement
         pressure = state.pressure if start is None else start
-
 
         def reached() -> Trial:
             return Trial(

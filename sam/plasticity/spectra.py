@@ -250,8 +250,8 @@ class InWaves(NamedTuple):
 
 class BoxOperator:
     """Stress in the cells of a box and u_z of its surface, of plastic strain and loads, on the cells that
-    `keep` leaves. box: cells as lags, in m, layers from 0; mu in Pa; single: precision, 1e-7 of the largest
-    stress, in half the time; mirror: of all fields in x (with y) and y; exchange: of x and y, half of the
+    `keep` leaves. box: cells as lags, in m, layers from 0; mu in Pa; tolerance: of the iteration, from
+    which the precision follows; mirror: of all fields in x (with y) and y; exchange: of x and y, half of the
     wave numbers give all; swept: error of the stress/mu of a unit strain by sweeps over the layers in place
     of matrices between all of them.
     """
@@ -264,13 +264,12 @@ class BoxOperator:
         mu: float,
         counters: Counters,
         *,
-        single: bool = False,
+        tolerance: float = 0.0,
         mirror: tuple[bool, bool] = (False, False),
         exchange: bool = False,
         swept: float = 0.0,
-        rounded: bool = False,
     ):
-        lags = box.lags
+        lags, single, rounded = box.lags, tolerance >= SINGLE, tolerance >= ROUNDED
         self.transforms = Transforms(
             lags.shape, mirror, single=single, counters=counters, periodic=self.period is not None
         )
