@@ -160,7 +160,7 @@ def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, T
     def changed(trial: Trial) -> Problem | None:
         """The problem with the friction that a trial makes, None if the film stays as it is."""
         nonlocal film
-        tried, film = film, _film_after(model, record, before, film, trial)
+        tried, film = film, _film_after(model, record, trial, before=before, tried=film)
         stays = tried is None or film is None or film.film.failed is tried.film.failed
         return None if stays else model.problem(record.extent, film, record.wear)
 
@@ -198,16 +198,21 @@ def _film_before(model: Model, record: Progressed, load: Load) -> TribofilmState
 
 
 def _film_after(
-    model: Model, record: Progressed, before: TribofilmState | None, film: TribofilmState | None, trial: Trial
+    model: Model,
+    record: Progressed,
+    trial: Trial,
+    *,
+    before: TribofilmState | None,
+    tried: TribofilmState | None,
 ) -> TribofilmState | None:
-    """The film at the end of a trial that was made with the friction of `film`, from that before the step."""
+    """The film at the end of a trial that was made with the friction of `tried`; before: the step."""
     law, extent, pressure = model.plan.tribofilm, record.extent, np.zeros((model.grid.nx, model.grid.ny))
-    if law is None or film is None or before is None:
-        return film
+    if law is None or tried is None or before is None:
+        return tried
     pressure[extent.window.slices] = trial.pressure * model.unit
     plastic = record.state.material.strain + trial.increment.strain
     strain = model.surface_strain(extent, trial.stress, plastic)
-    return law.tested(before, film, strain, pressure=pressure, sign=trial.load.sign)
+    return law.tested(before, tried, strain, pressure=pressure, sign=trial.load.sign)
 
 
 def _enlarged(model: Model, record: Progressed, extent: Extent) -> Progressed:

@@ -51,7 +51,8 @@ EVEN = np.zeros(1, int), np.zeros(1, int)  # parities in x and y of pressure and
 CACHED_BOXES = 4  # spectra that are kept: the boxes of a history, or of both grids of an extrapolation
 # tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough: for
 # contact and transforms too, and for the matrices between layers alone
-SINGLE, ROUNDED = 5e-5, 1e-6
+SINGLE = 5e-5
+ROUNDED = 1e-6
 
 
 class BoxSpectra:
