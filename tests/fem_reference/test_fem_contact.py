@@ -75,15 +75,6 @@ def test_conditions_on_the_returned_field(shape, counter):
     assert forces[0][outer].sum() == pytest.approx(-force, rel=1e-10)
 
 
-@pytest.mark.parametrize("ratio", [1e-12, 1e12])
-def test_one_body_much_stiffer_is_rigid(ratio):
-    """Moduli 10^12 apart, either way round: the approach is that on a rigid body, to 1e-12 and rounding."""
-    models = model_of(young=210e9 * ratio, poisson=0.3), model_of()
-    two, one = (equilibrium(m.problem, m.scales.peak_force, m.radii <= 1.0) for m in models)
-    assert two.converged and two.iterations <= 2
-    assert two.approach == pytest.approx(one.approach, rel=1e-11)
-
-
 def test_equal_bodies_deform_alike():
     """Mirror symmetry: each body takes half the approach and the profile r^2/2 in half, node by node."""
     model = model_of(young=210e9, poisson=0.3)

@@ -129,15 +129,6 @@ def test_the_tangent_without_deformation_is_that_of_small_strain():
     assert tangent == pytest.approx(strains.T @ material.small.stiffness @ strains, abs=1e-12 * YOUNG)
 
 
-def test_a_return_leaves_the_yield_stress_and_the_volume():
-    material = hencky(CURVES["swift"])
-    update = material.update(at_point(0.2, -0.1, -0.3, 0.4, 0.1), History.virgin(ONE))
-    deviator = update.kirchhoff - update.kirchhoff.mean(axis=-1, keepdims=True)
-    mises = np.sqrt(1.5) * np.linalg.norm(deviator)
-    assert mises == pytest.approx(float(CURVES["swift"].stress(update.history.peeq)[0, 0]), rel=1e-10)
-    assert update.history.plastic_strain[:3].sum() == pytest.approx(0.0, abs=1e-13)
-
-
 def test_logarithm_and_exponential_are_inverse_also_of_equal_values():
     """Twelve elementary functions of numbers up to 2, to 4 EPS each."""
     tensors = np.array(
