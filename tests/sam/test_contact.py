@@ -12,18 +12,13 @@ from rounding import EPS
 from sam.contact import convolution, operators
 from sam.contact.box import ApproachControl, BoxContact, ForceControl
 from sam.contact.convolution import (
-    BoxConvolution,
     Convolution,
     Counters,
-    DirectConvolution,
-    MirroredConvolution,
     RowConvolution,
     back,
     convolution_onto,
     forward,
     half_length,
-    mirror_half,
-    real_spectrum,
     row_sums,
 )
 from sam.contact.normal import Search, Solved, Units, around, fit_of, measured, no_contact, solve_contact
@@ -306,24 +301,6 @@ def test_half_of_the_wave_numbers_gives_all_where_x_and_y_may_be_exchanged(n):
         assert (np.abs(found - expected).max() <= ROUNDING * np.abs(expected).max()) == same
 
 
-@pytest.mark.parametrize("size", SIZES)
-def test_mirrored_displacements(size):
-    """A quarter of the box, and all pairs of its cells, against all of it, in double and single precision."""
-    kernel = displacement_coefficients(Lags(*size, 1.0, 0.9), nu=0.0)
-    kinds = BoxConvolution, MirroredConvolution, DirectConvolution
-    whole, quarter, pairs = (kind(kernel, size, Counters()) for kind in kinds)
-    pressure = np.random.default_rng(2).random(size)
-    pressure = pressure + pressure[::-1]
-    pressure = pressure + pressure[:, ::-1]
-    kept = tuple(mirror_half(n) for n in size)
-    expected = whole(pressure)
-    for real, bound in ((float, ROUNDING), (np.float32, 2e-6)):
-        every = [each(pressure.astype(real))[kept] for each in (whole, pairs)]
-        found = quarter(pressure[kept].astype(real)), *every
-        assert all(each.dtype == real for each in found)
-        assert np.abs(found - expected[kept]).max() <= bound * expected.max()
-
-
 def test_the_preconditioner_of_few_cells_is_that_by_transforms(monkeypatch):
     """On a box of unequal sides with rectangular cells, in single precision."""
     grid, r = SurfaceOperators((9, 12), 0.8, Counters()), np.random.default_rng(3).standard_normal((9, 12))
@@ -424,11 +401,3 @@ def test_back_is_the_inverse(monkeypatch, odd, n, short):
         assert not same.size or same.max() <= 2 * (kept + half) * EPS * np.abs(field).sum(axis).max()
     single = forward(field.astype(np.float32), half, odd, -1, between=between)
     assert single.dtype == back(single, kept, odd, -1, between=between).dtype == np.float32
-
-
-def test_spectrum_of_both_directions():
-    """Against the two-dimensional sum over lags of both signs."""
-    kernel = np.random.default_rng(8).standard_normal((4, 5))
-    kernel[0] = 0  # odd in x
-    expected = summed(summed(kernel.T, 6, True, False).T, 5, False, False)
-    assert np.abs(real_spectrum(kernel, (6, 5), (1, 0)) - expected).max() <= 1e-13 * np.abs(expected).max()

@@ -112,18 +112,6 @@ class TestGeneralSolver:
         with pytest.raises(ArithmeticError, match="no strains off the plane"):
             Film(80e9, 0.3, 1e9).implicit_step(np.zeros(6), FlowPoint(np.zeros(3), 1e9, 0.6e9))
 
-    def test_a_path_is_straight_and_begins_elastic(self):
-        start, end = FlowPoint(np.array([0.0, 4.0, 8.0]), 0.0, 4.0), FlowPoint(np.full(3, 4.0), 8.0, 0.0)
-        between = start.towards(end, 0.25)
-        assert (*between.strain, between.pressure, between.shear) == (1.0, 4.0, 7.0, 2.0, 3.0)
-        for shear, yields in ((0.999e9, False), (1.001e9, True)):
-            at = FlowPoint(np.zeros(3), 0.0, shear / np.sqrt(3))
-            if yields:
-                with pytest.raises(ValueError, match=r"path: .* must not yield"):
-                    Film(80e9, 0.3, 1e9).along([at])
-            else:
-                assert not Film(80e9, 0.3, 1e9).along([at]).any()
-
 
 class TestReturnMap:
     def test_stress_ends_on_the_yield_surface_and_volume_is_kept(self):

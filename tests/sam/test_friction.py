@@ -7,7 +7,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-from builders import STEEL, SWIFT, SWIFT_YIELD as YIELD, scene as small_scene
+from builders import STEEL, SWIFT, scene as small_scene
 from made_results import line
 from plastic_start import begin
 
@@ -19,7 +19,7 @@ from sam.elastic.stress import sliding_of
 from sam.grid.cells import Window
 from sam.kernels.patches import Lags, displacement_coefficients, parity
 from sam.planner.bodies import Bodies
-from sam.scene import Path, Scene, Status
+from sam.scene import Scene, Status
 from sam.schedule import Load
 from verification.reference.quadrature import patch_response
 
@@ -177,13 +177,6 @@ def test_bodies_that_change_places_have_the_same_normal_displacement_beyond_thei
     assert np.abs(uz - swapped).max() <= 1e-12 * np.abs(uz).max() and uz.any()
 
 
-def given_hertz(**tables) -> Scene:
-    """Swift steel below a pressure of Hertz, three yield stresses in its middle, that slides."""
-    loading = {"prescribed": "hertz", "p0": 3 * YIELD, "radius": 2.8e-6, **tables.pop("loading", {})}
-    friction = {"coefficient": 0.3, **tables.pop("friction", {})}
-    return small_scene(body={"plasticity": SWIFT}, loading=loading, friction=friction, **tables)
-
-
 def test_a_traction_of_a_field_of_coefficients():
     """The coefficient may differ from cell to cell: q = coefficient * p in the gap and in the stress."""
     model, now = begin(small_scene(body={"plasticity": SWIFT}, friction=0.3, grid={"cells": (17, 17)}))
@@ -194,34 +187,3 @@ def test_a_traction_of_a_field_of_coefficients():
     loaded = pressure * problem.unit
     expected = problem.operator.stress(keep(loaded), traction=keep(-field * loaded))
     assert np.array_equal(found, expected)
-
-
-def test_given_pressure_stays_as_it_is():
-    """No contact is solved; the surface sinks in, is dragged along, and the pressure does not notice. What
-    has no meaning is null.
-    """
-    found = sam.solve(given_hertz(loading={"steps": 1, "unload": True}, grid={"cells": (33, 33)}))
-    assert found.status is Status.CONVERGED and found.cost["contact_iterations"] == 0
-    q = found.quantities
-    assert q["p_max_Pa"] == pytest.approx(3 * YIELD, rel=2e-3)  # the mean of a cell of 0.12 a
-    assert q["approach_m"] is None and q["residual_uz_center_m"] > 0
-    assert q["contact_radius_m"] == pytest.approx(2.8e-6, rel=1e-12)
-    assert q["tangential_displacement_center_m"] > q["residual_ux_center_m"] > 0
-    assert q["plastic_shear_center_m"] > 0
-    assert line(found, "ux_m", "unloaded")[16] == pytest.approx(q["residual_ux_center_m"], rel=1e-12)
-    assert found.certificate["flow_residual"] <= 1e-6 and found.certificate["yield_excess"] <= 1e-6
-
-
-def test_targets_of_a_path():
-    path = Path(start=(-4e-6, 1e-6), end=(2e-6, 1e-6), steps=3)
-    loading = {"steps": 2, "cycles": 2, "unload": False, "path": path}
-    moving = given_hertz(loading=loading, friction={"direction": "alternating"})
-    targets = sam.plan(moving).schedule.targets
-    full = targets[1].load.force
-    places = [(t.cycle, t.step, round(t.load.x * 1e6, 9), round(t.load.force / full, 9)) for t in targets]
-    assert places[:3] == [(1, 1, -4, 0.5), (1, 2, -4, 1), (1, 3, -2, 1)]
-    assert places[3:6] == [(1, 4, 0, 1), (1, 5, 2, 1), (1, 6, 2, 0)]
-    assert len(targets) == 11 and targets[-1].snapshot == "peak"
-    assert [t.load.sign for t in targets] == [1.0] * 6 + [-1.0] * 5
-    unloaded, next_one = targets[5].load, targets[6].load
-    assert unloaded.halfway_to(next_one) == replace(next_one, force=next_one.force / 2)

@@ -5,7 +5,6 @@ film and wear on its way.
 
 import itertools
 from dataclasses import replace
-from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
@@ -19,7 +18,6 @@ from builders import (
     running_in,
     scene,
 )
-from hypothesis import given, strategies as st
 
 import sam
 from sam.grid.cells import CellGrid, Window
@@ -27,7 +25,7 @@ from sam.moving import Track, _cross as cross_table, _track as track_table
 from sam.planner.make import schedule_of
 from sam.results.quantities import refined_peak
 from sam.results.snapshots import Box
-from sam.scene import HeightMap, Path, Scene, SceneError, Status, Strokes, resolved
+from sam.scene import HeightMap, Scene, SceneError, Status
 from sam.scene.groove import Groove
 from sam.scene.result import UNLOADED
 from sam.scene.surface import CounterSurface, Strip, heights, with_relief
@@ -36,16 +34,6 @@ from sam.tribofilm.law import FilmLaw, FilmState
 from sam.tribofilm.state import FilmOnCells, VisitLaw, bins_of_visits
 
 # the path and its passes
-
-
-def test_a_scene_with_a_path_is_read_and_written():
-    text = PATH.replace("steps = 4", 'steps = 4, return = "to-and-fro"')
-    found = parsed(('"105 um"', '"105 um"\nslip = 0.5'), add=text)
-    path = found.loading.path
-    assert (path.start, path.end, path.steps, path.to_and_fro) == ((-9e-6, 0.0), (9e-6, 0.0), 4, True)
-    assert found.counterbody.slip == 0.5
-    assert resolved(found)["loading"]["path"]["return"] == "to-and-fro"
-    assert Scene(**resolved(found)) == found
 
 
 def test_steps_are_counted_in_radii_of_hertz():
@@ -57,22 +45,6 @@ def test_steps_are_counted_in_radii_of_hertz():
     assert parsed(('force = "0.65 N"', 'approach = "0.349 um"'), add=path).strokes.count == 12  # a^2/R
     for punch in ('punch"\nradius = "6 um"', 'rounded-punch"\nradius = "50 um"\nflat_radius = "6 um"'):
         assert parsed(('sphere"\nradius = "105 um"', punch), add=path).strokes.count == 12
-
-
-@given(steps=st.integers(1, 40), cycles=st.integers(1, 6), back=st.booleans(), unload=st.booleans())
-def test_a_pass_begins_where_the_load_is(steps, cycles, back, unload):
-    """To and fro each pass begins where the last one ended; "lifted", at the start, where it is put on."""
-    how = {"return": "to-and-fro" if back else "lifted"}
-    path = Path(start=(-1.0, 0.5), end=(2.0, 0.5), steps=steps, **how)
-    strokes = Strokes(path, path.count(1.0), cycles, unload, with_motion=True)
-    passes = [strokes.of_cycle(cycle) for cycle in range(1, cycles + 1)]
-    for before, after in pairwise(passes):
-        assert after.pressed is before.unloads is not back
-        assert after.places[0] == (before.places[-1] if back else path.start)
-        assert after.sign == (-before.sign if back else before.sign)
-    assert passes[0].pressed and passes[-1].unloads is unload
-    assert {len(each.places) for each in passes} == {steps + 1}
-    assert all({each.places[0], each.places[-1]} == {path.start, path.end} for each in passes)
 
 
 def test_the_steps_of_a_scene_to_and_fro():
@@ -212,18 +184,6 @@ def moving(path: dict, *, track=2.0, plasticity=SWIFT, grid=None, **tables) -> S
     )
 
 
-def test_all_of_friction_is_along_the_motion():
-    """q moves a rigid sphere on: F_x = mu F, and the offset that the coupling makes."""
-    path = {"steps": 3, "return": "to-and-fro"}
-    history = sam.solve(moving(path, plasticity=None, loading={"cycles": 2}, friction=0.2)).tables["history"]
-    force, coefficient = np.array(history["fx_N"])[:-1], np.array(history["friction_coefficient"])[:-1]
-    offset, forth = np.array(history["pressure_offset_m"])[:-1], np.array(history["cycle"])[:-1] == 1
-    signed = np.where(forth, coefficient, -coefficient)
-    np.testing.assert_allclose(force / FORCE, signed + offset / RADIUS, rtol=1e-9)
-    np.testing.assert_array_equal(coefficient, 0.2)
-    assert offset[3] == pytest.approx(-offset[-1], rel=1e-4) != 0
-
-
 LONG = {"path": {"steps": 8}, "track": 6.0}
 
 
@@ -283,14 +243,6 @@ def test_says_where_the_contact_left_the_grid(law):
     assert "raise grid.extent" in found.message and "after" in found.message
     assert len(found.tables["history"]["step"]) > 5
     assert set(found.tables["line"]["state"]) == ({"last"} if law else {"peak", "unloaded"})
-
-
-def test_back_stresses_move_too_and_their_passes_are_judged():
-    law = {"law": "perfect", "yield_stress": SWIFT_YIELD, "kinematic": {"modulus": (10.5e9,)}}
-    found = sam.solve(moving({"steps": 1}, track=1.0, plasticity=law, loading={"cycles": 4}))
-    assert found.converged and found.verdict is not None
-    assert len(found.tables["passes"]["new_strain_max"]) == 4
-    assert found.tables["cycles"]["new_strain_max"][1] > 0
 
 
 # rough bodies
@@ -375,22 +327,6 @@ def sliding(surface, *, body=None, **loading) -> Scene:
         grid={"cells": (CELLS, CELLS), "extent": (SIDE, SIDE), "border": "relief"},
         solver={"tolerance": 1e-4},
     )
-
-
-def test_a_wave_carries_its_pressure_with_it():
-    """A crest across a smooth body, in steps of whole cells: the same pressure, further on."""
-    wave = of_wave(48) | {"wavelength_y": 2 * SIDE}
-    ends = (
-        {"start": (-2 * CELL, 0.0), "end": (2 * CELL, 0.0)},
-        {"start": (-4 * CELL, 0.0), "end": (0.0, 0.0)},
-    )
-    whole, half = (sam.solve(sliding(wave, path=each | {"steps": 2})) for each in ends)
-    history = whole.tables["history"]
-    assert whole.converged and len(history["s_m"]) == 3
-    for name in ("surface", "line"):  # only the middle of the way counts
-        np.testing.assert_array_equal(whole.tables[name]["p_Pa"], half.tables[name]["p_Pa"])
-    np.testing.assert_allclose(history["p_max_Pa"], history["p_max_Pa"][0], rtol=1e-6)
-    np.testing.assert_allclose(history["pressure_offset_m"], [-2 * CELL, 0, 2 * CELL], atol=1e-3 * CELL)
 
 
 def test_a_body_that_yields_only_further_along_the_path():

@@ -17,13 +17,10 @@ from pathlib import Path as FilePath
 import numpy as np
 import pytest
 from builders import (
-    GIVEN,
     HARDENING,
     PATH,
     SPHERE_TEXT,
     YIELD_CURVE as CURVE,
-    friction_text,
-    given_pressure,
     parsed,
     scene_text,
 )
@@ -35,11 +32,9 @@ from sam.scene import (
     Body,
     Coating,
     CounterBody,
-    Friction,
     Grid,
     Inputs,
     Loading,
-    Path,
     Plasticity,
     Scene,
     SceneError,
@@ -85,15 +80,6 @@ def test_what_is_no_scene_is_refused_and_nothing_is_created(folder, refused, tex
 def test_every_command_refuses_a_malformed_scene(folder, refused, name):
     (folder / "bad.toml").write_text(young("3"))
     assert "body.young = 3" in refused(name, "bad.toml")
-
-
-def test_a_malformed_scene_in_a_process_of_its_own(folder):
-    (folder / "bad.toml").write_text(young('"210 mm"'))
-    command = [sys.executable, "-m", "samfem.cli", "solve", "bad.toml"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 2 and done.stdout == "" and "Traceback" not in done.stderr
-    assert 'body.young = "210 mm"' in done.stderr and "a pressure as a string" in done.stderr
-    assert [entry.name for entry in folder.iterdir()] == ["bad.toml"]
 
 
 def test_files_that_cannot_be_read_as_text(folder, samfem):
@@ -236,18 +222,6 @@ def test_python_takes_si_floats_or_strings_with_units():
         scene.body.young = 1.0
 
 
-def test_resolved_is_complete_and_reads_back():
-    add = 'unload = true\n[grid]\ncells = [65, 33]\ndepths = ["0 um", "0.5 um"]\n[fem]\nbox = 6\n'
-    content = resolved(parsed(add=add))
-    assert Scene(**content) == parsed(add=add)
-    assert content["grid"]["cells"] == [65, 33] and content["grid"]["depths"] == [0.0, 0.5e-6]
-    assert content["fem"] == {"cells_per_radius": 16, "box": 6.0} and content["solver"]["tolerance"] == 1e-6
-    given = parse_scene(given_pressure(GIVEN + PATH + "cycles = 3\n").encode(), "s")
-    assert given.counterbody is None and (given.loading.p0, given.loading.radius) == (4e9, 6e-6)
-    assert given.loading.path == Path(start=(-9e-6, 0.0), end=(9e-6, 0.0), steps=4)
-    assert Scene(**resolved(given)) == given
-
-
 def test_a_shipped_scene_is_written_as_a_file_that_gives_it_again(tmp_path):
     """Also of a map of heights and rows that it names, and of infinity; without what is at its default."""
     for path in SHIPPED:
@@ -278,19 +252,6 @@ def test_a_spelled_number_is_read_as_the_same_float(number, unit):
     assert float(units.in_unit(units.spelled(number, unit), unit)) == number
 
 
-def test_defaults():
-    assert Grid(cells=(65, 65)).extent is None and Grid(extent=(1e-5, 1e-5)).cells is None
-    assert parsed(("0.65 N", "0 N")).loading.force == 0.0 and parsed().coefficient == 0.0
-    assert CounterBody(shape="sphere", radius=2.0).radii == (2.0, 2.0)
-    assert CounterBody(shape="ellipsoid", radius_x=2.0, radius_y=3.0).radii == (2.0, 3.0)
-    assert not CounterBody(shape="sphere", radius=2.0).elastic
-    assert CounterBody(shape="sphere", radius=2.0, young=1e9, poisson=0.2).elastic
-    rubbed = parse_scene(friction_text("coefficient = 0.2").encode(), "s")
-    assert rubbed.friction == Friction(coefficient=0.2) and rubbed.coefficient == 0.2
-    assert rubbed.friction.coupling and rubbed.friction.direction == "constant"
-    assert Friction(coefficient=0, coupling=False, direction="alternating").coefficient == 0.0
-
-
 def test_load_scene_reads_a_file_with_a_byte_order_mark(tmp_path):
     path = tmp_path / "scene.toml"
     path.write_bytes(b"\xef\xbb\xbf" + SPHERE_TEXT.encode())
@@ -310,19 +271,6 @@ def write(folder: FilePath, text: str, **files: str) -> FilePath:
         (folder / f"{name}.csv").write_text(content)
     (folder / "bad.toml").write_text(text, encoding="utf-8")
     return folder / "bad.toml"
-
-
-def test_all_errors_of_a_plastic_scene_and_its_files_are_reported_at_once(folder):
-    law = 'law = "table"\nB = "1 Pa"\nmodulus = 3\nfile = "curve.csv"\nprofile = "p.csv"\nlayer = 1\n'
-    text = plastic(law).replace("0.3", "0.5") + '[wear]\n[solver]\nstop = "strain"\n'
-    write(folder, text, curve="peeq,yield_stress_Pa\n0,x\n0.1,2e9\n0,1e9\n", p="depth_m\n")
-    with pytest.raises(SceneError) as caught:
-        load_scene("bad.toml")
-    found = {problem.key.removeprefix("body.plasticity.") for problem in caught.value.problems}
-    of_others = {"body.poisson", "wear.strain_limit", "loading.unload", "solver.stop"}
-    assert found == {"B", "modulus", "file", "profile", "layer", "layer_thickness"} | of_others
-    (in_curve,) = (str(problem) for problem in caught.value.problems if problem.key.endswith(".file"))
-    assert "line 2" in in_curve and "line 4: peeq = 0 after 0.1" in in_curve and "softening" in in_curve
 
 
 def test_the_python_in_the_refusal_of_a_noisy_curve_writes_the_nearest_one_that_rises(folder):
