@@ -24,11 +24,6 @@ def close(expected, rel: float = 1e-14):
     return pytest.approx(expected, rel=rel, abs=0)
 
 
-def of_sum(terms) -> float:
-    """n eps sum |x|: a sum, or a scalar product with these n products, in any order (section 4.2)."""
-    return np.size(terms) * EPS * float(np.abs(terms).sum())
-
-
 def of_least_squares(matrix: np.ndarray) -> float:
     """Of the norm of a solution by QR or SVD: longer side of the matrix, eps and condition (chapter 20)."""
     return max(matrix.shape) * EPS * float(np.linalg.cond(matrix))

@@ -64,20 +64,6 @@ def solve_but_die(scene, model, code, *how):
     return die() if scene.loading.force == SPECIAL else solve_scene(scene, model, code, *how)
 
 
-def solve_but_raise(scene, model, code, *how):
-    """The solver of the special scene raises."""
-    from samfem.sweeping import solve_scene
-    from verification.runs import models
-
-    if scene.loading.force != SPECIAL:
-        return solve_scene(scene, model, code, *how)
-    original, models.solve = models.solve, lambda *_, **__: fail(0.0)
-    try:
-        return solve_scene(scene, model, code, *how)
-    finally:
-        models.solve = original
-
-
 def solved(asked):
     """The results of pairs (scene, model)."""
     from verification.runs import models

@@ -241,7 +241,7 @@ def test_area_behind_a_straight_edge_is_exact():
 
 
 def test_far_fields_are_those_of_point_forces():
-    """As the references of Boussinesq and Cerruti, whose stresses balance the force; a slanted one is the sum."""
+    """As the references, whose stresses balance the force; a slanted force is the sum of both."""
     points, body = np.array([[0.7, 0.0, -0.5], [-0.4, 0.0, 0.2], [0.3, 1.0, 0.3]]), Elastic(2.5, POISSON)
     normal, along = (
         of(*points, 1.0, young=2.5, nu=POISSON).T for of in (boussinesq_displacement, cerruti_displacement)

@@ -69,12 +69,6 @@ def test_a_process_measures_its_own_memory_and_one_thread(idle):
     assert alone(os.getenv, THREADS[0]) == "1" and {name: os.environ.get(name) for name in THREADS} == before
 
 
-def test_a_rung_is_measured(idle, monkeypatch):
-    monkeypatch.setattr(growth, "REPEATS", 1)
-    made = growth.measured_at(growth.square("elastic", (33,), "hertz-sphere", **growth.ONE_STEP)[0], idle)
-    assert made["converged"] and made["size"] == 33**2 and made["cpu-s"] > 0 and made["memory"] > 0
-
-
 def test_more_iterations_for_a_softer_layer_a_film_and_another_plane():
     def further(**keys) -> float:
         ready = running_in(cycles=8, **keys)
@@ -130,12 +124,6 @@ def test_every_count_has_a_factor():
             found = estimates.counted(rung.scene, rung.model)
             assert found.bytes.keys() <= estimates.MEMORY[rung.model].keys()
             assert found.work.keys() <= estimates.TIME[rung.model].keys()
-
-
-def test_a_box_is_applied():
-    box = growth.applied(6, 5, 3)
-    assert box["cells"] == 90 and box["set-up-s"] > 0 and box["cpu-s"] > 0
-    assert box["stored"] >= 36 * 9 * 30 * 4
 
 
 def synthetic(power: float = 1.0) -> tuple[dict, dict]:

@@ -78,25 +78,6 @@ def test_published_pages_are_sound_small_and_lead_to_each_other(published):
     assert max(sizes) < 2 * MEGABYTE and sum(sizes) < 15 * MEGABYTE
 
 
-@pytest.mark.parametrize(
-    ("text", "fault"),
-    [
-        ("<h1>A</h1><p><table></table></p>", "<table> in a paragraph"),
-        ("<h1>A</h1><h3>B</h3>", "a heading of level 3"),
-        ('<h1>A</h1><img src="a.png" alt="">', "a.png without a text"),
-        ('<h1 id="a">A</h1><p id="a"></p>', "id a twice"),
-        ("<h1>A</h1><script></script>", "a script"),
-    ],
-)
-def test_a_fault_is_seen(text, fault):
-    assert any(each.startswith(fault) for each in faults_of(PageReader(text)))
-
-
-def test_a_broken_link_is_seen(tmp_path):
-    page = PageReader('<h1 id="here">A</h1><a href="#here"></a><a href="none.html"></a><a href="#there"></a>')
-    assert broken_links({"a.html": page}, tmp_path) == ["a.html: none.html", "a.html: #there"]
-
-
 def test_words_stay_words_and_nothing_of_a_formula_is_lost():
     for case in all_cases().values():
         for _, line, _ in case.equations:

@@ -131,13 +131,6 @@ def test_what_is_unknown_is_exit_code_2_and_nothing_is_created(tmp_path, monkeyp
     assert said in capsys.readouterr().err and list(tmp_path.iterdir()) == []
 
 
-def test_folder_with_other_files_is_left_alone(tmp_path):
-    (tmp_path / "figures").mkdir()
-    (tmp_path / "figures" / "holiday.png").write_bytes(b"x")
-    assert run(tmp_path, "good") == 2
-    assert [path.name for path in tmp_path.rglob("*") if path.is_file()] == ["holiday.png"]
-
-
 def test_earlier_report_is_replaced(tmp_path):
     out = tmp_path / "out"
     run(out, "good")
@@ -204,28 +197,6 @@ def test_a_full_disk_ends_the_report_in_one_error(tmp_path, monkeypatch, capsys)
     (tmp_path / "file").touch()
     assert main(["verify", "--out", str(tmp_path / "file")]) == 2
     assert "no folder that can be written to" in capsys.readouterr().err
-
-
-def test_what_it_takes_is_said_before_and_what_a_case_found_as_it_ends(tmp_path, monkeypatch, capsys):
-    costs = {
-        "good": Cost(60.0, 70.0, 3.0, 4.0),
-        "bad": Cost(30.0, 50.0, 1.0, 0.0),
-        "broken": Cost(*4 * [0.0]),
-    }
-    monkeypatch.setattr(forecast, "costs_at", lambda level: costs)
-    run(out := tmp_path / "out")
-    said = capsys.readouterr().out.splitlines()
-    assert said[:4] == [
-        "3 cases with 4 of the 5 gates, quick level.",
-        "Estimate: 90 s in one process, 2 min of processor time; "
-        "disk: 4 MB in the report, 4 MB in the store.",
-        f"Pages of the cases that have ended: {out / 'unfinished/index.html'}; "
-        f"the whole report: {out / 'index.html'}",
-        "To run less, name cases: make report CASES=hertz-sphere, or samfem verify hertz-sphere",
-    ]
-    ended = [line.rpartition(", ")[0] for line in said[4:7]]
-    assert ended[:2] == ["1 of 3: good: 2 gates passed", "2 of 3: bad: 0 gates passed, 1 failed"]
-    assert ended[2].startswith("3 of 3: broken: 0 gates passed, 1 failed, broke off: RuntimeError: <b>no</b>")
 
 
 def test_the_time_that_is_left_is_at_the_pace_of_the_cases_that_ended(monkeypatch):
@@ -313,21 +284,6 @@ def test_a_picture_in_space_is_on_the_page_or_why_the_machine_cannot_draw_it(tmp
         assert len(page.all("img")) == count and ("figures/good-space.png" in links) is (how is draw)
         assert not links & {"", "figures/good-space.csv"}
         assert ("No pictures in space: install EGL." in page.text) is (how is cannot)
-
-
-def test_page_says_what_held_and_why(tmp_path):
-    run(tmp_path / "out")
-    index = page_of(tmp_path / "out", "index.html").text
-    assert "2 of 4 gates hold, 2 failed" in index
-    assert "3 of the 4 cases ran; the others: 1 of the full level (--level full)." in index
-    text = page_of(tmp_path / "out").text
-    assert "2 of 3 cases failed." in text and "Not in this report" in text
-    places = [text.index(f"{each} case") for each in ("Bad", "Good", "Slow")]
-    assert places == sorted(places)
-    said = ("Does it hold?", "because of two", "Force", "a<b&c", "not a finite number", "scene.toml", "Small")
-    assert [words for words in said if words not in text] == []
-    raw = (tmp_path / "out" / "other.html").read_text(encoding="utf-8")
-    assert "<b>no</b>" not in raw and "&lt;b&gt;no&lt;/b&gt; convergence" in raw
 
 
 def test_junit_has_one_testcase_a_gate(tmp_path):

@@ -13,9 +13,7 @@ from made_results import red
 
 from sam.scene import Status
 from verification.cases.robustness.stability import CASES, Matrix
-from verification.reference.coated_sphere import thin_layer
 from verification.reference.hertz import CircularContact
-from verification.references import layers_of
 from verification.robustness.matrix.checks import Bench, Trial, check_of
 from verification.robustness.matrix.rows import (
     ABSENT,
@@ -30,14 +28,10 @@ from verification.robustness.matrix.rows import (
     topics,
 )
 from verification.robustness.matrix.scenes import (
-    HERTZ,
     PATCH,
-    RADIUS as SPHERE,
     SIDE,
     heights,
-    other,
     scene_with,
-    wide,
 )
 from verification.runs import models
 from verification.runs.models import FEM, FEM_3D, SAM
@@ -229,16 +223,6 @@ def test_a_check_tells_right_from_wrong(said, given, right, wrong):
     )
 
 
-def test_a_thin_film_is_squeezed_as_its_closed_form():
-    """The contact radius at which its force is that of the scene."""
-    thin = scene_with({"body.coating": {"thickness": 1e-8, "young": 1e6, "poisson": 0.2}, "grid": "none"})
-    largest, force = thin_layer(layers_of(thin), SPHERE, 2e-6)
-    thin = other(thin, {"loading.force": force})
-    said = ["thin film", {"p_center_Pa": 1e-9, "approach_m": 1e-9}]
-    assert worst(said, thin, of(p_center_Pa=largest, approach_m=2e-12 / SPHERE)) <= 1
-    assert worst(said, thin, of(p_center_Pa=largest, approach_m=2.001e-12 / SPHERE)) > 1
-
-
 @pytest.mark.parametrize("power", [1, 2])
 def test_a_linear_problem_has_equal_increments(power):
     def twin(scene, _):
@@ -249,18 +233,6 @@ def test_a_linear_problem_has_equal_increments(power):
 
     assert (worst("all-touch", scene(), result(0), twin) <= 1) == (power == 1)
     assert worst("all-touch", scene(), result(1), twin) > 1
-
-
-@pytest.mark.parametrize(("target", "model", "force"), [({"loading.force": 2.0}, SAM, 2.0), (FEM, FEM, 0.65)])
-def test_another_scene_or_model_is_asked_for(target, model, force):
-    asked = []
-
-    def twin(scene, model):
-        asked.append((model, scene.loading.force))
-        return of(p_max_Pa=2.0)
-
-    found = [worst([target, {"p_max_Pa": 0.1}], scene(), of(p_max_Pa=p), twin) for p in (2.1, 2.3)]
-    assert asked == 2 * [(model, force)] and found == pytest.approx([0.5, 1.5])
 
 
 ROUGH = scene_with(
@@ -289,17 +261,6 @@ def test_a_twin_has_the_same_contact(said, twin):
         worst(said, ROUGH, pressed(ROUGH), same) == 0
         and worst(said, ROUGH, pressed(ROUGH, more=1e-5), same) > 1
     )
-
-
-def test_layers_grow_below_the_first():
-    found = wide(4.0, 8, 2.0, even=2)
-    assert found["cells"] == (8, 8) and found["extent"] == (4 * HERTZ, 4 * HERTZ)
-    assert np.divide(found["depths"], HERTZ / 2) == pytest.approx([0, 1, 2, 3.2, 4.64])
-
-
-def test_a_check_that_compares_nothing_is_wrong():
-    empty = replace(ROWS["poisson-0"], expected={SAM: ["right", "no reason"]})
-    assert judge(empty, SAM, Bench()).text == "nothing was compared"
 
 
 def test_a_cell_without_verdict_a_kind_without_row_and_an_error_without_reason_turn_red(some):

@@ -18,7 +18,7 @@ from stored import BOTH, COARSE, flipped, same
 from sam.plasticity.spectra import spectra_of
 from sam.scene import Scene, Section, Status, load_scene, read_scene, resolved
 from verification.runs import checkpoints, models, store
-from verification.runs.archive import DIGEST, read_archive, write_archive
+from verification.runs.archive import DIGEST
 from verification.runs.code_version import OF_CASES, ROOT, code_version, version_of_cases
 from verification.runs.files import FolderError, json_text, write_run
 from verification.runs.store import (
@@ -224,16 +224,6 @@ def test_no_flipped_byte_and_no_shortened_file_gives_another_result(kept, coarse
         assert found.result is None and found.note.startswith("damaged: ") and str(path) in found.note
 
 
-def test_a_damaged_entry_is_solved_again(kept, counted):
-    for entry in kept.entries():
-        flipped(entry.path, entry.size // 2)
-    assert [entry.state for entry in kept.entries()] == ["damaged", "damaged"]
-    _, reuse = solve_or_reuse(kept, COARSE, models.SAM)
-    assert counted == [models.SAM] and reuse.text.startswith("damaged: ")
-    assert reuse.text.endswith(": computed again")
-    assert sorted(entry.state for entry in kept.entries()) == ["current", "damaged"]
-
-
 def test_an_entry_under_another_name_is_damage(kept):
     (sam,), (fem,) = ([entry.path for entry in kept.entries() if entry.what == model] for model in BOTH)
     shutil.copy(fem, sam)
@@ -263,14 +253,6 @@ def test_right_checksums_of_the_container_are_not_enough(kept, save, change, wor
     assert sorted(entry.state for entry in kept.entries()) == ["current", "damaged"]
 
 
-@pytest.mark.parametrize("content", [3, {"Outcome": []}])
-def test_an_entry_with_other_content_is_damage(kept, content):
-    (path,) = [entry.path for entry in kept.entries() if entry.what == models.SAM]
-    inside, values = read_archive(path)
-    write_archive(path, inside, values | {"content": content})
-    assert kept.lookup(COARSE, models.SAM).note.startswith("damaged: ")
-
-
 # faults and company
 
 
@@ -292,28 +274,6 @@ def test_a_store_that_cannot_be_written_costs_one_warning_and_no_result(
     message = capsys.readouterr().err
     assert message.count("\n") == 1 and f"warning: store {own.folder}: {why}" in message and FOLDER in message
     assert own.entries() == [] and own.left_over() == []
-
-
-def _keep_and_look(folder: Path, result, turns: int) -> None:
-    own = Store(folder)
-    for _ in range(turns):
-        own.keep(COARSE, models.SAM, result)
-        if own.lookup(COARSE, models.SAM).result is None:
-            os._exit(3)
-
-
-def test_processes_that_keep_the_same_key_all_succeed(tmp_path, coarse_results):
-    fork = multiprocessing.get_context("fork")
-    crowd = [
-        fork.Process(target=_keep_and_look, args=(tmp_path, coarse_results[models.SAM], 8)) for _ in range(3)
-    ]
-    for process in crowd:
-        process.start()
-    for process in crowd:
-        process.join(20)
-    assert [process.exitcode for process in crowd] == [0, 0, 0]
-    assert [entry.state for entry in Store(tmp_path).entries()] == ["current"]
-    assert len(list(tmp_path.iterdir())) == 1
 
 
 def _keep_and_die(folder: Path, result) -> None:

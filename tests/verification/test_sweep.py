@@ -8,7 +8,6 @@ import csv
 import importlib
 import json
 import os
-import signal
 import subprocess
 import sys
 import time
@@ -267,14 +266,6 @@ def test_a_scene_that_kills_every_worker_is_a_row(folder, no_figure, monkeypatch
     assert f"scene 2: failed: {WORKER_DIED}" in capsys.readouterr().err
 
 
-@pytest.mark.usefixtures("same_worker")
-def test_a_scene_whose_solver_raises_is_a_row(folder, no_figure, monkeypatch):
-    monkeypatch.setattr(sweeping, "solve_scene", functions.solve_but_raise)
-    sweep_of("out", "--no-runs", code=1)
-    assert [row["status"] for row in table("out")] == ["converged", "converged", "failed", "converged"]
-    assert table("out")[2]["reason"] == "ZeroDivisionError: on purpose"
-
-
 def test_a_worker_computes_with_its_own_version_only(folder):
     scene = read_study("study.toml").points[0].scene
     outcome = sweeping.solve_scene(scene, "sam", "another")
@@ -301,13 +292,6 @@ def test_tasks_run_in_processes_with_one_thread_each_and_leave_ours_alone(monkey
 
 def test_a_task_that_raises_is_a_failure_with_its_words(pool):
     assert outcomes(pool, functions.fail, {0: (1.0,)}) == {0: Failure("ZeroDivisionError: on purpose")}
-
-
-def test_a_worker_that_is_killed_while_idle_is_replaced():
-    with Processes(1) as workers:
-        os.kill(workers.submit(functions.process_id).result(), signal.SIGKILL)
-        time.sleep(0.2)
-        assert workers.submit(functions.double, 3).result() == 6.0 and workers.lost == 1
 
 
 class Neighbours:
