@@ -13,8 +13,8 @@ from fem_reference.axisymmetric.model import Model, build
 from fem_reference.axisymmetric.planner import plan
 from fem_reference.axisymmetric.solution import METHOD as AXISYMMETRIC
 from fem_reference.common import loading, solution
-from fem_reference.common.loading import Progressed, Step, climb, follow, run
-from fem_reference.common.schedule import Load, Target, unloading
+from fem_reference.common.loading import Step, run
+from fem_reference.common.schedule import Load
 from fem_reference.spatial.solution import METHOD as SPATIAL
 from sam.scene import Status
 
@@ -76,19 +76,6 @@ def test_the_mesh_has_a_line_where_the_yield_stress_has_a_kink(monkeypatch, thic
 
 
 # --- unloading and halved steps ---
-
-
-def test_one_elastic_step_equals_unloading_in_steps():
-    """The same displacements either way, with no plastic strain on the way."""
-    model, steps = loaded()
-    peak = steps[-1].state
-    (single_step,) = follow(model, Progressed(peak, [unloading(5, Target(peak.load))]))
-    slowly = climb(model, [peak.force * share for share in (0.8, 0.6, 0.4, 0.2, 0.0)], peak)
-    assert single_step.note == loading.ELASTIC_UNLOADING
-    assert np.array_equal(slowly[-1].state.history.peeq, peak.history.peeq)
-    assert np.abs(slowly[-1].state.u - single_step.state.u).max() < 1e-9 * np.abs(single_step.state.u).max()
-    sizes = [step.state.active.sum() for step in slowly]
-    assert sizes == sorted(sizes, reverse=True)
 
 
 def test_reverse_yielding_is_found_and_unloaded_in_steps():

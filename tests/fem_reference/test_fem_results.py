@@ -170,10 +170,7 @@ def test_refusals_name_the_key():
     for made, words in (
         (scene(counter=ellipsoid), r'counterbody\.shape = "ellipsoid".*"sphere" or "punch"'),
         (scene(poisson=0.5), r"body\.poisson = 0\.5.*poisson < 0\.5"),
-        (
-            scene(counter=ellipsoid | soft, poisson=0.5),
-            r"counterbody\.shape.*; body\.poisson.*; counterbody\.po",
-        ),
+        (scene(counter=ellipsoid | soft, poisson=0.5), r"counterbody\.shape.*; body\.poisson.*;"),
     ):
         for asked in (fem_reference.check, fem_reference.solve):
             with pytest.raises(fem_reference.UnsupportedScene, match=words):

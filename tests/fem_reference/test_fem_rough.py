@@ -59,55 +59,6 @@ def friction_map(values):
     return {"law": "map", "path": FrictionMap(values, (SIDE, SIDE))}
 
 
-def halves(n):
-    """A map: 0.1 for x < 0, 0.4 beyond."""
-    return friction_map(np.where(np.arange(n)[:, None] < n // 2, 0.1, 0.4) * np.ones((1, n)))
-
-
-@cache
-def solved():
-    """Two spots on 14 x 14 cells."""
-    scene = rough(14)
-    return scene, spatial.solve(scene)
-
-
-@cache
-def at_peak():
-    """Model and last state of the two spots with a map of friction, on coarse cells."""
-    model, steps = spatial.load_steps(rough(12, friction=halves(12)))
-    return model, steps[-1].state
-
-
-def test_the_cut_goes_through_the_largest_pressure():
-    """It is the mean of the elements on both sides of that row, as they are in the fields."""
-    _, result = solved()
-    surface, cut, plane = (result.tables[name] for name in ("surface", "cut", "plane"))
-    top, pitch = int(np.argmax(surface["p_Pa"])), SIDE / 14
-    assert cut["y_m"] == pytest.approx(np.full(len(cut["y_m"]), surface["y_m"][top]), abs=1e-12)
-    assert max(plane["mises_Pa"]) < max(cut["mises_Pa"]) <= result.quantities["mises_max_Pa"]
-    fields = result.fields
-    middles = fields.points[fields.cells["hexahedron"]].mean(axis=1)
-    beside = np.abs(middles[:, 1] - surface["y_m"][top]) < 0.6 * pitch
-    for x, z, szz in list(zip(cut["x_m"], cut["z_m"], cut["szz_Pa"], strict=True))[::37]:
-        at = beside & (np.hypot(middles[:, 0] - x, middles[:, 2] - z) < 1e-3 * pitch)
-        assert at.sum() == 2
-        assert fields.cell_data["stress_Pa"][at, 2].mean() == pytest.approx(szz, rel=1e-9, abs=1.0)
-    assert result.quantities["p_center_Pa"] is None  # a patch has no centre
-    assert not result.quantities["friction_coefficient"] and np.nanmax(surface["friction"]) == 0.0
-
-
-def test_spots_share_and_mean_gap_by_hand():
-    """The gap of the heights and of the displacements of the surface."""
-    model, state = at_peak()
-    found, x = model.quantities_of_patch(state), centres(12)
-    depth = two_tops(x[:, None], x).max() - two_tops(x[:, None], x)
-    uz = state.u[model.body.basis.nodal_dofs[2, model.surface]][np.isfinite(model.initial_gap)]
-    moved = (uz.mean() - state.approach) * model.scales.displacement
-    assert found["mean_gap_m"] == close(depth.mean() + moved, 1e-9)
-    assert found["contact_spots"] == 2
-    assert found["contact_share"] == close(model.contact_area(state) / SIDE**2, 1e-12)
-
-
 def test_a_map_on_a_smooth_body_is_the_constant():
     """The whole body with a map of one value against half of it: equal to the accuracy of the loop."""
     content = {

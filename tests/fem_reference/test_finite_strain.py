@@ -193,22 +193,6 @@ def test_the_limit_of_a_small_load_is_the_model_of_the_scenes(kind):
         assert getattr(true, name) == pytest.approx(getattr(flat, name), rel=1e-5)
 
 
-@pytest.mark.parametrize("kind", ["sphere", "finite"])
-def test_nodes_in_contact_lie_on_the_sphere_and_push_along_its_normal(kind):
-    model = study.build(scene(3e-2, 6), kind)
-    state = study.load_to(model, [0.5, 1.0])[-1].state
-    problem, unit = model.problem, model.scales
-    x = problem.place(state.u) * unit.length
-    z = state.u[problem.normal[0]] * unit.displacement
-    centre = state.approach * unit.displacement - 1.0
-    distance = np.hypot(x, z - centre)
-    assert distance[state.active] == pytest.approx(1.0, abs=1e-13) and distance[~state.active].min() > 1.0
-    force = problem.respond(state.u, state.history).force
-    radial, vertical = force[problem.radial][state.active][1:], force[problem.normal[0]][state.active][1:]
-    assert radial / vertical == pytest.approx((x / (z - centre))[state.active][1:], rel=1e-6)
-    assert force[problem.normal[0]][state.active].sum() == pytest.approx(state.force, rel=1e-9)
-
-
 def test_a_state_that_is_turned_inside_out_is_not_converged():
     """Ten times the radius of the sphere in one step: an error of the step, no answer."""
     model = study.build(scene(1e3, 4), "finite")

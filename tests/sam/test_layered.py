@@ -419,10 +419,7 @@ def test_unloaded_and_without_force_nothing_is_left():
     ("body", "key"),
     [
         ({"coating": {"yield_stress": 0.67e9}}, r"body\.coating\.yield_stress = 6\.7e\+08"),
-        (
-            {"plasticity": {"law": "perfect", "yield_stress": 1e9}},
-            "body.coating together with body.plasticity",
-        ),
+        ({"plasticity": {"law": "perfect", "yield_stress": 1e9}}, "body.coating together with body"),
     ],
 )
 def test_yielding_is_refused_by_name(body, key):

@@ -32,7 +32,7 @@ from sam.grid.smooth import point_load_reach
 from sam.planner.bodies import SHAPES, given_sides, hertz_semi_axes
 from sam.planner.make import schedule_of
 from sam.plasticity import history, load_step as plastic_step
-from sam.plasticity.history import LONGER, committed, on_larger_grid
+from sam.plasticity.history import LONGER, on_larger_grid
 from sam.scene import Scene, Status
 from sam.scene.yield_curve import Swift
 from sam.schedule import Load
@@ -122,38 +122,6 @@ def test_the_first_box_does_not_matter(monkeypatch):
         assert other.quantities[name] == pytest.approx(right.quantities[name], rel=1e-4)
 
 
-def test_a_step_starts_from_the_last_one_without_an_operator():
-    """The change of a step is what the operator makes of its increment; scaled, it is where the next step
-    starts. A trial that did not converge is not committed.
-    """
-    a_scene = yielding(3, grid=FEW)
-    model, now = begin(a_scene)
-    problem, counters, force = model.problem(now.extent), model.counters, a_scene.loading.force
-    now = committed(model, now, problem.step(now.state, Load(0.5 * force)), None)
-    applied, iterations = counters.operator_applications, counters.plastic_iterations
-    change, guess = now.change, now.guess(Load(force))
-    assert guess.ratio == 1.0 and now.guess(Load(0.75 * force)).ratio == pytest.approx(0.5)
-    trial = problem.step(now.state, Load(force), guess=guess)
-    assert counters.operator_applications - applied == counters.plastic_iterations - iterations > 0
-    with pytest.raises(ValueError, match="did not converge"):
-        now.state.after(replace(trial, converged=False))
-    expected = problem.residual(problem.virgin().residual, change.increment.strain)
-    for name in ("displacement", "stress"):
-        found, right = getattr(change.residual, name), getattr(expected, name)
-        assert np.abs(found - right).max() <= 1e-6 * np.abs(right).max()
-    whole = trial.change(now.state)  # here as half of what is twice as large
-    twice = replace(whole.increment, points=whole.increment.points.each(lambda values: 2 * values))
-    half = replace(whole, increment=twice, residual=whole.residual.times(2), ratio=0.5)
-    done, start = counters.plastic_iterations, {"guess": half, "start": trial.pressure}
-    again = problem.step(now.state, trial.load, **start)
-    residual = trial.residual.displacement
-    assert counters.plastic_iterations == done
-    assert again.residual.displacement == pytest.approx(residual, abs=1e-12 * np.abs(residual).max())
-    unstressed = replace(start["guess"].residual, stress=0 * expected.stress)
-    problem.step(now.state, trial.load, **start | {"guess": replace(start["guess"], residual=unstressed)})
-    assert counters.plastic_iterations > done
-
-
 def test_unloading_in_steps_takes_equal_parts_of_the_force():
     loading = {"force": 0.4, "steps": 2, "unload_steps": 4}
     schedule = schedule_of(yielding(4, loading=loading))
@@ -209,22 +177,6 @@ def test_the_result_says_how_many_steps_needed_the_longer_iteration(monkeypatch)
     assert f"{sum(longer)} of {len(notes)} load steps" in " ".join(result.warnings)
     assert result.quantities["peeq_max"] == pytest.approx(usual.quantities["peeq_max"], rel=1e-3)
     assert result.cost["step_cuts"] == 0 and 0 in result.tables["residuals"]["accepted"]
-
-
-def test_a_worn_surface_that_does_not_settle_is_solved_longer(monkeypatch):
-    """After a removal there is no load to halve: the first iteration there is cut short."""
-    short, cut = plastic_step.Problem.step, []
-
-    def step(problem, state, load, **keys):
-        trial = short(problem, state, load, **keys)
-        if not keys and load.force == 0 and not problem.longer:
-            cut.append(load)
-            return replace(trial, converged=False)
-        return trial
-
-    monkeypatch.setattr(plastic_step.Problem, "step", step)
-    notes = sam.solve(running_in(cycles=1)).tables["history"]["note"]
-    assert cut and any(LONGER in note and "m3 removed" in note for note in notes)
 
 
 def test_the_loops_of_the_paper_know_no_longer_iteration(monkeypatch):

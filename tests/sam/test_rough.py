@@ -3,26 +3,21 @@
 and each other; borders, spots, and what is recorded.
 """
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from builders import LINEAR, MODULUS, STEEL, scene
+from builders import LINEAR, STEEL, scene
 
 from sam import UnsupportedScene, choose_grid, left_out, plan, solve
 from sam.contact.convolution import Counters
-from sam.plasticity import Extent, history
 from sam.results.rough import in_the_fall_off, too_few_cells
-from sam.scene import COUNTER_HEIGHT, CounterSurface, HeightMap, Scene, SceneError, Status, resolved
+from sam.scene import COUNTER_HEIGHT, CounterSurface, HeightMap, Scene, SceneError, Status
 from sam.scene.surface import heights
 from verification.cost.plan import plan as cost_plan
 from verification.runs import models
-from verification.runs.files import read_run, write_run
 from verification.runs.models import FEM, FEM_3D, ModelError
 
 FLAT, BALL = {"shape": "flat"}, {"shape": "sphere", "radius": 0.4e-3}
 R, F = 100e-6, 0.05
-A0 = (3 * F * R / (4 * MODULUS)) ** (1 / 3)
 SIDE = 20e-6
 WAVE = {"kind": "sinusoid", "amplitude": 0.1e-6, "wavelength_x": 10e-6, "wavelength_y": 8e-6}
 OTHER = {"kind": "self-affine", "sq": 20e-9, "cutoff_long": 16e-6, "cutoff_short": 8e-6, "hurst": 0.8}
@@ -41,10 +36,6 @@ def of_heights(height, n: int, side: float, counterbody=FLAT, force=F, **tables)
     surface = {"kind": "file", "path": HeightMap(height(x[:, None], x) + np.zeros((n, n)), (side, side))}
     loading = {"force": force} | tables.pop("loading", {})
     return scene(counterbody=counterbody, surface=surface, loading=loading, **tables)
-
-
-def paraboloid(x, y):
-    return -(x**2 + y**2) / (2 * R)
 
 
 def patch(n: int, force=0.6, **tables) -> Scene:
@@ -152,24 +143,6 @@ def test_what_the_fall_off_of_the_border_makes_is_said(outside, inside, words):
     assert bool(found) == bool(words) and words in found
 
 
-def test_surface_table_and_fields_hold_the_heights(tmp_path):
-    given = of_heights(lambda x, y: paraboloid(x, 1.4 * y), 12, 4 * A0, loading={"unload": True})
-    result = solve(given)
-    write_run(result, given, tmp_path / "run")
-    run = read_run(tmp_path / "run")
-    table = run.tables["surface"]
-    assert list(table) == ["state", "x_m", "y_m", "height_m", "p_Pa", "worn_m", "friction"]
-    assert len(table["x_m"]) == 2 * 144
-    expected = paraboloid(table["x_m"], 1.4 * table["y_m"])
-    assert np.allclose(table["height_m"], expected, rtol=0, atol=1e-20)
-    peak, h = table["state"] == "peak", 4 * A0 / 12
-    assert table["p_Pa"][peak].sum() * h**2 == pytest.approx(F, rel=1e-9) and not table["p_Pa"][~peak].any()
-    assert np.array_equal(np.isfinite(table["friction"]), table["p_Pa"] > 0) and not table["worn_m"].any()
-    assert run.summary["scene"] == resolved(given) and run.scene == given
-    assert result.fields.cell_data["height_m"][:144] == pytest.approx(table["height_m"][:144])
-    assert not (tmp_path / "run" / "cycles.csv").exists()
-
-
 def test_depths_are_fine_near_the_surface_and_reach_an_eighth_of_the_side():
     depths = choose_grid(patch(64)).depths
     steps = np.diff(depths)
@@ -186,26 +159,6 @@ def test_a_tolerance_that_cannot_be_met_is_not_called_converged(monkeypatch):
     monkeypatch.setattr("sam.elastic.problem.REACHED", 1e-18)
     result = solve(given)
     assert result.status is Status.NOT_CONVERGED and "stagnated" in result.message
-
-
-def test_contact_outside_of_the_plastic_box_is_found(monkeypatch):
-    """Two equal summits, and a first box about one of them: each carries half, to 1e-8 (measured 1e-9)."""
-    first = history.first_extent
-
-    def about_one(*arguments, **keys) -> Extent:
-        extent = first(*arguments, **keys)
-        window = extent.window
-        return replace(extent, window=replace(window, nx=window.nx // 2))
-
-    monkeypatch.setattr(history, "first_extent", about_one)
-    summits = np.maximum(
-        *(paraboloid(centres(32, SIDE)[:, None] + x, centres(32, SIDE)) for x in (-5e-6, 5e-6))
-    )
-    tables = {"body": {"plasticity": LINEAR}, "grid": {"depths": FACES}, "solver": {"tolerance": 1e-5}}
-    result = solve(of_heights(lambda x, y: summits, 32, SIDE, force=0.04, loading={"steps": 2}, **tables))
-    p = column(result, "surface", "p_Pa").reshape(32, 32)
-    assert result.converged and result.quantities["peeq_max"] > 4e-3
-    assert np.abs(p - p[::-1]).max() < 1e-8 * p.max()
 
 
 # a rough counter-body

@@ -13,8 +13,7 @@ import sam
 from sam.contact.box import BoxContact
 from sam.contact.convolution import Counters
 from sam.contact.operators import SurfaceOperators
-from sam.grid.cells import Window
-from sam.plasticity import Extent, history
+from sam.plasticity import history
 from sam.scene import FrictionMap, Status
 from sam.scene.surface import border_cells, heights, mean_deviation, with_relief
 from verification.cost.plan import plan
@@ -139,24 +138,3 @@ def test_a_new_film_without_friction_forgets_the_traction_of_the_cycle_before(mo
     alone = pressure(replace(model.built.problem.pressure, contact=BoxContact(bare, extent.window)))
     assert np.abs(new - alone).max() <= 1e-7 * alone.max()
     assert np.abs(with_failures - alone).max() > 0.01 * alone.max()
-
-
-def test_a_history_whose_box_grows_is_that_of_the_whole_grid(monkeypatch):
-    """With a film, whose cells fail in steps that have not converged: to 1e-7 at a tolerance of 1e-6
-    (measured 8e-9; 3e-7 where the steps on a larger box begin without the guess of the smaller one).
-    """
-    first, boxes, results = history.first_extent, [], []
-
-    def small(grid, *arguments, **keys) -> Extent:
-        extent = first(grid, *arguments, **keys)
-        return replace(extent, window=Window(4, 5, 9, 9) if not boxes else grid.whole)
-
-    monkeypatch.setattr(history, "first_extent", small)
-    given = running_in(counterbody=STEEL, steps=2)
-    given = given.model_copy(update={"solver": given.solver.model_copy(update={"tolerance": 1e-6})})
-    for _ in range(2):
-        results.append(sam.solve(given).quantities)
-        boxes.append(1)
-    grown, whole = results
-    for name in ("p_max_Pa", "peeq_max", "wear_volume_m3", "friction_coefficient", "residual_mises_max_Pa"):
-        assert grown[name] == pytest.approx(whole[name], rel=1e-7), name

@@ -3,13 +3,10 @@
 name stand in test_refused.
 """
 
-import difflib
 import hashlib
 import json
 import os
 import pickle
-import subprocess
-import sys
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path as FilePath
@@ -123,18 +120,6 @@ unload_steps = 0
     assert {"friction.direction", "wear"} <= {each.key for each in caught.value.problems}
 
 
-def test_many_unknown_keys_are_compared_with_the_known_ones_up_to_those_that_are_shown(monkeypatch):
-    compared, near = [], difflib.get_close_matches
-    monkeypatch.setattr(
-        difflib, "get_close_matches", lambda name, *a, **k: compared.append(name) or near(name, *a, **k)
-    )
-    keys = "".join(f"yuong_{k} = 1\n" for k in range(300))
-    with pytest.raises(SceneError) as caught:
-        parse_scene(scene_text(("[body]\n", f"[body]\n{keys}")).encode(), "bad.toml")
-    assert str(caught.value).count("did you mean young?") == 100 == len(set(compared))
-    assert str(caught.value).endswith("and 200 more") and len(caught.value.problems) == 300
-
-
 # units
 
 
@@ -184,22 +169,6 @@ def test_a_prefix_is_the_factor_of_pint(unit):
         quantity = registry.Quantity(Decimal(1), registry.Unit(f"{prefix}{unit}"))
         assert quantity.to(unit).magnitude == Decimal(10) ** power == units._factor(f"{prefix}{unit}", unit)
     assert units._factor("Pa", "m") is None and units._factor("inch", "m") == Decimal("0.0254")
-
-
-def test_units_are_read_where_there_is_no_proc():
-    """dask, which pint loads where it is installed, asks psutil for the cores; psutil then knows of no
-    process.
-    """
-    program = (
-        "import psutil\n"
-        "def none(self, *_): raise psutil.NoSuchProcess(1)\n"
-        "psutil.Process.__init__ = none\n"
-        "from sam.scene.units import in_unit\n"
-        "print(int(in_unit('105 um', 'nm')))\n"
-        "import sys; print('dask' in sys.modules)"
-    )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
-    assert (done.stdout.split(), done.returncode) == (["105000", "False"], 0), done.stderr
 
 
 # what is read, and read back

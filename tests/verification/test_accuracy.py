@@ -134,18 +134,6 @@ def test_what_more_cells_cannot_help_is_said():
     assert result.discretisation["accuracy"]["reached"] and result.uncertainty["p_max_Pa"]["u_box"] > 0.0
 
 
-def test_load_steps_that_are_cut_differently_are_made_more():
-    """With 3 of them one is cut."""
-
-    def solver(scene):
-        result = made(scene, 1.0, 0.0)
-        return Result(**vars(result) | {"cost": {"step_cuts": int(scene.loading.steps == 3)}})
-
-    result, _ = searched(asked(0.05), solver)
-    assert result.discretisation["accuracy"]["reached"]
-    assert result.uncertainty["peeq_max"]["steps"] == [9, 6, 4]
-
-
 @pytest.mark.parametrize(
     "tables, words",
     [

@@ -33,8 +33,6 @@ from verification.checks import (
 )
 from verification.checks.certificates import common, solved
 from verification.checks.material import around, back_stress, flow_of
-from verification.reference.hertz import CircularContact
-from verification.reference.point_loads import cerruti_displacement
 from verification.rows import load_rows
 from verification.runs import models
 from verification.runs.models import FEM, FEM_3D
@@ -398,42 +396,6 @@ def test_cells_of_a_chemical_film_have_one_of_both_coefficients(solve):
     assert {round(float(each), 12) for each in ratio} == {scene.friction.low, scene.friction.high}
     other = with_field(result, "cell_data", "qx_Pa", lambda q: q + 1e-3 * p.max())
     assert contact_checks.slips(scene, other) > LIMITS["rough-friction"]
-
-
-class TestFormulas:
-    """Sums over cells against solutions of their own."""
-
-    line = (np.arange(41) - 20) / 16
-
-    def test_love(self):
-        """A Hertz pressure moves the surface as Hertz says, to the order of the cells squared."""
-        x = self.line
-        r = np.hypot(x[:, None], x[None, :])
-        hertz = CircularContact(1.0, 1.0, 1.0)
-        p = hertz.pressure(hertz.contact_radius * r)
-        u = cell_checks.half_space(1.0, 0.0, x, x, p=p, q=0 * p, cell=(1 / 16, 1 / 16)) * hertz.contact_radius
-        assert u[20, 20] == pytest.approx(float(hertz.displacement(0.0)), rel=5e-3)
-
-    def test_cerruti(self):
-        """Far from one cell, as a point force; beside it odd in x."""
-        q = np.zeros((41, 41))
-        q[20, 20] = 1.0
-        u = cell_checks.half_space(2.0, 0.2, self.line, self.line, p=0 * q, q=q, cell=(1 / 16, 1 / 16))
-        far = cerruti_displacement(self.line[40], self.line[33], 0.0, 1 / 256, young=2.0, nu=0.2)[2]
-        assert u[40, 33] == pytest.approx(far, rel=1e-3)
-        assert u == pytest.approx(-u[::-1], abs=1e-6 * np.abs(u).max()) and u[20, 20] == 0.0
-
-    def test_rules(self):
-        """Weights of the graded points: integrals of a constant, and of 1/r^2 over a cube at the origin."""
-        for low, high in ((-0.5, 0.5), (0.0, 1.0), (1.0, 2.0), (-2.0, -1.0)):
-            points, weights = cell_checks.towards_zero(low, high, 40)
-            assert weights.sum() == pytest.approx(high - low) and ((points > low) & (points < high)).all()
-        x = y = cell_checks.towards_zero(-0.5, 0.5, 40)
-        z = cell_checks.towards_zero(0.0, 0.5, 40)
-        stress = cell_checks.integrals(x, y, z, 0.3).ravel()
-        finer = [cell_checks.towards_zero(*ends, 80) for ends in ((-0.5, 0.5), (-0.5, 0.5), (0.0, 0.5))]
-        assert stress == pytest.approx(cell_checks.integrals(*finer, 0.3).ravel(), abs=3e-6)
-        assert abs(stress[3:]).max() < 1e-12 and stress[0] == pytest.approx(stress[1])
 
 
 UNIAXIAL = np.array([1.0, 0, 0, 0, 0, 0])[:, None]

@@ -312,22 +312,13 @@ def test_transform_of_the_hertz_pressure():
         (lambda: CoatedHalfSpace(1.0, 0.3, 1.0, 1.0, 0.6), "poisson_body = 0.6"),
         (lambda: LAYERS[0].compliance([0.0]), "k must be > 0"),
         (lambda: solve_radius(LAYERS[0], 1.0, 1e3), "thickness/contact_radius = 0.0004 must be >= 0.001"),
-        (
-            lambda: solve_radius(LAYERS[0], 1.0, 1.0, counter_modulus=-1.0),
-            "counter_modulus = -1.0 must be > 0",
-        ),
+        (lambda: solve_radius(LAYERS[0], 1.0, 1.0, counter_modulus=-1.0), "counter_modulus = -1.0 must be >"),
         (lambda: solve_force(LAYERS[0], 1.0, math.nan), "force = nan"),
         (lambda: film_contact(0.5, 1.0).stress(0.0, 0.6, film=True), "z must be <= thickness = 0.5"),
         (lambda: disc_stress(LAYERS[0], 1.0, 0.0, 0.0), "z must be >= contact_radius/1000"),
         (lambda: thin_layer(LAYERS[1], 1.0, 1.0), "poisson = 0.5: an incompressible"),
-        (
-            lambda: coated_sliding_stress(SOFT, 1.0, 1.0, 0.4, x=X, z=0.2, film=True),
-            "z must be <= thickness = 0.1 m everywhere",
-        ),
-        (
-            lambda: coated_sliding_stress(SOFT, 1.0, 1.0, 0.4, x=X, z=0.05),
-            "z must be >= thickness = 0.1 m everywhere",
-        ),
+        (lambda: coated_sliding_stress(SOFT, 1.0, 1.0, 0.4, x=X, z=0.2, film=True), "z must be <= thickness"),
+        (lambda: coated_sliding_stress(SOFT, 1.0, 1.0, 0.4, x=X, z=0.05), "z must be >= thickness = 0.1 m"),
     ],
 )
 def test_bad_input_names_the_argument(call, message):

@@ -123,18 +123,6 @@ def test_a_run_beside_both_models_is_compared_as_the_model_is(results, beside, t
     assert (frame["own_tolerance"] == frame["tolerance"]).all()
 
 
-def test_a_table_of_pressure_alone_finds_the_error_that_was_put_in(results, beside, tmp_path):
-    line = table_of(results[1], "line", "x_m", "p_Pa")
-    for factor in (1.0, 1.05):
-        line.assign(p_Pa=line["p_Pa"] * factor).to_csv(tmp_path / "abaqus.csv", index=False)
-        rows, frame = beside("abaqus.csv")
-        assert set(rows) == {*PRESSURES, CENTRE}
-        assert set(frame.index[frame["abaqus_passed"] == NOT_COMPARED]) == set(frame.index) - set(rows)
-        assert {name for name in rows if not rows[name].passed} == (set(PRESSURES) if factor > 1 else set())
-        for name in PRESSURES:
-            assert rows[name].error == pytest.approx(1 - 1 / factor, abs=5e-3)
-
-
 def test_a_history_gives_the_quantities_of_its_largest_force(results, beside, tmp_path):
     history = table_of(results[1], "history", "force_N", "approach_m", "contact_area_m2")
     history["approach_m"] *= 1.01

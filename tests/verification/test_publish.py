@@ -142,24 +142,6 @@ def test_one_case_of_other_code_runs_again_beside_what_stays_and_a_kill_loses_no
     assert run(tmp_path, store="newer") == before and published.runs[2:] == [NAMES[2]]
 
 
-def test_what_stays_is_judged_by_the_gates_of_today_unless_they_measure_something_else(
-    tmp_path, published, monkeypatch
-):
-    def gates(**changed):
-        for module in (verify, freshness):
-            monkeypatch.setattr(module, "load_rows", lambda: [row(ROWS[0].id, **changed), *ROWS[1:]])
-
-    run(tmp_path)
-    gates(tolerance=0.001)
-    run(tmp_path, store="new", code=1)
-    results = report_in(tmp_path)
-    assert [case["status"] for case in results["cases"]] == ["failed", "passed", "passed"]
-    assert [gate["tolerance"] for gate in results["gates"]] == [0.001, 0.1, 0.1] and len(published.runs) == 3
-    gates(metric="absolute")
-    run(tmp_path, store="new", code=1)  # a pressure in Pa, 1 % off
-    assert published.runs[3:] == ["timed"]
-
-
 def interrupted(*arguments, **keys):
     raise KeyboardInterrupt
 

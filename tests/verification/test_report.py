@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What `samfem verify` and `samfem report` write, with small cases that solve nothing."""
 
-import csv
 import errno
 import json
 import time
@@ -9,7 +8,6 @@ from dataclasses import replace
 from types import SimpleNamespace
 from xml.etree import ElementTree
 
-import numpy as np
 import pytest
 from builders import scene_text
 from fake_case import FakeCase, row
@@ -20,7 +18,6 @@ from stored import COARSE, COARSE_KEYS
 from samfem.cli import main
 from verification.cases.case import Outcome, Plot, SmallTable, View
 from verification.figures import space
-from verification.figures.profiles import Profile, profiles
 from verification.figures.style import Drawing, new_figure, save
 from verification.judging import Measured
 from verification.references import contact_of
@@ -32,12 +29,6 @@ ROWS = [
     row(f"{case}.{name}", quantity=f"quantity {name}, FEM", reason=f"because of {name}")
     for case, name in (("good", "one"), ("good", "two"), ("bad", "one"), ("broken", "one"), ("slow", "one"))
 ]
-
-
-def drawing():
-    x = np.linspace(0.0, 1.0, 11)
-    panel = Profile("Title", "$x$", "$y$", np.cos, {"SAM": (x, np.cos(x) + 0.01)}, 1.0, "$y$", (0.0, 1.0))
-    return profiles([panel])
 
 
 def sketch():
@@ -167,23 +158,6 @@ def test_pages_of_what_has_ended_can_be_opened_and_the_earlier_report_stays(tmp_
     assert broken_links(pages | data, new) == []
     assert main(["report", str(new)]) == 2
     assert run(out) == 1 and not new.exists() and results(out)["complete"]
-
-
-def test_a_report_that_was_killed_on_its_way_into_place_is_put_there_by_the_next_start(tmp_path, monkeypatch):
-    out, whole = tmp_path / "out", tmp_path / "whole"
-    run(whole, "good")
-    for name in ("remove_pages", "shutil.rmtree", "Path.replace"):
-        run(out, "bad")
-        with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
-            patch.setattr(verify, "_take_over", stopped)
-            run(out, "good")
-        with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
-            patch.setattr(f"verification.suite.verify.{name}", stopped)
-            verify.begin(out)
-        assert verify.problem_of([], CASES, out) == ""
-        verify.begin(out)
-        names = files_in(out).keys() - {f"{verify.UNFINISHED}/results.json"}
-        assert names == files_in(whole).keys() and results(out)["complete"]
 
 
 def test_a_full_disk_ends_the_report_in_one_error(tmp_path, monkeypatch, capsys):
@@ -333,14 +307,6 @@ def test_rebuild_refuses_a_folder_without_a_finished_report(tmp_path, monkeypatc
     assert main(["report", str(tmp_path / "out")]) == 2
     assert not (tmp_path / "out" / "index.html").exists() and "no finished" in capsys.readouterr().err
     assert run(tmp_path / "out", "bad") == 1  # an interrupted report can be run again
-
-
-def test_figures_are_deterministic_and_say_their_numbers(tmp_path):
-    first, second = ([path.read_bytes() for path in save(drawing(), tmp_path / name)] for name in ("a", "b"))
-    assert first == second
-    (*_, last) = csv.DictReader((tmp_path / "a.csv").open(encoding="utf-8"))
-    assert list(last) == ["panel", "series", "x", "value", "closed_form", "error_percent"]
-    assert float(last["error_percent"]) == pytest.approx(1.0, rel=1e-5)  # 0.01 of scale 1, five digits
 
 
 OWN = """

@@ -20,7 +20,6 @@ from verification.cases.running_in import (
     running_in_converged as converged,
     running_in_fem as fem,
     running_in_readings as words,
-    running_in_way as way,
 )
 from verification.cases.running_in.running_in_converged import DEFAULT, SEEDS
 from verification.cases.running_in.running_in_physics import ALL
@@ -266,38 +265,6 @@ class TestKinematic:
         assert rows[0]["late over early"] == pytest.approx(0.5)
         worse = self.rows(fit=0.01, first=1.2e-3, converged=False)
         assert wrong(name, worse) == {"fit", "first-loading", "converged"}
-
-
-class TestWay:
-    NAME = "running-in-way"
-
-    def rows(self, **changed) -> list[dict]:
-        """Three passes that remove 6 m3 in all, on cells of 1 by 2 m; changed: of what they say."""
-        scene = SCENES[B]
-        loading = scene.loading.model_copy(update={"cycles": 3})
-        grid = scene.grid.model_copy(update={"cells": (2, 2), "extent": (4.0, 2.0)})
-        scene = scene.model_copy(update={"loading": loading, "grid": grid})
-        table = {name: [0.2] * 3 for name in way.COLUMNS} | {"pass": [1, 2, 3]}
-        table |= {"wear_of_pass_m3": [3.0, 2.0, 1.0]} | changed
-        surface = {"state": ["peak", "unloaded", "unloaded"], "worn_m": [9.0, 2.0, 1.0]}
-        steps = {"step": list(range(10))}
-        moving = Made(tables={"history": steps, "passes": table, "surface": surface})
-        results = [
-            replace(
-                moving, cost={"operator_applications": changed.get(name, 30)}, converged=name not in changed
-            )
-            for name in ("moving", "rest")
-        ]
-        rows = [{"run": "on-a-way"} | way.cost(results[0]) | way.on_way(scene, *results)]
-        rows[0] |= {"resumed": 0, "growth": 0.0, "unconverged": int(changed.get("lost", 0))}
-        return [*rows, {"run": "at-rest"} | way.cost(results[1]) | {"unconverged": 0}]
-
-    def test_right_numbers_hold_and_wrong_ones_turn_red(self):
-        assert wrong(self.NAME, self.rows(rest=20)) == set()
-        worse = {"moving": 61, "lost": 1, "friction_mean": [0.2, 0.41, 0.2]}
-        worse |= {"protected_mean": [0.1, np.nan, 0.1], "wear_of_pass_m3": [3.0, 2.0, 1.1]}
-        found = wrong(self.NAME, self.rows(**worse))
-        assert found == {"unconverged", "increments", "missing", "volume", "friction-range"}
 
 
 class TestFem:

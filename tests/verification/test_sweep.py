@@ -134,11 +134,7 @@ def test_scenes_that_are_refused_are_rows(folder, no_figure, capsys):
         ('"loading.steps" = { range = [1] }', [], "count is missing"),
         ("", ["--workers", "0"], "no whole number from 1"),
         ("", ["--workers", "2", "--scheduler", "x"], "not allowed with"),
-        (
-            "",
-            ["--scheduler", "nonsense"],
-            '--scheduler = "nonsense": the address of a running Dask scheduler',
-        ),
+        ("", ["--scheduler", "nonsense"], '--scheduler = "nonsense": the address of a running Dask'),
         ("", ["--scheduler", "tcp://127.0.0.1:1"], "the address of a running Dask scheduler"),
         ("", ["--out", "coarse.toml"], "no folder that can be written to"),
         ("", ["--out", "."], "is not the folder of a run"),
@@ -322,19 +318,6 @@ class Neighbours:
 def test_a_neighbour_of_a_deadly_task_is_not_blamed():
     found = outcomes(Neighbours(), functions.double, {k: (k,) for k in range(8)})
     assert found == {k: 2.0 * k for k in range(8)} | {1: Failure(WORKER_DIED)}
-
-
-def test_a_worker_that_is_killed_while_it_sends_its_result_costs_a_retry(tmp_path):
-    program = f"""
-import sys
-from samfem.executors import Processes, run
-from worker_functions import {functions.die_once_while_sending.__name__} as task
-if __name__ == "__main__":
-    with Processes(1) as workers:
-        print(list(run(workers, task, {{0: (sys.argv[1],)}})), workers.lost)
-"""
-    done = program_with_workers(program, str(tmp_path / "marker"))
-    assert done.stdout.strip() == "[(0, 'received', 1)] 1", done.stderr
 
 
 def program_with_workers(program: str, *arguments: str) -> subprocess.CompletedProcess:
