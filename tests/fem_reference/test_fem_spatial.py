@@ -28,7 +28,6 @@ from fem_reference.spatial.planner import plan
 from fem_reference.spatial.solution import METHOD
 from sam.planner.make import schedule_of
 from sam.scene.result import COLUMNS
-from sam.scene.schema import Scene
 
 A, YOUNG, NU = 3e-6, 210e9, 0.3  # A: radius of the given pressures, in m
 PLASTIC = {"body": {"plasticity": SWIFT}, "force": hertz_force(4 * SWIFT_YIELD)}
@@ -102,17 +101,6 @@ def test_what_is_refused(made, words):
     for asked in (spatial.check, spatial.solve):
         with pytest.raises(spatial.UnsupportedScene, match=words):
             asked(made)
-
-
-def test_what_is_left_out():
-    """coupling = false is said to have no meaning here."""
-    decoupled = Scene(**scene().model_dump() | {"friction": {"coefficient": 0.2, "coupling": False}})
-    assert any("coupling" in entry.reason for entry in spatial.left_out(decoupled))
-    stages = [entry.stage for entry in spatial.left_out(scene(friction=0.2))]
-    assert "tangential traction" not in stages and {"mesh of the counter-body", "film elements"} <= set(
-        stages
-    )
-    assert "film elements" not in [entry.stage for entry in spatial.left_out(scene(body=film(0.1)))]
 
 
 def test_statuses():

@@ -3,8 +3,6 @@
 limit.
 """
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from builders import scene as small_scene
@@ -14,8 +12,6 @@ from skfem import MeshQuad
 
 from fem_reference.axisymmetric.elements import AxisymmetricSolid
 from fem_reference.common.bodies import Elastic
-from fem_reference.common.linear import NO_WORK
-from fem_reference.common.loading import Step
 from fem_reference.common.plasticity import J2, History
 from fem_reference.common.schedule import Load
 from fem_reference.finite_strain import model as study
@@ -180,19 +176,6 @@ def test_newtons_method_converges_quadratically(kind):
     assert after <= max(5.0 * before**2, 1e-11)
 
 
-@pytest.mark.parametrize("kind", ["sphere", "finite"])
-def test_the_limit_of_a_small_load_is_the_model_of_the_scenes(kind):
-    """Relative differences fall with a/R, 1e-6 here."""
-    curves = []
-    for one in ("flat", kind):
-        model = study.build(scene(1e-18, 4), one)
-        curves.append(study.curve_of(model, study.load_to(model, [0.3, 1.0])))
-    flat, true = curves
-    assert true.radius[-1] < 1e-5 and not true.strain.any()
-    for name in ("force", "radius", "approach", "pressure"):
-        assert getattr(true, name) == pytest.approx(getattr(flat, name), rel=1e-5)
-
-
 def test_a_state_that_is_turned_inside_out_is_not_converged():
     """Ten times the radius of the sphere in one step: an error of the step, no answer."""
     model = study.build(scene(1e3, 4), "finite")
@@ -209,30 +192,9 @@ def test_a_limit_is_where_the_fit_passes_five_per_cent():
     assert fit.limit(1.0) == fit.limit(-1.0) == fit.good_to() == limit
 
 
-def test_a_limit_has_a_range_by_the_scatter():
-    noise = 1e-3 * np.array([1, -1, 1, -1, 1, -1, 1])
-    fit = model_limits.Difference.of(X, 0.25 * X + noise)
-    assert fit.limit(1.0) < fit.limit() < fit.limit(-1.0) and fit.limit() == pytest.approx(0.2, abs=5e-3)
-    assert fit.limit(-1.0) - fit.limit() == pytest.approx(fit.error(0.2) / 0.25, rel=0.3)
-    assert 1e-3 < fit.error(0.2) < 2.5e-3  # seven points, two standard deviations
-
-
 def test_a_limit_is_beyond_the_largest_contact_when_it_is_not_passed():
     fit = model_limits.Difference.of(X, 0.1 * X)
     assert fit.limit() == np.inf and fit.good_to() == 0.4 and model_limits.words(fit) == "> 0.40"
-
-
-@pytest.mark.parametrize(
-    ("stated", "uncertainty", "measured", "times"),
-    [
-        (-0.06, 0.0, -0.03, 2.0),
-        (-0.06, 0.01, -0.1, 1 / 0.7),
-        (0.01, 0.02, -0.01, 1.0),
-        (0.01, 0, -0.01, np.inf),
-    ],
-)
-def test_a_stated_error_is_moved_by_its_uncertainty(stated, uncertainty, measured, times):
-    assert model_limits.factor(stated, uncertainty, measured) == pytest.approx(times)
 
 
 def test_differences_are_at_equal_force_and_of_resolved_contacts():
@@ -245,12 +207,3 @@ def test_differences_are_at_equal_force_and_of_resolved_contacts():
     assert found["radius"].x.min() >= 0.5 * found["radius"].x.max() and found[
         "radius"
     ].x.max() == pytest.approx(0.3)
-
-
-def test_a_load_step_that_is_lost_is_no_point_of_a_curve(monkeypatch):
-    def lost(model, _shares):
-        return [Step(replace(model.virgin(), converged=False), NO_WORK)]
-
-    monkeypatch.setattr(model_limits, "load_to", lost)
-    with pytest.raises(RuntimeError, match=r"finite strain, true sphere: step 1 of 20 did not converge"):
-        model_limits.loaded(model_limits.ELASTIC[0], 4, "finite")

@@ -10,13 +10,12 @@ import pandas as pd
 import pytest
 
 from sam.contact.stress import elastic_strain, surface_strain
-from sam.scene.friction import GROWTH_ROWS, Friction, growth_coefficient
+from sam.scene.friction import Friction, growth_coefficient
 from sam.tribofilm import FilmLaw, FilmState
 from sam.tribofilm.law import Loads, Material, multiplier, printed_stress, radial_flow
 from verification.cases.film import film_law
 from verification.reference.bonded_film import (
     in_plane_strain,
-    overall_coefficient,
     printed_thinning,
     thinning,
 )
@@ -208,29 +207,6 @@ class TestScene:
             assert 1e9 * of_bath.growth == pytest.approx(exact, rel=1e-12)
             assert 100.0 * of_bath.thinning_limit == pytest.approx(exact, rel=1e-12)
         assert growth_coefficient(398.15) == pytest.approx((3.644e-9 + 4.620e-9) / 2.0, rel=1e-14)
-
-    def test_tables_of_the_paper(self):
-        """Of Table 2 the means over the studies that give a quantity, ranges at their middle."""
-        rows = TABLES[3].to_numpy() * [1.0, 1e-9] + [273.15, 0.0]
-        assert rows == pytest.approx(np.array(GROWTH_ROWS), rel=1e-14)
-        for name, mean, studies in (("young", 99.0, 9), ("thickness", 111.0, 17)):
-            middles = TABLES[2].filter(regex=f"{name}_(low|high)").mean(axis=1).dropna()
-            assert (middles.size, middles.mean()) == (studies, pytest.approx(mean, abs=0.5))
-
-
-def test_shares_of_the_load():
-    """0.17 overall is 23.3 % of the load on bare spots (0.07/0.3)."""
-    load = np.array([[7.0, 76.67], [16.33, 0.0]]) * 1e9
-    failed = np.array([[True, False], [True, True]])
-    found = overall_coefficient(load, failed, 0.1, 0.4, cell_area=1e-12)
-    assert found == pytest.approx(0.1 + 0.3 * 0.2333, rel=1e-12)
-    pressure, law = np.random.default_rng(3).uniform(0.0, 6e9, 1000), replace(LAW, limit=0.0204)
-    state = at_centre(law, pressure)
-    whole = (law.coefficient(state)[:, 0] * pressure).sum() / pressure.sum()
-    shares = overall_coefficient(pressure, state.failed[:, 0], 0.1, 0.4, cell_area=1e-12)
-    assert whole == pytest.approx(shares, rel=1e-12) and 0 < state.failed.sum() < 1000
-    with pytest.raises(ValueError, match="load"):
-        overall_coefficient(np.zeros(3), np.zeros(3, dtype=bool), 0.1, 0.4, cell_area=1.0)
 
 
 # Hooke's law and radial return against forms that are written otherwise

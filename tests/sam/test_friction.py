@@ -19,7 +19,7 @@ from sam.elastic.stress import sliding_of
 from sam.grid.cells import Window
 from sam.kernels.patches import Lags, displacement_coefficients, parity
 from sam.planner.bodies import Bodies
-from sam.scene import Scene, Status
+from sam.scene import Scene
 from sam.schedule import Load
 from verification.reference.quadrature import patch_response
 
@@ -135,18 +135,6 @@ def test_where_traction_moves_no_gap_the_contact_is_that_without_friction(coeffi
     counters = Counters()
     sam.plan(scene(coefficient, **options)).problem(counters).contact(Load(0.65))
     assert counters.tangential_kernels == 0
-
-
-def test_line_and_coefficient_of_friction():
-    result = sam.solve(scene(0.25, steps=2, unload=True))
-    assert result.status is Status.CONVERGED
-    assert line(result, "qx_Pa") == pytest.approx(0.25 * line(result, "p_Pa"), rel=1e-14)
-    assert result.quantities["friction_coefficient"] == pytest.approx(0.25, rel=1e-12)
-    p, q, local = (result.fields.cell_data[name] for name in ("p_Pa", "qx_Pa", "friction"))
-    assert local[p > 0] == pytest.approx(0.25, rel=1e-12) and np.isnan(local[~(p > 0)]).all()
-    assert q[p > 0] == pytest.approx(0.25 * p[p > 0], rel=1e-14)
-    assert result.tables["history"]["friction_coefficient"] == pytest.approx([0.25, 0.25, 0.0], rel=1e-12)
-    assert not line(result, "qx_Pa", "unloaded").any() and not line(result, "ux_m", "unloaded").any()
 
 
 def test_alternating_traction_mirrors_the_even_cycles():

@@ -5,7 +5,6 @@ loads and of Mindlin's point force.
 
 from math import pi
 
-import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
@@ -226,55 +225,3 @@ def test_corner_functions_are_means_over_their_points(image):
     ]
     both, first, last = (each.planes(each(image, np.array([[0.4, 1.1]])), (0, 0)) for each in meshes)
     assert both == pytest.approx((first + last) / 2, rel=1e-13)
-
-
-class ManyDigits:
-    """numpy for arrays of mpmath numbers: its elementary functions replaced, everything else numpy's own."""
-
-    sqrt, log, arctan, arcsinh = (
-        staticmethod(np.frompyfunc(f, 1, 1)) for f in (mp.sqrt, mp.log, mp.atan, mp.asinh)
-    )
-    arctan2 = staticmethod(np.frompyfunc(mp.atan2, 2, 1))
-
-    def __getattr__(self, name):
-        return getattr(np, name)
-
-
-def corner_sum(x, y, z, faces, nu):
-    """Stress/mu (6, 6, layers) from the functions of the corners, in whatever numbers these are."""
-    at_faces = []
-    for face in faces:
-        functions = (
-            eigenstrain.image_functions(x, y, z + face), eigenstrain.full_space_functions(x, y, z - face)
-        )  # fmt: skip
-        image, full = (
-            np.array([np.diff(np.diff(np.broadcast_to(f, (2, 2)), axis=0), axis=1)[0, 0] for f in values])
-            for values in functions
-        )
-        stress = np.empty(36, dtype=object)
-        for block in eigenstrain.blocks(nu):
-            of_image = np.tensordot(np.array([1, face, z, z * face]), block.image, 1)
-            stress[block.rows] = of_image @ image[block.of_image] + block.full @ full[block.of_full]
-        at_faces.append(stress)
-    return np.moveaxis(np.diff(np.array(at_faces), axis=0), 0, -1).reshape(6, 6, -1)
-
-
-def test_double_precision_keeps_its_digits_near_and_far(monkeypatch):
-    """The same formulas with 40 digits. Cancellation in the corner sums stays below 1e-13 of a cell's own
-    stress at any distance (the project's bound is 1e-10), and below 1e-7 of the coefficient itself 60 cells
-    away.
-    """
-    exact = np.frompyfunc(mp.mpf, 1, 1)
-    for i, j, z in ((0, 0, 0.55), (0, 1, 1e-3), (60, 45, 20.0)):
-        x, y = (np.array([i - 0.5, i + 0.5]) * HX)[:, None], (np.array([j - 0.5, j + 0.5]) * HY)[None, :]
-        corners = [each[None] for each in np.broadcast_arrays(x, y)]
-        functions, double = layer_stress.CornerFunctions((1, 1), corners), np.empty((36, 3, 1, 1))
-        layer_stress.LayerStress(functions, np.array([[z]]), FACES, 0.3).of(0, double)
-        inside = (FACES[:-1] <= z) & (z < FACES[1:])  # the cuboid there has its own stress added back
-        double = double.reshape(6, 6, -1) + np.where(inside, eigenstrain.own_stress(0.3)[..., None], 0.0)
-        with monkeypatch.context() as patch, mp.workdps(40):
-            patch.setattr(eigenstrain, "np", ManyDigits())
-            patch.setattr(primitives, "np", ManyDigits())
-            answer = corner_sum(exact(x), exact(y), mp.mpf(z), exact(FACES), 0.3)
-        error = np.abs((double - answer).astype(float)).max()
-        assert error < 1e-13 and error < 1e-7 * np.abs(answer.astype(float)).max()

@@ -10,7 +10,6 @@ from itertools import product
 import numpy as np
 import pytest
 from builders import RADIUS, scene as small_scene
-from made_results import column
 from many_digits import ManyDigits
 from rounding import close
 
@@ -22,8 +21,6 @@ from sam.grid.cells import Window
 from sam.grid.smooth import contact_radius, depths_with_film
 from sam.kernels.patches import STRESS, Lags, displacement_coefficients, stress_coefficients
 from sam.layered.patches import (
-    Angular,
-    CellIntegrals,
     LayeredPatches,
     RadialTable,
     spline_matrix,
@@ -121,15 +118,6 @@ def test_excess_is_the_difference_from_a_half_space_of_film():
         parts = zip(coated.coating_excess(z), coated.stress(z), film.stress(z), strict=True)
         for mine, whole, half_space in parts:
             assert np.abs(whole - half_space - mine).max() < 1e-13
-
-
-def test_no_overflow_far_beyond_the_range():
-    kh = np.geomspace(1e-80, 1e80, 33)
-    for ratio in (1e-6, 1e6):
-        response = Response(Layers(ratio, 0.5, 1.0, 1.0, 0.0), kh)
-        with np.errstate(over="raise", invalid="raise", divide="raise"):
-            fields = [response.surface, response.surface_excess, *response.stress(0.5), *response.stress(3.0)]
-        assert all(np.all(np.isfinite(field)) for field in fields)
 
 
 @pytest.mark.parametrize(
@@ -298,21 +286,6 @@ def test_radial_table_of_an_exponential(order, bias):
     assert np.abs(ours - exact).max() < 1e-11 * exact.max()  # rounding over r^bias at 1e-3, spline 1e-12
 
 
-@pytest.mark.parametrize("angular", [Angular(0), Angular(1), Angular(2, sine=True), Angular(3)])
-def test_cells_of_a_known_function(angular):
-    """Near, 5, 4, 3 and 2 point cells against 12 x 12 Gauss points of g: all but the cells at the origin."""
-    table = RadialTable(np.exp(-wave_numbers())[None], angular.order, 1.0)
-    ours = CellIntegrals(Lags(70, 12, 1.5, 1.0)).integrate(table, angular)[0]
-    t, w = np.polynomial.legendre.leggauss(12)
-    m = angular.order
-    for i, j in ((3, 2), (5, 11), (14, 3), (30, 4), (50, 1), (69, 9)):
-        x, y = (i + t[:, None] / 2) * 1.5, j + t[None, :] / 2
-        r, root = np.hypot(x, y), np.sqrt(1 + x * x + y * y)
-        g = (1 + m * root) * (r / (1 + root)) ** m / root**3 / (2 * np.pi) * angular(np.arctan2(y, x))
-        exact = np.sum(g * w[:, None] * w) * 1.5 / 4
-        assert ours[i, j] == pytest.approx(exact, abs=2e-11)  # of a largest value of 0.1
-
-
 def test_a_bad_depth_is_refused():
     with pytest.raises(ValueError, match="depths"):
         LayeredPatches(COATED).stress(Lags(2, 2, 1e-8, 1e-8), [-1e-9])
@@ -405,16 +378,6 @@ def test_traction_moves_the_coated_body_and_the_counter_body_apart():
     assert np.abs(part - expected[2:5, 3:5]).max() <= 1e-12 * np.abs(expected).max()
 
 
-def test_unloaded_and_without_force_nothing_is_left():
-    result = sam.solve(coated(cells=17, unload=True, steps=2))
-    assert result.quantities["residual_uz_center_m"] == 0.0
-    assert not column(result, "line", "uz_m", "unloaded").any()
-    empty = sam.solve(coated(cells=17, force=0.0))
-    assert empty.status is Status.CONVERGED and empty.quantities["p_max_bare_Pa"] is None
-    left = [(entry.stage, entry.reason) for entry in empty.left_out]
-    assert ("bare comparison", "loading.force = 0: no contact") in left
-
-
 @pytest.mark.parametrize(
     ("body", "key"),
     [
@@ -430,16 +393,6 @@ def test_yielding_is_refused_by_name(body, key):
             sam.UnsupportedScene, match=key + ".*allows an elastic coating on an elastic body"
         ):
             function(a_scene)
-
-
-def test_left_out_names_the_film_only_where_it_is_missing():
-    def stages(a_scene):
-        return {entry.stage: entry.reason for entry in sam.left_out(a_scene)}
-
-    assert stages(coated(bare=True))["layered coefficients"] == "no [body.coating]"
-    assert "layered coefficients" not in stages(coated())
-    assert "z = " in stages(coated(thickness=1e3))["stresses in the substrate"]
-    assert "stresses in the film" in stages(coated(grid={"depths": (A0, 2 * A0)}))
 
 
 def test_depths_hold_the_film_the_interface_and_what_is_below():

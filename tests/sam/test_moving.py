@@ -129,15 +129,6 @@ class TestTrack:
         assert np.isnan([found.depth, found.middle, found.transient]).all()
         assert found.deepest == pytest.approx(1.0)
 
-    @pytest.mark.parametrize(
-        "uz, transient", [((0, 1, 1, 1), 0.98), ((0, 1, 1, 0.9), np.nan), ((0, -1, -1, -1), np.nan)]
-    )
-    def test_a_groove_that_is_not_deep_and_even_at_its_end_has_no_transient(self, uz, transient):
-        way, uz = np.arange(4.0), np.array(uz)
-        found = Groove.of(way, uz, way > 0, 3.0, across=uz, peak=(1.0, 1.0))
-        assert found.depth == pytest.approx(uz[1:].mean()) and found.middle == uz[2]
-        np.testing.assert_allclose(found.transient, transient)
-
     def test_tables_of_a_made_track(self):
         """Cells of 1 in a box of 4 x 3 x 2 cells: stresses are means over both rows that touch the path."""
         made = np.random.Generator(np.random.PCG64(5)).normal
@@ -206,15 +197,6 @@ class TestGroove:
         line = found.tables["line"]
         unloaded = np.array(line["state"]) == "unloaded"
         np.testing.assert_array_equal(np.asarray(line["uz_m"])[unloaded], table["uz_m"])
-
-    def test_has_a_cross_section_of_the_body(self, found):
-        cross, quantities = found.tables["cross"], found.quantities
-        track, rows = found.tables["track"], len(np.unique(cross["z_m"]))
-        middle = np.abs(track["x_m"] - 0.75 * A).argmin()  # of 3 a to 4.5 a after the start
-        assert cross["peeq"].max() == track["peeq_max"][middle]
-        assert -cross["uz_m"].min() == pytest.approx(quantities["shoulder_side_m"])
-        k = int(np.argmin(np.abs(cross["y_m"])))  # the uppermost cell at y = 0; z runs first
-        assert k % rows == 0 and cross["sxx_Pa"][k] == pytest.approx(track["top_sxx_Pa"][middle])
 
     def test_long_steps_are_warned_of(self, found):
         assert any("steps of 0.75 contact radii" in words for words in found.warnings)
@@ -425,15 +407,6 @@ def test_a_failure_lasts_for_the_visit_and_unloading_in_place_ends_none():
     assert film_of.entered(back, 0.75).film.failed is back.film.failed  # nothing is solved anew
 
 
-def test_a_given_limit_is_that_of_every_visit():
-    film_of = FilmOnCells(LAW, (1, 1), VisitLaw(None, 1.0))
-    film = film_of.fresh(np.zeros((4, 1, 1)))
-    for clock, p in ((0.0, 1.0), (0.1, 0.0), (0.2, 1.0)):
-        before = film_of.entered(film, clock)
-        film = film_of.tested(before, before, np.zeros((4, 1, 1)), pressure=np.full((1, 1), p), sign=1.0)
-    assert film.visits.limit[0, 0] == LIMIT and film.visits.counts.sum() == 1
-
-
 def test_a_limit_of_each_cell_takes_the_place_of_that_of_the_law():
     strain, pressure = np.full((3, 2, 1), 5e-3), np.full((2, 1), 2.4e9)
     lost = LAW.step(FilmState.fresh((2, 1)), strain, pressure).thinning[0, 0]
@@ -469,13 +442,6 @@ class TestPasses:
         assert wear[0] > 0 and passes["work_J"][0] == pytest.approx(np.trapezoid(drive, s))
         assert passes["friction_mean"][0] == pytest.approx(friction.mean())
         assert 0 <= passes["protected_mean"][0] < 1 and 0.1 <= passes["friction_mean"][1] <= 0.4
-
-    def test_visits_tell_how_long_cells_were_out_of_contact(self, found):
-        """Thinning that a visit may take, K_0 sqrt(t)/h of the time without contact."""
-        visits = found.tables["visits"]
-        assert visits["way_m"][-1] == pytest.approx(6 * CELL) and sum(visits["visits"]) > 0
-        np.testing.assert_allclose(visits["time_s"], np.array(visits["way_m"]) / 1.0)
-        np.testing.assert_allclose(visits["thinning_limit"], 3.644e-9 * np.sqrt(visits["time_s"]) / 100e-9)
 
 
 def test_an_elastic_body_with_a_film_meets_every_pass():

@@ -9,12 +9,8 @@ import numpy as np
 import pytest
 from builders import (
     LINEAR,
-    MODULUS,
     PERFECT,
-    RADIUS,
     RUN_IN_STEEL,
-    SWIFT,
-    SWIFT_YIELD,
     running_in,
     scene,
     yielding,
@@ -32,7 +28,7 @@ from sam.grid.smooth import point_load_reach
 from sam.planner.bodies import SHAPES, given_sides, hertz_semi_axes
 from sam.planner.make import schedule_of
 from sam.plasticity import history, load_step as plastic_step
-from sam.plasticity.history import LONGER, on_larger_grid
+from sam.plasticity.history import LONGER
 from sam.scene import Scene, Status
 from sam.scene.yield_curve import Swift
 from sam.schedule import Load
@@ -40,7 +36,6 @@ from verification.reference.point_loads import boussinesq_stress
 from verification.reference.stress import von_mises
 
 FEW, SMALL = {"cells": (33, 33)}, {"cells": (17, 17)}
-A = np.pi * 4 * SWIFT_YIELD * RADIUS / (2 * MODULUS)  # Hertz at p0 = 4 yield stresses
 
 
 @pytest.fixture(scope="module")
@@ -179,33 +174,12 @@ def test_the_result_says_how_many_steps_needed_the_longer_iteration(monkeypatch)
     assert result.cost["step_cuts"] == 0 and 0 in result.tables["residuals"]["accepted"]
 
 
-def test_the_loops_of_the_paper_know_no_longer_iteration(monkeypatch):
-    monkeypatch.setattr(plastic_step, "ITERATIONS", 3)
-    monkeypatch.setattr(history, "MOST_CUTS", 0)
-    monkeypatch.setattr("sam.plasticity.paper.OUTER", 1)
-    result = sam.solve(yielding(2.5, PERFECT, grid=SMALL, solver={"method": "paper", "tolerance": 1e-4}))
-    assert result.status is Status.STEP_CUT_LIMIT
-    assert len(result.tables["residuals"]["iteration"]) == 1
-
-
 # grids
 
 
 def sides(grid) -> tuple[float, float]:
     """(side, depth) in m."""
     return grid.nx * grid.hx, float(grid.faces[-1])
-
-
-def test_rows_of_a_profile_that_make_no_layers():
-    """Those nearer to one above than a fiftieth of a cell or so, those far below, and one alone."""
-    plain = choose_grid(yielding(4, grid=FEW)).faces
-    for depths in ((0.0,), (5 * A,), (0.0, 1e-4 * A)):
-        profile = tuple((z, 1.0) for z in depths)
-        faces = choose_grid(yielding(4, {**SWIFT, "profile": profile}, grid=FEW)).faces
-        assert np.array_equal(faces, plain)
-    near = ((0.3 * A, 0.5), (0.301 * A, 1.0))
-    step = choose_grid(yielding(4, {**SWIFT, "profile": near}, grid=FEW)).faces / A
-    assert np.abs(step - 0.3).min() < 1e-9 < 5e-4 < np.abs(step - 0.301).min()
 
 
 @pytest.mark.parametrize(("nu", "profile", "bulk"), [(0.3, None, 1e9), (0.0, ((0.0, 3.0), (1e-6, 0.5)), 5e8)])
@@ -305,15 +279,3 @@ def test_given_layers_below_a_rough_body_stay_and_the_message_says_how_deep_they
     result = sam.solve(rough(depths=(0.0, 0.3e-6, 0.8e-6, 1.6e-6, 3e-6), cycles=1))
     assert result.status is Status.PLASTIC_ZONE_AT_GRID_EDGE and "grid_enlarged" not in result.discretisation
     assert 'grid.depths (or grid.depth) go down to "4.5 um"' in result.message
-
-
-def test_layers_that_a_larger_grid_has_not_begin_anew():
-    """A kink that only the further layers hold would move a face above it."""
-    model, now = begin(rough())
-    grid = model.grid
-    faces, depths = np.append(grid.faces, 2 * grid.faces[-1]), np.append(grid.depths, 1.0)
-    larger = replace(grid, faces=faces, depths=depths)
-    assert on_larger_grid(now, grid, larger) is not None
-    moved = faces * np.where(np.arange(len(faces)) == len(grid.faces) - 1, 1.01, 1.0)
-    assert on_larger_grid(now, grid, replace(larger, faces=moved)) is None
-    assert on_larger_grid(now, grid, replace(larger, nx=grid.nx + 2)) is None

@@ -112,15 +112,6 @@ def test_equal_layers_share_what_each_pair_alone_gives():
     assert len(layers.full.first) == 6 + 8 * 8 - 6 * 6
 
 
-def test_one_of_two_coefficients_gives_the_other_with_x_and_y_exchanged():
-    """On square cells, 1e-13 of the largest value."""
-    both, half = (np.empty((36, LAYERS, 5, 5)) for _ in range(2))
-    for out, exchanged in ((both, False), (half, True)):
-        means = CellMeans(Lags(5, 5, 1.0, 1.0))
-        LayerStress(means, gauss_depths(FACES)[1:2], FACES, NU, exchanged=exchanged).of(0, out)
-    assert np.abs(half - both).max() < 1e-13 * np.abs(both).max()
-
-
 def of_box(exchange=False):
     return BoxSpectra(cuboids(5, 5, aspect=1.0), single=False, exchange=exchange)
 

@@ -10,11 +10,10 @@ back-stress ratchets by ln((S^2 - (smin + Y)^2)/(S^2 - (smax - Y)^2))/g in each 
 from __future__ import annotations
 
 from functools import partial
-from itertools import pairwise
 
 import numpy as np
 import pytest
-from builders import HARDENING, LINEAR as LINEAR_LAW, SWIFT as SWIFT_LAW, YIELD_CURVE, scene, scene_text
+from builders import HARDENING, SWIFT as SWIFT_LAW, YIELD_CURVE, scene, scene_text
 from scipy.optimize import brentq
 
 import fem_reference
@@ -43,7 +42,6 @@ from sam.scene.body import LAWS
 from sam.scene.yield_curve import DepthProfile, Kinks, Linear, Strength, Swift, Tabulated
 from tests.material_point import MU, POINTS, YOUNG, SamPoint, Specimen
 from verification.checks.material import yield_stress
-from verification.cost.advice import advice_of
 
 PERFECT, SWIFT = Linear(1e9), Swift(945e6, 20.0, 0.121)
 CURVES = {
@@ -103,20 +101,6 @@ def test_stable_loop_between_given_strains(model, law, component, end):
     stress, plastic = -stress * root3, -plastic * (2 / root3 if component else 1.0)
     saturating = [C / g * np.tanh(g * plastic) if g else C * plastic for C, g in zip(*law, strict=True)]
     assert stress == pytest.approx(1e9 + sum(saturating), rel=1e-7)
-
-
-@BOTH
-@pytest.mark.parametrize(("smax", "smin"), [(1.4e9, -1.2e9), (1.3e9, -1.3e9), (1.2e9, -1.3e9)])
-def test_ratchetting_between_given_stresses(model, smax, smin):
-    """The same step in each cycle, backward for a negative mean, none without a mean."""
-    specimen, saturation = Specimen(POINTS[model](PERFECT, *ONE)), 150e9 / 300
-    ends = []
-    for _ in range(3):
-        for stress in (smax, smin):
-            specimen.to(stress={0: stress})
-        ends.append(specimen.point.plastic[0][0])
-    wanted = np.log((saturation**2 - (smin + 1e9) ** 2) / (saturation**2 - (smax - 1e9) ** 2)) / 300
-    assert [b - a for a, b in pairwise(ends)] == pytest.approx([wanted] * 2, rel=1e-6, abs=1e-12)
 
 
 @pytest.mark.parametrize("law", [ONE, THREE], ids=["one", "three"])
@@ -329,20 +313,3 @@ def test_a_soft_layer_makes_a_body_yield_that_would_not():
     weak = {"layer": {"law": "perfect", "yield_stress": 2e9}}
     layered = sam.solve(scene(body={"plasticity": hard | weak}, **small))
     assert alone.quantities["peeq_max"] == 0.0 < layered.quantities["peeq_max_depth_m"] < 3e-6
-
-
-def test_a_plan_names_the_law_and_the_advice_counts_the_weaker_one():
-    body = SWIFT_LAW | {"layer_thickness": THICK}
-    plain, own = (scene(body={"plasticity": each}) for each in (body, body | {"layer": LINEAR_LAW}))
-    for plan, stage in (
-        (sam.plan, "plastic loop"),
-        (fem_reference.plan, "return mapping and plastic history"),
-    ):
-        before, after = ({one.stage: one.reason for one in plan(each).stages} for each in (plain, own))
-        assert after[stage] == before[stage] + ", law linear of its own at z < 1.2e-06 m"
-    idle = [one.reason for one in sam.plan(own).left_out if one.stage == "strain limit of the layer"]
-    assert idle == ["no [wear]"]
-    weak = body | {"layer": {"law": "perfect", "yield_stress": 1e9}}
-    for plasticity, kind in ((body, "yielding"), (weak, "deeply yielding")):
-        light = scene(body={"plasticity": plasticity}, loading={"force": 0.17})
-        assert advice_of(light, ["sam"])["kind"] == kind

@@ -7,14 +7,11 @@ import numpy as np
 import pytest
 from builders import LINEAR, STEEL, scene
 
-from sam import UnsupportedScene, choose_grid, left_out, plan, solve
+from sam import UnsupportedScene, left_out, plan, solve
 from sam.contact.convolution import Counters
 from sam.results.rough import in_the_fall_off, too_few_cells
 from sam.scene import COUNTER_HEIGHT, CounterSurface, HeightMap, Scene, SceneError, Status
 from sam.scene.surface import heights
-from verification.cost.plan import plan as cost_plan
-from verification.runs import models
-from verification.runs.models import FEM, FEM_3D, ModelError
 
 FLAT, BALL = {"shape": "flat"}, {"shape": "sphere", "radius": 0.4e-3}
 R, F = 100e-6, 0.05
@@ -143,15 +140,6 @@ def test_what_the_fall_off_of_the_border_makes_is_said(outside, inside, words):
     assert bool(found) == bool(words) and words in found
 
 
-def test_depths_are_fine_near_the_surface_and_reach_an_eighth_of_the_side():
-    depths = choose_grid(patch(64)).depths
-    steps = np.diff(depths)
-    assert depths[0] == 0 and np.allclose(steps[:8], 0.25e-6) and (np.diff(steps) > -1e-12).all()
-    assert 8e-6 <= depths[-1] < 1.2 * 8e-6
-    text = "\n".join(cost_plan(patch(64)).lines(verbose=True))
-    assert "stress lies anywhere below the patch" in text and "left out  stress outside the plane" not in text
-
-
 def test_a_tolerance_that_cannot_be_met_is_not_called_converged(monkeypatch):
     """1e-14 is met here; a share of it is below rounding."""
     given = patch(32, solver={"tolerance": 1e-14})
@@ -230,16 +218,3 @@ def test_a_scene_without_its_maps_is_refused_by_name():
     known = HeightMap.known_by("0" * 64, (32, 32), (SIDE, SIDE))
     with pytest.raises(UnsupportedScene, match=r"counterbody\.surface\.path"):
         solve(scene(counterbody={**FLAT, "surface": {"kind": "file", "path": known}}))
-
-
-@pytest.mark.parametrize(
-    "model, counterbody, key",
-    [
-        (FEM, {**BALL, "surface": WAVE}, "counterbody.surface.kind"),
-        (FEM_3D, {**BALL, **STEEL, "surface": WAVE}, "counterbody.young"),
-        (FEM_3D, {**FLAT, "surface": DISC}, "counterbody.surface.renew"),
-    ],
-)
-def test_finite_elements_refuse_by_name_what_they_cannot_represent(model, counterbody, key):
-    with pytest.raises(ModelError, match=key):
-        models.check(pressed(counterbody, loading={"cycles": 2}), model)

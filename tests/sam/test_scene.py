@@ -44,7 +44,7 @@ from sam.scene import (
     units,
 )
 from sam.scene.body import LAWS
-from sam.scene.yield_curve import DepthProfile, Linear, Swift, Tabulated
+from sam.scene.yield_curve import DepthProfile
 
 SHIPPED = sorted((FilePath(verification.__file__).parent / "scenes").rglob("*.toml"))
 
@@ -272,17 +272,6 @@ def test_a_good_scene_reads_back_from_its_resolved_form_without_its_files(folder
     assert Scene(**content) == scene
     assert content["solver"]["stop"] == "stress" and content["body"]["plasticity"]["law"] == law
     assert scene.body.plasticity.depth_profile() == DepthProfile((0.0, 1e-6, 4e-6), (2.0, 1.5, 1.0))
-
-
-def test_what_a_file_and_python_say_is_the_same(folder):
-    by_file = load_scene(write(folder, plastic(HARDENING["table"]), curve="\ufeff" + CURVE)).body.plasticity
-    rows = [(0.0, 1e9), (0.01, 1.5e9)]
-    assert by_file == Plasticity(law="table", file=rows) == Plasticity(law="table", file=np.array(rows))
-    assert by_file.curve() == Tabulated((0.0, 0.01), (1e9, 1.5e9))
-    laws = [
-        parse_scene(plastic(HARDENING[law]).encode(), "").body.plasticity for law in LAWS if law != "table"
-    ]
-    assert [law.curve() for law in laws] == [Swift(945e6, 20.0, 0.121, 1e6), Linear(1e9, 10.5e9), Linear(1e9)]
 
 
 def test_contradictions_are_seen_between_sections_made_in_python():

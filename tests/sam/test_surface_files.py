@@ -15,13 +15,12 @@ import pytest
 from builders import measured_scene as rough
 
 import sam
-from sam.scene import HeightMap, Scene, SceneError, load_scene, resolved
+from sam.scene import HeightMap, Scene, SceneError, resolved
 from sam.scene.inputs import InputError
 from sam.scene.surface import processed, readers
 from sam.scene.surface.instrument_child import RefusedError, heights_in
 from sam.scene.surface.readers import read_named
 from verification.robustness.fuzz import good_heights, npz, table, with_pickle
-from verification.robustness.hostile import ROUGH
 from verification.runs.store import identity
 
 
@@ -214,20 +213,6 @@ def test_arrays_that_are_no_map_are_refused_with_what_was_found(tmp_path, change
         rough(tmp_path, content=npz(arrays() | changed))
 
 
-def test_other_numbers_and_orders_of_an_array_are_read():
-    good = arrays()
-    plain = read_named("map", npz(good)).values
-    for order in (np.asfortranarray, lambda a: a.astype(">f8")):
-        again = read_named("map", npz(good | {"height_m": order(good["height_m"]), "more": np.zeros(3)}))
-        assert np.array_equal(again.values, plain)
-    whole = read_named("map", npz(good | {"height_m": np.arange(120, dtype=">i2").reshape(12, 10)}))
-    assert np.array_equal(whole.values, np.arange(120.0).reshape(12, 10))
-    with pytest.raises(InputError, match=r'npz with \["x_m.npy"\]: x_m, y_m and height_m'):
-        read_named("map", npz({"x_m": np.arange(3.0)}))
-    with pytest.raises(InputError, match="no npz file, or a damaged one"):
-        read_named("map", npz(good)[:-9])
-
-
 def test_nothing_is_unpickled_and_nothing_large_is_unpacked(folder):
     """Heights said to be 12 x 10 that unpack to 16 MB, and heights said to be far too many: refused within 3
     MB.
@@ -251,34 +236,6 @@ def test_nothing_is_unpickled_and_nothing_large_is_unpacked(folder):
         largest = tracemalloc.get_traced_memory()[1]
         tracemalloc.stop()
         assert largest < 3e6
-
-
-def test_files_elsewhere_or_without_end_are_refused(tmp_path):
-    files = {
-        "../h.npz": "outside the folder",
-        "/dev/zero": "outside",
-        "none.npz": "cannot be read",
-        "": "name of",
-    }
-    for name, message in files.items():
-        (tmp_path / "s.toml").write_text(ROUGH.replace("heights.npz", name))
-        with pytest.raises(SceneError, match=f"surface.path = .*: .*{message}"):
-            load_scene(tmp_path / "s.toml")
-    with pytest.raises(InputError, match="2 x 5000 heights"):
-        HeightMap(np.zeros((2, 5000)), (1.0, 1.0))
-    with pytest.raises(InputError, match="two dimensions"):
-        HeightMap(np.zeros(5), (1.0, 1.0))
-
-
-def test_the_grid_of_a_file_is_that_of_the_scene(tmp_path):
-    grid = sam.choose_grid(rough(tmp_path, more='[grid]\ncells = [12, 10]\nextent = ["12 um", "10 um"]\n'))
-    assert (grid.nx, grid.ny) == (12, 10) and (grid.hx, grid.hy) == pytest.approx((1e-6, 1e-6), rel=1e-12)
-    for more, message in (
-        ("cells = [12, 12]", r"grid.cells = \[12, 12\]: \[12, 10\], the grid of surface.path"),
-        ('extent = ["12 um", "12 um"]', r"grid.extent = .*: 1.2e-05 m and 1e-05 m, the grid of surface.path"),
-    ):
-        with pytest.raises(SceneError, match=message):
-            rough(tmp_path, more=f"[grid]\n{more}\n")
 
 
 # files of instruments

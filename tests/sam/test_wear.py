@@ -107,17 +107,6 @@ def test_strain_at_its_limit_does_not_tear():
     assert removed([0.75, 0.5, 0.25], range(4), StrainLimits(0.375, 0.5, 1.5))[0] == 2
 
 
-def test_zones_under_a_roof_stay_and_are_counted():
-    """Linear between centres 0.5, 1.5 ...: crossings of 0.5 at 1, 2 and 4 with strains 1 0 1 1 0 at the
-    centres.
-    """
-    limits = StrainLimits(0.5, 0.5, 0)
-    assert removed([1, 0, 1, 1, 0], range(6), limits) == (pytest.approx(1), pytest.approx(2), False)
-    assert removed([0, 0, 1, 1, 0], range(6), limits) == (0, pytest.approx(2), False)
-    assert removed([1, 0, 1, 1, 0], range(6), limits, False) == (1, 2, False)
-    assert removed([0, 0, 1, 1, 1], range(6), limits, False) == (0, 3, False)
-
-
 def test_a_roof_falls_with_what_is_under_it():
     """The columns of the test before, and a layer that may strain ten times as much over metal beyond its
     limit down to z = 4: all of it goes, 2 as the roof. Without a roof nothing changes.

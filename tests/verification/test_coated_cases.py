@@ -15,9 +15,8 @@ from verification.figures.maps import in_body
 from verification.judging import error_of
 from verification.quantities import QUANTITIES
 
-SPHERE, SLIDING, ASPERITIES = (
-    load_scene(f"verification/scenes/{name}.toml")
-    for name in ("coated-sphere", "coated-sliding", "rough-asperities")
+SLIDING, ASPERITIES = (
+    load_scene(f"verification/scenes/{name}.toml") for name in ("coated-sliding", "rough-asperities")
 )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from many_digits import ManyDigits
 from scipy.integrate import quad
-from scipy.special import j0, j1
+from scipy.special import j1
 
 from verification.reference.burmister import disc_stress, interface_stress
 from verification.reference.coated_changes import (
@@ -23,9 +23,7 @@ from verification.reference.coated_changes import (
 )
 from verification.reference.coated_sphere import solve_force, solve_radius, thin_layer
 from verification.reference.coated_traction import (
-    antiplane,
     coated_sliding_stress,
-    hertz_transform,
 )
 from verification.reference.hamilton import sliding_stress
 from verification.reference.hertz import largest_von_mises, subsurface_stress
@@ -277,29 +275,6 @@ def test_the_interface_holds_together(layers):
         strains.append(np.array([xx - nu * (yy + zz), yy - nu * (xx + zz)]) / young)
     assert np.abs(strains[0] - strains[1]).max() < ROUNDING * np.abs(strains[0]).max() * 100
     assert np.abs(film - body)[:2].max() > 0.1
-
-
-@COATED
-@pytest.mark.parametrize("k", [0.3, 4.0, 30.0])
-def test_waves_of_traction_have_many_digits(layers, k):
-    """Amplitudes under shear, and the antiplane wave, against a solve of other potentials."""
-    h, ratio = layers.thickness, layers.young / layers.young_body
-    exact = ManyDigits(k * h, ratio, layers.poisson, layers.poisson_body)
-    for z, film in ((0.4 * h, True), (h, True), (h, False), (1.7 * h, False)):
-        zz, shear, along, side, _ = layers.profiles(np.array([k]), layers.amplitudes(k, shear=True), z, film)[
-            :, 0
-        ]
-        right = [float(v) for v in exact.state(k * z, 1, not film)[2:]]
-        assert [zz, along, side, shear] == pytest.approx(right, abs=ROUNDING)
-        turned = antiplane(layers, np.array([k]), z, film)[:, 0] + film * np.exp(-k * z) * np.array([-1, 1])
-        right = [float(v) for v in exact.antiplane_stress(k * z, not film)]
-        assert turned == pytest.approx(right, abs=ROUNDING)
-
-
-def test_transform_of_the_hertz_pressure():
-    for ka in (1e-3, 0.1, 1.0, 7.0):
-        exact = quad(lambda s, ka=ka: np.sqrt(1.0 - s * s) * j0(ka * s) * s, 0.0, 1.0, epsabs=1e-13)[0]
-        assert hertz_transform(np.array([ka]))[0] == pytest.approx(exact, abs=1e-10)  # of the quadrature
 
 
 # bad input

@@ -16,9 +16,8 @@ from page_checks import PageReader, broken_links, faults_of
 from stored import COARSE, COARSE_KEYS
 
 from samfem.cli import main
-from verification.cases.case import Outcome, Plot, SmallTable, View
-from verification.figures import space
-from verification.figures.style import Drawing, new_figure, save
+from verification.cases.case import Outcome, Plot, SmallTable
+from verification.figures.style import Drawing, new_figure
 from verification.judging import Measured
 from verification.references import contact_of
 from verification.runs.files import FolderError
@@ -188,28 +187,6 @@ def test_the_time_that_is_left_is_at_the_pace_of_the_cases_that_ended(monkeypatc
     assert (unknown.left, unknown.words) == ("", "Time and disk: not known.")
 
 
-def test_list_has_one_line_a_case_and_gates_the_rest(tmp_path, monkeypatch, capsys):
-    """Of all cases, or of those named; nothing is written."""
-    monkeypatch.chdir(tmp_path)
-    assert main(["verify", "--list"]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert lines[0].split() == ["case", "levels", "gates", "title"]
-    assert [line.split()[0] for line in lines[1:]] == list(CASES)
-    assert lines[1].split() == ["good", "quick,", "full", "2", "Good", "case"]
-    assert main(["verify", "--list", "bad"]) == 0 and len(capsys.readouterr().out.splitlines()) == 2
-    assert main(["verify", "--gates"]) == 0
-    assert capsys.readouterr().out.count("because of ") == len(ROWS)
-    assert main(["verify", "good", "--gates"]) == 0
-    assert capsys.readouterr().out.splitlines() == [
-        "good: Does it hold?",
-        "  good.one: quantity one, FEM: relative difference at most 0.1",
-        "      because of one",
-        "  good.two: quantity two, FEM: relative difference at most 0.1",
-        "      because of two",
-    ]
-    assert list(tmp_path.iterdir()) == []
-
-
 def page_of(out, name="other.html"):
     return PageReader((out / name).read_text(encoding="utf-8"))
 
@@ -229,35 +206,6 @@ def test_pages_need_no_script_and_what_they_link_is_there(tmp_path):
     page = page_of(out, "report.html")
     assert [image["src"][:22] for image in page.all("img")] == ["data:image/png;base64,"]
     assert all(words in page.text for words in ("Good case", "Bad case", "Broken case", "because of two"))
-
-
-def in_space(context):
-    outcome = good(context)
-    figures, outcome.notes = context.look([View("sam", "worn", "space", "In space", "Caption")])
-    outcome.figures += figures
-    return outcome
-
-
-def test_a_picture_in_space_is_on_the_page_or_why_the_machine_cannot_draw_it(tmp_path, monkeypatch):
-    save(sketch(), tmp_path / "picture", data=False)
-    monkeypatch.setitem(CASES, "good", FakeCase("good", "Good", "Does it hold?", does=in_space))
-    out = tmp_path / "out"
-
-    def draw(folder, name):
-        assert (folder, name) == (out / "unfinished" / "runs" / "good" / "sam", "worn")
-        return {name: (tmp_path / "picture.png").read_bytes()}
-
-    def cannot(folder, name):
-        raise space.CannotDrawError("no pictures in space: install EGL")
-
-    for how, count in ((draw, 2), (cannot, 1)):
-        monkeypatch.setattr(space, "draw", how)
-        run(out, "good")
-        page = page_of(out)
-        links = {anchor["href"] for anchor in page.all("a")}
-        assert len(page.all("img")) == count and ("figures/good-space.png" in links) is (how is draw)
-        assert not links & {"", "figures/good-space.csv"}
-        assert ("No pictures in space: install EGL." in page.text) is (how is cannot)
 
 
 def test_junit_has_one_testcase_a_gate(tmp_path):

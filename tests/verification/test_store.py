@@ -12,21 +12,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders import PERFECT, SPHERE, STEEL, scene_text, yielding
+from builders import PERFECT, SPHERE, STEEL, scene_text
 from stored import BOTH, COARSE, flipped, same
 
-from sam.plasticity.spectra import spectra_of
 from sam.scene import Scene, Section, Status, load_scene, read_scene, resolved
 from verification.runs import checkpoints, models, store
 from verification.runs.code_version import OF_CASES, ROOT, code_version, version_of_cases
-from verification.runs.files import FolderError, json_text, write_run
+from verification.runs.files import json_text, write_run
 from verification.runs.store import (
     FOLDER,
-    LIMIT,
     Store,
     default_store,
     identity,
-    kept_coefficients,
     solve_or_reuse,
 )
 
@@ -256,30 +253,6 @@ def test_a_store_that_cannot_be_written_costs_one_warning_and_no_result(
 def _keep_and_die(folder: Path, result) -> None:
     os.fsync = lambda _: os.kill(os.getpid(), signal.SIGKILL)
     Store(folder).keep(COARSE, models.SAM, result)
-
-
-def test_coefficients_are_kept_in_the_store_where_they_are_asked_for(tmp_path, monkeypatch):
-    """Beside the results; removed with everything; a limit that is no number is named."""
-    monkeypatch.setenv(FOLDER, str(tmp_path))
-
-    def solved():
-        with kept_coefficients():
-            return replace(models.solve(yielding(3.0, grid={"cells": (15, 15)}), "sam"), cost={})
-
-    monkeypatch.setenv(LIMIT, "0")
-    spectra_of.cache_clear()
-    made = solved()
-    assert not Store(tmp_path).coefficients()
-    monkeypatch.delenv(LIMIT)
-    for _ in range(2):
-        spectra_of.cache_clear()
-        assert same(made, solved())
-    files = Store(tmp_path).coefficients()
-    assert not list(Store(tmp_path).prune(lambda _: True))
-    assert len(list(Store(tmp_path).prune(lambda _: True, coefficients=True))) == len(files)
-    monkeypatch.setenv(LIMIT, "2 GB")
-    with pytest.raises(FolderError, match="SAMFEM_COEFFICIENTS = 2 GB"):
-        kept_coefficients()
 
 
 def test_a_killed_process_leaves_a_temporary_file_that_prune_removes(tmp_path, coarse_results):

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Study files: what they may say, the values that they mean, and every error of them at once."""
 
-import os
 from pathlib import Path
 
 import numpy as np
@@ -203,28 +202,6 @@ def test_all_errors_of_a_study_come_at_once(folder):
 )
 def test_a_wrong_study_is_refused(folder, vary, more, fragment):
     assert fragment in errors(folder, vary, more)
-
-
-@pytest.mark.parametrize(
-    "name, fragment",
-    [
-        ("none.toml", "cannot be read: No such file"),
-        ("../other.toml", "outside the folder of the study"),
-        ("link.toml", "outside the folder of the study"),
-        (".", "cannot be read"),
-        ("bad.toml", "not TOML"),
-        ("\\u0000", "cannot be read"),
-    ],
-)
-def test_a_scene_file_that_cannot_be_used_is_refused(tmp_path, name, fragment):
-    home = tmp_path / "home"
-    home.mkdir()
-    (tmp_path / "other.toml").write_text(scene_text())
-    (home / "bad.toml").write_text("= 1")
-    os.symlink(tmp_path / "other.toml", home / "link.toml")
-    (home / "study.toml").write_text(f'scene = "{name}"\n[vary]\n"loading.force" = {{ list = ["1 N"] }}\n')
-    with pytest.raises(SceneError, match=fragment):
-        read_study(home / "study.toml")
 
 
 @pytest.mark.parametrize(

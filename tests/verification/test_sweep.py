@@ -24,7 +24,6 @@ import worker_functions as functions
 from builders import scene_text
 from optional_packages import dask_distributed
 
-from sam.scene import SceneError
 from samfem import executors, sweeping
 from samfem.cli import main
 from samfem.executors import WORKER_DIED, Cluster, Failure, Processes, run
@@ -442,16 +441,3 @@ def test_a_cluster_without_workers_is_waited_for_and_said_once(capsys):
         workers._client = SimpleNamespace(nthreads=lambda found=threads_of: found)
         assert (Cluster.slots(workers), workers.lost) == (slots, lost)
         assert capsys.readouterr().err.count("no workers now") == said
-
-
-@pytest.mark.parametrize(
-    ("error", "words"),
-    [(ImportError("no such symbol"), "no such symbol.*--workers"), (ModuleNotFoundError(), "pip install")],
-)
-def test_a_package_that_cannot_be_loaded_is_said(monkeypatch, error, words):
-    def cluster(_):
-        raise error
-
-    monkeypatch.setattr(sweeping, "Cluster", cluster)
-    with pytest.raises(SceneError, match=f"needs the package distributed.*{words}"):
-        sweeping._executor("tcp://localhost:8786", None)

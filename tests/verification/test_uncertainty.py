@@ -13,7 +13,6 @@ from sam import choose_grid
 from sam.scene import Result, Scene, Status
 from samfem.compared import Uncertain
 from samfem.comparison_page import _uncertainties
-from verification.cost.plan import plan
 from verification.runs import models
 from verification.runs.files import read_run
 from verification.runs.models import FEM, FEM_3D, SAM
@@ -298,32 +297,6 @@ def test_depths_without_a_maximum_are_left_out_of_the_others_and_change_nothing(
     whole = models.solve(family(scene, SAM).cells[-1].scene, SAM).quantities
     values = {name: whole[name] for name, entry in found.items() if entry["u_num"]}
     assert values and {name: found[name]["values"][-1] for name in values} == values
-
-
-def test_the_plan_says_what_is_solved_besides():
-    asked, plain = (Scene(**FINER | {"solver": {"uncertainty": each}}) for each in (True, False))
-    with_it, without = (plan(scene).content["models"][0] for scene in (asked, plain))
-    (stage,) = (each for each in with_it["stages"] if each["stage"] == "uncertainty")
-    assert stage["size"] == {"solves": 2} and "27 cells" in stage["reason"]
-    assert with_it["estimate"]["time_s"] > without["estimate"]["time_s"] and not plan(asked).warnings
-
-
-@pytest.mark.parametrize(
-    "model, change, enough",
-    [
-        (SAM, {"grid": {"cells": (31, 31)}}, "grid.cells to [37, 37]"),
-        (SAM, {"grid": {"cells": (32, 40)}}, "grid.cells to [34, 44]"),
-        (FEM, {"fem": {"cells_per_radius": 6}}, "fem.cells_per_radius to 8"),
-    ],
-)
-def test_what_leaves_enough_cells_to_the_coarsest_is_told_before(model, change, enough):
-    (warning,) = (
-        each for each in plan(Scene(**FINER | change), model).warnings if each.startswith(f"{model}: no")
-    )
-    assert warning.endswith(f"4 needed: raise {enough}")
-    key, words = enough.split(" to ")
-    section, name = key.split(".")
-    assert not plan(Scene(**FINER | {section: {name: json.loads(words)}}), model).warnings
 
 
 # the command
