@@ -24,10 +24,6 @@ def environment() -> dict[str, str]:
     return dict(os.environ)
 
 
-def process_id() -> int:
-    return os.getpid()
-
-
 def sleep(seconds: float) -> None:
     time.sleep(seconds)
 

@@ -10,6 +10,7 @@ import pytest
 from builders import running_in
 
 from sam.scene import load_scene
+from samfem.cli import main
 from verification.cases.case import with_loading
 from verification.cases.cost.work_precision import ADVISED
 from verification.cases.cost.work_precision_problems import PROBLEMS
@@ -34,6 +35,7 @@ from verification.cost.advice import (
     table_text,
 )
 from verification.cost.contact import expected_contact, hertz_of
+from verification.cost.plan import plan
 from verification.cost.precision import TARGETS
 from verification.runs.models import FEM, FEM_3D, MODELS, SAM
 from verification.text.console import table_lines
@@ -149,6 +151,17 @@ def test_a_report_gives_the_table(tmp_path, monkeypatch, capsys, packed):
     assert (tmp_path / "data" / "advice.csv").read_text(encoding="utf-8") == table_text(ROWS)
     assert table_text(read_rows(table_text(ROWS))) == table_text(ROWS)
     assert "6 rows" in capsys.readouterr().out
+
+
+def test_plan_is_short_and_in_numbers_the_same(capsys):
+    file = SCENES / "plastic-swift-rigid.toml"
+    found = plan(load_scene(file))
+    assert main(["plan", str(file), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == json.loads(json.dumps(found.content))
+    assert main(["plan", str(file)]) == 0
+    assert (short := capsys.readouterr().out.splitlines()) == str(found).splitlines()
+    assert f"sam {found.cells_in_radius:.3g}, 0.3 %" in short[1] and max(map(len, short)) <= 112
+    assert (found.error, found.contact["over_yield"]) == (0.003, pytest.approx(4.0, rel=1e-3))
 
 
 def test_the_expected_contact_is_that_of_hertz_and_of_a_light_rough_contact():

@@ -100,6 +100,19 @@ class TestTimes:
         assert math.isnan(lost["error"]) and math.isnan(lost["seconds"]) and lost["status"] == "not converged"
 
 
+def test_what_is_not_there_has_no_ratio():
+    """SAM alone, on one grid of the rough patch and two of the sphere."""
+    made = pd.concat([rows(sam=[(1e-3, "")]), rows(sam=[(1e-3, "")]).assign(sweep="rough", cells="1024²")])
+    made["floor"] = 0.0
+    for take in (peers.contact_mechanics_to_error, peers.contact_mechanics_on_finest):
+        assert math.isnan(take(made, ""))
+    assert all(math.isnan(take(made[:0], "")) for take in (peers.step_on_coarse, peers.step_on_fine))
+    tables = [table(made).rows for table in (peers.hertz_times, peers.rough_times, peers.step_times)]
+    assert [len(each) for each in tables] == [1, 1, 0] and tables[0][0][3] == tables[1][0][4] == "1"
+    plot = peers.over_time(None, made, "hertz")
+    assert "processor time" in plot.caption and plot.drawing.data
+
+
 def script(path: Path, text: str) -> Path:
     path.write_text(f"#!/bin/sh\n{text}\n", encoding="utf-8")
     path.chmod(0o755)

@@ -181,6 +181,14 @@ def test_gates_of_the_case_turn_red_when_a_model_becomes_slow_or_errs(every):
     assert red_with(every, study(SLIDING, dear | {TWICE: (0.01, 1.0, 1e-3)})) == set()  # the better one
 
 
+def test_a_model_that_never_gets_there_counts_with_its_finest_point():
+    """1/32 = 3 %: the axisymmetric model does not reach 1 %, and needed more than 2e-3 * 32^2 s."""
+    rows = of_grid(study(HERTZ, {AXISYMMETRIC: (-1.0, 1.0, 2e-3)}))
+    own = case.reached(rows, COUPLED, 0.01).value
+    assert case.ratio_at_one(rows, "") == pytest.approx(own / (2e-3 * 32**2))
+    assert case.ratio_at_a_third(rows, "") > case.ratio_at_one(rows, "")
+
+
 def test_the_ratio_is_taken_at_the_smallest_error_that_both_reach(every):
     """3D ends at 0.5/32 = 1.6 % after 512 s, where SAM, 0.3/n, has 19.2 cells: a sixtieth of a power. Below
     what is known of the reference no methods are compared.

@@ -334,7 +334,7 @@ from samfem.executors import Processes
 import worker_functions as functions
 if __name__ == "__main__":
     workers = Processes(1)
-    print(workers.submit(functions.process_id).result(), flush=True)
+    print(workers.submit(os.getpid).result(), flush=True)
     workers.submit(functions.sleep, 60)
     os._exit(9)
 """
