@@ -19,9 +19,7 @@ from sam.scene import Scene
 
 
 def begin(scene: Scene, extent: Callable[[Model], Extent] | None = None) -> tuple[Model, Progressed]:
-    """The model of a scene, and the record before its first step, on the first box of the scene or on another
-    one.
-    """
+    """The model of a scene, and the record before its first step, on the scene's first box or another."""
     plan = sam.plan(scene)
     model = model_of(plan, plan.problem(Counters()))
     if extent is not None:

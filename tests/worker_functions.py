@@ -33,9 +33,7 @@ def die(_value: float = 0.0) -> None:
 
 
 def solve_but_die_once(scene, model, code, *how):
-    """The worker of the special scene is killed, the first time; the marker is beside the `title` of the
-    scene.
-    """
+    """The worker of the special scene is killed, the first time; the marker is MARKER."""
     from samfem.sweeping import solve_scene
 
     marker = Path(os.environ[MARKER])

@@ -163,9 +163,7 @@ def test_what_is_refused():
 
 
 def test_film_that_flows_away_is_not_converged():
-    """A converged iteration whose coating is sheared by more than its length is no result; the message names
-    the pressure.
-    """
+    """A coating sheared by more than its length is no result, and the message names the pressure."""
     advice = advice_of(scene(flow=0.67e9, friction=0.1))
     assert advice.outcome(Status.CONVERGED, 0.05) == (Status.CONVERGED, "")
     status, message = advice.outcome(Status.CONVERGED, 11.0)

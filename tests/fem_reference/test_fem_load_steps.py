@@ -106,9 +106,7 @@ def test_weak_steps_finish_by_cutting():
 
 
 def test_parts_of_a_cut_step_begin_with_the_nodes_of_the_last(monkeypatch):
-    """A whole step begins with nodes scaled with the force, its halves with those that touch; each half may
-    be cut again.
-    """
+    """A whole step begins with nodes scaled with the force, its halves with those that touch."""
     model, steps = loaded(cells=4, steps=3)
     state, begun = steps[1].state, []
 

@@ -3,16 +3,7 @@
 
 import numpy as np
 import pytest
-from builders import (
-    MODULUS,
-    PERFECT,
-    RADIUS,
-    SHAPES,
-    SPHERE,
-    SWIFT,
-    hertz_force,
-    scene as small_scene,
-)
+from builders import MODULUS, PERFECT, RADIUS, SHAPES, SPHERE, SWIFT, hertz_force, scene as small_scene
 from rounding import close
 
 import fem_reference

@@ -17,13 +17,7 @@ from fem_reference.common.plasticity import History
 from fem_reference.common.schedule import Load
 from fem_reference.spatial import worn_cycles
 from fem_reference.spatial.rough import build, on_mesh
-from fem_reference.spatial.worn import (
-    Limits,
-    columns_of_points,
-    depth_above,
-    moved_up,
-    own_depth,
-)
+from fem_reference.spatial.worn import Limits, columns_of_points, depth_above, moved_up, own_depth
 from sam.scene import COUNTER_HEIGHT, FrictionMap, HeightMap, Scene, load_scene
 from verification.scenes.asperities import CELLS, height_map
 
@@ -184,9 +178,7 @@ def sliding(counter=WAVE, *, path=PATH, plasticity=None) -> Scene:
 
 
 def test_the_contact_is_that_of_a_counter_body_at_rest_with_those_heights():
-    """The same discrete problem: each within EQUILIBRIUM of the force. Its heights are in the table, and a
-    crest in equilibrium is driven by friction alone.
-    """
+    """The same discrete problem within EQUILIBRIUM; friction alone drives a crest in equilibrium."""
     moved, end = spatial.solve(sliding()), sliding().counter_strip.at(0, PATH["end"])
     at_rest = {"kind": "file", "path": HeightMap(end, (10 * CELL, 10 * CELL))}
     still = spatial.solve(sliding(at_rest, path=None))

@@ -165,9 +165,7 @@ def test_a_coating_of_the_body_changes_nothing():
 
 
 def test_a_coating_that_yields(monkeypatch):
-    """Below its shear strength it yields and not beyond; above, mu p0 = 0.5 GPa > 0.67/sqrt(3) GPa, it has no
-    equilibrium, and the result names the largest pressure.
-    """
+    """Below its shear strength it does not go beyond; above, mu p0 > Y/sqrt(3), there is no equilibrium."""
     soft = film(0.05, strength=0.67e9)
     result = spatial.solve(given(2, 0.1, p0=2.5e9, body=soft, box=3.0))
     q = result.quantities

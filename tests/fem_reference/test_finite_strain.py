@@ -55,9 +55,7 @@ def scene(force, cells=8, poisson=0.3, **plasticity):
 @pytest.mark.parametrize("name", CURVES)
 @pytest.mark.parametrize("stretch", [0.4, 0.99, 2.5])
 def test_uniaxial_stress_is_that_of_logarithmic_strains(name, stretch):
-    """Along z in one step: t = E (ln stretch - e_p), |t| <= Y(|e_p|); the lateral stretch leaves no lateral
-    stress.
-    """
+    """Along z in one step: t = E (ln stretch - e_p), |t| <= Y(|e_p|), and no lateral stress."""
     material, total = hencky(CURVES[name]), np.log(stretch)
 
     def lateral(r):
@@ -135,9 +133,7 @@ def test_logarithm_and_exponential_are_inverse_also_of_equal_values():
 
 
 def test_a_patch_of_distorted_elements_carries_a_uniform_state_exactly():
-    """u_r = a r, u_z = b z + c r would not be axially uniform; a and b are, and the inner nodes are in
-    balance.
-    """
+    """u_r = a r, u_z = b z: uniform, and the inner nodes are in balance."""
     mesh = MeshQuad.init_tensor(np.array([0.5, 0.9, 1.4, 2.0]), np.array([0.0, 0.4, 1.0]))
     solid = AxisymmetricSolid(mesh, Elastic(YOUNG, POISSON))
     operator = GradientOperator(solid.basis, solid.weights)

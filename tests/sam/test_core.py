@@ -179,9 +179,7 @@ def test_stress_of_a_load_is_the_mean_over_the_observed_cell(load):
 
 
 def test_waves_across_a_film():
-    """Antiplane shear of a film on a body, written out: no jump of displacement and stress at the interface,
-    unit traction.
-    """
+    """Antiplane shear of a film on a body, written out: no jump at the interface, unit traction."""
     body, coating = Elastic(3.0, 0.25), Coating(young=1.0, poisson=0.3, thickness=0.4)
     mu1, mu2 = 1.0 / 2.6, 3.0 / 2.5
     k, z = np.array([0.3, 2.0]), np.array([0.0, 0.1, 0.39, 0.7])
@@ -204,9 +202,7 @@ def test_compliance_of_a_film_of_the_material_of_its_body():
 
 
 def test_shear_that_plastic_flow_carries_the_surface_by():
-    """-2 times the integral of the component 13 over depth; the surface moves by the residual
-    displacement.
-    """
+    """-2 times the integral of the component 13 over depth, and the residual displacement."""
     strain, zero = np.arange(1.0, 37.0).reshape(6, 2, 3, 1), np.zeros((3, 1))
     sliding = Sliding(zero, zero + 5.0, zero, zero, zero).strained(zero + 2.0, strain, np.array([0.5, 0.25]))
     assert sliding.shear == pytest.approx(-2 * (0.5 * strain[4, 0] + 0.25 * strain[4, 1]), rel=1e-12)
@@ -302,9 +298,7 @@ def test_the_return_map_of_a_cell():
 
 
 class OneCell:
-    """In place of a `BoxOperator`: a stress under any load, which relaxes by a number times the plastic
-    strain.
-    """
+    """In place of a `BoxOperator`: a stress that relaxes by a number times the plastic strain."""
 
     layers, shape = 1, (1, 1)
 
@@ -352,9 +346,7 @@ def test_the_paper_s_loop_relaxes_a_cell(beyond):
 
 
 def test_recovered_plastic_strain_is_a_tensor_in_units_of_one():
-    """One element of 4 points: engineering shear halved, times the unit of strain; the accumulated one
-    likewise.
-    """
+    """One element of 4 points: engineering shear halved, times the unit of strain."""
     points = np.array([[[0.1, 0.2, 0.1, 0.2]], [[0.1, 0.1, 0.2, 0.2]]])
     strain = np.arange(16.0).reshape(4, 1, 4) + 1
     body = SimpleNamespace(points=points, stress=lambda field, plastic: np.ones((4, 1, 4)) - 0 * plastic)

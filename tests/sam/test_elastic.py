@@ -170,9 +170,7 @@ def test_half_the_way_is_half_of_all_that_a_load_gives():
 
 
 def test_extrapolation_is_exact_for_a_quadratic_error():
-    """q = 3 + 5 h^2 on h = 1 and 1/1.94: 3; what only one of both has, or is not of second order, stays
-    away.
-    """
+    """q = 3 + 5 h^2 on h = 1 and 1/1.94: 3; what only one of both has stays away."""
     ratio = 33 / 17
     before, fine = (
         {"p_max_Pa": 3 + 5 * h**2, "contact_area_m2": 1.0, "approach_m": None} for h in (1.0, 1 / ratio)

@@ -14,11 +14,7 @@ from sam.scene.friction import Friction, growth_coefficient
 from sam.tribofilm import FilmLaw, FilmState
 from sam.tribofilm.law import Loads, Material, multiplier, printed_stress, radial_flow
 from verification.cases.film import film_law
-from verification.reference.bonded_film import (
-    in_plane_strain,
-    printed_thinning,
-    thinning,
-)
+from verification.reference.bonded_film import in_plane_strain, printed_thinning, thinning
 from verification.reference.film_flow import Film, FlowPoint
 from verification.reference.stress import deviator, von_mises
 
@@ -57,9 +53,7 @@ class TestClosedForms:
 
     @pytest.mark.parametrize(("nu", "body_nu"), [(0.0, 0.3), (0.25, 0.49), (0.3, 0.0), (0.3, 0.3)])
     def test_any_poisson_ratio(self, nu, body_nu):
-        """Equal strains: exact in one step, at rounding; the excess over the yield stress loses two digits at
-        most.
-        """
+        """Equal strains: exact in one step; the excess over the yield stress loses two digits at most."""
         pressures, body = (1.9e9, 2.7e9, 3.3e9), (150e9, body_nu)
         for low in (0.0, 0.1):
             law = replace(LAW, poisson=nu, low=low)
@@ -84,9 +78,7 @@ class TestClosedForms:
 class TestGeneralSolver:
     @pytest.mark.parametrize(("nu", "sign"), [(0.0, -1.0), (0.3, 1.0), (0.49, -1.0)])
     def test_random_steps(self, nu, sign):
-        """Same implicit equations, another solver, which meets its stresses within 1e-10 of the yield
-        stress.
-        """
+        """Same implicit equations, another solver that meets its stresses within 1e-10."""
         law, film = replace(LAW, poisson=nu), Film(LAW.young, nu, LAW.yield_stress)
         rng, n = np.random.default_rng(4), 40
         pressure, strain = rng.uniform(0.0, 3.7e9, n), rng.normal(scale=5e-3, size=(3, n))
@@ -232,9 +224,7 @@ def test_printed_stress_has_the_shear_modulus_once_and_lames_constant(poisson):
 
 @pytest.mark.parametrize("component", range(6))
 def test_printed_flow_of_one_component_ends_on_the_yield_surface(component):
-    """Pure shear yields at k = sigma_y/sqrt(3), tension at sigma_y; what flows takes the rest of the elastic
-    strain.
-    """
+    """Pure shear yields at k = sigma_y/sqrt(3), tension at sigma_y; what flows takes the rest."""
     _, shear = moduli(0.3)
     stress, plastic = np.zeros((6, 1)), np.zeros((6, 1))
     stress[component] = 9e8

@@ -43,9 +43,7 @@ def coupling_of(a_scene: Scene) -> float:
 
 @pytest.mark.parametrize("counterbody", [{}, ALUMINIUM], ids=["rigid", "aluminium"])
 def test_traction_moves_both_bodies_as_point_forces_do(counterbody):
-    """u_z of body 1 under q and of body 2 under -q, by quadrature of Cerruti's solution with each body's own
-    constants.
-    """
+    """u_z of body 1 under q and of body 2 under -q, by quadrature of Cerruti's solution."""
     a_scene = scene(0.37, counterbody)
     rng, modulus, h = np.random.default_rng(1), Bodies(a_scene).pair.contact_modulus, 2e-7
     pressure = rng.random((3, 2))
@@ -67,9 +65,7 @@ def test_traction_moves_both_bodies_as_point_forces_do(counterbody):
 
 
 def test_the_mismatch_is_dundurs_and_zero_between_like_bodies():
-    """Twice beta = ((1 - 2 nu1)/mu1 - (1 - 2 nu2)/mu2)/(2 ((1 - nu1)/mu1 + (1 - nu2)/mu2)); rigid: (1 - 2
-    nu)/(2 (1 - nu)).
-    """
+    """2 beta of (1 - 2 nu)/mu and (1 - nu)/mu of both bodies; rigid: (1 - 2 nu)/(2 (1 - nu))."""
     assert Bodies(scene()).pair.tangential_mismatch == pytest.approx(0.4 / 0.7, rel=1e-14)
     assert Bodies(scene(counterbody=STEEL)).pair.tangential_mismatch == 0.0
     assert coupling_of(scene(counterbody=STEEL)) == 0.0
@@ -90,9 +86,7 @@ def dense(n, h, load, tangential):
 
 @pytest.mark.parametrize("coupling", [0.23, 3.0, "field"])
 def test_equal_to_a_direct_solution(coupling):
-    """Dense equations on an active set, solved without any lag; 1e-9 of the largest pressure (measured
-    6e-11).
-    """
+    """Dense equations on an active set; 1e-9 of the largest pressure (measured 6e-11)."""
     n = 25
     h, rng = 4.0 / n, np.random.default_rng(3)
     x = (np.arange(n) - (n - 1) / 2) * h

@@ -17,12 +17,7 @@ from sam.kernels.eigenstrain import displacement_parity, surface_displacement_co
 from sam.kernels.layer_stress import residual_stress_coefficients
 from sam.kernels.patches import STRESS, Cuboids, Lags, displacement_coefficients, parity, stress_coefficients
 from verification.reference.mindlin_cheng import EigenstrainSphere
-from verification.reference.nuclei import (
-    cuboid_by_faces,
-    cuboid_by_nuclei,
-    mindlin_displacement,
-    point_force,
-)
+from verification.reference.nuclei import cuboid_by_faces, cuboid_by_nuclei, mindlin_displacement, point_force
 from verification.reference.quadrature import patch_response
 
 HX, HY = 1.0, 0.7
@@ -98,9 +93,7 @@ def test_surface_stress_balances_the_traction():
 
 
 def of_cuboid(i, j, z, layer, nu):
-    """Stress (6) at z and displacement (3) of the surface for six eigenstrains, (9, 6), at a lag of either
-    sign.
-    """
+    """Stress (6) at z and displacement (3) of the surface for six eigenstrains, (9, 6), at any lag."""
     box = Cuboids(Lags(abs(i) + 1, abs(j) + 1, HX, HY), tuple(FACES), nu)
     stress = residual_stress_coefficients(box, z)[:, :, 0, layer, -1, -1]
     shift = [surface_displacement_coefficients(box, component=c)[:, layer, -1, -1] for c in (1, 2, 3)]
@@ -118,9 +111,7 @@ def by_quadrature(method, i, j, z, layer, nu):
 
 
 def test_mindlin_s_solution_is_in_equilibrium():
-    """The independent answer itself: no traction at z = 0, the force carried at depth, symmetric in force and
-    source.
-    """
+    """The independent answer itself: no traction at z = 0, the force carried at depth, symmetric."""
     x, y = np.array([0.3, 1.1])[:, None], np.array([-0.4, 0.9])
     assert np.abs(point_force((x, y, 0.0), 0.7, 0.3)[2:5]).max() <= 1e-14
     near = np.array(mindlin_displacement((0.4, -0.3, 0.5), 1.2, 0.3))
@@ -139,9 +130,7 @@ def test_mindlin_s_solution_is_in_equilibrium():
     [((1, 1, 0.5, 0), 0.3), ((0, -2, 0.2, 0), 0.0), ((-2, 1, 1.3, 1), 0.49), ((2, 0, 0.0, 0), 0.3)],
 )
 def test_equal_to_quadrature_of_point_nuclei_outside(place, nu):
-    """1e-10 of the largest component (the project's bound; measured below 1e-13), all quadrants, surface
-    included.
-    """
+    """1e-10 of the largest component (measured below 1e-13), all quadrants, surface included."""
     assert_close(of_cuboid(*place, nu), by_quadrature(cuboid_by_nuclei, *place, nu))
 
 
@@ -167,9 +156,7 @@ def test_surface_is_free_of_traction(hx, hy, faces):
 
 
 def test_far_away_an_expanding_cube_is_mindlin_and_cheng_s_sphere():
-    """Equal volumes; by its symmetry a cube differs by (half side/distance)^4 only: below 2e-6 at 12 to 20
-    sides.
-    """
+    """By its symmetry a cube differs by (half side/distance)^4: below 2e-6 at 12 to 20 sides."""
     n, top, nu = 12, 9.5, 0.3
     sphere = EigenstrainSphere(1.0, (3 / (4 * pi)) ** (1 / 3), top + 0.5, 2 * (1 + nu), nu)
     box, depth = Cuboids(Lags(n + 1, n + 1, 1.0, 1.0), (top, top + 1.0), nu), 1.5 * (top + 0.5)

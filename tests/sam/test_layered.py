@@ -20,12 +20,7 @@ from sam.contact.operators import CoatedBodies, SurfaceOperators
 from sam.grid.cells import Window
 from sam.grid.smooth import contact_radius, depths_with_film
 from sam.kernels.patches import STRESS, Lags, displacement_coefficients, stress_coefficients
-from sam.layered.patches import (
-    LayeredPatches,
-    RadialTable,
-    spline_matrix,
-    wave_numbers,
-)
+from sam.layered.patches import LayeredPatches, RadialTable, spline_matrix, wave_numbers
 from sam.layered.response import Layers, Response
 from sam.results.quantities import coated_quantities
 from sam.results.snapshots import Coated, Comparison
@@ -198,9 +193,7 @@ def at(coefficients, lags):
 
 @MATERIALS
 def test_stress_equals_quadrature(layers, load):
-    """In the film above and below the depth from which no closed form is taken out, at the interface, in the
-    body.
-    """
+    """In the film on both sides of where a closed form is taken out, at the interface, in the body."""
     for cell, height in (((1.0, 0.7), 0.8), ((0.4, 0.5), 0.6), ((0.4, 0.5), 1.0), ((0.7, 1.0), 2.5)):
         answer = by_quadrature(layers, cell, LAGS, height, load)
         lags = Lags(4, 5, cell[0] * THICKNESS, cell[1] * THICKNESS)
@@ -209,9 +202,7 @@ def test_stress_equals_quadrature(layers, load):
 
 
 def displacement_by_quadrature(layers, cell, lags, load):
-    """Surface displacement times mu_1/h, (lags, 3): difference from a half-space of film, and its closed
-    form.
-    """
+    """Surface displacement times mu_1/h, (lags, 3): excess over a half-space of film, and that."""
     k, phi, weights = waves(cell, lags, 2.0)
     bare = Layers(layers.young, layers.poisson, layers.thickness, layers.young, layers.poisson)
     zz, zl, ll, tt = (Response(layers, k).surface - Response(bare, k).surface) / k
@@ -276,9 +267,7 @@ def radial_values(table, r, kind="point"):
 
 @pytest.mark.parametrize("order, bias", [(0, 1.0), (1, 1.0), (1, 0.5), (2, 1.0), (3, 1.0)])
 def test_radial_table_of_an_exponential(order, bias):
-    """f = e^{-k}: g = (1 + m c) t^m/(1 + r^2)^1.5/(2 pi), c = sqrt(1 + r^2), t = r/(1 + c)  (int e^{-pk}
-    J_m(kr) dk, -d/dp).
-    """
+    """f = e^{-k}: g = (1 + m c) t^m/(1 + r^2)^1.5/(2 pi), c = sqrt(1 + r^2), t = r/(1 + c)."""
     r = np.geomspace(1e-3, 1e3, 61)
     root = np.sqrt(1 + r * r)
     exact = (1 + order * root) * (r / (1 + root)) ** order / root**3 / (2 * np.pi)
@@ -357,9 +346,7 @@ def test_depths_on_one_side_of_the_interface_say_nothing_of_the_other(deep, film
 
 
 def test_traction_moves_the_coated_body_and_the_counter_body_apart():
-    """Both parts by direct sums over all cells, with signs; a coefficient of friction of its own in each
-    cell.
-    """
+    """Both parts by direct sums over cells, each with a coefficient of friction of its own."""
     rng, n, h = np.random.default_rng(1), 7, 0.3e-6
     layered, modulus = LayeredPatches(Layers(80e9, 0.25, 0.4e-6, 210e9, 0.3)), 100e9
     other, slip = (1 - 0.33**2) / 70e9, (1 - 2 * 0.33) * 2 * 1.33 / 70e9

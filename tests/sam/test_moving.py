@@ -9,15 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from builders import (
-    CHEMICAL_FILM,
-    PATH,
-    SWIFT_YIELD,
-    hertz_force,
-    parsed,
-    running_in,
-    scene,
-)
+from builders import CHEMICAL_FILM, PATH, SWIFT_YIELD, hertz_force, parsed, running_in, scene
 
 import sam
 from sam.grid.cells import CellGrid, Window
@@ -215,9 +207,7 @@ def test_says_where_the_plastic_zone_left_the_grid():
 
 @pytest.mark.parametrize("law", [None, {"law": "perfect", "yield_stress": 2.3 * SWIFT_YIELD}])
 def test_says_where_the_contact_left_the_grid(law):
-    """The grid ends 1.1 radii behind the path: a body that yields ends there, an elastic one says from where
-    on its tables are wrong.
-    """
+    """Ending 1.1 radii behind the path: a body that yields ends, an elastic one says from where."""
     narrow = {"cells": (33, 15), "extent": (33 * A / 4, 15 * A / 4)}
     path = {"steps": 8, "start": (-2 * A, 0.0)}
     found = sam.solve(moving(path, track=6.0, plasticity=law, grid=narrow, loading={"steps": 2}))
@@ -338,9 +328,7 @@ HALF = 1.0  # of the contact
 
 
 def swept(track: Track, cycles: int, steps: int = 40):
-    """The film after each step of a contact of half-width HALF over cells in a row, unloaded after each pass
-    unless that goes back: (cycle, place, film).
-    """
+    """(cycle, film) after each step of a contact of half-width HALF over cells in a row."""
     film_of = FilmOnCells(LAW, (len(ALONG), 1), VisitLaw(RATE, track.period))
     film = film_of.fresh(np.zeros((4, len(ALONG), 1)))
     for cycle in range(1, cycles + 1):

@@ -7,14 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from builders import (
-    LINEAR,
-    PERFECT,
-    RUN_IN_STEEL,
-    running_in,
-    scene,
-    yielding,
-)
+from builders import LINEAR, PERFECT, RUN_IN_STEEL, running_in, scene, yielding
 from plastic_start import begin, shrink_first_box
 
 import sam

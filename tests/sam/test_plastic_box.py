@@ -321,9 +321,7 @@ def virgin(material) -> CellFields:
 
 
 def test_a_step_is_accepted_only_if_flow_rule_and_yield_condition_both_hold():
-    """Points beyond their yield stress are seen although the increment is that of the return map. What a step
-    accepts without an increment of the cells leaves the points as they are.
-    """
+    """Points beyond their yield stress are seen although the increment is the return map's."""
     material, load = MATERIALS["perfect"], deviator(smooth())
     flow = CellFlow(material, virgin(material), WHOLE, STEEL_MU / 2)
     assert flow.stays_elastic(0.1 * load, 1e-6) and not flow.stays_elastic(load, 1e-6)
@@ -427,9 +425,7 @@ def test_nothing_is_taken_from_beyond_the_border_of_the_plastic_zone():
 
 
 def test_no_parabola_across_a_kink_of_the_yield_stress():
-    """A soft layer strains most at its lower face: exp((z - 3)/1.2) above it, nothing much below. The largest
-    value is 1.
-    """
+    """A soft layer strains most at its lower face: exp((z - 3)/1.2) above it; the largest is 1."""
     above = 1.2 * np.diff(np.exp((DEEP - 3.0) / 1.2))
     mean = np.where(MIDDLE < 3.0, above, 0.01)[:, None, None] * np.ones((1, 3, 3))
     interval = (MIDDLE > 3.0).astype(int)

@@ -424,8 +424,7 @@ def test_a_malformed_scene_is_refused_by_name_and_nothing_is_created(message, ba
 
 
 @pytest.mark.parametrize(
-    "key, content, pieces",
-    [("file", *case) for case in CURVES] + [("profile", *case) for case in PROFILES],
+    "key, content, pieces", [("file", *case) for case in CURVES] + [("profile", *case) for case in PROFILES]
 )
 def test_a_malformed_file_of_a_scene_is_refused_by_line(message, key, content, pieces):
     law = keys(f"law = '{'table' if key == 'file' else 'perfect'}'; {key} = 'curve.csv'", AT)

@@ -31,13 +31,7 @@ from sam.plasticity.flow import (
     mises,
     plastic_multiplier,
 )
-from sam.scene import (
-    Plasticity,
-    load_scene,
-    plastic_work,
-    step_energies,
-    stored_energy,
-)
+from sam.scene import Plasticity, load_scene, plastic_work, step_energies, stored_energy
 from sam.scene.body import LAWS
 from sam.scene.yield_curve import DepthProfile, Kinks, Linear, Strength, Swift, Tabulated
 from tests.material_point import MU, POINTS, YOUNG, SamPoint, Specimen
@@ -55,9 +49,7 @@ CURVES = {
 
 @pytest.mark.parametrize("name", CURVES)
 def test_plastic_multiplier_solves_the_return_map(name):
-    """q - 3 m g = factor sigma_y(alpha + g), against a bracketing root finder, from just above yield to ten
-    times it.
-    """
+    """q - 3 m g = factor sigma_y(alpha + g), by a bracketing root finder, from yield to ten times it."""
     curve, m3, factor = CURVES[name], 3 * 80.8e9, np.full(5, 0.8)
     for alpha in (0.0, 7e-4, 3e-3):
         q = (0.8 * float(curve.stress(alpha))) * np.array([0.5, 1.0 + 1e-9, 1.01, 2.0, 10.0])
@@ -124,9 +116,7 @@ def test_return_map_is_the_same_for_every_stiffness(law, curve):
 @pytest.mark.parametrize("closeness", [0.0, 1.0])
 @pytest.mark.parametrize("law", [PRAGER, THREE, ([1e12], [100.0])])
 def test_multiplier_takes_few_iterations(law, closeness):
-    """From anywhere on or close to the root: rounding ends Newton's method, and the yield condition holds to
-    rounding of the stresses.
-    """
+    """From anywhere on or close to the root: rounding ends Newton's method."""
     rng, n = np.random.default_rng(5), 1000
     modulus, recovery = (np.tile(np.reshape(values, (-1, 1)), n) for values in law)
     back, calls = BackStressFields(modulus, recovery), []
@@ -252,9 +242,7 @@ class TestEveryLaw:
         np.testing.assert_allclose(checked, expected, rtol=1e-14)
 
     def test_both_return_maps_end_on_the_curve_of_the_point(self, read, law):
-        """At one point of each region the stress after a step is the yield stress that the checks write once
-        more.
-        """
+        """At a point of each region the stress after a step is the yield stress of the checks."""
         strength, shear = read.body.plasticity.strength(), 80e9
         z, strained = np.array([0.4e-6, 2e-6]), np.array([1e-3, 2e-3])
         factor, curve = strength.profile(z), strength.curve_at(z)

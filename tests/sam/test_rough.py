@@ -63,9 +63,7 @@ def test_a_pit_below_a_punch_carries_nothing():
 
 
 def test_spots_share_and_mean_gap_by_hand():
-    """Six cells that stand out by 1 um under next to no load: an L cut by the edge, two that meet at a
-    corner, one alone.
-    """
+    """Six cells that stand out by 1 um: an L cut by the edge, two that meet at a corner, one alone."""
     tall = np.zeros((8, 8))
     tall[[0, 0, 1, 3, 4, 6], [4, 5, 5, 1, 2, 6]] = 1e-6
     found = solve(of_heights(lambda x, y: tall, 8, 8e-6, force=1e-6)).quantities

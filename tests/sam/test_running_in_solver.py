@@ -100,9 +100,7 @@ def test_the_wear_of_a_cycle_is_the_sum_of_its_parts(fills):
 
 
 def test_local_friction_of_a_map_acts_where_it_is():
-    """High friction on every other row of cells: the overall coefficient is the mean, weighted by what these
-    carry.
-    """
+    """High friction on every other row of cells: the overall coefficient is the weighted mean."""
     local = np.where(np.arange(24)[:, None] % 2, 0.4, 0.1) * np.ones((24, 24))
     path = FrictionMap(local, (16e-6, 16e-6))
     found = sam.solve(running_in(film={"law": "map", "path": path}, wear=None, cycles=1, steps=1))

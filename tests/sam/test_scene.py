@@ -13,14 +13,7 @@ from pathlib import Path as FilePath
 
 import numpy as np
 import pytest
-from builders import (
-    HARDENING,
-    PATH,
-    SPHERE_TEXT,
-    YIELD_CURVE as CURVE,
-    parsed,
-    scene_text,
-)
+from builders import HARDENING, PATH, SPHERE_TEXT, YIELD_CURVE as CURVE, parsed, scene_text
 from hypothesis import given, strategies as st
 from pydantic import ValidationError
 
@@ -140,9 +133,7 @@ def test_units_of_pressure(text, value):
 @pytest.mark.parametrize("micro", ["um", "\N{MICRO SIGN}m", "\N{GREEK SMALL LETTER MU}m"])
 @given(count=st.integers(1, 10**6))
 def test_conversion_rounds_once(micro, count):
-    """Exact rational arithmetic, rounded to the nearest float, is the independent answer: not one digit is
-    lost.
-    """
+    """Exact rational arithmetic, rounded to the nearest float: not one digit is lost."""
     assert parsed(("105 um", f"{count} {micro}")).counterbody.radius == float(Fraction(count, 10**6))
 
 

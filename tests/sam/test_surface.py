@@ -53,9 +53,7 @@ def test_a_finer_grid_has_the_same_surface(keys):
 
 @pytest.mark.parametrize("keys", [SELF_AFFINE, TURNED, TURNED | {"feed_share": 1.0}])
 def test_ra_is_that_of_the_surface_on_any_grid(keys):
-    """The mean of |h| has kinks where h = 0, so that its sum over cells converges fast but not at once: 0.3 %
-    at 150 cells.
-    """
+    """|h| has kinks where h = 0: its mean over 150 cells is 0.3 % off."""
     surface = Surface(**keys)
     h = on_grid(surface, 150)
     assert roughness(h, 1, 1).sa == pytest.approx(0.27e-6, rel=3e-3)
@@ -297,9 +295,7 @@ def test_roughness_of_measured_points_only():
 
 
 def test_the_pin_is_what_its_recipe_makes():
-    """Data to ten digits. Ra is that of the surface between the cells as well: sampling 64 x 64 changes it by
-    some 1e-4.
-    """
+    """Data to ten digits. Ra counts what is between the cells too: some 1e-4."""
     file = load_scene("verification/scenes/pin.toml").surface.measured
     recipe = load_scene("verification/scenes/pin-recipe.toml")
     made = on_grid(recipe.surface, 64)

@@ -214,9 +214,7 @@ def test_arrays_that_are_no_map_are_refused_with_what_was_found(tmp_path, change
 
 
 def test_nothing_is_unpickled_and_nothing_large_is_unpacked(folder):
-    """Heights said to be 12 x 10 that unpack to 16 MB, and heights said to be far too many: refused within 3
-    MB.
-    """
+    """12 x 10 heights that unpack to 16 MB, and far too many: refused within 3 MB."""
     with pytest.raises(InputError, match="numbers are allowed"):
         read_named("map", with_pickle())
     assert not (folder / "sprung").exists()
@@ -258,9 +256,7 @@ def library():
 
 
 def sdf_in_words(bad: str = "") -> bytes:
-    """ISO 25178-71, ASCII: metres, values of a profile along x one after the other, profile after profile
-    along y.
-    """
+    """ISO 25178-71, ASCII: metres, profiles along x one after the other along y."""
     head = "aISO-1.0\nManufacID = samfem\nCreateDate = 010120260000\nModDate = 010120260000\n"
     head += "NumPoints = 5\nNumProfiles = 4\nXscale = 2e-6\nYscale = 1e-6\nZscale = 1e-9\n"
     head += "Zresolution = -1\nCompression = 0\nDataType = 7\nCheckType = 0\n*\n"
@@ -282,9 +278,7 @@ GWYDDION = "# Channel: Height\n# Width: 10 µm\n# Height: 4 µm\n# Value units: 
 
 
 def test_x_y_sign_and_unit_of_files_written_by_hand(library):
-    """Two formats of ISO 25178-71 and Gwyddion's text, by their definitions: rows of the picture are x,
-    heights point out.
-    """
+    """ISO 25178-71 twice and Gwyddion's text: rows of the picture are x, heights point out."""
     for name, content in (("sdf", sdf_in_words()), ("sdf", sdf_in_bytes()), ("asc", matrix(GWYDDION))):
         head, found = heights_in(content, [name], 4097)
         assert found.shape == (5, 4) and head["extent"] == pytest.approx([1e-5, 4e-6], rel=1e-12)

@@ -89,9 +89,7 @@ def test_margin_is_that_of_the_layer_nearest_to_its_limit():
 
 
 def test_strain_at_the_surface_is_not_negative():
-    """0 and 1 at the centres 0.5 and 1.5, 1 and 4 as well, extrapolate to -0.5: sound as 0 is, and so is what
-    lies next.
-    """
+    """0 and 1, or 1 and 4, at 0.5 and 1.5 extrapolate to -0.5: sound as 0 is, as what lies next."""
     limits, above = StrainLimits(0.25, 0.25, 0), 0.375 + 1 + 0.9375  # from 0 to 1 over 0.5
     assert removed([0, 1, 0, 0], range(5), limits)[:2] == (0, pytest.approx(1.5))
     assert removed([1, 4, 0, 0], range(5), limits)[:2] == (0, pytest.approx(above))
@@ -132,9 +130,7 @@ PROFILES = st.integers(2, 6).flatmap(
 @settings(max_examples=30, deadline=None)
 @given(PROFILES, st.floats(0.05, 0.95), st.floats(0.05, 0.95), st.just(0.0) | st.floats(0.1, 10))
 def test_depth_and_roof_equal_a_walk_down_the_profile(profile, bulk, layer, thickness):
-    """Samples of the same piecewise linear strain: within two samples per crossing, of which a profile has 2
-    + layers.
-    """
+    """Samples of the same piecewise linear strain: within two samples per crossing."""
     alpha, lengths = np.array(profile[0]), np.array(profile[1])
     faces = np.concatenate([[0], np.cumsum(lengths)])
     limits = StrainLimits(bulk, layer, thickness)
@@ -177,11 +173,7 @@ def test_filter_keeps_the_volume_up_to_the_border(window):
 
 
 def test_negative_depths_are_the_volume_that_smoothing_adds():
-    """One cell removed: its depth times the positive weights, (27 + 88 + 68 + 28 + 16)/175 of window 5;
-    nothing beyond it.
-
-    Weights as accurate as above, and their sum: 50 EPS.
-    """
+    """One cell removed: the positive weights of window 5; weights and their sum to 50 EPS."""
     raw = np.zeros((15, 15))
     raw[7, 7] = 2e-7
     found = smoothed(raw, 5, 2)
@@ -241,9 +233,7 @@ def norm(strain):
 
 
 def assert_closed(before, after, removed, faces):
-    """To the rounding of overlaps: two a layer, differences of depths, each with two roundings of the
-    deepest.
-    """
+    """To the rounding of overlaps: two a layer, differences of depths with two roundings each."""
     integral = (np.abs(before) * np.diff(faces)[:, None, None]).sum(axis=-3).max()
     rounding = 4 * len(faces) * EPS * np.abs(before).max() * faces[-1]
     assert closing_residual(before, after, removed, faces) * integral <= rounding

@@ -252,11 +252,7 @@ WRONG = [
     *((of, "complementarity", field("point_data", "uz_m", 1.00001)) for of in (SLIDING, PATCH)),
     *((of, "load", field("point_data", "p_Pa", 1.00001)) for of in (SLIDING, PATCH)),
     *((of, "friction", column("line", "qx_Pa", 1.00001)) for of in (SLIDING, PATCH)),
-    (
-        SLIDING,
-        "load",
-        returned(lambda r: with_field(r, "point_data", "p_Pa", lambda p: p - 1e-6 * p.max())),
-    ),
+    (SLIDING, "load", returned(lambda r: with_field(r, "point_data", "p_Pa", lambda p: p - 1e-6 * p.max()))),
     (SLIDING, "complementarity", column("line", "gap_m", more=-1e-12)),
     (PATCH, "complementarity", column("surface", "height_m", 1.0001)),
 ]
@@ -364,9 +360,7 @@ def test_a_film_that_yields(solve):
 
 
 def test_a_wrong_state_of_a_chemical_film_is_seen(solve):
-    """More strain; the cell under the largest pressure whole, which then bears more than its traction; all
-    cells whole; a limit that the thinning is beyond.
-    """
+    """More strain; the cell under the largest pressure whole; all cells whole; an exceeded limit."""
     scene, _, records = solve("rough", "rough, film that fails")
 
     def states(change):

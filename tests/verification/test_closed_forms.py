@@ -161,9 +161,7 @@ def test_stress_equals_the_quadrature_of_point_loads(point_stress, closed):
 
 
 def test_line_contact_is_the_quadrature_of_line_forces_and_the_benchmark_of_nafems():
-    """Flamant's stress under pressure and traction, and the logarithm of a line force, over a half-width; the
-    half-width and the pressure of NAFEMS R0094-1; von Mises' first yield at nu = 0.3.
-    """
+    """Flamant's stress and the logarithm of a line force; NAFEMS R0094-1; first yield at nu = 0.3."""
     line, friction = hertz_line.LineContact(math.pi / 2, 1.0, 2.0, 1.0), 0.3
     assert (line.contact_radius, line.peak_pressure) == pytest.approx((1.0, 1.0), rel=1e-15)
     angle, w = np.polynomial.legendre.leggauss(200)  # s = sin(angle) has the root of the edges

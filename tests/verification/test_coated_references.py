@@ -22,9 +22,7 @@ from verification.reference.coated_changes import (
     pressure_change,
 )
 from verification.reference.coated_sphere import solve_force, solve_radius, thin_layer
-from verification.reference.coated_traction import (
-    coated_sliding_stress,
-)
+from verification.reference.coated_traction import coated_sliding_stress
 from verification.reference.hamilton import sliding_stress
 from verification.reference.hertz import largest_von_mises, subsurface_stress
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
@@ -66,9 +64,7 @@ def test_harmonics_equal_the_plane_wave_of_many_digits(young, nu, nu_body, kh):
 
 
 def test_waves_of_full_contact():
-    """p = z/c_zz(k) over that without film, film of Table 1 (0.1 um), rigid and steel: values of another
-    program.
-    """
+    """p = z/c_zz(k) over that without film, film of Table 1 (0.1 um): values of another program."""
     layers = CoatedHalfSpace(80e9, 0.3, 0.1e-6, 210e9, 0.3)
     k = 2 * np.pi / (np.array([1, 2, 5, 10, 20, 50]) * 1e-6)
     bare, coated = 2 / (layers.modulus_body * k), layers.compliance(k)

@@ -35,9 +35,7 @@ def sphere(size=5, mu=None, steps=4, law=None) -> Scene:
 
 @pytest.mark.parametrize("peeq", [0.0, 1e-9, 1e-6, 1e-3, 0.2])
 def test_plastic_work_is_the_integral_of_the_yield_curve(peeq):
-    """Swift in closed form to 1e-6, over nine decades of the strain; polynomials to rounding; a corner to
-    1e-3.
-    """
+    """Swift in closed form to 1e-6, over nine decades; polynomials to rounding; a corner to 1e-3."""
     at = np.array([peeq])
     swift = Swift(945e6, 20.0, 0.121)
     exact = swift.B / (1.121 * swift.alpha) * ((swift.C + swift.alpha * peeq) ** 1.121 - swift.C**1.121)
@@ -49,9 +47,7 @@ def test_plastic_work_is_the_integral_of_the_yield_curve(peeq):
 
 
 def test_the_work_along_a_path_is_exact_for_straight_parts():
-    """Of f = u at two places: half the squares, whatever the steps; from there back to where it began:
-    nothing.
-    """
+    """Of f = u at two places half the squares, whatever the steps; back again nothing."""
     u = np.array([[0.0, 0.0], [1.0, -0.5], [1.5, 3.0], [0.0, 0.0]])
     assert along_path([u], [u]) == pytest.approx(0.5 * (u**2).sum(axis=1), abs=1e-15)
     assert along_path([u, u], [u, u])[2] == pytest.approx((u[2] ** 2).sum())

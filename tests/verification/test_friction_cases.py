@@ -56,9 +56,7 @@ def like_sam(skew=0.1, scale=1.0, factor=1.0) -> Made:
 
 
 def like_fem(h=0.1) -> Made:
-    """Nodes h apart in the half y >= 0; the pressure of a node is that of the exact one over its shape
-    function.
-    """
+    """Nodes h apart in the half y >= 0, with the exact pressure over their shape functions."""
     x, y = np.arange(-14, 15) * h, np.arange(0, 15) * h
     fine = (np.arange(-1600, 1600) + 0.5) / 1000
     over_x = hat_means(x, np.append(fine - 5e-4, 1.6))
@@ -74,9 +72,7 @@ def like_fem(h=0.1) -> Made:
 
 class TestMeasures:
     def test_hats_take_means_exactly(self):
-        """Of constants and, inside, of linear functions sampled at the centres of cells that divide the
-        elements evenly.
-        """
+        """Of constants and, inside, of linear functions at the centres of cells."""
         nodes, h = np.array([-1.0, -0.5, 0.0, 0.25, 1.0]), 0.25 / 10
         faces = np.linspace(-1.0, 1.0, 81)
         matrix, centres = hat_means(nodes, faces), (faces[1:] + faces[:-1]) / 2
@@ -136,9 +132,7 @@ class TestCrossing:
 
 
 def test_upper_bound_is_that_of_the_literature():
-    """4.68 without friction (Ponter, Hearle and Johnson 1985); hardly less with traction, and 1/mu where the
-    surface decides.
-    """
+    """4.68 without friction (Ponter, Hearle and Johnson 1985); 1/mu where the surface decides."""
     assert upper_bound(0.0) == pytest.approx(4.675, abs=2e-3)
     assert upper_bound(0.2) == pytest.approx(4.6715, abs=1e-3)
     assert upper_bound(0.25) == 4.0 and upper_bound(0.5) == 2.0

@@ -108,9 +108,7 @@ def test_the_fit_under_a_force_is_the_fit_at_its_approach():
 
 
 def test_indentation_counts_resolved_load_steps_within_the_fits_only():
-    """Approach 1 to 30 w_c, load equal to it; the first contacts are a few elements, the last are beyond w* =
-    20.
-    """
+    """Approach 1 to 30 w_c: the first contacts are a few elements, the last beyond w* = 20."""
     scene, w = load_scene("verification/scenes/plastic-perfect.toml"), np.arange(1.0, 31.0)
     unit = published.jackson_green(scene)[1]
     history = {"approach_m": w * unit.approach, "force_N": w * unit.force, "contact_area_m2": w * unit.area}

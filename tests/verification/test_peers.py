@@ -201,9 +201,7 @@ def in_process(program, each, python, allowance=0.0):
 
 class TestRounds:
     def test_the_page_with_sam_in_the_place_of_all(self, tmp_path, monkeypatch):
-        """Ratios of times made ten to one, tables and figures whole, and a program that is not built is
-        told.
-        """
+        """Times made ten to one, tables and figures whole, a program that is not built."""
         for module in (running, elastic):
             monkeypatch.setattr(module, "run", in_process)
         monkeypatch.setattr(running, "calibration_s", lambda: 0.2)

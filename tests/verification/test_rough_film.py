@@ -19,9 +19,7 @@ class TestVerdict:
     scene = parsed(add=COATED)
 
     def test_breaking_radius_is_that_of_the_closed_form(self):
-        """Rigid sphere, 80 on 210 GPa: 5 % of the pressure at h/a0 = 0.065, of the stress at 0.058; 100 nm
-        over it.
-        """
+        """Rigid sphere, 80 on 210 GPa: 5 % of the stress at h/a0 = 0.058."""
         assert verdicts.breaking_radius(self.scene) == pytest.approx(100e-9 / 0.058, rel=0.01)
 
     @pytest.mark.parametrize(

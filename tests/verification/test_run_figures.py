@@ -101,9 +101,7 @@ def panel_of(name: str, figure: str, model: str = models.SAM, k: int = 0):
 
 
 def mesh_of(panel) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Edges in x (nx + 1,) and y (ny + 1,) of the coloured cells of a panel, and their values (nx, ny), NaN
-    where blank.
-    """
+    """Edges in x (nx + 1,) and y (ny + 1,) of the coloured cells, and their values (nx, ny), NaN if blank."""
     (mesh,) = (each for each in panel.collections if isinstance(each, QuadMesh))
     corners = mesh.get_coordinates()
     return corners[0, :, 0], corners[:, 0, 1], np.ma.filled(mesh.get_array().astype(float), np.nan).T

@@ -168,9 +168,7 @@ class TestReadings:
         assert [each.surface.seed for each in scenes] == sorted(each.surface.seed for each in scenes)
 
     def test_statements_hold_where_the_runs_are_as_the_paper_says(self):
-        """All but that the largest pressure of hardening falls, which the made runs do not tell; so no two of
-        the others exclude each other.
-        """
+        """All but that the largest pressure of hardening falls, which made runs do not tell."""
         name = words.CHANGES[0][0]
         found = self.found(name)
         assert red(self.CASE.name, self.CASE.measure(found), whole=True) == set()
@@ -196,9 +194,7 @@ class TestConverged:
     NAME = "wear-converged"
 
     def rows(self, **changed) -> list[dict]:
-        """All surfaces but the second wear; 3 % less at the recommended cells, what they have lost by 5 %.
-        changed: name -> (factor, surfaces).
-        """
+        """All surfaces but the second wear; changed: name -> (factor, surfaces)."""
         rows = []
         for seed in SEEDS:
             row = {"surface": seed, "volume": 1e-18 if seed == 2 else 1e-16, "error": 1e-14}

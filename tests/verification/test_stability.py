@@ -26,10 +26,7 @@ from verification.robustness.matrix.rows import (
     table,
     topics,
 )
-from verification.robustness.matrix.scenes import (
-    SIDE,
-    scene_with,
-)
+from verification.robustness.matrix.scenes import SIDE, scene_with
 from verification.runs import models
 from verification.runs.models import FEM, SAM
 

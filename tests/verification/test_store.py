@@ -19,13 +19,7 @@ from sam.scene import Scene, Section, Status, load_scene, read_scene, resolved
 from verification.runs import checkpoints, models, store
 from verification.runs.code_version import OF_CASES, ROOT, code_version, version_of_cases
 from verification.runs.files import json_text, write_run
-from verification.runs.store import (
-    FOLDER,
-    Store,
-    default_store,
-    identity,
-    solve_or_reuse,
-)
+from verification.runs.store import FOLDER, Store, default_store, identity, solve_or_reuse
 
 # what is stored
 

@@ -373,9 +373,7 @@ def test_plain_progress_says_how_long_it_will_take(capsys, monkeypatch):
 
 @pytest.fixture(scope="module")
 def cluster(tmp_path_factory):
-    """A local cluster of two workers; MARKER is set for them. What the cluster leaves in the environment is
-    taken back.
-    """
+    """A local cluster of two workers; what it leaves in the environment is taken back."""
     distributed = dask_distributed()
     marker = tmp_path_factory.mktemp("dask") / "marker"
     seen = {functions.MARKER: str(marker), "PYTHONPATH": str(Path(__file__).parents[1])}
@@ -399,9 +397,7 @@ def test_a_dask_cluster_that_loses_a_worker_gives_the_same_table(
 
 
 def cascaded(status, result) -> BaseException:
-    """What the executor of distributed makes of a task with this result, and this status when it is asked
-    for after it.
-    """
+    """What distributed's executor makes of a task with this result, and this status after it."""
     dask_distributed()
     cascade = importlib.import_module("distributed.cfexecutor")._cascade_future
 
