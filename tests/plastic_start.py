@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The start of an elasto-plastic load history in the semi-analytical model, for tests of single steps and of
-the first box.
-"""
+"""The start of an elasto-plastic load history in SAM, for tests of single steps and of the first box."""
 
 from __future__ import annotations
 

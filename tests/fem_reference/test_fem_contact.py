@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The contact iteration: one answer from any start, no ping-pong, conditions on the returned field; what
-linear solves share changes no result.
-"""
+"""The contact iteration: one answer from any start, no ping-pong; what linear solves share changes nothing."""
 
 from types import SimpleNamespace
 

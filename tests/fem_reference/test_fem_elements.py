@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Elements of both geometries: patch tests, zero modes, assembly by scikit-fem, mesh lines, nodal forces of
-pressures, far fields of point forces, areas between the nodes.
-"""
+"""Elements: patch tests, assembly by scikit-fem, mesh lines, nodal forces and areas, far fields."""
 
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rough contact by finite elements in three dimensions: conditions on the returned field, maps of friction, a
-counter-body that moves, removal between the cycles, what is refused.
-"""
+"""Rough contact by finite elements: maps of friction, a moving counter-body, removal between cycles."""
 
 from dataclasses import replace
 from functools import cache

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Smooth contact in three dimensions: conditions on the returned field, symmetries, units, coatings,
-plasticity, a counter-body that moves, the linear solver, what is refused.
-"""
+"""Smooth contact in three dimensions: coatings, a moving counter-body, linear solver, what is refused."""
 
 from dataclasses import replace
 from functools import cache

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Finite strain and true geometry: closed forms, consistent tangents, and the model of the scenes as a
-limit.
-"""
+"""Finite strain and true geometry: closed forms, consistent tangents, and limits of the model."""
 
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The contact solver and its transforms: certificates against fields computed anew, areas, refusals, and sums
-over cells by their definition, on the part of a box that symmetry leaves too.
-"""
+"""The contact solver against fields computed anew, its transforms against sums over cells."""
 
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Single parts of both models against formulas: scales of a contact, waves in layers, means over cells, yield
-surface, and what is measured of a body that yields.
-"""
+"""Single parts of both models against formulas: scales, waves in layers, means, yield surface."""
 
 import itertools
 from dataclasses import replace

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The chemical film: return map against closed forms and a general solver, failures, tables; the strain of
-the surface below it.
-"""
+"""The chemical film: return map against closed forms and a general solver, failures; the strain below it."""
 
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Influence coefficients of a loaded rectangle and of an eigenstrain in a cuboid against quadrature of point
-loads and of Mindlin's point force.
-"""
+"""Influence coefficients against quadrature of point loads and of Mindlin's point force."""
 
 from math import pi
 

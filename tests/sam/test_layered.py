@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A film bonded on a half-space: the response to a wave against a solve with 60 digits, the coefficients of
-cells against quadrature over wave vectors, and coated scenes.
-"""
+"""A bonded film: response against 60 digits, coefficients against quadrature, coated scenes."""
 
 from collections import defaultdict
 from dataclasses import replace

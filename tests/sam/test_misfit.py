@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A misfit sphere in SAM: its stress and profiles, the plastic zone, means over cells, and the grid that is
-chosen.
-"""
+"""A misfit sphere in SAM: stress and profiles, the plastic zone, means over cells, and the chosen grid."""
 
 from __future__ import annotations
 

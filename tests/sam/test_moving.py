@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A counter-body that moves: its path, the groove of a yielding body, a rough counter-body over rough bodies,
-film and wear on its way.
-"""
+"""A counter-body that moves: its path, groove and rough surface, and film and wear on its way."""
 
 import itertools
 from dataclasses import replace

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Yielding scenes through the semi-analytical solver: the solved state, steps that do not converge, and grids
-that follow the plastic zone unless the user gave them.
-"""
+"""Yielding scenes in SAM: the solved state, steps that do not converge, grids about the plastic zone."""
 
 from dataclasses import replace
 

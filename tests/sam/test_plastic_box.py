@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Inside of a plastic box: its operators against direct sums, the return map at the points of its cells, the
-preconditioner, and the largest values between the centres.
-"""
+"""Inside of a plastic box: operators against direct sums, return map at points, largest values."""
 
 import os
 from dataclasses import replace

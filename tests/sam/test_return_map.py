@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""A material point in the return maps of both models: closed forms, energies of a step, and layers with
-a law of their own.
+"""A material point in the return maps of both models: closed forms, energies of a step, layers of other laws.
 
-Closed forms with constant yield stress Y, S = C/g: a loop of strain with the plastic amplitude e has the
-stress amplitude Y + sum S tanh(g e) (+ C e for g = 0). Between stresses smax and smin one Armstrong-Frederick
-back-stress ratchets by ln((S^2 - (smin + Y)^2)/(S^2 - (smax - Y)^2))/g in each cycle.
+With constant yield stress Y and S = C/g a loop of strain with the plastic amplitude e has the stress
+amplitude Y + sum S tanh(g e) (+ C e for g = 0).
 """
 
 from __future__ import annotations

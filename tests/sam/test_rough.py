@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rough bodies and rough counter-bodies in the semi-analytical model: against smooth bodies of the same shape
-and each other; borders, spots, and what is recorded.
-"""
+"""Rough bodies and counter-bodies in SAM: against each other; borders, spots, maps that are used in parts."""
 
 import numpy as np
 import pytest

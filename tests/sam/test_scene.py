@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Scenes: units, every error of a file at once, files that a scene names, and what is read back; refusals by
-name stand in test_refused.
-"""
+"""Scenes: units, every error of a file at once, files that a scene names, and what is read back."""
 
 import hashlib
 import json

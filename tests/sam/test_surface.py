@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rough surfaces: generators against spectra and closed forms; form, holes, crop and resampling of measured
-heights against general solvers; the shipped pin.
-"""
+"""Rough surfaces: generators against spectra and closed forms; form, holes, crop and resampling."""
 
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Measured heights in files: read as they are, wherever they come from, with the right orientation, sign and
-unit; and refused with what was found.
-"""
+"""Measured heights in files: read with the right orientation, sign and unit, or refused by name."""
 
 import io
 import pickle

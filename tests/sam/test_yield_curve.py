@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Yield curves against values worked out by hand: both solvers use them, so a comparison cannot see an error
-in them.
-"""
+"""Yield curves against values worked out by hand, as both solvers use them."""
 
 import numpy as np
 import pytest

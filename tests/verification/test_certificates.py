@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Certificates of results hold, and see perturbed answers; their formulas by themselves; how iterations
-end.
-"""
+"""Certificates of results see perturbed answers; how iterations end."""
 
 from dataclasses import replace
 from functools import cache

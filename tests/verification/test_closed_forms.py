@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Closed forms against independent answers: quadrature of point loads, field equations, reciprocity, Fourier
-series, limits, known values; and bad input.
+"""Closed forms against quadrature of point loads, reciprocity, Fourier series, limits and known values.
 
-Tolerances: the quadratures converge exponentially and meet at rounding error times the condition of the
-integrand (1e-10 to 1e-13 of the largest value); finite differences of order 8 with a step of 0.005 lengths
-leave 1e-11 in first and 1e-9 in second derivatives.
+Tolerances: quadratures meet at rounding error times the condition of the integrand (1e-10 to 1e-13 of the
+largest value); finite differences of order 8 with a step of 0.005 lengths leave 1e-11 in first derivatives.
 """
 
 import math

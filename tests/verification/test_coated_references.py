@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Reference solutions of the coated half-space, under waves, a sphere, a disc and a sliding traction: field
-equations, limits, potentials of their own, tables.
-"""
+"""References of the coated half-space, under waves, a sphere, a disc and a traction."""
 
 import math
 from itertools import pairwise

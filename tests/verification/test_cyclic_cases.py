@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The cases of repeated loads on made results: the rows that turn red when a number is wrong, of the files of
-the cases with what stands beside them.
-"""
+"""The cases of repeated loads on made results: the rows that turn red when a number is wrong."""
 
 from dataclasses import dataclass, field
 from functools import cache

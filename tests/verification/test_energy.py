@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Balances of energy: their sums against closed forms, both models on small contacts, and what sees it when
-one lies.
-"""
+"""Balances of energy: their sums against closed forms, both models on small contacts."""
 
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Growth of time and memory: exponents, processes that measure themselves alone, predictions against measured
-memory; both against the published code.
-"""
+"""Growth of time and memory: exponents, processes that measure themselves alone, the published code."""
 
 import json
 import os

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Correlations of indentation: numbers worked out by hand, Hertz below yield, the exact onset of yield, each
-other.
-"""
+"""Correlations of indentation: numbers by hand, Hertz below yield, the exact onset of yield."""
 
 import math
 from types import SimpleNamespace

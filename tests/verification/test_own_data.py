@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Data of the user beside both models: the errors that are put in are found, what is lacking is not compared,
-and what cannot be of the scene is refused by name.
-"""
+"""Data of the user beside both models: errors that are put in are found, wrong data refused by name."""
 
 import numpy as np
 import pandas as pd

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""SAM beside other programs, without them: problems, errors, times to an error, and child processes that
-fail.
-"""
+"""SAM beside other programs, without them: problems, errors, times to an error, processes that fail."""
 
 import json
 import math

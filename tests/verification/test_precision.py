@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Error against cost: brackets, interpolation, references with an uncertainty, and the curves of the case
-made of them.
-"""
+"""Error against cost: brackets, interpolation, references with an uncertainty, curves made of them."""
 
 import math
 from dataclasses import replace

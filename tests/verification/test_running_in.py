@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Running-in: its scenes, measures and statements on made tables, rows on wrong ones, both readings and finer
-cells as a whole. No run is solved.
-"""
+"""Running-in on made tables: scenes, measures, statements, rows and both readings. No run is solved."""
 
 from dataclasses import replace
 

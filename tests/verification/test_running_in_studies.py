@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The studies of running-in over inputs, physics, cells and back-stresses, on a way, at limits of wear and
-against finite elements, on made results: no run of them is solved.
-"""
+"""The studies of running-in on made results: inputs, physics, cells, back-stresses, finite elements."""
 
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Pictures in space: which run has which, what they show in numbers, and drawing, where a machine can and
-where it cannot.
-"""
+"""Pictures in space: which run has which, what they show in numbers, and where a machine cannot draw."""
 
 import re
 import subprocess

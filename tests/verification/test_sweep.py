@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Sweeps end to end: the table, workers that die, scenes that fail, what is kept, and the same on a Dask
-cluster.
-"""
+"""Sweeps end to end: the table, workers that die, what is kept, and the same on a Dask cluster."""
 
 import asyncio
 import csv
