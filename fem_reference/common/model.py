@@ -45,6 +45,11 @@ class ContactModel(ABC):
     """Number of candidates on an axis of symmetry, which have no area."""
 
     @property
+    def centred(self) -> bool:
+        """Whether the middle of the contact is known to be in the origin."""
+        return True
+
+    @property
     def part(self) -> float:
         """Modelled part of every force."""
         return 1.0

@@ -6,6 +6,7 @@ verdict on repeated loading, from the plastic histories of the unloaded states t
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -22,8 +23,10 @@ from sam.scene.result import (
     DISSIPATED,
     FRICTION_SIGN,
     HISTORY,
+    LINE,
     LOOPS,
     FieldMesh,
+    GridFields,
     Table,
     residual_table,
 )
@@ -45,6 +48,66 @@ def columns(names: Sequence[str], values: Sequence[Any]) -> dict[str, Any]:
     """Table from its columns in file order; a single number or text is repeated in every row."""
     rows = max(np.size(value) for value in values)
     return {name: np.broadcast_to(value, rows).copy() for name, value in zip(names, values, strict=True)}
+
+
+@dataclass(frozen=True)
+class Surface:
+    """The surface nodes (nx, ny) of a state, ny = 1 of a section.
+
+    x, y: their lines in m; pressure: in Pa; ratio: tangential over normal traction, None without friction;
+    gap: in m, not finite where there is none; u: displacements (3, nx, ny) in m.
+    """
+
+    x: Array
+    y: Array
+    pressure: Array
+    ratio: Array | float | None
+    gap: Array
+    u: Array
+
+    @classmethod
+    def of_section(cls, model: ContactModel, state: Equilibrium, x: Array, gap: Array) -> Surface:
+        """That of a section, whose nodes are at x (nx,); gap: (nx,), both in the units of the model."""
+        unit, u, none = model.scales, model.displacements(state), np.zeros(x.size)
+        ux, uz = (u[model.body.boundary_dofs("surface", component)] for component in (0, 1))
+        ratio = state.load.ratio if model.plan.sliding.coefficient else None
+        pressure = (model.nodal_pressure(state) * unit.pressure)[:, None]
+        moved = np.stack([ux, none, uz])[..., None] * unit.displacement
+        return cls(x * unit.length, np.zeros(1), pressure, ratio, gap[:, None] * unit.displacement, moved)
+
+    def on_plane(self, values: Array) -> Array:
+        """(nx,) at y = 0 of values (nx, ny)."""
+        return at_zero_line(values, self.y)
+
+    def centre(self, values: Array) -> float:
+        """Value in the origin of those (nx, ny)."""
+        return float(at_zero_line(self.on_plane(values), self.x))
+
+    def table(self, state: str, plastic_shear: Array | float) -> Table:
+        """The nodes at y = 0; NaN without a gap, and without friction of what belongs to that."""
+        gap = self.on_plane(self.gap)
+        pressure, slides = self.on_plane(self.pressure), self.ratio is not None
+        traction = self.on_plane(self.ratio * self.pressure) if self.ratio is not None else 0.0
+        values = [state, self.x, pressure, traction, np.where(np.isfinite(gap), gap, np.nan)]
+        ux, uz = (self.on_plane(self.u[component]) for component in (0, 2))
+        return columns(LINE, [*values, uz, *((ux, plastic_shear) if slides else (np.nan, np.nan))])
+
+    def grid(self) -> GridFields:
+        """Pressure, displacement, friction, and the gap where all of it is finite."""
+        points = {"p_Pa": self.pressure, "displacement_m": self.u}
+        if self.ratio is not None:
+            touching = self.pressure > 0.0
+            points |= {"qx_Pa": self.ratio * self.pressure, "friction": np.abs(self.ratio) * touching}
+        if np.isfinite(self.gap).all():
+            points["gap_m"] = self.gap
+        flat = {name: values[..., None] for name, values in points.items()}
+        return GridFields(self.x, self.y, np.zeros(1), flat)
+
+
+def at_zero_line(values: Array, line: Array) -> Array:
+    """Values at zero of those (..., n) on the lines of `line` (n,), or the mean of both sides."""
+    zero = int(np.searchsorted(line, 0.0))
+    return values[..., zero] if line[zero] == 0.0 else 0.5 * (values[..., zero - 1] + values[..., zero])
 
 
 def plane_mesh(

@@ -51,6 +51,11 @@ class Model(ContactModel):
     place: tuple[float, float] = field(default=(0.0, 0.0), kw_only=True)
 
     @property
+    def centred(self) -> bool:
+        """Not of a rough body: nothing says where the middle is."""
+        return self.plan.kind == "smooth"
+
+    @property
     def part(self) -> float:
         """Modelled part of every force."""
         return self.problem.share
