@@ -29,16 +29,8 @@ from fem_reference.common.schedule import Load
 class Model(ContactModel):
     """The axisymmetric model of a plan.
 
-    Attributes
-    ----------
-    plan : AxisymmetricPlan
-        Units, bodies and mesh lines.
-    problem : ContactProblem
-        The bodies in contact.
-    surface : (n_surface,) array
-        Radii of the surface nodes, ascending; the first `candidates` of them may touch.
-    misfit : (4, n_elements, 4) array or None
-        Misfit strain under a unit of the load.
+    problem: the bodies in contact; surface: (n_surface,) radii of the surface nodes, ascending, the first
+    `candidates` of which may touch; misfit: (4, n_elements, 4) misfit strain under a unit of the load.
     """
 
     plan: AxisymmetricPlan

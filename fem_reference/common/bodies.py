@@ -19,15 +19,7 @@ EVEN = Kinks()
 
 @dataclass(frozen=True)
 class Elastic:
-    """Constants of an isotropic elastic body.
-
-    Attributes
-    ----------
-    young : float
-        Young's modulus in any unit of stress.
-    poisson : float
-        Poisson's ratio, 0 <= poisson < 0.5.
-    """
+    """Constants of an isotropic elastic body: Young's modulus in any unit of stress, 0 <= poisson < 0.5."""
 
     young: float
     poisson: float

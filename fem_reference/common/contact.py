@@ -98,29 +98,12 @@ class Open:
 class Equilibrium:
     """A solved load step.
 
-    Attributes
-    ----------
-    u : (size,) array
-        Displacements of all bodies.
-    approach : float
-        Approach of the bodies, counted from infinity.
-    load : Load
-        Force, tangential traction and place; where the approach is given with the force that was found.
-    multipliers, gap, active : (n_candidates,) arrays
-        Nodal forces, gaps and whether in contact, of the nodes that may touch, by their distance from
-        the apex.
-    history : History or None
-        Plastic strain of the half-space at the end of the step; None if it is elastic.
-    residuals : tuple of float
-        Largest force on a free degree of freedom over the force, after each iteration.
-    steady : int
-        How many of the last iterations left the set of nodes in contact as it was.
-    converged : bool
-        Whether the iteration reached equilibrium.
-    work : Work
-        Counters of the iteration.
-    ending : str
-        Why it did not converge, in words.
+    u: (size,) displacements of all bodies; approach: of the bodies, counted from infinity; load: where the
+    approach is given with the force that was found; multipliers, gap, active: (n_candidates,) nodal forces,
+    gaps and whether in contact, by the distance from the apex; history: plastic strain of the half-space at
+    the end of the step, None if it is elastic; residuals: largest force on a free degree of freedom over the
+    force, after each iteration; steady: how many of the last iterations left the nodes in contact as they
+    were; converged: whether equilibrium was reached; work: counters; ending: why it was not, in words.
     """
 
     u: Array

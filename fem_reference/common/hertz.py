@@ -190,20 +190,11 @@ def largest_mises(poisson: float) -> float:
 
 
 def plastic_radius(scene: Scene) -> float | None:
-    """Estimate the contact radius of a sphere on a plastic body.
+    """Estimate of the contact radius of a sphere, or an ellipsoid, on a plastic body over that of Hertz, 1 or
+    more (1 of a given pressure); None if nothing yields.
 
     Mean pressure of Johnson's expanding cavity (1985, Sec. 6.3), at most 3 Y, with the yield stress Y at
     Tabor's representative strain 0.2 a/R: p/Y = 2/3 (2 + ln((E* a/(Y R) + 4 (1 - 2 nu))/(6 (1 - nu)))).
-
-    Parameters
-    ----------
-    scene : Scene
-        With a sphere, an ellipsoid, or a given pressure, which keeps its radius.
-
-    Returns
-    -------
-    float or None
-        Radius over that of Hertz, 1 or more; None if nothing yields.
     """
     body, unit = scene.body, scales(scene)
     if body.plasticity is None or unit.peak_force == 0.0:

@@ -14,6 +14,7 @@ from typing import Any, Self, TypeVar
 
 import numpy as np
 
+from fem_reference.common.arrays import Array
 from fem_reference.common.bodies import Bodies, Elastic, coating_of, expected_radius
 from fem_reference.common.hertz import Scales, peak_force, relative_moduli, required
 from fem_reference.common.refusals import Advice, advice_of
@@ -134,6 +135,23 @@ def steps_of(scene: Scene, units: Scales, bodies: Bodies, sliding: Sliding) -> S
     """The load schedule of a scene for these bodies."""
     elastic, unit = not bodies.yields, units.displacement
     return schedule_of(scene.loading, units.peak_force, elastic=elastic, sliding=sliding, unit=unit)
+
+
+def section_of(scene: Scene, x: Array, z: Array, words: str) -> dict[str, Any]:
+    """Sizes and stages of a plane tensor mesh of 8-node quadrilaterals, as fields of a plan; x, z: lines of
+    each body; words: of the mesh.
+    """
+    counter, columns, rows = scene.counterbody, x.size - 1, z.size - 1
+    bodies = 2 if counter is not None and counter.elastic else 1
+    nodes = (columns + 1) * (rows + 1) + columns * (rows + 1) + rows * (columns + 1)
+    sizes = {"elements": bodies * columns * rows, "unknowns": 2 * bodies * nodes}
+    stages = [Stage("mesh", True, words, {**sizes, "bodies": bodies})]
+    if bodies > 1:
+        words = "elastic: that of the body, turned over"
+        stages.append(Stage("mesh of the counter-body", True, words, {"elements": columns * rows}))
+    points = 4 * columns * rows
+    stresses = Stage("stresses at the Gauss points", True, "at peak load", {"points": points})
+    return {**sizes, "points": points, "stages": stages_of(scene, stages, stresses)}
 
 
 def stages_of(scene: Scene, mesh: Sequence[Stage], stresses: Stage) -> tuple[Stage, ...]:

@@ -47,28 +47,23 @@ def refuse(problems: Sequence[Problem]) -> None:
         raise UnsupportedScene("; ".join(map(str, problems)))
 
 
-def shape_problems(scene: Scene, shapes: Sequence[str], model: str) -> list[Problem]:
-    """A counter-body of a shape that `model` has not, or a patch that repeats."""
-    if scene.grid is not None and scene.grid.periodic is not None:
-        allowed = f"the {model} finite-element model allows a patch that does not repeat: leave it out"
-        return [Problem("grid.periodic", spelling(scene.grid.periodic), allowed)]
-    shape = scene.counterbody.shape if scene.counterbody else None
-    if shape in (*shapes, None):
-        return []
-    allowed = " or ".join(spelling(name) for name in shapes)
-    return [
-        Problem("counterbody.shape", spelling(shape), f"the {model} finite-element model allows {allowed}")
-    ]
-
-
-def incompressible(key: str, poisson: float | None) -> list[Problem]:
-    """An incompressible body, which the elements have no pressure for."""
-    return [] if poisson is None or poisson < 0.5 else [Problem(f"{key}.poisson", spelling(poisson), POISSON)]
-
-
-def running_in_problems(scene: Scene) -> list[Problem]:
-    """Wear and chemical films, which no finite-element model has."""
+def problems_of(scene: Scene, shapes: Sequence[str], model: str) -> list[Problem]:
+    """What no model allows, wear, chemical films, patches that repeat, incompressible bodies, which the
+    elements have no pressure for; and a counter-body of a shape that `model` has not.
+    """
+    allows, shape = (
+        f"the {model} finite-element model allows",
+        scene.counterbody.shape if scene.counterbody else None,
+    )
     problems = []
+    if scene.grid is not None and scene.grid.periodic is not None:
+        words = f"{allows} a patch that does not repeat: leave it out"
+        problems.append(Problem("grid.periodic", spelling(scene.grid.periodic), words))
+    elif shape not in (*shapes, None):
+        words = " or ".join(spelling(name) for name in shapes)
+        problems.append(Problem("counterbody.shape", spelling(shape), f"{allows} {words}"))
+    for key, body in (("body", scene.body), ("counterbody", scene.counterbody)):
+        problems += [] if body is None else incompressible(key, body.poisson)
     if scene.friction is not None and scene.friction.film:
         words = 'the finite-element models allow "constant", in three dimensions also "map"'
         problems.append(Problem("friction.law", spelling(scene.friction.law), words))
@@ -76,6 +71,11 @@ def running_in_problems(scene: Scene) -> list[Problem]:
         words = "the finite-element models allow a surface that does not wear: remove [wear]"
         problems.append(Problem("wear.strain_limit", spelling(scene.wear.strain_limit), words))
     return problems
+
+
+def incompressible(key: str, poisson: float | None) -> list[Problem]:
+    """A body without change of volume."""
+    return [] if poisson is None or poisson < 0.5 else [Problem(f"{key}.poisson", spelling(poisson), POISSON)]
 
 
 def coating_problems(scene: Scene) -> list[Problem]:

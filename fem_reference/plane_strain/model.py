@@ -31,18 +31,8 @@ below 1 of constant mean pressure; for starting sets only.
 class Model(ContactModel):
     """The plane-strain model of a plan.
 
-    Attributes
-    ----------
-    plan : PlaneStrainPlan
-        Units, bodies, mesh lines, friction.
-    problem : LineProblem
-        The bodies in contact.
-    surface : (n_surface,) array
-        x of the surface nodes, ascending.
-    candidates : slice
-        Those that may touch: all but the ones on the outer boundary.
-    place : float
-        x of the apex of the counter-body.
+    problem: the bodies in contact; surface: (n_surface,) x of the surface nodes, ascending; candidates: those
+    that may touch, all but the ones on the outer boundary; place: x of the apex of the counter-body.
     """
 
     plan: PlaneStrainPlan

@@ -30,18 +30,9 @@ from sam.scene.result import Table
 class Model(ContactModel):
     """The three-dimensional model of a plan.
 
-    Attributes
-    ----------
-    plan : SpatialPlan
-        Units, body, mesh planes, friction.
-    problem : SlidingProblem
-        The body in contact.
-    surface : (nx + 1, ny + 1) array
-        Numbers of the surface nodes.
-    candidates : (n_candidates,) array
-        Places in the flat `surface` of the nodes that may touch, from the origin outwards.
-    place : tuple of float
-        (x, y) of the apex of the counter-body.
+    problem: the body in contact; surface: (nx + 1, ny + 1) numbers of the surface nodes; candidates:
+    (n_candidates,) places in the flat `surface` of those that may touch, from the origin outwards; place: (x,
+    y) of the apex of the counter-body.
     """
 
     plan: SpatialPlan

@@ -15,14 +15,7 @@ from fem_reference.common.bodies import coating_of, expected_radius, yielded_rad
 from fem_reference.common.hertz import Scales, contact_modulus, kinks_of, plastic_radius, required, scales
 from fem_reference.common.mesh_lines import Sizes, coated_depths, grow, two_sided, uniform_then_growing
 from fem_reference.common.plan import Plan, planned, slide, stages_of
-from fem_reference.common.refusals import (
-    box_problems,
-    coating_problems,
-    incompressible,
-    refuse,
-    running_in_problems,
-    shape_problems,
-)
+from fem_reference.common.refusals import box_problems, coating_problems, problems_of, refuse
 from fem_reference.spatial.lines import GROWTH, Lines
 from sam.scene.result import LeftOut, Stage
 from sam.scene.schema import Scene
@@ -73,23 +66,7 @@ class SpatialPlan(Plan):
 
 
 def plan(scene: Scene) -> SpatialPlan:
-    """Return what the three-dimensional model solves of a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-        Any valid scene.
-
-    Returns
-    -------
-    SpatialPlan
-        Units, bodies, mesh planes, friction, load schedule, and the stages with their sizes and reasons.
-
-    Raises
-    ------
-    UnsupportedScene
-        If `check` does.
-    """
+    """What the three-dimensional model solves of a scene; UnsupportedScene as of `check`."""
     check(scene)
     patch = None if scene.patch_surface is None else choose_patch(scene)
     if patch is None:
@@ -135,49 +112,23 @@ def plan(scene: Scene) -> SpatialPlan:
 
 
 def left_out(scene: Scene) -> list[LeftOut]:
-    """Return the stages of the three-dimensional model that a scene does not need, with the reason.
-
-    Parameters
-    ----------
-    scene : Scene
-        Any valid scene.
-
-    Returns
-    -------
-    list of LeftOut
-        As a result of `solve` has them.
-
-    Raises
-    ------
-    UnsupportedScene
-        If `check` does.
-    """
+    """Stages that a scene does not need, with the reason, as a result of `solve` has them."""
     return plan(scene).left_out
 
 
 def check(scene: Scene) -> None:
-    """Check that the three-dimensional model can represent a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-        Any valid scene.
-
-    Raises
-    ------
-    UnsupportedScene
-        With every reason at once: key, value and what is allowed.
+    """Raise UnsupportedScene with every reason at once, key, value and what is allowed, for a scene that the
+    three-dimensional model cannot represent.
     """
     counter, rough = scene.counterbody, scene.patch_surface is not None
-    problems = shape_problems(scene, ROUGH_SHAPES if rough else SHAPES, "three-dimensional")
+    problems = problems_of(scene, ROUGH_SHAPES if rough else SHAPES, "three-dimensional")
     if scene.loading.misfit_sphere:
         words = f'{ALLOWS} "hertz", or a counter-body; the axisymmetric one solves it'
         problems.append(Problem("loading.prescribed", spelling(scene.loading.prescribed), words))
     if counter is not None and counter.elastic:
         words = f"{ALLOWS} only a rigid counter-body: remove young and poisson"
         problems.append(Problem("counterbody.young", spelling(counter.young, "Pa"), words))
-    problems += incompressible("body", scene.body.poisson) + running_in_problems(scene) + _combinations(scene)
-    refuse(problems)
+    refuse(problems + _combinations(scene))
     refuse(coating_problems(scene))  # these need the contact radius of a shape that is allowed
     if not rough:  # half of a rough patch is less than the smallest box
         reach = DEPTH * _grown(scene) + 1.0 / scene.fem.cells_per_radius

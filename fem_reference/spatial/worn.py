@@ -37,16 +37,9 @@ from sam.scene.schema import Scene
 class WornCycle:
     """A cycle of a rough body that wears.
 
-    Attributes
-    ----------
-    tables : dict of str to Table
-        "surface" and "plane" at its peak, as in a result.
-    peeq_max : float
-        Largest accumulated plastic strain at its peak.
-    worn : (nx, ny) array
-        Depth in m that is removed up to its end.
-    moved : (nx, ny) array
-        Displacement in m of the unloaded surface into the body after the removal, at the nodes of the patch.
+    tables: "surface" and "plane" at its peak, as in a result; peeq_max: largest accumulated plastic strain
+    there; worn: (nx, ny) depth in m that is removed up to its end; moved: (nx, ny) displacement in m of the
+    unloaded surface into the body after the removal, at the nodes of the patch.
     """
 
     tables: dict[str, Table]
@@ -77,27 +70,13 @@ def limits_of(scene: Scene) -> Limits:
 
 
 def worn_cycles(scene: Scene, depths: Sequence[Array] | None = None) -> list[WornCycle]:
-    """Solve the cycles of a rough scene with [wear], with removal at the end of each of them.
+    """The cycles of a rough scene with [wear], solved with removal at the end of each of them.
 
-    Parameters
-    ----------
-    scene : Scene
-        A rough body that yields below a rigid counter-body. Of its [wear] only the strain limits and the
-        roof are read: nothing is smoothed.
-    depths : sequence of (nx, ny) arrays, optional
-        Depth in m to remove from the cells at the end of each cycle, in place of the model's own.
-
-    Returns
-    -------
-    list of WornCycle
-        In their order.
-
-    Raises
-    ------
-    UnsupportedScene
-        For what else of the scene finite elements cannot represent.
-    ValueError
-        Where a cycle does not converge, or all that the mesh has below a node is above the limit.
+    scene: a rough body that yields below a rigid counter-body; of its [wear] only the strain limits and the
+    roof are read, nothing is smoothed. depths: (nx, ny) in m to remove from the cells at the end of each
+    cycle, in place of the model's own. Raises UnsupportedScene for what else of the scene finite elements
+    cannot represent, ValueError where a cycle does not converge, or all that the mesh has below a node is
+    above the limit.
     """
     limits = limits_of(scene)
     model = build(plan(scene.model_copy(update={"wear": None})))
