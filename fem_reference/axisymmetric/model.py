@@ -11,7 +11,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from fem_reference.axisymmetric.elements import AxisymmetricSolid, half_plane, surface_weights
 from fem_reference.axisymmetric.misfit import MisfitSphere
 from fem_reference.axisymmetric.planner import AxisymmetricPlan
 from fem_reference.axisymmetric.problem import Block, ContactProblem
@@ -20,6 +19,7 @@ from fem_reference.common.contact import Equilibrium
 from fem_reference.common.hertz import hertz_pressure
 from fem_reference.common.model import HERTZ_GROWTH, PLASTIC_GROWTH, ContactModel, material
 from fem_reference.common.plasticity import History
+from fem_reference.common.quadrilaterals import AxisymmetricSolid, surface_weights, tensor_mesh
 from fem_reference.common.recovery import REACH, edge_radius
 from fem_reference.common.refusals import FEWEST_ELEMENTS
 from fem_reference.common.schedule import Load
@@ -148,7 +148,7 @@ def axis_pressure(r: Array, p: Array, area: Array) -> float:
 
 def build(plan: AxisymmetricPlan) -> Model:
     """Mesh, bodies, material and contact candidates of a plan."""
-    mesh, bodies = half_plane(plan.r, plan.z), plan.bodies
+    mesh, bodies = tensor_mesh(plan.r, plan.z, half=True), plan.bodies
     # both bodies use one mesh, each in its own coordinates, so that their surface nodes match
     blocks = [
         Block(AxisymmetricSolid(mesh, elastic, coating=coating), elastic)

@@ -14,10 +14,10 @@ import numpy as np
 from fem_reference.common.arrays import Array, Bools
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.model import ContactModel, material
+from fem_reference.common.quadrilaterals import PlaneSolid, edge_weights, tensor_mesh
 from fem_reference.common.recovery import edge_radius
 from fem_reference.common.refusals import FEWEST_ELEMENTS
 from fem_reference.common.schedule import Load
-from fem_reference.plane_strain.elements import PlaneSolid, edge_weights, section
 from fem_reference.plane_strain.planner import PlaneStrainPlan
 from fem_reference.plane_strain.problem import LineProblem
 
@@ -144,7 +144,7 @@ class Model(ContactModel):
 
 def build(plan: PlaneStrainPlan) -> Model:
     """Mesh, bodies, material and contact candidates of a plan."""
-    mesh, bodies = section(plan.x, plan.z, half=plan.half), plan.bodies
+    mesh, bodies = tensor_mesh(plan.x, plan.z, half=plan.half), plan.bodies
     # both bodies use one mesh, each in its own coordinates, so that their surface nodes match
     solids = [PlaneSolid(mesh, elastic) for elastic in bodies.elastic]
     surface = solids[0].basis.doflocs[0, solids[0].boundary_dofs("surface", 1)]

@@ -14,12 +14,12 @@ from scipy.sparse.linalg import aslinearoperator
 import fem_reference
 import fem_reference.spatial
 from fem_reference.axisymmetric import problem as plane
-from fem_reference.axisymmetric.elements import surface_weights
 from fem_reference.axisymmetric.model import axis_pressure, build
 from fem_reference.axisymmetric.planner import plan
 from fem_reference.axisymmetric.problem import ContactProblem, refined
 from fem_reference.common.contact import ActiveSet, equilibrium
 from fem_reference.common.linear import nested_dissection
+from fem_reference.common.quadrilaterals import surface_weights
 from fem_reference.common.recovery import edge_radius
 from fem_reference.spatial import problem
 from fem_reference.spatial.multigrid import Coarsest, UnsolvedError, solve

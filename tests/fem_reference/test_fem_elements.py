@@ -12,7 +12,6 @@ from skfem import Basis, BilinearForm, ElementHex1, ElementQuad2, ElementVector,
 from skfem.helpers import ddot, sym_grad
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
-from fem_reference.axisymmetric.elements import AxisymmetricSolid, half_plane, surface_weights
 from fem_reference.axisymmetric.model import hertz_forces as ring_forces
 from fem_reference.axisymmetric.planner import Core, punch_lines, smooth_lines
 from fem_reference.common.bodies import Elastic
@@ -20,6 +19,7 @@ from fem_reference.common.elasticity import mises, stiffness_tensor
 from fem_reference.common.far_field import boussinesq, cerruti, slanted
 from fem_reference.common.mesh_lines import Sizes, coated_depths, grow, two_sided
 from fem_reference.common.plasticity import J2, History
+from fem_reference.common.quadrilaterals import AxisymmetricSolid, tensor_mesh, surface_weights
 from fem_reference.common.recovery import continued
 from fem_reference.spatial import area as areas
 from fem_reference.spatial.hexahedra import HexSolid
@@ -181,7 +181,7 @@ def test_mesh_lines(lines, cells, box):
         h = np.diff(x)
         assert (h > 0.0).all() and (h[1:] / h[:-1])[x[2:] > 1.0 + 1e-9].max() < 2.0
     assert np.abs(r - 1.0).min() < 1e-14
-    mesh = half_plane(r, z)
+    mesh = tensor_mesh(r, z, half=True)
     sizes = {name: facets.size for name, facets in mesh.boundaries.items()}
     assert sizes == {"axis": z.size - 1, "surface": r.size - 1, "far": r.size + z.size - 2}
 

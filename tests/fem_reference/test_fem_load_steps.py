@@ -258,9 +258,9 @@ def test_a_scene_gives_the_approach(kind):
     """It is that of the result, of a mesh that is planned with an estimate of the force."""
     method, tables = KINDS[kind]
     given = tables["loading"] | {"force": None, "approach": 0.3e-6, "cycles": 1}
-    assert method.solve(small_scene(**tables | {"loading": given})).quantities[
-        "approach_m"
-    ] == pytest.approx(0.3e-6, rel=1e-12)
+    assert method.solve(small_scene(**tables | {"loading": given})).quantities["approach_m"] == pytest.approx(
+        0.3e-6, rel=1e-12
+    )
 
 
 def dented(fem, approach, steps):

@@ -12,8 +12,8 @@ import fem_reference.spatial
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.elasticity import mises, stiffness_tensor
 from fem_reference.common.far_field import flamant, stretched
+from fem_reference.common.quadrilaterals import PlaneSolid
 from fem_reference.plane_strain import UnsupportedScene, check, load_steps, plan, solve
-from fem_reference.plane_strain.elements import PlaneSolid
 from fem_reference.plane_strain.recovery import stresses
 from sam.scene import Scene
 from verification.runs.models import FEM_LINE, cheapest_reference

@@ -16,7 +16,6 @@ from scipy.optimize import minimize_scalar
 
 import sam
 from fem_reference.axisymmetric import recovery
-from fem_reference.axisymmetric.elements import AxisymmetricSolid, half_plane
 from fem_reference.axisymmetric.problem import Block
 from fem_reference.common import elasticity, recovery as common_recovery
 from fem_reference.common.bodies import Coating, Elastic
@@ -30,6 +29,7 @@ from fem_reference.common.hertz import (
 )
 from fem_reference.common.layered_force import _across
 from fem_reference.common.plasticity import J2, CurveInUnits, History
+from fem_reference.common.quadrilaterals import AxisymmetricSolid, tensor_mesh
 from fem_reference.common.schedule import Load as FemLoad
 from fem_reference.spatial import recovery as spatial
 from fem_reference.spatial.lines import Lines
@@ -165,7 +165,7 @@ def test_a_load_of_finite_elements_is_halved_between_two():
 def test_far_field_is_that_of_a_point_force():
     """Boussinesq (Johnson 1985, Eq. 3.18) under a unit force, on the outer boundary."""
     line, elastic = np.linspace(0.0, 3.0, 5), Elastic(2.0, 0.3)
-    block = Block(AxisymmetricSolid(half_plane(line, line), elastic), elastic)
+    block = Block(AxisymmetricSolid(tensor_mesh(line, line, half=True), elastic), elastic)
     values, shear = block.far_field(), 2.0 / 2.6
     for component in (0, 1):
         far = block.solid.boundary_dofs("far", component)
