@@ -21,7 +21,6 @@ from fem_reference.common.model import HERTZ_GROWTH, PLASTIC_GROWTH, ContactMode
 from fem_reference.common.plasticity import History
 from fem_reference.common.quadrilaterals import AxisymmetricSolid, surface_weights, tensor_mesh
 from fem_reference.common.recovery import REACH, edge_radius
-from fem_reference.common.refusals import FEWEST_ELEMENTS
 from fem_reference.common.schedule import Load
 
 
@@ -89,14 +88,6 @@ class Model(ContactModel):
         """Area of the contact in m^2."""
         return float(np.pi * (self.contact_radius(state) * self.scales.length) ** 2)
 
-    def friction(self, state: Equilibrium) -> float:
-        """Zero: the model has no friction."""
-        return 0.0
-
-    def displacements(self, state: Equilibrium) -> Array:
-        """Displacements of the half-space."""
-        return self.problem.body(state.u, 0)
-
     def contact_forces(self, state: Equilibrium) -> Array:
         """(n_candidates,) forces of the counter-body on the nodes, from the displacements."""
         return self.problem.internal_force(state.u, state.history)[self.problem.normal[self.problem.slave]]
@@ -135,10 +126,9 @@ class Model(ContactModel):
         outermost = (p[:, t] == p.max(axis=1)[:, None, None]).any(axis=(0, 1))
         return bool((peeq > 0.0)[outermost].any())
 
-    def too_coarse(self, states: Sequence[Equilibrium]) -> bool:
-        """Whether the largest contact has fewer elements in its radius than FEWEST_ELEMENTS."""
-        radius = max(self.contact_radius(state) for state in states) if self.misfit is None else 1.0
-        return round(radius * self.plan.fine_cells_per_radius) < FEWEST_ELEMENTS
+    def size(self, state: Equilibrium) -> float:
+        """Radius of the contact, or of a misfit sphere."""
+        return self.contact_radius(state) if self.misfit is None else 1.0
 
 
 def axis_pressure(r: Array, p: Array, area: Array) -> float:

@@ -13,7 +13,7 @@ import numpy as np
 from fem_reference.axisymmetric.misfit import MisfitSphere
 from fem_reference.common.arrays import Array
 from fem_reference.common.bodies import Elastic, coating_of, expected_radius, yielded_radius
-from fem_reference.common.hertz import kinks_of, plastic_radius, relative_moduli, required, scales
+from fem_reference.common.hertz import kinks_of, plastic_radius, relative_moduli, scales
 from fem_reference.common.mesh_lines import (
     CLOSEST,
     GROWTH,
@@ -33,7 +33,7 @@ from fem_reference.common.refusals import (
 from fem_reference.common.rounded import ROUNDED
 from sam.scene.result import LeftOut
 from sam.scene.schema import Scene
-from sam.scene.section import Problem, spelling
+from sam.scene.section import Problem, spelling, stated
 
 MODEL = "fem-axisymmetric"
 SHAPES = ("sphere", "punch", ROUNDED)
@@ -93,7 +93,7 @@ def plan(scene: Scene) -> AxisymmetricPlan:
     words = f"{fem.cells_per_radius} cells in the {where}, box of {fem.box:g} radii"
     opening = 1.0  # the units are those of a sphere but for a rounded edge
     if counter is not None and counter.shape == ROUNDED:
-        opening = units.length / required(counter.radius) / units.strain
+        opening = units.length / stated(counter.radius) / units.strain
     return planned(
         AxisymmetricPlan,
         scene,
@@ -140,9 +140,7 @@ def check(scene: Scene) -> None:
     if end and 0.0 < 1.0 - end < NARROWEST:
         words = f"more: the contact ends {1.0 - end:.2g} of its radius beyond the flat end, the mesh allows "
         words += f'{NARROWEST:g}; or shape = "punch"'
-        problems.append(
-            Problem("counterbody.radius", spelling(required(scene.counterbody).radius, "m"), words)
-        )
+        problems.append(Problem("counterbody.radius", spelling(stated(scene.counterbody).radius, "m"), words))
     refuse(problems)
     if (misfit := misfit_of(scene)) is not None:
         zone = _zone(scene, misfit)
@@ -164,8 +162,8 @@ def misfit_of(scene: Scene) -> MisfitSphere | None:
     if not loading.misfit_sphere:
         return None
     elastic = Elastic(relative_moduli(scene)[0], scene.body.poisson)
-    depth = required(loading.depth) / required(loading.radius)
-    return MisfitSphere(elastic, depth, required(loading.profile), free=loading.surface == "free")
+    depth = stated(loading.depth) / stated(loading.radius)
+    return MisfitSphere(elastic, depth, stated(loading.profile), free=loading.surface == "free")
 
 
 def core_about(scene: Scene, sphere: MisfitSphere) -> float:
@@ -258,7 +256,7 @@ def rounded_lines(scene: Scene, core: Core) -> tuple[Array, Array]:
 
 def coated_core(scene: Scene, plastic: float | None) -> Core:
     """The well resolved part of the mesh, of the larger contact; plastic: its radius after yield."""
-    flows = required(scene.body.coating).yield_stress is not None
+    flows = stated(scene.body.coating).yield_stress is not None
     reach = max(1.0, expected_radius(scene), plastic or 1.0, yielded_radius(scene))
     if flows or plastic is not None:
         return plastic_core(reach)
@@ -267,7 +265,7 @@ def coated_core(scene: Scene, plastic: float | None) -> Core:
 
 def coated_lines(scene: Scene, core: Core) -> tuple[Array, Array]:
     """(r, z) mesh lines, sized by the smaller contact, with and without coating, near it."""
-    coating = required(coating_of(scene, scales(scene)))
+    coating = stated(coating_of(scene, scales(scene)))
     cells, box = scene.fem.cells_per_radius, scene.fem.box
     if is_punch(scene):
         r, z = punch_lines(cells, box)

@@ -14,8 +14,8 @@ from fem_reference.common.arrays import Array
 from fem_reference.common.bodies import EVEN
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.elasticity import mises
-from fem_reference.common.hertz import required
 from fem_reference.common.recovery import Peak, continued, parabola_peak
+from sam.scene.section import stated
 from sam.scene.yield_curve import Kinks
 
 
@@ -47,7 +47,7 @@ class Stresses:
 
     def layer(self, coating: bool) -> Stresses:
         """The part above the interface, or from it downwards."""
-        interface = required(self.interface)
+        interface = stated(self.interface)
         elements = (self.z.mean(axis=1) < interface) == coating
         axis = (self.axis_z < interface) == coating
         return Stresses(
@@ -116,7 +116,7 @@ def largest_in_layer(s: Stresses, coating: bool) -> Peak:
     inside = largest_mises(part)
     if coating and part.peeq.any():
         return inside
-    interface = required(s.interface)
+    interface = stated(s.interface)
     depths = (0.0, interface) if coating else (interface,)
     on_faces = [(float(mises(on_face(part, depth)).max()), depth) for depth in depths]
     return max(inside, *on_faces, key=lambda peak: peak[0])

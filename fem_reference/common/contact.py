@@ -43,7 +43,7 @@ class NotDefiniteError(ArithmeticError):
 @dataclass
 class ActiveSet:
     """Nodes in contact; the first node, under the apex, always stays, unless `anchored` is false: then the
-    last one does.
+    last one does. pressed: whether there is contact at all, without which nothing changes.
 
     `update` makes the full primal-dual correction until a set comes back (ping-pong); from then on it
     corrects one node at a time, the one of the largest violation, and `stuck` is true when a set comes back
@@ -52,6 +52,7 @@ class ActiveSet:
 
     active: Bools
     anchored: bool = True
+    pressed: bool = True
     single: bool = False
     stuck: bool = False
     seen: set[bytes] = field(default_factory=set)
@@ -61,7 +62,7 @@ class ActiveSet:
         violation = np.where(self.active, -multipliers, -gaps)
         violation[0 if self.anchored else np.argmax(np.where(self.active, multipliers, -np.inf))] = 0.0
         wrong = violation > SIGN
-        if not wrong.any():
+        if not (self.pressed and wrong.any()):
             return False
         self.seen.add(self.active.tobytes())
         corrected = self.active ^ wrong
@@ -77,21 +78,6 @@ class ActiveSet:
     def forget(self) -> None:
         """Let sets come back: the displacements that corrected them were not in equilibrium."""
         self.single, self.seen = False, set()
-
-
-@dataclass(frozen=True)
-class Open:
-    """The empty set of nodes in contact, where nothing touches: it never changes."""
-
-    active: Bools
-    stuck: bool = False
-
-    def forget(self) -> None:
-        """Do nothing: there is nothing to remember."""
-
-    def update(self, _multipliers: Array, _gaps: Array) -> bool:
-        """Return False: the set never changes."""
-        return False
 
 
 @dataclass(frozen=True)
@@ -199,7 +185,7 @@ def equilibrium(
     if problem.anchored or not start.any():
         start = start | (np.arange(start.size) == problem.gap0.argmin())
     before = Equilibrium(u, 0.0, load, np.zeros(start.size), problem.gap0, start, history, converged=False)
-    return _iterate(problem, before, load.force, ActiveSet(start, problem.anchored))
+    return _iterate(problem, before, load.force, ActiveSet(start, anchored=problem.anchored))
 
 
 def without_contact(
@@ -208,10 +194,10 @@ def without_contact(
     """Equilibrium under a prescribed pressure, or none. scale: the force that residuals are measured by."""
     none = np.zeros(problem.gap0.size, dtype=bool)
     before = Equilibrium(u, 0.0, load, np.zeros(none.size), problem.gap0, none, history, converged=False)
-    return _iterate(problem, before, scale, Open(none))
+    return _iterate(problem, before, scale, ActiveSet(none, pressed=False))
 
 
-def _iterate(problem: Problem, state: Equilibrium, scale: float, contact: ActiveSet | Open) -> Equilibrium:
+def _iterate(problem: Problem, state: Equilibrium, scale: float, contact: ActiveSet) -> Equilibrium:
     """The semi-smooth Newton iteration from `state`, with the load and history of its beginning."""
     load, history, u = state.load, state.history, state.u
     residuals: list[float] = []

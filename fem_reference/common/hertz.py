@@ -8,15 +8,14 @@ What takes a scene here is part of the planners.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeVar
 
 import numpy as np
 
 from fem_reference.common.arrays import Array
 from fem_reference.common.rounded import ROUNDED, force_at, radius_at_approach, radius_under_force
 from sam.scene import CounterBody, Scene
+from sam.scene.section import stated
 
-T = TypeVar("T")
 PUNCHES = ("punch", ROUNDED)
 """Shapes whose contact with a flat end has the units of a flat-ended cylinder."""
 DECAY = 1.7
@@ -56,13 +55,6 @@ class Scales:
         return self.peak_force * self.pressure * self.length**2
 
 
-def required(value: T | None) -> T:
-    """The value of a key that the schema requires of a scene of this kind."""
-    if value is None:
-        raise ValueError("a value that the scene must have is missing")
-    return value
-
-
 def relative_moduli(scene: Scene) -> tuple[float, ...]:
     """E1/E* (and E2/E* of an elastic counter-body), from Poisson's ratios and E1/E2 alone.
 
@@ -72,8 +64,8 @@ def relative_moduli(scene: Scene) -> tuple[float, ...]:
     body, counter = scene.body, scene.counterbody
     if counter is None or not counter.elastic:
         return (1.0 - body.poisson**2,)
-    ratio = body.young / required(counter.young)
-    first = 1.0 - body.poisson**2 + (1.0 - required(counter.poisson) ** 2) * ratio
+    ratio = body.young / stated(counter.young)
+    first = 1.0 - body.poisson**2 + (1.0 - stated(counter.poisson) ** 2) * ratio
     return first, first / ratio
 
 
@@ -97,12 +89,12 @@ def scales(scene: Scene) -> Scales:
     """
     loading, modulus = scene.loading, contact_modulus(scene)
     if loading.misfit_sphere:
-        radius = required(loading.radius)
-        return Scales(radius, required(loading.misfit) * radius, modulus, 1.0)
+        radius = stated(loading.radius)
+        return Scales(radius, stated(loading.misfit) * radius, modulus, 1.0)
     if loading.prescribed is not None:
-        radius = required(loading.radius)
-        return Scales(radius, np.pi * radius * required(loading.p0) / (2.0 * modulus), modulus, 4.0 / 3.0)
-    force, counter = peak_force(scene), required(scene.counterbody)
+        radius = stated(loading.radius)
+        return Scales(radius, np.pi * radius * stated(loading.p0) / (2.0 * modulus), modulus, 4.0 / 3.0)
+    force, counter = peak_force(scene), stated(scene.counterbody)
     radius = equivalent_radius(counter)
     if counter.shape in PUNCHES:
         radius = radius_under_force(counter, force / modulus) if counter.shape == ROUNDED else radius
@@ -119,7 +111,7 @@ def scales(scene: Scene) -> Scales:
 def equivalent_radius(counter: CounterBody) -> float:
     """Radius of a sphere, a punch or a rounded edge; of an ellipsoid the geometric mean."""
     radii = counter.radii
-    return required(counter.radius) if radii is None else float(np.sqrt(radii[0] * radii[1]))
+    return stated(counter.radius) if radii is None else float(np.sqrt(radii[0] * radii[1]))
 
 
 def peak_force(scene: Scene) -> float:
@@ -132,8 +124,8 @@ def peak_force(scene: Scene) -> float:
     if loading.misfit_sphere:
         return 0.0
     if loading.prescribed is None:
-        return required(loading.force)
-    return 2.0 / 3.0 * np.pi * required(loading.radius) ** 2 * required(loading.p0)
+        return stated(loading.force)
+    return 2.0 / 3.0 * np.pi * stated(loading.radius) ** 2 * stated(loading.p0)
 
 
 def force_of_approach(scene: Scene, approach: float) -> float:
@@ -142,7 +134,7 @@ def force_of_approach(scene: Scene, approach: float) -> float:
 
     The yield stress is that at Tabor's representative strain 0.2 a/R.
     """
-    modulus, counter = contact_modulus(scene), required(scene.counterbody)
+    modulus, counter = contact_modulus(scene), stated(scene.counterbody)
     radius = equivalent_radius(counter)
     if counter.shape == "punch":
         return 2.0 * modulus * radius * approach
@@ -166,10 +158,10 @@ def force_of_rounded(scene: Scene, counter: CounterBody, approach: float) -> flo
     force = contact_modulus(scene) * force_at(counter, radius_at_approach(counter, approach))
     if scene.body.plasticity is None:
         return force
-    radius = required(counter.radius)
+    radius = stated(counter.radius)
     beyond = np.sqrt(2.0 * radius * approach)
     strength = scene.body.plasticity.strength().least(0.2 * beyond / radius)
-    return float(min(force, 3.0 * strength * np.pi * (required(counter.flat_radius) + beyond) ** 2))
+    return float(min(force, 3.0 * strength * np.pi * (stated(counter.flat_radius) + beyond) ** 2))
 
 
 def kinks_of(scene: Scene, units: Scales) -> Array:

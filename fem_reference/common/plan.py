@@ -16,11 +16,12 @@ import numpy as np
 
 from fem_reference.common.arrays import Array
 from fem_reference.common.bodies import Bodies, Elastic, coating_of, expected_radius
-from fem_reference.common.hertz import Scales, peak_force, relative_moduli, required
+from fem_reference.common.hertz import Scales, peak_force, relative_moduli
 from fem_reference.common.refusals import Advice, advice_of
 from fem_reference.common.schedule import Schedule, Sliding, schedule_of
 from sam.scene.result import NO_FORCE, LeftOut, Stage, left_out_of
 from sam.scene.schema import Scene
+from sam.scene.section import stated
 from sam.scene.verdict import (
     VERDICT,
     Judging,
@@ -122,7 +123,7 @@ def bodies_of(scene: Scene, units: Scales) -> Bodies:
     plasticity, coating = scene.body.plasticity, scene.body.coating
     first, *others = relative_moduli(scene)
     elastic = [Elastic(first, scene.body.poisson)]
-    elastic += [Elastic(young, required(required(scene.counterbody).poisson)) for young in others]
+    elastic += [Elastic(young, stated(stated(scene.counterbody).poisson)) for young in others]
     bodies = Bodies(tuple(elastic), coating_of(scene, units))
     if coating is not None:
         bodies = replace(bodies, coating_yield=coating.yield_stress)

@@ -10,13 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem_reference.common.arrays import Array
-from fem_reference.common.hertz import kinks_of, required, scales
+from fem_reference.common.hertz import kinks_of, scales
 from fem_reference.common.mesh_lines import two_sided, uniform_then_growing
 from fem_reference.common.plan import Plan, planned, section_of, slide
 from fem_reference.common.refusals import box_problems, problems_of, refuse
 from sam.scene.result import LeftOut
 from sam.scene.schema import Scene
-from sam.scene.section import Problem, spelling
+from sam.scene.section import Problem, spelling, stated
 
 MODEL = "fem-plane-strain"
 ALLOWS = "the plane-strain finite-element model allows"
@@ -57,7 +57,7 @@ class PlaneStrainPlan(Plan):
 def plan(scene: Scene) -> PlaneStrainPlan:
     """What the plane-strain model solves of a scene; UnsupportedScene as of `check`."""
     check(scene)
-    units, counter = scales(scene), required(scene.counterbody)
+    units, counter = scales(scene), stated(scene.counterbody)
     half, (x, z), core = is_half(scene), *choose_lines(scene)
     words = f"{'half of the section, x >= 0' if half else 'the whole section'}, plane strain"
     return planned(
@@ -69,7 +69,7 @@ def plan(scene: Scene) -> PlaneStrainPlan:
         z=z,
         half=half,
         core=core,
-        length=required(counter.length) / units.length,
+        length=stated(counter.length) / units.length,
         **section_of(scene, x, z, words),
     )
 

@@ -70,7 +70,7 @@ def _contact_quantities(model: Model, peak: Equilibrium) -> Quantities:
     """Quantities of the contact at the peak."""
     unit = model.scales.length
     return {
-        "contact_half_width_m": model.half_width(peak) * unit,
+        "contact_half_width_m": model.size(peak) * unit,
         "pressure_centroid_x_m": model.centroid(peak) * unit,
     }
 

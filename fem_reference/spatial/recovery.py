@@ -12,9 +12,9 @@ from fem_reference.common.arrays import Array, Integers
 from fem_reference.common.bodies import EVEN
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.elasticity import mises
-from fem_reference.common.hertz import required
 from fem_reference.common.recovery import Peak, continued, parabola_peak
 from fem_reference.spatial.model import Model
+from sam.scene.section import stated
 from sam.scene.yield_curve import Kinks
 
 ODD_IN_Y = [3, 5]
@@ -137,7 +137,7 @@ def largest_mises(s: Stresses) -> Peak:
 
 def largest_in_layer(s: Stresses, coating: bool) -> Peak:
     """Largest von Mises stress in Pa of the coating or below it, with its faces, and depth in m."""
-    part, interface = s.layer(coating), required(s.interface)
+    part, interface = s.layer(coating), stated(s.interface)
     if not part.peeq.any():
         for depth in (0.0, interface) if coating else (interface,):
             part = with_face(part, depth)

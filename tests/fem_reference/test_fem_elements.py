@@ -19,7 +19,7 @@ from fem_reference.common.elasticity import mises, stiffness_tensor
 from fem_reference.common.far_field import boussinesq, cerruti, slanted
 from fem_reference.common.mesh_lines import Sizes, coated_depths, grow, two_sided
 from fem_reference.common.plasticity import J2, History
-from fem_reference.common.quadrilaterals import AxisymmetricSolid, tensor_mesh, surface_weights
+from fem_reference.common.quadrilaterals import AxisymmetricSolid, surface_weights, tensor_mesh
 from fem_reference.common.recovery import continued
 from fem_reference.spatial import area as areas
 from fem_reference.spatial.hexahedra import HexSolid

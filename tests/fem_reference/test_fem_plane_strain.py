@@ -193,7 +193,7 @@ def test_flow_does_not_lock():
     """
     model, steps = load_steps(line(6.0, cells=3, plasticity=PERFECT, steps=6))
     mean = [np.pi / 4.0 * 6.0 * step.state.force / model.scales.peak_force for step in steps]
-    mean = [force / model.half_width(step.state) for force, step in zip(mean, steps, strict=True)]
+    mean = [force / model.size(step.state) for force, step in zip(mean, steps, strict=True)]
     assert 2.3 < mean[-1] < (2.0 + np.pi) / np.sqrt(3.0) and mean == sorted(mean)
     state = steps[-1].state
     volume = model.body.strain(state.u)[:3].sum(axis=0)
