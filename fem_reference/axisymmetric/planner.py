@@ -13,7 +13,7 @@ import numpy as np
 from fem_reference.axisymmetric.misfit import MisfitSphere
 from fem_reference.common.arrays import Array
 from fem_reference.common.bodies import Elastic, coating_of, expected_radius, yielded_radius
-from fem_reference.common.hertz import kinks_of, plastic_radius, relative_moduli, scales
+from fem_reference.common.hertz import ROUNDED, kinks_of, plastic_radius, relative_moduli, scales
 from fem_reference.common.mesh_lines import (
     CLOSEST,
     GROWTH,
@@ -30,7 +30,6 @@ from fem_reference.common.refusals import (
     problems_of,
     refuse,
 )
-from fem_reference.common.rounded import ROUNDED
 from sam.scene.result import LeftOut
 from sam.scene.schema import Scene
 from sam.scene.section import Problem, spelling, stated

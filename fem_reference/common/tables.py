@@ -124,14 +124,9 @@ def plane_mesh(
     u = model.displacements(state) * unit.displacement
     ux, uz = (u[dofs] for dofs in model.body.basis.nodal_dofs)
 
-    def six(tensor: Array) -> Array:
-        out = np.zeros((tensor.shape[1], 6))
-        out[:, AXISYMMETRIC] = tensor.T
-        return out
-
-    data = {"mises_Pa": mises(cells["stress"]), "stress_Pa": six(cells["stress"])}
+    data = {"mises_Pa": mises(cells["stress"]), "stress_Pa": six(cells["stress"]).T}
     if "peeq" in cells:
-        data |= {"peeq": cells["peeq"][0], "plastic_strain": six(cells["strain"])}
+        data |= {"peeq": cells["peeq"][0], "plastic_strain": six(cells["strain"]).T}
     return FieldMesh(
         points=np.stack([x, np.zeros(x.size), z], axis=1) * unit.length,
         cells={"quad": mesh.t.T.copy()},
@@ -210,8 +205,11 @@ def peak_steps(steps: Sequence[Step]) -> list[Step]:
     return [step for step in peaks.values() if step.state.converged]
 
 
-AXISYMMETRIC = [0, 1, 2, 4]
-"""Where rr, tt, zz, rz are among six components in the plane y = 0."""
+def six(field: Array) -> Array:
+    """(6, ...) components of a tensor (4 or 6, ...): rr, tt, zz, rz in the plane y = 0 of six."""
+    out = np.zeros((6, *field.shape[1:]))
+    out[[0, 1, 2, 4] if len(field) == 4 else slice(None)] = field
+    return out
 
 
 def _yield_strain(model: ContactModel) -> Array:
@@ -268,24 +266,18 @@ def loops_of(model: ContactModel, steps: Sequence[Step]) -> dict[str, list[Any]]
     coordinates = model.body.points.reshape(len(model.body.points), -1) * unit.length
     x, *across, z = coordinates
     y = across[0] if across else 0 * x
-    rows = []
+    rows, points = [], model.body.weights.shape[1]
     for number, at in enumerate(loop_places(periods[-2].accumulated, histories[-2].peeq.ravel()), start=1):
+        point = np.s_[:, *divmod(int(at), points)]
         for step in wanted:
-            stress = _six_at(model.stress(step.state) * unit.pressure, at)
+            stress = six(model.stress(step.state)[point] * unit.pressure)
             if (history := step.state.history) is None:
                 continue
-            strain = _six_at(history.plastic_strain * unit.strain, at) / np.array([1, 1, 1, 2, 2, 2])
+            strain = six(history.plastic_strain[point] * unit.strain) / np.repeat([1, 2], 3)
             peeq = unit.strain * float(history.peeq.ravel()[at])
             values = (number, x[at], y[at], z[at], step.cycle, step.number, peeq)
             rows.append((*values, *stress.tolist(), *strain.tolist()))
     return {name: [row[k] for row in rows] for k, name in enumerate(LOOPS)}
-
-
-def _six_at(field: Array, at: int) -> Array:
-    """Six components of a field (n, n_elements, n_points) at a point; in axial symmetry y is around."""
-    six, values = np.zeros(6), field.reshape(len(field), -1)[:, at]
-    six[AXISYMMETRIC if len(values) == 4 else slice(None)] = values
-    return six
 
 
 def element_fields(model: ContactModel, state: Equilibrium, steps: Sequence[Step]) -> dict[str, Array]:
@@ -296,9 +288,7 @@ def element_fields(model: ContactModel, state: Equilibrium, steps: Sequence[Step
         return out
     if material.back_stresses:
         back = material.back_stress(state.history) * model.scales.pressure
-        out[BACK_STRESS] = np.zeros((len(weights), 6))
-        mean = (back * weights).sum(axis=-1) / weights.sum(axis=-1)
-        out[BACK_STRESS][:, AXISYMMETRIC if len(back) == 4 else slice(None)] = mean.T
+        out[BACK_STRESS] = six((back * weights).sum(axis=-1) / weights.sum(axis=-1)).T
     histories, periods = ([], []) if judging is None else _periods_of(model, steps, judging)
     if judging is None or not periods:
         return out

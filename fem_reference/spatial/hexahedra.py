@@ -9,7 +9,7 @@ from skfem import Basis, ElementHex1, ElementVector, MeshHex
 from fem_reference.common.arrays import Array, Integers
 from fem_reference.common.bodies import Coating, Elastic
 from fem_reference.common.elasticity import Solid
-from fem_reference.spatial.lines import Lines
+from fem_reference.common.mesh_lines import Lines
 
 SHEARS = ((1, 2), (0, 2), (0, 1))
 """Pairs of coordinates of the shear components yz, xz, xy."""

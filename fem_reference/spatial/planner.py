@@ -13,10 +13,9 @@ import numpy as np
 from fem_reference.common.arrays import Array
 from fem_reference.common.bodies import coating_of, expected_radius, yielded_radius
 from fem_reference.common.hertz import Scales, contact_modulus, kinks_of, plastic_radius, scales
-from fem_reference.common.mesh_lines import Sizes, coated_depths, grow, two_sided, uniform_then_growing
+from fem_reference.common.mesh_lines import Lines, Sizes, coated_depths, grow, two_sided, uniform_then_growing
 from fem_reference.common.plan import Plan, planned, slide, stages_of
 from fem_reference.common.refusals import box_problems, coating_problems, problems_of, refuse
-from fem_reference.spatial.lines import GROWTH, Lines
 from sam.scene.result import LeftOut, Stage
 from sam.scene.schema import Scene
 from sam.scene.section import Problem, spelling, stated
@@ -26,6 +25,8 @@ MODEL = "fem-3d"
 ALLOWS = "the three-dimensional finite-element model allows"
 SHAPES = ("sphere", "ellipsoid")
 ROUGH_SHAPES = (*SHAPES, "flat")
+GROWTH = 1.7
+"""Ratio of neighbouring elements outside the uniform part; 1.4 changes scalar results by up to 5e-3."""
 WIDTH = 1.4
 """Uniform part of the mesh to both sides of the contact in its radii: the edge stays inside."""
 DEPTH = 1.2

@@ -18,6 +18,7 @@ from fem_reference.common.elasticity import mises
 from fem_reference.common.far_field import WORDS, kind_of
 from fem_reference.common.solution import Quantities
 from fem_reference.common.tables import Surface, columns, stacked
+from fem_reference.common.track import path_results
 from fem_reference.spatial import recovery
 from fem_reference.spatial.model import Model
 from fem_reference.spatial.planner import SpatialPlan, plan
@@ -169,6 +170,6 @@ METHOD = solution.Method(
     discretisation=_discretisation,
     plastic_shear=plastic_shear,
     further=_further,
-    of_path=lambda *of_model: import_module(TRACK).path_results(*of_model),
+    of_path=lambda model, *of_states: path_results(import_module(TRACK).Track(model), *of_states),
 )
 solve, load_steps = METHOD.solve, METHOD.load_steps

@@ -35,7 +35,7 @@ BAD = {
     ): ("sam.solver"),
     ("sam/kernels/primitives.py", "def f():\n    from sam.kernels import patches"): ".patches",
     ("fem_reference/common/contact.py", "from sam import solve"): "sam",
-    ("fem_reference/common/contact.py", "import fem_reference.spatial.lines"): "fem_reference.spatial.lines",
+    ("fem_reference/common/contact.py", "import fem_reference.spatial.area"): "fem_reference.spatial.area",
     ("verification/text/console.py", "from verification.suite import verify"): "verification.suite.verify",
     ("verification/text/console.py", "from sam.scene.units import UNITS"): "sam.scene.units",
 }
