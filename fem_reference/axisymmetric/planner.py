@@ -24,12 +24,7 @@ from fem_reference.common.mesh_lines import (
     uniform_then_growing,
 )
 from fem_reference.common.plan import Plan, planned, section_of
-from fem_reference.common.refusals import (
-    box_problems,
-    coating_problems,
-    problems_of,
-    refuse,
-)
+from fem_reference.common.refusals import box_problems, coating_problems, problems_of, refuse
 from sam.scene.result import LeftOut
 from sam.scene.schema import Scene
 from sam.scene.section import Problem, spelling, stated

@@ -162,11 +162,7 @@ def onward(model: ContactModel, record: Progressed) -> Progressed:
         step = advance(model, target.load, record.state)
         step = replace(step, note=f"cut into {step.cuts + 1} steps" if step.cuts else "")
     step = replace(
-        step,
-        work=step.work + target.spent,
-        cycle=target.cycle,
-        number=target.number,
-        unloads=target.unloads,
+        step, work=step.work + target.spent, cycle=target.cycle, number=target.number, unloads=target.unloads
     )
     return replace(record, targets=rest, steps=[*record.steps, step])
 

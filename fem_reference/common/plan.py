@@ -19,18 +19,10 @@ from fem_reference.common.bodies import Bodies, Elastic, coating_of, expected_ra
 from fem_reference.common.hertz import Scales, peak_force, relative_moduli
 from fem_reference.common.refusals import Advice, advice_of
 from fem_reference.common.schedule import Schedule, Sliding, schedule_of
+from sam.scene import verdict
 from sam.scene.result import NO_FORCE, LeftOut, Stage, left_out_of
 from sam.scene.schema import Scene
 from sam.scene.section import stated
-from sam.scene.verdict import (
-    VERDICT,
-    Judging,
-    counts_dissipation,
-    judging_of,
-    last_period,
-    periods_of,
-    reason_without,
-)
 
 TRACTION, RETURN_MAP = "tangential traction", "return mapping and plastic history"
 LATER_CYCLES, ONE_STEP = "cycles after the first", "elastic: in one step"
@@ -68,13 +60,13 @@ class Plan:
     points: int
     stages: tuple[Stage, ...]
     advice: Advice
-    judging: Judging | None = None
+    judging: verdict.Judging | None = None
     dissipates: bool = False
     bare: Self | None = None
 
     def forgets(self, cycle: int) -> bool:
         """Whether no result reads the states inside a cycle: of a moving body, unless judged."""
-        judged = self.judging is not None and cycle in last_period(self.judging, self.schedule.cycles)
+        judged = self.judging is not None and cycle in verdict.last_period(self.judging, self.schedule.cycles)
         return self.sliding.moves and not judged
 
     @property
@@ -99,8 +91,8 @@ def planned(kind: type[AnyPlan], scene: Scene, units: Scales, **of_geometry: Any
         expected=expected,
         interface=None if bodies.coating is None else bodies.coating.thickness,
         advice=advice_of(scene),
-        judging=judging_of(scene),
-        dissipates=counts_dissipation(scene),
+        judging=verdict.judging_of(scene),
+        dissipates=verdict.counts_dissipation(scene),
         **of_geometry,
     )
     if bodies.coating is None:
@@ -171,9 +163,9 @@ def stages_of(scene: Scene, mesh: Sequence[Stage], stresses: Stage) -> tuple[Sta
     if scene.loading.force == 0.0:
         solving, bare = ([Stage(stage.stage, False, NO_FORCE) for stage in some] for some in (solving, bare))
     stages += [*solving, stresses]
-    if yields and not reason_without(scene):
+    if yields and not verdict.reason_without(scene):
         words = "strains of the unloaded body after each period"
-        stages.append(Stage(VERDICT, True, words, {"periods": periods_of(scene)}))
+        stages.append(Stage(verdict.VERDICT, True, words, {"periods": verdict.periods_of(scene)}))
     return (*stages, *bare, *(Stage(stage, False, reason) for stage, reason in _left_out(scene)))
 
 
@@ -214,7 +206,8 @@ def _left_out(scene: Scene) -> list[tuple[str, str]]:
     more = ", no body.coating.yield_stress" if coating else ""
     rigid = scene.counterbody is not None and not scene.counterbody.elastic
     again = not yields and scene.loading.cycles > 1 and not alternating
-    unload, reason = scene.loading.unload, reason_without(scene)
+    unload, reason = scene.loading.unload, verdict.reason_without(scene)
+    of_sam = "of the semi-analytical model"
     stages = (
         (not coating, "film elements", "no [body.coating]"),
         (not scene.coefficient, TRACTION, "friction.coefficient is 0" if scene.friction else "no [friction]"),
@@ -222,20 +215,12 @@ def _left_out(scene: Scene) -> list[tuple[str, str]]:
         (not yields, RETURN_MAP, f"the body is elastic: no [body.plasticity]{more}"),
         (yields and not back_stresses, "back-stresses", "no [body.plasticity.kinematic]"),
         (rigid, "mesh of the counter-body", "rigid: no counterbody.young and counterbody.poisson"),
-        (
-            scene.solver.extrapolate,
-            "extrapolation",
-            "solver.extrapolate is a method of the semi-analytical model",
-        ),
-        (
-            scene.solver.operator is not None,
-            "operator",
-            "solver.operator is of the semi-analytical model",
-        ),
+        (scene.solver.extrapolate, "extrapolation", f"solver.extrapolate is a method {of_sam}"),
+        (scene.solver.operator is not None, "operator", f"solver.operator is {of_sam}"),
         (not unload, "unloading", "loading.unload is false"),
         (unload and not yields, "unloading steps", "elastic: unloading in one step is exact"),
         (again, LATER_CYCLES, "elastic: every cycle equals the first"),
-        (reason, VERDICT, reason or ""),
+        (reason, verdict.VERDICT, reason or ""),
     )
     return [(stage, why) for left_out, stage, why in stages if left_out]
 

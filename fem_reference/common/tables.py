@@ -17,6 +17,7 @@ from fem_reference.common.elasticity import mises
 from fem_reference.common.loading import Step, Strained
 from fem_reference.common.model import ContactModel
 from fem_reference.common.plasticity import History
+from sam.scene import verdict
 from sam.scene.result import (
     BACK_STRESS,
     CYCLES,
@@ -29,18 +30,6 @@ from sam.scene.result import (
     GridFields,
     Table,
     residual_table,
-)
-from sam.scene.verdict import (
-    Judging,
-    Period,
-    Verdict,
-    cell_fields,
-    last_period,
-    loop_places,
-    norm_of,
-    summary,
-    verdict_columns,
-    verdict_on,
 )
 
 
@@ -157,7 +146,7 @@ def step_tables(model: ContactModel, steps: Sequence[Step], peeq_max: Strained) 
             spent = [sum(step.dissipated for step in steps if step.cycle == cycle) for cycle in cycles]
             table |= {DISSIPATED: spent}  # J
         if (judging := model.plan.judging) is not None:
-            table |= verdict_columns(cycles, verdicts_of(model, steps, judging), judging.period)
+            table |= verdict.verdict_columns(cycles, verdicts_of(model, steps, judging), judging.period)
         out["cycles"] = table
     return out
 
@@ -219,19 +208,21 @@ def _yield_strain(model: ContactModel) -> Array:
     return model.scales.strain * model.problem.material.yield_strain.ravel()
 
 
-def verdicts_of(model: ContactModel, steps: Sequence[Step], judging: Judging) -> list[Verdict]:
+def verdicts_of(
+    model: ContactModel, steps: Sequence[Step], judging: verdict.Judging
+) -> list[verdict.Verdict]:
     """After each period that was finished: of the steps of a contact whose body yields."""
     histories, periods = _periods_of(model, steps, judging)
     strain, volume = _yield_strain(model), model.body.weights.ravel() * model.scales.length**3 / model.part
     return [
-        verdict_on(periods[:number], after.peeq.ravel(), strain, judging, volume=volume)
+        verdict.verdict_on(periods[:number], after.peeq.ravel(), strain, judging, volume=volume)
         for number, after in enumerate(histories, start=1)
     ]
 
 
 def _periods_of(
-    model: ContactModel, steps: Sequence[Step], judging: Judging
-) -> tuple[list[History], list[Period]]:
+    model: ContactModel, steps: Sequence[Step], judging: verdict.Judging
+) -> tuple[list[History], list[verdict.Period]]:
     """The histories at the ends of finished periods, and what each period added."""
     last = {
         target.cycle: target.number
@@ -258,7 +249,7 @@ def loops_of(model: ContactModel, steps: Sequence[Step]) -> dict[str, list[Any]]
     histories, periods = ([], []) if judging is None else _periods_of(model, steps, judging)
     if judging is None or len(periods) < 2 or len(periods) < model.plan.schedule.cycles // judging.period:
         return {}
-    cycles, unit = last_period(judging, model.plan.schedule.cycles), model.scales
+    cycles, unit = verdict.last_period(judging, model.plan.schedule.cycles), model.scales
     end = max(step.number for step in steps if step.cycle == cycles.start - 1)
     wanted = [
         step for step in steps if step.cycle in cycles or (step.cycle, step.number) == (cycles.start - 1, end)
@@ -267,7 +258,8 @@ def loops_of(model: ContactModel, steps: Sequence[Step]) -> dict[str, list[Any]]
     x, *across, z = coordinates
     y = across[0] if across else 0 * x
     rows, points = [], model.body.weights.shape[1]
-    for number, at in enumerate(loop_places(periods[-2].accumulated, histories[-2].peeq.ravel()), start=1):
+    places = verdict.loop_places(periods[-2].accumulated, histories[-2].peeq.ravel())
+    for number, at in enumerate(places, start=1):
         point = np.s_[:, *divmod(int(at), points)]
         for step in wanted:
             stress = six(model.stress(step.state)[point] * unit.pressure)
@@ -292,7 +284,7 @@ def element_fields(model: ContactModel, state: Equilibrium, steps: Sequence[Step
     histories, periods = ([], []) if judging is None else _periods_of(model, steps, judging)
     if judging is None or not periods:
         return out
-    for name, values in cell_fields(
+    for name, values in verdict.cell_fields(
         periods, histories[-1].peeq.ravel(), _yield_strain(model), judging
     ).items():
         points = values.reshape(weights.shape)
@@ -301,12 +293,12 @@ def element_fields(model: ContactModel, state: Equilibrium, steps: Sequence[Step
     return out
 
 
-def _added(before: History, after: History, unit: float) -> Period:
+def _added(before: History, after: History, unit: float) -> verdict.Period:
     """What a period added; the shears of a strain stand for twice the tensor."""
     strain = unit * (after.plastic_strain - before.plastic_strain).reshape(len(after.plastic_strain), -1)
     tensor = np.zeros((6, strain.shape[1]))
     tensor[:3], tensor[3 : len(strain)] = strain[:3], strain[3:] / 2.0
-    return Period(unit * (after.peeq - before.peeq).ravel(), norm_of(tensor), tensor)
+    return verdict.Period(unit * (after.peeq - before.peeq).ravel(), verdict.norm_of(tensor), tensor)
 
 
 def verdict_summary(model: ContactModel, steps: Sequence[Step]) -> Mapping[str, Any] | None:
@@ -315,4 +307,4 @@ def verdict_summary(model: ContactModel, steps: Sequence[Step]) -> Mapping[str, 
     verdicts = [] if judging is None else verdicts_of(model, steps, judging)
     if judging is None or not verdicts:
         return None
-    return summary(verdicts, judging.period, judging.floor * float(_yield_strain(model).min()))
+    return verdict.summary(verdicts, judging.period, judging.floor * float(_yield_strain(model).min()))

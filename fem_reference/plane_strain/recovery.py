@@ -12,7 +12,7 @@ import numpy as np
 from fem_reference.common.arrays import Array, Integers
 from fem_reference.common.bodies import EVEN
 from fem_reference.common.contact import Equilibrium
-from fem_reference.common.elasticity import mises
+from fem_reference.common.elasticity import mises, on_grid
 from fem_reference.common.recovery import Peak, over_depth, plastic_fields
 from fem_reference.plane_strain.model import Model
 from sam.scene.yield_curve import Kinks
@@ -46,8 +46,7 @@ class Stresses:
 
 def columns_of_points(model: Model) -> Integers:
     """(2 nx, 2 nz) numbers of the Gauss points of the body in a flat field, by x and by z."""
-    x, z = np.round(model.body.points.reshape(2, -1), 12)
-    return np.lexsort((z, x)).reshape(2 * model.plan.x.size - 2, -1)
+    return on_grid(model.body.points.reshape(2, -1), (2 * model.plan.x.size - 2, -1))
 
 
 def stresses(model: Model, state: Equilibrium) -> Stresses:

@@ -14,11 +14,12 @@ import numpy as np
 
 from fem_reference.common.arrays import Array, Bools, Integers
 from fem_reference.common.contact import Equilibrium
+from fem_reference.common.elasticity import on_grid
 from fem_reference.common.hertz import hertz_pressure
 from fem_reference.common.mesh_lines import Lines
 from fem_reference.common.model import HERTZ_GROWTH, PLASTIC_GROWTH, ContactModel, material
 from fem_reference.common.schedule import Load
-from fem_reference.spatial.hexahedra import HexSolid, block, on_grid
+from fem_reference.spatial.hexahedra import HexSolid, block
 from fem_reference.spatial.planner import SpatialPlan
 from fem_reference.spatial.problem import Candidates, SlidingProblem
 from fem_reference.spatial.surface import contact_area, hertz_forces

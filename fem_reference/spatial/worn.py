@@ -21,9 +21,9 @@ from scipy.interpolate import RegularGridInterpolator, interp1d
 
 from fem_reference.common.arrays import Array, Integers
 from fem_reference.common.contact import Equilibrium, without_contact
+from fem_reference.common.elasticity import on_grid
 from fem_reference.common.loading import Progressed, follow
 from fem_reference.common.plasticity import History
-from fem_reference.spatial.hexahedra import on_grid
 from fem_reference.spatial.planner import plan
 from fem_reference.spatial.recovery import largest_peeq, stresses
 from fem_reference.spatial.rough import RoughModel, build, on_mesh, surface_table
