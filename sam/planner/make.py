@@ -70,8 +70,8 @@ def plan_of(bodies: Bodies) -> Plan:
         limits = limit_by_depth(scene.wear, None if plasticity is None else plasticity.layer_thickness)
         smoothing = scene.wear.smoothing_window, scene.wear.smoothing_order
         keys = {"roof_falls": scene.wear.roof == "falls", "fills": scene.wear.smoothing_fills}
-        keys["periodic"] = grid.periodic
-        wear = WearLaw(grid.shape, grid.hx, grid.hy, limits, scene.wear.interpolate, *smoothing, **keys)
+        size = grid.shape, grid.hx, grid.hy
+        wear = WearLaw(*size, limits, scene.wear.interpolate, *smoothing, grid.wraps, **keys)
     rough, last = bodies.patch, schedule.targets[-1].load
     made = Plan(
         grid=grid,
