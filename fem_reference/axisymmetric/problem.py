@@ -70,8 +70,6 @@ class ContactProblem:
         *,
         far: Array | None = None,
     ):
-        if len(blocks) not in (1, 2):
-            raise ValueError(f"blocks: {len(blocks)}, allowed are one (rigid counter-body) or two")
         self.blocks, self.gap0, self.material, self.prescribed = tuple(blocks), gap0, material, prescribed
         sizes = [block.solid.size for block in blocks]
         self.size = sum(sizes)

@@ -146,15 +146,6 @@ def test_residual_is_measured_not_assumed(monkeypatch):
     assert inexact.approach == pytest.approx(exact.approach, rel=1e-7)
 
 
-def test_unloaded_state_is_at_rest():
-    model = model_of(4)
-    state = model.virgin()
-    assert not state.u.any() and not state.multipliers.any()
-    assert model.contact_radius(state) == 0.0 and not model.nodal_pressure(state).any()
-    with pytest.raises(ValueError, match="blocks: 3"):
-        ContactProblem(model.problem.blocks * 3, model.problem.gap0)
-
-
 def test_pressure_recovery_is_exact_for_its_own_form():
     """An even parabola on the axis, and a gap that opens with (r - a)^(3/2), up to rounding."""
     r = np.array([0.1, 0.2, 0.3, 0.4])

@@ -19,7 +19,7 @@ from fem_reference.common.elasticity import mises, stiffness_tensor
 from fem_reference.common.far_field import boussinesq, cerruti, slanted
 from fem_reference.common.mesh_lines import Sizes, coated_depths, grow, two_sided
 from fem_reference.common.plasticity import J2, History
-from fem_reference.common.quadrilaterals import AxisymmetricSolid, surface_weights, tensor_mesh
+from fem_reference.common.quadrilaterals import AxisymmetricSolid, PlaneSolid, surface_weights, tensor_mesh
 from fem_reference.common.recovery import continued
 from fem_reference.spatial import area as areas
 from fem_reference.spatial.hexahedra import HexSolid
@@ -39,6 +39,11 @@ def ring(n=3, inner=0.0, twist=0.05, element=None, poisson=POISSON):
     bump = twist * np.sin(np.pi * (mesh.p[0] - inner)) * np.sin(np.pi * mesh.p[1])
     mesh = MeshQuad(mesh.p + bump * np.array([[1.0], [-0.7]]), mesh.t)
     return AxisymmetricSolid(mesh, Elastic(YOUNG, poisson), element=element)
+
+
+def section(n=3, twist=0.05):
+    """The same in plane strain."""
+    return PlaneSolid(ring(n, twist=twist).basis.mesh, Elastic(YOUNG, POISSON))
 
 
 def cube(n=2, twist=0.08, **options):
@@ -77,24 +82,36 @@ def test_patch_of_rings_is_exact_under_uniform_strain(poisson):
     assert np.abs(force - solid.stiffness @ u).max() < 1e-13 * np.abs(force).max()
 
 
-def test_patch_of_hexahedra_is_exact_under_uniform_strain():
-    solid = cube(3)
+@pytest.mark.parametrize("solid", [cube(3), section(4)], ids=["hexahedra", "section"])
+def test_patch_is_exact_under_uniform_strain(solid):
+    """That of a section is plane."""
     gradient = np.array([[1.0, 0.3, -0.2], [0.1, -0.5, 0.4], [0.25, 0.6, 0.8]])
-    exact = np.zeros(solid.size)
-    exact[solid.basis.nodal_dofs] = gradient @ solid.basis.mesh.p
+    axes = (0, 2) if len(solid.stiffness_tensor) == 4 else (0, 1, 2)
+    exact, places = np.zeros(solid.size), solid.basis.doflocs
+    for k, row in enumerate(axes):
+        dofs = solid.basis.get_dofs(elements=True).all(f"u^{k + 1}")
+        exact[dofs] = gradient[row, axes] @ places[:, dofs]
     u = solved_from_boundary(solid, exact)
     assert np.abs(u - exact).max() < 1e-13
-    e = 0.5 * (gradient + gradient.T)
-    strain = np.array([e[0, 0], e[1, 1], e[2, 2], 2 * e[1, 2], 2 * e[0, 2], 2 * e[0, 1]])
-    expected = stiffness_tensor(YOUNG, POISSON, 3) @ strain
+    e = gradient + gradient.T
+    strain = np.array([*np.diag(e) / 2, e[1, 2], e[0, 2], e[0, 1]])
+    if len(axes) == 2:
+        strain = strain[[0, 1, 2, 4]] * [1, 0, 1, 1]
+    expected = stiffness_tensor(YOUNG, POISSON, len(strain) - 3) @ strain
     assert np.abs(solid.stress(u) - expected[:, None, None]).max() < 1e-11 * np.abs(expected).max()
     assert np.abs(solid.internal_force(solid.stress(u)) - solid.stiffness @ u).max() < 1e-12
 
 
 @pytest.mark.parametrize(
     ("solid", "count"),
-    [(ring(2, 0.0), 1), (ring(3, 2.0), 1), (cube(2), 6), (ring(3, 2.0, 0.0, element=ElementQuad2()), 4)],
-    ids=["rings at the axis", "rings", "hexahedra", "nine nodes, which have spurious modes"],
+    [
+        (ring(2, 0.0), 1),
+        (ring(3, 2.0), 1),
+        (section(), 3),
+        (cube(2), 6),
+        (ring(3, 2.0, 0.0, element=ElementQuad2()), 4),
+    ],
+    ids=["rings at the axis", "rings", "section", "hexahedra", "nine nodes, which have spurious modes"],
 )
 def test_free_patch_has_the_rigid_motions_as_zero_modes(solid, count):
     """Rounding is about 1e-15 of the largest eigenvalue, the softest deformation about 1e-3 of it."""

@@ -13,14 +13,7 @@ from sam import solve
 from sam.contact.convolution import Counters
 from sam.kernels.eigenstrain import surface_displacement_coefficients
 from sam.kernels.layer_stress import residual_stress_coefficients
-from sam.kernels.patches import (
-    ODD_Y,
-    STRESS,
-    Cuboids,
-    Lags,
-    displacement_coefficients,
-    stress_coefficients,
-)
+from sam.kernels.patches import ODD_Y, STRESS, Cuboids, Lags, displacement_coefficients, stress_coefficients
 from sam.plasticity.spectra import BoxOperator
 from sam.scene import Scene
 

@@ -120,6 +120,8 @@ PYTHON = {
     | {"pint", "scipy", "fem_reference", "verification", "samfem"},
     "import sam\nsam.solve": PICTURES
     | {"rich", "jinja2", "verification", "samfem", "fem_reference", "scipy.optimize"},
+    "import fem_reference\nfem_reference.plan, fem_reference.UnsupportedScene": SOLVERS
+    | {"skfem", "scipy", "verification"},
     "import fem_reference\nfem_reference.solve": PICTURES | {"rich", "verification", "sam.solver"},
     "import samfem\nsamfem.__version__": {"numpy", "pandas", "sam", "verification"},
     "import samfem\nsamfem.Scene, samfem.solve": FEW | SOLVERS | {"pandas", "scipy", "pint", "rich", "skfem"},
