@@ -14,7 +14,7 @@ from fem_reference.axisymmetric.recovery import Stresses
 from fem_reference.common import solution
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.elasticity import mises
-from fem_reference.common.far_field import WORDS, kind_of
+from fem_reference.common.far_field import words_of
 from fem_reference.common.solution import Quantities
 from fem_reference.common.tables import Surface, columns, plane_mesh
 from sam.scene.result import AXIS, PLANE, FieldMesh, Table
@@ -69,16 +69,13 @@ def _discretisation(model: Model) -> dict[str, object]:
     layers = None if coating is None else int(np.searchsorted(plan.z, coating.thickness * (1.0 - 1e-9)))
     return {
         "element": "8-node serendipity quadrilateral, 2 x 2 Gauss points",
-        "bodies": len(plan.bodies.elastic),
         "cells_per_radius": plan.cells_per_radius,
         "reference_radius_m": length,
         "h_m": float(model.surface[2] - model.surface[0]) * length,
         "h_edge_m": float(np.diff(model.surface[::2]).min()) * length,
         "box_m": float(model.surface[-1]) * length,
         **solution.coating_elements(model, layers),
-        "elements": plan.elements,
-        "dofs": plan.unknowns,
-        "far_field": WORDS[kind_of(coating)],
+        "far_field": words_of(coating),
     }
 
 

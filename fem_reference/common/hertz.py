@@ -217,25 +217,21 @@ def radius_under_force(counter: CounterBody, force: float) -> float:
 
 def radius_at_approach(counter: CounterBody, approach: float) -> float:
     """Contact radius in m at an approach a b (tan t - t)/R."""
-    flat, radius = _lengths(counter)
+    flat, radius = stated(counter.flat_radius), stated(counter.radius)
     return _radius(counter, lambda a, t: a * flat * (np.tan(t) - t) / radius < approach)
 
 
 def force_at(counter: CounterBody, a: float, t: float | None = None) -> float:
     """Force in N over E* at a contact radius in m; t: its angle."""
-    flat, radius = _lengths(counter)
+    flat, radius = stated(counter.flat_radius), stated(counter.radius)
     angle = np.arccos(min(1.0, flat / a)) if t is None else t
     beyond = angle - np.sin(angle) * np.cos(angle)
     return float(a**3 / radius * (4.0 / 3.0 * np.sin(angle) ** 3 - np.cos(angle) * beyond))
 
 
-def _lengths(counter: CounterBody) -> tuple[float, float]:
-    return stated(counter.flat_radius), stated(counter.radius)
-
-
 def _radius(counter: CounterBody, smaller: Callable[[float, float], bool]) -> float:
     """The radius b/cos t at which something that grows with it is no longer smaller than wanted."""
-    flat, low, high = _lengths(counter)[0], 0.0, 0.5 * np.pi
+    flat, low, high = stated(counter.flat_radius), 0.0, 0.5 * np.pi
     for _ in range(HALVINGS):
         t = 0.5 * (low + high)
         low, high = (t, high) if smaller(flat / np.cos(t), t) else (low, t)

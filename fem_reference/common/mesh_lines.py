@@ -93,12 +93,10 @@ class Sizes:
 
     def __call__(self, distance: float) -> float:
         """Return the largest size at a distance."""
-        below = [
-            size
-            for size, limit in zip((self.fine, self.coarse), self.limits, strict=True)
-            if distance < limit
-        ]
-        return below[0] if below else np.inf
+        fine, coarse = self.limits
+        if distance < fine:
+            return self.fine
+        return self.coarse if distance < coarse else np.inf
 
 
 def marched(

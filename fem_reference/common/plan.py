@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The plan of a scene: what a finite-element model solves, made once; the solver executes it and asks the
-scene nothing.
-
-Here is what the plans of both models share; `fem_reference.axisymmetric.planner` and
-`fem_reference.spatial.planner` make them. Loads no numerical library but numpy.
+"""The plan of a scene: what a finite-element model solves, made once by the planner of its geometry; the
+solver executes it and asks the scene nothing. Loads no numerical library but numpy.
 """
 
 from __future__ import annotations

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The way from a scene to a result, the same for both geometries: plan, model, load steps, verdict,
-quantities, tables.
-
-What differs is a `Method` of each geometry.
+"""The way from a scene to a result, plan, model, load steps, verdict, quantities, tables: the same for all
+geometries, which differ by a `Method`.
 """
 
 from __future__ import annotations
@@ -235,26 +233,9 @@ class Method(Generic[P, M, S]):
     def load_steps(self, scene: Scene, record: Checkpoint | None = None) -> tuple[M, list[Step]]:
         """Return the model of a scene and its load steps, for a-posteriori checks of every state.
 
-        Parameters
-        ----------
-        scene : Scene
-            As of `solve`.
-        record : Checkpoint, optional
-            Of the last step of a solve; without it the steps are taken again, of a coated contact its own
-            alone.
-
-        Returns
-        -------
-        model : Model
-            Mesh, bodies, friction and units.
-        steps : list of Step
-            In their order, up to the first that did not converge; of a record of a counter-body that moves
-            those inside a pass without displacements and strains.
-
-        Raises
-        ------
-        UnsupportedScene
-            For what the model cannot represent, see `check`.
+        record: of the last step of a solve; without it the steps are taken again, of a coated contact its own
+        alone. The steps go up to the first that did not converge; of a record of a counter-body that moves
+        those inside a pass are without displacements and strains. UnsupportedScene as of `solve`.
         """
         plan = self.plan(scene)
         model = self.build(plan)
@@ -284,6 +265,7 @@ def result_of(method: Method[P, M, S], solved: Solved[M], clock: Clock) -> Resul
     of_path, path_quantities = (
         method.of_path(model, steps, states, fields) if plan.sliding.moves else ({}, {})
     )
+    sizes = {"bodies": len(plan.bodies.elastic), "elements": plan.elements, "dofs": plan.unknowns}
     history = {**of_steps.pop("history"), **of_path.pop("history", {})}
     return Result(
         model=plan.model,
@@ -294,7 +276,7 @@ def result_of(method: Method[P, M, S], solved: Solved[M], clock: Clock) -> Resul
         bodies=bodies,
         grids={name: {"surface": method.surface(model, state).grid()} for name, state in states.items()},
         left_out=plan.left_out,
-        discretisation=method.discretisation(model),
+        discretisation=sizes | method.discretisation(model),
         certificate=certificate(model, states[first]),
         cost=cost(solved.steps + solved.bare_steps, method.setups, clock),
         message="; ".join(filter(None, (message, steps[-1].state.ending))),

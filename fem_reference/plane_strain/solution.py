@@ -80,14 +80,11 @@ def _discretisation(model: Model) -> dict[str, object]:
     length, plan = model.scales.length, model.plan
     return {
         "element": "8-node serendipity quadrilateral in plane strain, 2 x 2 Gauss points",
-        "bodies": len(plan.bodies.elastic),
         "symmetry": "half, x >= 0" if plan.half else "none",
         "cells_per_radius": plan.cells_per_radius,
         "reference_half_width_m": length,
         "h_m": float(np.diff(plan.x).min()) * length,
         "box_m": float(plan.z[-1]) * length,
-        "elements": plan.elements,
-        "dofs": plan.unknowns,
         "far_field": "displacements of the normal and tangential line force on the outer boundary",
         "datum_m": 0.5 * plan.length * length,
     }

@@ -15,7 +15,7 @@ from fem_reference.common import solution
 from fem_reference.common.arrays import Array
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.elasticity import mises
-from fem_reference.common.far_field import WORDS, kind_of
+from fem_reference.common.far_field import words_of
 from fem_reference.common.solution import Quantities
 from fem_reference.common.tables import Surface, columns, stacked
 from fem_reference.common.track import path_results
@@ -138,18 +138,15 @@ def _further(
 def _discretisation(model: Model) -> dict[str, object]:
     """The mesh in SI units."""
     plan, lines, length = model.plan, model.lines, model.scales.length
-    words = WORDS[kind_of(plan.bodies.coating)]
+    words = words_of(plan.bodies.coating)
     return {
         "element": "8-node hexahedron, mean dilatation, 2 x 2 x 2 Gauss points",
-        "bodies": 1,
         "symmetry": "half, y >= 0" if lines.half else "none",
         "cells_per_radius": plan.fine_cells_per_radius if plan.kind == "smooth" else None,
         "reference_radius_m": length,
         "h_m": float(np.diff(lines.x).min()) * length,
         "box_m": float(lines.z[-1]) * length,
         **solution.coating_elements(model, plan.coating_layers),
-        "elements": plan.elements,
-        "dofs": plan.unknowns,
         "far_field": words.replace("the point force", "the normal and tangential point force"),
     }
 
