@@ -225,7 +225,7 @@ def _iterate(problem: Problem, state: Equilibrium, scale: float, contact: Active
         state = Equilibrium(
             u, approach, load, multipliers, gap, active, end, tuple(residuals), steady, converged
         )
-        if converged or contact.stuck or hopeless(residuals):
+        if converged or contact.stuck or not residuals[-1] < DIVERGED or stalled(residuals):
             break
     ending = "" if state.converged else ended(residuals, definite, contact.stuck)
     return replace(state, work=Work(len(residuals), kept.setups, kept.linear), ending=ending)
@@ -252,11 +252,6 @@ def ended(residuals: Sequence[float], definite: bool, stuck: bool) -> str:
     if stuck:
         return "the set of nodes in contact stagnated: it keeps coming back"
     return unfinished("Newton's method", residuals, EQUILIBRIUM, stalled(residuals))
-
-
-def hopeless(residuals: Sequence[float]) -> bool:
-    """Whether the residuals, in the order of the iterations, have diverged or stalled."""
-    return not residuals[-1] < DIVERGED or stalled(residuals)
 
 
 def stalled(residuals: Sequence[float]) -> bool:

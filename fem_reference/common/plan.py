@@ -94,7 +94,7 @@ def planned(kind: type[AnyPlan], scene: Scene, units: Scales, **of_geometry: Any
     )
     if bodies.coating is None:
         return plan
-    bodies = bodies.without_coating()
+    bodies = replace(bodies, coating=None)
     schedule = steps_of(scene, units, bodies, sliding).of_bare_contact(not bodies.yields)
     return replace(plan, bare=replace(plan, bodies=bodies, schedule=schedule, expected=1.0))
 
