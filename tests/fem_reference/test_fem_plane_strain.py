@@ -157,13 +157,6 @@ def test_full_slip_is_askew():
     assert model.centroid(state) / wide == pytest.approx(-8.0 / 3.0 * k, rel=5e-3)
 
 
-@pytest.mark.parametrize(("ratio", "yields"), [(1.785, False), (1.803, True)])
-def test_first_yield(ratio, yields):
-    """At p0 = 1.794 Y, nu = 0.3."""
-    steps = load_steps(line(ratio, cells=12, plasticity=PERFECT))[1]
-    assert steps[-1].state.yielded is yields
-
-
 def test_flow_does_not_lock():
     """The mean pressure of a body that flows freely stays below that of a rigid-plastic one, (2 + pi) k, and
     rises towards it; the volume changes elastically alone.
