@@ -53,10 +53,18 @@ def plan_of(bodies: Bodies) -> Plan:
         film = FilmOnCells(FilmLaw.of(friction), grid.shape, visited)
     if scene.wear is not None and scene.wear.removes:
         limits = limit_by_depth(scene.wear, None if plasticity is None else plasticity.layer_thickness)
-        smoothing = scene.wear.smoothing_window, scene.wear.smoothing_order
-        keys = {"roof_falls": scene.wear.roof == "falls", "fills": scene.wear.smoothing_fills}
-        size = grid.shape, grid.hx, grid.hy
-        wear = WearLaw(*size, limits, scene.wear.interpolate, *smoothing, grid.wraps, **keys)
+        wear = WearLaw(
+            grid.shape,
+            grid.hx,
+            grid.hy,
+            limits,
+            scene.wear.interpolate,
+            scene.wear.smoothing_window,
+            scene.wear.smoothing_order,
+            grid.wraps,
+            roof_falls=scene.wear.roof == "falls",
+            fills=scene.wear.smoothing_fills,
+        )
     rough, last = bodies.patch, schedule.targets[-1].load
     made = Plan(
         grid=grid,
