@@ -2,9 +2,9 @@
 """A ladder of scenes, from an elastic sphere to full running-in, and what a solve of each does,
 counted from outside.
 
-`climb` solves rungs, each in a fork of a process that has loaded the solvers and solved nothing, and tells what
-ran: kinds of work with their calls and sizes, and transforms by the work that they belong to. Nothing in the
-solvers counts for it: functions are wrapped where they are defined, once their module is loaded.
+`climb` solves rungs, each in a fork of a process that has loaded the solvers and solved nothing, and tells
+what ran: kinds of work with their calls and sizes, and transforms by the work that they belong to. Nothing in
+the solvers counts for it: functions are wrapped where they are defined, once their module is loaded.
 """
 
 import functools

@@ -8,7 +8,7 @@ import inspect
 import io
 import re
 import tokenize
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from pkgutil import resolve_name
 
@@ -49,6 +49,7 @@ def rows(page: str) -> dict[str, str]:
     return {line.split("|")[1].strip(): line for line in lines}
 
 
+@cache
 def cited(thing: object) -> set[str]:
     """The words of comments and strings of a function, method, property or class, and the numbers
     that they cite: of "Eq. 5", "Eq. 9 and 10", "Eq. 22 to 26"; not "Eq. 3.19" of another source.
