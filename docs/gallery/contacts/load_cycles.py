@@ -24,7 +24,7 @@ for pressure, look in (("2.8 GPa", "o-"), ("3.6 GPa", "s-")):
             "unload": True,
             "cycles": 6,
         },
-        grid={"cells": (25, 25), "extent": ("34 um", "34 um"), "layers": 10, "depth": "24 um"},
+        grid={"cells": (33, 33), "extent": ("34 um", "34 um"), "layers": 12, "depth": "24 um"},
         solver={"uncertainty": True, "tolerance": 1e-4},
     )
     run = samfem.solve(scene)

@@ -18,7 +18,7 @@ tables = {
     "counterbody": {"shape": "flat"},
     "surface": {**waves, "hurst": 0.8, "seed": 1},
     "loading": {"mean_pressure": "100 MPa", "steps": 4},
-    "grid": {"cells": (48, 48), "extent": ("64 um", "64 um"), "periodic": "xy"},
+    "grid": {"cells": (64, 64), "extent": ("64 um", "64 um"), "periodic": "xy"},
     "solver": {"tolerance": 1e-4, "uncertainty": True},
 }
 bodies = {"elastic": steel, "yielding": {**steel, "plasticity": yields}}
