@@ -186,20 +186,18 @@ def test_a_checkpoint_of_something_else_is_refused_by_name(solve, interrupt):
         assert path.read_bytes() == content  # nothing lost
 
 
-@pytest.mark.parametrize("damage", ["cut", "flipped", "empty", "text", "other"])
-def test_a_damaged_checkpoint_is_said_and_the_solve_starts_anew(solve, interrupt, damage):
+def test_a_damaged_checkpoint_is_said_and_the_solve_starts_anew(solve, interrupt):
     _, path = interrupt(2)
     content = path.read_bytes()
     half = len(content) // 2
-    if damage == "other":
-        write_archive(path, {"a": np.zeros(3)}, {"b": 1})
-    else:
-        flipped = content[:half] + bytes([content[half] ^ 1]) + content[half + 1 :]
-        damaged = {"cut": content[:half], "flipped": flipped, "empty": b"", "text": b"not an archive"}
-        path.write_bytes(damaged[damage])
-    message = solve("--resume").err
-    assert str(path) in message and "solved from the beginning" in message
-    assert not path.exists()
+    write_archive(path, {"a": np.zeros(3)}, {"b": 1})
+    flipped = content[:half] + bytes([content[half] ^ 1]) + content[half + 1 :]
+    for damaged in (path.read_bytes(), content[:half], flipped, b"", b"not an archive"):
+        path.write_bytes(damaged)
+        message, _ = interrupt(1, "--resume")
+        assert str(path) in message and "solved from the beginning" in message
+    solve("--resume")
+    assert is_whole(solve) and not path.exists()
 
 
 def test_resume_of_a_finished_folder_solves_nothing_and_keeps_its_exit_code(folder, solve, monkeypatch):
