@@ -21,7 +21,7 @@ scene = samfem.Scene(
         "unload": True,
         "path": {"start": ("-12 um", "0 um"), "end": ("12 um", "0 um"), "step_per_radius": 3},
     },
-    grid={"cells": (65, 33), "extent": ("36 um", "18 um"), "layers": 10, "depth": "8 um"},
+    grid={"cells": (83, 41), "extent": ("36 um", "18 um"), "layers": 12, "depth": "8 um"},
     solver={"tolerance": 1e-3, "uncertainty": True},
 )
 run = samfem.solve(scene)
