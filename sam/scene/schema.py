@@ -192,15 +192,15 @@ class Scene(Section):
         datum = f"a force with {axis}: the approach of a line contact has no absolute value"
         rough = has("surface") or has("counterbody.surface")
         cells, swept = at("grid.cells"), at("solver.operator") == "swept"
-        rows = cells[1] if isinstance(cells, list | tuple) and len(cells) == 2 else 0
-        loop, plastic, relief = at("solver.method") == "paper", has("body.plasticity"), at("grid.border")
-        bordered, several, lateral = (
-            relief == "relief",
-            line and not rough and rows > 1,
-            has("loading.lateral"),
-        )
+        pair = isinstance(cells, list | tuple) and len(cells) == 2 and hasattr(cells[1], "__float__")
+        rows = cells[1] if pair else 0
+        loop, plastic = at("solver.method") == "paper", has("body.plasticity")
+        bordered, several = at("grid.border") == "relief", line and not rough and rows > 1
         across, moves = line and rough and rows > 1 and not along, line and rough and has("loading.path")
-        alike = f"one cell along y with a smooth {axis}: all is the same there"
+        lateral, alike = (
+            has("loading.lateral"),
+            f"one cell along y with a smooth {axis}: all is the same there",
+        )
         yield from broken(
             ((repeats or line) and has("body.coating"), "body.coating", f"{either} {NOT_YET}"),
             (repeats and has("loading.path"), "loading.path", f"{either} {NOT_YET}"),
