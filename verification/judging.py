@@ -98,9 +98,7 @@ class RowStatus(StrEnum):
 
 @dataclass(frozen=True)
 class Verdict:
-    """A row after evaluation. value, expected: None for fields; points: how many values of a field;
-    error: in the gate's metric; note: why it is red.
-    """
+    """A row after evaluation. value, expected: None for fields; error: in the metric; note: why red."""
 
     row: Row
     status: RowStatus
@@ -158,9 +156,7 @@ def judge(row: Row, measured: Measured | None, note: str = "") -> Verdict:
 
 
 def error_of(metric: str, measured: Measured) -> float:
-    """The error in a metric. Raises ValueError when the values do not fit it, TypeError when they are no
-    numbers.
-    """
+    """The error in a metric. ValueError when the values do not fit it, TypeError for no numbers."""
     one_sided = metric in ("at_most", "at_least")
     if measured.value is None or (measured.expected is None) != one_sided:
         raise ValueError(f"metric {metric} needs a value {'alone' if one_sided else 'and an expected value'}")

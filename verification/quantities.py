@@ -84,9 +84,7 @@ class Solved:
 
 @dataclass(frozen=True)
 class Values:
-    """A field. places: coordinates in m, as the function of the reference takes them; weight: see
-    Measured.
-    """
+    """A field. places: coordinates in m, as the reference takes them; weight: see Measured."""
 
     places: tuple[Any, ...]
     values: np.ndarray
@@ -108,9 +106,7 @@ class Quantity:
     whole: Callable[[Solved], Measured | float] | None = None
 
     def against(self, name: str, result: Result, reference: Reference | None) -> Measured:
-        """The quantity of a result beside the value of its name in the reference; alone where that has
-        none.
-        """
+        """The quantity of a result beside the value of its name in the reference, where it has one."""
         found = self.of(result, reference)
         if isinstance(found, Measured):
             return found
@@ -138,9 +134,7 @@ def _load(result: Result, reference: Reference) -> float:
 
 
 def _pressure(result: Result, reference: Reference) -> Values:
-    """On the cells of SAM, at the nodes of FEM with the area 2 pi r dr of each, dr in a section; along the
-    line inside a punch.
-    """
+    """On the cells of SAM, the nodes of FEM with their area 2 pi r dr, or dr; along the line in a punch."""
     if np.isfinite(reference.inside):
         x, p = peak(result.tables["line"], "x_m", "p_Pa")
         x, p = x[inside := (x >= 0.0) & (x <= reference.inside)], p[inside]
@@ -207,9 +201,7 @@ def _largest_at_nodes(scene: Scene, sam: Result, fem: Result) -> Measured:
 
 
 def _patch(scene: Scene, sam: Result, fem: Result) -> Measured:
-    """Of a rough patch on the cells that both models have in common, else at the nodes of FEM with their
-    areas.
-    """
+    """Of a rough patch on the cells that both models have, else at the nodes of FEM with their areas."""
     if scene.patch_surface:
         return Measured(*(patch_pressure(each.tables)[-1] for each in (sam, fem)))
     return Measured(*nodal_pressures(sam, fem))

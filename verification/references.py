@@ -56,9 +56,7 @@ def _pressed(
     inside: float = np.inf,
     share: float = 1.0,
 ) -> Reference:
-    """What contacts on a circle have in common. stress: at depths on the axis, (..., 6); share: of the body
-    in the displacement of both.
-    """
+    """What contacts on a circle share. stress: at depths on the axis, (..., 6); share: of the body."""
     a = exact.contact_radius
     known = {
         "approach": exact.approach,
@@ -195,9 +193,7 @@ def coated_contact(scene: Scene) -> CoatedContact:
 
 
 def coated_sphere(scene: Scene) -> Reference:
-    """A spectral solution of the contact on a coated half-space; film and body apart, the body at z >=
-    thickness also without film.
-    """
+    """A spectral solution on a coated half-space; film and body apart, the body also without film."""
     exact = coated_contact(scene)
     a, p0, body = exact.contact_radius, exact.central_pressure, largest_mises(exact).value
 
@@ -266,9 +262,7 @@ def film_changes(scene: Scene) -> Reference:
 
 
 def changes_by_film(scene: Scene) -> tuple[float, float]:
-    """What the film changes, as shares of the contact without it: largest pressure, and largest von Mises
-    stress of the body.
-    """
+    """What the film changes, as shares without it: largest pressure, and von Mises of the body."""
     body, film = scene.body, scene.body.coating
     counter = _counter_modulus(scene) / (body.young / (1.0 - body.poisson**2))
     thickness = film.thickness / contact_of(scene).contact_radius
@@ -306,9 +300,7 @@ def wave(scene: Scene) -> Reference:
 
 
 def double_wave(scene: Scene) -> Reference:
-    """Johnson, Greenwood & Higginson (1985): both limits, a fit, and the area in Fourier series; the largest
-    pressure as of `wave`.
-    """
+    """Johnson, Greenwood & Higginson (1985): both limits, a fit, Fourier series; the peak as of `wave`."""
     exact = DoublyWavyContact(*_wavy(scene))
     (nx, ny), (lx, ly) = scene.patch
     x, y = ((np.arange(n) + 0.5) * side / n - 0.5 * side for n, side in ((nx, lx), (ny, ly)))

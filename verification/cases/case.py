@@ -83,9 +83,7 @@ class SmallTable:
 
 @dataclass
 class Outcome:
-    """What a case returns. values: gate id -> value; setup: (name, number with unit) for the reader; data:
-    for the pages, as JSON holds it.
-    """
+    """Of a case. values: gate id -> value; setup: (name, number with unit); data: for the pages, as JSON."""
 
     values: dict[str, Measured] = field(default_factory=dict)
     setup: list[tuple[str, str]] = field(default_factory=list)
@@ -96,9 +94,7 @@ class Outcome:
 
 
 class NotDrawnError(Exception):
-    """A figure could not be drawn. outcome: all that was found, with a finding in place of that figure and of
-    those after it.
-    """
+    """A figure could not be drawn. outcome: all that was found, with a finding in place of the figure."""
 
     def __init__(self, outcome: Outcome, why: str):
         super().__init__(why)
@@ -137,15 +133,11 @@ class Case:
         raise NotImplementedError(self.name)
 
     def ahead(self, context: Context) -> Iterable[Scene]:
-        """Scenes that SAM may solve beforehand, in any order, where several processes share a case of hours:
-        `solve` then takes the results from the store.
-        """
+        """Scenes that SAM may solve beforehand, by several processes; `solve` takes them from the store."""
         return ()
 
     def measure(self, found: Any) -> Mapping[str, Measured | float]:
-        """Row id without the name of the case -> value; a number alone stands for one without an expected
-        value.
-        """
+        """Row id without the name of the case -> value; a number stands for one that expects nothing."""
         raise NotImplementedError(self.name)
 
     def setup(self, found: Any) -> Iterable[tuple[str, str]]:
@@ -264,9 +256,7 @@ class Context:
         return printable(without_places(f"{type(problem).__name__}: {problem} ({where})", self.out))
 
     def save(self, plot: Plot) -> Figure:
-        """Write a drawing as figures/<case>-<name>.png with its data, or as PDF, and look whether it can be
-        read.
-        """
+        """Write a drawing as figures/<case>-<name>.png with its data, or as PDF; and whether it reads."""
         from verification.figures.check import findings  # noqa: PLC0415 - loads matplotlib
         from verification.figures.style import save  # noqa: PLC0415 - loads matplotlib
 

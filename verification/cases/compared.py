@@ -27,9 +27,7 @@ from verification.text.console import number
 
 
 def scene_of(context: Context, file: CaseFile, *changes: Mapping[str, Any]) -> Scene:
-    """The scene of a case at the level of the context, changed by a variant and a run of it: keys set, then
-    recipes applied in the order of RECIPES.
-    """
+    """The scene of a case at this level, changed by a variant and a run: keys, then RECIPES in order."""
     quick = file.quick if context.level == "quick" else {}
     said = reduce(merged, ({"set": file.set, "vary": file.vary}, quick, *changes))
     place = str(file.path.parent / file.scene) if file.scene.endswith(".toml") else file.scene
@@ -149,9 +147,7 @@ class Compared(Case):
             yield SmallTable("Refinement uncertainties", columns, rows)
 
     def data(self, found: Mapping[str, Solved]) -> dict[str, Any]:
-        """Under `pairs` each quantity of SAM beside that of FEM, of variants the largest values; and what the
-        file hands on of its frame.
-        """
+        """Under `pairs` SAM beside FEM, of variants the largest values; and what the file hands on."""
         pairs: list[tuple[str, float, float]] = []
         handed = beside(self.file, self.file.data, {})(found[""].frame) if self.file.data else {}
         for name, solved in found.items():

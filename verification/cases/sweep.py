@@ -238,9 +238,7 @@ def label_of(file: CaseFile, name: str, value: Any = None) -> str:
 
 
 def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
-    """A table for each sweep: a line a run, and the observed orders in the last; none of a map, which is
-    drawn.
-    """
+    """A table for each sweep: a line a run, observed orders in the last; none of a map, which is drawn."""
     for name, rows in frame.groupby("sweep", sort=False):
         if len(rows) > MOST:
             continue

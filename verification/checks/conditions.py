@@ -46,9 +46,7 @@ def plane_of(result: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def load(scene: Scene, result: Result) -> float:
-    """Tension over the largest pressure, or what is given of the load: the sum of the pressure against
-    the force, of FEM over rings, and the approach.
-    """
+    """Tension over the largest pressure, or what is given: the sum of the pressure; the approach."""
     force = force_of(scene, result)
     if result.model == "sam":
         hx, hy = result.discretisation["cell_m"]

@@ -225,9 +225,7 @@ def _reach(pair: Pair, limit: float, state: str = PEAK, *, side: int = 1) -> flo
 
 
 def _pressure(pair: Pair):
-    """p over the disc: weight 2 pi r dr; of a line contact, and against the three-dimensional model, along
-    y = 0.
-    """
+    """p over the disc: weight 2 pi r dr; of a line contact, and against `fem-3d`, along y = 0."""
     if "spatial" in pair.kinds:
         return _along(pair, "p_Pa", pair.radius * 1.2)
     known = "unknown-radius" not in pair.kinds  # else its edge is known to the distance of two places

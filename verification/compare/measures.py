@@ -54,9 +54,7 @@ class Plane:
         return cls(x / unit, z / unit, peeq, jump)
 
     def at(self, x: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """At x (m,) and z (n,), (m, n), by a bicubic spline on either side of the jump; never below zero, NaN
-        outside.
-        """
+        """At x (m,) and z (n,), (m, n), bicubic on either side of the jump; never below zero, NaN outside."""
         values = np.empty((x.size, z.size))
         for own, asked in ((self.z < self.jump, z < self.jump), (self.z >= self.jump, z >= self.jump)):
             if asked.any():
@@ -78,9 +76,7 @@ class Plane:
 
 
 def depths_compared(plane: Plane, x: float, radius: float = 1.0) -> np.ndarray:
-    """Depths from SHALLOWEST radii on with at least SHARE of the largest strain there at x, none between the
-    points beside the jump.
-    """
+    """Depths from SHALLOWEST radii on with SHARE of the largest strain there at x, not beside the jump."""
     z = np.arange(SHALLOWEST, plane.z[-1] / radius, SPACING) * radius
     above, under = plane.z[plane.z < plane.jump], plane.z[plane.z >= plane.jump]
     if above.size:
@@ -239,9 +235,7 @@ def patch_pressure(tables: Tables) -> tuple[np.ndarray, ...]:
 
 
 class Spot(NamedTuple):
-    """One contact spot. sam, fem: loads in N; x, y: centre of its pressure, radius: of the circle with the
-    area of its cells, of FEM in m.
-    """
+    """A contact spot. sam, fem: loads in N; x, y: centre of its pressure; radius: of its area of FEM, m."""
 
     sam: float
     fem: float

@@ -484,9 +484,7 @@ def _placed(mesh: UnstructuredGrid, mapping: MeshMapping, path: Path, radius: fl
 def _along(
     mesh: UnstructuredGrid, name: str, columns: Sequence[str], *, radius: float, inside: bool
 ) -> dict[str, np.ndarray]:
-    """The columns of a table, its places first: at nodes of the mesh, else between them; inside: below the
-    surface only.
-    """
+    """The columns of a table, places first: at nodes, else between them; inside: below the surface only."""
     on, reach = ON * radius, REACH * radius
     x, y, z = np.asarray(mesh.points).T
     least = on if inside else -on

@@ -102,9 +102,7 @@ def first_choice(scene: Scene, model: str) -> Choice:
 
 
 def expected(scene: Scene, model: str) -> Choice:
-    """What the table of advice has for the accuracy of a scene. Raises ModelError for a kind of scene or an
-    accuracy that was not measured.
-    """
+    """What the table has for the accuracy of a scene. Raises ModelError for what was not measured."""
     accuracy, kind = scene.solver.accuracy, kind_of(scene)
     if kind not in ADVISED:
         raise models.ModelError(
@@ -405,9 +403,7 @@ class Search:
     def member(
         self, choice: Choice, room: Room | None = None, depths: Sequence[float] | None = None
     ) -> Member:
-        """The scene on some cells, with some load steps. room: of a grid that was enlarged; depths: if not
-        all, of a coarser companion.
-        """
+        """The scene on some cells. room: of an enlarged grid; depths: of a coarser companion, if not all."""
         scene = alone(chosen_scene(self.scene, self.model, choice))
         if self.model != models.SAM:
             count = scene.fem.cells_per_radius

@@ -134,9 +134,7 @@ def kind_of(scene: Scene) -> str | None:
 
 
 def _load_ratio(scene: Scene) -> float | None:
-    """p0 of the elastic contact over the initial yield stress, the smallest over depth; None without
-    plasticity or load.
-    """
+    """p0 of the elastic contact over the least yield stress; None without plasticity or load."""
     plastic = scene.body.plasticity
     if plastic is None or scene.loading.force == 0.0:
         return None
@@ -160,9 +158,7 @@ def advice_of(scene: Scene, usable: Sequence[str], rows: Sequence[AdviceRow] | N
 
 
 def _scale(scene: Scene, row: AdviceRow) -> float:
-    """Load steps of the scene over those of the measurement, where each has to be solved; later cycles
-    settle.
-    """
+    """Load steps of the scene over those measured, where each is solved; later cycles settle."""
     if scene.body.plasticity is None or row.method == LOAD_STEPS:
         return 1.0
     return scene.loading.steps * scene.loading.cycles**SETTLES / row.load_steps
@@ -186,9 +182,7 @@ def _words(kind: str | None, rows: Sequence[AdviceRow]) -> str:
 
 
 def _table(rows: Sequence[AdviceRow], scene: Scene) -> dict[str, list]:
-    """columns and rows for the reader: one row for each error and method, the load steps of that error in
-    each.
-    """
+    """Columns and rows for the reader: a row for each error and method, with the load steps."""
     steps = {row.error: _resolution(row) for row in rows if row.method == LOAD_STEPS}
     methods = [row for row in rows if row.method != LOAD_STEPS]
     cells = []

@@ -275,9 +275,7 @@ def _back_hardening(scene: Scene, depths: np.ndarray) -> float:
 
 
 def load_ratio(scene: Scene, depths: np.ndarray) -> tuple[float, float]:
-    """(p0 of the elastic contact over the least yield stress at these depths, yield stress at 1 % over that
-    at 0).
-    """
+    """(p0 of the elastic contact over the least yield stress here, yield stress at 1 % over that at 0)."""
     strength = scene.body.plasticity.strength()
     over_depth = strength.stress(depths, np.zeros(1))
     weakest = strength.curve_at(depths[over_depth.argmin()])
@@ -360,9 +358,7 @@ def _path_cells(scene: Scene, grid: CellGrid) -> tuple[int, int]:
 
 @lru_cache(maxsize=64)
 def _elastic_zone(ratio: float, poisson: float) -> tuple[float, float]:
-    """(radius, depth) in Hertz radii where his stress exceeds the yield stress, p0 = ratio times that; zeros
-    below it.
-    """
+    """(radius, depth) in Hertz radii where his stress exceeds the yield stress, p0 = ratio times that."""
     from verification.reference.hertz import subsurface_stress
     from verification.reference.stress import von_mises
 
@@ -375,9 +371,7 @@ def _elastic_zone(ratio: float, poisson: float) -> tuple[float, float]:
 
 
 def _farthest(at: np.ndarray, excess: np.ndarray) -> float:
-    """The largest place along the first axis where any of (n, m) values crosses zero downwards, between the
-    points; or 0.
-    """
+    """The farthest place along the first axis where (n, m) values cross zero downwards, or 0."""
     before, after = excess[:-1], excess[1:]
     i, j = np.nonzero((before > 0) & (after <= 0))
     return float(np.max(at[i] + (at[1] - at[0]) * before[i, j] / (before[i, j] - after[i, j]), initial=0.0))
@@ -485,9 +479,7 @@ def _spatial(scene: Scene, plan: Any) -> Counted:
 
 
 def _line(scene: Scene, plan: Any) -> Counted:
-    """Of the plane-strain model: linear solves with one factorisation, one for each node that comes into
-    contact, and those of Newton's method.
-    """
+    """Of the plane-strain model: linear solves, one for each node in contact, and those of Newton."""
     steps = steps_of(scene)
     solves = (2.0 if plan.half else 4.0) * plan.cells_per_radius + 2.0 * steps
     if flows(scene):

@@ -109,9 +109,7 @@ class Plan:
 
     @property
     def error(self) -> float | None:
-        """The largest relative error that was measured with so many cells and load steps, by the advice; None
-        where none was.
-        """
+        """The largest error measured with so many cells and load steps; None where none was."""
         found = self._entry["resolution"]
         return None if found["error"] is None else max(found["error"], found["steps_error"] or 0.0)
 
@@ -239,9 +237,7 @@ def _brief(stages: Sequence[Mapping[str, Any]], *, runs: bool) -> str:
 
 
 def _off(found: Mapping[str, Any] | None, hertz: float | None) -> list[str]:
-    """That the contact is outside of the model, and by how much that is off, short; hertz: a/R of the elastic
-    contact.
-    """
+    """That the contact is outside of the model, and by how much that is off; hertz: elastic a/R."""
     if found is None:
         return []
     outside = [outside_in_words(found["a_over_R"])] if found["outside"] else []

@@ -56,17 +56,13 @@ class Balance:
 
     @property
     def error_of_cells(self) -> float:
-        """The most that W - E is off the plastic work by the trapezoidal rule less `within`, over the largest
-        W.
-        """
+        """The most that W - E is off the trapezoidal plastic work less `within`, over the largest W."""
         missing = self.work - self.elastic - self.beyond - self.flowed + self.within
         return float(np.abs(missing).max() / np.abs(self.work).max())
 
     @property
     def error_of_steps(self) -> float:
-        """The most that the plastic work is off W_X + D, over the largest W; both errors together are
-        W - E - W_X - D of the material.
-        """
+        """The most that the plastic work is off W_X + D, over the largest W: the error of the steps."""
         return float(np.abs(self.flowed - self.dissipated - self.back).max() / np.abs(self.work).max())
 
     @property
@@ -76,9 +72,7 @@ class Balance:
 
 
 def along_path(forces, motions) -> np.ndarray:
-    """(n + 1,) integral of sum(f . du) up to each state by the trapezoidal rule; lists of (n + 1, ...)
-    arrays.
-    """
+    """(n + 1,) integral of sum(f . du) up to each state by the trapezoidal rule; of (n + 1, ...) lists."""
     total = 0.0
     for f, u in zip(forces, motions, strict=True):
         f, u = (np.asarray(each, dtype=float).reshape(len(each), -1) for each in (f, u))

@@ -17,9 +17,7 @@ from verification.energy.balance import Balance, along_path, back_energies
 
 
 def balance_of(scene: Scene, model: str) -> Balance:
-    """Solve with "fem-axisymmetric" or "fem-3d" and balance the energy. RuntimeError when it does not
-    converge.
-    """
+    """Solve with "fem-axisymmetric" or "fem-3d" and balance. RuntimeError without convergence."""
     if scene.counterbody is not None and scene.counterbody.elastic:
         raise ValueError("counterbody: elastic, the balance of energy is of a body below a rigid one")
     in_space = model == "fem-3d"

@@ -35,9 +35,7 @@ from verification.energy.balance import Balance, along_path, back_energies
 
 @dataclass(frozen=True)
 class Committed:
-    """A state: its load, pressure (nx, ny) in Pa on the full grid; material of the cells of `extent`, None
-    if elastic.
-    """
+    """A state: load, pressure (nx, ny) in Pa on the full grid; material of `extent`, None if elastic."""
 
     load: Load
     pressure: np.ndarray

@@ -268,9 +268,7 @@ def of_programs(
 
 
 def convergence(panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Power | None]]]) -> Drawing:
-    """log-log error against cell size; panels: title -> quantity -> (h/a, relative error, fitted
-    order or None).
-    """
+    """log-log error against cell size; panels: title -> quantity -> (h/a, relative error, order or None)."""
     drawn = {
         title: {
             name: Curve(h, error, order, f"order {order.exponent:.2f}")
@@ -289,9 +287,7 @@ def refinement(
     xlabels: Mapping[str, str],
     ylabel: str,
 ) -> Drawing:
-    """Strains in % over h, down to their limits at h = 0 where an order is observed; panels: title -> "SAM"
-    or "FEM" -> (h, strain, limit).
-    """
+    """Strains in % over h down to their limits; panels: title -> "SAM" or "FEM" -> (h, strain, limit)."""
     drawn: dict[str, dict[str, Curve]] = {}
     for title, own in panels.items():
         panel = drawn[title.capitalize()] = {}

@@ -202,9 +202,7 @@ def three_panels(pair: FieldPair, *, touching: bool = False, strip: float = 0.0)
 
 
 def _draw_difference(panel: Axes, pair: FieldPair, bar: Mapping, *, touching: bool, strip: float) -> None:
-    """The difference on a symmetric scale that a few points of the edge may exceed; the largest is
-    written above it.
-    """
+    """The difference on a symmetric scale that few points exceed; the largest is written above it."""
     shown = pair.difference
     if touching:
         shown = np.where((pair.first > 0.0) | (pair.second > 0.0), shown, np.nan)
@@ -221,9 +219,7 @@ def _draw_difference(panel: Axes, pair: FieldPair, bar: Mapping, *, touching: bo
 
 
 def draw_field(panel: Axes, u: np.ndarray, v: np.ndarray, field: np.ndarray, **options):
-    """Colours of a field (m, n) over u (m,) and v (n,), grey where it is NaN; rasterised, so that a
-    PDF stays small.
-    """
+    """Colours of a field (m, n) over u (m,) and v (n,), grey where it is NaN; rasterised for small PDFs."""
     panel.set_facecolor(GREY)
     mesh = panel.pcolormesh(
         u, v, np.ma.masked_invalid(field.T), shading="nearest", rasterized=True, **options
@@ -282,9 +278,7 @@ CLEAR = 0.25
 def compared_pressure(
     sam: Result, fem: Tables, a: float, p0: float, *, reach: float = 1.3, edge: float = 1.0, power: int = 2
 ) -> Drawing:
-    """p/p0 over (x/a, y/a) to `reach`: SAM | FEM | difference; edge: radius of the contact in a;
-    power: see pressure_on.
-    """
+    """p/p0 over (x/a, y/a) to `reach`: SAM | FEM | difference; edge: radius in a; power: see pressure_on."""
     x, y, p = pressure_map(sam)
     use_x, use_y = np.abs(x) <= reach * a, np.abs(y) <= reach * a
     x, y, p = x[use_x], y[use_y], p[np.ix_(use_x, use_y)]
@@ -370,9 +364,7 @@ def sliding_sections(sam: Result, fem: Result, units: tuple[float, float], thick
 
 
 def in_body(fem: Result, x: np.ndarray, z: np.ndarray, thickness: float) -> np.ndarray:
-    """(nx, nz) the von Mises stress of the three-dimensional model in y = 0 below the film, linear;
-    NaN above its first depth there.
-    """
+    """(nx, nz) von Mises stress of `fem-3d` in y = 0 below the film, linear; NaN above its first depth."""
     u, w, values = plane_field(fem.tables, "mises_Pa")
     w[np.isclose(w, thickness, rtol=1e-9, atol=0.0)] = thickness  # to rounding
     body = w >= thickness

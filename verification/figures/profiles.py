@@ -52,9 +52,7 @@ CLOSED_FORM = "closed form"
 def profiles(
     panels: Sequence[Profile], reference: str = CLOSED_FORM, *, interface: float | None = None
 ) -> Drawing:
-    """Each panel above its error in %, more than three in two columns; interface: x at which a film
-    ends, a line.
-    """
+    """Each panel above its error in %, more than three in two columns; interface: end of a film."""
     rows, across = profile_rows(reference), len(panels) if len(panels) <= 3 else 2
     bands = -(-len(panels) // across)
     size = max(3.3 * across, 5.0), 4.2 * bands
@@ -104,9 +102,7 @@ def draw_profile(axes: tuple[Axes, Axes], panel: Profile, reference: str, rows: 
 
 
 def axis_profiles(sam: Result, fem: Result, a: float, deep: float = 2.0) -> Drawing:
-    """Under the centre: plastic strain and von Mises stress at the peak, von Mises and lateral
-    stress when unloaded.
-    """
+    """Under the centre: plastic strain and von Mises at the peak, von Mises and lateral stress after."""
     wanted = (
         ("Plastic strain", "plastic strain [%]", "peak", "peeq", PERCENT),
         ("Von Mises, at the peak", r"$\sigma_\mathrm{vM}$ [GPa]", "peak", "mises_Pa", GIGA),

@@ -84,9 +84,7 @@ def strain_per_period(run: Run) -> Drawing:
 
 
 def loops(run: Run) -> Drawing:
-    """Stress over plastic strain of three points in the last period, of each the component that
-    strains most, counted from the start of the period.
-    """
+    """Stress over plastic strain of three points in the last period, in the component that strains most."""
     drawn: dict[str, Curve] = {}
     for (number, points), color in zip(
         run.tables["loops"].groupby("point"), (BLUE, VERMILION, GREEN), strict=False
@@ -111,9 +109,7 @@ def loops(run: Run) -> Drawing:
 
 
 def classified(folder: Path) -> tuple[np.ndarray, np.ndarray] | None:
-    """Corners (n, 4, 2) of the cells or elements that touch the plane y = 0, x and z in m, and
-    their classes (n,); None where nothing is judged.
-    """
+    """Corners (n, 4, 2), x and z in m, of cells that touch y = 0, and classes (n,); None if not judged."""
     of_sam = (folder / BODY).exists()
     mesh = mesh_of(folder, BODY if of_sam else FIELDS)
     if "class" not in mesh.cell_data:

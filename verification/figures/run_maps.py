@@ -141,9 +141,7 @@ def contact_map(surface: SurfaceMap, column: str, label: str) -> Drawing:
 
 
 def worn(run: Run) -> Drawing:
-    """The depth worn after the last cycle, and the surface before and after along the row through
-    its deepest cell.
-    """
+    """The depth worn at last, and the surface before and after along the row through its deepest cell."""
     scar = Scar.of(run.tables)
     i, j = np.unravel_index(np.nanargmax(scar.worn), scar.worn.shape)
     x, y, depth = MICRO * scar.x, MICRO * scar.y, NANO * np.where(scar.worn > 0.0, scar.worn, np.nan)

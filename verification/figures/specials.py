@@ -75,9 +75,7 @@ def _signed(value: float, unit: str = "") -> str:
 
 
 def probabilities(rows: Sequence[tuple[str, int, int, tuple[float, float]]]) -> Drawing:
-    """A bar with its bounds for each statement. rows: words, points at which it holds, points at
-    which it says anything, bounds of the share.
-    """
+    """A bar with bounds for each statement. rows: words, points at which it holds, of how many, bounds."""
     table = Columns("statement", "holds", "of", "low", "high")
     names, held, of, bounds = (list(each) for each in zip(*rows[::-1], strict=True))
     low, high = np.array(bounds).T
@@ -144,9 +142,7 @@ def _bars(
 
 
 def over_path(panels: Mapping[str, tuple[Balance, Balance | None]]) -> Drawing:
-    """Shares of the largest work over the load steps; panels: title -> (SAM, FEM or None). Areas
-    and line: SAM; crosses: FEM.
-    """
+    """Shares of the largest work over the steps: title -> (SAM, FEM or None). Areas and line: SAM."""
     parts = {"dissipated": ORANGE, "stored by residual stress": GREEN, "recovered on unloading": BLUE}
     rows = Columns("panel", "model", "state", "force_N", "work", "stored", "dissipated")
     with sheet(4.2 * len(panels), 3.4, len(panels), sharey=True) as (figure, axes):

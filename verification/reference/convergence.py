@@ -88,9 +88,7 @@ class Power:
 
 
 def fit_power(x: Sequence[float], y: Sequence[float], first: float = 0.0) -> Power:
-    """Fit y ~ factor x^exponent to x >= first, three or more of them, y > 0. ValueError otherwise: two points
-    or a zero are no observation.
-    """
+    """Fit y ~ factor x^exponent to three or more x >= first, y > 0; ValueError for fewer, or a zero."""
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     if x.shape != y.shape or x.ndim != 1 or np.unique(x[x >= first]).size < 3:
         raise ValueError(f"x and y: at least three different values with one y each, not {x} and {y}")

@@ -140,9 +140,7 @@ class DoublyWavyContact(Checked):
 
     @property
     def fitted_share(self) -> float:
-        """The same in between: fit of Jackson & Streator, Wear 261 (2006) 1337, Eq. 21, to the numbers of
-        Johnson, Greenwood & Higginson.
-        """
+        """In between: Jackson & Streator, Wear 261 (2006) 1337, Eq. 21, by Johnson, Greenwood & Higginson."""
         m = self.load_ratio
         if m >= 0.8:
             return self.heavy_share

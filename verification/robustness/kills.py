@@ -179,9 +179,7 @@ def killed_solve(
 def killed_sweep(
     words: Sequence[str], folder: Path, table: bytes, delay: float, *, whom: str, rng: random.Random
 ) -> Trial:
-    """Kill a sweep ("parent") or one of its workers ("worker") after `delay`, start it again if
-    need be, and compare.
-    """
+    """Kill a sweep ("parent") or a worker ("worker") after `delay`, start it again if need be, compare."""
     store, file = folder.with_name(f"{folder.name}-store"), folder / "sweep.csv"
     process = start([*words, "--out", str(folder)], store)
     time.sleep(delay)

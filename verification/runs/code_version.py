@@ -62,9 +62,7 @@ def version_of_cases(root: Path = ROOT) -> str:
 
 
 def unchanged(model: str = "") -> bool:
-    """Whether the files of a model, or of the cases, are those that were read first, so that what ran is what
-    they say.
-    """
+    """Whether the files of a model, or of the cases, are those that were read first."""
     if model:
         return code_version.__wrapped__(model) == code_version(model)
     return version_of_cases.__wrapped__() == version_of_cases()

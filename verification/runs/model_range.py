@@ -80,9 +80,7 @@ def errors(law: str, poisson: float, ratio: float) -> dict[str, tuple[float, flo
 
 
 def refusal(scene: Scene) -> str:
-    """Why a scene is not solved: key, value and what is allowed; empty where the model holds or is asked
-    for.
-    """
+    """Why a scene is not solved: key, value and what is allowed; empty where the model holds."""
     if scene.solver.beyond_model or (key := _load_key(scene)) is None:
         return ""
     load = getattr(scene.loading, key)
@@ -277,9 +275,7 @@ def _ratio(scene: Scene, load: float) -> float:
 
 
 def _ratio_of_edge(scene: Scene, load: float) -> float:
-    """The same of a punch with a rounded edge: the integrals of Sneddon, Int. J. Eng. Sci. 3 (1965) 47, with
-    cos t = b/a.
-    """
+    """The same of a rounded punch: Sneddon, Int. J. Eng. Sci. 3 (1965) 47, with cos t = b/a."""
     other, plasticity, modulus = scene.counterbody, scene.body.plasticity, contact_modulus(scene)
     flat, edge, by_force = other.flat_radius, other.radius, scene.loading.approach is None
 

@@ -114,9 +114,7 @@ def _package(model: str) -> ModuleType:
 
 
 def peak_memory() -> int:
-    """Largest memory of this process in bytes. ru_maxrss of Linux begins with that of the process that
-    started it.
-    """
+    """Largest memory of this process in bytes. ru_maxrss begins with that of its parent on Linux."""
     try:
         with open("/proc/self/status", encoding="ascii") as status:
             return next(1024 * int(line.split()[1]) for line in status if line.startswith("VmHWM:"))

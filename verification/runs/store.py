@@ -54,9 +54,7 @@ class Lookup:
 
 @dataclass(frozen=True)
 class Reuse:
-    """Where a result comes from. reused: from the store; created, commit: of its own computation; note: see
-    Lookup.
-    """
+    """Where a result is from. reused: from the store; created, commit: when computed; note: see Lookup."""
 
     reused: bool
     created: str = ""
@@ -78,9 +76,7 @@ class Reuse:
 
 @dataclass(frozen=True)
 class Entry:
-    """A file of the store, for the list. what: model of a result, or name and level of a case; size in
-    bytes.
-    """
+    """A file of the store, for the list. what: model, or name and level of a case; size in bytes."""
 
     path: Path
     kind: str
@@ -101,9 +97,7 @@ class Entry:
 
 
 class Store:
-    """The entries in a folder, which is made when the first one is kept. Any number of processes may share
-    it.
-    """
+    """The entries in a folder, made when the first is kept. Any number of processes may share it."""
 
     def __init__(self, folder: Path):
         self.folder = Path(folder)
@@ -112,9 +106,7 @@ class Store:
             code_version(model)
 
     def lookup(self, scene: Scene, model: str, kind: str = RESULT) -> Lookup:
-        """The result of a scene, if it is there and of this version; UNCONVERGED: one that did not
-        converge.
-        """
+        """The result of a scene, if there and of this version; UNCONVERGED: one that did not converge."""
         return self.find(identity(scene, model) | {"kind": kind}, code_version(model), Result)
 
     def keep(self, scene: Scene, model: str, result: Result, *, unconverged: bool = False) -> None:
@@ -208,9 +200,7 @@ class Store:
 
 
 def default_store() -> Store | None:
-    """The store of the user: $SAMFEM_STORE (empty: none), else samfem in $XDG_CACHE_HOME, else
-    ~/.cache/samfem.
-    """
+    """Of the user: $SAMFEM_STORE (empty: none), else samfem in $XDG_CACHE_HOME or ~/.cache/samfem."""
     named = os.environ.get(FOLDER)
     if named is not None:
         return Store(Path(named)) if named else None
@@ -257,9 +247,7 @@ def solve_or_reuse(
 
 
 def identity(scene: Scene, model: str) -> dict:
-    """What a result depends on besides the code: the model and the scene with every default, but neither
-    title nor [compare].
-    """
+    """What a result depends on but the code: model and scene with every default, no title or [compare]."""
     content = solved_part(resolved(scene))
     content.pop("title", None)
     return {"kind": RESULT, "model": model, "scene": content}
@@ -286,9 +274,7 @@ def _is_running(process: str) -> bool:
 
 
 def now() -> dict[str, str]:
-    """created and commit (of when the process first asked), the latter with a plus where files differ from
-    it.
-    """
+    """created and commit (when first asked), the latter with a plus where files differ from it."""
     return {"created": datetime.now(UTC).isoformat(timespec="seconds"), "commit": _commit()}
 
 

@@ -237,9 +237,7 @@ _NO_DESIGN = 'with mode = "morris", "sobol" or "uniform" only: remove it'
 
 
 def _axes(value: object) -> dict:
-    """The table [vary], each key in one piece: "loading.force" = {...} and loading.force = {...} mean the
-    same.
-    """
+    """The table [vary], keys in one piece: "loading.force" = {...} and loading.force = {...} are one."""
     if not isinstance(value, Mapping) or not value:
         raise refused(
             'one or more keys of the scene, such as "loading.force" = { list = ["0.1 N", "0.2 N"] }'
@@ -368,9 +366,7 @@ def _of_mode(axis: Mapping, designed: bool) -> Iterator[Conflict]:
 
 @dataclass(frozen=True)
 class StudyPoint:
-    """One scene of a study. values: as the scene file spells them; scene: None if it is refused, for the
-    `reason`.
-    """
+    """A scene of a study. values: as its file spells them; scene: None if refused, for the `reason`."""
 
     index: int
     values: tuple
@@ -393,9 +389,7 @@ class Points:
 
 
 def read_study(path: str | Path) -> Points:
-    """The study in a TOML file. Raises SceneError, with every problem of the file, or if every scene is
-    refused.
-    """
+    """The study in a TOML file. SceneError with all its problems, or if every scene is refused."""
     path = Path(path)
     try:
         content = read_limited(path)

@@ -35,9 +35,7 @@ class Kept:
 
 
 def find(store: Store, case: Case, context: Context) -> Lookup:
-    """The outcome of a case at the level of the context, if it is there, of this version and of the
-    same scenes.
-    """
+    """The outcome of a case at this level, if it is there, of this version and the same scenes."""
     found = store.find(_identity(case, context.level), version_of_cases(), Kept)
     inputs = found.result.inputs if found.result else {}
     changed = [name for name, content in inputs.items() if present(name) != content]
@@ -52,9 +50,7 @@ def is_kept(store: Store, case: Case, level: str) -> bool:
 
 
 def put_back(kept: Kept, context: Context, *, with_runs: bool = True) -> Outcome:
-    """Write the files of a case into the folder of the report again, a run's summary last, or only
-    its figures, and fill the context.
-    """
+    """Write the files of a case again, a run's summary last, or only its figures; fill the context."""
     drawn = {name for figure in kept.outcome.figures for name in figure.files}
     files = [(name, content) for name, content in kept.files.items() if with_runs or name in drawn]
     for name, content in sorted(files, key=lambda item: item[0].endswith(SUMMARY)):

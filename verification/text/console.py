@@ -23,17 +23,13 @@ NOTEBOOK_EVERY_S = 0.2
 
 
 def print_anything(stream: TextIO) -> None:
-    """Let a stream take every text, whatever its encoding: see `_bytes_or_marks`. In the C locale µ would be
-    an error.
-    """
+    """Let a stream take every text, see `_bytes_or_marks`. In the C locale µ would be an error."""
     if hasattr(stream, "reconfigure") and stream.errors in ("strict", "surrogateescape"):
         stream.reconfigure(errors=_ANYTHING)
 
 
 def _bytes_or_marks(error: UnicodeEncodeError) -> tuple[bytes, int]:
-    """In place of what an encoding does not have: the bytes of a file's name as they are, else question
-    marks.
-    """
+    """For what an encoding lacks: the bytes of a file's name as they are, else question marks."""
     text = error.object[error.start : error.end]
     if all("\udc80" <= letter <= "\udcff" for letter in text):
         return text.encode("ascii", "surrogateescape"), error.end

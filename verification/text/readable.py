@@ -21,9 +21,7 @@ SI; a value takes the first of which it has a tenth.
 
 
 def with_prefix(value: float, unit: str, digits: int = 3) -> str:
-    """A value in an SI unit (or in bytes, "B") with the prefix that leaves 1 to 999 before it: 1.2e13 B is
-    "12 TB".
-    """
+    """A value in an SI unit (or bytes, "B") with a prefix that leaves 1 to 999: 1.2e13 B is "12 TB"."""
     if not math.isfinite(value) or value == 0:
         return f"{value:g} {unit}"
     rounded = float(f"{value:.{digits - 1}e}")

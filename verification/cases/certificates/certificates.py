@@ -54,9 +54,7 @@ WAVES = {"cutoff_long": 16e-6, "cutoff_short": 8e-6, "hurst": 0.8, "seed": 4}
 
 
 def rough(context: Context, model: str) -> dict[str, Scene]:
-    """A self-affine patch whose border falls off, under a map of friction; of SAM also elastic, or with a
-    film that fails.
-    """
+    """A self-affine patch that falls off at its border, under a map of friction; elastic, or with a film."""
     base, cells = context.scene("rough-asperities"), PATCH_CELLS[model]
     grid = Grid(cells=(cells, cells), extent=(PATCH, PATCH), border="relief")
     layered = grid.model_copy(update={"layers": LAYERS, "depth": 0.5 * LAYERS * PATCH / cells})
@@ -75,9 +73,7 @@ def rough(context: Context, model: str) -> dict[str, Scene]:
 
 
 def groups(context: Context) -> Iterator[tuple[str, str, str, Scene]]:
-    """(group, name, model, scene) of all that is solved: spheres, at rest and sliding; elastic films, and one
-    that yields with its body; rough patches.
-    """
+    """(group, name, model, scene) of all that is solved: spheres, elastic and yielding films, patches."""
     quick, friction = context.level == "quick", {"friction": Friction(coefficient=COEFFICIENT)}
 
     def pressed(name: str, ratio: float, steps: int) -> Scene:

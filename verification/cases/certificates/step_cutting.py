@@ -46,9 +46,7 @@ TIGHT = 1e-9  # tolerance of the whole load at once: more than SAM iterates
 def scene_of(
     base: Scene, ratio: float, cells: tuple[int, int], *, slope: float = 0.0, steps: int = 15
 ) -> Scene:
-    """p0/sigma_y0 = ratio on these cells; layers are even down to 1.8 radii, then each thicker than the
-    last.
-    """
+    """p0/sigma_y0 = ratio on these cells; layers are even down to 1.8 radii, then ever thicker."""
     if slope:
         keys = {"law": "linear", "modulus": slope * base.body.young}
         base = with_body(base, plasticity=base.body.plasticity.model_copy(update=keys))
@@ -61,9 +59,7 @@ def scene_of(
 
 
 def frame(context: Context) -> Iterator[dict[str, Any]]:
-    """Both ratios with both models; and one step from nothing, which SAM cuts if it must. A peak that was not
-    reached has no numbers.
-    """
+    """Both ratios with both models; and one step from nothing. A peak that was not reached has no numbers."""
     base, solves = context.scene("plastic-perfect"), []
     for ratio, cells in CELLS[context.level].items():
         for law in SLOPES if context.level == "full" else ("perfect",):

@@ -58,9 +58,7 @@ PERFECT = Plasticity(law="perfect", yield_stress=1.358e9)
 
 @dataclass(frozen=True)
 class FilmContact:
-    """radius: a0 of the elastic contact without film, m; p0: its largest pressure, Pa; body: see BODIES;
-    film: "elastic" or "yields".
-    """
+    """radius: a0 without film, m; p0: its peak pressure, Pa; body: see BODIES; film: "elastic", "yields"."""
 
     radius: float
     p0: float

@@ -46,9 +46,7 @@ BOTH = {"sam": SAM, "fem": FEM}
 
 
 def changes_of(result: Result) -> dict[str, float]:
-    """By the film, as shares of the values without it. RuntimeError if the model did not converge or has no
-    contact without film to compare with.
-    """
+    """By the film, as shares of the values without it. RuntimeError without convergence or such values."""
     found = {name: result.quantities[f"{name}_max_change"] for name in CHANGES}
     if not result.converged or None in found.values():
         said = " ".join((result.message, *result.warnings))
@@ -78,9 +76,7 @@ elements.
 
 
 def map_scene(base: Scene, ratio: float, thickness: float, counterbody: str) -> Scene:
-    """The sphere of `base` on a film, with few cells and depths; thickness over the contact radius without
-    film.
-    """
+    """The sphere of `base` on a film, with few cells and depths; thickness over a0 without film."""
     scene = coated_scene(base, ratio, thickness, counterbody)
     below = scene.body.coating.thickness + DEPTHS * contact_of(scene).contact_radius
     return with_grid(scene, cells=(CELLS, CELLS), depths=(0.0, *below))
@@ -191,9 +187,7 @@ def patch_scene(base: Scene, cell: float, cells: int, radius: float) -> Scene:
 
 
 def alias(result: Result, wider: Result) -> float:
-    """Largest change of the pressure by a wider patch, over the largest pressure: 0 if nothing repeats
-    itself.
-    """
+    """Largest change of the pressure by a wider patch over the largest pressure: 0 without images."""
     near, far = (pressure_map(each)[2] for each in (result, wider))
     x, y = (np.array(far.shape) - near.shape) // 2
     return float(np.abs(far[x : x + near.shape[0], y : y + near.shape[1]] - near).max() / near.max())

@@ -41,9 +41,7 @@ def disc_by_response(radius: float, ratio: float) -> float:
 
 
 def disc_by_cells(radius: float, ratio: float) -> float:
-    """The same by SAM's coefficients: the disc of cells, those on its edge loaded by the share that it
-    covers.
-    """
+    """The same by SAM's coefficients: the cells of the disc, on its edge by their share in it."""
     cell, n = radius / DISC_CELLS, DISC_CELLS + 1
     patches = LayeredPatches(Layers(ratio, 0.5, 1.0, 1.0, 0.5))
     coefficients = patches.stress(Lags(n, n, cell, cell), [1.0], load=3, names=["33"])[0, 0]
@@ -52,9 +50,7 @@ def disc_by_cells(radius: float, ratio: float) -> float:
 
 
 def covered(n: int) -> np.ndarray:
-    """Share of the cells (i, j), 0 <= i, j <= n, unit squares around their numbers, in the disc of radius n:
-    (n + 1, n + 1).
-    """
+    """Share of the unit cells (i, j), 0 <= i, j <= n, in the disc of radius n: (n + 1, n + 1)."""
 
     def quadrant(x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Area of the disc in 0..x, 0..y; odd in both. Below y up to where the circle falls below it, then
@@ -72,9 +68,7 @@ def covered(n: int) -> np.ndarray:
 
 
 def pavement(context: Context) -> Iterator[dict[str, Any]]:
-    """Pressure on the interface over that on the disc: of the table, by a quadrature of its own and in two
-    ways by SAM.
-    """
+    """Pressure on the interface over that on the disc: of the table, by quadrature, and twice by SAM."""
     for radius, published in FOX.items():
         for ratio, table in zip(DISC_RATIOS, published, strict=True):
             own, wave, cells = (

@@ -49,9 +49,7 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
 
 
 def rows_of(found: Mapping[str, list[dict]], boxes: Mapping[str, list[dict]]) -> Iterator[dict[str, Any]]:
-    """The rows of ladders that were climbed, and of boxes. further-s: of the stresses, beyond the contact
-    alone.
-    """
+    """The rows of climbed ladders, and of boxes. further-s: of the stresses, beyond the contact alone."""
     contact = {row["size"]: row["cpu-s"] for row in found["contact"]}
     for name, taken in found.items():
         for row in taken:

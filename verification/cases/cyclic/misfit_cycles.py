@@ -28,9 +28,7 @@ TOLD = 30  # the period after which the number of further periods is read
 
 
 def above_limit(scene: Scene, of: tuple[float, float]) -> Scene:
-    """A share of the misfit above that below which the elastic range holds a period everywhere, in the end,
-    and the recovery of the back-stress.
-    """
+    """Share of the misfit above that below which a period stays elastic in the end, and the recovery."""
     (share, recovery), body = of, scene.body
     excess = float(PROFILES["gauss"](REACHES)[1].max())
     limit = 2 * YIELD * (1 - body.poisson) / (body.young * excess)

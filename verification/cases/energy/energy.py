@@ -66,9 +66,7 @@ def scene_of(context: Context, contact: str, steps: int, size: int) -> Scene:
 
 
 def alternating(steps: int, size: int, radius: float = 10e-6) -> Scene:
-    """A given pressure that comes and goes three times, on cells or elements of radius/size; perfect
-    plasticity with Prager's back-stress.
-    """
+    """A given pressure, three times, on cells or elements of radius/size; Prager's perfect plasticity."""
     plasticity = {"law": "perfect", "yield_stress": YIELD, "kinematic": {"modulus": (MODULUS,)}}
     pressure = {"prescribed": "hertz", "p0": ALTERNATING * YIELD, "radius": radius}
     side, count = 5 * radius, 5 * size

@@ -50,9 +50,7 @@ def friction_of(bath: float) -> Friction:
 
 
 def at_centre(law: FilmLaw, pressure: np.ndarray) -> FilmState:
-    """A fresh film after one step to each pressure (n,), on a body strained as at the centre of a Hertz
-    contact.
-    """
+    """A fresh film after one step to each pressure (n,), strained as at the centre of a Hertz contact."""
     plane, normal = (
         np.array([strain(p, *BODY) for p in pressure])[:, None] for strain in (in_plane_strain, normal_strain)
     )
@@ -61,9 +59,7 @@ def at_centre(law: FilmLaw, pressure: np.ndarray) -> FilmState:
 
 
 def path_errors() -> tuple[np.ndarray, float]:
-    """Error of the plastic strain after the winding path in each of SUBSTEPS a part, over its largest
-    component, and that of the extrapolated one.
-    """
+    """Error after the winding path in each of SUBSTEPS a part, over its largest component; extrapolated."""
     law, right, found = law_of(FRICTIONS[1]), Film(*FILM).along(WINDING), []
     for substeps in SUBSTEPS:
         state = FilmState.fresh((1, 1))

@@ -143,9 +143,7 @@ class Difference:
         return 2.0 * np.sqrt(np.einsum("...i,ij,...j->...", powers, self.covariance, powers))
 
     def limit(self, errors: float = 0.0) -> float:
-        """a/R at which the fit, with so many of its errors taken outwards, first reaches LIMIT; infinite if
-        it does not.
-        """
+        """a/R at which the fit, its errors taken outwards, first reaches LIMIT; infinite if it does not."""
         dense = np.linspace(0.0, self.x.max(), 4001)
         beyond = np.flatnonzero(np.abs(self(dense)) + errors * self.error(dense) >= LIMIT)
         return float(dense[beyond[0]]) if beyond.size else np.inf
@@ -252,9 +250,7 @@ def small_load() -> dict[str, float]:
 
 
 def compared(context: Context, bodies: Sequence[Body]) -> Iterator[dict[str, Any]]:
-    """The differences of each body; the limits of the first, and what a coarser mesh changes there; and what
-    the table of samfem is off.
-    """
+    """The differences of each body; the limits of the first, on a coarser mesh too; what the table is off."""
     found = {body.name: curves(context, body, body.elements) for body in bodies}
     fits = {body.name: differences(found[body.name], body.elements) for body in bodies}
     other = differences(curves(context, bodies[0], COARSER), COARSER)
@@ -309,9 +305,7 @@ def stated(context: Context) -> Iterator[dict[str, Any]]:
 
 
 def factor(stated: float, uncertainty: float, measured: float) -> float:
-    """By which two errors differ, once the stated one is moved by its uncertainty towards the other; infinite
-    where they have other signs.
-    """
+    """By which two errors differ once the stated one is moved by its uncertainty; infinite by sign."""
     nearest = stated + np.clip(measured - stated, -uncertainty, uncertainty)
     ratio = nearest / measured
     return float(max(ratio, 1.0 / ratio)) if ratio > 0.0 else np.inf

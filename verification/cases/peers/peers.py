@@ -90,9 +90,7 @@ def half_space(context: Context) -> StoredReference:
 
 
 def reached(rows: DataFrame, target: float, floor: float = 0.0) -> dict[str, tuple[str, float | None]]:
-    """Program -> its curve that is first at an error of `target`, and when; a curve that never is there
-    counts last.
-    """
+    """Program -> its curve that first is at an error of `target`, and when; last are those never there."""
     found: dict[str, tuple[str, float | None]] = {}
     solved = rows[rows["seconds"].notna()]
     for (program, curve), own in solved.groupby(["model", "curve"], sort=False):
@@ -175,9 +173,7 @@ def _table(caption: str, lines: list[dict[str, Any]]) -> SmallTable:
 
 
 def hertz_times(frame: DataFrame) -> SmallTable:
-    """Elastic Hertz: time to an error of the largest pressure, and on the same grid with settings whose error
-    is that of the grid.
-    """
+    """Elastic Hertz: time to an error of the largest pressure, and on the same grid at its error."""
     rows = frame[frame["sweep"] == problems.HERTZ]
     times, lines = reached(rows, elastic.HERTZ_ERROR), []
     at = number(elastic.HERTZ_ERROR, 1)

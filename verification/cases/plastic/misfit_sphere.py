@@ -164,9 +164,7 @@ image_raised = _image(len(NAMES), "Displacement of the surface by the plastic zo
 
 
 def second_order(rows: DataFrame, column: str) -> float:
-    """The largest error times the square of the cells in the radius: its sign may change between two sizes,
-    which leaves no order to fit.
-    """
+    """The largest error times the square of the cells in the radius, as its sign may change."""
     return float((rows[column].abs() * rows["sphere-cells"] ** 2).max())
 
 

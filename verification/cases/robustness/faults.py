@@ -170,9 +170,7 @@ def undisturbed(words: Sequence[str], out: Path, store: Path) -> float:
 
 
 def kill_solves(count: int, base: Path, progress) -> tuple[list[Trial], float]:
-    """Trials of solves killed at moments uniform over the time of an undisturbed one, which is
-    returned too.
-    """
+    """Trials of solves killed at moments uniform over the time of an undisturbed one, also returned."""
     words = ["solve", str(base / "scene.toml")]
     seconds = undisturbed(words, base / "undisturbed", base / "store")
     expected = tables(base / "undisturbed")

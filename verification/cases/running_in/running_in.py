@@ -60,9 +60,7 @@ DEEP = 2e-6  # m: how far down the yield stress is drawn; the profiles end above
 
 
 def renewed(scene: Scene) -> Scene:
-    """The second reading: the layer hardens little; the counter-surface is rough and another one
-    in each cycle; layers of cells reach deeper.
-    """
+    """The second reading: a layer that hardens little, another rough counter-surface in each cycle."""
     scene = study.deeper(
         study.with_counter(study.with_layer_alpha(scene, study.LAYER_ALPHA), study.ROUGHNESS["sq"])
     )
@@ -117,9 +115,7 @@ def missing_cycles(one: Run) -> int:
 
 
 def restless_cycles(one: Run) -> int:
-    """Cycles that strain or wear the body after one that did neither, where each meets the same
-    counter-surface.
-    """
+    """Cycles that strain or wear after one that did neither, under the same counter-surface."""
     busy = (one.of_cycles("new_strain_max") != 0.0) | (one.of_cycles("wear_of_cycle_m3") != 0.0)
     return int((busy & (np.cumsum(~busy) > 0)).sum()) if alike(one) else 0
 
@@ -265,9 +261,7 @@ def regimes(found: DataFrame, reading: str) -> dict[str, dict[str, float]]:
 
 
 def regimes_table(found: DataFrame) -> SmallTable:
-    """What decides: the pressures at which films fail and metal is removed, against the largest
-    there is.
-    """
+    """The pressures at which films fail and metal is removed, against the largest there is."""
     rows = []
     for reading in WORDS:
         for name, own in regimes(found, reading).items():
@@ -316,9 +310,7 @@ def meshed(scene: Scene, cells: int, window: int) -> Scene:
 
 
 class RunningInCells(Readings):
-    """All materials on a quarter of the printed area, on both sizes of cells, which stand for
-    readings.
-    """
+    """All materials on a quarter of the printed area; both sizes of cells stand for readings."""
 
     def readings(self, context: Context) -> dict[str, Reading]:
         effort = Effort(LAST, steps=3, cells=32)

@@ -43,9 +43,7 @@ TENTH = 0.1
 
 @dataclass(frozen=True)
 class Member:
-    """A run. thirds: of a cell, by which the surface is shifted along x and y; parts: of each
-    layer; force: over FORCE.
-    """
+    """A run. thirds: of a cell, the shift along x and y; parts: of a layer; force: over FORCE."""
 
     seed: int
     cells: int
@@ -62,9 +60,7 @@ class Member:
         return f"surface-{self.seed}-cells-{self.cells}" + "".join(others)
 
     def of(self, base: Scene) -> Scene:
-        """The patch: waves of SHORTEST and more on softer steel than printed, so that most
-        surfaces wear.
-        """
+        """The patch: waves of SHORTEST and more on softer steel, so that most surfaces wear."""
         surface, grid = (
             shifted(base.surface, self.seed, self.cells, self.thirds / 3),
             Grid(depths=cut(FACES, self.parts)),
@@ -90,9 +86,7 @@ coarser load steps, which are.
 
 
 def shifted(like: Surface, seed: int, cells: int, shift: float) -> Surface:
-    """The surface and its relief, shifted by so many cells along x and y: sums of waves and a
-    polynomial, evaluated elsewhere.
-    """
+    """The surface and its relief, shifted by so many cells: sums of waves and a polynomial."""
     waves = {"sq": 0.2e-6, "cutoff_long": SIDE, "cutoff_short": SHORTEST, "hurst": like.hurst}
     surface = Surface(kind="self-affine", **waves, seed=seed, anisotropy=like.anisotropy)
     x, extent = ((np.arange(cells) + 0.5 - shift) / cells - 0.5) * SIDE, (SIDE, SIDE)
@@ -174,9 +168,7 @@ def per_wave(cells: int) -> float:
 
 
 def lowering(result: Result) -> np.ndarray:
-    """What wear and plastic strain have lowered the unloaded surface by after the last cycle:
-    means over the coarsest cells, (n, n) in m.
-    """
+    """What wear and strain have lowered the unloaded surface by at last: means, (n, n) in m."""
     fields = result.grids["unloaded"]["surface"].cell_data
     lowered = np.squeeze(fields["worn_m"] + fields["uz_m"])
     share = overlaps(lowered.shape[0], COARSEST)

@@ -197,9 +197,7 @@ def deciders(shares: np.ndarray, held: np.ndarray) -> list[dict[str, Any]]:
 
 
 def change_between(high: np.ndarray, low: np.ndarray, level: float) -> tuple[float, float]:
-    """Bounds of the difference of two probabilities: Newcombe, Stat. Med. 17 (1998) 873, method
-    10.
-    """
+    """Bounds of the difference of two probabilities: Newcombe, Stat. Med. 17 (1998) 873."""
     ends = [(part.mean(), *wilson(int(part.sum()), part.size, level)) for part in (high, low)]
     (p, p_low, p_high), (q, q_low, q_high) = ends
     bounds = p - q - np.hypot(p - p_low, q_high - q), p - q + np.hypot(p_high - p, q - q_low)
@@ -207,9 +205,7 @@ def change_between(high: np.ndarray, low: np.ndarray, level: float) -> tuple[flo
 
 
 def least_change(points: int) -> float:
-    """Smallest change of a probability near a half that is beyond CHANCE, between the halves of a
-    range.
-    """
+    """Smallest change of a probability near a half beyond CHANCE, between halves of a range."""
     return float(norm.isf(CHANCE / 2.0) * np.sqrt(2.0 * 0.25 / (points / 2.0)))
 
 
@@ -222,9 +218,7 @@ class Studied:
 
     @cached_property
     def held(self) -> np.ndarray:
-        """Whether a statement holds at a point, (statements, points); NaN where it says nothing
-        there.
-        """
+        """Whether a statement holds, (statements, points); NaN where it says nothing there."""
         measures = study.measured(self.frame, ["reading"]).reindex(range(len(self.shares)))
         holds = [[each.holds(value) for value in measures[each.words]] for each in STATEMENTS]
         return np.where(np.isnan(measures.to_numpy().T), np.nan, holds)

@@ -56,17 +56,13 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
 
 
 def worn_of(result: Result) -> np.ndarray:
-    """(nx, ny) worn depth in m of a smooth scene at the last peak, before the removal of the last
-    cycle.
-    """
+    """(nx, ny) worn depth in m at the last peak, before the removal of the last cycle."""
     fields = result.fields
     return surface_pressure(fields.points, fields.cells["quad"], fields.cell_data["worn_m"])[2]
 
 
 def asymmetry(worn: np.ndarray, turned: bool = False) -> float:
-    """Largest difference to the mirrored scar, or to the one turned by 90 degrees, over the
-    largest depth; NaN without scar.
-    """
+    """Largest difference to the scar mirrored or turned by 90 degrees over the largest depth, or NaN."""
     others = (worn.T,) if turned else (worn[::-1], worn[:, ::-1])
     with np.errstate(invalid="ignore"):
         return float(np.max([np.abs(worn - other).max() for other in others]) / worn.max())

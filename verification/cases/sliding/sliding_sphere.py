@@ -33,9 +33,7 @@ PARTS = 8  # of a cell each way, for the mean traction of a cell
 
 
 def grid_of(across: int) -> tuple[np.ndarray, float]:
-    """Odd number of cells over three contact radii, `across` of them in the contact: centres and size, in
-    radii.
-    """
+    """Odd number of cells over three contact radii, `across` in the contact: centres and size, in radii."""
     h = 2.0 / across
     n = int(1.5 * across) // 2 * 2 + 1
     return (np.arange(n) - (n - 1) / 2) * h, h
@@ -81,9 +79,7 @@ def row_stresses(across: int, depths: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def crossing(across: int) -> float:
-    """The friction coefficient at which the von Mises stress of the cell on the trailing edge becomes the
-    largest of all.
-    """
+    """The friction at which the von Mises stress of the cell on the trailing edge becomes the largest."""
     (x, *edge), (_, *interior) = row_stresses(across, np.zeros(1)), row_stresses(72, INTERIOR)
     cell = np.abs(x + 1.0).argmin()
 
@@ -95,16 +91,12 @@ def crossing(across: int) -> float:
 
 
 def limit_of_root(h: np.ndarray, values: np.ndarray) -> float:
-    """Value at h = 0 of the parabola in sqrt(h) through the three finest: the traction has a vertical tangent
-    at r = a.
-    """
+    """Value at h = 0 of the parabola in sqrt(h) through the three finest: vertical tangent at r = a."""
     return float(np.polynomial.Polynomial.fit(np.sqrt(h[-3:]), values[-3:], 2)(0.0))
 
 
 def overtaking() -> float:
-    """The friction coefficient at which the largest von Mises stress moves to the edge, in the closed
-    form.
-    """
+    """The friction at which the largest von Mises stress moves to the edge, in closed form."""
 
     def lead(friction: float) -> float:
         interior, edge = largest_von_mises(1.0, 1.0, NU, friction)

@@ -116,9 +116,7 @@ def _run(arguments: list[str], environment: dict[str, str]) -> None:
 
 
 def _how(ended: subprocess.CompletedProcess[str]) -> str:
-    """How a process has failed, and what to do: a signal is that of a missing library, what the
-    process said itself is a defect of the program.
-    """
+    """How a process failed, and what to do: a signal is a missing library, words are a defect."""
     if ended.returncode < 0:
         return f"{signal.Signals(-ended.returncode).name}; {REMEDY}"
     lines = ended.stderr.strip().splitlines() or [f"exit code {ended.returncode}"]

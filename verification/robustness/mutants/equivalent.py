@@ -116,9 +116,7 @@ SHARES = {"_Pa": 1e-3, "_m": 1e-6, "_N": 1e-6}
 
 
 def change(before: Mapping[str, np.ndarray], after: Mapping[str, np.ndarray]) -> float:
-    """Largest change of a number over the largest of its column, or over that of its unit times SHARES if
-    that is more.
-    """
+    """Largest change of a number over the largest of its column, or of its unit times SHARES."""
     if before.keys() != after.keys() or any(before[name].shape != after[name].shape for name in before):
         return np.inf
     tops = {name: np.abs(np.nan_to_num(values)).max(initial=0.0) for name, values in before.items()}
@@ -135,9 +133,7 @@ def change(before: Mapping[str, np.ndarray], after: Mapping[str, np.ndarray]) ->
 
 @dataclass(frozen=True)
 class Shown:
-    """change: largest change of a number in tolerances of its solver; probes: how many of them run the
-    module.
-    """
+    """change: largest, in tolerances of the solver; probes: how many of them run the module."""
 
     mutant: Mutant
     reason: str

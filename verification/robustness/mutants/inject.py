@@ -55,9 +55,7 @@ def forget(module: str = "") -> None:
 
 @functools.cache
 def living(kind: type) -> list:
-    """All objects of this kind, remembered: to be called before forking, as looking at all objects takes its
-    time.
-    """
+    """All objects of this kind, remembered: call it before forking, as looking takes its time."""
     return [thing for thing in gc.get_objects() if isinstance(thing, kind)]
 
 
@@ -89,9 +87,7 @@ def _swap_codes(file: str, compiled: CodeType) -> None:
 
 
 def _transplant(module: ModuleType, compiled: CodeType, numbers: dict[str, Number]) -> None:
-    """The constants of the module, run anew, wherever they are known by their name; those of its classes, and
-    defaults.
-    """
+    """The constants of the module, run anew, wherever they are known; of its classes, and defaults."""
     anew = ModuleType(module.__name__)
     vars(anew).update({"__file__": module.__file__, "__package__": module.__package__}, **numbers)
     exec(compiled, vars(anew))
@@ -113,9 +109,7 @@ def _transplant(module: ModuleType, compiled: CodeType, numbers: dict[str, Numbe
 
 
 def _same(value: object, old: object) -> bool:
-    """Whether a constant run anew is what it was: the members of an enumeration stay, as others ask who they
-    are.
-    """
+    """Whether a constant run anew is what it was: members of an enumeration stay as they are."""
     members = isinstance(value, tuple) and all(isinstance(each, Enum) for each in value)
     return value is old or (members and value == old)
 

@@ -45,9 +45,7 @@ KILLED, SURVIVED, STRUCTURE = "killed", "survived", "structure"
 
 @dataclass(frozen=True)
 class Seen:
-    """A test on its own. called: (file, first line) of each function of the changed modules that
-    ran in it; met: the integers that met a float.
-    """
+    """A test by itself. called: (file, first line) of changed functions that ran; met: integers by floats."""
 
     passed: bool
     seconds: float
@@ -57,9 +55,7 @@ class Seen:
 
 @dataclass(frozen=True)
 class MutantVerdict:
-    """outcome: one of those above; by: the test that failed; seconds: its processor time; error:
-    its kind; asked: tests run.
-    """
+    """outcome: see above; by: the test that failed; seconds: processor time; error: kind; asked: tests."""
 
     mutant: Mutant
     outcome: str

@@ -196,9 +196,7 @@ def largest(evidence: Evidence, words: str, *of: str) -> Iterator[Finding]:
 def value(
     evidence: Evidence, words: str, gate: str, *how: str, in_percent: bool = False
 ) -> Iterator[Finding]:
-    """The value of a gate, or its error where it has none. how: it and its tolerance are shown, with {} for
-    the number.
-    """
+    """The value of a gate, or its error. how: it and its tolerance are shown, with {} for the number."""
     shown, limit = (*how, *("{}", "")[len(how) :])
     show = percent if in_percent else lambda of: number(of, 3)
     for each, row in evidence.gates(gate):

@@ -88,9 +88,7 @@ class Look:
     place: Path | None = None
 
     def to(self, place: str) -> str:
-        """A file of the repository as the pages link it; empty where they are elsewhere: a link would name a
-        place of the machine.
-        """
+        """A file of the repository as the pages link it; empty elsewhere: a link would name a place."""
         here = (self.place or self.folder).resolve()
         return Path(os.path.relpath(ROOT / place, here)).as_posix() if here.is_relative_to(ROOT) else ""
 
