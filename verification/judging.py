@@ -68,11 +68,10 @@ class Row(BaseModel):
 
 @dataclass(frozen=True)
 class Measured:
-    """A computed value and its independent answer.
-
-    value, expected: numbers, or arrays of one shape for relative_l2; expected stays None for at_most and
-    at_least; weight: of each entry of the arrays (1 by default); unit: for the reader only; scale: by
-    which the difference is divided, in place of the expected value.
+    """A computed value and its independent answer. value, expected: numbers, or arrays of one shape for
+    relative_l2; expected stays None for at_most and at_least; weight: of each entry of the arrays (1 by
+    default); unit: for the reader only; scale: by which the difference is divided, in place of the expected
+    value.
     """
 
     value: object
@@ -191,10 +190,9 @@ def evaluate(
     ran: Mapping[str, Mapping[str, Measured]],
     failures: Mapping[str, str] | None = None,
 ) -> list[Verdict]:
-    """All verdicts, in the order of the table.
-
-    ran: case -> id of a row -> value of the cases that were run; failures: case -> why it broke off. Rows of
-    other cases are "not run". A value without a row of its case in the table is a red verdict of its own.
+    """All verdicts, in the order of the table. ran: case -> id of a row -> value of the cases that were run;
+    failures: case -> why it broke off. Rows of other cases are "not run". A value without a row of its case
+    in the table is a red verdict of its own.
     """
     failures = failures or {}
     verdicts = []

@@ -41,11 +41,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Reference:
-    """An independent answer for a scene.
-
-    values: quantity -> number in SI, or function of the places of its field; units: a (length), p0,
-    approach, or others by which figures divide; curves: (table, column) -> function of the place in m;
-    deepest, inside: how far a field on the axis, a pressure along the surface is compared, in m.
+    """An independent answer for a scene. values: quantity -> number in SI, or function of the places of its
+    field; units: a (length), p0, approach, or others by which figures divide; curves: (table, column) ->
+    function of the place in m; deepest, inside: how far a field on the axis, a pressure along the surface is
+    compared, in m.
     """
 
     values: Mapping[str, Any]

@@ -68,7 +68,6 @@ _AT = re.compile(r"([a-zA-Z0-9_.-]+) (=|<|>) (\S+)")
 
 class Take(NamedTuple):
     """What a row takes of the frame of the sweeps: `STATISTIC COLUMN of SWEEP MODEL at AXIS = VALUE, ...`.
-
     statistic: a name in `verification.cases.sweep.STATISTICS` or of a function beside the file; of: names of
     sweeps and models; at: (axis, comparison, value). What it is held against follows a bar: a number alone,
     another take, or `of` and names in place of its own.
@@ -144,12 +143,11 @@ class Claim(NamedTuple):
 
 
 class SweepFile(BaseModel):
-    """Points at which the scene of a case is solved.
-
-    models: that solve each; axes: key of the scene or recipe -> its values, or name -> the keys and recipes
-    of a value; quick: axes with other values at that level; columns: quantity, or a function beside the
-    file -> "value", "between" (SAM against FEM), or the metric of its error against the reference, a list of
-    names for values alone; size: what is refined, for orders and limits.
+    """Points at which the scene of a case is solved. models: that solve each; axes: key of the scene or
+    recipe -> its values, or name -> the keys and recipes of a value; quick: axes with other values at that
+    level; columns: quantity, or a function beside the file -> "value", "between" (SAM against FEM), or the
+    metric of its error against the reference, a list of names for values alone; size: what is refined, for
+    orders and limits.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)

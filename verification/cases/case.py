@@ -38,10 +38,8 @@ class Plot:
 
 @dataclass(frozen=True)
 class View:
-    """A picture in space that a case asks for.
-
-    run: label of the run that it shows; picture: which one, see `verification.figures.space`; name: of its
-    file, led by that of the case.
+    """A picture in space that a case asks for. run: label of the run that it shows; picture: which one, see
+    `verification.figures.space`; name: of its file, led by that of the case.
     """
 
     run: str
@@ -54,9 +52,8 @@ class View:
 @dataclass(frozen=True)
 class Figure:
     """A drawn figure; paths relative to the report's folder, a picture in space has no csv. alt: what stands
-    in place of the picture; the caption describes it.
-
-    findings: what cannot be read in it, see `verification.figures.check`: the case has failed then.
+    in place of the picture; the caption describes it. findings: what cannot be read in it, see
+    `verification.figures.check`: the case has failed then.
     """
 
     title: str
@@ -169,9 +166,8 @@ class Case:
         return self.collect(context, self.solve(context))
 
     def collect(self, context: Context, found: Any) -> Outcome:
-        """What the parts say of what `solve` returned; the figures are saved.
-
-        Raises NotDrawnError, with all the rest, when a figure cannot be drawn.
+        """What the parts say of what `solve` returned; the figures are saved. Raises NotDrawnError, with all
+        the rest, when a figure cannot be drawn.
         """
         setup, tables, notes = (list(part(found)) for part in (self.setup, self.tables, self.notes))
         outcome = Outcome(self.values(found), setup, [], tables, notes, plain(self.data(found)))
@@ -200,12 +196,10 @@ class Case:
 
 @dataclass
 class Context:
-    """What a case may use: scenes, solvers, and where to put its files.
-
-    out: folder of the report; store: where results are looked up and kept, None to compute all. Filled here:
-    inputs, name -> content of each scene file and of the files it names; runs, folders written; sources: run
-    -> where its result is from; taken_s: what the solves of results from the store took; pdf: draw figures
-    as PDF alone.
+    """What a case may use: scenes, solvers, and where to put its files. out: folder of the report; store:
+    where results are looked up and kept, None to compute all. Filled here: inputs, name -> content of each
+    scene file and of the files it names; runs, folders written; sources: run -> where its result is from;
+    taken_s: what the solves of results from the store took; pdf: draw figures as PDF alone.
     """
 
     case: str
@@ -231,9 +225,8 @@ class Context:
         return scene
 
     def solve(self, model: str, scene: Scene, label: str, *, demand: bool = True) -> Result:
-        """Solve, or take from the store, and write the run into runs/<case>/<label>.
-
-        RuntimeError when it did not converge, unless not `demand`ed.
+        """Solve, or take from the store, and write the run into runs/<case>/<label>. RuntimeError when it did
+        not converge, unless not `demand`ed.
         """
 
         def progress(stage: str, k: int, n: int) -> None:

@@ -198,11 +198,9 @@ def keys_of(section: Section, above: str = "") -> str:
 
 def refinement(found: Solved, quantity: Quantity) -> tuple[float, float, float, float]:
     """Refinement uncertainties of SAM and FEM, their difference, and what is allowed: 1 %, or both
-    uncertainties where that is more.
-
-    Uncertainty: change from a coarser grid over (ratio - 1), the rest of a first-order error (Roache,
-    Verification and Validation in Computational Science and Engineering, 1998, Eq. 5.10.5.1 without its
-    factor of safety). Fields in the L2 norm, over that of FEM.
+    uncertainties where that is more. Uncertainty: change from a coarser grid over (ratio - 1), the rest of a
+    first-order error (Roache, Verification and Validation in Computational Science and Engineering, 1998, Eq.
+    5.10.5.1 without its factor of safety). Fields in the L2 norm, over that of FEM.
     """
     sam, fem = found.results.values()
     both = quantity.between(found.scene, sam, fem)

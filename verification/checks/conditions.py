@@ -82,9 +82,7 @@ def simpson_rings(r: np.ndarray) -> np.ndarray:
 
 def complementarity(scene: Scene, result: Result) -> float:
     """p gap = 0, gap >= 0 on the line y = 0, the gap that of the shapes + uz - approach and that returned;
-    over the approach.
-
-    Of a rough body with the returned heights, on a grid with a row of cells on the line.
+    over the approach. Of a rough body with the returned heights, on a grid with a row of cells on the line.
     """
     line, approach = peak_rows(result, "line"), result.quantities["approach_m"]
     if scene.patch_surface is None:

@@ -134,9 +134,8 @@ def compare_scene(scene: Scene, sam: Solution, fem: Solution) -> list[Verdict]:
 def compare_data(
     scene: Scene, sam: Solution, fem: Solution, data: OwnData
 ) -> tuple[list[Verdict], list[Verdict]]:
-    """Rows that both models have only beside data, and every row of SAM and the data that these have.
-
-    The column fem of the second holds the data. What they lack is not compared.
+    """Rows that both models have only beside data, and every row of SAM and the data that these have. The
+    column fem of the second holds the data. What they lack is not compared.
     """
     between: list[Verdict] = []
     found = compare_scene(scene, sam, data)
@@ -357,10 +356,9 @@ class Tolerances:
 
 
 def tolerances_of(scene: Scene, given: Mapping[str, object], source: str) -> Tolerances:
-    """Those of the scene, and `given` in their place where both have one.
-
-    given: name -> a number, or a text such as "2 %". Raises SceneError with every name that no row of the
-    scene has, and every value that is no tolerance; source names the scene in it.
+    """Those of the scene, and `given` in their place where both have one. given: name -> a number, or a text
+    such as "2 %". Raises SceneError with every name that no row of the scene has, and every value that is no
+    tolerance; source names the scene in it.
     """
     known, faults = names_of_rows(scene), []
     of_scene = (scene.compare.tolerances if scene.compare else None) or {}

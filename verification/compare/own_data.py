@@ -83,9 +83,8 @@ class OwnData:
 
 
 def read_data(path: str | Path, scene: Scene) -> OwnData:
-    """The data in a CSV file, in a folder of such files, or in the mesh that a mapping (TOML) names.
-
-    Raises SceneError with everything that is wrong with them, or that cannot be of this scene.
+    """The data in a CSV file, in a folder of such files, or in the mesh that a mapping (TOML) names. Raises
+    SceneError with everything that is wrong with them, or that cannot be of this scene.
     """
     path = Path(path)
     if path.stem.lower() in COLUMNS_OF_ROWS:
@@ -292,13 +291,11 @@ class MeshAxes(Section):
 
 
 class MeshMapping(Section):
-    """The content of a mapping file.
-
-    file: of the mesh, in the folder of the mapping; length_unit, stress_unit: of the mesh; origin: the point
-    of first contact, in its unit; axes: its axes; step: of its load steps, from 1, else the last; state: the
-    one of the scene that this is; pressure, mises, peeq: names of arrays; displacement, stress: of arrays
-    with components, or lists of arrays with one; components: of the stress, in their order, else that
-    of VTK.
+    """The content of a mapping file. file: of the mesh, in the folder of the mapping; length_unit,
+    stress_unit: of the mesh; origin: the point of first contact, in its unit; axes: its axes; step: of its
+    load steps, from 1, else the last; state: the one of the scene that this is; pressure, mises, peeq: names
+    of arrays; displacement, stress: of arrays with components, or lists of arrays with one; components: of
+    the stress, in their order, else that of VTK.
     """
 
     of_scene: ClassVar[bool] = False
@@ -353,7 +350,6 @@ def _direction(axis: str) -> np.ndarray:
 
 def _read_mapped(path: Path, radius: float) -> Tables:
     """The tables line, axis and plane of the mesh that a mapping file names, at its load step, undeformed.
-
     radius: of the contact in m, about. Raises SceneError with everything that is wrong with mapping or mesh.
     """
     try:

@@ -144,10 +144,8 @@ def _load_ratio(scene: Scene) -> float | None:
 
 def advice_of(scene: Scene, usable: Sequence[str], rows: Sequence[AdviceRow] | None = None) -> dict:
     """Advice for a scene as a mapping that JSON can hold: its kind, the rows for the `usable` models, words,
-    table.
-
-    usable: names of the models that can solve the scene; rows: of the committed table if None. Seconds are
-    scaled with the load steps and cycles of the scene where it yields.
+    table. usable: names of the models that can solve the scene; rows: of the committed table if None. Seconds
+    are scaled with the load steps and cycles of the scene where it yields.
     """
     rows = table() if rows is None else rows
     kind = kind_of(scene)

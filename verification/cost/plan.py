@@ -70,7 +70,6 @@ SELDOM = ("counter-surface heights", "back-stresses", "chemical film")  # told o
 @dataclass(frozen=True, repr=False)
 class Plan:
     """What the models will compute of a scene; `print` shows it in a line for each topic and each warning.
-
     content: all of it as a mapping that JSON can hold: stages, estimate and resolution of every model, or why
     it cannot be used; contact; advice; by how much small strains of a flat half-space are off. model: the one
     that the attributes are about.

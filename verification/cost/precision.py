@@ -23,7 +23,6 @@ TARGETS = (0.05, 0.01, 0.003)
 @dataclass(frozen=True)
 class Reached:
     """Where a curve reaches an error. value: cost, or whatever was interpolated, None if it never does.
-
     coarsest: even the first point is as good, so that the value is an upper bound; smallest: of the errors.
     """
 

@@ -29,14 +29,13 @@ from sam.scene import step_energies, stored_energy
 
 @dataclass(frozen=True)
 class Balance:
-    """Energies in J after each step, the unloaded virgin body first; all (n + 1,).
-
-    force in N; approach in m; work: of the surface tractions; pressing: of the force on the counter-body,
-    integral of F d delta; elastic: E; stored: the part of E that the residual stress holds, None where it
-    is not told apart; dissipated: D by (b), of back-stresses too; flowed: the plastic work D + W_X by the
-    trapezoidal rule; beyond: work on what lies outside of the mesh, zero for a half-space; back: W_X;
-    within: plastic work of stresses that vary within the cells of SAM, which the tractions do not do, as the
-    operators take the strain of a cell as uniform: an error of space.
+    """Energies in J after each step, the unloaded virgin body first; all (n + 1,). force in N; approach in m;
+    work: of the surface tractions; pressing: of the force on the counter-body, integral of F d delta;
+    elastic: E; stored: the part of E that the residual stress holds, None where it is not told apart;
+    dissipated: D by (b), of back-stresses too; flowed: the plastic work D + W_X by the trapezoidal rule;
+    beyond: work on what lies outside of the mesh, zero for a half-space; back: W_X; within: plastic work of
+    stresses that vary within the cells of SAM, which the tractions do not do, as the operators take the
+    strain of a cell as uniform: an error of space.
     """
 
     force: np.ndarray

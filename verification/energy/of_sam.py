@@ -44,10 +44,8 @@ class Committed:
 
 
 def balance_of(scene: Scene) -> Balance:
-    """Solve a smooth scene and balance the energy of the body.
-
-    ValueError for an elastic counter-body or a coating; RuntimeError when a step does not converge. Where the
-    pressure is given the approach is zero.
+    """Solve a smooth scene and balance the energy of the body. ValueError for an elastic counter-body or a
+    coating; RuntimeError when a step does not converge. Where the pressure is given the approach is zero.
     """
     elastic = scene.counterbody is not None and scene.counterbody.elastic
     if elastic or scene.loading.prescribed == "misfit-sphere" or scene.body.coating is not None:

@@ -51,7 +51,6 @@ PANELS = {
 
 def compare_figures(folder: Path, solutions: Mapping[str, Solution], prefix: str = "") -> list[Path]:
     """Write the figures of results of one scene into `folder`/figures; returns the paths (PNG, CSV of each).
-
     solutions: "SAM", "FEM" and names of data -> each; prefix: of the names of the files.
     """
     place = folder / FIGURES
@@ -67,9 +66,8 @@ def drawings_of(solutions: Mapping[str, Solution]) -> dict[str, Drawing]:
 
 
 def curves(runs: Mapping[str, Solution], table: str) -> Drawing:
-    """A panel for each quantity of a table over its place in um; with the data in SI units.
-
-    What data lack is not drawn, and everything only as far as SAM's, or the first with a contact radius.
+    """A panel for each quantity of a table over its place in um; with the data in SI units. What data lack is
+    not drawn, and everything only as far as SAM's, or the first with a contact radius.
     """
     place = {"line": "x_m", "axis": "z_m"}[table]
     radius = next((size for run in runs.values() if (size := contact_size(run.quantities))), 0.0)

@@ -74,10 +74,9 @@ UNKNOWN = {"color": "#bbbbbb", "alpha": 0.45, "linewidth": 0.0}
 
 @dataclass(frozen=True)
 class Curve:
-    """x and y of a line (n,), any units.
-
-    fit: function of x through these points, drawn between the ends of `span` (None: of x); note: what the
-    legend says behind the name; ends: least and largest y, of bars; look: of this line alone.
+    """x and y of a line (n,), any units. fit: function of x through these points, drawn between the ends of
+    `span` (None: of x); note: what the legend says behind the name; ends: least and largest y, of bars; look:
+    of this line alone.
     """
 
     x: np.ndarray
@@ -91,14 +90,12 @@ class Curve:
 
 @dataclass(frozen=True)
 class How:
-    """How panels are drawn.
-
-    looks: of the series that have one of their own; size: of a panel, in inches; logarithmic: axes, "x", "y"
-    or "xy"; count: x are whole numbers, and y begins at zero, so that a small change looks small; ticks:
-    words of the x of the points, which alone have a number; shade: range of x that is not compared, floor: y
-    below which nothing is claimed, each of all panels or of each; band: of tolerance on both sides of zero;
-    marks: words -> ("x" or "y", places of guide lines); legend: "below" all panels or in "each", its entries,
-    below all, or none.
+    """How panels are drawn. looks: of the series that have one of their own; size: of a panel, in inches;
+    logarithmic: axes, "x", "y" or "xy"; count: x are whole numbers, and y begins at zero, so that a small
+    change looks small; ticks: words of the x of the points, which alone have a number; shade: range of x that
+    is not compared, floor: y below which nothing is claimed, each of all panels or of each; band: of
+    tolerance on both sides of zero; marks: words -> ("x" or "y", places of guide lines); legend: "below" all
+    panels or in "each", its entries, below all, or none.
     """
 
     looks: Mapping[str, Mapping] = field(default_factory=lambda: LOOKS)
@@ -349,10 +346,9 @@ def yield_profiles(cases: Mapping[str, Callable[[np.ndarray, float], np.ndarray]
 
 
 def over_cells(volumes: Mapping[str, Mapping[float, Sequence[float]]], default: float) -> Drawing:
-    """A line for each surface through the means, with bars from the smallest to the largest.
-
-    volumes: name of a surface -> cells in the shortest wave -> volumes in um3 of the surface shifted against
-    the cells; default: the cells in the shortest wave that are recommended, marked by a line.
+    """A line for each surface through the means, with bars from the smallest to the largest. volumes: name of
+    a surface -> cells in the shortest wave -> volumes in um3 of the surface shifted against the cells;
+    default: the cells in the shortest wave that are recommended, marked by a line.
     """
     drawn = {}
     for name, of_cells in volumes.items():

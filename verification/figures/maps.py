@@ -45,10 +45,8 @@ BAR, CROSS, INTERFACE = (
 
 @dataclass(frozen=True)
 class FieldPair:
-    """Two normalised fields on one grid: u (m,), v (n,), first and second (m, n); NaN where a field
-    is not known.
-
-    names: of the two; axes: labels of u and v; quantity: label of the field, e.g. "$p/p_0$";
+    """Two normalised fields on one grid: u (m,), v (n,), first and second (m, n); NaN where a field is not
+    known. names: of the two; axes: labels of u and v; quantity: label of the field, e.g. "$p/p_0$";
     semi_axes: of the contact in the units of u (and v), for the outline.
     """
 
@@ -128,7 +126,6 @@ def plane_maps(
     interface: float | None = None,
 ) -> Drawing:
     """A field over (x, z), z down: first | second | difference, with iso-lines, contact width and the maxima.
-
     strip: depth down to which nothing is compared, hatched; interface: depth at which a film ends, a line.
     """
     with style():
@@ -178,9 +175,8 @@ def remark(panel: Axes, words: str) -> None:
 
 
 def three_panels(pair: FieldPair, *, touching: bool = False, strip: float = 0.0):
-    """Three panels of one size: two with shared colour limits, the difference with symmetric ones.
-
-    touching: what is zero in a field, or in both, is not in contact and grey; strip: see `plane_maps`.
+    """Three panels of one size: two with shared colour limits, the difference with symmetric ones. touching:
+    what is zero in a field, or in both, is not in contact and grey; strip: see `plane_maps`.
     """
     size = PANEL * np.ptp(pair.v) / np.ptp(pair.u) + AROUND
     figure = new_figure(9.4, size, "compressed")
@@ -300,11 +296,9 @@ def rough_pressures(
 def compared_mises(
     sam: Result, fem: Result, a: float, p0: float, *, film: float | None = None, element: float = 0.0
 ) -> Drawing:
-    """Von Mises stress over p0 in y = 0: SAM | FEM | difference.
-
-    film: its thickness, element: size of the elements there, both in m. Between the last Gauss
-    points above and below the interface, within CLEAR of an element, no stress of FEM is known on
-    either side: nothing is drawn there.
+    """Von Mises stress over p0 in y = 0: SAM | FEM | difference. film: its thickness, element: size of the
+    elements there, both in m. Between the last Gauss points above and below the interface, within CLEAR of an
+    element, no stress of FEM is known on either side: nothing is drawn there.
     """
     clear = None if film is None else (film, CLEAR * element)
     pair, peaks = _both(sam, fem, "mises", (a, p0), clear=clear)
@@ -350,7 +344,6 @@ def _both(
 
 def sliding_sections(sam: Result, fem: Result, units: tuple[float, float], thickness: float) -> Drawing:
     """Von Mises stress of the body over p0 in y = 0, from the film's lower face on: SAM | FEM | difference.
-
     units: a in m and p0 in Pa.
     """
     a, p0 = units
@@ -376,7 +369,6 @@ def compared_planes(
     first: Plane, second: Plane, names: tuple[str, str], edge: float, *, strip: float = 0.0
 ) -> Drawing:
     """Plastic strain in % in y = 0: first | second | difference, with iso-lines, among them that of 0.2 %.
-
     edge: contact radius in that of the elastic contact, for the bar over the maps; strip: depth down to which
     nothing is compared; the maxima are those below it, and what the strip holds is said beside them.
     """

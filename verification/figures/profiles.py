@@ -30,10 +30,8 @@ from verification.runs.sampling import rows_of
 @dataclass(frozen=True)
 class Profile:
     """One panel above its errors: an exact curve, the computed series, and what their difference is divided
-    by.
-
-    exact: x -> y (vectorised); series: "SAM" or "FEM" -> (x, y); scale: the error is 100 (y - exact) / scale;
-    xlim: what is shown (and written).
+    by. exact: x -> y (vectorised); series: "SAM" or "FEM" -> (x, y); scale: the error is 100 (y - exact) /
+    scale; xlim: what is shown (and written).
     """
 
     title: str
@@ -121,9 +119,8 @@ def axis_profiles(sam: Result, fem: Result, a: float, deep: float = 2.0) -> Draw
 def _against_fem(
     labels: tuple[str, str, str], sam: tuple, fem: tuple, limits: tuple[float, float]
 ) -> Profile:
-    """SAM over the curve of FEM, within what both cover; errors in % of the largest value of FEM.
-
-    labels: title, of x and of y.
+    """SAM over the curve of FEM, within what both cover; errors in % of the largest value of FEM. labels:
+    title, of x and of y.
     """
     x, y = fem
     limits = (max(limits[0], x.min()), min(limits[1], x.max()))

@@ -51,7 +51,6 @@ friction.
 
 def draw_run(folder: Path, *, pdf: bool = False, progress: Progress = lambda *_: None) -> list[Path]:
     """Write the figures of a run into its folder `figures`; returns the paths (PNG and CSV of each, or PDF).
-
     Raises FolderError (a ValueError) when the folder holds no result. A run without load has only its history
     to show, one that did not reach its peak the last load that it reached.
     """
@@ -126,9 +125,8 @@ def _plain(label: str) -> str:
 
 def line(run: Run, surface: SurfaceMap | None, section: Section) -> Drawing:
     """Pressure, displacement and gap along the row of the largest pressure: all spots of the row with what is
-    beside them, everything when there is no contact.
-
-    Beside y = 0, where displacement and gap are not kept, the pressure and the heights of a rough surface.
+    beside them, everything when there is no contact. Beside y = 0, where displacement and gap are not kept,
+    the pressure and the heights of a rough surface.
     """
     horizontal, gap = "$x$ [$\\mu$m]", "gap [$\\mu$m]"
     pitch = np.diff(surface.y).min() if surface is not None and surface.y.size > 1 else 0.0
@@ -178,9 +176,8 @@ def axis(run: Run, section: Section) -> Drawing:
 
 def history(run: Run) -> Drawing:
     """Force over approach, a line through the rows of each part of the history that has several, beside the
-    elastic contact of Hertz where it applies; elastic unloading in one step is a point alone.
-
-    Where the pressure is given there is no approach: over the number of the row.
+    elastic contact of Hertz where it applies; elastic unloading in one step is a point alone. Where the
+    pressure is given there is no approach: over the number of the row.
     """
     table = run.tables["history"]
     approach, force = (table[name].to_numpy() for name in ("approach_m", "force_N"))

@@ -168,11 +168,10 @@ def over_path(panels: Mapping[str, tuple[Balance, Balance | None]]) -> Drawing:
 
 
 def change_maps(maps: Mapping[str, DataFrame], paper: tuple[float, Mapping[str, float]]) -> Drawing:
-    """Heat maps on logarithmic axes, of a bicubic spline through the points over the logarithms,
-    with lines of 1 % and 5 %, one colour scale for all, and the film of the paper.
-
-    maps: title -> changes as shares over thickness/a0 (index) and E1/E2 (columns); paper: its
-    modulus ratio, and label -> thickness/a0 on some contact radii.
+    """Heat maps on logarithmic axes, of a bicubic spline through the points over the logarithms, with lines
+    of 1 % and 5 %, one colour scale for all, and the film of the paper. maps: title -> changes as shares over
+    thickness/a0 (index) and E1/E2 (columns); paper: its modulus ratio, and label -> thickness/a0 on some
+    contact radii.
     """
     rows = Columns("map", "thickness_over_a0", "E1_over_E2", "change_percent")
     largest = 100.0 * max(np.abs(each.to_numpy()).max() for each in maps.values())

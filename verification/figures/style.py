@@ -148,10 +148,8 @@ def sheet(
     layout: str = "constrained",
     **options: Any,
 ) -> Iterator[tuple[Figure, Any]]:
-    """An empty figure (inches) in the house style and its axes.
-
-    panels: None for one, a number of them in a row, or (rows, columns) of a grid; options: of
-    `Figure.subplots`.
+    """An empty figure (inches) in the house style and its axes. panels: None for one, a number of them in a
+    row, or (rows, columns) of a grid; options: of `Figure.subplots`.
     """
     grid = panels if isinstance(panels, tuple) else (1, panels or 1)
     with style():

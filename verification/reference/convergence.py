@@ -38,10 +38,9 @@ class Limit:
 
 
 def extrapolate(h: Sequence[float], values: Sequence[float]) -> Limit:
-    """Richardson's extrapolation to h = 0 with the observed order (Roache, 1998), by least squares.
-
-    h: (n,) cell sizes, n >= 3, all different; values: (n,). ValueError otherwise. For each order the limit
-    and the factor are linear, so the order alone is searched.
+    """Richardson's extrapolation to h = 0 with the observed order (Roache, 1998), by least squares. h: (n,)
+    cell sizes, n >= 3, all different; values: (n,). ValueError otherwise. For each order the limit and the
+    factor are linear, so the order alone is searched.
     """
     h, values = np.asarray(h, dtype=float), np.asarray(values, dtype=float)
     if h.shape != values.shape or h.ndim != 1 or np.unique(h).size < 3 or not np.all(h > 0.0):

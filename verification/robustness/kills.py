@@ -100,9 +100,8 @@ def left_behind(pids: Sequence[int]) -> list[int]:
 
 
 def inspect(folder: Path, unfinished: bool = True) -> Findings:
-    """Every file of a folder that is not whole, and summaries that came too early.
-
-    unfinished: temporary files may be there.
+    """Every file of a folder that is not whole, and summaries that came too early. unfinished: temporary
+    files may be there.
     """
     found = []
     for path in sorted(folder.rglob("*")):

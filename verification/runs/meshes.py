@@ -54,9 +54,7 @@ def is_mesh(name: str) -> bool:
 
 def mesh_files(result: Result, cycles: int, outside: float | None = None) -> dict[str, bytes]:
     """Name of a file -> its content: the parts of each state, and their list over cycles, from 0; none
-    without VTK.
-
-    outside: a/R of a contact outside of the model, which each mesh says.
+    without VTK. outside: a/R of a contact outside of the model, which each mesh says.
     """
     files: dict[str, bytes] = {}
     entries = []

@@ -65,7 +65,6 @@ def measured() -> dict[tuple[str, float], dict[str, np.ndarray]]:
 
 def errors(law: str, poisson: float, ratio: float) -> dict[str, tuple[float, float]]:
     """Quantity -> relative error of the flat half-space of small strains, and its uncertainty, on a sphere.
-
     ratio: a/R; beyond what was measured, of it and of Poisson's ratio, the nearest counts.
     """
     own = {nu: columns for (name, nu), columns in sorted(measured().items()) if name == law}
@@ -111,11 +110,10 @@ def with_range(scene: Scene, result: Result) -> Result:
 
 def model_range(scene: Scene, result: Result | None = None) -> dict[str, Any] | None:
     """By how much the model is off, of the estimated contact or of the one that was solved; None where
-    nothing is known, as below the flat end of a punch on an elastic body.
-
-    a_over_R: of the sphere that the contact is likened to; like: by what, empty for a sphere; law, poisson,
-    measured_to: of the measurement; quantities: name -> error, uncertainty; outside: whether the model ends
-    before; lost_height: the largest worn depth over the height of the relief, where there is wear.
+    nothing is known, as below the flat end of a punch on an elastic body. a_over_R: of the sphere that the
+    contact is likened to; like: by what, empty for a sphere; law, poisson, measured_to: of the measurement;
+    quantities: name -> error, uncertainty; outside: whether the model ends before; lost_height: the largest
+    worn depth over the height of the relief, where there is wear.
     """
     values = {} if result is None else result.last_fitting or result.quantities
     likes = list(_likes(scene, result, values))
@@ -321,10 +319,9 @@ def contact_modulus(scene: Scene) -> float:
 
 @cache
 def _hertz(rx: float, ry: float) -> tuple[float, float, float]:
-    """Semi-axes a along x, b along y and approach in m of an ellipsoid by Hertz under F/E* = 1 m^2.
-
-    With w = 1/sqrt(cos^2 + k^2 sin^2), k = b/a, and means over a quarter of a circle: Rx/Ry = <cos^2 w>/(k^2
-    <sin^2 w>), a^3 = 3/2 Rx <sin^2 w> F/E*, approach = 3/4 <w> F/(E* a): Johnson (1985), section 4.2.
+    """Semi-axes a along x, b along y and approach in m of an ellipsoid by Hertz under F/E* = 1 m^2. With w =
+    1/sqrt(cos^2 + k^2 sin^2), k = b/a, and means over a quarter of a circle: Rx/Ry = <cos^2 w>/(k^2 <sin^2
+    w>), a^3 = 3/2 Rx <sin^2 w> F/E*, approach = 3/4 <w> F/(E* a): Johnson (1985), section 4.2.
     """
     if ry > rx:
         b, a, approach = _hertz(ry, rx)

@@ -46,9 +46,8 @@ def models_for(scene: Scene) -> tuple[str, ...]:
 
 
 def cheapest_reference(scene: Scene) -> str:
-    """The cheapest finite-element model that can represent the scene.
-
-    Raises ModelError with the reasons of every model that cannot, and the keys to change, if none can.
+    """The cheapest finite-element model that can represent the scene. Raises ModelError with the reasons of
+    every model that cannot, and the keys to change, if none can.
     """
     reasons = {model: _refusal(scene, model) for model in models_for(scene)}
     for model, reason in reasons.items():
@@ -84,11 +83,10 @@ def solve(
     made: Any = None,
 ) -> Result:
     """The result of `model`, with by how much small strains of a flat half-space are off; its cost completed
-    by cpu_s and peak_memory_bytes (of this process so far).
-
-    checkpoint, start: see the solvers; the times of a solve in parts add up, and its memory is that of the
-    largest part; made: the plan of the scene where it was checked and planned already, which then is not done
-    again. Raises ModelError for a scene that the model cannot represent.
+    by cpu_s and peak_memory_bytes (of this process so far). checkpoint, start: see the solvers; the times of
+    a solve in parts add up, and its memory is that of the largest part; made: the plan of the scene where it
+    was checked and planned already, which then is not done again. Raises ModelError for a scene that the
+    model cannot represent.
     """
     if made is None:
         check(scene, model)

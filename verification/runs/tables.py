@@ -45,7 +45,6 @@ def columns_text(table: Mapping[str, Sequence[Any] | np.ndarray]) -> str:
 
 def read_table(content: bytes) -> DataFrame:
     """The table in the bytes of a CSV file: floats (NaN: an empty cell), texts in the columns TEXT_COLUMNS.
-
     Raises ValueError, which says what is wrong, for bytes that are no such table.
     """
     import pandas as pd

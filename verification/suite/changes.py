@@ -33,9 +33,8 @@ class Change:
 
 def changes(before: Mapping, after: Mapping, equal: float = EQUAL) -> list[Change]:
     """Gates of two reports (the contents of their results.json) that differ in value, in the order of the
-    second one.
-
-    The error stands for the value of a field, which has none. What both reports did not run is left out.
+    second one. The error stands for the value of a field, which has none. What both reports did not run is
+    left out.
     """
     old, new = ({gate["id"]: gate for gate in report["gates"]} for report in (before, after))
     found = []

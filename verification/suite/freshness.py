@@ -25,7 +25,6 @@ JUDGED_BY = ("metric", "tolerance", "quantity", "reason")
 
 def stale(results: Mapping) -> dict[str, str]:
     """Name of each case that has to be published again -> why. results: as verify and publish write them.
-
     Those that are not published count too, unless something that they need is missing here.
     """
     known, ran = all_cases(), ran_in(results)
@@ -36,9 +35,8 @@ def stale(results: Mapping) -> dict[str, str]:
 
 
 def older(results: Mapping) -> dict[str, str]:
-    """Of these only the cases that came to their end: what the pages show of them is not of this code.
-
-    A comparison has none.
+    """Of these only the cases that came to their end: what the pages show of them is not of this code. A
+    comparison has none.
     """
     if results.get("kind") == "comparison":
         return {}

@@ -64,9 +64,8 @@ def put_back(kept: Kept, context: Context, *, with_runs: bool = True) -> Outcome
 
 
 def keep(store: Store, case: Case, context: Context, outcome: Outcome, *, seconds: float) -> None:
-    """Keep what a case found, unless the files of the code changed meanwhile.
-
-    Raises ValueError where it names an input that is no file of the scenes: it would never be found again.
+    """Keep what a case found, unless the files of the code changed meanwhile. Raises ValueError where it
+    names an input that is no file of the scenes: it would never be found again.
     """
     if foreign := [name for name in context.inputs if present(name) is None]:
         raise ValueError(f"case {case.name} names as input what is no file of the scenes: {foreign}")

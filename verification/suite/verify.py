@@ -66,12 +66,11 @@ class RanCase:
 
 def main(cases: list[str], level: str, out: Path, *, store: Store | None = None) -> int:
     """Run the named cases (none: all of the level), or take them from the store, and write the report into
-    `out`. A name that ends with .toml is a file of own cases, which then are all that there are.
-
-    Returns 0 when every gate of every case that ran held and its figures can be read, 1 when not, 2 for an
-    unknown case or a folder that holds something else (nothing is written then). An earlier report
-    in `out` is replaced when the new one is whole. A case that needs what is not there is not run, with the
-    reason; if that is so for all, nothing is written.
+    `out`. A name that ends with .toml is a file of own cases, which then are all that there are. Returns 0
+    when every gate of every case that ran held and its figures can be read, 1 when not, 2 for an unknown case
+    or a folder that holds something else (nothing is written then). An earlier report in `out` is replaced
+    when the new one is whole. A case that needs what is not there is not run, with the reason; if that is so
+    for all, nothing is written.
     """
     files = [each for name in cases if name.endswith(".toml") for each in read_cases(Path(name))]
     known = {file.name: case_of(file) for file in files} or all_cases()
@@ -104,10 +103,8 @@ def finish(
     stays: Earlier = NOTHING,
 ) -> int:
     """Judge the cases that ran, whose files are in UNFINISHED, put the report of them into the place of the
-    earlier one and say what is red.
-
-    known: all cases by name; unmet: name -> why a case could not run here; stays: of the earlier
-    report. Returns 0 when every gate of every case that ran held, else 1.
+    earlier one and say what is red. known: all cases by name; unmet: name -> why a case could not run here;
+    stays: of the earlier report. Returns 0 when every gate of every case that ran held, else 1.
     """
     results = _judged(ran, known, level=level, command=command, unmet=unmet, stays=stays)
     _write(results, out / UNFINISHED, older(results) if stays.cases else {}, place=out)
@@ -451,9 +448,8 @@ def _limit(gate: Row) -> str:
 
 
 def draw_pdf(folder: Path, progress: Told, store: Store | None) -> list[Path]:
-    """Write figures/<case>-<name>.pdf of every case of a report that has figures, and return the paths.
-
-    A result that is not in the store is solved again. Raises FolderError when the folder holds no finished
+    """Write figures/<case>-<name>.pdf of every case of a report that has figures, and return the paths. A
+    result that is not in the store is solved again. Raises FolderError when the folder holds no finished
     report.
     """
     results, known, written = finished(folder), all_cases(), []

@@ -84,9 +84,7 @@ def in_notebook() -> bool:
 
 class Progress:
     """The `progress` callable of the solvers: a bar on a terminal and in a notebook, plain lines elsewhere. A
-    context manager.
-
-    remaining: plain lines too say how long the stage will take.
+    context manager. remaining: plain lines too say how long the stage will take.
     """
 
     def __init__(self, remaining: bool = False):

@@ -382,9 +382,8 @@ class Solved:
 
 
 def solve(scene: Scene, model: str, solver: Solve | None = None) -> Result:
-    """The result of a scene, with its uncertainty if the scene asks for one.
-
-    solver: of every scene, `models.solve` by default. Raises what that raises.
+    """The result of a scene, with its uncertainty if the scene asks for one. solver: of every scene,
+    `models.solve` by default. Raises what that raises.
     """
     how = solver or (lambda each, _: models.solve(each, model))
     return with_uncertainty(scene, model, how) if scene.solver.uncertainty else how(scene, "")
@@ -401,9 +400,8 @@ def asked_of(scene: Scene, source: str) -> Scene:
 
 
 def with_uncertainty(scene: Scene, model: str, solver: Solve) -> Result:
-    """The result of a scene, and of its coarser companions what they say about it.
-
-    The finest is solved first. Where it does not converge, or nothing can be said, the others are not solved.
+    """The result of a scene, and of its coarser companions what they say about it. The finest is solved
+    first. Where it does not converge, or nothing can be said, the others are not solved.
     """
     fine = solver(alone(scene), "the scene itself")
     if not fine.converged:
@@ -505,11 +503,9 @@ def _reported(fine: Result, scene: Scene, reason: str, solved: Solved | None = N
 
 
 def entry(name: str, solved: Solved, tolerance: float) -> dict[str, Any]:
-    """What the members say about a quantity.
-
-    u_cells, u_steps, u_box: bounds by each; u_num: their sum, as errors of one sign are usual, at least the
-    tolerance of the solvers. Bounds by steps and box are relative changes on the coarsest cells; that by
-    cells is at least what the edge of the contact leaves.
+    """What the members say about a quantity. u_cells, u_steps, u_box: bounds by each; u_num: their sum, as
+    errors of one sign are usual, at least the tolerance of the solvers. Bounds by steps and box are relative
+    changes on the coarsest cells; that by cells is at least what the edge of the contact leaves.
     """
     value = solved.cells[0].quantities[name]
     outline = name in EDGES and solved.edge < inf and solved.cells[0].model == models.SAM

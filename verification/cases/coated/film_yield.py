@@ -82,13 +82,12 @@ def scene_of(base: Scene, contact: FilmContact, cells: int, film: bool = True) -
 
 
 def row_of(contact: FilmContact, scene: Scene, result: Result, bare: Result) -> dict[str, Any]:
-    """A row of the frame. bare: the result without film, on a mesh of its own, at BARE_RADIUS.
-
-    film_strain, body_strain, bare_strain: the largest plastic ones, the last without film; known: the film is
-    not squeezed out of reach of small strains; holds: the claim of Bosman & Schipper (2011). centre: mean
-    over the film on the axis, the plastic strain where it yields, else the von Mises stress, off the thin
-    film; flow: fall of the pressure over r, of the line fitted to it from 0.4 to 0.8 a0, off that of a film
-    that flows out; bare-mesh, hertz: largest pressure without film off that of the other mesh and of Hertz.
+    """A row of the frame. bare: the result without film, on a mesh of its own, at BARE_RADIUS. film_strain,
+    body_strain, bare_strain: the largest plastic ones, the last without film; known: the film is not squeezed
+    out of reach of small strains; holds: the claim of Bosman & Schipper (2011). centre: mean over the film on
+    the axis, the plastic strain where it yields, else the von Mises stress, off the thin film; flow: fall of
+    the pressure over r, of the line fitted to it from 0.4 to 0.8 a0, off that of a film that flows out;
+    bare-mesh, hertz: largest pressure without film off that of the other mesh and of Hertz.
     """
     body, film, q, yields = scene.body, scene.body.coating, result.quantities, contact.film == "yields"
 

@@ -31,9 +31,8 @@ LAST_DIGIT, DISC_CELLS = 1e-4, 100  # of the table; in the radius of the disc
 
 def disc_by_response(radius: float, ratio: float) -> float:
     """Pressure on the interface below the centre of a disc over that on it: Hankel integral of SAM's
-    response, nu = 0.5.
-
-    -s_zz/p = int_0^inf f(k) radius J1(k radius) dk with f = -s_zz under the wave; the thickness is 1.
+    response, nu = 0.5. -s_zz/p = int_0^inf f(k) radius J1(k radius) dk with f = -s_zz under the wave; the
+    thickness is 1.
     """
     k, weight = wave_numbers(1.0, radius, 40.0)
     wave = Response(Layers(ratio, 0.5, 1.0, 1.0, 0.5), k).stress(1.0)[0][0, 0]

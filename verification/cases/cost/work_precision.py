@@ -61,9 +61,8 @@ Solve = Callable[[Scene, str], Result]
 
 
 def frame(context: Context, names: Sequence[str] = tuple(STUDIED), solve: Solve | None = None) -> Iterator:
-    """A row for each solve: problem, what is refined, method, its cost and its error.
-
-    names, solve: problems, and how a scene is solved (in a process of its own).
+    """A row for each solve: problem, what is refined, method, its cost and its error. names, solve: problems,
+    and how a scene is solved (in a process of its own).
     """
     for name in names:
         problem = STUDIED[name]
@@ -182,10 +181,8 @@ def reached(rows: DataFrame, method: str, target: float, column: str = "cpu_s") 
 
 def ratio_at(rows: DataFrame, target: float) -> float:
     """Time of SAM, on one grid or on two, over that of the axisymmetric model for one error; infinite where
-    SAM never reaches it.
-
-    A model that never reaches it needs more than its finest point took: that time is taken, which is in its
-    favour.
+    SAM never reaches it. A model that never reaches it needs more than its finest point took: that time is
+    taken, which is in its favour.
     """
     own, its = ([reached(rows, n, target).value for n in names] for names in (ONES, [AXISYMMETRIC]))
     least = min((each for each in own if each is not None), default=math.inf)
@@ -205,10 +202,8 @@ def ratio_at_a_third(rows: DataFrame, _: str) -> float:
 
 def faster(rows: DataFrame, other: str) -> tuple[float, float]:
     """How many times the processor time of SAM, on one grid or on two, another method takes to the smallest
-    error that both reach, and that error; nan where one of them reaches none.
-
-    The error is that of the finest point of the one that ends at the larger, and at least KNOWN times the
-    floor.
+    error that both reach, and that error; nan where one of them reaches none. The error is that of the finest
+    point of the one that ends at the larger, and at least KNOWN times the floor.
     """
     last = {name: float(own.iloc[-1]) for name, own in rows["error"].groupby(rows["method"])}
     least = KNOWN * max(rows["floor"])

@@ -63,7 +63,6 @@ PATCH = 32e-6
 @dataclass(frozen=True)
 class Method:
     """A model as it is asked, and its ladder, coarse to fine. at: the scene of the problem at a resolution.
-
     strict: an answer that did not converge counts as none. The loop of the paper need not converge in our
     sense.
     """
@@ -78,11 +77,10 @@ class Method:
 @dataclass(frozen=True)
 class Problem:
     """One contact. scene: from that of `file`; kind: of the advice it gives, empty for none; measures:
-    quantities of the result, the error being the largest of theirs.
-
-    advised: what the advice calls a resolution of 1, its name and size, from the scene and the reference
-    values. exact: closed form, quantity -> value; else the reference is extrapolated from the `tops` finest
-    points of each of `references`, names of methods. steps: SAM with its load steps refined.
+    quantities of the result, the error being the largest of theirs. advised: what the advice calls a
+    resolution of 1, its name and size, from the scene and the reference values. exact: closed form, quantity
+    -> value; else the reference is extrapolated from the `tops` finest points of each of `references`, names
+    of methods. steps: SAM with its load steps refined.
     """
 
     name: str

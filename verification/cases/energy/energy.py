@@ -107,13 +107,12 @@ def balances(context: Context) -> Iterator[dict[str, Any]]:
 
 def row(one: Balance, contact: str) -> dict[str, Any]:
     """Energies in J: the work at the peak, dissipated and locked, stored as cold work, after unloading; the
-    largest errors of the cells and of the steps over the states.
-
-    within-cells: plastic work of stresses that vary within cells over the largest work, 0 in FEM. pressing:
-    what the work F delta of the counter-body differs by from that of the pressure, up to the peak. Of one
-    that alternates, in its last cycle, between two states without force, over what that dissipates: cycle,
-    the work less what is dissipated, as elastic energy and that of the back-stresses are to come back; flow,
-    the plastic work less what is dissipated and stored by back-stresses.
+    largest errors of the cells and of the steps over the states. within-cells: plastic work of stresses that
+    vary within cells over the largest work, 0 in FEM. pressing: what the work F delta of the counter-body
+    differs by from that of the pressure, up to the peak. Of one that alternates, in its last cycle, between
+    two states without force, over what that dissipates: cycle, the work less what is dissipated, as elastic
+    energy and that of the back-stresses are to come back; flow, the plastic work less what is dissipated and
+    stored by back-stresses.
     """
     values = {
         "work": one.work[one.peak],

@@ -115,9 +115,7 @@ FRESH = (
 @dataclass(frozen=True)
 class Difference:
     """Relative difference of a quantity at equal force over a/R of the finite model, and its fit x (c1 + c2 x
-    + c3 x^2).
-
-    covariance: (3, 3) of the coefficients, by the scatter of the points about the fit.
+    + c3 x^2). covariance: (3, 3) of the coefficients, by the scatter of the points about the fit.
     """
 
     x: np.ndarray
@@ -223,7 +221,6 @@ def loaded_once(kind: str, reach: float, elements: int) -> tuple[Scene, Curve]:
 
 def small_load() -> dict[str, float]:
     """At a/R = 1e-3 by the finite model against Hertz; at 2e-3 the first-order change by true geometry alone.
-
     By Johnson's u_r = -(1 - 2 nu)(1 + nu) a^2 p0/(3 E r) (1 - (1 - r^2/a^2)^(3/2)) the gap changes by r
     u_r/R; the radial part p r/R of a pressure along the normal moves the surface by that of the bracket which
     is left. Both together are uniform: the contact stays that of Hertz, its radius moves by u_r(a), and the

@@ -25,11 +25,9 @@ POINTS = 4  # Gauss points of a cell each way, for means of the closed form
 
 @dataclass(frozen=True)
 class Images:
-    """Of a plastic zone without hardening of its own: stress over the shear modulus, lengths in radii.
-
-    parts: stress I that the surface adds because of strain J alone, (J, I, layers, nx, ny); raised:
-    displacement u_z of the surface by strain J, (J, nx, ny); stress: L2 of the stress of all of it far from
-    any surface.
+    """Of a plastic zone without hardening of its own: stress over the shear modulus, lengths in radii. parts:
+    stress I that the surface adds because of strain J alone, (J, I, layers, nx, ny); raised: displacement u_z
+    of the surface by strain J, (J, nx, ny); stress: L2 of the stress of all of it far from any surface.
     """
 
     parts: np.ndarray

@@ -30,7 +30,6 @@ METHODS = {
 
 def frame(context: Context) -> Iterator[dict[str, Any]]:
     """Each law, method and number of load steps once; the loops of the paper need not converge in our sense.
-
     off: how far the largest plastic strain is from that of backward Euler with as many steps; excess: max
     (mises - sigma_y)/sigma_y as the certificate states it; stated: what the plane y = 0 has beyond it;
     plastic-strain: on the axis, in the fewest load steps.

@@ -133,9 +133,8 @@ def pressure(file: CaseFile, frame: DataFrame) -> Plot:
 
 def summit_radius(result: Result) -> float:
     """Contact radius in m of the sphere whose pressure has the curvature of the largest one here, of which p0
-    (1 - r^2/(2 a^2)).
-
-    Spots merge several summits; how far the pressure of one reaches is what a film is thick or thin against.
+    (1 - r^2/(2 a^2)). Spots merge several summits; how far the pressure of one reaches is what a film is
+    thick or thin against.
     """
     x, y, p = pressure_map(result)
     i, j = np.unravel_index(np.nanargmax(p), p.shape)

@@ -181,9 +181,8 @@ def wilson(held: int, of: int, level: float = 0.9) -> tuple[float, float]:
 
 def deciders(shares: np.ndarray, held: np.ndarray) -> list[dict[str, Any]]:
     """The inputs that decide a statement beyond chance, the first most. held: (points,), NaN: says nothing.
-
-    change: how much more often it holds in the upper half of an input's range than in the lower
-    one, with bounds of 90 %.
+    change: how much more often it holds in the upper half of an input's range than in the lower one, with
+    bounds of 90 %.
     """
     says, found = np.isfinite(held), []
     for share, one in zip(shares.T[:, says], INPUTS, strict=True):

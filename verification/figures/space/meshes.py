@@ -80,7 +80,6 @@ class Found:
 
     def plane(self, column: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """A column in the plane of the section up to the surface: x (nx,), depth (nz,) in µm, (nx, nz).
-
         Within half a cell of the surface, or of an interface, where there are no points, it has the value of
         the next one.
         """

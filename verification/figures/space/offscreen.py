@@ -49,10 +49,9 @@ def draw(
     page: bool = False,
     progress: Progress = lambda *_: None,
 ) -> dict[str, bytes]:
-    """The pictures that the run in `folder` has: name -> the content of a PNG, or of an HTML page.
-
-    name: this one alone; one: the first alone; progress: called twice a second. Raises CannotDrawError, or
-    FolderError for a damaged run.
+    """The pictures that the run in `folder` has: name -> the content of a PNG, or of an HTML page. name: this
+    one alone; one: the first alone; progress: called twice a second. Raises CannotDrawError, or FolderError
+    for a damaged run.
     """
     found = window()
     if found is None and not page:  # a page is drawn by the browser
@@ -69,9 +68,8 @@ def draw(
 
 
 def draw_run(folder: Path, name: str | None = None, *, progress: Progress = lambda *_: None) -> list[Path]:
-    """Draw the pictures of a finished run, or the one that is named, into its folder of figures.
-
-    Raises CannotDrawError, and then has written nothing.
+    """Draw the pictures of a finished run, or the one that is named, into its folder of figures. Raises
+    CannotDrawError, and then has written nothing.
     """
     pictures = {
         folder / FIGURES / f"{each}{IN_SPACE}.png": png

@@ -95,9 +95,8 @@ NO_ANSWER = ("iterations", "residual", "operator_applications")
 
 def solved(solver: str, title: str) -> dict[str, np.ndarray]:
     """All numbers of the result of a probe but its work: the quantities, and the columns of the tables but
-    those of NO_ANSWER.
-
-    The table of all residuals has a row for each iteration, and the goals that the constants set.
+    those of NO_ANSWER. The table of all residuals has a row for each iteration, and the goals that the
+    constants set.
     """
     result = models.solve(Scene.model_validate({"title": title, **PROBES[solver][title]}), solver)
     if not result.converged:

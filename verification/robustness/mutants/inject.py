@@ -25,9 +25,7 @@ OWN = ("samfem", "sam", "fem_reference", "verification", "tests")
 
 def put(mutants: Sequence[Mutant], factor: float = FACTOR) -> dict[Mutant, Number]:
     """Change these of one module, in this process from now on; the integers among them, which record their
-    use.
-
-    A row of a table is perturbed by itself.
+    use. A row of a table is perturbed by itself.
     """
     forget(mutants[0].module)
     if mutants[0].kind == "row":

@@ -145,10 +145,9 @@ def with_tests(files: Sequence[str], work: Callable[[dict[str, pytest.Item]], No
 
 
 def run(item: pytest.Item, following: pytest.Item | None = None) -> tuple[bool, float, str]:
-    """Run one test with what it sets up and, unless the following one shares it, takes down:
-    whether it passed, processor seconds, kind of the error.
-
-    Without pytest's reports: to show why a test failed takes it longer than most of the tests do.
+    """Run one test with what it sets up and, unless the following one shares it, takes down: whether it
+    passed, processor seconds, kind of the error. Without pytest's reports: to show why a test failed takes it
+    longer than most of the tests do.
     """
     state, error, start = item.session._setupstate, "", time.process_time()
     item.stash[tmppath_result_key] = {}  # without it tmp_path ends in an error
@@ -201,11 +200,9 @@ def prepare() -> None:
 def observe(
     modules: Sequence[str], items: Mapping[str, pytest.Item], progress: Callable[[int, int], None]
 ) -> tuple[dict[str, Seen], frozenset[Mutant], list[str]]:
-    """What each test runs and takes, without those that are slow or fail; the integers that meet a
-    float when their module is loaded; the tests that fail by the fault of the rewriting.
-
-    All modules are rewritten with every number as it is, and each test is run on its own, in a fork
-    that remembers nothing.
+    """What each test runs and takes, without those that are slow or fail; the integers that meet a float when
+    their module is loaded; the tests that fail by the fault of the rewriting. All modules are rewritten with
+    every number as it is, and each test is run on its own, in a fork that remembers nothing.
     """
     prepare()
     files = frozenset(import_module(name).__file__ for name in modules)

@@ -229,10 +229,9 @@ def write_report(
     stale: Mapping[str, str] | None = None,
     place: Path | None = None,
 ) -> Path:
-    """Write the pages of results into the folder of their figures; returns the one to open.
-
-    single_file: also report.html with everything inside, which is all there is of a comparison;
-    stale: name -> why a case is older than the code, which is marked; place: where the folder will stand.
+    """Write the pages of results into the folder of their figures; returns the one to open. single_file: also
+    report.html with everything inside, which is all there is of a comparison; stale: name -> why a case is
+    older than the code, which is marked; place: where the folder will stand.
     """
     alone = results.get("kind") == "comparison"
     if not alone:
@@ -244,7 +243,6 @@ def write_report(
 
 def _write_pages(stored: Stored, look: Look) -> None:
     """Write index.html, README.md and a page for each group of which a case ran, in place of older pages.
-
     report.html leads to the index, for those who look for that.
     """
     evidence = Evidence(stored, pairs_of(stored))
