@@ -22,8 +22,12 @@ from verification.runs.provenance import collect, without_places
 from verification.runs.store import Reuse, Store, solve_or_reuse
 from verification.text.console import number
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # loaded only where something is drawn or tabulated
+    from pandas import DataFrame
+
     from verification.figures.style import Drawing
+else:
+    DataFrame = Drawing = Any
 
 
 @dataclass(frozen=True)

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import UNLOADED
-from verification.cases.case import Plot, View
+from verification.cases.case import DataFrame, Plot, View
 from verification.cases.sweep import BOTH, LABELS, UNITS as SI, fitted, label_of, spelt, words_of
 from verification.compare.measures import SHALLOWEST, Plane, patch_pressure, spots
 from verification.figures.check import COUNTS
@@ -50,9 +50,6 @@ from verification.references import REFERENCES, coated_contact, contact_of
 from verification.rows import CaseFile
 from verification.runs.sampling import peak, pressure_map, rows_of
 from verification.runs.tables import contact_size
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 COLUMNS = {
     ("line", "p_Pa"): ("Pressure", PRESSURE, "p0"),

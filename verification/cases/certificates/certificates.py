@@ -6,7 +6,7 @@ small scenes in groups, for each of which a row holds.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from verification.cases.case import (
     FEM_3D,
     SAM,
     Context,
+    DataFrame,
     with_body,
     with_grid,
     with_loading,
@@ -23,9 +24,6 @@ from verification.cases.case import (
 )
 from verification.cases.recipes import Resolution, at_ratio, resolved_at
 from verification.checks.certificates import OF_GROUP, solved
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 __all__ = ["frame", "worst"]
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from verification.cases.case import (
     FEM,
     SAM,
     Context,
+    DataFrame,
     with_body,
     with_grid,
     with_keys,
@@ -26,9 +27,6 @@ from verification.cases.recipes import at_ratio
 from verification.checks.certificates import curves_of
 from verification.checks.conditions import peak_rows
 from verification.references import contact_of
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 __all__ = ["apart"]
 

@@ -8,14 +8,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.kernels import Lags
 from sam.layered import LayeredPatches, Layers
 from sam.scene import Result, Scene
-from verification.cases.case import FEM, SAM, Context, Plot, with_grid, with_mesh
+from verification.cases.case import FEM, SAM, Context, DataFrame, Plot, with_grid, with_mesh
 from verification.cases.recipes import coated_scene, film_under
 from verification.figures.specials import change_maps
 from verification.reference.coated_changes import (
@@ -25,13 +25,9 @@ from verification.reference.coated_changes import (
     pressure_change,
 )
 from verification.references import changes_by_film, contact_of
+from verification.rows import CaseFile
 from verification.runs import models
 from verification.runs.sampling import pressure_map
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
-    from verification.rows import CaseFile
 
 __all__ = ["at_limits", "changes_of_paper", "grids", "mapped"]
 

@@ -4,18 +4,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from verification.cases.case import FEM_3D, Context, Plot, SmallTable
+from verification.cases.case import FEM_3D, Context, DataFrame, Plot, SmallTable
 from verification.cost import growth
 from verification.figures.lines import Curve, curves
 from verification.reference.convergence import Power, fit_power
 from verification.rows import CaseFile
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 ERROR = 1e-4  # of the stress/mu of a unit strain by sweeps
 BOXES = {

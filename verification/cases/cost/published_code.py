@@ -18,16 +18,13 @@ from compileall import compile_dir
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from verification.cases.case import FEM, FEM_3D, SAM, Context, SmallTable
+from verification.cases.case import FEM, FEM_3D, SAM, Context, DataFrame, SmallTable
 from verification.runs.code_version import OF_CASES
 from verification.runs.threads import EVERY_LIBRARY
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 ROOT = Path(__file__).resolve().parents[3]
 PAIRS, LOSS = 5, 1.2

@@ -10,12 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Result, Scene, Status
-from verification.cases.case import FEM, SAM, Context, Plot, with_grid, with_keys, with_loading
+from verification.cases.case import FEM, SAM, Context, DataFrame, Plot, with_grid, with_keys, with_loading
 from verification.cases.recipes import at_ratio
 from verification.figures import lines
 from verification.quantities import QUANTITIES
@@ -26,9 +26,6 @@ from verification.rows import CaseFile
 from verification.runs.store import solve_or_reuse
 from verification.uncertainty.rule import bound, order_seen
 from verification.uncertainty.solving import asked_of, solve
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 SEED = 20261125
 DRAWS = 5  # of a problem, until its plastic zone fits the grid

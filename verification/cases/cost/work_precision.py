@@ -12,12 +12,12 @@ import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import pairwise, zip_longest
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Result, Scene
-from verification.cases.case import FEM, FEM_3D, SAM, Context, Plot, SmallTable, number
+from verification.cases.case import FEM, FEM_3D, SAM, Context, DataFrame, Plot, SmallTable, number
 from verification.cases.cost.work_precision_problems import (
     AXISYMMETRIC,
     COUPLED,
@@ -35,9 +35,6 @@ from verification.cost.precision import TARGETS, Ladder, Reached, Reference, agr
 from verification.figures.style import Drawing
 from verification.figures.work_precision import curves, overview
 from verification.rows import CaseFile
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 STUDIED = {problem.name: problem for problem in (*PROBLEMS, ELLIPSOID)}
 ADVISED = {COUPLED: SAM, TWICE: ON_TWO_GRIDS, AXISYMMETRIC: FEM, SPATIAL: FEM_3D}

@@ -7,13 +7,12 @@ elements.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
 from sam.scene import Plasticity, Result, Scene
-from verification.cases.case import with_body, with_keys, with_loading
+from verification.cases.case import DataFrame, with_body, with_keys, with_loading
 from verification.judging import Measured
 from verification.quantities import Reference
 from verification.reference.hertz import subsurface_stress
@@ -30,8 +29,6 @@ __all__ = [
     "strain_on_axis",
 ]
 
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 LAWS = {
     "prager": (3.4e9, {"modulus": (210e9 / 19,), "recovery": (0.0,)}),

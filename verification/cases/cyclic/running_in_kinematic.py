@@ -8,16 +8,14 @@ assumed, not measured: no cyclic curve of the steel is known.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from sam.scene import Plasticity
 from verification.cases.case import SAM, Context, with_keys
 from verification.cases.running_in import study
 from verification.cases.running_in.study import MODULI, NAMES, RECOVERY, SHARES, Effort, Run
-
-if TYPE_CHECKING:
-    from sam.scene import Plasticity
 
 EFFORT = Effort(cycles=10, steps=4, cells=48)
 FITTED, HALF = (1e-6, 0.03), EFFORT.cycles // 2

@@ -6,23 +6,19 @@ unloading.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Friction, Scene
-from verification.cases.case import FEM, FEM_3D, SAM, Context, Plot, with_body, with_loading
+from verification.cases.case import FEM, FEM_3D, SAM, Context, DataFrame, Plot, with_body, with_loading
 from verification.cases.recipes import Resolution, at_ratio, resolved_at
 from verification.energy import of_fem, of_sam
 from verification.energy.balance import Balance
 from verification.figures.specials import over_path
 from verification.reference.convergence import fit_power
 from verification.references import contact_of
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
-    from verification.rows import CaseFile
+from verification.rows import CaseFile
 
 __all__ = ["balances", "order_in_cells", "order_in_steps", "path"]
 

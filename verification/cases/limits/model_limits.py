@@ -10,14 +10,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from fem_reference import plastic_radius
 from fem_reference.finite_strain import Curve, build, curve_of, load_to
 from sam.scene import Scene
-from verification.cases.case import Context
+from verification.cases.case import Context, DataFrame
 from verification.references import contact_of
 from verification.runs.model_range import (
     COLUMNS,
@@ -29,9 +29,6 @@ from verification.runs.model_range import (
     errors,
 )
 from verification.runs.tables import columns_text
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 __all__ = ["elastic", "plastic", "stated"]
 

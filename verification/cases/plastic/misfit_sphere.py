@@ -7,12 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sam.scene import Plasticity, Result, Scene
-from verification.cases.case import with_body, with_loading
+from verification.cases.case import DataFrame, with_body, with_loading
 from verification.cases.plastic.misfit_images import NAMES, Images, cell_means, images
 from verification.judging import Measured
 from verification.quantities import Reference
@@ -38,8 +37,6 @@ __all__ = [
     "uplift",
 ]
 
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 LAWS = {
     "linear": (0.02, {"law": "linear", "yield_stress": 1e9, "modulus": 10e9}),

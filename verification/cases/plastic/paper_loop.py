@@ -4,17 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from verification.cases.case import SAM, Context, with_keys, with_loading
+from verification.cases.case import SAM, Context, DataFrame, with_keys, with_loading
 from verification.cases.recipes import Resolution, at_ratio, resolved_at
 from verification.references import contact_of
 from verification.runs.sampling import peak
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 __all__ = ["largest_excess", "shrinks"]
 

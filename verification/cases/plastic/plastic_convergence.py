@@ -3,14 +3,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from verification.cases.case import DataFrame
 from verification.reference.convergence import extrapolate
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 
 def limit_of_both(rows: DataFrame, column: str) -> float:

@@ -5,13 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq
 
 from sam.scene import Result, Scene
-from verification.cases.case import with_grid, with_keys, with_loading
+from verification.cases.case import DataFrame, with_grid, with_keys, with_loading
 from verification.cases.recipes import initial_yield
 from verification.judging import Measured
 from verification.quantities import Reference
@@ -25,9 +24,6 @@ from verification.reference.indentation import (
     residual_share,
 )
 from verification.references import modulus_of
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 __all__ = [
     "area_jackson",

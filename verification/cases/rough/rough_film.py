@@ -12,20 +12,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Result, Scene
-from verification.cases.case import SAM, Context, Plot, with_body, with_grid, with_keys
+from verification.cases.case import SAM, Context, DataFrame, Plot, with_body, with_grid, with_keys
 from verification.compare.verdicts import LIMIT, breaking_radius
 from verification.figures.maps import rough_pressures
+from verification.rows import CaseFile
 from verification.runs.sampling import pressure_map
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
-    from verification.rows import CaseFile
 
 __all__ = ["frame", "pressure", "size", "spread"]
 

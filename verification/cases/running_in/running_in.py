@@ -12,12 +12,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Scene
-from verification.cases.case import Context, Measured, Plot, SmallTable, View, with_grid, with_keys
+from verification.cases.case import Context, DataFrame, Measured, Plot, SmallTable, View, with_grid, with_keys
 from verification.cases.running_in import study
 from verification.cases.running_in.study import (
     BULK,
@@ -37,9 +37,6 @@ from verification.compare.running_in_measures import Limits
 from verification.figures.lines import Curve, curves, yield_profiles
 from verification.figures.running_in import six_panels
 from verification.reference.bonded_film import regime
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 PRINTED, RENEWED = "printed inputs", "renewed"
 WORDS = {

@@ -11,21 +11,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Grid, HeightMap, Result, Scene, Surface
 from sam.scene.surface import heights, mean_deviation, with_relief
-from verification.cases.case import SAM, Context, Plot, with_keys, with_loading
+from verification.cases.case import SAM, Context, DataFrame, Plot, with_keys, with_loading
 from verification.cases.running_in.study import CUBIC, LITERATURE_B, NAN, with_plasticity
 from verification.compare.running_in_measures import Scar
 from verification.figures.lines import over_cells
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
-    from verification.rows import CaseFile
+from verification.rows import CaseFile
 
 SIDE, SHORTEST, SMOOTHED = 25e-6, 8e-6, 5e-6  # m: of the patch, shortest wave, window of smoothing
 CELLS = (25, 45, 75, 135)  # along a side

@@ -11,21 +11,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 from math import lcm
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from fem_reference.spatial import WornCycle, worn_cycles
 from sam.scene import Plasticity, Result, Scene, Wear
-from verification.cases.case import SAM, Context, with_body, with_loading
+from verification.cases.case import SAM, Context, DataFrame, with_body, with_loading
 from verification.cases.recipes import cells_of_asperities, rubbed
 from verification.compare.measures import Plane, depths_compared, patch_pressure, spots
 from verification.judging import relative_l2
 from verification.runs.sampling import Tables
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
 
 CELLS = (32, 48, 64)
 SQUARES = 16  # along a side; the rim of a scar bears on single cells, of any size

@@ -12,12 +12,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Path, Scene
-from verification.cases.case import Context, Measured, Plot, SmallTable, with_keys, with_loading
+from verification.cases.case import Context, DataFrame, Measured, Plot, SmallTable, with_keys, with_loading
 from verification.cases.running_in import study
 from verification.cases.running_in.study import (
     BULK,
@@ -37,9 +37,6 @@ from verification.cases.running_in.study import (
     readings_of,
 )
 from verification.figures.lines import over_cycles
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 EFFORT = Effort(LAST, steps=3, cells=32)
 SQ = 20e-9  # m: of the counter-surface, the geometric middle of the 5 to 60 nm of ground and polished discs

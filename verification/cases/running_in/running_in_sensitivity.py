@@ -16,13 +16,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.stats import binomtest, norm
 
 from sam.scene import Scene
-from verification.cases.case import Context, Measured, Plot, SmallTable, with_keys, with_loading
+from verification.cases.case import Context, DataFrame, Measured, Plot, SmallTable, with_keys, with_loading
 from verification.cases.running_in import study
 from verification.cases.running_in.study import (
     BULK,
@@ -38,9 +38,6 @@ from verification.cases.running_in.study import (
 )
 from verification.figures.specials import probabilities
 from verification.sensitivity import UNIFORM, design
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 SURFACES = 100  # seeds of surfaces count from here, and are no others'
 EFFORTS = {"quick": (4, Effort(2, 2, 24, (BULK, A))), "full": (64, Effort(LAST, 3, 64))}

@@ -6,21 +6,18 @@ form.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq
 
 from sam.contact import stresses, von_mises
 from sam.grid import Window
-from verification.cases.case import Context
+from verification.cases.case import Context, DataFrame
 from verification.judging import Measured
 from verification.reference.hamilton import largest_von_mises, sliding_stress
 
 __all__ = ["limit_of_crossings"]
 
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 NU = 0.3
 FRICTION = (0.0, 0.1, 0.2, 0.25, 0.3, 0.4, 0.5)
