@@ -25,8 +25,6 @@ from verification.cases.case import (
 from verification.cases.recipes import Resolution, at_ratio, resolved_at
 from verification.checks.certificates import OF_GROUP, solved
 
-__all__ = ["frame", "worst"]
-
 LEVEL = {"quick": Resolution(8, 10), "full": Resolution(12, 20)}
 STEPS, RATIO, PERFECT_RATIO, COEFFICIENT = 5, 4.0, 3.0, 0.2
 FILM_RATIO, FILM_MESH = 2.5, 8

@@ -28,8 +28,6 @@ from verification.checks.certificates import curves_of
 from verification.checks.conditions import peak_rows
 from verification.references import contact_of
 
-__all__ = ["apart"]
-
 MODELS = {"sam": SAM, "fem": FEM}
 SLOPES = {"perfect": 0.0, "nearly-perfect": 1e-4}  # of the yield curve over Young's modulus
 EXTENT = {6.2: (2.5, 3.3), 15.0: (5.5, 5.4)}

@@ -24,8 +24,6 @@ from verification.checks.certificates import late, solved
 from verification.checks.conditions import surface_of
 from verification.checks.material import around, fields_at_points
 
-__all__ = ["frame"]
-
 CYCLES = (2, 5)
 SEED, TOLERANCE = 1, 1e-6
 """Of wear-converged: the surface that wears most; a rigid plane needs twice the load for as many cells in

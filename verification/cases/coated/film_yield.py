@@ -26,8 +26,6 @@ from verification.reference.hertz import effective_modulus
 from verification.references import changes_by_film
 from verification.runs.sampling import peak
 
-__all__ = ["frame"]
-
 LEVEL = {"quick": (8, 5), "full": (12, 10)}
 """Elements in the contact radius, of which the film has two over its thickness whatever their number; load
 steps.

@@ -18,7 +18,7 @@ from verification.quantities import Reference
 from verification.reference.misfit_sphere import PROFILES
 from verification.references import growing_sphere
 
-__all__ = ["even_sphere", "period"]
+__all__ = ["even_sphere"]
 
 YIELD, MODULUS = 1e9, 160e9
 REACHES = np.linspace(0.3, 3.0, 2701)  # radii at which the exact solution is looked at

@@ -20,7 +20,7 @@ from verification.reference.convergence import fit_power
 from verification.references import contact_of
 from verification.rows import CaseFile
 
-__all__ = ["balances", "order_in_cells", "order_in_steps", "path"]
+__all__ = ["balances", "order_in_cells", "order_in_steps"]
 
 RATIO = 4.0
 STEPS = (6, 12, 24)  # of the loading; the first for all grids, the coarsest grid for all of them

@@ -17,8 +17,6 @@ from verification.reference.bonded_film import film_pressure, in_plane_strain, n
 from verification.reference.convergence import fit_power
 from verification.reference.film_flow import Film, FlowPoint
 
-__all__ = ["frame"]
-
 FILM, BODY = (80e9, 0.3, 2e9 / 3.0), (210e9, 0.3)
 """E in Pa and nu, of the film also its yield stress in Pa, a third of its hardness: Bosman & Schipper (2011),
 section 4.

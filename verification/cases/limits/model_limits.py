@@ -30,8 +30,6 @@ from verification.runs.model_range import (
 )
 from verification.runs.tables import columns_text
 
-__all__ = ["elastic", "plastic", "stated"]
-
 LIMIT = 0.05
 """Relative difference from which on the models of the scenes are called no good."""
 QUANTITIES = {

@@ -25,17 +25,7 @@ from verification.reference.indentation import (
 )
 from verification.references import modulus_of
 
-__all__ = [
-    "area_jackson",
-    "area_kogut",
-    "farthest",
-    "load_jackson",
-    "load_kogut",
-    "sixty_depths",
-    "w_of_steps",
-    "w_star",
-    "yields_at",
-]
+__all__ = ["area_jackson", "area_kogut", "load_jackson", "load_kogut", "sixty_depths", "w_of_steps", "w_star"]
 
 LARGEST = 20.0  # w*: beyond it the two correlations part, 14 % at 110
 RESOLVED = 0.35  # contact radius over that at the largest load from which a point counts

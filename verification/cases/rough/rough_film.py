@@ -23,8 +23,6 @@ from verification.figures.maps import rough_pressures
 from verification.rows import CaseFile
 from verification.runs.sampling import pressure_map
 
-__all__ = ["frame", "pressure", "size", "spread"]
-
 SCENE = "rough-patch"
 GRIDS = {"quick": (64, 128), "full": (64, 128, 256, 512)}
 WHITE, WHITE_GRIDS = 2e-6, {"quick": (128,), "full": (128, 256)}  # cut-off in m; four cells in it and more
