@@ -17,7 +17,6 @@ from typing import Any
 from verification.judging import LIMITS, RowStatus
 from verification.runs.store import short
 from verification.suite.pages.headline import headline_of
-from verification.suite.pages.older import pairs_in, times_in
 from verification.suite.pages.stored import (
     ELSEWHERE,
     LIMIT_SIGNS,
@@ -92,7 +91,7 @@ def pairs_of(stored: Stored) -> list[Pair]:
                 against = FEM if "FEM" in words else EXACT
                 gated.append(Pair(each, words, against, gate["value"], gate["expected"], gate))
         known = {round(pair.error, 4) for pair in gated}
-        said = pairs_in(each.case) if "data" not in each.case else each.case["data"].get("pairs", ())
+        said = each.case.get("data", {}).get("pairs", ())
         beside = (Pair(each, words, FEM, sam, fem) for words, sam, fem in said)
         found += gated + [pair for pair in beside if round(pair.error, 4) not in known]
     return [pair for pair in found if not pair.is_of(PAGES["pairs"]["singular"])]
@@ -131,8 +130,7 @@ class Cost:
 def costs_of(stored: Stored) -> list[Cost]:
     """Every contact of the case that measured times, none where it did not run."""
     costs, ran, nothing = [], stored.ran.get("work-precision"), (None, False)
-    data = ran.case.get("data", {}) if ran else {"times": ()}
-    for _, _, times in data["times"] if "times" in data else times_in(ran.case):
+    for _, _, times in ran.case.get("data", {}).get("times", ()) if ran else ():
         fem = [time for name, time in times.items() if name.startswith("FEM") and time[0]]
         costs.append(Cost(times.get("SAM", nothing), min(fem, default=nothing)))
     return costs
