@@ -16,7 +16,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, MaxNLocator, NullLocator
 from scipy.interpolate import RectBivariateSpline
 
-from verification.energy.balance import Balance
+from verification.energy import Balance
 from verification.figures.style import (
     BLACK,
     BLUE,

@@ -13,8 +13,7 @@ import numpy as np
 from sam.scene import Friction, Scene
 from verification.cases.case import FEM, FEM_3D, SAM, Context, DataFrame, Plot, with_body, with_loading
 from verification.cases.recipes import Resolution, at_ratio, resolved_at
-from verification.energy import of_fem, of_sam
-from verification.energy.balance import Balance
+from verification.energy import Balance, balance_of_fem, balance_of_sam
 from verification.figures.specials import over_path
 from verification.reference.convergence import fit_power
 from verification.references import contact_of
@@ -96,7 +95,7 @@ def balances(context: Context) -> Iterator[dict[str, Any]]:
     for contact, model, size, scene in asked(context):
         steps = scene.loading.steps
         context.progress(f"{context.case}, {contact}: {model}, {steps} steps", 1, 1)
-        one = of_sam.balance_of(scene) if model == SAM else of_fem.balance_of(scene, model)
+        one = balance_of_sam(scene) if model == SAM else balance_of_fem(scene, model)
         where = {"contact": contact, "model": SHORT[model], "size": size, "steps": steps}
         yield where | row(one, contact) | {"hertz": 2 / 5 * exact.force * exact.approach}
 
