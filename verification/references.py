@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The independent answers that a case may name, `reference = "..."`: each a function of the scene, made
-of the library in `verification.reference`.
-"""
+"""The independent answers that a case may name, each a function of the scene by `verification.reference`."""
 
 from __future__ import annotations
 

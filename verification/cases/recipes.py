@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a case may change of its scene beside single keys, `vary = {NAME = value}`: each a function of the
-scene and the value.
-"""
+"""What a case may change of its scene beside single keys, `vary = {NAME = value}`."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The elastic contact that is expected of a scene: before a solve by the estimates from which its grid is
-chosen, and beside a result by the closed form of Hertz.
-"""
+"""The elastic contact that is expected of a scene: estimated before a solve, by Hertz beside a result."""
 
 from __future__ import annotations
 

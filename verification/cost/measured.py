@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a solve costs: each in a process of its own, so that memory is its own, and in the unit of a fixed
-kernel.
-"""
+"""What a solve costs: each in a process of its own, and in the unit of a fixed kernel."""
 
 from __future__ import annotations
 

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a scene will compute, what is left out and why, and an estimate of memory and time. Solves nothing.
-
-The stages are those of the plans of the models, the estimates those of `verification.cost.estimates`.
-"""
+"""What a scene will compute, what is left out and why, with estimates. Solves nothing."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Figures of a comparison: the curves of both models, and of data of the user, in the same axes, at
-peak load.
-"""
+"""Figures of a comparison: the curves of both models, and of data of the user, at peak load."""
 
 from __future__ import annotations
 

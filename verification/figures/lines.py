@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Lines over x by series and panel, with points, fits and bounds where they are asked for: one
-function, `curves`, and the figures that it draws.
-"""
+"""Lines over x by series and panel, with points, fits and bounds: `curves`, and figures of it."""
 
 from __future__ import annotations
 

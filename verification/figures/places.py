@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where the contact of a finished run is, and the plane y = const through its largest pressure:
-what its figures show.
-"""
+"""Where the contact of a finished run is, and the plane through its largest pressure."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Figures of repeated loading: plastic strain of each period, loops of stress and strain of three
-points, and the map of classes in the plane y = 0.
-"""
+"""Figures of repeated loading: strain of each period, loops of three points, map of classes in y = 0."""
 
 from __future__ import annotations
 

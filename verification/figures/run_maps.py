@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Maps of one run: fields in the plane through the largest pressure or plastic strain, pressure and friction
-over the contact, wear.
-"""
+"""Maps of one run: fields in a plane, pressure and friction over the contact, wear."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Figures of their own kind: bars with bounds, energies over a load path, heat maps of what a film
-changes, two inputs of a study, and every number of SAM beside its reference.
-"""
+"""Figures of their own kind, each by one function."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One look for all figures, and how they are written. The only place besides its siblings that
-imports matplotlib.
-"""
+"""One look for all figures, and how they are written."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Commands in processes of their own, killed on purpose or not, and what they leave: whole files, early
-summaries, tables, processes.
-"""
+"""Commands in processes of their own, killed on purpose or not, and what they leave."""
 
 from __future__ import annotations
 

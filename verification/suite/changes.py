@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What changed in the gates between two reports: their values one by one, gates that came or went,
-and whether each gate of the older one still stands, by a table that says where.
-"""
+"""What changed in the gates between two reports, and whether each gate of the older one still stands."""
 
 from __future__ import annotations
 

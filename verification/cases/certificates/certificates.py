@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Every condition of a solution, measured after the solve on what was returned, by `verification.checks`: of
-small scenes in groups, for each of which a row holds.
-"""
+"""Every condition of a returned solution, by `verification.checks`, of small scenes in groups."""
 
 from __future__ import annotations
 

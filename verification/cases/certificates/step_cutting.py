@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Near-perfect and perfect plasticity far beyond yield, in few load steps: both solvers finish, or say what
-stops them.
-"""
+"""Near-perfect and perfect plasticity far beyond yield, in few load steps, in both models."""
 
 from __future__ import annotations
 

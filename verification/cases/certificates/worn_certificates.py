@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The conditions of a returned solution in the last of 2 and 5 cycles of a body that wears, as in
-`certificates`.
-
-Material has been removed and what was below it has moved up, and the film is as new in each cycle: strains
-are counted from the start of the last cycle, heights from the worn surface.
+"""The conditions of a returned solution, as in `certificates`, in the last cycle of a body that wears:
+strains are counted from the start of that cycle, heights from the worn surface.
 """
 
 from __future__ import annotations

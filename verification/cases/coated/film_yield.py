@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The tribofilm and the body under it beyond yield, and whether the film still changes pressure and stress by
-less than 5 %.
-
-Bosman & Schipper (2011), section 2, conclude so from an elastic calculation (Table 1, Fig. 3), and take a
-yield stress of the film of 0.67 GPa (section 4), which the pressure of that calculation passes many times.
-Semi-analytical models have one material; this is finite elements alone.
+"""The tribofilm and the body under it beyond yield, by finite elements, and whether the film still changes
+pressure and stress by less than 5 %. Bosman & Schipper (2011), section 2, conclude so from an elastic
+calculation (Table 1, Fig. 3), whose pressure passes the yield stress of the film, 0.67 GPa (section 4), many
+times.
 """
 
 from __future__ import annotations

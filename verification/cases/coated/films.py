@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a film changes under a sphere: a map over thickness and modulus, contact radii that break the claim of
-a negligible film, and a film of a tenth of a cell and of ten.
-"""
+"""What a film changes under a sphere: a map, contact radii at which it matters, and thin films."""
 
 from __future__ import annotations
 

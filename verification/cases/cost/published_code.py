@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Speed, memory and counts of this code over those of the code that was published last: both solve the same
-scenes in turns, each time in a process of its own.
-"""
+"""Speed, memory and counts of this code over those of the code that was published last, in turns."""
 
 from __future__ import annotations
 

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Whether the uncertainty that samfem gives covers the error, on problems whose answer is known.
-
-Problems that differ are drawn from a seed. Dimensionless numbers make a problem: two elastic spheres are one,
-whatever their loads. So an elastic sphere is drawn once, and of the others shape, film, law, friction and
-load over yield stress differ.
+"""Whether the uncertainty that samfem gives covers the error, on problems whose answer is known. They are
+drawn from a seed; as dimensionless numbers make a problem, an elastic sphere is drawn once, and of the others
+shape, film, law, friction and load over yield stress differ.
 """
 
 from __future__ import annotations

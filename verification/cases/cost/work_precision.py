@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Error against run time for every kind of contact: SAM in its forms and both finite-element models; what to
-take when.
-
-Each solve is made in a process of its own, the methods of a problem in turn, with the time of a fixed kernel
+"""Error against run time for every kind of contact, in every form of SAM and both finite-element models. Each
+solve is made in a process of its own, the methods of a problem in turn, with the time of a fixed kernel
 beside them; errors are against references that know their own uncertainty.
 """
 

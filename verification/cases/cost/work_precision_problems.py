@@ -1,9 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The problems of case work-precision: scenes, methods with their ladders of resolutions, and what is
-measured of them.
-
-A ladder of more, or finer, resolutions is a longer tuple below: nothing else has to change.
-"""
+"""The problems of case work-precision: scenes, methods with their ladders of resolutions, measures."""
 
 from __future__ import annotations
 

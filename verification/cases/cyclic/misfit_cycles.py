@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A sphere that grows and shrinks inside a body with a back-stress, a little above the limit below which it
-settles: strain of a period and verdict of both models against the exact solution, which alternates.
-
-With Armstrong and Frederick's law the strain that a period leaves falls to nothing by a few per cent a period
-or less: nothing ratchets, and it takes many periods to see that.
+settles: both models against the exact solution, which alternates. With Armstrong and Frederick's law the
+strain of a period falls to nothing, by a few per cent a period or less: nothing ratchets.
 """
 
 from __future__ import annotations

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is looked at where a Hertz pressure, with or without traction, comes and goes in place on a body with
-back-stresses: the verdict, where it yields to and fro, and the strain on the axis of SAM against finite
-elements.
-"""
+"""What is looked at where a Hertz pressure comes and goes in place on a body with back-stresses."""
 
 from __future__ import annotations
 

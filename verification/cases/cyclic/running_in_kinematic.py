@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Five materials that run in with back-stresses, as a test of whether wear goes on linearly.
-
-They have one curve of first loading, hardened isotropically, kinematically and by halves. The shares are
-assumed, not measured: no cyclic curve of the steel is known.
+"""Five materials that run in with back-stresses: does wear go on linearly? They have one curve of first
+loading; the shares of kinematic hardening are assumed, no cyclic curve of the steel is known.
 """
 
 from __future__ import annotations

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The work of the surface tractions is what is stored and dissipated, in both models, over loading and
-unloading.
-"""
+"""The work of the surface tractions is what is stored and dissipated, in both models."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Passes of a rigid sphere over a track: steel one way and to and fro, with and without friction; bodies of
-perfect plasticity that settle, or flow in every pass.
-"""
+"""Passes of a rigid sphere over a track, with and without friction, on steel and on perfect plasticity."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A rigid sphere that moves over a body: Hertz at every place; the groove of Swift steel, its symmetry, its
-energy, and what it shows at the start.
-"""
+"""A rigid sphere that moves over a body: Hertz at every place; the groove, its symmetry and energy."""
 
 from __future__ import annotations
 

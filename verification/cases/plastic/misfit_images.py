@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Images of plastic strain at a free surface: those of the six components of a spherical plastic zone cancel,
-and each coefficient of SAM that is wrong shows.
-"""
+"""Images of plastic strain at a free surface: those of a spherical plastic zone cancel."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A sphere that grows inside a yielding body: plastic strain of both models against a closed form, without
-any contact, and against each other below a free surface.
-"""
+"""A sphere that grows inside a yielding body: plastic strain of both models in closed form."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Faults: solves and sweeps that are killed at random moments, and what else can go wrong while a
-run writes its folder.
-"""
+"""Solves and sweeps that are killed at random moments, and what else can go wrong in a run's folder."""
 
 from __future__ import annotations
 

@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The film on a rough surface: the layered calculation of Bosman & Schipper (2011), Table 1 and Fig. 3, and
-where it ends.
-
-Their surface is a measurement that is not public, and they do not say against which body it is pressed: a
-synthetic patch with its roughness takes its place, under steel and under a rigid plane, and as smooth and as
-rough as the film is thick.
+"""The film on a rough surface: Bosman & Schipper (2011), Table 1 and Fig. 3. Their measured surface is not
+public, nor do they say against which body: a synthetic patch with its roughness takes its place, under steel
+and under a rigid plane, and as smooth and as rough as the film is thick.
 """
 
 from __future__ import annotations

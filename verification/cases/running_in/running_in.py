@@ -1,11 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Running-in: the five cases of Bosman & Schipper (2011), Figs. 13-17, against what the paper says
-of them: on ten surfaces with the printed inputs, and beside it in a second reading of what the
-paper leaves open; on one surface with finer cells.
-
-Rows are for what must be so: sums that agree, cycles that are complete, friction between its two
-coefficients. What the paper says of its own surface is judged in a table, beside the pressures at
-which a film fails and metal is removed, which decide it.
+"""Running-in: the five cases of Bosman & Schipper (2011), Figs. 13-17, in two readings on ten surfaces, and
+on finer cells. Rows are for what must be so: sums, complete cycles, friction between its coefficients. What
+the paper says of its own surface is judged in a table.
 """
 
 from __future__ import annotations

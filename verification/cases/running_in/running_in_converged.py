@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Worn volume on finer cells, layers and load steps, each alone, with the surface shifted against
-the cells; on how many surfaces the recommended cells give it within a tenth, and what they cost.
-
-The scar is smoothed over a length: the window has as many cells as that takes. Sizes of cells are
-those of which an odd number makes up the length, so that it is the same on all grids to the bit.
+"""Worn volume on finer cells, layers and load steps, each alone, with the surface shifted against the cells.
+The window of smoothing is a length; sizes of cells are those of which an odd number makes it up, so that it
+is the same on all grids to the bit.
 """
 
 from __future__ import annotations

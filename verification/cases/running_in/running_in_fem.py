@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Three asperities that harden by back-stresses and wear between the cycles: SAM against finite
-elements.
-
-Each model removes by its own plastic strain, with a rule and a transfer of the state of its own;
-beside it the finite elements remove what SAM does, so that the transfer alone is compared.
+"""Three asperities that harden by back-stresses and wear between the cycles: SAM against finite elements.
+Each removes by its own plastic strain; beside it the finite elements remove what SAM does, so that the
+transfer of the state alone is compared.
 """
 
 from __future__ import annotations

@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The same body under other physics: how it hardens, what presses on it from cycle to cycle, and
-whether friction changes its sign; which statements of the paper hold in which of them.
-
-Everything else has the printed inputs: materials, film, limits of strain and load. The patch has a
-quarter of the area of the printed scenes, so that all combinations take minutes; one surface, so
-that nothing is said of others.
+"""The same body under other physics: how it hardens, what presses on it from cycle to cycle, and whether
+friction changes its sign. Everything else is as printed, on a quarter of the area and on one surface, so that
+nothing is said of others.
 """
 
 from __future__ import annotations

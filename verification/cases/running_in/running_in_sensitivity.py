@@ -1,14 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Which of the inputs that the paper leaves open decide its statements on running-in.
-
-Every input is drawn evenly over its range, each point on another surface, and all materials are
-run at each point: shares of the points at which a statement holds are probabilities over these
-ranges. Ranges are those that the paper, the literature on this steel and the readings of its
-figures allow; within them every value counts as equally likely, and inputs as independent.
-
-The points at which most statements hold together are chosen by their result, so that they are
-fitted: how far they are from the printed inputs, what they would mean for the body, and whether
-that is plausible is said.
+"""Which of the inputs that the paper leaves open decide its statements on running-in. Each is drawn evenly
+over the range that paper and literature allow, each point on another surface: shares of the points at which a
+statement holds are probabilities over these ranges. The points at which most statements hold are chosen by
+their result, so that they are fitted; what they would mean is said.
 """
 
 from __future__ import annotations

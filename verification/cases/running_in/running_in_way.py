@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Running-in on a way: a rough pin with film and wear below a rough disc that moves on in steps of
-one cell, another stretch of it in each pass; what it costs beside the same contact at rest.
-"""
+"""Running-in on a way: a rough pin below a rough disc that moves on, another stretch in each pass."""
 
 from __future__ import annotations
 

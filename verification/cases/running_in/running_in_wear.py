@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Wear at its limits: a smooth sphere without friction that wears; one and a rough patch that
-never do.
-"""
+"""Wear at its limits: a smooth sphere that wears; one and a rough patch that never do."""
 
 from __future__ import annotations
 

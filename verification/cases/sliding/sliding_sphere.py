@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Stresses under given Hertz pressure and full-slip traction, summed over patches, against Hamilton's closed
-form.
-"""
+"""Stresses under Hertz pressure and full-slip traction, summed over patches, against Hamilton."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the pictures in space are made of: the surface, a plane y = const and the plastic zone of a
-run, as meshes in µm whose z points up.
-"""
+"""What pictures in space are made of, as meshes in µm whose z points up."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Equivalent mutants: constants that must not change an answer, and what a perturbation of them changes in
-the numbers that small scenes return.
-"""
+"""Equivalent mutants: what a perturbation changes in the numbers that small scenes return."""
 
 from __future__ import annotations
 

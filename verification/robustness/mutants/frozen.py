@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`frozen.csv`: by function, how many mutants were killed, which survived, and the tests that killed; how a
-later run differs from it.
-"""
+"""`frozen.csv`: by function what was killed and survived, and how a later run differs from it."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A mutant put into this process, whose modules are loaded: functions get other code, modules and classes
-other constants.
-"""
+"""A mutant put into this process: functions get other code, modules and classes other constants."""
 
 from __future__ import annotations
 

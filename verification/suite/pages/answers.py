@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The questions of the first page and their answers, computed of the results: `pages.toml` says
-which rows, pairs and cells belong to which.
-"""
+"""The questions of the first page and their answers, by the rows, pairs and cells of `pages.toml`."""
 
 from __future__ import annotations
 
