@@ -129,9 +129,7 @@ class Committed:
 
 
 def balance_of_sam(scene: Scene) -> Balance:
-    """Solve a smooth scene and balance the energy of the body. ValueError for an elastic counter-body or a
-    coating; RuntimeError when a step does not converge. Where the pressure is given the approach is zero.
-    """
+    """Balance a smooth scene. ValueError for an elastic counter-body or film, RuntimeError unconverged."""
     elastic = scene.counterbody is not None and scene.counterbody.elastic
     if elastic or scene.loading.prescribed == "misfit-sphere" or scene.body.coating is not None:
         raise ValueError("counterbody: a rigid one on a body without coating is needed")
@@ -268,9 +266,7 @@ def _moved_along(model: Model, strain: np.ndarray, extent: Extent) -> np.ndarray
 
 
 def _mean_moved(scene: Scene, strain: np.ndarray, thick: np.ndarray, free: bool) -> np.ndarray:
-    """(u_z, u_x) of the mean plane of a periodic patch by its mean plastic strain, (6, layers, nx, ny), in m:
-    the solver gives displacements about it, but the mean of the tractions does work on it.
-    """
+    """(u_z, u_x) in m of the mean plane of a periodic patch by its mean strain, (6, layers, nx, ny)."""
     e, nu = strain.mean(axis=(2, 3)), scene.body.poisson
     along_z = e[2] + (0.0 if free else nu / (1 - nu)) * (e[0] + e[1])
     return -np.array([along_z @ thick, 2 * e[4] @ thick])

@@ -92,9 +92,7 @@ def hertz_sphere(scene: Scene) -> Reference:
 
 
 def hertz_line(scene: Scene) -> Reference:
-    """Hertz's line contact with the stresses of McEwen (1949), with friction those of its pressure in full
-    slip, which moves between bodies of unlike moduli.
-    """
+    """Hertz with the stresses of McEwen (1949), with friction those of its pressure in full slip."""
     exact, nu = cast(LineContact, contact_of(scene)), scene.body.poisson
     a, p0, friction = exact.contact_radius, exact.peak_pressure, scene.coefficient
     largest, depth = exact.largest_von_mises(nu)

@@ -120,9 +120,7 @@ class Take(NamedTuple):
 
 
 class Claim(NamedTuple):
-    """A row of a file, with the variant of the scene, the model and what that is held against ("" for what
-    it lacks), its quantity, and what it takes of the sweeps, with what that is held against.
-    """
+    """A row with the variant, model and what it is held against, its quantity, what it takes of sweeps."""
 
     row: Row
     variant: str

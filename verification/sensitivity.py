@@ -23,9 +23,7 @@ MORRIS, SOBOL, UNIFORM = METHODS = "morris", "sobol", "uniform"
 
 @dataclass(frozen=True)
 class Index:
-    """Values (factors,) of an index, both bounds (2, factors) of its confidence interval, and the number
-    (factors,) of samples that it is from.
-    """
+    """Values (factors,), bounds (2, factors) of confidence, and number (factors,) of samples of an index."""
 
     name: str
     values: np.ndarray

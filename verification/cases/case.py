@@ -229,9 +229,7 @@ class Context:
         return scene
 
     def solve(self, model: str, scene: Scene, label: str, *, demand: bool = True) -> Result:
-        """Solve, or take from the store, and write the run into runs/<case>/<label>. RuntimeError when it did
-        not converge, unless not `demand`ed.
-        """
+        """Solve, or take from the store, and write runs/<case>/<label>. RuntimeError if unconverged."""
 
         def progress(stage: str, k: int, n: int) -> None:
             self.progress(f"{self.case}, {label}: {stage}", k, n)

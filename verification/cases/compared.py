@@ -79,9 +79,7 @@ class Compared(Case):
             yield from (changed(base, changes, self.file) for _, changes in points(sweep, context.level))
 
     def measure(self, found: Mapping[str, Solved]) -> dict[str, Measured]:
-        """The rows of the file: `sam/exact` and the like by the vocabulary; what is said of both models, or
-        of all runs, by what is between them; and what they take of the sweeps.
-        """
+        """The rows of the file: by the vocabulary, by what is between both or all runs, and of the sweeps."""
         values: dict[str, Measured] = {}
         for claim in self.file.claims:
             solved, quantity = found[claim.variant], QUANTITIES.get(claim.quantity)

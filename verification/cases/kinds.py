@@ -74,9 +74,7 @@ def _maps(what: str, name: str, draw: Callable[[Solved], Drawing]) -> Callable[[
 def _along(
     *columns: tuple[str, str], name: str, title: str, until: float, pressed: float = np.inf
 ) -> Callable[[Solved], Plot]:
-    """Columns of tables on the curves that the reference has, to `until` times a, the pressure to `pressed`
-    or to where it is compared, with the errors underneath.
-    """
+    """Columns of tables on the curves of the reference to `until` times a, with the errors underneath."""
 
     def plot(found: Solved) -> Plot:
         units, curves = found.reference.units, found.reference.curves

@@ -242,9 +242,7 @@ KINEMATIC = {"law": "perfect", "yield_stress": 1e9, "kinematic": {"modulus": (20
 
 
 def film_sliding(scene: Scene, share: float) -> Scene:
-    """A film of `share` of the contact radius without it under a contact that slides: 16 cells and 10
-    elements in that radius, depths at both sides of the interface.
-    """
+    """A film of `share` of the bare radius in sliding: 16 cells, 10 elements, depths at the interface."""
     a = contact_of(scene).contact_radius
     h, n = share * a, 2 * round(1.6 * 16) + 1
     even = 0.04 * a * np.arange(round(1.6 / 0.04) + 1)
@@ -286,9 +284,7 @@ def on_counterbody(scene: Scene, _: bool) -> Scene:
 
 
 def cells_of_asperities(scene: Scene, cells: int) -> Scene:
-    """The three asperities, and a map of friction, on cells x cells cells; even layers of half a cell, with a
-    face where the hardening law changes.
-    """
+    """The asperities, and a map of friction, on cells x cells; even layers, a face where the law changes."""
     section = "surface" if scene.surface else "counterbody.surface"
     scene = with_keys(scene, section, path=asperities.height_map(cells))
     if scene.friction and scene.friction.law == "map":

@@ -134,9 +134,7 @@ def compare_scene(scene: Scene, sam: Solution, fem: Solution) -> list[Verdict]:
 def compare_data(
     scene: Scene, sam: Solution, fem: Solution, data: OwnData
 ) -> tuple[list[Verdict], list[Verdict]]:
-    """Rows that both models have only beside data, and every row of SAM and the data that these have. The
-    column fem of the second holds the data. What they lack is not compared.
-    """
+    """Rows of both models beside data, and of SAM and the data, whose values the column fem then holds."""
     between: list[Verdict] = []
     found = compare_scene(scene, sam, data)
     for other, rows in ((fem, between), (data, found)):

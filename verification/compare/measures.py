@@ -38,9 +38,7 @@ LEAST = 0.05  # of the force: a spot that bears less is not compared by itself
 
 @dataclass(frozen=True)
 class Plane:
-    """The plastic strain (nx, nz) in y = 0 at peak load; x (nx,), z (nz,), ascending, in one unit of length.
-    jump: depth at which the strain jumps, as the hardening law does.
-    """
+    """Plastic strain (nx, nz) in y = 0 at the peak; x, z ascending, in one unit; jump: depth of the law's."""
 
     x: np.ndarray
     z: np.ndarray
@@ -245,9 +243,7 @@ class Spot(NamedTuple):
 
 
 def spots(sam: Tables, fem: Tables) -> list[Spot]:
-    """The spots that bear more than LEAST of the force, by x: connected regions where either model
-    has contact. Raises ValueError when the two are not on the same cells.
-    """
+    """Spots that bear more than LEAST of the force, by x. Raises ValueError when cells are not the same."""
     (u, v, own), (x, y, p) = patch_pressure(sam), patch_pressure(fem)
     if own.shape != p.shape or not (np.allclose(u, x) and np.allclose(v, y)):
         raise ValueError(f"the patches differ: {own.shape} and {p.shape} cells")

@@ -83,9 +83,7 @@ class OwnData:
 
 
 def read_data(path: str | Path, scene: Scene) -> OwnData:
-    """The data in a CSV file, in a folder of such files, or in the mesh that a mapping (TOML) names. Raises
-    SceneError with everything that is wrong with them, or that cannot be of this scene.
-    """
+    """The data in a CSV file, a folder of such, or a mapped mesh. Raises SceneError with every fault."""
     path = Path(path)
     if path.stem.lower() in COLUMNS_OF_ROWS:
         raise _refused(path, [Problem("", "", f"{path.stem} is a column of compare.csv: rename the data")])
@@ -222,9 +220,7 @@ def _refined(z: np.ndarray, rows: np.ndarray, values: np.ndarray, name: str) -> 
 
 
 def _expected(scene: Scene) -> tuple[float, dict[str, float]]:
-    """Contact radius in m, and column -> what its largest value is to within a factor of ten, NaN: unknown;
-    by Hertz, without coating; of a rough scene the half side of its patch alone.
-    """
+    """Contact radius in m, and column -> largest value to a factor of ten by Hertz, NaN: unknown."""
     radius, pressure, approach = float(max(hertz_semi_axes(scene))), math.nan, math.nan
     body, other, loading = scene.body, scene.counterbody, scene.loading
     if other is None:
@@ -349,9 +345,7 @@ def _direction(axis: str) -> np.ndarray:
 
 
 def _read_mapped(path: Path, radius: float) -> Tables:
-    """The tables line, axis and plane of the mesh that a mapping file names, at its load step, undeformed.
-    radius: of the contact in m, about. Raises SceneError with everything that is wrong with mapping or mesh.
-    """
+    """The tables line, axis and plane of a mapped mesh, undeformed; radius in m. Raises SceneError."""
     try:
         table = parse_toml(read_limited(path), str(path))
         mapping = MeshMapping.model_validate(table, context={"spelling": "file"})

@@ -177,9 +177,7 @@ class BeyondError(models.ModelError):
 
 
 def solve(scene: Scene, model: str, solver: Solve | None = None) -> Result:
-    """The result of a scene as it asks for it: plain, with its uncertainty, or to an accuracy. Raises what
-    the solver raises, and ModelError as `first_choice` or where even the first grids need too much.
-    """
+    """The result of a scene as it asks for it. Raises what the solver does, and ModelError of the search."""
     if scene.solver.accuracy is None:
         return solve_uncertain(scene, model, solver)
     search = Search(scene, model, solver or (lambda each, _: models.solve(each, model)))
@@ -208,9 +206,7 @@ class Solution:
 
 @dataclass
 class Attempt:
-    """What some grids say of the finest of them: the quantity that is known worst, its relative uncertainty,
-    None where there is none, and why the next grid is not solved.
-    """
+    """What some grids say of the finest: the quantity known worst, its relative uncertainty, why it ends."""
 
     choice: Choice
     result: Result
@@ -384,9 +380,7 @@ class Search:
         return Choice(choice.cells * times, min(best, MOST_TIMES * count))
 
     def finer(self, attempt: Attempt, count: int, wanted: int) -> float:
-        """By how much the cells have to be smaller with a wanted number of load steps, by the order seen; 1
-        if not at all, infinite where they cannot help.
-        """
+        """By how much cells must be smaller with these load steps, by the order seen; infinite if no help."""
         found = 1.0
         for name in quantities_of(self.scene):
             entry, value = attempt.result.uncertainty[name], abs(attempt.result.quantities[name])

@@ -195,9 +195,7 @@ def contact_share(scene: Scene, pressure: float) -> float:
 
 
 def _rough_sides(scene: Scene, plan: Any) -> tuple[int, int]:
-    """Cells in x and y of the box around the contact of a rough body: the grid if that changes place, else
-    around the cells with the smallest gap, WIDER_SPOTS times as many as are expected in contact.
-    """
+    """Cells in x and y of the box around a rough contact: where the gap is smallest, WIDER_SPOTS wider."""
     from sam.contact import Counters, around
     from sam.plasticity import or_whole
 
@@ -494,9 +492,7 @@ def _line(scene: Scene, plan: Any) -> Counted:
 
 
 def _held_states(scene: Scene, plan: Any) -> float:
-    """Bytes of the states that stay in memory while a counter-body moves over a body that yields: at the end
-    of each pass, and where passes are judged all of the last period. Memory measured: 0.9 to 1.1 times that.
-    """
+    """Bytes of the states held while a counter-body moves: ends of passes, and all of a judged period."""
     if not (scene.moves and flows(scene)):
         return 0.0
     plasticity, judging = scene.body.plasticity, plan.judging

@@ -144,9 +144,7 @@ class Plan:
 
 
 def plan(scene: Scene, model: str | None = None) -> Plan:
-    """The plan of every model for its kind of contact; model: the one that the attributes are about, by
-    default the first that can represent the scene.
-    """
+    """The plan of every model for its contact; model: of the attributes, by default the first usable."""
     entries = [_model(scene, name) for name in models.models_for(scene)]
     usable = [entry["model"] for entry in entries if entry["available"]]
     advice, of_model = advice_of(scene, usable), model_range(scene)
@@ -288,9 +286,7 @@ def _model(scene: Scene, model: str) -> dict:
 
 
 def _stages(scene: Scene, made: Any) -> list[Stage]:
-    """Stages as the plan `made` of a model has them, in the order in which they begin, that of the
-    eigenstrain kernels with the box that plastic strain may fill in SAM; then those that it leaves out.
-    """
+    """Stages of the plan `made` in their order, with the plastic box of SAM; then those it leaves out."""
     found = []
     for stage in (each for each in made.stages if each.runs or each.reason == NO_FORCE):
         if stage.stage == "eigenstrain kernels" and stage.runs:
@@ -303,9 +299,7 @@ def _stages(scene: Scene, made: Any) -> list[Stage]:
 
 
 def _uncertainty(scene: Scene, model: str, cells: float | None = None) -> tuple[Stage, float]:
-    """What the uncertainty of a scene is taken from besides the scene itself, or why it is expected to have
-    none, and the seconds it adds; cells: in the estimated contact radius.
-    """
+    """What the uncertainty is taken from, or why there is none, and its seconds; cells: in the radius."""
     try:
         found = family(scene, model)
     except NoFamilyError as error:
@@ -318,9 +312,7 @@ def _uncertainty(scene: Scene, model: str, cells: float | None = None) -> tuple[
 
 
 def check_needs(scene: Scene, model: str, available: float | None = None, *, anyway: bool = False) -> Any:
-    """The plan of a scene. Raises ModelError if `model` cannot represent it, or would need more memory than
-    there is, `available` bytes, by default this machine's; or, unless `anyway`, more time than LONGEST.
-    """
+    """The plan of a scene. ModelError for what `model` cannot do, too much memory, or time but `anyway`."""
     models.check(scene, model)
     available = memory_bytes() if available is None else available
     made = models.plan(scene, model)

@@ -48,9 +48,7 @@ PANELS = {
 
 
 def compare_figures(folder: Path, solutions: Mapping[str, Solution], prefix: str = "") -> list[Path]:
-    """Write the figures of results of one scene into `folder`/figures; returns the paths (PNG, CSV of each).
-    solutions: "SAM", "FEM" and names of data -> each; prefix: of the names of the files.
-    """
+    """Write the figures of one scene into `folder`/figures; the paths. prefix: of the names of the files."""
     place = folder / FIGURES
     place.mkdir(parents=True, exist_ok=True)
     drawings = drawings_of(solutions)
@@ -64,9 +62,7 @@ def drawings_of(solutions: Mapping[str, Solution]) -> dict[str, Drawing]:
 
 
 def curves(runs: Mapping[str, Solution], table: str) -> Drawing:
-    """A panel for each quantity of a table over its place in um; with the data in SI units. What data lack is
-    not drawn, and everything only as far as SAM's, or the first with a contact radius.
-    """
+    """A panel for each quantity of a table over its place in um as far as SAM's contact; data in SI units."""
     place = {"line": "x_m", "axis": "z_m"}[table]
     radius = next((size for run in runs.values() if (size := contact_size(run.quantities))), 0.0)
     data, panels = Columns("panel", "model", place, "value"), dict[str, dict[str, Curve]]()

@@ -249,9 +249,7 @@ def of_programs(
     target: float | None = None,
     floor: float = 0.0,
 ) -> Drawing:
-    """Label of the curve -> (program, x, y), in the order of the resolution; target: a value of y
-    that times are stated at; floor: shaded, no claims below.
-    """
+    """Label -> (program, x, y), coarse to fine; target: of stated times; floor: shaded, no claims below."""
     seen, looks = dict.fromkeys(PROGRAMS, 0), {}
     for label, (program, _, _) in series.items():
         looks[label] = PROGRAMS[program] | {"linestyle": DASHES[seen[program] % 3], "fillstyle": "none"}
@@ -308,9 +306,7 @@ def profile_of(plane: Plane, x: float, deep: float) -> Curve:
 
 
 def below_spots(spots: Mapping[str, tuple]) -> Drawing:
-    """Plastic strain over depth. spots: title of a panel -> (z in m, strain) of SAM and of FEM, and
-    the depth from which they are compared; above it is grey.
-    """
+    """Plastic strain over depth: title -> (z in m, strain) of SAM, of FEM, and depth of comparison."""
     panels, shade = {}, {}
     for title, (*models, compared) in spots.items():
         named = zip(("SAM", "FEM"), models, strict=True)
@@ -326,9 +322,7 @@ LINE_ON_POINTS = {
 
 
 def yield_profiles(cases: Mapping[str, Callable[[np.ndarray, float], np.ndarray]], deep: float) -> Drawing:
-    """Yield stress in GPa over depth to `deep` (m), without plastic strain and with 1 %; cases:
-    name -> function of depths in m and a plastic strain, in Pa.
-    """
+    """Yield stress in GPa to `deep` (m), without strain and with 1 %; name -> function of m, strain."""
     z = np.linspace(0.0, deep, 401)
     titles = {0.0: "Before any plastic strain", 0.01: "After a plastic strain of 1 %"}
     drawn = {
@@ -360,9 +354,7 @@ def over_cells(volumes: Mapping[str, Mapping[float, Sequence[float]]], default: 
 
 
 def coverage(panels: Mapping[str, Sequence[tuple[str, str, float, float]]]) -> Drawing:
-    """The uncertainty of numbers over their true error. panels: rule -> (scene, quantity, relative
-    error, relative uncertainty) of each value; what lies below the line is not covered.
-    """
+    """Uncertainty over true error: rule -> (scene, quantity, relative error, relative uncertainty) each."""
     data, drawn = Columns("rule", "scene", "quantity", "error_percent", "uncertainty_percent"), {}
     for title, points in panels.items():
         scenes, quantities, errors, bounds = map(np.array, zip(*points, strict=True))

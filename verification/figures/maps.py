@@ -125,9 +125,7 @@ def plane_maps(
     strip: float = 0.0,
     interface: float | None = None,
 ) -> Drawing:
-    """A field over (x, z), z down: first | second | difference, with iso-lines, contact width and the maxima.
-    strip: depth down to which nothing is compared, hatched; interface: depth at which a film ends, a line.
-    """
+    """A field over (x, z), z down: first | second | difference. strip: not compared; interface: of a film."""
     with style():
         figure, axes, bar = three_panels(pair, strip=strip)
         mark_levels(bar, levels)
@@ -175,9 +173,7 @@ def remark(panel: Axes, words: str) -> None:
 
 
 def three_panels(pair: FieldPair, *, touching: bool = False, strip: float = 0.0):
-    """Three panels of one size: two with shared colour limits, the difference with symmetric ones. touching:
-    what is zero in a field, or in both, is not in contact and grey; strip: see `plane_maps`.
-    """
+    """Three panels: two on one scale, the difference. touching: zero is no contact; strip: `plane_maps`."""
     size = PANEL * np.ptp(pair.v) / np.ptp(pair.u) + AROUND
     figure = new_figure(9.4, size, "compressed")
     axes = figure.subplots(1, 3, sharex=True, sharey=True)
@@ -306,9 +302,7 @@ def compared_mises(
 
 
 def compared_peeq(sam: Result, fem: Result, a: float) -> Drawing:
-    """Plastic strain in % in y = 0: SAM | FEM | difference, with the iso-line of 0.2 %; a: the
-    elastic contact radius in m; the bar over the maps is the contact of FEM.
-    """
+    """Plastic strain in % in y = 0: SAM | FEM | difference; a: elastic radius in m; bar: contact of FEM."""
     pair, peaks = _both(sam, fem, "peeq", (a, 1.0 / PERCENT))
     pair = replace(pair, semi_axes=(edge := contact_size(fem.quantities) / a, edge))
     return plane_maps(pair, peaks, iso_levels(max(peak.value for peak in peaks)))
@@ -343,9 +337,7 @@ def _both(
 
 
 def sliding_sections(sam: Result, fem: Result, units: tuple[float, float], thickness: float) -> Drawing:
-    """Von Mises stress of the body over p0 in y = 0, from the film's lower face on: SAM | FEM | difference.
-    units: a in m and p0 in Pa.
-    """
+    """Von Mises stress over p0 in y = 0, below the film: SAM | FEM | difference. units: a in m, p0 in Pa."""
     a, p0 = units
     x, z, own = plane_field(sam.tables, "mises_Pa")
     use_x, use_z = np.abs(x) <= 1.5 * a, (z >= thickness * (1.0 - 1e-9)) & (z <= 1.4 * a)

@@ -31,9 +31,7 @@ IN_FILM, BELOW = 9, 77
 
 @dataclass(frozen=True)
 class SurfaceMap:
-    """Fields over the cells (or nodes) of the surface at the peak. x (nx,), y (ny,) in m; fields: name ->
-    (nx, ny). border: cells at each end in x and y that do not count for the largest values.
-    """
+    """Fields at the peak, x (nx,), y (ny,) in m, name -> (nx, ny). border: cells that do not count."""
 
     x: np.ndarray
     y: np.ndarray
@@ -222,9 +220,7 @@ def _rows(tables: Tables, use: np.ndarray) -> Tables:
 
 
 def below(run: Run, section: Section, column: str) -> tuple[np.ndarray, np.ndarray]:
-    """Depths (nz,) in m and a column of axis.csv under the largest pressure; NaN, a gap, where a coating
-    ends. In a cut it is the column of points next to the place.
-    """
+    """Depths (nz,) in m and a column below the largest pressure; NaN, a gap, where a coating ends."""
     if section.source == "plane":
         z, values = peak(run.tables["axis"], "z_m", column)
     else:

@@ -119,9 +119,7 @@ def axis_profiles(sam: Result, fem: Result, a: float, deep: float = 2.0) -> Draw
 def _against_fem(
     labels: tuple[str, str, str], sam: tuple, fem: tuple, limits: tuple[float, float]
 ) -> Profile:
-    """SAM over the curve of FEM, within what both cover; errors in % of the largest value of FEM. labels:
-    title, of x and of y.
-    """
+    """SAM over the curve of FEM, errors in % of the largest value of FEM. labels: title, of x and of y."""
     x, y = fem
     limits = (max(limits[0], x.min()), min(limits[1], x.max()))
     scale = np.max(np.abs(y[(x >= limits[0]) & (x <= limits[1])]))
@@ -129,9 +127,7 @@ def _against_fem(
 
 
 def residual_surface(sam: Result, fem: Result, hertz: CircularContact, reach: float = 2.0) -> Drawing:
-    """What is left of the surface after unloading, and the force over the approach with unloading, beside the
-    elastic curve. Unloading in one step is a single point: a line to it would be no load curve.
-    """
+    """What is left of the surface, and force over approach with unloading, beside the elastic curve."""
     a, rows = hertz.contact_radius, profile_rows("FEM")
     found = []
     for result in (sam, fem):

@@ -52,9 +52,7 @@ def drawings_of(run: Run) -> dict[str, Drawing]:
 
 
 def strain_per_period(run: Run) -> Drawing:
-    """The largest accumulated strain that each period adds, the largest change of the plastic
-    strain, and the floor below which strain counts as none; a marker for the class of the body.
-    """
+    """Strain that each period adds, its change, and the floor below which it is none; class markers."""
     table = run.tables["cycles"]
     table = table[np.isfinite(table["period"].to_numpy(dtype=float))]
     period, verdict = table["period"].to_numpy(dtype=float), table["verdict"].to_numpy()

@@ -107,9 +107,7 @@ def _largest(run: Run, section: Section, column: str, drawn_as: tuple[np.ndarray
 
 
 def contact_map(surface: SurfaceMap, column: str, label: str) -> Drawing:
-    """A field over the contact, nothing out of it, with the outline of the contact and the largest
-    value, of the cells that count: within a dashed frame, where some do not.
-    """
+    """A field over the contact, with its outline and the largest value of the cells that count."""
     (unit, name), touching = UNITS[column], surface.touching
     x, y, field = MICRO * surface.x, MICRO * surface.y, unit * surface.in_contact(column)
     with sheet(5.0, 3.8, layout="compressed") as (figure, panel):

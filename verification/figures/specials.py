@@ -36,9 +36,7 @@ if TYPE_CHECKING:
 
 
 def agreement(pairs: Sequence[tuple[str, str, float, float, str, str]]) -> Drawing:
-    """Relative deviation of SAM from its reference, a row for each group of cases. pairs: (group, kind of the
-    reference, predicted, reference, case, quantity).
-    """
+    """Deviation of SAM by group. pairs: (group, kind of reference, predicted, reference, case, quantity)."""
     groups = list(dict.fromkeys(pair[0] for pair in pairs))
     kinds = sorted({pair[1] for pair in pairs}, reverse=True)
     data = Columns("group", "against", "predicted", "reference", "case", "quantity")
@@ -108,9 +106,7 @@ def sensitivity_figure(rows: Sequence[Mapping], path: Path) -> None:
 
 
 def sensitivities(rows: Sequence[Mapping]) -> Drawing:
-    """How much each varied key moves the main quantities: a panel for each of them, a bar with its confidence
-    interval for each key. rows: of the table of indices, quantities and indices of both methods among them.
-    """
+    """How each varied key moves the main quantities, with confidence intervals. rows: of the indices."""
     table, of = Columns("quantity", "key", "value", "low", "high"), dict[str, list[Mapping]]()
     for row in reversed([each for each in rows if each["index"] in SHOWN]):
         of.setdefault(row["quantity"], []).append(row)

@@ -85,9 +85,7 @@ def sweep_figure(study: Study, rows: Sequence[Mapping], path: Path) -> None:
 
 
 def summary(study: Study, rows: Sequence[Mapping]) -> Drawing:
-    """Of a grid of two varied numbers a map for each quantity, else panels: quantities down, varied keys
-    across. rows: column of the table -> value, a mapping a point.
-    """
+    """Of two varied numbers a map for each quantity, else panels by key. rows: column -> value, of points."""
     shown = {
         name: look for name, look in QUANTITIES.items() if any(row.get(name) for row in rows)
     } or QUANTITIES

@@ -135,9 +135,7 @@ def interruptible(writer: Writer) -> Iterator[None]:
 
 
 def read(folder: Path, who: Mapping) -> Checkpoint | None:
-    """The checkpoint in `folder`, None if there is none. Raises FolderError for one that belongs to something
-    else, ArchiveError for one that cannot be read.
-    """
+    """The checkpoint in `folder`, or None. FolderError for another's, ArchiveError for a damaged one."""
     path = folder / CHECKPOINT
     if not path.exists():
         return None

@@ -238,9 +238,7 @@ def _why(error: Exception) -> str:
 
 
 def check_target(folder: Path, also: Sequence[str] = ()) -> None:
-    """Raise FolderError unless a run may be written to `folder`: absent, empty, or of an older or broken-off
-    run; also: names that it may hold besides the files of a run.
-    """
+    """Raise FolderError unless a run may be written to `folder`; also: names that it may hold besides."""
     try:
         check_place(folder)
         if (folder / SUMMARY).exists():
@@ -358,9 +356,7 @@ def _tables(result: Result) -> dict[str, Table]:
 
 
 def _table_text(name: str, table: Table, outside: float | None) -> str:
-    """A table in the column order of TABLES, with the a/R of a contact outside of the model as the last one.
-    Raises ValueError for other columns or unequal lengths.
-    """
+    """A table in the order of TABLES, with a/R outside of the model last. ValueError for other columns."""
     columns = TABLES[name] + tuple(extra for extra in EXTRA_COLUMNS.get(name, ()) if extra in table)
     if set(table) != set(columns):
         raise ValueError(f"table {name} has the columns {sorted(table)}, not {sorted(columns)}")

@@ -95,9 +95,7 @@ def refusal(scene: Scene) -> str:
 
 
 def with_range(scene: Scene, result: Result) -> Result:
-    """The result with what is said about the range of its model; of a contact beyond it, that the scene does
-    not ask for, with the status outside-of-model.
-    """
+    """The result with what is said of its model's range; beyond it, unasked, outside-of-model."""
     found = model_range(scene, result)
     if found is None:
         return result
@@ -390,9 +388,7 @@ def _hardening(plasticity: Plasticity) -> str:
 
 
 def rms_slope(scene: Scene) -> float:
-    """rms slope of the patch, of both surfaces together, before a solve; of a counter-body that moves that of
-    the body alone. 0 where only the digest of a file is at hand.
-    """
+    """rms slope of the patch, both surfaces, before a solve; 0 where only the digest is at hand."""
     (nx, ny), extent = scene.patch
     hx, hy = extent[0] / nx, extent[1] / ny
     x, y = ((np.arange(n) - (n - 1) / 2) * h for n, h in ((nx, hx), (ny, hy)))

@@ -28,9 +28,7 @@ class ModelError(ValueError):
 
 
 def check(scene: Scene, model: str) -> None:
-    """Raise ModelError, which names the key, unless `model` can represent the scene and its contact is within
-    the range of every model, or asked for beyond it.
-    """
+    """Raise ModelError, which names the key, unless `model` can represent the scene within its range."""
     if reason := _refusal(scene, model):
         raise ModelError(f"model {model}: {reason}")
     from verification.runs.model_range import refusal  # noqa: PLC0415 - loads numpy
@@ -46,9 +44,7 @@ def models_for(scene: Scene) -> tuple[str, ...]:
 
 
 def cheapest_reference(scene: Scene) -> str:
-    """The cheapest finite-element model that can represent the scene. Raises ModelError with the reasons of
-    every model that cannot, and the keys to change, if none can.
-    """
+    """The cheapest finite-element model for the scene. ModelError with all reasons if none can."""
     reasons = {model: _refusal(scene, model) for model in models_for(scene)}
     for model, reason in reasons.items():
         if model != SAM and not reason:

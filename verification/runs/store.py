@@ -42,9 +42,7 @@ _WRITING = threading.Lock()
 
 @dataclass(frozen=True)
 class Lookup:
-    """What a lookup found. result: None if nothing usable; note: "" or why an entry is not used ("stale:
-    ..."); created (UTC, ISO 8601) and commit of what was found.
-    """
+    """What a lookup found. result: or None; note: why it is not used ("stale: ..."); created, commit."""
 
     result: Any = None
     note: str = ""
@@ -110,9 +108,7 @@ class Store:
         return self.find(identity(scene, model) | {"kind": kind}, code_version(model), Result)
 
     def keep(self, scene: Scene, model: str, result: Result, *, unconverged: bool = False) -> None:
-        """Keep a result, unless the files of the code changed while it was computed; one that did not
-        converge only where that is asked for, apart from the others.
-        """
+        """Keep a result, unless the code changed meanwhile; unconverged ones if asked for, and apart."""
         if not (result.converged or unconverged):
             return
         if not unchanged(model=model):
@@ -177,9 +173,7 @@ class Store:
     def prune(
         self, chosen: Callable[[Entry], bool], *, coefficients: bool = False
     ) -> Iterator[tuple[str, int]]:
-        """Remove the chosen entries, what is left over and, if wanted, coefficients; (what, bytes) of each as
-        it goes. Raises OSError.
-        """
+        """Remove the chosen entries, left-overs and coefficients; (what, bytes) of each. Raises OSError."""
         for entry in self.entries():
             if chosen(entry):
                 entry.path.unlink(missing_ok=True)
@@ -234,9 +228,7 @@ def solve_or_reuse(
     fresh: bool = False,
     **how,
 ) -> tuple[Result, Reuse]:
-    """The result of a scene from the store, or else solved and kept there, with the cost of its own solve.
-    fresh: solve in any case; how: to models.solve. Raises ModelError as models.solve does.
-    """
+    """The result of a scene from the store, or solved and kept. fresh: solve anyway; how: to models.solve."""
     found = Lookup() if store is None or fresh else store.lookup(scene, model)
     if found.result is not None:
         return found.result, Reuse(True, found.created, found.commit)

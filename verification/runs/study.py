@@ -186,9 +186,7 @@ class Axis(Section):
         return self.at(drawn(key, seed, self.count))
 
     def at(self, shares: Sequence[Decimal]) -> Sequence:
-        """Values at shares (0 to 1) of the way from first to last, as a scene file spells them; those between
-        two ends in the unit of the first, rounded to 15 digits.
-        """
+        """Values at shares (0 to 1) from first to last, as a scene file spells them, to 15 digits."""
         if self.list:
             return [self.list[min(int(share * self.size), self.size - 1)] for share in shares]
         ends = self.ends(self.kind)

@@ -23,9 +23,7 @@ PACKED = 4_000  # bytes of a table: packing those beyond saves 1.4 of the 1.9 MB
 
 @dataclass(frozen=True)
 class Kept:
-    """What is stored of a case. files: name in the folder of the report -> content; inputs,
-    sources: see Context; seconds: that the case took.
-    """
+    """What is stored of a case. files: name in the folder -> content; inputs, sources: see Context."""
 
     outcome: Outcome
     inputs: dict[str, bytes]
@@ -64,9 +62,7 @@ def put_back(kept: Kept, context: Context, *, with_runs: bool = True) -> Outcome
 
 
 def keep(store: Store, case: Case, context: Context, outcome: Outcome, *, seconds: float) -> None:
-    """Keep what a case found, unless the files of the code changed meanwhile. Raises ValueError where it
-    names an input that is no file of the scenes: it would never be found again.
-    """
+    """Keep what a case found, unless code changed. ValueError for an input that is no file of the scenes."""
     if foreign := [name for name in context.inputs if present(name) is None]:
         raise ValueError(f"case {case.name} names as input what is no file of the scenes: {foreign}")
     if not unchanged():

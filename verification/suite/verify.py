@@ -53,9 +53,7 @@ SHARE = 0.02
 
 @dataclass(frozen=True)
 class RanCase:
-    """A case that was run or reused. failure: why it broke off, or empty; seconds: of its own run;
-    source: where it is from, or why it was not taken from the store.
-    """
+    """A case that was run or reused. failure: why it broke off; source: where it is from, or why not."""
 
     context: Context
     outcome: Outcome
@@ -177,9 +175,7 @@ def stored(folder: Path) -> dict | None:
 
 
 def begin(out: Path) -> Path:
-    """UNFINISHED in `out`, for a report in the making. What a killed run left there is removed; where that is
-    a whole report, it first takes its place.
-    """
+    """UNFINISHED in `out`, for a report in the making; a whole one left there takes its place first."""
     new = out / UNFINISHED
     if (stored(new) or {}).get("complete"):
         _take_over(out)
@@ -190,9 +186,7 @@ def begin(out: Path) -> Path:
 
 
 def _take_over(out: Path) -> None:
-    """Put the whole report in UNFINISHED into the place of an earlier one, results.json last. Broken off, it
-    goes on when it is called again.
-    """
+    """Put the whole report in UNFINISHED into its place, results.json last; goes on if broken off."""
     if (out / RESULTS).exists():
         remove_pages(out)
         for name in ("runs", "figures"):
@@ -213,9 +207,7 @@ def before(folder: Path) -> dict:
 def _run(
     chosen: Sequence[Case], known: Mapping[str, Case], *, out: Path, store: Store | None, **asked: Any
 ) -> dict[str, RanCase]:
-    """Run the cases one after the other, with a line of each as it ends and pages of those that have ended; a
-    case that breaks off does not stop the others. asked: as for `_judged`.
-    """
+    """Run the cases one after the other, with a line and pages as each ends. asked: as for `_judged`."""
     ran: dict[str, RanCase] = {}
     new, count, rows, due = out / UNFINISHED, len(chosen), _rows(known), 0.0
     ahead = forecast(chosen, asked["level"], store)
@@ -309,9 +301,7 @@ def _judged(
 
 
 def _run_or_reuse(case: Case, context: Context) -> RanCase:
-    """A case from the store, or else run and kept there, unless it measures times. What makes an
-    entry unusable is said on stderr if it is damage.
-    """
+    """A case from the store, or run and kept there, unless it measures times. Damage is said on stderr."""
     started, kept = time.perf_counter(), None if case.alone else context.store
     found = outcomes.find(kept, case, context) if kept else Lookup()
     if found.result is not None:
@@ -343,9 +333,7 @@ def _solves(ran: Sequence[RanCase]) -> dict[str, int]:
 
 
 def attempt(case: Case, context: Context) -> tuple[Outcome, str]:
-    """The outcome and, when the case broke off, why; any error of a case is its own and is reported
-    with it, but for a full disk. What was found before a figure failed counts.
-    """
+    """The outcome and, when the case broke off, why: any error but a full disk, with what was found."""
     try:
         return case.run(context), ""
     except NotDrawnError as lost:
@@ -409,9 +397,7 @@ def _write_results(results: dict, out: Path) -> None:
 
 
 def show(what: str, names: Sequence[str]) -> int:
-    """On stdout, of the named cases (none: of all), one line each, or where `what` is "gates"
-    question, gates, tolerances and reasons. Returns 0, or 2 for an unknown name.
-    """
+    """A line for each named case (none: all), or its gates with reasons. 0, or 2 for an unknown name."""
     known, gates, rows = all_cases(), load_rows(), []
     if problem := unknown_cases(names, known):
         print(f"samfem: error: {problem}", file=sys.stderr)

@@ -41,9 +41,7 @@ codecs.register_error(_ANYTHING, _bytes_or_marks)
 
 
 class Cleaned:
-    """A text stream on which what could act on a terminal becomes question marks: a key, a column or the name
-    of a file may hold such characters. What rich draws goes to `uncleaned`.
-    """
+    """A text stream without what acts on a terminal, as question marks. rich draws to `uncleaned`."""
 
     def __init__(self, stream: TextIO) -> None:
         self.uncleaned = stream
@@ -83,9 +81,7 @@ def in_notebook() -> bool:
 
 
 class Progress:
-    """The `progress` callable of the solvers: a bar on a terminal and in a notebook, plain lines elsewhere. A
-    context manager. remaining: plain lines too say how long the stage will take.
-    """
+    """The `progress` of the solvers: a bar, or plain lines, with `remaining` time. A context manager."""
 
     def __init__(self, remaining: bool = False):
         self._bar: Any = None

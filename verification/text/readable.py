@@ -32,9 +32,7 @@ def with_prefix(value: float, unit: str, digits: int = 3) -> str:
 
 
 def in_working_unit(name: str, value: float, digits: int = 6, beside: float | None = None) -> tuple[str, str]:
-    """A quantity in a unit of the contact, of GPa, um and N: ("p_max_Pa", 2.1e9) is ("p_max", "2.1 GPa").
-    beside: the value whose unit it takes, in place of its own.
-    """
+    """A quantity in a working unit: ("p_max_Pa", 2.1e9) is ("p_max", "2.1 GPa"). beside: has the unit."""
     words, _, si = name.rpartition("_")
     units = WORKING_UNITS.get(si)
     if units is None:

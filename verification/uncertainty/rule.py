@@ -37,9 +37,7 @@ def bound(values: Sequence[float], sizes: Sequence[float], order: float, factor:
 
 
 def of_edge(value: float, cells: float, share: float = EDGE) -> float:
-    """What the edge of a contact, which falls anywhere between the cells, leaves of a value of second order,
-    in its unit; cells: in the contact radius; share: of the value with one cell.
-    """
+    """What the edge of a contact leaves of a value, in its unit; cells: in the radius; share: with one."""
     return share * abs(value) / cells**2
 
 

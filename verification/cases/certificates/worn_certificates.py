@@ -72,9 +72,7 @@ def last_cycle(records: Sequence[Checkpoint]) -> tuple[Checkpoint, list[Checkpoi
 
 
 def lowered(result: Result) -> Result:
-    """The result with the heights of its surface less what was worn off, and its approach from the first
-    touch of that surface, as that of a result is from the first touch of the original one.
-    """
+    """The result with its heights less what was worn off, and its approach from the first touch of that."""
     data = result.fields.cell_data
     height = np.asarray(data["height_m"]) - np.asarray(data["worn_m"])
     cells = surface_of(result)[2].size  # of those of the plane y = 0 nothing is asked

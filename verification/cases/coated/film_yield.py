@@ -137,9 +137,7 @@ def off(value: float, expected: float) -> float:
 
 
 def frame(context: Context) -> Iterator[dict[str, Any]]:
-    """Every contact; some that are much wider than the film is thick or whose film flows out; some on
-    elements of half the size, with what these change; and a film of the material of the body.
-    """
+    """Every contact; much wider ones and films that flow out; finer meshes; a film of the body's material."""
     cells, steps = LEVEL[context.level]
     base, bare = with_loading(context.scene("film-yield"), steps=steps), {}
 

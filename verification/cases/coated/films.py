@@ -77,9 +77,7 @@ def map_scene(base: Scene, ratio: float, thickness: float, counterbody: str) -> 
 
 
 def mapped(context: Context) -> Iterator[dict[str, Any]]:
-    """The maps under both counter-bodies against the spectral solution, whose many solves are not kept one by
-    one, and a few of their points by both models.
-    """
+    """The maps under both counter-bodies against the spectral solution, and a few points by both models."""
     base, quick = context.scene(SCENE), context.level == "quick"
     base = with_mesh(base, QUICK_MESH) if quick else base
     (count, *ends), done = SIDES[context.level], 0
@@ -130,9 +128,7 @@ OWN_RADII = {"quick": (1e-6,), "full": (5e-6, 2e-6, 1e-6, 0.5e-6)}
 
 
 def at_limits(context: Context) -> Iterator[dict[str, Any]]:
-    """The contact radius at which the film of the paper breaks the claim, by the spectral solution, and both
-    models there; and what the film carries itself, elastic, at 6.5 GPa without it.
-    """
+    """The contact radius at which the film breaks the claim, both models there, and the film at 6.5 GPa."""
     base, quick = context.scene(SCENE), context.level == "quick"
     base = with_mesh(base, QUICK_MESH) if quick else base
     for other, limit, name in product(COUNTER, LIMITS[: 1 if quick else 2], ("p",) if quick else CHANGES):

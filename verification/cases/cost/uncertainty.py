@@ -45,9 +45,7 @@ Draw = np.random.Generator
 
 
 def textbook(entry: Mapping[str, Any]) -> float:
-    """The uncertainty by the cells with the observed order and the factor 1.25 (Roache 1998), where none is
-    seen with the second and 3; by load steps and box as the program.
-    """
+    """The uncertainty by the observed order and the factor 1.25 (Roache 1998), else the second and 3."""
     values, sizes = entry["values"], [1.0 / count for count in entry["cells"]]
     seen = order_seen(values, sizes)
     order, factor = (2.0, 3.0) if seen is None else (seen, 1.25)
@@ -60,9 +58,7 @@ def rows_of(
     drawn: Callable[[int], Scene],
     truth_of: Callable[[Context, Scene], Truth],
 ) -> Iterator[dict[str, Any]]:
-    """Every quantity of a problem that has an uncertainty and a reference. A scene whose plastic zone leaves
-    its grid has neither, and is drawn again.
-    """
+    """Every quantity with an uncertainty and a reference. A zone that leaves its grid is drawn again."""
     for number in range(DRAWS):
         scene = drawn(number)
         try:
@@ -80,9 +76,7 @@ def rows_of(
 
 
 def judged(entry: Mapping[str, Any], truth: float, *, doubt: float) -> dict[str, float]:
-    """The error and the uncertainties over the truth, and, where the reference is good enough to say
-    anything, whether the error is covered. entry: what the program says; doubt: uncertainty of the truth.
-    """
+    """Error and uncertainties over the truth, and whether it is covered. doubt: uncertainty of the truth."""
     own, error = entry["u_num"], abs(entry["values"][0] - truth)
     rules = {"uncertainty": own, "textbook": textbook(entry)}
     row = {"error": error / abs(truth)} | {name: value / abs(truth) for name, value in rules.items()}
@@ -106,9 +100,7 @@ def solved(context: Context, scene: Scene, model: str) -> Result:
 
 
 def finer(context: Context, scene: Scene, model: str, names: Sequence[str]) -> Truth:
-    """From finer cells or elements, and more load steps, extrapolated in both by their formal orders. doubt:
-    the extrapolation, of load steps a half; names: of the quantities.
-    """
+    """From finer cells and more load steps, extrapolated by formal orders. doubt: that, of steps a half."""
     few, many = (with_loading(scene, steps=scene.loading.steps * times) for times in MORE_STEPS)
 
     def of(other: Scene, rank: int) -> Mapping[str, Any]:

@@ -56,9 +56,7 @@ Solve = Callable[[Scene, str], Result]
 
 
 def frame(context: Context, names: Sequence[str] = tuple(STUDIED), solve: Solve | None = None) -> Iterator:
-    """A row for each solve: problem, what is refined, method, its cost and its error. names, solve: problems,
-    and how a scene is solved (in a process of its own).
-    """
+    """A row for each solve: problem, what is refined, method, cost, error. solve: in a process of its own."""
     for name in names:
         problem = STUDIED[name]
         scene = problem.scene(context.scene(problem.file))
@@ -95,9 +93,7 @@ def in_turn(ladders: Sequence[Sequence[int]]) -> Iterator[tuple[int, int]]:
 
 
 def once(problem: Problem, method: Method, scene: Scene, resolution: int, *, solve: Solve) -> dict[str, Any]:
-    """One solve. Values are left out where they do not count, or the peak was not reached; a solve that
-    breaks off is a row without values that says why.
-    """
+    """One solve. Values are left out where they do not count; one that breaks off is a row that says why."""
     row: dict[str, Any] = {"method": method.name, "resolution": resolution, "cpu_s": math.nan, "values": {}}
     try:
         result = solve(method.at(scene, resolution), method.model)
@@ -274,9 +270,7 @@ def times(frame: DataFrame) -> SmallTable:
 
 
 def to_one_percent(frame: DataFrame) -> dict[str, Any]:
-    """Under `times` each problem, its quantities, and method -> processor seconds to an error of 1 %, None
-    where it is not reached, and whether they are a bound.
-    """
+    """Under `times`: problem, quantities, and method -> seconds to 1 % or None, and whether a bound."""
     found = []
     for problem, rows in ladders(frame):
         words = dict.fromkeys(MEASURES[name] for name in rows["references"].iloc[0])

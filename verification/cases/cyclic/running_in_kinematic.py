@@ -31,9 +31,7 @@ def misfit(law: Plasticity) -> float:
 
 
 def runs(context: Context) -> Iterator[dict[str, Any]]:
-    """A row for each material and way to harden: volumes in m3, the first and the last friction, and the
-    strain of the first loading, over that reached by the isotropic body, less 1.
-    """
+    """A row for each material and way to harden: volumes, m3, friction, strain over the isotropic less 1."""
     for case, base in study.printed_scenes(context, EFFORT).items():
         isotropic = None
         for way, share in SHARES.items():

@@ -165,9 +165,7 @@ def differences(found: Mapping[str, Curve], elements: int) -> dict[str, Differen
 
 
 def range_rows(body: Body, found: Mapping[str, Curve]) -> DataFrame:
-    """Rows of the table of `verification.runs.model_range`: errors of the flat model over its own a/R, by the
-    fits, with two of their standard errors.
-    """
+    """Rows of the table of `model_range`: errors of the flat model over its a/R with two standard errors."""
     import pandas as pd
 
     fits = errors_of_flat(body, found)
@@ -277,9 +275,7 @@ def plastic(context: Context) -> Iterator[dict[str, Any]]:
 
 
 def stated(context: Context) -> Iterator[dict[str, Any]]:
-    """What is said of a scene, against materials and meshes that the table behind it was not made of: stated
-    error with its uncertainty, measured error, and the factor between them.
-    """
+    """What is said of other materials and meshes: stated error and uncertainty, measured error, factor."""
     for body in FRESH:
         fits = errors_of_flat(body, curves(context, body, body.elements))
         for x in (0.1, 0.2, 0.3):

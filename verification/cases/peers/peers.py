@@ -43,9 +43,7 @@ REFERENCES = "Step: references, with the distance of the next coarser grid as un
 
 
 def frame(context: Context) -> Iterator[dict[str, Any]]:
-    """Every program in turn, in several rounds: a row a measurement, led by what is compared and how well all
-    solve one discrete problem, by their tight solutions on a grid of each kind.
-    """
+    """Every program in turn, in rounds: a row a measurement, led by what is compared, and how well."""
     python = interpreter()
     versions = installed(python)
     pythons, rounds = pythons_of(python, versions), ROUNDS[context.level]
@@ -133,9 +131,7 @@ def contact_mechanics_on_finest(rows: DataFrame, _: str) -> float:
 
 
 def step_on(rows: DataFrame, cells: tuple[int, int]) -> dict[str, Any]:
-    """Tamaas' step on these cells beside SAM's at its error, which counts as no smaller than what is unknown
-    of SAM's reference: ratios of times there, and on the same cells.
-    """
+    """Tamaas' step on these cells beside SAM's at its error: ratios of times there, and on the same cells."""
     same, theirs = fastest(rows, cells_in_words(cells)).reindex([SAM, TAMAAS]).iloc
     own = rows[rows["model"] == SAM]
     floor = own["floor"].max()

@@ -18,8 +18,6 @@ def limit_of_both(rows: DataFrame, column: str) -> float:
 
 
 def growth_of_norms(rows: DataFrame, column: str) -> float:
-    """The largest ratio of the differences on successive grids: below 1 both shrink every time. Norms, as the
-    largest values of both models may cross on the way.
-    """
+    """The largest ratio of the differences on successive grids, in norms: below 1 both shrink every time."""
     apart = rows[["peeq-axis", "peeq-plane"]].to_numpy(dtype=float)
     return float(np.max(apart[1:] / apart[:-1]))

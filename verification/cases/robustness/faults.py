@@ -229,9 +229,7 @@ def every(found: tuple) -> list[Trial]:
 
 
 class Faults(Case):
-    """Solves and sweeps killed, then the other faults one by one: the trials of the first two, the other
-    faults with their rows, and the seconds of an undisturbed solve.
-    """
+    """Solves and sweeps killed, the other faults with their rows, and the seconds of an undisturbed solve."""
 
     def solve(self, context: Context) -> tuple[list[Trial], list[Trial], list, float]:
         solves, sweeps = KILLS[context.level]

@@ -133,9 +133,7 @@ the last cycle, against cycles.csv.
 
 
 class RunningIn(Readings):
-    """Every material on every surface in both readings, and what is varied of the printed inputs;
-    rows over all of them, statements over those that converged.
-    """
+    """Every material on every surface in both readings, and what is varied; statements over the converged."""
 
     def readings(self, context: Context) -> dict[str, Reading]:
         efforts = EFFORTS[context.level]
@@ -237,9 +235,7 @@ def shown_of(good: DataFrame) -> Iterator[tuple[str, str, Run]]:
 
 
 def regimes(found: DataFrame, reading: str) -> dict[str, dict[str, float]]:
-    """Material -> in Pa its strength, the pressures at which films fail and metal is removed, and the largest
-    in the first cycle, the median of the surfaces.
-    """
+    """Material -> in Pa strength, pressures at which films fail and metal goes, median peak of cycle 1."""
     values = {}
     for case, runs in runs_of(found, reading):
         own = Limits.of(runs.iloc[0].scene)

@@ -67,9 +67,7 @@ def compared(context: Context) -> Iterator[dict[str, Any]]:
 
 
 def differences(sam: Result, fem: WornCycle, first: tuple[Tables, Tables]) -> dict[str, Any]:
-    """L2 of SAM off FEM; the strain below the spots of the first cycle, which a scar divides
-    later, the worst of them. lowered: what the heights along y = 0 have lost in m.
-    """
+    """L2 of SAM off FEM; strain: the worst spot of the first cycle. lowered: heights lost on y = 0 in m."""
     (x, _, own), (*_, other) = patch_pressure(sam.tables), patch_pressure(fem.tables)
     below, strains = (Plane.of(sam.tables), Plane.of(fem.tables)), []
     for spot in spots(*first):

@@ -215,9 +215,7 @@ class Studied:
 
     @cached_property
     def chances(self) -> list[dict[str, Any]]:
-        """Of each statement: at how many points it holds, of those at which it says anything,
-        bounds of that share, and the inputs that decide it.
-        """
+        """Of each statement: points at which it holds, of how many, bounds of the share, deciding inputs."""
         found = []
         for said, row in zip(STATEMENTS, self.held, strict=True):
             holds, of, words = int(np.nansum(row)), int(np.isfinite(row).sum()), []

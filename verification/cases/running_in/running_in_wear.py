@@ -21,9 +21,7 @@ the limit.
 
 
 def runs(context: Context) -> Iterator[dict[str, Any]]:
-    """What each wears in m3, the largest strain, what the last cycle adds to it; of the scar its
-    largest differences, of the sphere with an infinite limit that to the one without wear.
-    """
+    """What each wears in m3, the largest strain, what the last cycle adds; differences of the scar."""
     sphere = sliding_scene(context.scene("plastic-linear"), 6.2, 0.0, Resolution(8, 8))
     sphere = with_loading(sphere, steps=3, unload=True, unload_steps=2, cycles=3)
     patch = reduced(context.scene("running-in-bulk"), Effort(cycles=5, steps=3, cells=32))

@@ -101,9 +101,7 @@ def overtaking() -> float:
 
 
 def frame(context: Context) -> Iterator[dict[str, object]]:
-    """Six components at interior points at mu = 0.4, where the largest von Mises stress lies as friction
-    grows, and the friction coefficient at which the edge overtakes the interior.
-    """
+    """Six components inside at mu = 0.4, the place of the largest stress, and where the edge overtakes."""
     for n in ACROSS[context.level]:
         errors = dict(zip(COMPONENTS, interior_errors(n, 0.4), strict=True))
         yield {"sweep": "interior", "cells": n} | errors

@@ -45,9 +45,7 @@ class Found:
         return section_of(self.run, surface_map(self.run))
 
     def sheet(self, state: str = PEAK) -> pv.StructuredGrid | None:
-        """The surface in a state, flat, with every field in its unit at the nodes and in the cells, RAISED
-        too where it is known; None where there is none, or nothing that says what of it to draw.
-        """
+        """The surface in a state, flat, with every field at nodes and in cells, RAISED if known, or None."""
         path, radius = self.run.folder / FILES[state], contact_size(self.run.quantities)
         if not path.exists() or (self.run.model == "fem-axisymmetric" and not radius):
             return None

@@ -68,9 +68,7 @@ def draw(
 
 
 def draw_run(folder: Path, name: str | None = None, *, progress: Progress = lambda *_: None) -> list[Path]:
-    """Draw the pictures of a finished run, or the one that is named, into its folder of figures. Raises
-    CannotDrawError, and then has written nothing.
-    """
+    """Draw the pictures of a finished run, or the named one. CannotDrawError: nothing was written."""
     pictures = {
         folder / FIGURES / f"{each}{IN_SPACE}.png": png
         for each, png in draw(folder, name, progress=progress).items()

@@ -22,9 +22,7 @@ OWN = ("samfem", "sam", "fem_reference", "verification", "tests")
 
 
 def put(mutants: Sequence[Mutant], factor: float = FACTOR) -> dict[Mutant, Number]:
-    """Change these of one module, in this process from now on; the integers among them, which record their
-    use. A row of a table is perturbed by itself.
-    """
+    """Change these of one module in this process; integers record their use, a table's row is one change."""
     forget(mutants[0].module)
     if mutants[0].kind == "row":
         _put_row(mutants[0], factor)

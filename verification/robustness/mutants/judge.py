@@ -66,9 +66,7 @@ class MutantVerdict:
 
 
 def forked(tasks: Iterable[tuple[Any, Callable[[], Any]]], seconds: float) -> Iterator[tuple[Any, Any]]:
-    """(name, what the task returned) as they end, each in a fork; None for one that died or took
-    more than `seconds` of processor time, where that is not 0.
-    """
+    """(name, answer) as tasks end, each in a fork; None: died, or took more than `seconds` (0: any)."""
     running: dict[Connection, tuple[Any, int]] = {}
     left, more = iter(tasks), True
     while more or running:
@@ -108,9 +106,7 @@ def _start(task: Callable[[], Any], seconds: float) -> tuple[Connection, int]:
 
 
 class Session:
-    """Calls `work(items)` in place of running the tests that pytest has collected; items: node id
-    -> test; failed: files that cannot be collected.
-    """
+    """Calls `work(items)` in place of running collected tests; items: node id -> test; failed: files."""
 
     def __init__(self, work: Callable[[dict[str, pytest.Item]], None]):
         self.work, self.failed = work, []
@@ -124,9 +120,7 @@ class Session:
 
 
 def with_tests(files: Sequence[str], work: Callable[[dict[str, pytest.Item]], None]) -> list[str]:
-    """Collect the tests of these files of tests/, those of the system apart, and call work(items);
-    the files that cannot be collected. RuntimeError where pytest ends otherwise.
-    """
+    """Collect tests, call work(items); the files without. RuntimeError where pytest ends otherwise."""
     from hypothesis import Phase, settings
 
     # properties draw the same examples each time, and stop at the first that fails
@@ -175,9 +169,7 @@ def few(items: Iterable[pytest.Item]) -> dict[str, pytest.Item]:
 
 
 def uses(test: ModuleType, modules: Collection[str], tests: tuple[str, ...] = ()) -> bool:
-    """Whether a module of tests, or a helper that it imports, imports one of the modules, or a name of
-    it or of its package, `sam.scene`, say.
-    """
+    """Whether a module of tests, or a helper of it, imports one of the modules or a name of its package."""
     packages = {name.rpartition(".")[0] for name in modules if name.count(".") > 1}
     for value in list(vars(test).values()):
         owner = value.__name__ if isinstance(value, ModuleType) else getattr(value, "__module__", None)

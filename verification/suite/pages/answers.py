@@ -42,9 +42,7 @@ NORMALISED = " over the larger of "
 
 @dataclass(frozen=True)
 class Pair:
-    """A value of SAM and its reference, with the unit of both unsaid: what counts is their ratio;
-    gate: that holds it, None where only the case says both.
-    """
+    """A value of SAM and its reference, whose ratio counts; gate: that holds it, None without one."""
 
     case: ShownCase
     quantity: str
@@ -106,9 +104,7 @@ def far(pairs: Iterable[Pair]) -> list[list[Pair]]:
 
 @dataclass(frozen=True)
 class Cost:
-    """Processor seconds to an error of 1 % in one contact, of SAM and of the fastest finite elements (None:
-    not reached or not measured), and whether each is a bound.
-    """
+    """Processor seconds to 1 % of SAM and the fastest finite elements (or None), and whether bounds."""
 
     sam: tuple[float | None, bool]
     fem: tuple[float | None, bool]
@@ -244,9 +240,7 @@ def cell(evidence: Evidence, words: str, case: str, caption: str, *how: Any) -> 
 
 
 def times(evidence: Evidence, _: str) -> Iterator[Finding]:
-    """How many times the processor time of SAM finite elements take to the same error: the range
-    over the contacts where both reach it, and where only one does.
-    """
+    """How many times the time of SAM finite elements take to the same error, over the contacts."""
     costs = costs_of(evidence.stored)
     if both := sorted((each for each in costs if each.ratio > 0.0), key=lambda each: each.ratio):
         bounds = sum(each.sam[1] or each.fem[1] for each in both)
@@ -280,9 +274,7 @@ PARTS: Mapping[str, Callable[..., Iterator[Finding]]] = {
 
 @dataclass(frozen=True)
 class Answer:
-    """A row of the index. question: of `pages.toml`; cost: of the cases behind it; origin: (date,
-    commit) of each code that they ran with; cases: their names.
-    """
+    """A row of the index. question: of `pages.toml`; origin: (date, commit) of each code; cases: names."""
 
     question: Mapping
     findings: Sequence[Finding]

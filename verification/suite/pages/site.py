@@ -242,9 +242,7 @@ def write_report(
 
 
 def _write_pages(stored: Stored, look: Look) -> None:
-    """Write index.html, README.md and a page for each group of which a case ran, in place of older pages.
-    report.html leads to the index, for those who look for that.
-    """
+    """Write index.html, README.md and a page for each group; report.html leads to the index."""
     evidence = Evidence(stored, pairs_of(stored))
     answers = answers_of(evidence)
     pages = {
