@@ -34,9 +34,7 @@ DEPTHS = (0.0, 0.3e-6, 0.8e-6, 2e-6, 4e-6, 8e-6)
 
 
 def sphere(plasticity=None, *, coating=None, counterbody=None, friction=None, solver=None, **loading) -> dict:
-    """A rigid sphere on a smooth body: 33 x 33 cells elastic, 17 x 17 plastic; FEM with the fewest
-    elements that are allowed.
-    """
+    """A rigid sphere on a smooth body: 33 x 33 cells elastic, 17 x 17 plastic; the fewest elements."""
     plastic = plasticity is not None
     volume = {"cells": (17, 17), "extent": (12e-6, 12e-6), "layers": 8, "depth": 7e-6}
     body = STEEL | {"plasticity": plasticity, "coating": coating}

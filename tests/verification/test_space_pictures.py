@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Pictures in space: which run has which, what they show in numbers, and drawing, where a machine can and
-where it cannot.
-"""
+"""Pictures in space: which run has which, what they show in numbers, and where a machine cannot draw."""
 
 import re
 import subprocess
@@ -147,14 +145,6 @@ class TestCommand:
         figures = {path.name for path in (sphere_folder / "sphere-sam" / "figures").iterdir()}
         assert {"mises.png", "history.png"} <= figures and not any("3d" in name for name in figures)
 
-    @pytest.mark.usefixtures("cannot")
-    def test_view_says_that_it_cannot_and_writes_nothing(self, samfem):
-        folder = found("elastic").run.folder
-        before = set(folder.rglob("*"))
-        shown = samfem("view", str(folder), code=1)
-        assert shown.out == "" and shown.err.count("\n") == 1 and offscreen.INSTALL in shown.err
-        assert set(folder.rglob("*")) == before
-
     @pytest.mark.parametrize(
         ("words", "said"),
         [
@@ -177,15 +167,6 @@ class TestCommand:
             monkeypatch.setitem(sys.modules, name, None)
         shown = samfem("view", str(found("elastic").run.folder), "--html", str(tmp_path / "a.html"), code=2)
         assert "trame_pyvista, nest_asyncio2: pip install 'samfem[html]'" in shown.err
-
-    def test_a_page_holds_the_scene_with_title_and_colour_bar(self, tmp_path, samfem, monkeypatch):
-        monkeypatch.delenv(offscreen.WINDOW, raising=False)
-        pytest.importorskip("trame_pyvista", reason="pip install 'samfem[html]'")
-        out = tmp_path / "a.html"
-        samfem("view", str(found("yielding").run.folder), "--html", str(out))
-        text = out.read_text()
-        assert "<title>Plastic zone at the peak load, cut at y = 0</title>" in text and "<svg" in text
-        assert len(text) > 1e6 and "</html>" in text
 
 
 @pytest.fixture(scope="session")
