@@ -186,9 +186,7 @@ def _scalar(value: object, measured: Measured) -> float | None:
 
 
 def evaluate(
-    rows: Sequence[Row],
-    ran: Mapping[str, Mapping[str, Measured]],
-    failures: Mapping[str, str] | None = None,
+    rows: Sequence[Row], ran: Mapping[str, Mapping[str, Measured]], failures: Mapping[str, str] | None = None
 ) -> list[Verdict]:
     """All verdicts, in the order of the table. ran: case -> id of a row -> value of the cases that were run;
     failures: case -> why it broke off. Rows of other cases are "not run". A value without a row of its case

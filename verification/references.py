@@ -223,10 +223,7 @@ def hamilton(scene: Scene) -> Reference:
     """Hamilton (1983): stresses over p0, (..., 6), under a given Hertz pressure and traction."""
     a, p0 = scene.loading.radius, scene.loading.p0
     unit = {"contact_radius": a, "nu": scene.body.poisson, "friction": scene.coefficient}
-    return Reference(
-        {"stress": lambda x, y, z: sliding_stress(x, y, z, 1.0, **unit)},
-        {"a": a, "p0": p0},
-    )
+    return Reference({"stress": lambda x, y, z: sliding_stress(x, y, z, 1.0, **unit)}, {"a": a, "p0": p0})
 
 
 def travelling_load(scene: Scene) -> Reference:

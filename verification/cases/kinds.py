@@ -470,7 +470,7 @@ VIEWS: Mapping[str, View] = {
         *("sam", "plastic-zone", "zone", "The plastic zone in space"),
         "The picture shows the plastic strain of SAM at the peak load on the cut y = 0 and, where the zone "
         "reaches it, on the surface.",
-    ),
+    )
 }
 """Name in a case file -> the picture in space."""
 OVER_VARIANTS: Mapping[str, Callable[[CaseFile, Mapping[str, Solved]], Iterator[Plot]]] = {

@@ -430,9 +430,7 @@ def _sam(scene: Scene, plan: Any) -> Counted:
         "chunks": 1.0,
     }
     either = [plastic_boxes(scene, plan, beyond) for beyond in (-UNDECIDED, UNDECIDED)]
-    work |= {
-        "box set-up": sum(box.set_up for each in either for box in each) / 2,
-    }
+    work |= {"box set-up": sum(box.set_up for each in either for box in each) / 2}
     if rough and (last.nx, last.ny) != grid.shape:  # stress in y = 0, beside the box
         if last.swept and last.large:  # by an operator of its own
             plane = replace(last, nx=grid.nx, layers=depths)
@@ -486,8 +484,7 @@ def _line(scene: Scene, plan: Any) -> Counted:
     if flows(scene) and not scene.moves:
         states = 8.0 * steps * scene.loading.cycles * (plan.unknowns + 7 * plan.points)
     return Counted(
-        {"unknowns": 8.0 * plan.unknowns, "states": states},
-        {"solve": 1.0, "solves": solves * plan.unknowns},
+        {"unknowns": 8.0 * plan.unknowns, "states": states}, {"solve": 1.0, "solves": solves * plan.unknowns}
     )
 
 

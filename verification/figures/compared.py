@@ -12,18 +12,7 @@ import numpy as np
 from verification.compare.rows import Solution
 from verification.figures import lines
 from verification.figures.lines import Curve
-from verification.figures.style import (
-    BLACK,
-    FEM,
-    GREEN,
-    ORANGE,
-    PURPLE,
-    SAM,
-    Columns,
-    Drawing,
-    marked,
-    save,
-)
+from verification.figures.style import BLACK, FEM, GREEN, ORANGE, PURPLE, SAM, Columns, Drawing, marked, save
 from verification.runs.files import FIGURES
 from verification.runs.sampling import peak
 from verification.runs.tables import contact_size

@@ -12,17 +12,7 @@ from matplotlib.axes import Axes
 from sam.scene import Result
 from verification.figures.lines import GIGA, MICRO, PERCENT, POINTS
 from verification.figures.maps import INTERFACE, mark_interface
-from verification.figures.style import (
-    EXACT,
-    FEM,
-    SAM,
-    Columns,
-    Drawing,
-    new_figure,
-    sheet,
-    style,
-    zero_line,
-)
+from verification.figures.style import EXACT, FEM, SAM, Columns, Drawing, new_figure, sheet, style, zero_line
 from verification.reference.hertz import CircularContact
 from verification.runs.sampling import rows_of
 

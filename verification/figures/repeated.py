@@ -12,16 +12,7 @@ from matplotlib.patches import Patch
 
 from sam.scene import PLASTIC_STRAINS
 from verification.figures.lines import PLAIN, Curve, curves
-from verification.figures.style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    ORANGE,
-    PURPLE,
-    VERMILION,
-    Drawing,
-    sheet,
-)
+from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, VERMILION, Drawing, sheet
 from verification.runs.files import Run, mesh_of
 from verification.runs.meshes import FIELDS
 

@@ -136,10 +136,7 @@ def thinning(pressure: float, friction: float, strain: float, film: tuple[float,
 
 
 def film_pressure(
-    limit: float,
-    friction: float,
-    film: tuple[float, float, float],
-    body: tuple[float, float],
+    limit: float, friction: float, film: tuple[float, float, float], body: tuple[float, float]
 ) -> float:
     """Pressure in Pa above which the film thins by more than `limit`, or has no equilibrium. film: Young's
     modulus in Pa, Poisson's ratio and yield stress in Pa; body: Young's modulus and Poisson's ratio, elastic,

@@ -38,10 +38,7 @@ PACKAGES = {
     FEM_LINE: ("numpy", "scipy", "scikit-fem"),
 }
 OF_CASES = ("sam", "fem_reference", "verification", "samfem")
-NOT_OF_CASES = (
-    *("verification/suite", "verification/scenes"),
-    "verification/runs/code_version.py",
-)
+NOT_OF_CASES = (*("verification/suite", "verification/scenes"), "verification/runs/code_version.py")
 """What decides the outcome of a verification case, but for what only words it: rows are judged anew from
 stored numbers, scenes and case files count by what a case reads of them.
 """

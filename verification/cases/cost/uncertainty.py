@@ -28,10 +28,7 @@ from verification.uncertainty.solving import asked_of, solve
 SEED = 20261125
 DRAWS = 5  # of a problem, until its plastic zone fits the grid
 KNOWN = 3.0  # times better than uncertainty or error is a reference that counts
-MESHES, BOX = (
-    (16, 24),
-    20.0,
-)  # elements in the radius of a finite-element reference; 20 radii: 0.005 % off
+MESHES, BOX = ((16, 24), 20.0)  # elements in the radius of a finite-element reference; 20 radii: 0.005 % off
 FINER = 1.75  # times as many cells, of a reference by SAM
 MORE_STEPS = (2, 4)  # times as many load steps, of a reference
 FRICTION, AREA = 0.2, "contact_area_m2"
@@ -53,10 +50,7 @@ def textbook(entry: Mapping[str, Any]) -> float:
 
 
 def rows_of(
-    context: Context,
-    problem: str,
-    drawn: Callable[[int], Scene],
-    truth_of: Callable[[Context, Scene], Truth],
+    context: Context, problem: str, drawn: Callable[[int], Scene], truth_of: Callable[[Context, Scene], Truth]
 ) -> Iterator[dict[str, Any]]:
     """Every quantity with an uncertainty and a reference. A zone that leaves its grid is drawn again."""
     for number in range(DRAWS):

@@ -10,16 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sam.scene import Friction, Grid, Scene
-from verification.cases.case import (
-    FEM,
-    FEM_3D,
-    SAM,
-    with_body,
-    with_grid,
-    with_keys,
-    with_loading,
-    with_mesh,
-)
+from verification.cases.case import FEM, FEM_3D, SAM, with_body, with_grid, with_keys, with_loading, with_mesh
 from verification.cases.recipes import BOX, Resolution, at_ratio, coated_scene, resolved_at, resolved_grid
 from verification.cost.advice import (
     COATED,
@@ -187,10 +178,7 @@ def _worn(base: Scene) -> Scene:
 
 
 OVER_STEPS = Method(
-    COUPLED,
-    SAM,
-    LOAD_STEPS,
-    lambda scene, steps: with_loading(plastic_cells(scene, AT_STEPS), steps=steps),
+    COUPLED, SAM, LOAD_STEPS, lambda scene, steps: with_loading(plastic_cells(scene, AT_STEPS), steps=steps)
 )
 """Load steps refined at one resolution."""
 

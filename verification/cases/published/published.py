@@ -16,13 +16,7 @@ from verification.judging import Measured
 from verification.quantities import Reference
 from verification.reference.hamilton import largest_von_mises
 from verification.reference.hertz import CircularContact
-from verification.reference.indentation import (
-    Ghaednia,
-    JacksonGreen,
-    KogutEtsion,
-    onset,
-    residual_share,
-)
+from verification.reference.indentation import Ghaednia, JacksonGreen, KogutEtsion, onset, residual_share
 from verification.references import modulus_of
 
 __all__ = ["area_jackson", "area_kogut", "load_jackson", "load_kogut", "sixty_depths", "w_of_steps", "w_star"]

@@ -35,10 +35,7 @@ from verification.figures.running_in import six_panels
 from verification.reference.bonded_film import regime
 
 PRINTED, RENEWED = "printed inputs", "renewed"
-WORDS = {
-    PRINTED: "with the printed inputs",
-    RENEWED: "weakly hardening layer, renewed counter-surface",
-}
+WORDS = {PRINTED: "with the printed inputs", RENEWED: "weakly hardening layer, renewed counter-surface"}
 """The readings on all surfaces: with its numbers, by our plastic loop, or see `renewed` -> for the reader."""
 SHOWN = 2  # the seed of the scenes
 FULL = Effort(LAST, steps=10, cells=64, seeds=tuple(range(1, 11)))

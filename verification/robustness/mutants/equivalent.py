@@ -84,7 +84,7 @@ PROBES: Mapping[str, Mapping[str, Mapping]] = {
     models.FEM_3D: {
         "coated sphere of hexahedra that slides": pressed(COATED, SPHERE, 0.1)
         | sliding(0.2)
-        | {"fem": {"cells_per_radius": 4, "box": 5.0}},
+        | {"fem": {"cells_per_radius": 4, "box": 5.0}}
     },
 }
 """Solver -> title -> tables of a scene."""

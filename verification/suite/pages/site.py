@@ -59,12 +59,7 @@ INDEX, README = "index.html", "README.md"
 ONE_FILE = "report.html"
 PICTURE = "figures/agreement"
 WORDS = {
-    "verification": {
-        "title": "Verification of samfem",
-        "lead": "",
-        "case": "Case",
-        "gate": "gate",
-    },
+    "verification": {"title": "Verification of samfem", "lead": "", "case": "Case", "gate": "gate"},
     "comparison": {
         "title": "Comparison of SAM and FEM",
         "lead": "Each scene is described once. The semi-analytical method (SAM) and finite elements (FEM) "
@@ -249,11 +244,7 @@ def _write_pages(stored: Stored, look: Look) -> None:
         f"{group['name']}.html": _group_page(group, cases, answers, stored=stored, look=look)
         for group, cases in _groups(stored)
     }
-    for name, template in (
-        (INDEX, "index.html.j2"),
-        (README, "README.md.j2"),
-        (ONE_FILE, "moved.html.j2"),
-    ):
+    for name, template in ((INDEX, "index.html.j2"), (README, "README.md.j2"), (ONE_FILE, "moved.html.j2")):
         pages[name] = _index(template, evidence, answers, look)
     remove_pages(look.folder)
     _draw(evidence, look.folder)
