@@ -57,9 +57,7 @@ WORDS = {
     "friction": "μ = {}",
     "steps": "{} load steps",
 }
-"""What rows say of a model, a statistic, the value of an axis or an axis ("{}": its value); a case has more
-under `words`.
-"""
+"""What rows say of a model, a statistic, an axis or its value ("{}"); a case has more under `words`."""
 _TAKE = re.compile(
     r"(?:([a-z-]+) )??([a-z0-9-]+)(?: of ([a-z0-9/ -]+?))?(?: at (.+))?|([-+.0-9e]+)", re.ASCII
 )

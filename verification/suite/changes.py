@@ -14,9 +14,7 @@ from verification.suite.verify import finished
 from verification.text.console import digits, print_table
 
 EQUAL, GROWN = 1e-12, 2.0
-"""Values count as equal within so much of the larger one; dimensionless ones, which may be rounding itself,
-also within it.
-"""
+"""Values count as equal within so much of the larger one; dimensionless ones also within it."""
 
 
 @dataclass(frozen=True)

@@ -15,9 +15,7 @@ WORKING_UNITS = {
     "m3": {"mm^3": 1e-9, "um^3": 1e-18},
     "N": {"N": 1.0},
 }
-"""SI unit at the end of the name of a quantity -> units for a person, the largest first, and what each is in
-SI; a value takes the first of which it has a tenth.
-"""
+"""SI unit at the end of a name -> units for a person and their SI value; the first with a tenth counts."""
 
 
 def with_prefix(value: float, unit: str, digits: int = 3) -> str:

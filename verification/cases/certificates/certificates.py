@@ -26,9 +26,7 @@ from verification.checks.certificates import OF_GROUP, solved
 LEVEL = {"quick": Resolution(8, 10), "full": Resolution(12, 20)}
 STEPS, RATIO, PERFECT_RATIO, COEFFICIENT = 5, 4.0, 3.0, 0.2
 FILM_RATIO, FILM_MESH = 2.5, 8
-"""Hertz's p0 over the initial yield stress of the body under the film that yields; elements in the contact
-radius.
-"""
+"""Hertz's p0 over the initial yield stress of the body under a film that yields; elements in the radius."""
 SPATIAL_MESH, SPATIAL_STEPS, COATED_CELLS = 4, 3, 41
 PATCH, RA, FORCE = 16e-6, 0.04e-6, 0.1
 """Of the rough patch: side and Ra in m, force in N."""

@@ -29,9 +29,7 @@ from verification.references import contact_of
 MODELS = {"sam": SAM, "fem": FEM}
 SLOPES = {"perfect": 0.0, "nearly-perfect": 1e-4}  # of the yield curve over Young's modulus
 EXTENT = {6.2: (2.5, 3.3), 15.0: (5.5, 5.4)}
-"""p0/sigma_y0 -> half sides of the grid and its depth in elastic contact radii; the contact itself grows to
-1.1 and 1.9.
-"""
+"""p0/sigma_y0 -> half sides of the grid and depth in elastic radii; the contact grows to 1.1 and 1.9."""
 CELLS = {"quick": {6.2: (6, 6), 15.0: (4, 4)}, "full": {6.2: (8, 10), 15.0: (6, 8)}}
 """Of SAM and of FEM in the elastic contact radius."""
 TIGHT = 1e-9  # tolerance of the whole load at once: more than SAM iterates

@@ -23,9 +23,7 @@ from verification.checks.material import around, fields_at_points
 
 CYCLES = (2, 5)
 SEED, TOLERANCE = 1, 1e-6
-"""Of wear-converged: the surface that wears most; a rigid plane needs twice the load for as many cells in
-contact, and lets it yield deeper.
-"""
+"""Of wear-converged: the surface that wears most; under a rigid plane it needs twice the load."""
 DEEPER = 14e-6, 19e-6  # m: further faces of layers
 
 

@@ -25,9 +25,7 @@ from verification.references import changes_by_film
 from verification.runs.sampling import peak
 
 LEVEL = {"quick": (8, 5), "full": (12, 10)}
-"""Elements in the contact radius, of which the film has two over its thickness whatever their number; load
-steps.
-"""
+"""Elements in the contact radius, of which the film has two over its thickness; load steps."""
 LARGEST_STRAIN = 0.14
 """Of a film, up to which small strains on its undeformed thickness are taken for an answer: half of it is
 their own error, and with elements of half the size the strain at the edge grows by a tenth; beyond, by half
@@ -36,18 +34,14 @@ of itself and more.
 RADII, THIN_RADIUS = (5e-6, 2e-6, 1e-6), 10e-6
 PRESSURES = (4e9, 6.5e9)
 BARE_RADIUS = 2e-6
-"""Elastic contact radius in m at which the contacts without film are solved, one for all: without film
-nothing has a length, and all that is relative to it is as at any other.
-"""
+"""Elastic contact radius in m of the contacts without film, one for all: nothing there has a length."""
 STEEL = COUNTERBODIES["steel"]
 BODIES = {
     "elastic": None,
     "B 945": Plasticity(law="swift", B=945e6, C=20.0, n=0.121),
     "B 1780": Plasticity(law="swift", B=1780e6, C=4.0, n=0.095),
 }
-"""Steel of the substrate: elastic, the set published for 52100, and what the paper prints in section 5 for
-its own.
-"""
+"""Steel of the substrate: elastic, published for 52100, and as the paper prints in section 5."""
 PERFECT = Plasticity(law="perfect", yield_stress=1.358e9)
 """Body whose film is of its own material: about the initial yield stress of the first Swift law."""
 

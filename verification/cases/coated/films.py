@@ -64,9 +64,7 @@ POINTS = (
     *((0.6, 2.0, "steel"), (2.0, 0.05, "steel"), (2.0, 0.5, "rigid"), (4.0, 0.1, "rigid")),
     *((4.0, 1.0, "steel"), (10.0, 0.02, "steel"), (10.0, 0.3, "rigid")),
 )
-"""(E1/E2, thickness, counter-body) solved by FEM as well; the first two at the quick level, on coarser
-elements.
-"""
+"""(E1/E2, thickness, counter-body) solved by FEM too; the first two at the quick level, coarser."""
 
 
 def map_scene(base: Scene, ratio: float, thickness: float, counterbody: str) -> Scene:
@@ -159,9 +157,7 @@ def at_limits(context: Context) -> Iterator[dict[str, Any]]:
 # --- coarse and fine cells ------------------------------------------------------------------------------
 
 PATCHES = {"coarse": (1e-6, 65, 8e-6), "fine": (10e-9, 251, 0.8e-6)}
-"""Size of a cell in m, cells a side, contact radius without film in m: patches of 65 um and 2.5 um, eight and
-eighty cells in the radius.
-"""
+"""Size of a cell in m, cells a side, contact radius without film in m: patches of 65 um and 2.5 um."""
 PARTS = 101
 """Cells of 9.9 nm in a cell of 1 um, along each side; odd, so that they have its centre."""
 LAGS = ((0, 0), (1, 0), (1, 1), (4, 2), (20, 1), (60, 0))

@@ -23,9 +23,7 @@ FOX = {
     1.0: (0.6464, 0.2914, 0.0809, 0.0189),
     2.0: (0.9106, 0.6437, 0.2449, 0.0666),
 }
-"""Radius over thickness -> pressure on the interface below the centre over that on the disc, for DISC_RATIOS;
-nu = 0.5.
-"""
+"""Radius over thickness -> pressure on the interface over that on the disc, for DISC_RATIOS; nu = 0.5."""
 LAST_DIGIT, DISC_CELLS = 1e-4, 100  # of the table; in the radius of the disc
 
 

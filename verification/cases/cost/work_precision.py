@@ -47,9 +47,7 @@ FAST_S, REPEATS = 1.0, 3
 OLD_S = 30.0
 """After so long the calibration kernel is run again; it takes 1.5 s with its process."""
 EXACT = 1e-8
-"""Uncertainty of the closed forms: of the spectral solution of the coated sphere, and more than that of the
-others.
-"""
+"""Uncertainty of the closed forms: that of the spectral solution of the coated sphere, the largest."""
 FEWEST = 3  # points of an extrapolation
 STEPS = "load steps"
 Solve = Callable[[Scene, str], Result]

@@ -41,9 +41,7 @@ SOLVED = {
         *(("alternating", SAM, True), ("alternating", FEM, True)),
     ),
 }
-"""Case -> contacts and models, and whether they take each number of steps on the coarsest grid and the fewest
-steps on each of SAM, or the fewest on the finest.
-"""
+"""Case -> contacts, models, and whether with each number of steps on the coarsest grid, or the fewest."""
 # Of a pressure in place, over the yield stress: 1.5 times Melan's limit for Prager's back-stress. Its modulus
 # in Pa: with a tenth of it the mean strain settles for longer.
 ALTERNATING, MODULUS, YIELD = 4.84, 150e9, 1e9

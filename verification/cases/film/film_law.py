@@ -18,9 +18,7 @@ from verification.reference.convergence import fit_power
 from verification.reference.film_flow import Film, FlowPoint
 
 FILM, BODY = (80e9, 0.3, 2e9 / 3.0), (210e9, 0.3)
-"""E in Pa and nu, of the film also its yield stress in Pa, a third of its hardness: Bosman & Schipper (2011),
-section 4.
-"""
+"""E in Pa and nu, of the film also its yield stress in Pa: Bosman & Schipper (2011), section 4."""
 FRICTIONS, HIGH = (0.0, 0.1), 0.4
 TRACK, WIDTH, SPEED, THICKNESS = 314.15e-3, 300e-6, 1.0, 100e-9
 SUBSTEPS = (16, 32, 64, 128)

@@ -124,9 +124,7 @@ COUNTS: Mapping[str, Callable[[Run], int]] = {
     "added": lambda one: int((one.scar.worn < 0.0).sum()),
     "repeats": restless_cycles,
 }
-"""Row -> its number of a run, of which the row holds the largest, or the sum. Sums are over surface.csv of
-the last cycle, against cycles.csv.
-"""
+"""Row -> its number of a run, the largest or the sum, by surface.csv of the last cycle and cycles.csv."""
 
 
 class RunningIn(Readings):
@@ -285,9 +283,7 @@ def readings_plot(good: DataFrame) -> Plot:
 
 
 SIZES = {"1 µm": (32, 5), "0.457 µm": (70, 11)}
-"""Size of the cells -> cells along a side of 32 um, and in the window of smoothing, which is 5 um long: 12
-and 26 cells in the shortest wave of 12 um, where wear-converged asks for 24.
-"""
+"""Cells along 32 um and in the window of smoothing, 5 um: 12 and 26 cells in the shortest wave of 12 um."""
 
 
 def meshed(scene: Scene, cells: int, window: int) -> Scene:

@@ -70,13 +70,9 @@ VARIATIONS = {
     "steps": partial(Member, cells=VARIED_ON, steps=FINER * STEPS),
     "load": partial(Member, cells=DEFAULT, force=1.01),
 }
-"""What else is varied -> the run of a surface: layers and load steps of a third, 1 % more load; each against
-the same without.
-"""
+"""What else is varied -> the run of a surface: a third of layers or load steps, or 1 % more load."""
 LEFT = {"layers": 1 / (FINER - 1), "steps": FINER / (FINER - 1)}
-"""Share of that change which is left, of first order: of the finer layers, which are recommended, and of the
-coarser load steps, which are.
-"""
+"""Share of that change which is left, of first order: of the finer layers, of the coarser load steps."""
 
 
 def shifted(like: Surface, seed: int, cells: int, shift: float) -> Surface:

@@ -138,9 +138,7 @@ load | load [N] | 0.3 | 1.2 | 0.6 | 1 | logarithm | load
 counter | roughness of the counter-surface [nm rms] | 0 | 30e-9 | 0 | 1e9 | value | counter
 window | window of smoothing [cells] | 0 | 9 | 5 | 1 | level | wear.smoothing_window
 """
-"""The fields of each input, in the order in which they are put into a scene: a law of the layer takes the
-constants of the body.
-"""
+"""The fields of each input, in the order in which they are put: a layer takes the body's constants."""
 INPUTS = tuple(
     Input(name, words, *map(float, numbers), even, key)
     for name, words, *numbers, even, key in study.parts_of(TABLE)

@@ -15,9 +15,7 @@ from verification.cases.running_in.study import Effort, reduced
 from verification.runs.sampling import surface_pressure
 
 LIMIT = 0.004
-"""Of a law that hardens little: on Swift steel no strain reaches the surface without friction, however small
-the limit.
-"""
+"""Of a law that hardens little: on Swift steel no strain reaches the surface without friction."""
 
 
 def runs(context: Context) -> Iterator[dict[str, Any]]:

@@ -25,9 +25,7 @@ ARITHMETIC = (np.add, np.subtract, np.multiply)
 FACTOR = 1.001
 MORE = 2
 HOOK = "_perturbed_number_"
-"""Begins the names under which a rewritten module finds its `Number`; one underscore, as a class
-changes names with two.
-"""
+"""Begins the names of `Number` in a rewritten module; one underscore: a class changes those with two."""
 NEIGHBOUR = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt}
 OPPOSITE = {ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Gt: ast.LtE, ast.GtE: ast.Lt} | {
     one: other

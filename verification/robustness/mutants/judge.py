@@ -34,9 +34,7 @@ WORKERS = 2
 SECONDS = 1.0
 """Of processor time, with what it sets up: a test is fast below it."""
 ALONE, TOGETHER = 2 * SECONDS, 15.0
-"""Seconds of processor time that a test may take while observed, which takes longer, and all that
-one mutant meets.
-"""
+"""Processor seconds that a test may take while observed, and all that one mutant meets."""
 ASKED = 5.0
 """Seconds that the tests asked about one mutant took together while they were observed, the fastest first."""
 PARAMETERS = 100
