@@ -27,7 +27,7 @@ from verification.rows import CaseFile
 from verification.runs import models
 from verification.runs.sampling import pressure_map
 
-__all__ = ["at_limits"]
+__all__ = ["at_limits", "changes_of_paper"]
 
 SCENE, QUICK_MESH = "coated-sphere", 16
 PAPER_RATIO, PAPER_FILM, FILM_YIELD = 80 / 210, 100e-9, 0.67e9
