@@ -107,7 +107,7 @@ STRAIN = np.random.default_rng(1).standard_normal((6, 5, 16, 12))
 
 
 def operator(box: Cuboids = BOX, bodies: PeriodicHalfSpaces = HELD) -> PeriodicOperator:
-    return PeriodicOperator(bodies, box, 1.0, Counters(), single=False, swept=1e-7)
+    return PeriodicOperator(bodies, box, 1.0, Counters(), swept=1e-7)
 
 
 def stress_of(box: BoxOperator, strain: np.ndarray) -> np.ndarray:
