@@ -203,7 +203,7 @@ class Scene(Section):
                 (there and (repeats or line), key, f"with {patch if repeats else axis} {NOT_YET}")
                 for key, there in absent
             ),
-            (repeats and shape != "flat", "counterbody.shape", f"with {patch}: {summits}"),
+            (repeats and not line and shape != "flat", "counterbody.shape", f"with {patch}: {summits}"),
             (
                 repeats and at("grid.border") == "relief",
                 "grid.border",
