@@ -50,9 +50,8 @@ GRIDS = {
     "rough": {"grid": {"cells": (16, 16), "extent": (8e-6, 8e-6)}},
     "line": {"grid": {"cells": (33, 1)}},
 }
-COARSE = {models.FEM: {"cells_per_radius": 8, "box": 5}} | dict.fromkeys(
-    (models.FEM_3D, models.FEM_LINE), {"cells_per_radius": 4, "box": 4}
-)
+COARSE = {models.FEM: {"cells_per_radius": 8, "box": 5}, models.FEM_3D: {"cells_per_radius": 4, "box": 4}}
+COARSE[models.FEM_LINE] = COARSE[models.FEM_3D]
 _FOLDERS: list[TemporaryDirectory] = []
 
 

@@ -3,8 +3,8 @@
 Engrs 177 (1963) 676: their assumptions, integrated here.
 
 The strains of a pass are those of the elastic contact (Hertz, plane strain), at each depth by itself. The
-stresses follow along them by Prandtl and Reuss. On a long track equilibrium leaves only sxx and syy that depend
-on the depth: what remains of szz and sxz after a pass is released, elastically, without strain along x and y.
+stresses follow along them by Prandtl and Reuss. On a long track equilibrium leaves sxx and syy alone, which
+depend on the depth: what remains of szz and sxz after a pass is released, elastically, without strain along x and y.
 Bhargava, Hahn & Rubin, J. Appl. Mech. 52 (1985) 75, whose finite elements do without these assumptions, found
 five times the plastic shear.
 """
@@ -22,7 +22,7 @@ XZ = 4  # its place in the record of the stress
 
 
 def plastic_shear(over_shear: float, depth, *, nu: float, passes: int) -> tuple[np.ndarray, np.ndarray]:
-    """Of each pass of a load that moves along +x, over k/G, (passes, n): the plastic shear strain that it adds,
+    """Of each pass of a load that moves along +x, over k/G, (passes, n): the plastic shear strain it adds,
     positive where the surface is carried backwards, against the motion of the load; and sqrt(3) times the
     accumulated plastic strain that it adds, which of shear alone is the way of that shear to and fro.
 
@@ -33,9 +33,9 @@ def plastic_shear(over_shear: float, depth, *, nu: float, passes: int) -> tuple[
     x = np.sinh(np.linspace(1.0, -1.0, STEPS + 1) * np.arcsinh(FAR))[:, None]
     elastic = line.stress(x * a, np.asarray(depth) * a, nu) / line.peak_pressure
     elastic = positive("over_shear", over_shear) * np.pad(elastic, ((1, 1), (0, 0), (0, 0)))
-    stress, added, ways = np.zeros(elastic.shape[1:]), [], []
+    stress, added, ways = np.zeros_like(elastic[0]), [], []
     for _ in range(passes):
-        strain, way = np.zeros_like(stress), np.zeros(stress.shape[0])
+        strain, way = np.zeros_like(stress), np.zeros(len(stress))
         for step in np.diff(elastic, axis=0):
             flow = _beyond(stress := stress + step)
             stress, strain, way = stress - flow, strain + flow, way + _shear_of(flow)
@@ -54,8 +54,8 @@ def _shear_of(deviators: np.ndarray) -> np.ndarray:
 
 
 def _beyond(stress: np.ndarray) -> np.ndarray:
-    """By how much the deviators lie outside of the yield surface k = 1, radially: 2 G times the plastic strain
-    of the step.
+    """By how much the deviators lie outside of the yield surface k = 1, radially: 2 G times the plastic
+    strain of the step.
     """
     s = deviator(stress)
     return s * (1.0 - 1.0 / np.maximum(_shear_of(s), 1.0))[..., None]
