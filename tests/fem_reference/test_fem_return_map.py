@@ -1,17 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Small-strain plasticity of the finite elements: return map, back-stresses, consistent tangent, materials of
-parts, assembly.
-"""
+"""Small-strain plasticity of the finite elements: return map, back-stresses, tangent, parts, assembly."""
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 from skfem import MeshQuad
 
-from fem_reference.axisymmetric.elements import AxisymmetricSolid
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.elasticity import mises
 from fem_reference.common.plasticity import J2, CurveInUnits, History, Parts
+from fem_reference.common.quadrilaterals import AxisymmetricSolid
 from sam.scene.yield_curve import Linear, Swift, Tabulated
 from tests.material_point import FemPoint, Specimen
 
