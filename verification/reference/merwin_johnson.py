@@ -5,7 +5,7 @@ Engrs 177 (1963) 676: their assumptions, integrated here.
 The strains of a pass are those of the elastic contact (Hertz, plane strain), at each depth by itself. The
 stresses follow along them by Prandtl and Reuss. On a long track equilibrium leaves sxx and syy alone, which
 depend on the depth: what remains of szz and sxz after a pass is released, elastically, without strain along x
-and y. Bhargava, Hahn & Rubin, J. Appl. Mech. 52 (1985) 75, whose finite elements do without these assumptions,
+and y. Bhargava, Hahn & Rubin, J. Appl. Mech. 52 (1985) 75, whose finite elements lack these assumptions,
 found five times the plastic shear.
 """
 
