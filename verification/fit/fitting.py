@@ -14,7 +14,7 @@ covariance is
 
     C = (J^T J + W)^-1 + G N G^T,        G = (J^T J + W)^-1 J^T,                                       (b)
 
-N that of the numerical error over the points of a branch of a test, with e = d_f - d_c in standard deviations:
+N that of the numerical error over the points of a branch of a test, e = d_f - d_c in standard deviations:
 
     N_ij = (e/K)^2 exp(-(pi m (u_i - u_j)/U)^2/2),    e^2 the mean of e_i^2, u = sqrt(x), U its range. (c)
 
